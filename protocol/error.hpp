@@ -1,0 +1,39 @@
+// Errors that reach the user, with the exit code that the program ends with.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace furrow {
+
+/// Exit codes that users script against.
+enum class ExitCode : int {
+  done = 0,
+  bad_input = 2,    // scenario, tire file, command line
+  physics = 3,      // no convergence, NaN, a grain lost
+  rank_lost = 4,    // a rank died or stopped answering
+  io = 5,           // a file could not be read or written
+  stopped = 75,     // stopped by a signal
+};
+
+/// Thrown by any room; caught only where a program or a rank begins.
+class Error : public std::runtime_error {
+ public:
+  Error(ExitCode code, const std::string& text) : std::runtime_error(text), code_(code) {}
+  ExitCode code() const { return code_; }
+
+ private:
+  ExitCode code_;
+};
+
+/// "FILE: key 'a.b': what is wrong, what is expected", exit code 2. Give an empty key for the file as a whole.
+inline Error input_error(const std::string& file, const std::string& key, const std::string& what) {
+  return Error(ExitCode::bad_input, key.empty() ? file + ": " + what : file + ": key '" + key + "': " + what);
+}
+
+inline Error physics_error(const std::string& what) { return Error(ExitCode::physics, what); }
+inline Error io_error(const std::string& file, const std::string& what) {
+  return Error(ExitCode::io, file + ": " + what);
+}
+
+}  // namespace furrow

@@ -1,0 +1,60 @@
+// What carries the tires: a test rig (or a vehicle) as a multibody assembly.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "protocol/archive.hpp"
+#include "protocol/surface.hpp"
+
+namespace furrow {
+
+/// What a rig measures of wheel k over the last advance (interval means), in the frame of travel:
+/// e forward, l left, z up.
+struct WheelReport {
+  double slip = 0.0;               // 1 − v/(ω r), r the undeformed radius
+  double speed = 0.0;              // carriage speed along the travel direction, m/s
+  double spin = 0.0;               // angular speed of the rim about its axle, rad/s
+  double drawbar_pull_raw = 0.0;   // reaction of the longitudinal drive, N, positive when the tire pulls the rig
+  double drawbar_pull = 0.0;       // raw + m·a of everything the drive carries, N
+  double drive_torque = 0.0;       // of the spindle motor about the axle, N m, positive when it drives forward
+  double lateral_force = 0.0;      // on the rim by the tire, along l, N
+  double aligning_moment = 0.0;    // on the rim by the tire, about z, N m
+  double axle_height = 0.0;        // z of the rim centre, m
+  double axle_position = 0.0;      // along travel, m
+  double vertical_speed = 0.0;     // of the wheel carrier, m/s
+  double vertical_momentum = 0.0;  // of all mass that the wheel carries (carrier, rim, added tire), kg m/s
+  double carried_mass = 0.0;       // kg, including the tire's added mass
+  double joint_drift = 0.0;        // largest constraint violation, m or rad
+  double damper_force = 0.0;       // touch-down damper on the slider, N
+};
+
+class Rig {
+ public:
+  virtual ~Rig() = default;
+
+  virtual std::string kind() const = 0;   // "drawbar", …
+  virtual int wheel_count() const = 0;
+  virtual Vec3 travel_direction() const = 0;  // unit, W
+
+  /// Adds the tire's rigid-body mass properties to the rim of wheel k. Before place().
+  virtual void add_tire_mass(int wheel, const MassProperties& tire, double tire_radius) = 0;
+
+  /// Puts each rim centre at the given height, with the imposed velocities of t = 0.
+  virtual void place(std::span<const double> axle_height) = 0;
+
+  virtual RimState rim(int wheel) const = 0;
+
+  /// Advances by `duration` in `substeps` steps with the tires' wrenches (about the rim centres, W) held constant.
+  /// @throws Error(physics) when the constraints cannot be satisfied or a state is not finite.
+  virtual void advance(std::span<const Wrench> wrenches, double duration, int substeps) = 0;
+
+  virtual WheelReport report(int wheel) const = 0;
+
+  virtual void save(Archive& archive) const = 0;
+  virtual void restore(const Archive& archive) = 0;
+};
+
+}  // namespace furrow

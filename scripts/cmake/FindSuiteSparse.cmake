@@ -1,0 +1,22 @@
+# Finds the parts of SuiteSparse that Furrow uses: Debian's package has no CMake configuration.
+# Defines SuiteSparse::cholmod (with AMD, COLAMD and the BLAS it needs behind it).
+include(FindPackageHandleStandardArgs)
+find_path(SuiteSparse_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse)
+set(_suitesparse_libraries)
+foreach(_part cholmod amd colamd ccolamd camd suitesparseconfig)
+  find_library(SuiteSparse_${_part}_LIBRARY ${_part})
+  mark_as_advanced(SuiteSparse_${_part}_LIBRARY)
+  list(APPEND _suitesparse_libraries SuiteSparse_${_part}_LIBRARY)
+endforeach()
+find_library(SuiteSparse_openblas_LIBRARY openblas)
+mark_as_advanced(SuiteSparse_INCLUDE_DIR SuiteSparse_openblas_LIBRARY)
+find_package_handle_standard_args(SuiteSparse REQUIRED_VARS SuiteSparse_INCLUDE_DIR ${_suitesparse_libraries}
+                                  SuiteSparse_openblas_LIBRARY)
+if(SuiteSparse_FOUND AND NOT TARGET SuiteSparse::cholmod)
+  add_library(SuiteSparse::cholmod INTERFACE IMPORTED)
+  target_include_directories(SuiteSparse::cholmod SYSTEM INTERFACE ${SuiteSparse_INCLUDE_DIR})
+  foreach(_library ${_suitesparse_libraries})
+    target_link_libraries(SuiteSparse::cholmod INTERFACE ${${_library}})
+  endforeach()
+  target_link_libraries(SuiteSparse::cholmod INTERFACE ${SuiteSparse_openblas_LIBRARY})
+endif()

@@ -1,0 +1,31 @@
+# furrow_options: what every target of the project is compiled with.
+add_library(furrow_options INTERFACE)
+target_include_directories(furrow_options INTERFACE ${CMAKE_SOURCE_DIR})
+target_compile_options(furrow_options INTERFACE -Wall -Wextra -Wpedantic -fno-math-errno -fno-trapping-math)
+target_compile_definitions(furrow_options INTERFACE EIGEN_DONT_PARALLELIZE)
+# Eigen's alignment, and with it the layout of every class that holds an Eigen type, follows the instruction
+# set. It is pinned so that objects built with and without -march=native can be linked together.
+target_compile_definitions(furrow_options INTERFACE EIGEN_MAX_STATIC_ALIGN_BYTES=16)
+target_link_libraries(furrow_options INTERFACE Eigen3::Eigen fmt::fmt OpenMP::OpenMP_CXX Threads::Threads)
+if(FURROW_NATIVE)
+  target_compile_options(furrow_options INTERFACE -march=native)
+endif()
+if(FURROW_WERROR)
+  target_compile_options(furrow_options INTERFACE -Werror)
+endif()
+if(FURROW_SANITIZE)
+  target_compile_options(furrow_options INTERFACE -fsanitize=address,undefined -fno-omit-frame-pointer -g)
+  target_link_options(furrow_options INTERFACE -fsanitize=address,undefined)
+endif()
+
+# furrow_test(<name> LABELS <label>… LIBS <target>… SOURCES <file>… [TIMEOUT <s>]): one GoogleTest program, one CTest entry.
+function(furrow_test name)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "LABELS;LIBS;SOURCES" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE furrow_options ${ARG_LIBS} GTest::gtest GTest::gtest_main)
+  add_test(NAME ${name} COMMAND ${name})
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 120)
+  endif()
+  set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT})
+endfunction()

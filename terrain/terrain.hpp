@@ -1,0 +1,64 @@
+// The interface of every terrain: something that pushes back on the contact surfaces of tires.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "protocol/archive.hpp"
+#include "protocol/messages.hpp"
+
+namespace furrow {
+
+/// Called now and then during long work with (what, share done 0…1); may throw to stop it.
+using ProgressCall = std::function<void(const std::string& what, double share)>;
+
+struct TerrainStatus {
+  bool ok = true;
+  std::string message;  // "grain 17 left the box at t = …, x = (…)"
+};
+
+/// Points for pictures: what a frame file holds.
+struct TerrainFrame {
+  std::vector<float> position;  // x y z per grain, m
+  std::vector<float> speed;     // |v| per grain, m/s
+  std::vector<float> radius;    // per grain, m
+};
+
+class Terrain {
+ public:
+  virtual ~Terrain() = default;
+
+  /// Generates and settles the bed, or loads it from the cache. Returns its wall time, s.
+  /// @throws Error(physics) when it cannot settle.
+  virtual double prepare(const ProgressCall& progress) = 0;
+
+  /// Highest point over the rectangle, m.
+  virtual double top_height(double x_min, double x_max, double y_min, double y_max) const = 0;
+  /// Mean surface height over the rectangle, m: mean over cells of 2r of the highest grain top.
+  virtual double mean_height(double x_min, double x_max, double y_min, double y_max) const = 0;
+  virtual double floor_height() const = 0;
+  virtual HeightField height_field() const = 0;
+
+  /// Declares the surface of tire `k` (k = 0, 1, … in order) before the first advance.
+  /// @throws Error(bad_input) when the surface starts inside the terrain's solid boundary.
+  virtual void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) = 0;
+
+  /// Advances by `duration` in `substeps` equal steps. Each vertex moves linearly from where the terrain last had it
+  /// to x + v·duration of targets[k], and its contact velocity is that motion's.
+  /// forces[k] and contact[k] receive the interval's means.
+  virtual TerrainStatus advance(std::span<const SurfaceState> targets, double duration, int substeps,
+                                std::span<NodalForces> forces, std::span<ContactSums> contact) = 0;
+
+  virtual TerrainState state() const = 0;
+  virtual std::int64_t size() const = 0;  // grains
+  virtual void frame(TerrainFrame& out) const = 0;
+
+  /// State for an exact continuation, including contact history and attached surfaces' last positions.
+  virtual void save(Archive& archive) const = 0;
+  virtual void restore(const Archive& archive) = 0;
+};
+
+}  // namespace furrow

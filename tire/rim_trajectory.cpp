@@ -1,0 +1,101 @@
+// x(s) = h₀₀ x₀ + h₁₀ T v₀ + h₀₁ x₁ + h₁₁ T v₁ with the cubic Hermite basis, s = (t − t₀)/T. The orientation is
+// exp(φ(s)) q₀ with φ the same curve from 0 to the turn between the end orientations. φ̇ equals ω only to first
+// order in φ: a turn of one interval is ωT ≈ 4e-4 rad and ω keeps its direction, so that the commutator
+// ½ φ × φ̇ vanishes for steady spin and is below 1e-7 rad/s otherwise. Both end states are met exactly.
+#include "tire/rim_trajectory.hpp"
+
+#include <cmath>
+
+namespace furrow {
+namespace {
+
+Quat rotation(const Vec3& turn) {
+  const double angle = turn.norm();
+  if (angle < 1e-12) return Quat(1.0, 0.5 * turn.x(), 0.5 * turn.y(), 0.5 * turn.z()).normalized();
+  return Quat(Eigen::AngleAxisd(angle, turn / angle));
+}
+
+Vec3 turn_between(const Quat& from, const Quat& to) {
+  Quat q = to * from.conjugate();
+  if (q.w() < 0.0) q.coeffs() = -q.coeffs();
+  const double sine = q.vec().norm();
+  if (sine < 1e-12) return 2.0 * q.vec();
+  return 2.0 * std::atan2(sine, q.w()) / sine * q.vec();
+}
+
+struct Hermite {
+  Vec3 value, rate, second;
+};
+
+Hermite hermite(const Vec3& x0, const Vec3& v0, const Vec3& x1, const Vec3& v1, double duration, double s) {
+  const double s2 = s * s, s3 = s2 * s;
+  const Vec3 m0 = duration * v0, m1 = duration * v1;
+  Hermite h;
+  h.value = (2 * s3 - 3 * s2 + 1) * x0 + (s3 - 2 * s2 + s) * m0 + (3 * s2 - 2 * s3) * x1 + (s3 - s2) * m1;
+  h.rate = ((6 * s2 - 6 * s) * (x0 - x1) + (3 * s2 - 4 * s + 1) * m0 + (3 * s2 - 2 * s) * m1) / duration;
+  h.second = ((12 * s - 6) * (x0 - x1) + (6 * s - 4) * m0 + (6 * s - 2) * m1) / (duration * duration);
+  return h;
+}
+
+void put_rim(Archive& archive, const std::string& name, const RimState& r) {
+  const auto& q = r.orientation.coeffs();
+  archive.put(name, std::vector<double>{r.position.x(), r.position.y(), r.position.z(), q[0], q[1], q[2], q[3],
+                                        r.velocity.x(), r.velocity.y(), r.velocity.z(), r.angular_velocity.x(),
+                                        r.angular_velocity.y(), r.angular_velocity.z()});
+}
+
+RimState get_rim(const Archive& archive, const std::string& name) {
+  const auto& v = archive.get<double>(name, 13);
+  RimState r;
+  r.position = Vec3(v[0], v[1], v[2]);
+  r.orientation.coeffs() << v[3], v[4], v[5], v[6];
+  r.velocity = Vec3(v[7], v[8], v[9]);
+  r.angular_velocity = Vec3(v[10], v[11], v[12]);
+  return r;
+}
+
+}  // namespace
+
+RimTrajectory::RimTrajectory(const RimState& start) : start_(start), end_(start) {}
+
+void RimTrajectory::extend(const RimState& received, double duration) {
+  start_ = end_;
+  duration_ = duration;
+  end_.position = received.position + duration * received.velocity;
+  end_.orientation = (rotation(duration * received.angular_velocity) * received.orientation).normalized();
+  end_.velocity = received.velocity;
+  end_.angular_velocity = received.angular_velocity;
+  turn_ = turn_between(start_.orientation, end_.orientation);
+}
+
+RimKinematics RimTrajectory::at(double s) const {
+  if (s >= 1.0 && duration_ == 0.0) return {end_, Vec3::Zero(), Vec3::Zero()};
+  const Hermite x = hermite(start_.position, start_.velocity, end_.position, end_.velocity, duration_, s);
+  const Hermite phi =
+      hermite(Vec3::Zero(), start_.angular_velocity, turn_, end_.angular_velocity, duration_, s);
+  RimKinematics k;
+  k.state.position = x.value;
+  k.state.velocity = x.rate;
+  k.acceleration = x.second;
+  k.state.orientation = s >= 1.0 ? end_.orientation : (rotation(phi.value) * start_.orientation).normalized();
+  k.state.angular_velocity = phi.rate;
+  k.angular_acceleration = phi.second;
+  return k;
+}
+
+void RimTrajectory::save(Archive& archive) const {
+  put_rim(archive, "trajectory/start", start_);
+  put_rim(archive, "trajectory/end", end_);
+  archive.put("trajectory/duration", duration_);
+  archive.put("trajectory/turn", std::vector<double>{turn_.x(), turn_.y(), turn_.z()});
+}
+
+void RimTrajectory::restore(const Archive& archive) {
+  start_ = get_rim(archive, "trajectory/start");
+  end_ = get_rim(archive, "trajectory/end");
+  duration_ = archive.get_double("trajectory/duration");
+  const auto& t = archive.get<double>("trajectory/turn", 3);
+  turn_ = Vec3(t[0], t[1], t[2]);
+}
+
+}  // namespace furrow

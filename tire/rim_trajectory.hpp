@@ -1,0 +1,42 @@
+// The continuous (C¹) motion that a tire gives its bead over one communication interval. The rim's state arrives at
+// the interval's start t₀; the tire extrapolates it to t₁ = t₀ + H and goes there from the pose it last used:
+// a cubic Hermite curve in position, and in the rotation vector relative to the starting orientation.
+#pragma once
+
+#include "protocol/archive.hpp"
+#include "protocol/surface.hpp"
+
+namespace furrow {
+
+/// Rim motion with accelerations at one instant, W.
+struct RimKinematics {
+  RimState state;
+  Vec3 acceleration = Vec3::Zero();          // m/s²
+  Vec3 angular_acceleration = Vec3::Zero();  // rad/s²
+};
+
+class RimTrajectory {
+ public:
+  /// At rest on `start`; start() = end() = start.
+  explicit RimTrajectory(const RimState& start = {});
+
+  /// Begins the next interval: from where the last one ended to `received` extrapolated by `duration` at constant
+  /// velocity and angular velocity.
+  void extend(const RimState& received, double duration);
+
+  /// @param s share of the interval, 0…1
+  RimKinematics at(double s) const;
+  const RimState& start() const { return start_; }
+  const RimState& end() const { return end_; }
+  double duration() const { return duration_; }
+
+  void save(Archive& archive) const;
+  void restore(const Archive& archive);
+
+ private:
+  RimState start_, end_;
+  double duration_ = 0.0;
+  Vec3 turn_ = Vec3::Zero();  // rotation vector from start to end orientation, W, rad
+};
+
+}  // namespace furrow

@@ -1,0 +1,81 @@
+// The interface of every tire model: a deformable (or rigid) body held by a rim and pressed on by a terrain.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "protocol/archive.hpp"
+#include "protocol/surface.hpp"
+#include "tire/rim_trajectory.hpp"
+
+namespace furrow {
+
+/// Cumulative account of what a tire did since it was placed.
+struct TireDiagnostics {
+  double kinetic_energy = 0.0;         // J, now
+  double strain_energy = 0.0;          // elastic + pressure potential, J, now
+  double dissipation = 0.0;            // structural damping, J, cumulative
+  Vec3 momentum = Vec3::Zero();        // kg m/s, now
+  std::int64_t newton_iterations = 0;  // cumulative
+  std::int64_t factorizations = 0;     // cumulative
+  double residual = 0.0;               // free residual / reference at the last step's end
+};
+
+/// Outcome of an advance; a failure names itself and what to try.
+struct TireStatus {
+  bool converged = true;
+  std::string message;
+};
+
+class Tire {
+ public:
+  virtual ~Tire() = default;
+
+  virtual const SurfaceMesh& mesh() const = 0;
+  virtual ContactMaterial material() const = 0;
+  virtual MassProperties mass_properties() const = 0;
+  virtual double radius() const = 0;        // of the undeformed contact surface, m
+  virtual double tread_width() const = 0;   // m
+  virtual int coordinates() const = 0;      // unknowns
+
+  /// Puts the tire on the rim, inflated, with the velocity field of a rigid body moving with the rim.
+  /// @throws Error(physics) when inflation does not converge.
+  virtual void place(const RimState& rim) = 0;
+
+  /// Vertices at the current time.
+  virtual void surface(SurfaceState& out) const = 0;
+
+  /// Integrates from the trajectory's start to its end in `substeps` equal steps. `forces` act constantly.
+  /// Gravity (0, 0, −9.81 m/s²) acts.
+  virtual TireStatus advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) = 0;
+
+  /// Force and moment about the rim centre that the tire exerts on the rim, averaged over the last advance; complete,
+  /// with the tire's inertia and weight, so that impulse = Δ momentum holds to round-off for the tire as a whole.
+  virtual Wrench spindle_wrench() const = 0;
+
+  virtual TireDiagnostics diagnostics() const = 0;
+
+  /// State of the model and its integrator; a restored tire continues bit for bit.
+  virtual void save(Archive& archive) const = 0;
+  virtual void restore(const Archive& archive) = 0;
+};
+
+/// What a scenario says about a tire.
+struct TireOptions {
+  std::filesystem::path file;      // resolved
+  double pressure = -1.0;          // gauge, Pa; negative: the file's default
+  double friction = -1.0;          // contact friction; negative: the file's
+  int elements_circumference = 0;  // 0: the file's
+  int elements_width = 0;          // 0: the file's; split over the sections in the file's proportions
+  double structural_damping = -1.0;  // s; negative: the file's
+  bool rigid = false;              // same surface, no deformation
+  double substep = 0.0;            // s, time step the tire will be advanced with
+};
+
+/// Reads a tire file (our layout or the public ANCFTire layout) and makes the model it describes.
+/// @throws Error(bad_input) naming file and key; a file of an unknown template lists the valid ones.
+std::unique_ptr<Tire> make_tire(const TireOptions& options);
+
+}  // namespace furrow

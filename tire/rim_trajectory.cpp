@@ -77,7 +77,8 @@ RimKinematics RimTrajectory::at(double s) const {
   k.state.position = x.value;
   k.state.velocity = x.rate;
   k.acceleration = x.second;
-  k.state.orientation = s >= 1.0 ? end_.orientation : (rotation(phi.value) * start_.orientation).normalized();
+  k.state.orientation = end_.orientation;
+  if (s < 1.0) k.state.orientation = (rotation(phi.value) * start_.orientation).normalized();
   k.state.angular_velocity = phi.rate;
   k.angular_acceleration = phi.second;
   return k;

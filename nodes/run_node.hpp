@@ -1,0 +1,25 @@
+// The run loop: what one rank does from handshake to final report.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+#include "nodes/progress.hpp"
+#include "nodes/scenario.hpp"
+#include "protocol/transport.hpp"
+
+namespace furrow {
+
+struct RunContext {
+  std::filesystem::path directory;    // existing run directory; empty: write nothing (tests)
+  int threads = 1;                    // OpenMP threads of this node while stepping
+  std::function<bool()> stop_requested;  // a signal asked for a stop
+  ProgressSink progress;              // called by the rig's node
+};
+
+/// Runs this rank's node to the end. Result files are written by the rank that owns them; the rig's writes the series,
+/// the summary and the index.
+/// @throws Error
+void run_node(const Scenario& scenario, Transport& transport, const RunContext& context);
+
+}  // namespace furrow

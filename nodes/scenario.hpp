@@ -1,0 +1,68 @@
+// A scenario: what the user's JSON file says, validated, completed with the schema's defaults, and made into the
+// options of each room.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "rigs/drawbar_rig.hpp"
+#include "terrain/terrain_options.hpp"
+#include "tire/tire.hpp"
+
+namespace furrow {
+
+/// `run.*`
+struct RunOptions {
+  double step = 4e-5;           // communication step H, s
+  double end = 1.5;             // s
+  double average_from = 0.8;    // start of the averaging window, s
+  int threads = 0;              // terrain's OpenMP threads; 0: auto
+  std::uint64_t seed = 1;
+  double peer_timeout = 60.0;   // s
+  std::int64_t steps() const;   // round(end / step)
+};
+
+/// `output.*`
+struct OutputOptions {
+  double series_interval = 1e-3;  // s
+  double frame_interval = 0.02;   // s; 0: none
+};
+
+/// `expected.*`, optional: what the shipped scenarios print beside their result.
+struct ExpectedResult {
+  bool given = false;
+  double drawbar_pull = 0.0;         // N
+  double drawbar_pull_spread = 0.0;  // ± N
+};
+
+struct Scenario {
+  std::filesystem::path file;
+  std::string name;              // file name without extension
+  std::string completed;         // the whole scenario as JSON text with defaults filled in
+  std::string digest;            // hash of `completed`
+  DrawbarRigOptions rig;
+  int rig_substeps = 1;
+  std::vector<TireOptions> tires;
+  int tire_substeps = 1;
+  TerrainOptions terrain;
+  int terrain_ranks = 1;
+  int terrain_substeps = 1;
+  RunOptions run;
+  OutputOptions output;
+  ExpectedResult expected;
+};
+
+/// Reads, applies `--set key=value` pairs, validates and completes a scenario.
+/// @throws Error(bad_input) naming file, key, what is wrong and what is expected.
+Scenario load_scenario(const std::filesystem::path& file,
+                       const std::vector<std::pair<std::string, std::string>>& settings);
+
+/// The folder that holds rigs/, tire/ and scripts/: from FURROW_HOME, or found from the program's own place.
+std::filesystem::path data_folder();
+
+}  // namespace furrow

@@ -93,6 +93,7 @@ struct RimMotion {
   static constexpr MessageKind kKind = MessageKind::rim_motion;
   StepHeader header;
   RimState rim;
+  bool stop_next = false;  // the run ends at synchronization n + 1: a signal asked for it
 };
 
 /// tire k → rig.
@@ -119,6 +120,7 @@ struct SurfaceMotion {
   static constexpr MessageKind kKind = MessageKind::surface_motion;
   StepHeader header;
   SurfaceState surface;
+  bool stop_now = false;   // the run ends at this synchronization
 };
 
 /// Sums over the contacts of one tire, interval means; force = normal + tangential, on the tire by the terrain.

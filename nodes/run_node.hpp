@@ -19,7 +19,8 @@ struct RunContext {
 
 /// Runs this rank's node to the end. Result files are written by the rank that owns them; the rig's writes the series,
 /// the summary and the index.
+/// @returns done, or stopped when a signal ended the run early
 /// @throws Error
-void run_node(const Scenario& scenario, Transport& transport, const RunContext& context);
+ExitCode run_node(const Scenario& scenario, Transport& transport, const RunContext& context);
 
 }  // namespace furrow

@@ -36,6 +36,7 @@ struct SeriesRow {
   double energy_error = 0.0;          // cumulative Σe at the tire–terrain interface, J
   double energy_error_abs = 0.0;      // cumulative Σ|e|, J
   double rim_energy_error = 0.0;      // cumulative Σe at the rim–tire interface, J
+  double rim_work = 0.0;              // cumulative work of the rim on the tire, J
   double spindle_work = 0.0;          // cumulative ∫ T ω dt, J
   double pull_work = 0.0;             // cumulative ∫ pull v dt, J
   double soil_dissipation = 0.0;      // cumulative, J

@@ -1,0 +1,59 @@
+// One rank's part of a co-simulation: rig, tire or terrain. The run loop drives all kinds alike:
+//
+//   set_up;  for n = 0 … N:  synchronize(n);  if n < N: advance
+//
+// synchronize sends everything before it receives anything, so that no order of ranks can deadlock.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "nodes/run_node.hpp"
+#include "protocol/archive.hpp"
+#include "protocol/transport.hpp"
+
+namespace furrow {
+
+class Node {
+ public:
+  virtual ~Node() = default;
+
+  virtual NodeCard card() const = 0;
+
+  /// Exchanges what is said once; `cards` in the order rig, tires, terrain.
+  virtual void set_up(Transport& transport, std::span<const NodeCard> cards, const RunContext& context) = 0;
+
+  virtual void synchronize(Transport& transport, const StepHeader& header) = 0;
+
+  /// Advances this node by one communication step, from t_n.
+  virtual void advance(const StepHeader& header) = 0;
+
+  /// True when the run ends at the synchronization just done, before its planned end.
+  virtual bool stopped() const = 0;
+
+  /// Sends (tire, terrain) or gathers and writes (rig) the results.
+  virtual void finish(Transport& transport, FinalReport own) = 0;
+
+  virtual void save(Archive& archive) const = 0;
+  virtual void restore(const Archive& archive) = 0;
+};
+
+std::unique_ptr<Node> make_rig_node(const Scenario& scenario);
+std::unique_ptr<Node> make_tire_node(const Scenario& scenario, int index);
+std::unique_ptr<Node> make_terrain_node(const Scenario& scenario, int threads);
+
+/// The node that `self` is in this scenario.
+std::unique_ptr<Node> make_node(const Scenario& scenario, Address self, int threads);
+
+/// What all cards of a run share.
+NodeCard common_card(const Scenario& scenario, Address self);
+
+/// Number of communication steps between two outputs that are `interval` seconds apart; 0: never.
+std::int64_t steps_between(double interval, double step);
+
+/// Step number of the messages by which rims and tires are placed, before synchronization 0.
+inline constexpr std::int64_t kPlacement = -1;
+
+inline constexpr double kGravity = 9.81;  // m/s², along −z
+
+}  // namespace furrow

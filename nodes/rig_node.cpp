@@ -1,0 +1,149 @@
+// The rig's rank: moves the wheels, gathers what all report, and writes the results.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "nodes/node.hpp"
+#include "nodes/results.hpp"
+#include "nodes/series_builder.hpp"
+
+namespace furrow {
+namespace {
+
+constexpr double kPlacementGap = 1e-3;      // m, between the highest grain and the undeformed tire
+constexpr double kProgressInterval = 0.25;  // s of wall time
+
+double wall_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+class RigNode : public Node {
+ public:
+  explicit RigNode(const Scenario& scenario) : scenario_(scenario), rig_(make_rig(scenario)) {}
+
+  NodeCard card() const override {
+    NodeCard card = common_card(scenario_, kSelf);
+    card.node_kind = rig_->kind();
+    card.substeps = scenario_.rig_substeps;
+    card.wheel_count = rig_->wheel_count();
+    card.tire_count = static_cast<int>(scenario_.tires.size());
+    return card;
+  }
+
+  void set_up(Transport& transport, std::span<const NodeCard> cards, const RunContext& context) override {
+    context_ = context;
+    cards_.assign(cards.begin(), cards.end());
+    const int wheels = rig_->wheel_count();
+    for (int k = 0; k < wheels; ++k) rig_->add_tire_mass(k, cards[1 + k].tire_mass, cards[1 + k].tire_radius);
+    rig_->place(std::vector<double>(wheels, 0.0));
+    for (int k = 0; k < wheels; ++k) send(transport, kTerrain, RimMotion{{kPlacement, 0.0}, rig_->rim(k)});
+    setup_ = receive<TerrainSetup>(transport, kTerrain);
+    std::vector<double> height(wheels);
+    for (int k = 0; k < wheels; ++k) height[k] = setup_.top_height[k] + cards[1 + k].tire_radius + kPlacementGap;
+    rig_->place(height);
+    for (int k = 0; k < wheels; ++k) {
+      send(transport, Address{Role::tire, k}, RimMotion{{kPlacement, 0.0}, rig_->rim(k)});
+      builders_.emplace_back(cards[1 + k].tire_radius, setup_.mean_height[k], scenario_.run.step);
+    }
+    wrenches_.resize(wheels);
+    series_steps_ = steps_between(scenario_.output.series_interval, scenario_.run.step);
+    if (!context.directory.empty()) results_ = std::make_unique<Results>(scenario_, cards_, setup_, context.directory);
+    wall_start_ = wall_s();
+  }
+
+  void synchronize(Transport& transport, const StepHeader& header) override {
+    stopped_ = stop_sent_;
+    stop_sent_ = context_.stop_requested && context_.stop_requested();
+    const int wheels = rig_->wheel_count();
+    for (int k = 0; k < wheels; ++k)
+      send(transport, Address{Role::tire, k}, RimMotion{header, rig_->rim(k), stop_sent_});
+    std::vector<SpindleReport> tires(wheels);
+    for (int k = 0; k < wheels; ++k) {
+      tires[k] = receive_step<SpindleReport>(transport, {Role::tire, k}, header.step);
+      wrenches_[k] = tires[k].wrench;
+    }
+    const auto terrain = receive_step<TerrainReport>(transport, kTerrain, header.step);
+    for (int k = 0; k < wheels && header.step > 0; ++k)
+      builders_[k].add({header.time, rig_->report(k), rig_->rim(k), tires[k], terrain.contact[k], terrain.state,
+                        setup_.grains, rig_->travel_direction()});
+    const bool line = header.step > 0 && series_steps_ > 0 && header.step % series_steps_ == 0;
+    if (line) record();
+    show_progress(header);
+  }
+
+  void advance(const StepHeader&) override { rig_->advance(wrenches_, scenario_.run.step, scenario_.rig_substeps); }
+
+  bool stopped() const override { return stopped_; }
+
+  void finish(Transport& transport, FinalReport own) override {
+    std::vector<FinalReport> reports{own};
+    for (std::size_t i = 1; i < cards_.size(); ++i)
+      reports.push_back(receive<FinalReport>(transport, cards_[i].self));
+    if (results_) results_->finish(reports, builders_, wall_s() - wall_start_, stopped_);
+  }
+
+  void save(Archive& archive) const override {
+    rig_->save(archive);
+    for (std::size_t k = 0; k < builders_.size(); ++k) {
+      Archive::Scope scope(archive, "wheel" + std::to_string(k) + "/");
+      builders_[k].save(archive);
+    }
+  }
+
+  void restore(const Archive& archive) override {
+    rig_->restore(archive);
+    for (std::size_t k = 0; k < builders_.size(); ++k) {
+      Archive::Scope scope(archive, "wheel" + std::to_string(k) + "/");
+      builders_[k].restore(archive);
+    }
+  }
+
+ private:
+  static constexpr Address kSelf{Role::rig, 0};
+  static constexpr Address kTerrain{Role::terrain, 0};
+
+  static std::unique_ptr<Rig> make_rig(const Scenario& scenario) { return make_drawbar_rig(scenario.rig); }
+
+  void record() {
+    for (std::size_t k = 0; k < builders_.size(); ++k) {
+      const SeriesRow row = builders_[k].take();
+      if (k == 0) last_ = row;
+      if (results_) results_->add(static_cast<int>(k), row);
+    }
+  }
+
+  void show_progress(const StepHeader& header) {
+    const double now = wall_s();
+    if (!context_.progress || header.step == 0 || now - shown_ < kProgressInterval) return;
+    shown_ = now;
+    Progress p;
+    p.phase = "running";
+    p.time = header.time;
+    p.end = scenario_.run.end;
+    p.share = header.time / scenario_.run.end;
+    p.pull = last_.drawbar_pull;
+    p.sinkage = last_.sinkage;
+    p.speed = last_.speed;
+    p.eta = (now - wall_start_) * (1.0 - p.share) / p.share;
+    context_.progress(p);
+  }
+
+  Scenario scenario_;
+  std::unique_ptr<Rig> rig_;
+  RunContext context_;
+  std::vector<NodeCard> cards_;
+  TerrainSetup setup_;
+  std::vector<Wrench> wrenches_;
+  std::vector<SeriesBuilder> builders_;
+  std::unique_ptr<Results> results_;
+  SeriesRow last_;
+  std::int64_t series_steps_ = 0;
+  double wall_start_ = 0.0, shown_ = 0.0;
+  bool stop_sent_ = false, stopped_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Node> make_rig_node(const Scenario& scenario) { return std::make_unique<RigNode>(scenario); }
+
+}  // namespace furrow

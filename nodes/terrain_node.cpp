@@ -1,0 +1,166 @@
+// The terrain's rank: prepares the bed, says how high it stands under each tire, then pushes back.
+#include <algorithm>
+
+#include "nodes/frames.hpp"
+#include "nodes/node.hpp"
+
+namespace furrow {
+namespace {
+
+constexpr double kFootprintShare = 0.6;  // of the tire radius ahead and behind: where a grain can touch it at rest
+
+class TerrainNode : public Node {
+ public:
+  TerrainNode(const Scenario& scenario, int threads) : scenario_(scenario), threads_(threads) {
+    TerrainOptions options = scenario.terrain;
+    options.threads = threads;
+    terrain_ = make_terrain(options);
+  }
+
+  NodeCard card() const override {
+    NodeCard card = common_card(scenario_, kSelf);
+    card.node_kind = scenario_.terrain.engine;
+    card.substeps = scenario_.terrain_substeps;
+    card.tire_count = static_cast<int>(scenario_.tires.size());
+    card.threads = threads_;
+    card.size = terrain_->size();
+    return card;
+  }
+
+  void set_up(Transport& transport, std::span<const NodeCard> cards, const RunContext& context) override {
+    directory_ = context.directory;
+    frame_steps_ = directory_.empty() ? 0 : steps_between(scenario_.output.frame_interval, scenario_.run.step);
+    const int tires = static_cast<int>(scenario_.tires.size());
+    std::vector<SurfaceSetup> surfaces;
+    for (int k = 0; k < tires; ++k) surfaces.push_back(receive<SurfaceSetup>(transport, {Role::tire, k}));
+
+    TerrainSetup setup;
+    setup.settle_wall_s = terrain_->prepare([&](const std::string& what, double share) {
+      transport.heartbeat();
+      transport.check_peers();
+      if (context.stop_requested && context.stop_requested())
+        throw Error(ExitCode::stopped, "stopped by a signal while the bed was being prepared");
+      Progress progress;
+      progress.phase = what;
+      progress.share = share;
+      progress.end = scenario_.run.end;
+      if (context.progress) context.progress(progress);
+    });
+    setup.grains = terrain_->size();
+    setup.floor_height = terrain_->floor_height();
+    for (int k = 0; k < tires; ++k) {
+      const Vec3 at = receive_step<RimMotion>(transport, kRig, kPlacement).rim.position;
+      const double reach = kFootprintShare * cards[1 + k].tire_radius, half = 0.5 * cards[1 + k].tire_width;
+      setup.top_height.push_back(terrain_->top_height(at.x() - reach, at.x() + reach, at.y() - 1.5 * half,
+                                                      at.y() + 1.5 * half));
+      const double length = scenario_.terrain.length;
+      setup.mean_height.push_back(
+          terrain_->mean_height(0.1 * length, 0.9 * length, at.y() - half, at.y() + half));
+    }
+    send(transport, kRig, setup);
+    before_ = terrain_->height_field();
+
+    targets_.resize(tires);
+    forces_.resize(tires);
+    report_.contact.assign(tires, {});
+    for (int k = 0; k < tires; ++k) {
+      targets_[k] = receive_step<SurfaceMotion>(transport, {Role::tire, k}, kPlacement).surface;
+      terrain_->attach(surfaces[k].mesh, surfaces[k].material, targets_[k]);
+    }
+    report_.state = terrain_->state();
+  }
+
+  void synchronize(Transport& transport, const StepHeader& header) override {
+    write_frame(header);
+    report_.header = header;
+    for (int k = 0; k < static_cast<int>(forces_.size()); ++k)
+      send(transport, Address{Role::tire, k}, TerrainForces{header, forces_[k]});
+    send(transport, kRig, report_);
+    for (int k = 0; k < static_cast<int>(forces_.size()); ++k) {
+      SurfaceMotion motion = receive_step<SurfaceMotion>(transport, {Role::tire, k}, header.step);
+      targets_[k] = std::move(motion.surface);
+      stopped_ = stopped_ || motion.stop_now;
+    }
+  }
+
+  void advance(const StepHeader& header) override {
+    const TerrainStatus status =
+        terrain_->advance(targets_, scenario_.run.step, scenario_.terrain_substeps, forces_, report_.contact);
+    if (!status.ok)
+      throw physics_error("terrain at t = " + std::to_string(header.time) + " s, step " +
+                          std::to_string(header.step) + ": " + status.message);
+    report_.state = terrain_->state();
+  }
+
+  bool stopped() const override { return stopped_; }
+
+  void finish(Transport& transport, FinalReport own) override {
+    own.height_before = before_;
+    own.height_after = terrain_->height_field();
+    send(transport, kRig, own);
+  }
+
+  void save(Archive& archive) const override {
+    terrain_->save(archive);
+    for (std::size_t k = 0; k < forces_.size(); ++k) {
+      const std::string name = "node/forces" + std::to_string(k);
+      std::vector<double> flat;
+      for (const Vec3& f : forces_[k].force) flat.insert(flat.end(), f.data(), f.data() + 3);
+      archive.put(name + "/vertex", std::vector<std::int32_t>(forces_[k].vertex.begin(), forces_[k].vertex.end()));
+      archive.put(name + "/force", flat);
+      const ContactSums& c = report_.contact[k];
+      archive.put(name + "/sums",
+                  std::vector<double>{c.force.x(), c.force.y(), c.force.z(), c.normal.x(), c.normal.y(), c.normal.z(),
+                                      c.tangential.x(), c.tangential.y(), c.tangential.z(), c.moment.x(),
+                                      c.moment.y(), c.moment.z(), c.transfer_force_residual,
+                                      c.transfer_moment_residual, c.work, static_cast<double>(c.contacts)});
+    }
+  }
+
+  void restore(const Archive& archive) override {
+    terrain_->restore(archive);
+    for (std::size_t k = 0; k < forces_.size(); ++k) {
+      const std::string name = "node/forces" + std::to_string(k);
+      const auto& vertex = archive.get<std::int32_t>(name + "/vertex");
+      const auto& flat = archive.get<double>(name + "/force", 3 * vertex.size());
+      forces_[k].vertex.assign(vertex.begin(), vertex.end());
+      forces_[k].force.clear();
+      for (std::size_t i = 0; i < vertex.size(); ++i)
+        forces_[k].force.emplace_back(flat[3 * i], flat[3 * i + 1], flat[3 * i + 2]);
+      const auto& v = archive.get<double>(name + "/sums", 16);
+      report_.contact[k] = {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]}, {v[9], v[10], v[11]},
+                            v[12],              v[13],              v[14],              std::int64_t(v[15])};
+    }
+    report_.state = terrain_->state();
+  }
+
+ private:
+  static constexpr Address kSelf{Role::terrain, 0};
+  static constexpr Address kRig{Role::rig, 0};
+
+  void write_frame(const StepHeader& header) {
+    if (frame_steps_ == 0 || header.step % frame_steps_ != 0) return;
+    terrain_->frame(frame_);
+    write_terrain_frame(directory_, header.step / frame_steps_, header.time, frame_);
+  }
+
+  Scenario scenario_;
+  int threads_;
+  std::unique_ptr<Terrain> terrain_;
+  std::vector<SurfaceState> targets_;
+  std::vector<NodalForces> forces_;
+  TerrainReport report_;
+  HeightField before_;
+  TerrainFrame frame_;
+  std::filesystem::path directory_;
+  std::int64_t frame_steps_ = 0;
+  bool stopped_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Node> make_terrain_node(const Scenario& scenario, int threads) {
+  return std::make_unique<TerrainNode>(scenario, threads);
+}
+
+}  // namespace furrow

@@ -1,0 +1,170 @@
+// The tire's rank. Its bead follows the rim's extrapolated motion (tire/rim_trajectory.hpp); the terrain's forces of
+// the last interval act over the next one. To the rig goes the spindle wrench without the tire's own rigid-body
+// inertia and weight, which the rig carries as added mass:
+//   F_sent = F + m (Δv/H − g),   M_sent = M + Δ(R J Rᵀ ω)/H
+// with v and ω those of the bead's trajectory: nothing is counted twice, and a rigid tire sends its contact alone.
+#include <cmath>
+
+#include "nodes/frames.hpp"
+#include "nodes/node.hpp"
+
+namespace furrow {
+namespace {
+
+Vec3 spin_momentum(const MassProperties& mass, const RimState& rim) {
+  const Mat3 r = rim.orientation.toRotationMatrix();
+  return r * (mass.inertia * (r.transpose() * rim.angular_velocity));
+}
+
+class TireNode : public Node {
+ public:
+  TireNode(const Scenario& scenario, int index)
+      : scenario_(scenario), index_(index), tire_(make_tire(scenario.tires.at(index))) {}
+
+  NodeCard card() const override {
+    NodeCard card = common_card(scenario_, {Role::tire, index_});
+    card.node_kind = scenario_.tires[index_].rigid ? "rigid" : "ancf";
+    card.substeps = scenario_.tire_substeps;
+    card.tire_mass = tire_->mass_properties();
+    card.tire_radius = tire_->radius();
+    card.tire_width = tire_->tread_width();
+    card.size = tire_->coordinates();
+    return card;
+  }
+
+  void set_up(Transport& transport, std::span<const NodeCard>, const RunContext& context) override {
+    directory_ = context.directory;
+    frame_steps_ = directory_.empty() ? 0 : steps_between(scenario_.output.frame_interval, scenario_.run.step);
+    send(transport, kTerrain, SurfaceSetup{tire_->mesh(), tire_->material()});
+    const auto start = receive_step<RimMotion>(transport, kRig, kPlacement);
+    trajectory_ = RimTrajectory(start.rim);
+    tire_->place(start.rim);
+    tire_->surface(motion_.surface);
+    motion_.header = {kPlacement, 0.0};
+    send(transport, kTerrain, motion_);
+    describe_state();
+  }
+
+  void synchronize(Transport& transport, const StepHeader& header) override {
+    report_.header = motion_.header = header;
+    motion_.stop_now = stop_next_;
+    write_frame(header);
+    send(transport, kRig, report_);
+    send(transport, kTerrain, motion_);
+    stopped_ = stop_next_;
+    rim_ = receive_step<RimMotion>(transport, kRig, header.step);
+    stop_next_ = rim_.stop_next;
+    forces_ = receive_step<TerrainForces>(transport, kTerrain, header.step).forces;
+  }
+
+  void advance(const StepHeader& header) override {
+    const double duration = scenario_.run.step;
+    trajectory_.extend(rim_.rim, duration);
+    const TireStatus status = tire_->advance(trajectory_, forces_, scenario_.tire_substeps);
+    if (!status.converged)
+      throw physics_error(to_string(Address{Role::tire, index_}) + " at t = " + std::to_string(header.time) +
+                          " s, step " + std::to_string(header.step) + ": " + status.message);
+    account(duration);
+  }
+
+  bool stopped() const override { return stopped_; }
+  void finish(Transport& transport, FinalReport own) override { send(transport, kRig, own); }
+
+  void save(Archive& archive) const override {
+    tire_->save(archive);
+    trajectory_.save(archive);
+    const auto& r = report_;
+    archive.put("node/report",
+                std::vector<double>{r.wrench.force.x(), r.wrench.force.y(), r.wrench.force.z(), r.wrench.moment.x(),
+                                    r.wrench.moment.y(), r.wrench.moment.z(), r.spindle.force.x(),
+                                    r.spindle.force.y(), r.spindle.force.z(), r.spindle.moment.x(),
+                                    r.spindle.moment.y(), r.spindle.moment.z(), r.impulse_received.x(),
+                                    r.impulse_received.y(), r.impulse_received.z(), r.impulse_received_abs,
+                                    r.terrain_work, r.rim_work});
+  }
+
+  void restore(const Archive& archive) override {
+    tire_->restore(archive);
+    trajectory_.restore(archive);
+    const auto& v = archive.get<double>("node/report", 18);
+    report_.wrench = {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
+    report_.spindle = {{v[6], v[7], v[8]}, {v[9], v[10], v[11]}};
+    report_.impulse_received = {v[12], v[13], v[14]};
+    report_.impulse_received_abs = v[15];
+    report_.terrain_work = v[16];
+    report_.rim_work = v[17];
+    tire_->surface(motion_.surface);
+    describe_state();
+  }
+
+ private:
+  static constexpr Address kRig{Role::rig, 0};
+  static constexpr Address kTerrain{Role::terrain, 0};
+
+  void account(double duration) {
+    const RimState &from = trajectory_.start(), &to = trajectory_.end();
+    const MassProperties mass = tire_->mass_properties();
+    report_.spindle = tire_->spindle_wrench();
+    report_.wrench.force = report_.spindle.force + mass.mass * (to.velocity - from.velocity) / duration +
+                           Vec3(0.0, 0.0, mass.mass * kGravity);
+    report_.wrench.moment =
+        report_.spindle.moment + (spin_momentum(mass, to) - spin_momentum(mass, from)) / duration;
+    const Vec3 turned = 0.5 * duration * (from.angular_velocity + to.angular_velocity);
+    report_.rim_work -=
+        report_.spindle.force.dot(to.position - from.position) + report_.spindle.moment.dot(turned);
+
+    before_.swap(motion_.surface.position);
+    tire_->surface(motion_.surface);
+    Vec3 impulse = Vec3::Zero();
+    for (std::size_t i = 0; i < forces_.vertex.size(); ++i) {
+      const int vertex = forces_.vertex[i];
+      impulse += duration * forces_.force[i];
+      report_.terrain_work += forces_.force[i].dot(motion_.surface.position[vertex] - before_[vertex]);
+    }
+    report_.impulse_received += impulse;
+    report_.impulse_received_abs += impulse.norm();
+    describe_state();
+  }
+
+  void describe_state() {
+    const TireDiagnostics d = tire_->diagnostics();
+    report_.kinetic_energy = d.kinetic_energy;
+    report_.strain_energy = d.strain_energy;
+    report_.dissipation = d.dissipation;
+    report_.momentum = d.momentum;
+    report_.newton_iterations = d.newton_iterations;
+    report_.factorizations = d.factorizations;
+    report_.residual = d.residual;
+    report_.lowest_point = motion_.surface.position.front().z();
+    for (const Vec3& x : motion_.surface.position) report_.lowest_point = std::min(report_.lowest_point, x.z());
+    if (!std::isfinite(report_.lowest_point + report_.spindle.force.sum()))
+      throw physics_error(to_string(Address{Role::tire, index_}) + ": the state is not finite");
+  }
+
+  void write_frame(const StepHeader& header) {
+    if (frame_steps_ == 0 || header.step % frame_steps_ != 0) return;
+    write_tire_frame(directory_, index_, header.step / frame_steps_, header.time, tire_->mesh(), motion_.surface,
+                     forces_);
+  }
+
+  Scenario scenario_;
+  int index_;
+  std::unique_ptr<Tire> tire_;
+  RimTrajectory trajectory_;
+  RimMotion rim_;
+  NodalForces forces_;
+  SurfaceMotion motion_;
+  SpindleReport report_;
+  std::vector<Vec3> before_;
+  std::filesystem::path directory_;
+  std::int64_t frame_steps_ = 0;
+  bool stop_next_ = false, stopped_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Node> make_tire_node(const Scenario& scenario, int index) {
+  return std::make_unique<TireNode>(scenario, index);
+}
+
+}  // namespace furrow

@@ -1,0 +1,52 @@
+// From contact forces on a surface to forces on its vertices, and their sums over one communication interval.
+//
+// A force f at p = Σ w_a x_a of a triangle goes to its vertices as w_a f. Then Σ w_a f = f and Σ x_a × w_a f = p × f:
+// force and moment are handed over exactly in the configuration in which f was evaluated.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "protocol/messages.hpp"
+#include "terrain/dem/surface_collider.hpp"
+
+namespace furrow {
+
+/// One contact's force on the surface (the tire) by the terrain; total force = normal + tangential.
+struct SurfaceContactForce {
+  int triangle = -1;
+  std::array<double, 3> weight{};     // of the hit
+  Vec3 point = Vec3::Zero();          // of the hit, m, W
+  Vec3 normal = Vec3::Zero();         // N, W
+  Vec3 tangential = Vec3::Zero();     // N, W
+};
+
+class NodalForceSum {
+ public:
+  explicit NodalForceSum(int vertex_count);
+
+  /// Adds the forces of one substep of length dt. Serial, in the order given: the caller keeps that order fixed
+  /// (for example by grain), then the bits do not depend on threads. Touches only vertices of touched triangles.
+  void add_substep(std::span<const SurfaceContactForce> contacts, const SurfaceCollider& surface, double dt);
+
+  /// Interval means: impulses divided by `duration`; clears the sums for the next interval.
+  void finish(double duration, NodalForces& forces, ContactSums& sums);
+
+  /// Impulse given to the surface since the last finish(), N s.
+  Vec3 impulse() const;
+
+ private:
+  void hand_over(const SurfaceContactForce& contact, const SurfaceCollider& surface, const Vec3& mean);
+
+  std::vector<Vec3> impulse_;        // per vertex, N s
+  std::vector<std::uint8_t> touched_;
+  std::vector<int> touched_list_;    // in order of first touch
+  std::vector<Vec3> substep_force_;  // per vertex, this substep, N
+  std::vector<std::uint8_t> substep_touched_;
+  std::vector<int> substep_list_;
+  ContactSums sums_;                 // impulses (N s, N m s) until finish()
+};
+
+}  // namespace furrow

@@ -45,6 +45,13 @@ std::unique_ptr<Node> make_terrain_node(const Scenario& scenario, int threads);
 /// The node that `self` is in this scenario.
 std::unique_ptr<Node> make_node(const Scenario& scenario, Address self, int threads);
 
+/// Synchronizes and advances for n = from … to − 1. Stops early, after a synchronization, when the node says so.
+/// @returns the step it stands at; not yet synchronized there unless it stopped early
+std::int64_t run_steps(Node& node, Transport& transport, double step, std::int64_t from, std::int64_t to);
+
+/// Hash of everything that save() holds.
+std::uint64_t state_hash(const Node& node);
+
 /// What all cards of a run share.
 NodeCard common_card(const Scenario& scenario, Address self);
 

@@ -21,6 +21,8 @@ double cpu_s() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
+}  // namespace
+
 std::uint64_t state_hash(const Node& node) {
   Archive archive;
   node.save(archive);
@@ -32,7 +34,15 @@ std::uint64_t state_hash(const Node& node) {
   return hash.value();
 }
 
-}  // namespace
+std::int64_t run_steps(Node& node, Transport& transport, double step, std::int64_t from, std::int64_t to) {
+  for (std::int64_t n = from; n < to; ++n) {
+    const StepHeader header{n, static_cast<double>(n) * step};
+    node.synchronize(transport, header);
+    if (node.stopped()) return n;
+    node.advance(header);
+  }
+  return to;
+}
 
 ExitCode run_node(const Scenario& scenario, Transport& transport, const RunContext& context) {
   try {
@@ -45,12 +55,8 @@ ExitCode run_node(const Scenario& scenario, Transport& transport, const RunConte
 
     const std::int64_t steps = scenario.run.steps();
     const double wall_start = wall_s(), cpu_start = cpu_s(), waited_start = transport.wait_clock().waited_s;
-    for (std::int64_t n = 0;; ++n) {
-      const StepHeader header{n, static_cast<double>(n) * scenario.run.step};
-      node->synchronize(transport, header);
-      if (n == steps || node->stopped()) break;
-      node->advance(header);
-    }
+    run_steps(*node, transport, scenario.run.step, 0, steps);
+    if (!node->stopped()) node->synchronize(transport, {steps, static_cast<double>(steps) * scenario.run.step});
     FinalReport own;
     own.self = transport.self();
     own.wait_s = transport.wait_clock().waited_s - waited_start;

@@ -1,0 +1,283 @@
+// The drawbar rig as a multibody system. Frame of travel: e = ±x, l = z × e (left when looking along e), z up.
+// All bodies ride in the vertical plane of the axle line; chassis and set-toe are carried by the rail.
+#include "rigs/drawbar_rig.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "protocol/error.hpp"
+#include "vehicle/multibody/system.hpp"
+
+namespace furrow {
+namespace {
+
+// Guided bodies never rotate, so their inertia has no effect on any result; it only scales the constraint matrix.
+constexpr double kGuidedInertia = 1.0;     // kg m², chassis and set-toe
+constexpr double kCarrierInertia = 20.0;   // kg m²
+constexpr double kSlipLimit = 1e6;         // reported instead of larger magnitudes when the wheel hardly turns
+
+void require(bool ok, const std::string& key, const std::string& what) {
+  if (!ok) throw input_error("scenario", "rig." + key, what);
+}
+
+void validate(const DrawbarRigOptions& o) {
+  require(o.mode == "fixed_angular_speed" || o.mode == "fixed_speed" || o.mode == "free_rolling", "mode",
+          "unknown mode '" + o.mode + "'; expected fixed_angular_speed, fixed_speed or free_rolling");
+  require(std::isfinite(o.slip), "slip", "must be finite");
+  require(o.mode != "fixed_speed" || o.slip < 1.0, "slip", "must be below 1 in mode fixed_speed");
+  require(std::isfinite(o.angular_speed) && std::isfinite(o.speed), "angular_speed", "speeds must be finite");
+  require(o.ramp >= 0.0 && std::isfinite(o.ramp), "ramp", "must be 0 or a positive time in s");
+  require(o.touchdown_damping >= 0.0 && std::isfinite(o.touchdown_damping), "touchdown_damping", "must not be negative");
+  require(o.touchdown_time >= 0.0, "touchdown_time", "must not be negative");
+  require(std::abs(o.toe_angle) < 0.5 * std::numbers::pi, "toe_angle", "must lie between -pi/2 and pi/2 rad");
+  require(o.travel_sign == 1.0 || o.travel_sign == -1.0, "travel_sign", "must be 1 or -1");
+  require(std::isfinite(o.start), "start", "must be finite");
+  const auto positive = [](double value, const char* key) {
+    require(value > 0.0 && std::isfinite(value), key, "must be positive");
+  };
+  positive(o.carrier_mass, "carrier_mass");
+  positive(o.chassis_mass, "chassis_mass");
+  positive(o.set_toe_mass, "set_toe_mass");
+  positive(o.rim_mass, "rim_mass");
+  positive(o.rim_spin_inertia, "rim_spin_inertia");
+  positive(o.rim_diametral_inertia, "rim_diametral_inertia");
+}
+
+class DrawbarRig final : public Rig {
+ public:
+  explicit DrawbarRig(const DrawbarRigOptions& options) : options_(options) {
+    validate(options_);
+    forward_ = Vec3(options_.travel_sign, 0.0, 0.0);
+    left_ = Vec3::UnitZ().cross(forward_);
+  }
+
+  std::string kind() const override { return "drawbar"; }
+  int wheel_count() const override { return 1; }
+  Vec3 travel_direction() const override { return forward_; }
+
+  void add_tire_mass(int wheel, const MassProperties& tire, double tire_radius) override;
+  void place(std::span<const double> axle_height) override;
+  RimState rim(int wheel) const override;
+  void advance(std::span<const Wrench> wrenches, double duration, int substeps) override;
+  WheelReport report(int wheel) const override;
+  void save(Archive& archive) const override;
+  void restore(const Archive& archive) override;
+
+ private:
+  bool free_rolling() const { return options_.mode == "free_rolling"; }
+  void check_wheel(int wheel) const;
+  void check_built() const;
+  void set_speeds();
+  void build(double axle_height);
+  BodyState moving(double axle_height) const;
+  double forward_momentum() const { return forward_.dot(system_->momentum()); }
+  double spin_angle() const { return options_.travel_sign * system_->coordinate(spindle_).value; }
+  void measure_end();
+
+  DrawbarRigOptions options_;
+  Vec3 forward_, left_;
+  double radius_ = 0.0;         // undeformed tire radius, m
+  double travel_speed_ = 0.0;   // after the ramp, along travel, m/s
+  double spin_speed_ = 0.0;     // after the ramp, forward positive, rad/s
+  MassProperties tire_;
+
+  std::optional<System> system_;  // built by place() or restore()
+  double placed_height_ = 0.0;    // axle height in which the joints were defined, m
+  int chassis_ = 0, set_toe_ = 0, carrier_ = 0, rim_ = 0;         // bodies
+  int rail_ = 0, toe_lock_ = 0, slider_ = 0, spindle_ = 0;        // joints
+  int drive_ = 0, spindle_motor_ = 0;                             // motors
+  int damper_ = 0;                                                // force element
+  WheelReport report_;
+};
+
+void DrawbarRig::check_wheel(int wheel) const {
+  if (wheel != 0) throw physics_error("drawbar rig: it has one wheel, wheel " + std::to_string(wheel) + " was asked for");
+}
+
+void DrawbarRig::check_built() const {
+  if (!system_) throw physics_error("drawbar rig: it must be placed before it moves");
+}
+
+void DrawbarRig::add_tire_mass(int wheel, const MassProperties& tire, double tire_radius) {
+  check_wheel(wheel);
+  if (system_) throw physics_error("drawbar rig: tire mass must be added before the rig is placed");
+  if (!(tire_radius > 0.0)) throw physics_error("drawbar rig: the tire radius must be positive");
+  tire_.mass += tire.mass;
+  tire_.inertia += tire.inertia;
+  radius_ = tire_radius;
+  set_speeds();
+}
+
+// s = 1 − v/(ω r)
+void DrawbarRig::set_speeds() {
+  if (options_.mode == "fixed_angular_speed") {
+    spin_speed_ = options_.angular_speed;
+    travel_speed_ = spin_speed_ * radius_ * (1.0 - options_.slip);
+  } else {
+    travel_speed_ = options_.speed;
+    spin_speed_ = travel_speed_ / (radius_ * (free_rolling() ? 1.0 : 1.0 - options_.slip));
+  }
+}
+
+BodyState DrawbarRig::moving(double axle_height) const {
+  BodyState state;
+  state.position = Vec3(options_.start, 0.0, axle_height);
+  state.velocity = ramped_motion(0.0, travel_speed_, options_.ramp).rate * forward_;
+  return state;
+}
+
+void DrawbarRig::build(double axle_height) {
+  system_.emplace();
+  placed_height_ = axle_height;
+  BodyState state = moving(axle_height);
+  chassis_ = system_->add_body("chassis", options_.chassis_mass, kGuidedInertia * Mat3::Identity(), state);
+  state.orientation = Quat(Eigen::AngleAxisd(options_.toe_angle, Vec3::UnitZ()));
+  set_toe_ = system_->add_body("set-toe", options_.set_toe_mass, kGuidedInertia * Mat3::Identity(), state);
+  carrier_ = system_->add_body("wheel carrier", options_.carrier_mass, kCarrierInertia * Mat3::Identity(), state);
+  const Vec3 axle = state.orientation * Vec3::UnitY();
+  const Vec3 diagonal(options_.rim_diametral_inertia, options_.rim_spin_inertia, options_.rim_diametral_inertia);
+  state.angular_velocity =
+      options_.travel_sign * ramped_motion(0.0, spin_speed_, options_.ramp).rate * axle;
+  rim_ = system_->add_body("rim", options_.rim_mass + tire_.mass, Mat3(diagonal.asDiagonal()) + tire_.inertia, state);
+
+  const Vec3 centre = state.position;
+  const auto place = [&](const Vec3& axis) {
+    JointPlace joint;
+    joint.point = centre;
+    joint.axis = axis;
+    return joint;
+  };
+  rail_ = system_->add_joint(JointKind::prismatic, "rail", kGround, chassis_, place(forward_));
+  toe_lock_ = system_->add_joint(JointKind::fixed, "toe lock", chassis_, set_toe_, place(Vec3::UnitZ()));
+  slider_ = system_->add_joint(JointKind::prismatic, "vertical slider", set_toe_, carrier_, place(Vec3::UnitZ()));
+  spindle_ = system_->add_joint(JointKind::revolute, "spindle", carrier_, rim_, place(axle));
+  const double ramp = options_.ramp;
+  drive_ = system_->add_motor("longitudinal drive", rail_,
+                             [speed = travel_speed_, ramp](double t) { return ramped_motion(t, speed, ramp); });
+  if (!free_rolling()) {
+    const double spin = options_.travel_sign * spin_speed_;
+    spindle_motor_ = system_->add_motor("spindle motor", spindle_,
+                                       [spin, ramp](double t) { return ramped_motion(t, spin, ramp); });
+  }
+  const double c = options_.touchdown_damping, until = options_.touchdown_time;
+  damper_ = system_->add_joint_element("touch-down damper", slider_, [c, until](double, double rate, double t) {
+    return t < until ? ElementForce{-c * rate, c} : ElementForce{};
+  });
+}
+
+void DrawbarRig::place(std::span<const double> axle_height) {
+  if (axle_height.size() != 1) throw physics_error("drawbar rig: expected one axle height");
+  if (!std::isfinite(axle_height[0])) throw physics_error("drawbar rig: the axle height is not finite");
+  if (!(radius_ > 0.0)) throw physics_error("drawbar rig: the tire's mass and radius must be added before placing");
+  build(axle_height[0]);
+  system_->assemble(0.0);
+  report_ = {};
+  report_.speed = ramped_motion(0.0, travel_speed_, options_.ramp).rate;
+  report_.spin = ramped_motion(0.0, spin_speed_, options_.ramp).rate;
+  report_.slip = report_.spin == 0.0 ? 0.0 : 1.0 - report_.speed / (report_.spin * radius_);
+  measure_end();
+}
+
+RimState DrawbarRig::rim(int wheel) const {
+  check_wheel(wheel);
+  check_built();
+  const BodyState& state = system_->body(rim_).state;
+  return {state.position, state.orientation, state.velocity, state.angular_velocity};
+}
+
+void DrawbarRig::advance(std::span<const Wrench> wrenches, double duration, int substeps) {
+  check_built();
+  if (wrenches.size() != 1) throw physics_error("drawbar rig: expected one wrench");
+  if (substeps < 1 || !(duration > 0.0)) throw physics_error("drawbar rig: duration and substeps must be positive");
+  const Wrench& wrench = wrenches[0];
+  if (!wrench.force.allFinite() || !wrench.moment.allFinite())
+    throw physics_error("drawbar rig: the tire's wrench is not finite");
+  system_->set_load(rim_, wrench.force, wrench.moment);
+
+  const double step = duration / substeps;
+  const double momentum = forward_momentum();
+  const double position = forward_.dot(system_->body(rim_).state.position);
+  double drive = 0.0, torque = 0.0, damper = 0.0, turn = 0.0, angle = spin_angle();
+  for (int i = 0; i < substeps; ++i) {
+    system_->step(step);
+    drive += system_->motor_force(drive_);
+    if (!free_rolling()) torque += system_->motor_force(spindle_motor_);
+    damper += system_->element_force(damper_);
+    const double before = angle;
+    angle = spin_angle();
+    turn += std::remainder(angle - before, 2.0 * std::numbers::pi);
+  }
+  report_.speed = (forward_.dot(system_->body(rim_).state.position) - position) / duration;
+  report_.spin = turn / duration;
+  // The drive pushes the rig along e with F_d, so that m a = F_d + F_tire: raw = −F_d, corrected = −F_d + m a.
+  report_.drawbar_pull_raw = -drive / substeps;
+  report_.drawbar_pull = report_.drawbar_pull_raw + (forward_momentum() - momentum) / duration;
+  report_.drive_torque = options_.travel_sign * torque / substeps;
+  report_.damper_force = damper / substeps;
+  report_.lateral_force = wrench.force.dot(left_);
+  report_.aligning_moment = wrench.moment.z();
+  const double rolled = report_.spin * radius_, slid = rolled - report_.speed;
+  if (std::abs(slid) <= kSlipLimit * std::abs(rolled))
+    report_.slip = rolled == 0.0 ? 0.0 : slid / rolled;
+  else
+    report_.slip = (slid > 0.0) == (rolled > 0.0) ? kSlipLimit : -kSlipLimit;
+  measure_end();
+}
+
+void DrawbarRig::measure_end() {
+  const BodyState& rim = system_->body(rim_).state;
+  report_.axle_height = rim.position.z();
+  report_.axle_position = forward_.dot(rim.position);
+  report_.vertical_speed = system_->body(carrier_).state.velocity.z();
+  report_.carried_mass = options_.carrier_mass + options_.rim_mass + tire_.mass;
+  report_.vertical_momentum = options_.carrier_mass * report_.vertical_speed +
+                              (options_.rim_mass + tire_.mass) * rim.velocity.z();
+  report_.joint_drift = system_->max_violation();
+}
+
+WheelReport DrawbarRig::report(int wheel) const {
+  check_wheel(wheel);
+  check_built();
+  return report_;
+}
+
+void DrawbarRig::save(Archive& archive) const {
+  check_built();
+  const Archive::Scope scope(archive, "rig/");
+  system_->save(archive);
+  const WheelReport& r = report_;
+  archive.put("report", std::vector<double>{r.slip, r.speed, r.spin, r.drawbar_pull_raw, r.drawbar_pull,
+                                            r.drive_torque, r.lateral_force, r.aligning_moment, r.damper_force});
+  archive.put("mass", system_->body(rim_).mass);
+  archive.put("radius", radius_);
+  archive.put("placed_height", placed_height_);
+}
+
+void DrawbarRig::restore(const Archive& archive) {
+  const Archive::Scope scope(archive, "rig/");
+  build(archive.get_double("placed_height"));
+  if (archive.get_double("mass") != system_->body(rim_).mass || archive.get_double("radius") != radius_)
+    throw Error(ExitCode::io, "saved rig state belongs to another tire (mass or radius differ)");
+  system_->restore(archive);
+  const auto& r = archive.get<double>("report", 9);
+  report_.slip = r[0];
+  report_.speed = r[1];
+  report_.spin = r[2];
+  report_.drawbar_pull_raw = r[3];
+  report_.drawbar_pull = r[4];
+  report_.drive_torque = r[5];
+  report_.lateral_force = r[6];
+  report_.aligning_moment = r[7];
+  report_.damper_force = r[8];
+  measure_end();
+}
+
+}  // namespace
+
+std::unique_ptr<Rig> make_drawbar_rig(const DrawbarRigOptions& options) {
+  return std::make_unique<DrawbarRig>(options);
+}
+
+}  // namespace furrow

@@ -1,0 +1,39 @@
+// A rigid body in maximal coordinates; its reference point is the centre of mass.
+#pragma once
+
+#include <string>
+
+#include "protocol/vec.hpp"
+
+namespace furrow {
+
+inline constexpr int kGround = -1;  // index of the fixed world in place of a body
+
+struct BodyState {
+  Vec3 position = Vec3::Zero();          // centre of mass, m, W
+  Quat orientation = Quat::Identity();   // R_WB
+  Vec3 velocity = Vec3::Zero();          // m/s, W
+  Vec3 angular_velocity = Vec3::Zero();  // rad/s, W
+};
+
+struct Body {
+  std::string name;
+  double mass = 1.0;                            // kg
+  Mat3 inertia = Mat3::Identity();              // about the centre of mass, body axes, kg m²
+  Mat3 inertia_inverse = Mat3::Identity();      // body axes
+  BodyState state;
+  Vec3 angular_momentum = Vec3::Zero();         // R J Rᵀ ω, W, kg m²/s; integrated in place of ω
+  Vec3 force = Vec3::Zero();                    // external, W, N
+  Vec3 moment = Vec3::Zero();                   // external, about the centre of mass, W, N m
+
+  Mat3 R = Mat3::Identity();                    // of state.orientation
+  Mat3 inertia_inverse_W = Mat3::Identity();    // R J⁻¹ Rᵀ
+
+  /// Brings R and R J⁻¹ Rᵀ up to the orientation.
+  void refresh() {
+    R = state.orientation.toRotationMatrix();
+    inertia_inverse_W = R * inertia_inverse * R.transpose();
+  }
+};
+
+}  // namespace furrow

@@ -1,0 +1,33 @@
+// Springs, dampers and the like: a scalar force law in one coordinate between two bodies.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "vehicle/multibody/row.hpp"
+
+namespace furrow {
+
+/// Force in the coordinate (positive pushes the points apart, or B along the axis, or turns B positively), N or
+/// N m, and its damping −∂f/∂rate ≥ 0, N s/m or N m s.
+struct ElementForce {
+  double force = 0.0;
+  double damping = 0.0;
+};
+
+/// f(value, rate, time): value in m or rad, rate in m/s or rad/s.
+using ForceLaw = std::function<ElementForce(double value, double rate, double time)>;
+
+/// f = −k (x − x₀) − c ẋ; k in N/m, c in N s/m (or the angular counterparts).
+inline ForceLaw linear_spring_damper(double k, double rest, double c) {
+  return [=](double value, double rate, double) { return ElementForce{-k * (value - rest) - c * rate, c}; };
+}
+
+struct ForceElement {
+  std::string name;
+  Row row;
+  ForceLaw law;
+  double last_force = 0.0;  // mean over the last step, N or N m
+};
+
+}  // namespace furrow

@@ -1,0 +1,124 @@
+#include "vehicle/multibody/joint.hpp"
+
+#include <cmath>
+
+#include "protocol/error.hpp"
+
+namespace furrow {
+namespace {
+
+JointFrame in_body(const Pose& body, const Vec3& point_W, const Mat3& axes_W) {
+  return {body.R->transpose() * (point_W - *body.position), body.R->transpose() * axes_W};
+}
+
+Row base_row(const Joint& joint, RowKind kind) {
+  Row row;
+  row.kind = kind;
+  row.a = joint.a;
+  row.b = joint.b;
+  row.point_a = joint.frame_a.origin;
+  row.point_b = joint.frame_b.origin;
+  return row;
+}
+
+Row offset_row(const Joint& joint, int axis) {
+  Row row = base_row(joint, RowKind::offset);
+  row.axis_a = joint.frame_a.axes.col(axis);
+  return row;
+}
+
+Row dot_row(const Joint& joint, int axis_of_a, int axis_of_b) {
+  Row row = base_row(joint, RowKind::dot);
+  row.axis_a = joint.frame_a.axes.col(axis_of_a);
+  row.axis_b = joint.frame_b.axes.col(axis_of_b);
+  return row;
+}
+
+}  // namespace
+
+Mat3 axes_about(const Vec3& direction) {
+  const double length = direction.norm();
+  if (!(length > 0.0) || !std::isfinite(length)) throw physics_error("a joint axis has no direction");
+  const Vec3 z = direction / length;
+  int least = 0;  // world axis that lies least along z
+  z.cwiseAbs().minCoeff(&least);
+  Mat3 axes;
+  axes.col(2) = z;
+  axes.col(0) = (Vec3::Unit(least) - z[least] * z).normalized();
+  axes.col(1) = z.cross(axes.col(0));
+  return axes;
+}
+
+std::vector<Row> make_joint_rows(Joint& joint, const Pose& A, const Pose& B, const JointPlace& place) {
+  const Vec3 point_b = joint.kind == JointKind::distance ? place.second_point : place.point;
+  Mat3 axes = axes_about(place.axis);
+  if (joint.kind == JointKind::universal) {
+    // x fixed in A, y fixed in B, z across both: the joint's cross at assembly.
+    const Vec3 normal = place.axis.normalized().cross(place.second_axis.normalized());
+    if (!(normal.norm() > 1e-6)) throw physics_error("joint '" + joint.name + "': its two axes are parallel");
+    axes.col(0) = place.axis.normalized();
+    axes.col(2) = normal.normalized();
+    axes.col(1) = axes.col(2).cross(axes.col(0));
+  }
+  joint.frame_a = in_body(A, place.point, axes);
+  joint.frame_b = in_body(B, point_b, axes);
+  std::vector<Row> rows;
+  const auto offsets = [&](int count) {
+    for (int axis = 0; axis < count; ++axis) rows.push_back(offset_row(joint, axis));
+  };
+  const auto same_axis = [&] {
+    rows.push_back(dot_row(joint, 0, 2));
+    rows.push_back(dot_row(joint, 1, 2));
+  };
+  switch (joint.kind) {
+    case JointKind::fixed:
+      offsets(3);
+      same_axis();
+      rows.push_back(dot_row(joint, 0, 1));
+      break;
+    case JointKind::revolute:
+      offsets(3);
+      same_axis();
+      break;
+    case JointKind::prismatic:
+      offsets(2);
+      same_axis();
+      rows.push_back(dot_row(joint, 0, 1));
+      break;
+    case JointKind::cylindrical:
+      offsets(2);
+      same_axis();
+      break;
+    case JointKind::universal:
+      offsets(3);
+      rows.push_back(dot_row(joint, 0, 1));
+      break;
+    case JointKind::spherical:
+      offsets(3);
+      break;
+    case JointKind::distance:
+      rows.push_back(base_row(joint, RowKind::distance));
+      rows.back().reference = (point_b - place.point).norm();
+      if (!(rows.back().reference > 0.0)) throw physics_error("joint '" + joint.name + "': its length is zero");
+      break;
+  }
+  return rows;
+}
+
+Row free_coordinate(const Joint& joint) {
+  switch (joint.kind) {
+    case JointKind::prismatic:
+    case JointKind::cylindrical:
+      return offset_row(joint, 2);
+    case JointKind::revolute: {
+      Row row = dot_row(joint, 0, 0);
+      row.kind = RowKind::angle;
+      row.hinge_a = joint.frame_a.axes.col(2);
+      return row;
+    }
+    default:
+      throw physics_error("joint '" + joint.name + "' has no coordinate that could be driven");
+  }
+}
+
+}  // namespace furrow

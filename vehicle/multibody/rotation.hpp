@@ -1,0 +1,56 @@
+// Rotations on SO(3): exponential map, and the angular velocity over a step from the angular momentum.
+#pragma once
+
+#include <cmath>
+
+#include "protocol/vec.hpp"
+
+namespace furrow {
+
+/// exp([θ]×) as unit quaternion; θ rotation vector, rad.
+inline Quat rotation_exp(const Vec3& theta) {
+  const double angle_sq = theta.squaredNorm();
+  double c, s;  // cos(|θ|/2), sin(|θ|/2)/|θ|
+  if (angle_sq < 1e-6) {
+    // Series to |θ|⁶: the next term is below 1e-27.
+    c = 1.0 - angle_sq / 8.0 * (1.0 - angle_sq / 48.0 * (1.0 - angle_sq / 120.0));
+    s = 0.5 * (1.0 - angle_sq / 24.0 * (1.0 - angle_sq / 80.0 * (1.0 - angle_sq / 168.0)));
+  } else {
+    const double angle = std::sqrt(angle_sq);
+    c = std::cos(0.5 * angle);
+    s = std::sin(0.5 * angle) / angle;
+  }
+  return Quat(c, s * theta.x(), s * theta.y(), s * theta.z());
+}
+
+/// exp(h [ω]×) q, normalised.
+inline Quat rotated(const Quat& q, const Vec3& omega_W, double h) {
+  Quat result = rotation_exp(h * omega_W) * q;
+  result.normalize();
+  return result;
+}
+
+/// Constant angular velocity ω over a step h whose momentum at mid-step is ℓ:
+///   R½ J R½ᵀ ω = ℓ,  R½ = exp(h/2 [ω]×) R₀.
+/// In body axes W = R₀ᵀω: J W = exp(−h/2 [W]×) R₀ᵀℓ, by fixed-point iteration (contracts for h|ω| < 1).
+/// @return false when the iteration does not settle.
+inline bool midpoint_angular_velocity(const Mat3& R, const Mat3& inertia_inverse, const Vec3& momentum_W, double h,
+                                      Vec3& omega_W) {
+  const Vec3 L = R.transpose() * momentum_W;
+  Vec3 W = inertia_inverse * L;
+  for (int i = 0; i < 60; ++i) {
+    const Vec3 next = inertia_inverse * (rotation_exp(-0.5 * h * W) * L);
+    const double change = (next - W).cwiseAbs().maxCoeff();
+    W = next;
+    if (change <= 1e-15 * W.cwiseAbs().maxCoeff()) {
+      omega_W = R * W;
+      return true;
+    }
+  }
+  omega_W = R * W;
+  // Two neighbouring floating-point values may alternate; that is settled as well.
+  const Vec3 next = inertia_inverse * (rotation_exp(-0.5 * h * W) * L);
+  return (next - W).cwiseAbs().maxCoeff() <= 1e-13 * W.cwiseAbs().maxCoeff();
+}
+
+}  // namespace furrow

@@ -1,0 +1,77 @@
+#include "vehicle/multibody/schur_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace furrow {
+namespace {
+
+constexpr double kRegularization = 1e-9;  // ε relative to the largest diagonal entry of S
+
+struct Side {
+  int row;
+  bool is_b;
+};
+
+}  // namespace
+
+void SchurSolver::analyze(std::span<const Row> rows) {
+  int body_count = 0;
+  for (const Row& row : rows) body_count = std::max({body_count, row.a + 1, row.b + 1});
+  std::vector<std::vector<Side>> sides(body_count);
+  for (int i = 0; i < static_cast<int>(rows.size()); ++i) {
+    if (rows[i].a != kGround) sides[rows[i].a].push_back({i, false});
+    if (rows[i].b != kGround) sides[rows[i].b].push_back({i, true});
+  }
+  const int n = static_cast<int>(rows.size());
+  std::vector<Eigen::Triplet<double>> pattern;
+  for (int i = 0; i < n; ++i) pattern.emplace_back(i, i, 0.0);
+  entries_.clear();
+  for (int body = 0; body < body_count; ++body)
+    for (const Side& si : sides[body])
+      for (const Side& sj : sides[body])
+        if (si.row >= sj.row) {
+          entries_.push_back({si.row, sj.row, 0, body, si.is_b, sj.is_b});
+          pattern.emplace_back(si.row, sj.row, 0.0);
+        }
+  S_.resize(n, n);
+  S_.setFromTriplets(pattern.begin(), pattern.end());
+  S_.makeCompressed();
+  const auto index_of = [&](int i, int j) {
+    const auto* first = S_.innerIndexPtr() + S_.outerIndexPtr()[j];
+    const auto* last = S_.innerIndexPtr() + S_.outerIndexPtr()[j + 1];
+    return static_cast<int>(std::lower_bound(first, last, i) - S_.innerIndexPtr());
+  };
+  for (Entry& entry : entries_) entry.value = index_of(entry.i, entry.j);
+  diagonal_.resize(n);
+  for (int i = 0; i < n; ++i) diagonal_[i] = index_of(i, i);
+  ldlt_.analyzePattern(S_);
+}
+
+bool SchurSolver::factorize(std::span<const RowJacobian> jacobians, std::span<const Body> bodies,
+                            std::span<const double> compliance) {
+  double* values = S_.valuePtr();
+  std::fill(values, values + S_.nonZeros(), 0.0);
+  for (const Entry& entry : entries_) {
+    if (compliance[entry.i] < 0.0 || compliance[entry.j] < 0.0) continue;
+    const RowJacobian &Ji = jacobians[entry.i], &Jj = jacobians[entry.j];
+    const Body& body = bodies[entry.body];
+    const Vec3 &vi = entry.i_is_b ? Ji.v_b : Ji.v_a, &vj = entry.j_is_b ? Jj.v_b : Jj.v_a;
+    const Vec3 &wi = entry.i_is_b ? Ji.w_b : Ji.w_a, &wj = entry.j_is_b ? Jj.w_b : Jj.w_a;
+    values[entry.value] += vi.dot(vj) / body.mass + wi.dot(body.inertia_inverse_W * wj);
+  }
+  double largest = 0.0;
+  for (const int index : diagonal_) largest = std::max(largest, values[index]);
+  for (std::size_t i = 0; i < diagonal_.size(); ++i) {
+    if (compliance[i] < 0.0)
+      values[diagonal_[i]] = 1.0;
+    else
+      values[diagonal_[i]] += compliance[i] + kRegularization * largest;
+  }
+  ldlt_.factorize(S_);
+  return ldlt_.info() == Eigen::Success;
+}
+
+void SchurSolver::solve(const Eigen::VectorXd& r, Eigen::VectorXd& P) const { P = ldlt_.solve(r); }
+
+}  // namespace furrow

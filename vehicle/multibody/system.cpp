@@ -1,0 +1,228 @@
+// Building, queries, saving; the stepping is in system_step.cpp.
+#include "vehicle/multibody/system.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "protocol/error.hpp"
+
+namespace furrow {
+namespace {
+
+const Vec3 kGroundPosition = Vec3::Zero();
+const Mat3 kGroundAxes = Mat3::Identity();
+constexpr std::size_t kBodyNumbers = 16;  // saved numbers per body
+
+}  // namespace
+
+int System::add_body(const std::string& name, double mass, const Mat3& inertia, const BodyState& state) {
+  Body body;
+  body.name = name;
+  bodies_.push_back(body);
+  const int index = body_count() - 1;
+  set_mass_properties(index, mass, inertia);
+  set_state(index, state);
+  prepared_ = false;
+  return index;
+}
+
+void System::set_mass_properties(int index, double mass, const Mat3& inertia) {
+  Body& body = bodies_[index];
+  const bool symmetric = (inertia - inertia.transpose()).norm() <= 1e-12 * inertia.norm();
+  if (!(mass > 0.0) || !std::isfinite(mass) || !symmetric || inertia.llt().info() != Eigen::Success)
+    throw physics_error("body '" + body.name + "': mass and inertia must be positive");
+  body.mass = mass;
+  body.inertia = inertia;
+  body.inertia_inverse = inertia.inverse();
+  set_state(index, body.state);
+}
+
+int System::add_joint(JointKind kind, const std::string& name, int a, int b, const JointPlace& place) {
+  Joint joint;
+  joint.name = name;
+  joint.kind = kind;
+  joint.a = a;
+  joint.b = b;
+  joint.first_row = static_cast<int>(constraint_rows_.size());
+  const std::vector<Row> rows = make_joint_rows(joint, pose(a), pose(b), place);
+  joint.row_count = static_cast<int>(rows.size());
+  constraint_rows_.insert(constraint_rows_.end(), rows.begin(), rows.end());
+  row_motor_.resize(constraint_rows_.size(), -1);
+  joints_.push_back(joint);
+  reactions_.emplace_back();
+  prepared_ = false;
+  return static_cast<int>(joints_.size()) - 1;
+}
+
+int System::add_motor(const std::string& name, int joint, MotionFunction motion) {
+  Motor motor;
+  motor.name = name;
+  motor.joint = joint;
+  motor.row = static_cast<int>(constraint_rows_.size());
+  motor.motion = std::move(motion);
+  constraint_rows_.push_back(free_coordinate(joints_[joint]));
+  row_motor_.push_back(static_cast<int>(motors_.size()));
+  motors_.push_back(std::move(motor));
+  prepared_ = false;
+  return static_cast<int>(motors_.size()) - 1;
+}
+
+int System::add_joint_element(const std::string& name, int joint, ForceLaw law) {
+  elements_.push_back({name, free_coordinate(joints_[joint]), std::move(law), 0.0});
+  prepared_ = false;
+  return static_cast<int>(elements_.size()) - 1;
+}
+
+int System::add_line_element(const std::string& name, int a, int b, const Vec3& point_a, const Vec3& point_b,
+                             ForceLaw law) {
+  Row row;
+  row.kind = RowKind::distance;
+  row.a = a;
+  row.b = b;
+  row.point_a = pose(a).R->transpose() * (point_a - *pose(a).position);
+  row.point_b = pose(b).R->transpose() * (point_b - *pose(b).position);
+  elements_.push_back({name, row, std::move(law), 0.0});
+  prepared_ = false;
+  return static_cast<int>(elements_.size()) - 1;
+}
+
+void System::set_state(int index, const BodyState& state) {
+  Body& body = bodies_[index];
+  body.state = state;
+  body.state.orientation.normalize();
+  body.refresh();
+  body.angular_momentum = body.R * (body.inertia * (body.R.transpose() * state.angular_velocity));
+}
+
+void System::set_load(int index, const Vec3& force, const Vec3& moment) {
+  bodies_[index].force = force;
+  bodies_[index].moment = moment;
+}
+
+Pose System::pose(int body) const {
+  if (body == kGround) return {&kGroundPosition, &kGroundAxes};
+  return {&bodies_[body].state.position, &bodies_[body].R};
+}
+
+Motion System::target(int row, double time) const {
+  const double reference = constraint_rows_[row].reference;
+  const int motor = row_motor_[row];
+  if (motor < 0) return {reference, 0.0};
+  const Motion motion = motors_[motor].motion(time);
+  return {reference + motion.value, motion.rate};
+}
+
+Motion System::coordinate(int index) const {
+  const Row row = free_coordinate(joints_[index]);
+  const Pose A = pose(row.a), B = pose(row.b);
+  const RowJacobian J = row_jacobian(row, A, B);
+  double rate = 0.0;
+  if (row.a != kGround)
+    rate += J.v_a.dot(bodies_[row.a].state.velocity) + J.w_a.dot(bodies_[row.a].state.angular_velocity);
+  if (row.b != kGround)
+    rate += J.v_b.dot(bodies_[row.b].state.velocity) + J.w_b.dot(bodies_[row.b].state.angular_velocity);
+  return {row_value(row, A, B), rate};
+}
+
+double System::max_violation() const {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < constraint_rows_.size(); ++i) {
+    const Row& row = constraint_rows_[i];
+    const double value = row_value(row, pose(row.a), pose(row.b));
+    largest = std::max(largest, std::abs(row_difference(row, value, target(static_cast<int>(i), time()).value)));
+  }
+  return largest;
+}
+
+double System::kinetic_energy() const {
+  double energy = 0.0;
+  for (const Body& body : bodies_)
+    energy += 0.5 * body.mass * body.state.velocity.squaredNorm() +
+              0.5 * body.state.angular_velocity.dot(body.angular_momentum);
+  return energy;
+}
+
+double System::gravity_energy() const {
+  double energy = 0.0;
+  for (const Body& body : bodies_) energy -= body.mass * gravity_.dot(body.state.position);
+  return energy;
+}
+
+Vec3 System::momentum() const {
+  Vec3 sum = Vec3::Zero();
+  for (const Body& body : bodies_) sum += body.mass * body.state.velocity;
+  return sum;
+}
+
+Vec3 System::angular_momentum(const Vec3& about) const {
+  Vec3 sum = Vec3::Zero();
+  for (const Body& body : bodies_)
+    sum += body.angular_momentum + body.mass * (body.state.position - about).cross(body.state.velocity);
+  return sum;
+}
+
+void System::save(Archive& archive) const {
+  std::vector<double> numbers;
+  numbers.reserve(kBodyNumbers * bodies_.size());
+  const auto append = [&](const auto& v) { numbers.insert(numbers.end(), v.data(), v.data() + v.size()); };
+  for (const Body& body : bodies_) {
+    append(body.state.position);
+    append(body.state.orientation.coeffs());
+    append(body.state.velocity);
+    append(body.state.angular_velocity);
+    append(body.angular_momentum);
+  }
+  archive.put("bodies", numbers);
+  archive.put("clock", std::vector<double>{start_time_, step_});
+  archive.put("count", count_);
+  numbers.clear();
+  for (const Reaction& reaction : reactions_) {
+    append(reaction.force);
+    append(reaction.moment);
+  }
+  for (const Motor& motor : motors_) numbers.push_back(motor.last_force);
+  for (const ForceElement& element : elements_) numbers.push_back(element.last_force);
+  archive.put("reactions", numbers);
+}
+
+void System::restore(const Archive& archive) {
+  const double* p = archive.get<double>("bodies", kBodyNumbers * bodies_.size()).data();
+  const auto take = [&](auto&& v) {
+    std::copy(p, p + v.size(), v.data());
+    p += v.size();
+  };
+  for (Body& body : bodies_) {
+    take(body.state.position);
+    take(body.state.orientation.coeffs());
+    take(body.state.velocity);
+    take(body.state.angular_velocity);
+    take(body.angular_momentum);
+    body.refresh();
+  }
+  const auto& clock = archive.get<double>("clock", 2);
+  start_time_ = clock[0];
+  step_ = clock[1];
+  count_ = archive.get_int("count");
+  p = archive.get<double>("reactions", 6 * reactions_.size() + motors_.size() + elements_.size()).data();
+  for (Reaction& reaction : reactions_) {
+    take(reaction.force);
+    take(reaction.moment);
+  }
+  for (Motor& motor : motors_) motor.last_force = *p++;
+  for (ForceElement& element : elements_) element.last_force = *p++;
+  prepare();
+  update_jacobians();
+  factorize(false);
+}
+
+std::string System::row_name(int row) const {
+  if (row >= static_cast<int>(constraint_rows_.size())) return elements_[row - constraint_rows_.size()].name;
+  if (row_motor_[row] >= 0) return motors_[row_motor_[row]].name;
+  for (const Joint& joint : joints_)
+    if (row >= joint.first_row && row < joint.first_row + joint.row_count) return joint.name;
+  return "?";
+}
+
+}  // namespace furrow

@@ -1,0 +1,342 @@
+// Assembly and the step of system.hpp.
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "protocol/error.hpp"
+#include "vehicle/multibody/rotation.hpp"
+#include "vehicle/multibody/system.hpp"
+
+namespace furrow {
+namespace {
+
+constexpr double kPositionTolerance = 1e-12;  // m or rad, at the end of every step
+constexpr double kVelocityTolerance = 4e-16;  // relative to the largest speed: iterate down to round-off
+constexpr double kVelocityLimit = 1e-9;       // relative to the largest speed, beyond it the constraints clash
+constexpr int kMaxIterations = 60;
+
+std::string scientific(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+}  // namespace
+
+void System::fail(const std::string& what, int row, double residual) const {
+  throw physics_error("multibody: " + what + " at t = " + scientific(time()) + " s; worst is '" + row_name(row) +
+                      "' with " + scientific(residual));
+}
+
+void System::prepare() {
+  if (prepared_) return;
+  rows_ = constraint_rows_;
+  for (const ForceElement& element : elements_) rows_.push_back(element.row);
+  jacobians_.resize(rows_.size());
+  compliance_.assign(rows_.size(), 0.0);
+  damping_.assign(elements_.size(), 0.0);
+  base_.resize(bodies_.size());
+  targets_.resize(constraint_rows_.size());
+  impulses_.setZero(rows_.size());
+  residual_.setZero(rows_.size());
+  correction_.setZero(rows_.size());
+  solver_.analyze(rows_);
+  prepared_ = true;
+}
+
+void System::update_jacobians() {
+  for (std::size_t i = 0; i < rows_.size(); ++i) jacobians_[i] = row_jacobian(rows_[i], pose(rows_[i].a), pose(rows_[i].b));
+}
+
+// Compliance of a damper row: p = −(h c/2) g·v½ is a constraint row g·v½ + p · 2/(h c) = 0.
+void System::factorize(bool with_dampers) {
+  const std::size_t first = constraint_rows_.size();
+  for (std::size_t e = 0; e < elements_.size(); ++e)
+    compliance_[first + e] = with_dampers && damping_[e] > 0.0 ? 2.0 / (step_ * damping_[e]) : -1.0;
+  dampers_factored_ = with_dampers;
+  if (!solver_.factorize(jacobians_, bodies_, compliance_))
+    throw physics_error("multibody: the constraint matrix cannot be factored at t = " + scientific(time()) + " s");
+}
+
+double System::rate(int i) const {
+  const Row& row = rows_[i];
+  const RowJacobian& J = jacobians_[i];
+  double sum = 0.0;
+  if (row.a != kGround)
+    sum += J.v_a.dot(bodies_[row.a].state.velocity) + J.w_a.dot(bodies_[row.a].state.angular_velocity);
+  if (row.b != kGround)
+    sum += J.v_b.dot(bodies_[row.b].state.velocity) + J.w_b.dot(bodies_[row.b].state.angular_velocity);
+  return sum;
+}
+
+void System::begin_velocities(double h) {
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const Body& body = bodies_[i];
+    base_[i].position = body.state.position;
+    base_[i].orientation = body.state.orientation;
+    base_[i].R = body.R;
+    base_[i].velocity = body.state.velocity + 0.5 * h * (gravity_ + body.force / body.mass);
+    base_[i].angular_momentum = body.angular_momentum + 0.5 * h * body.moment;
+  }
+}
+
+// First half (implicit): f½ = f(x₀, v₀) − c (ẋ½ − ẋ₀), whose part −c ẋ½ is left to the damper rows.
+// Second half: f(x₁, v½). Both at the time of mid-step.
+void System::element_forces(double h, bool implicit) {
+  const std::size_t first = constraint_rows_.size();
+  const double mid_time = time() + 0.5 * h;
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
+    ForceElement& element = elements_[e];
+    const RowJacobian& J = jacobians_[first + e];
+    const double speed = rate(static_cast<int>(first + e));
+    const ElementForce law = element.law(row_value(element.row, pose(element.row.a), pose(element.row.b)), speed, mid_time);
+    double force = law.force;
+    if (implicit) {
+      damping_[e] = std::max(0.0, law.damping);
+      force += damping_[e] * speed;
+      element.last_force = 0.0;
+    }
+    element.last_force += 0.5 * force;
+    const auto add = [&](int body, const Vec3& v, const Vec3& w) {
+      if (body == kGround) return;
+      base_[body].velocity += (0.5 * h * force / bodies_[body].mass) * v;
+      base_[body].angular_momentum += (0.5 * h * force) * w;
+    };
+    add(element.row.a, J.v_a, J.w_a);
+    add(element.row.b, J.v_b, J.w_b);
+  }
+}
+
+void System::apply_impulses() {
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    bodies_[i].state.velocity = base_[i].velocity;
+    bodies_[i].angular_momentum = base_[i].angular_momentum;
+  }
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const double P = impulses_[i];
+    if (P == 0.0) continue;
+    const RowJacobian& J = jacobians_[i];
+    const auto add = [&](int body, const Vec3& v, const Vec3& w) {
+      if (body == kGround) return;
+      bodies_[body].state.velocity += (P / bodies_[body].mass) * v;
+      bodies_[body].angular_momentum += P * w;
+    };
+    add(rows_[i].a, J.v_a, J.w_a);
+    add(rows_[i].b, J.v_b, J.w_b);
+  }
+}
+
+void System::set_angular_velocities() {
+  for (Body& body : bodies_) body.state.angular_velocity = body.inertia_inverse_W * body.angular_momentum;
+}
+
+void System::move(double h) {
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    Body& body = bodies_[i];
+    if (!midpoint_angular_velocity(base_[i].R, body.inertia_inverse, body.angular_momentum, h,
+                                   body.state.angular_velocity))
+      throw physics_error("multibody: body '" + body.name + "' turns too fast for a step of " + scientific(h) + " s");
+    body.state.position = base_[i].position + h * body.state.velocity;
+    body.state.orientation = rotated(base_[i].orientation, body.state.angular_velocity, h);
+    body.R = body.state.orientation.toRotationMatrix();
+  }
+}
+
+// Quasi-Newton for φ(x₁(P), t₁) = 0: ∂φ/∂P = h G₁ M⁻¹ G₀ᵀ ≈ h S₀; the factor stays, each iteration gains h|ω|.
+void System::solve_positions(double h, double end_time) {
+  const int constraints = static_cast<int>(constraint_rows_.size());
+  const int count = static_cast<int>(rows_.size());
+  for (int i = 0; i < constraints; ++i) targets_[i] = target(i, end_time);
+  impulses_.setZero();
+  double scale = 0.0, worst = 0.0;
+  int worst_row = 0;
+  for (const Base& base : base_) scale = std::max(scale, base.velocity.cwiseAbs().maxCoeff());
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+    apply_impulses();
+    move(h);
+    worst = 0.0;
+    bool done = true;
+    for (int i = 0; i < constraints; ++i) {
+      const Row& row = rows_[i];
+      const double violation = row_difference(row, row_value(row, pose(row.a), pose(row.b)), targets_[i].value);
+      residual_[i] = -violation / h;
+      if (!(std::abs(violation) <= worst)) worst = std::abs(violation), worst_row = i;
+    }
+    done = worst <= kPositionTolerance;
+    for (int i = constraints; i < count; ++i) {
+      const double compliance = dampers_factored_ ? compliance_[i] : -1.0;
+      residual_[i] = 0.0;
+      if (compliance < 0.0) continue;
+      const double speed = rate(i), flow = impulses_[i] * compliance;
+      residual_[i] = -(speed + flow);
+      done = done && std::abs(residual_[i]) <= 1e-13 * (std::abs(speed) + std::abs(flow)) + 1e-14 * scale;
+    }
+    if (done) return;
+    if (!std::isfinite(worst)) break;
+    solver_.solve(residual_, correction_);
+    impulses_ += correction_;
+  }
+  fail("constraints cannot be satisfied", worst_row, worst);
+}
+
+// Linear: P += S⁻¹ (∂φ/∂t target − G₁ v₁) until round-off; the repetition also removes the regularization.
+void System::solve_velocities(double end_time) {
+  const int constraints = static_cast<int>(constraint_rows_.size());
+  for (int i = 0; i < constraints; ++i) targets_[i] = target(i, end_time);
+  impulses_.setZero();
+  residual_.setZero();
+  double before = 0.0;
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+    apply_impulses();
+    set_angular_velocities();
+    double scale = 0.0, worst = 0.0;
+    int worst_row = 0;
+    for (const Body& body : bodies_)
+      scale = std::max({scale, body.state.velocity.cwiseAbs().maxCoeff(), body.state.angular_velocity.cwiseAbs().maxCoeff()});
+    for (int i = 0; i < constraints; ++i) {
+      residual_[i] = targets_[i].rate - rate(i);
+      scale = std::max(scale, std::abs(targets_[i].rate));
+      if (!(std::abs(residual_[i]) <= worst)) worst = std::abs(residual_[i]), worst_row = i;
+    }
+    if (worst <= kVelocityTolerance * scale) return;
+    // No longer falling: round-off reached, or the rates contradict each other.
+    if (!std::isfinite(worst) || (iteration > 1 && worst > 0.25 * before)) {
+      if (worst <= kVelocityLimit * std::max(scale, 1e-6)) return;
+      if (!std::isfinite(worst) || worst > 0.9 * before) fail("constraint rates cannot be satisfied", worst_row, worst);
+    }
+    before = worst;
+    solver_.solve(residual_, correction_);
+    impulses_ += correction_;
+  }
+}
+
+// Reaction of a joint on B, about its point on B: F = Σ λ ∂φ/∂v_B, M = Σ λ ∂φ/∂ω_B − r_B × F; half of each stage.
+void System::collect_reactions(double h, bool first_half) {
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    const Joint& joint = joints_[j];
+    const Mat3& R_a = joint.a == kGround ? *pose(kGround).R : (first_half ? base_[joint.a].R : bodies_[joint.a].R);
+    const Mat3& R_b = joint.b == kGround ? *pose(kGround).R : (first_half ? base_[joint.b].R : bodies_[joint.b].R);
+    Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
+    for (int i = joint.first_row; i < joint.first_row + joint.row_count; ++i) {
+      force += impulses_[i] * jacobians_[i].v_b;
+      moment += impulses_[i] * jacobians_[i].w_b;
+    }
+    moment -= (R_b * joint.frame_b.origin).cross(force);
+    const Mat3 axes = R_a * joint.frame_a.axes;
+    if (first_half) reactions_[j] = {};
+    reactions_[j].force += axes.transpose() * (force / h);
+    reactions_[j].moment += axes.transpose() * (moment / h);
+  }
+  for (Motor& motor : motors_)
+    motor.last_force = (first_half ? 0.0 : motor.last_force) + impulses_[motor.row] / h;
+  for (std::size_t e = 0; e < elements_.size(); ++e) elements_[e].last_force += impulses_[constraint_rows_.size() + e] / h;
+}
+
+void System::step(double h) {
+  if (!(h > 0.0)) throw physics_error("multibody: the step must be positive");
+  if (h != step_) {
+    start_time_ = time();
+    step_ = h;
+    count_ = 0;
+  }
+  const double end_time = start_time_ + static_cast<double>(count_ + 1) * step_;
+  begin_velocities(h);
+  element_forces(h, true);
+  if (std::any_of(damping_.begin(), damping_.end(), [](double c) { return c > 0.0; })) factorize(true);
+  solve_positions(h, end_time);
+  collect_reactions(h, true);
+
+  for (Body& body : bodies_) body.refresh();
+  update_jacobians();
+  begin_velocities(h);
+  element_forces(h, false);
+  factorize(false);
+  solve_velocities(end_time);
+  collect_reactions(h, false);
+  ++count_;
+  check_finite();
+}
+
+void System::check_finite() const {
+  for (const Body& body : bodies_) {
+    const double sum = body.state.position.sum() + body.state.velocity.sum() + body.angular_momentum.sum() +
+                       body.state.orientation.coeffs().sum();
+    if (!std::isfinite(sum))
+      throw physics_error("multibody: the state of body '" + body.name + "' is not finite at t = " + scientific(time()) + " s");
+  }
+}
+
+void System::assemble(double time) {
+  start_time_ = time;
+  count_ = 0;
+  prepare();
+  project_positions(time);
+  begin_velocities(0.0);
+  factorize(false);
+  solve_velocities(time);
+  find_redundancy();
+  check_finite();
+}
+
+// Mass-weighted Newton: x ← x + M⁻¹ Gᵀ P with G M⁻¹ Gᵀ P = −φ.
+void System::project_positions(double time) {
+  const int constraints = static_cast<int>(constraint_rows_.size());
+  double worst = 0.0;
+  int worst_row = 0;
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+    update_jacobians();
+    worst = 0.0;
+    residual_.setZero();
+    for (int i = 0; i < constraints; ++i) {
+      const Row& row = rows_[i];
+      residual_[i] = -row_difference(row, row_value(row, pose(row.a), pose(row.b)), target(i, time).value);
+      if (!(std::abs(residual_[i]) <= worst)) worst = std::abs(residual_[i]), worst_row = i;
+    }
+    if (worst <= kPositionTolerance) return;
+    factorize(false);
+    solver_.solve(residual_, impulses_);
+    for (int i = 0; i < constraints; ++i) {
+      const RowJacobian& J = jacobians_[i];
+      const auto shift = [&](int index, const Vec3& v, const Vec3& w) {
+        if (index == kGround) return;
+        Body& body = bodies_[index];
+        body.state.position += (impulses_[i] / body.mass) * v;
+        body.state.orientation = rotated(body.state.orientation, body.inertia_inverse_W * w, impulses_[i]);
+      };
+      shift(rows_[i].a, J.v_a, J.w_a);
+      shift(rows_[i].b, J.v_b, J.w_b);
+    }
+    for (int i = 0; i < body_count(); ++i) set_state(i, bodies_[i].state);
+  }
+  fail("the joints cannot be assembled", worst_row, worst);
+}
+
+// Rank of G by a column-pivoted QR of its transpose; the columns left over name the redundant rows.
+void System::find_redundancy() {
+  const int constraints = static_cast<int>(constraint_rows_.size());
+  redundant_count_ = 0;
+  redundant_names_.clear();
+  if (constraints == 0 || bodies_.empty()) return;
+  Eigen::MatrixXd G_transpose = Eigen::MatrixXd::Zero(6 * bodies_.size(), constraints);
+  for (int i = 0; i < constraints; ++i) {
+    const RowJacobian& J = jacobians_[i];
+    const auto put = [&](int body, const Vec3& v, const Vec3& w) {
+      if (body == kGround) return;
+      G_transpose.block<3, 1>(6 * body, i) = v;
+      G_transpose.block<3, 1>(6 * body + 3, i) = w;
+    };
+    put(rows_[i].a, J.v_a, J.w_a);
+    put(rows_[i].b, J.v_b, J.w_b);
+  }
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(G_transpose.rows(), G_transpose.cols());
+  qr.setThreshold(1e-9);
+  qr.compute(G_transpose);
+  redundant_count_ = constraints - static_cast<int>(qr.rank());
+  for (int k = static_cast<int>(qr.rank()); k < constraints; ++k) {
+    const std::string name = row_name(qr.colsPermutation().indices()[k]);
+    if (std::find(redundant_names_.begin(), redundant_names_.end(), name) == redundant_names_.end())
+      redundant_names_.push_back(name);
+  }
+}
+
+}  // namespace furrow

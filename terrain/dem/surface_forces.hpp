@@ -38,8 +38,6 @@ class NodalForceSum {
   Vec3 impulse() const;
 
  private:
-  void hand_over(const SurfaceContactForce& contact, const SurfaceCollider& surface, const Vec3& mean);
-
   std::vector<Vec3> impulse_;        // per vertex, N s
   std::vector<std::uint8_t> touched_;
   std::vector<int> touched_list_;    // in order of first touch

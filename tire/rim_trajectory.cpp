@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include "tire/rim_archive.hpp"
+
 namespace furrow {
 namespace {
 
@@ -35,23 +37,6 @@ Hermite hermite(const Vec3& x0, const Vec3& v0, const Vec3& x1, const Vec3& v1, 
   h.rate = ((6 * s2 - 6 * s) * (x0 - x1) + (3 * s2 - 4 * s + 1) * m0 + (3 * s2 - 2 * s) * m1) / duration;
   h.second = ((12 * s - 6) * (x0 - x1) + (6 * s - 4) * m0 + (6 * s - 2) * m1) / (duration * duration);
   return h;
-}
-
-void put_rim(Archive& archive, const std::string& name, const RimState& r) {
-  const auto& q = r.orientation.coeffs();
-  archive.put(name, std::vector<double>{r.position.x(), r.position.y(), r.position.z(), q[0], q[1], q[2], q[3],
-                                        r.velocity.x(), r.velocity.y(), r.velocity.z(), r.angular_velocity.x(),
-                                        r.angular_velocity.y(), r.angular_velocity.z()});
-}
-
-RimState get_rim(const Archive& archive, const std::string& name) {
-  const auto& v = archive.get<double>(name, 13);
-  RimState r;
-  r.position = Vec3(v[0], v[1], v[2]);
-  r.orientation.coeffs() << v[3], v[4], v[5], v[6];
-  r.velocity = Vec3(v[7], v[8], v[9]);
-  r.angular_velocity = Vec3(v[10], v[11], v[12]);
-  return r;
 }
 
 }  // namespace
@@ -85,15 +70,15 @@ RimKinematics RimTrajectory::at(double s) const {
 }
 
 void RimTrajectory::save(Archive& archive) const {
-  put_rim(archive, "trajectory/start", start_);
-  put_rim(archive, "trajectory/end", end_);
+  save_rim(archive, "trajectory/start", start_);
+  save_rim(archive, "trajectory/end", end_);
   archive.put("trajectory/duration", duration_);
   archive.put("trajectory/turn", std::vector<double>{turn_.x(), turn_.y(), turn_.z()});
 }
 
 void RimTrajectory::restore(const Archive& archive) {
-  start_ = get_rim(archive, "trajectory/start");
-  end_ = get_rim(archive, "trajectory/end");
+  start_ = restore_rim(archive, "trajectory/start");
+  end_ = restore_rim(archive, "trajectory/end");
   duration_ = archive.get_double("trajectory/duration");
   const auto& t = archive.get<double>("trajectory/turn", 3);
   turn_ = Vec3(t[0], t[1], t[2]);

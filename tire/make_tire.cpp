@@ -1,0 +1,36 @@
+// Which model a tire file's options give. A new model is one line in model_for.
+#include <fmt/format.h>
+
+#include "protocol/error.hpp"
+#include "tire/rigid/rigid_tire.hpp"
+#include "tire/tire.hpp"
+#include "tire/tire_file.hpp"
+
+namespace furrow {
+namespace {
+
+/// The file with the scenario's choices in place of its own.
+TireFile apply(const TireOptions& options) {
+  TireFile file = read_tire_file(options.file);
+  if (options.pressure >= 0.0) file.pressure = options.pressure;
+  if (options.friction >= 0.0) file.contact.friction = options.friction;
+  if (options.structural_damping >= 0.0) file.structural_damping = options.structural_damping;
+  if (options.elements_circumference != 0) {
+    if (options.elements_circumference < 8)
+      throw input_error(file.path, "elements_circumference",
+                        fmt::format("is {}, expected at least 8", options.elements_circumference));
+    file.elements_circumference = options.elements_circumference;
+  }
+  if (options.elements_width != 0) set_elements_width(file, options.elements_width);
+  return file;
+}
+
+}  // namespace
+
+std::unique_ptr<Tire> make_tire(const TireOptions& options) {
+  const TireFile file = apply(options);
+  if (options.rigid) return std::make_unique<RigidTire>(file);
+  throw input_error(file.path, "template", "only the rigid model of this file is built in this version");
+}
+
+}  // namespace furrow

@@ -1,0 +1,76 @@
+// Over an interval H with constant nodal forces f at vertices x, rim centre c, tire mass m at the centre and inertia J:
+//   F_spindle = Σ f + m g − Δ(m v)/H
+//   M_spindle = Σ (x − c) × f − Δ(J ω)/H,  x − c the mean of the interval's ends
+#include "tire/rigid/rigid_tire.hpp"
+
+#include "tire/rim_archive.hpp"
+
+namespace furrow {
+namespace {
+const Vec3 kGravity(0.0, 0.0, -9.81);  // m/s²
+}
+
+RigidTire::RigidTire(const TireFile& file) : material_(file.contact), radius_(file.radius) {
+  const RingMesh ring = make_ring_mesh(file);
+  surface_mesh_ = make_surface_mesh(ring);
+  mass_ = rigid_mass(ring, element_masses(file, ring));
+  tread_width_ = furrow::tread_width(file, ring);
+  for (int i = 0; i < ring.columns; ++i)
+    for (int j = 0; j < ring.rows; ++j) vertex_.push_back(ring.node_position(i, j));
+  vertex_.push_back(ring.disc_centre(0));
+  vertex_.push_back(ring.disc_centre(1));
+}
+
+void RigidTire::place(const RimState& rim) {
+  rim_ = rim;
+  spindle_ = {};
+}
+
+void RigidTire::surface(SurfaceState& out) const {
+  out.position.resize(vertex_.size());
+  out.velocity.resize(vertex_.size());
+  const Mat3 turn = rim_.orientation.toRotationMatrix();
+  for (std::size_t k = 0; k < vertex_.size(); ++k) {
+    const Vec3 arm = turn * vertex_[k];
+    out.position[k] = rim_.position + arm;
+    out.velocity[k] = rim_.velocity + rim_.angular_velocity.cross(arm);
+  }
+}
+
+Vec3 RigidTire::angular_momentum(const RimState& rim) const {
+  const Mat3 turn = rim.orientation.toRotationMatrix();
+  return turn * (mass_.inertia * (turn.transpose() * rim.angular_velocity));
+}
+
+TireStatus RigidTire::advance(const RimTrajectory& rim, const NodalForces& forces, int) {
+  const RimState &start = rim.start(), &end = rim.end();
+  const double duration = rim.duration();
+  spindle_.force = mass_.mass * (kGravity - (end.velocity - start.velocity) / duration);
+  spindle_.moment = -(angular_momentum(end) - angular_momentum(start)) / duration;
+  const Mat3 mean = 0.5 * (start.orientation.toRotationMatrix() + end.orientation.toRotationMatrix());
+  for (std::size_t k = 0; k < forces.vertex.size(); ++k) {
+    spindle_.force += forces.force[k];
+    spindle_.moment += (mean * vertex_[forces.vertex[k]]).cross(forces.force[k]);
+  }
+  rim_ = end;
+  return {};
+}
+
+TireDiagnostics RigidTire::diagnostics() const {
+  TireDiagnostics d;
+  d.momentum = mass_.mass * rim_.velocity;
+  d.kinetic_energy = 0.5 * mass_.mass * rim_.velocity.squaredNorm() + 0.5 * rim_.angular_velocity.dot(angular_momentum(rim_));
+  return d;
+}
+
+void RigidTire::save(Archive& archive) const {
+  save_rim(archive, "rigid/rim", rim_);
+  save_wrench(archive, "rigid/spindle", spindle_);
+}
+
+void RigidTire::restore(const Archive& archive) {
+  rim_ = restore_rim(archive, "rigid/rim");
+  spindle_ = restore_wrench(archive, "rigid/spindle");
+}
+
+}  // namespace furrow

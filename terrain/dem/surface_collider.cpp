@@ -226,29 +226,30 @@ int SurfaceCollider::Data::share_out(const CandidateList& found, const Vec3& cen
   const double deepest = radius - found.item[0].distance;
   const double fade = std::clamp((kFadeTo - deepest / radius) / (kFadeTo - kFadeFrom), 0.0, 1.0);
   std::array<Vec3, kMaxCandidates> normal;
-  std::array<double, kMaxCandidates> overlap, lambda;
+  std::array<double, kMaxCandidates> depth, faded, shared, lambda;
   std::array<int, kMaxCandidates> source;
   std::size_t count = 0;
   for (int i = 0; i < found.size; ++i) {
     const Candidate& one = found.item[i];
-    const double depth = (radius - one.distance) * (i == 0 ? 1.0 : fade);
+    const double own_fade = i == 0 ? 1.0 : fade;
     // A face seen from behind while something nearer is seen from the front belongs to the far side of a wedge.
     const bool far_side = i > 0 && one.at.region == TriangleRegion::face &&
                           one.normal.dot(centre) < plane[one.triangle].offset;
-    if (!(depth > 0.0) || far_side) continue;
+    if (far_side || !(own_fade > 0.0)) continue;
     normal[count] = one.normal;
-    overlap[count] = depth;
+    depth[count] = radius - one.distance;
+    faded[count] = own_fade * depth[count];
     source[count] = i;
     ++count;
   }
-  solve_push_out({normal.data(), count}, {overlap.data(), count}, {lambda.data(), count});
+  auto first = [count](auto& values) { return std::span(values.data(), count); };
+  if (solve_push_out(first(normal), first(faded), first(lambda)) > 1)
+    share_depth(first(normal), first(depth), first(shared));
+  else
+    shared = depth;
   std::size_t written = 0;
-  for (std::size_t i = 0; i < count && written < out.size(); ++i) {
-    if (!(lambda[i] > 0.0)) continue;
-    const Candidate& one = found.item[source[i]];
-    const double depth = radius - one.distance;
-    write_hit(out[written++], one, depth, lambda[i] / depth);
-  }
+  for (std::size_t i = 0; i < count && written < out.size(); ++i)
+    if (lambda[i] > 0.0) write_hit(out[written++], found.item[source[i]], shared[i], lambda[i] / shared[i]);
   return static_cast<int>(written);
 }
 

@@ -8,8 +8,9 @@
 //
 //   D = argmin |D|²  with  D·n_i ≥ δ_i  for all i,      D = Σ λ_i n_i,  λ_i ≥ 0,                              (1)
 //
-// and candidate i carries the share s_i = λ_i/δ_i of the contact law:  F = Σ s_i f(δ_i) n_i.                     (2)
+// and candidate i carries the share s_i = λ_i/δ̂_i of the contact law:  F = Σ s_i f(δ̂_i) n_i.                   (2)
 //
+// δ̂_i is δ_i, except that walls of nearly one direction share the depth of the deepest (surface_geometry.hpp).
 // Flat or convex: s = 1 for the deepest, 0 for all others. Valley whose face normals differ by θ, at its middle:
 // s = 1/(1 + cos θ) each, |F| = f(δ)/cos(θ/2): the plane's force as θ → 0, f(δ) on each wall at θ = 90°. D, hence F,
 // is continuous in c and in the vertices because p_i is. The rule needs δ < r/2; deeper (an emergency) the other
@@ -32,7 +33,7 @@ namespace furrow {
 struct SurfaceHit {
   Vec3 point = Vec3::Zero();     // on the surface, m, W
   Vec3 normal = Vec3::Zero();    // unit, from the surface towards the outside (the grain), W
-  double overlap = 0.0;          // δ > 0, m
+  double overlap = 0.0;          // δ̂ > 0 of Eq. (2), m
   double share = 1.0;            // s of Eq. (2), in (0, 1]
   int triangle = -1;
   std::array<double, 3> weight{};  // barycentric: point = Σ weight · vertex, Σ weight = 1, each ≥ 0

@@ -133,6 +133,8 @@ int solve_push_out(std::span<const Vec3> normal, std::span<const double> overlap
   const int deepest = static_cast<int>(std::max_element(overlap.begin(), overlap.end()) - overlap.begin());
   const double tolerance = kTolerance * overlap[deepest];
 
+  static_assert(kMaxCandidates <= 32);
+  std::uint32_t left_out = 0;
   ActiveSet active;
   active.size = 1;
   active.index[0] = deepest;
@@ -141,7 +143,7 @@ int solve_push_out(std::span<const Vec3> normal, std::span<const double> overlap
     double worst = tolerance;
     int next = -1;
     for (int i = 0; i < n; ++i) {
-      if (active.holds(i)) continue;
+      if (active.holds(i) || (left_out >> i & 1u)) continue;
       double lack = overlap[i];
       for (int k = 0; k < active.size; ++k) lack -= active.lambda[k] * coupling(normal, i, active.index[k]);
       if (lack > worst) {
@@ -154,6 +156,7 @@ int solve_push_out(std::span<const Vec3> normal, std::span<const double> overlap
     active.lambda[active.size] = 0.0;
     ++active.size;
     settle_active(active, normal, overlap);
+    if (!active.holds(next)) left_out |= 1u << next;
   }
   int count = 0;
   for (int k = 0; k < active.size; ++k) {
@@ -162,6 +165,18 @@ int solve_push_out(std::span<const Vec3> normal, std::span<const double> overlap
     if (lambda[i] > 0.0) ++count;
   }
   return count;
+}
+
+void share_depth(std::span<const Vec3> normal, std::span<const double> overlap, std::span<double> shared) {
+  constexpr double kFull = 0.8, kNone = 0.3;  // cosines between which w goes from 1 to 0
+  for (std::size_t i = 0; i < overlap.size(); ++i) {
+    shared[i] = overlap[i];
+    for (std::size_t j = 0; j < overlap.size(); ++j) {
+      if (overlap[j] <= overlap[i]) continue;
+      const double w = std::clamp((normal[i].dot(normal[j]) - kNone) / (kFull - kNone), 0.0, 1.0);
+      shared[i] = std::max(shared[i], overlap[i] + w * (overlap[j] - overlap[i]));
+    }
+  }
 }
 
 }  // namespace furrow

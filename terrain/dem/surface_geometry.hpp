@@ -32,7 +32,13 @@ inline constexpr int kMaxCandidates = 16;
 ///
 /// Walls that face each other (n_i·n_j < 0) do not see each other, so λ_i ≤ δ_i always. ε makes λ unique when
 /// normals depend on each other linearly. Active-set method of [Lawson & Hanson, Solving Least Squares Problems,
-/// 1974, ch. 23]. `overlap` in any order, all > 0, sizes ≤ kMaxCandidates; returns the number of λ_i > 0.
+/// 1974, ch. 23], exact while G is definite: always when no two walls face each other; otherwise a wall that the
+/// method cannot place is left out. `overlap` in any order, all > 0, sizes ≤ kMaxCandidates; returns how many λ_i > 0.
 int solve_push_out(std::span<const Vec3> normal, std::span<const double> overlap, std::span<double> lambda);
+
+/// Overlap that the contact law gets for each candidate. λ is not unique where more than three walls meet in a shallow
+/// pit, and a law that is not linear would make the choice felt; so walls of nearly one direction share the depth of
+/// the deepest of them:  δ̂_i = max_j [δ_i + w(n_i·n_j) max(0, δ_j − δ_i)],  w = 1 up to 37° apart, 0 from 73°.
+void share_depth(std::span<const Vec3> normal, std::span<const double> overlap, std::span<double> shared);
 
 }  // namespace furrow

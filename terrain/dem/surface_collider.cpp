@@ -65,7 +65,7 @@ struct SurfaceCollider::Data {
   double reach = 0.0;      // m
   double skin = 0.0;       // m
   double duration = 1.0;   // s
-  std::vector<Vec3> start, step, position, velocity;  // step = end − start
+  std::vector<Vec3> start, end, position, velocity;
   std::vector<Vec3> built_at;                         // positions the grid was built with
   std::vector<TrianglePlane> plane;
   std::vector<std::array<int, 3>> neighbour;          // across edge k; −1 at a boundary
@@ -282,19 +282,20 @@ void SurfaceCollider::set_motion(std::span<const Vec3> start, std::span<const Ve
   Data& d = *data_;
   d.duration = duration;
   d.start.assign(start.begin(), start.end());
-  d.step.resize(count);
+  d.end.assign(end.begin(), end.end());
   d.velocity.resize(count);
-  for (std::size_t v = 0; v < count; ++v) {
-    d.step[v] = end[v] - start[v];
-    d.velocity[v] = d.step[v] / duration;
-  }
-  move_to(0.0);
+  for (std::size_t v = 0; v < count; ++v) d.velocity[v] = (end[v] - start[v]) / duration;
+  // An interval that begins where the last one ended finds everything up to date.
+  if (d.position != d.start || d.limit_changed) move_to(0.0);
 }
 
 void SurfaceCollider::move_to(double share) {
   Data& d = *data_;
   d.position.resize(d.start.size());
-  for (std::size_t v = 0; v < d.start.size(); ++v) d.position[v] = d.start[v] + share * d.step[v];
+  if (share == 1.0)
+    d.position = d.end;  // exactly, where the next interval begins
+  else
+    for (std::size_t v = 0; v < d.start.size(); ++v) d.position[v] = d.start[v] + share * (d.end[v] - d.start[v]);
   if (d.grid_is_stale()) d.rebuild();
   d.update_planes();
 }
@@ -318,9 +319,8 @@ SurfaceBox SurfaceCollider::swept_bounds() const {
   SurfaceBox box{Vec3::Constant(std::numeric_limits<double>::infinity()),
                  Vec3::Constant(-std::numeric_limits<double>::infinity())};
   for (std::size_t v = 0; v < data_->start.size(); ++v) {
-    const Vec3 end = data_->start[v] + data_->step[v];
-    box.lo = box.lo.cwiseMin(data_->start[v]).cwiseMin(end);
-    box.hi = box.hi.cwiseMax(data_->start[v]).cwiseMax(end);
+    box.lo = box.lo.cwiseMin(data_->start[v]).cwiseMin(data_->end[v]);
+    box.hi = box.hi.cwiseMax(data_->start[v]).cwiseMax(data_->end[v]);
   }
   return box;
 }

@@ -7,11 +7,12 @@ namespace furrow {
 namespace {
 
 constexpr double kMostCells = 1e6;
+constexpr double kCellShare = 2.0;  // cell / margin: longer lists per query against fewer cells to fill
 
 }  // namespace
 
 void SurfaceGrid::size_cells(const Vec3& extent, double margin) {
-  cell_ = margin;
+  cell_ = kCellShare * margin;
   auto count = [&](int axis) { return std::floor(extent[axis] / cell_) + 1.0; };
   while (count(0) * count(1) * count(2) > kMostCells) cell_ *= 1.25;
   for (int axis = 0; axis < 3; ++axis) cells_[axis] = static_cast<int>(count(axis));

@@ -1,5 +1,9 @@
 #include "protocol/messages.hpp"
 
+#include <fmt/format.h>
+
+#include "protocol/peer_clock.hpp"
+
 namespace furrow {
 
 std::string to_string(Role role) {
@@ -13,6 +17,28 @@ std::string to_string(Role role) {
 
 std::string to_string(const Address& address) {
   return address.role == Role::tire ? "tire " + std::to_string(address.index) : to_string(address.role);
+}
+
+std::string to_string(MessageKind kind) {
+  switch (kind) {
+    case MessageKind::node_card: return "node card";
+    case MessageKind::surface_setup: return "surface setup";
+    case MessageKind::terrain_setup: return "terrain setup";
+    case MessageKind::rim_motion: return "rim motion";
+    case MessageKind::spindle_report: return "spindle report";
+    case MessageKind::surface_motion: return "surface motion";
+    case MessageKind::terrain_forces: return "terrain forces";
+    case MessageKind::terrain_report: return "terrain report";
+    case MessageKind::final_report: return "final report";
+    case MessageKind::control: return "control";
+  }
+  return "unknown kind";
+}
+
+Error lost_peer(Address self, Address from, MessageKind kind, double timeout) {
+  return Error(ExitCode::rank_lost, to_string(self) + " waited " + fmt::format("{:g}", timeout) + " s for " +
+                                        to_string(from) + " (" + to_string(kind) +
+                                        "): it does not answer; raise run.peer_timeout if it is only slow");
 }
 
 }  // namespace furrow

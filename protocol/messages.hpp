@@ -44,6 +44,7 @@ enum class MessageKind : std::int32_t {
   final_report = 9,
   control = 10,
 };
+std::string to_string(MessageKind kind);
 
 /// Who a node is and what it expects of the others; exchanged by all before anything else.
 struct NodeCard {

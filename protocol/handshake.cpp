@@ -1,0 +1,56 @@
+#include <fmt/format.h>
+
+#include "protocol/transport.hpp"
+
+namespace furrow {
+namespace {
+
+std::vector<Address> all_nodes(int tire_count) {
+  std::vector<Address> nodes{{Role::rig, 0}};
+  for (int k = 0; k < tire_count; ++k) nodes.push_back({Role::tire, k});
+  nodes.push_back({Role::terrain, 0});
+  return nodes;
+}
+
+template <class T>
+void require_same(const NodeCard& first, const NodeCard& card, const char* what, const T& a, const T& b) {
+  if (a == b) return;
+  throw Error(ExitCode::bad_input, fmt::format("handshake: {} of {} is {} but that of {} is {}; expected the same",
+                                               what, to_string(first.self), a, to_string(card.self), b));
+}
+
+}  // namespace
+
+std::vector<NodeCard> handshake(Transport& transport, const NodeCard& own) {
+  const std::vector<Address> nodes = all_nodes(transport.tire_count());
+  for (const Address& node : nodes)
+    if (node != transport.self()) send(transport, node, own);
+  std::vector<NodeCard> cards;
+  for (const Address& node : nodes)
+    cards.push_back(node == transport.self() ? own : receive<NodeCard>(transport, node));
+
+  const NodeCard& rig = cards.front();
+  for (std::size_t i = 0; i < cards.size(); ++i) {
+    const NodeCard& card = cards[i];
+    if (card.self != nodes[i])
+      throw Error(ExitCode::bad_input, fmt::format("handshake: {} calls itself {}", to_string(nodes[i]),
+                                                   to_string(card.self)));
+    require_same(rig, card, "protocol version", rig.protocol_version, card.protocol_version);
+    require_same(rig, card, "scenario digest", rig.scenario_digest, card.scenario_digest);
+    require_same(rig, card, "communication step", rig.step, card.step);
+    require_same(rig, card, "number of steps", rig.steps, card.steps);
+    if (card.substeps < 1)
+      throw Error(ExitCode::bad_input, fmt::format("handshake: {} takes {} substeps; expected 1 or more",
+                                                   to_string(card.self), card.substeps));
+  }
+  const int tires = transport.tire_count();
+  if (rig.wheel_count != tires)
+    throw Error(ExitCode::bad_input, fmt::format("handshake: the rig carries {} wheel(s) but the scenario has {} tire(s)",
+                                                 rig.wheel_count, tires));
+  if (cards.back().tire_count != tires)
+    throw Error(ExitCode::bad_input, fmt::format("handshake: the terrain expects {} tire(s) but there are {}",
+                                                 cards.back().tire_count, tires));
+  return cards;
+}
+
+}  // namespace furrow

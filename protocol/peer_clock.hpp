@@ -1,0 +1,40 @@
+// How long a node has waited for a peer, counting only time during which this process itself ran: a stopped
+// terminal, a debugger or a sleeping laptop adds one capped interval, not its whole length.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+
+#include "protocol/transport.hpp"
+
+namespace furrow {
+
+class PeerClock {
+ public:
+  explicit PeerClock(double timeout) : timeout_(timeout), begin_(now()), last_(begin_) {}
+
+  /// A sign of life from the peer: the time-out starts again.
+  void heard() { silent_ = 0.0; }
+  /// To be asked at every poll.
+  bool expired() {
+    const double at = now();
+    silent_ += std::min(at - last_, kLongestGap);
+    last_ = at;
+    return silent_ > timeout_;
+  }
+  /// Wall time since construction, s.
+  double total() const { return now() - begin_; }
+
+ private:
+  static constexpr double kLongestGap = 0.25;  // s, counted for one poll at most
+  static double now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  }
+  double timeout_, begin_, last_;
+  double silent_ = 0.0;
+};
+
+/// "terrain waited 60 s for tire 0 (surface_motion)"
+Error lost_peer(Address self, Address from, MessageKind kind, double timeout);
+
+}  // namespace furrow

@@ -18,16 +18,16 @@ struct BodyState {
 
 struct Body {
   std::string name;
-  double mass = 1.0;                            // kg
-  Mat3 inertia = Mat3::Identity();              // about the centre of mass, body axes, kg m²
-  Mat3 inertia_inverse = Mat3::Identity();      // body axes
+  double mass = 1.0;                        // kg
+  Mat3 inertia = Mat3::Identity();          // about the centre of mass, body axes, kg m²
+  Mat3 inertia_inverse = Mat3::Identity();  // body axes
   BodyState state;
-  Vec3 angular_momentum = Vec3::Zero();         // R J Rᵀ ω, W, kg m²/s; integrated in place of ω
-  Vec3 force = Vec3::Zero();                    // external, W, N
-  Vec3 moment = Vec3::Zero();                   // external, about the centre of mass, W, N m
+  Vec3 angular_momentum = Vec3::Zero();  // R J Rᵀ ω, W, kg m²/s; integrated in place of ω
+  Vec3 force = Vec3::Zero();             // external, W, N
+  Vec3 moment = Vec3::Zero();            // external, about the centre of mass, W, N m
 
-  Mat3 R = Mat3::Identity();                    // of state.orientation
-  Mat3 inertia_inverse_W = Mat3::Identity();    // R J⁻¹ Rᵀ
+  Mat3 R = Mat3::Identity();                  // of state.orientation
+  Mat3 inertia_inverse_W = Mat3::Identity();  // R J⁻¹ Rᵀ
 
   /// Brings R and R J⁻¹ Rᵀ up to the orientation.
   void refresh() {

@@ -8,8 +8,8 @@
 
 namespace furrow {
 
-/// Force in the coordinate (positive pushes the points apart, or B along the axis, or turns B positively), N or
-/// N m, and its damping −∂f/∂rate ≥ 0, N s/m or N m s.
+/// Force in the coordinate (positive pushes the points apart, or B along the axis, or turns B positively), N
+/// or N m, and its damping −∂f/∂rate ≥ 0, N s/m or N m s.
 struct ElementForce {
   double force = 0.0;
   double damping = 0.0;

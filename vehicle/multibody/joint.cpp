@@ -99,7 +99,8 @@ std::vector<Row> make_joint_rows(Joint& joint, const Pose& A, const Pose& B, con
     case JointKind::distance:
       rows.push_back(base_row(joint, RowKind::distance));
       rows.back().reference = (point_b - place.point).norm();
-      if (!(rows.back().reference > 0.0)) throw physics_error("joint '" + joint.name + "': its length is zero");
+      if (!(rows.back().reference > 0.0))
+        throw physics_error("joint '" + joint.name + "': its length is zero");
       break;
   }
   return rows;

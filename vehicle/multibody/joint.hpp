@@ -14,10 +14,10 @@ enum class JointKind { fixed, revolute, prismatic, cylindrical, universal, spher
 
 /// Where a joint sits in the configuration in which it is defined, W.
 struct JointPlace {
-  Vec3 point = Vec3::Zero();           // m; of a distance joint: its end on A
-  Vec3 axis = Vec3::UnitZ();           // revolute, prismatic, cylindrical: the axis; universal: the axis fixed in A
-  Vec3 second_axis = Vec3::UnitX();    // universal: the axis fixed in B
-  Vec3 second_point = Vec3::Zero();    // distance: its end on B, m
+  Vec3 point = Vec3::Zero();  // m; of a distance joint: its end on A
+  Vec3 axis = Vec3::UnitZ();  // revolute, prismatic, cylindrical: the axis; universal: the axis fixed in A
+  Vec3 second_axis = Vec3::UnitX();  // universal: the axis fixed in B
+  Vec3 second_point = Vec3::Zero();  // distance: its end on B, m
 };
 
 /// Frame of a joint in body axes: z along the joint axis.

@@ -13,12 +13,13 @@ struct Motion {
 
 using MotionFunction = std::function<Motion(double time)>;
 
-/// Speed from rest to `speed` over `ramp` seconds by the C² smoothstep S(u) = 6u⁵ − 15u⁴ + 10u³, then constant;
-/// the value is its integral, T (u⁶ − 3u⁵ + 5u⁴/2) during the ramp. ramp = 0: constant from t = 0.
+/// Speed from rest to `speed` over `ramp` seconds by the C² smoothstep S(u) = 6u⁵ − 15u⁴ + 10u³, then
+/// constant; the value is its integral, T (u⁶ − 3u⁵ + 5u⁴/2) during the ramp. ramp = 0: constant from t = 0.
 inline Motion ramped_motion(double time, double speed, double ramp) {
   if (time < ramp) {
     const double u = time > 0.0 ? time / ramp : 0.0;
-    return {speed * ramp * u * u * u * u * (2.5 + u * (u - 3.0)), speed * u * u * u * (10.0 + u * (6.0 * u - 15.0))};
+    return {speed * ramp * u * u * u * u * (2.5 + u * (u - 3.0)),
+            speed * u * u * u * (10.0 + u * (6.0 * u - 15.0))};
   }
   return {speed * (time - 0.5 * ramp), speed};
 }

@@ -1,5 +1,5 @@
-// Scalar coordinates between two bodies A and B. Each is the building brick of constraints (a joint is a set of
-// rows that must vanish), of motors (a row that must follow a function of time) and of force elements.
+// Scalar coordinates between two bodies A and B. Each is the building brick of constraints (a joint is a set
+// of rows that must vanish), of motors (a row that must follow a function of time) and of force elements.
 //
 //   offset    φ = e_A · (P_B − P_A)            e fixed in A
 //   dot       φ = a_A · b_B                    both unit vectors fixed in their bodies

@@ -62,14 +62,20 @@ bool SchurSolver::factorize(std::span<const RowJacobian> jacobians, std::span<co
   }
   double largest = 0.0;
   for (const int index : diagonal_) largest = std::max(largest, values[index]);
+  epsilon_ = kRegularization * largest;
   for (std::size_t i = 0; i < diagonal_.size(); ++i) {
     if (compliance[i] < 0.0)
       values[diagonal_[i]] = 1.0;
     else
-      values[diagonal_[i]] += compliance[i] + kRegularization * largest;
+      values[diagonal_[i]] += compliance[i] + epsilon_;
   }
   ldlt_.factorize(S_);
   return ldlt_.info() == Eigen::Success;
+}
+
+void SchurSolver::multiply(const Eigen::VectorXd& P, Eigen::VectorXd& r) const {
+  r.noalias() = S_.selfadjointView<Eigen::Lower>() * P;
+  r -= epsilon_ * P;
 }
 
 void SchurSolver::solve(const Eigen::VectorXd& r, Eigen::VectorXd& P) const { P = ldlt_.solve(r); }

@@ -131,7 +131,8 @@ double System::max_violation() const {
   for (std::size_t i = 0; i < constraint_rows_.size(); ++i) {
     const Row& row = constraint_rows_[i];
     const double value = row_value(row, pose(row.a), pose(row.b));
-    largest = std::max(largest, std::abs(row_difference(row, value, target(static_cast<int>(i), time()).value)));
+    largest =
+        std::max(largest, std::abs(row_difference(row, value, target(static_cast<int>(i), time()).value)));
   }
   return largest;
 }
@@ -177,6 +178,7 @@ void System::save(Archive& archive) const {
   archive.put("bodies", numbers);
   archive.put("clock", std::vector<double>{start_time_, step_});
   archive.put("count", count_);
+  archive.put("redundant", static_cast<std::int64_t>(redundant_count_));
   numbers.clear();
   for (const Reaction& reaction : reactions_) {
     append(reaction.force);
@@ -215,6 +217,8 @@ void System::restore(const Archive& archive) {
   prepare();
   update_jacobians();
   factorize(false);
+  find_redundancy();
+  redundant_count_ = static_cast<int>(archive.get_int("redundant"));
 }
 
 std::string System::row_name(int row) const {

@@ -1,14 +1,14 @@
-// A multibody system in maximal coordinates: rigid bodies, joints and imposed motions as constraints, springs and
-// dampers, integrated with both position and velocity constraints satisfied at the end of every step.
+// A multibody system in maximal coordinates: rigid bodies, joints and imposed motions as constraints, springs
+// and dampers, integrated with both position and velocity constraints satisfied at the end of every step.
 //
 // One step of size h, t₀ → t₁ (RATTLE [Andersen 1983] with implicit damping; ℓ the angular momenta):
 //   M (v½ − v₀) = h/2 [f(x₀, v½) + G₀ᵀλ]     λ such that φ(x₁, t₁) = 0
 //   x₁ = x₀ + h v½,  q₁ = exp(h ω½) q₀        R½ J R½ᵀ ω½ = ℓ½ (see rotation.hpp)
 //   M (v₁ − v½) = h/2 [f(x₁, v½) + G₁ᵀμ]     μ such that G₁ v₁ + ∂φ/∂t = 0
-// Symmetric, so second order; springs are explicit (stable for h < 2 √(m/k)), dampers act by the implicit midpoint
-// rule (stable for any h); no drift, because nothing is integrated that a constraint does not bring back.
-// Loads are constant over a step. Reactions are means over the step, so that mass × change of velocity / h equals
-// load + reaction to round-off: this is what makes a drawbar pull corrected by m·a exact.
+// Symmetric, so second order; springs are explicit (stable for h < 2 √(m/k)), dampers act by the implicit
+// midpoint rule (stable for any h); no drift, because nothing is integrated that a constraint does not bring
+// back. Loads are constant over a step. Reactions are means over the step, so that mass × change of velocity
+// / h equals load + reaction to round-off: this is what makes a drawbar pull corrected by m·a exact.
 //
 // H. C. Andersen, Rattle: a "velocity" version of the Shake algorithm, J. Comput. Phys. 52 (1983) 24–34,
 // doi:10.1016/0021-9991(83)90014-1.
@@ -37,12 +37,14 @@ class System {
   int add_body(const std::string& name, double mass, const Mat3& inertia, const BodyState& state);
   void set_mass_properties(int body, double mass, const Mat3& inertia);
   int add_joint(JointKind kind, const std::string& name, int a, int b, const JointPlace& place);
-  /// Imposes the free coordinate of a prismatic, cylindrical or revolute joint, zero where the joint was placed.
+  /// Imposes the free coordinate of a prismatic, cylindrical or revolute joint, zero where the joint was
+  /// placed.
   int add_motor(const std::string& name, int joint, MotionFunction motion);
   /// Acts on the free coordinate of a joint.
   int add_joint_element(const std::string& name, int joint, ForceLaw law);
   /// Acts on the distance between two points, W, m.
-  int add_line_element(const std::string& name, int a, int b, const Vec3& point_a, const Vec3& point_b, ForceLaw law);
+  int add_line_element(const std::string& name, int a, int b, const Vec3& point_a, const Vec3& point_b,
+                       ForceLaw law);
 
   /// Puts a body somewhere; assemble() must follow.
   void set_state(int body, const BodyState& state);
@@ -63,7 +65,9 @@ class System {
   const Joint& joint(int index) const { return joints_[index]; }
 
   // Means over the last step.
-  const Reaction& reaction(int joint) const { return reactions_[joint]; }  // in the axes of the joint's frame on A
+  const Reaction& reaction(int joint) const {
+    return reactions_[joint];
+  }  // in the axes of the joint's frame on A
   double motor_force(int motor) const { return motors_[motor].last_force; }  // on B, N or N m
   double element_force(int element) const { return elements_[element].last_force; }
 
@@ -71,13 +75,13 @@ class System {
   Motion coordinate(int joint) const;
   /// Largest violation of a position constraint now, m or rad (dot rows: sine of the angle).
   double max_violation() const;
-  double kinetic_energy() const;                 // J
-  double gravity_energy() const;                 // −Σ m g·x, J
-  Vec3 momentum() const;                         // kg m/s
+  double kinetic_energy() const;                   // J
+  double gravity_energy() const;                   // −Σ m g·x, J
+  Vec3 momentum() const;                           // kg m/s
   Vec3 angular_momentum(const Vec3& about) const;  // kg m²/s
 
-  /// Number of redundant constraint rows found by the last assemble(), and the joints or motors that hold them.
-  /// Their reactions are those of minimum Euclidean norm of the multipliers (N and N m).
+  /// Number of redundant constraint rows found by the last assemble(), and the joints or motors that hold
+  /// them. Their reactions are those of minimum Euclidean norm of the multipliers (N and N m).
   int redundant_count() const { return redundant_count_; }
   const std::vector<std::string>& redundant_names() const { return redundant_names_; }
 
@@ -96,20 +100,21 @@ class System {
 
   Pose pose(int body) const;
   Motion target(int row, double time) const;
-  double rate(int row) const;              // G v of a row with the present velocities
-  void prepare();                          // symbolic analysis and storage, when the topology changed
-  void update_jacobians();                 // of all rows, at the present poses
+  double rate(int row) const;  // G v of a row with the present velocities
+  void prepare();              // symbolic analysis and storage, when the topology changed
+  void update_jacobians();     // of all rows, at the present poses
   void factorize(bool with_dampers);
-  void begin_velocities(double h);         // base velocities ← present velocities + h/2 M⁻¹ f
-  void apply_impulses();                   // velocities, momenta ← base + M⁻¹ Gᵀ P
-  void set_angular_velocities();           // ω ← R J⁻¹ Rᵀ ℓ
+  void begin_velocities(double h);  // base velocities ← present velocities + h/2 M⁻¹ f
+  void apply_impulses();            // velocities, momenta ← base + M⁻¹ Gᵀ P
+  void set_angular_velocities();    // ω ← R J⁻¹ Rᵀ ℓ
   void solve_positions(double h, double end_time);
   void solve_velocities(double end_time);
-  void move(double h);                     // poses ← start poses moved by h v½
+  void move(double h);  // poses ← start poses moved by h v½
   void element_forces(double h, bool implicit);
   void collect_reactions(double h, bool first_half);
   void project_positions(double time);
   void find_redundancy();
+  void remove_null_impulses();
   void check_finite() const;
   std::string row_name(int row) const;
   [[noreturn]] void fail(const std::string& what, int row, double residual) const;
@@ -119,12 +124,12 @@ class System {
   std::vector<Joint> joints_;
   std::vector<Motor> motors_;
   std::vector<ForceElement> elements_;
-  std::vector<Row> constraint_rows_;       // of joints and motors
-  std::vector<int> row_motor_;             // motor that drives the row, or −1
+  std::vector<Row> constraint_rows_;  // of joints and motors
+  std::vector<int> row_motor_;        // motor that drives the row, or −1
   std::vector<Reaction> reactions_;
 
-  double start_time_ = 0.0, step_ = 0.0;   // s
-  std::int64_t count_ = 0;                 // steps since start_time_
+  double start_time_ = 0.0, step_ = 0.0;  // s
+  std::int64_t count_ = 0;                // steps since start_time_
 
   // Work space: rows_ = constraint rows, then element rows.
   struct Base {
@@ -137,7 +142,7 @@ class System {
   std::vector<Row> rows_;
   std::vector<RowJacobian> jacobians_;
   std::vector<double> compliance_;
-  std::vector<double> damping_;            // of element rows, this step
+  std::vector<double> damping_;  // of element rows, this step
   std::vector<Base> base_;
   std::vector<Motion> targets_;
   Eigen::VectorXd impulses_, residual_, correction_;

@@ -12,8 +12,9 @@ namespace {
 
 constexpr double kPositionTolerance = 1e-12;  // m or rad, at the end of every step
 constexpr double kVelocityTolerance = 4e-16;  // relative to the largest speed: iterate down to round-off
-constexpr double kVelocityLimit = 1e-9;       // relative to the largest speed, beyond it the constraints clash
+constexpr double kVelocityLimit = 1e-9;  // relative to the largest speed, beyond it the constraints clash
 constexpr int kMaxIterations = 60;
+constexpr int kCleaningIterations = 3;
 
 std::string scientific(double value) {
   char text[32];
@@ -24,8 +25,8 @@ std::string scientific(double value) {
 }  // namespace
 
 void System::fail(const std::string& what, int row, double residual) const {
-  throw physics_error("multibody: " + what + " at t = " + scientific(time()) + " s; worst is '" + row_name(row) +
-                      "' with " + scientific(residual));
+  throw physics_error("multibody: " + what + " at t = " + scientific(time()) + " s; worst is '" +
+                      row_name(row) + "' with " + scientific(residual));
 }
 
 void System::prepare() {
@@ -45,7 +46,8 @@ void System::prepare() {
 }
 
 void System::update_jacobians() {
-  for (std::size_t i = 0; i < rows_.size(); ++i) jacobians_[i] = row_jacobian(rows_[i], pose(rows_[i].a), pose(rows_[i].b));
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+    jacobians_[i] = row_jacobian(rows_[i], pose(rows_[i].a), pose(rows_[i].b));
 }
 
 // Compliance of a damper row: p = −(h c/2) g·v½ is a constraint row g·v½ + p · 2/(h c) = 0.
@@ -55,7 +57,8 @@ void System::factorize(bool with_dampers) {
     compliance_[first + e] = with_dampers && damping_[e] > 0.0 ? 2.0 / (step_ * damping_[e]) : -1.0;
   dampers_factored_ = with_dampers;
   if (!solver_.factorize(jacobians_, bodies_, compliance_))
-    throw physics_error("multibody: the constraint matrix cannot be factored at t = " + scientific(time()) + " s");
+    throw physics_error("multibody: the constraint matrix cannot be factored at t = " + scientific(time()) +
+                        " s");
 }
 
 double System::rate(int i) const {
@@ -89,7 +92,8 @@ void System::element_forces(double h, bool implicit) {
     ForceElement& element = elements_[e];
     const RowJacobian& J = jacobians_[first + e];
     const double speed = rate(static_cast<int>(first + e));
-    const ElementForce law = element.law(row_value(element.row, pose(element.row.a), pose(element.row.b)), speed, mid_time);
+    const ElementForce law =
+        element.law(row_value(element.row, pose(element.row.a), pose(element.row.b)), speed, mid_time);
     double force = law.force;
     if (implicit) {
       damping_[e] = std::max(0.0, law.damping);
@@ -135,14 +139,16 @@ void System::move(double h) {
     Body& body = bodies_[i];
     if (!midpoint_angular_velocity(base_[i].R, body.inertia_inverse, body.angular_momentum, h,
                                    body.state.angular_velocity))
-      throw physics_error("multibody: body '" + body.name + "' turns too fast for a step of " + scientific(h) + " s");
+      throw physics_error("multibody: body '" + body.name + "' turns too fast for a step of " +
+                          scientific(h) + " s");
     body.state.position = base_[i].position + h * body.state.velocity;
     body.state.orientation = rotated(base_[i].orientation, body.state.angular_velocity, h);
     body.R = body.state.orientation.toRotationMatrix();
   }
 }
 
-// Quasi-Newton for φ(x₁(P), t₁) = 0: ∂φ/∂P = h G₁ M⁻¹ G₀ᵀ ≈ h S₀; the factor stays, each iteration gains h|ω|.
+// Quasi-Newton for φ(x₁(P), t₁) = 0: ∂φ/∂P = h G₁ M⁻¹ G₀ᵀ ≈ h S₀; the factor stays, each iteration gains
+// h|ω|.
 void System::solve_positions(double h, double end_time) {
   const int constraints = static_cast<int>(constraint_rows_.size());
   const int count = static_cast<int>(rows_.size());
@@ -158,7 +164,8 @@ void System::solve_positions(double h, double end_time) {
     bool done = true;
     for (int i = 0; i < constraints; ++i) {
       const Row& row = rows_[i];
-      const double violation = row_difference(row, row_value(row, pose(row.a), pose(row.b)), targets_[i].value);
+      const double violation =
+          row_difference(row, row_value(row, pose(row.a), pose(row.b)), targets_[i].value);
       residual_[i] = -violation / h;
       if (!(std::abs(violation) <= worst)) worst = std::abs(violation), worst_row = i;
     }
@@ -192,7 +199,8 @@ void System::solve_velocities(double end_time) {
     double scale = 0.0, worst = 0.0;
     int worst_row = 0;
     for (const Body& body : bodies_)
-      scale = std::max({scale, body.state.velocity.cwiseAbs().maxCoeff(), body.state.angular_velocity.cwiseAbs().maxCoeff()});
+      scale = std::max({scale, body.state.velocity.cwiseAbs().maxCoeff(),
+                        body.state.angular_velocity.cwiseAbs().maxCoeff()});
     for (int i = 0; i < constraints; ++i) {
       residual_[i] = targets_[i].rate - rate(i);
       scale = std::max(scale, std::abs(targets_[i].rate));
@@ -202,7 +210,8 @@ void System::solve_velocities(double end_time) {
     // No longer falling: round-off reached, or the rates contradict each other.
     if (!std::isfinite(worst) || (iteration > 1 && worst > 0.25 * before)) {
       if (worst <= kVelocityLimit * std::max(scale, 1e-6)) return;
-      if (!std::isfinite(worst) || worst > 0.9 * before) fail("constraint rates cannot be satisfied", worst_row, worst);
+      if (!std::isfinite(worst) || worst > 0.9 * before)
+        fail("constraint rates cannot be satisfied", worst_row, worst);
     }
     before = worst;
     solver_.solve(residual_, correction_);
@@ -210,12 +219,30 @@ void System::solve_velocities(double end_time) {
   }
 }
 
-// Reaction of a joint on B, about its point on B: F = Σ λ ∂φ/∂v_B, M = Σ λ ∂φ/∂ω_B − r_B × F; half of each stage.
+// Redundant rows leave P free by any N with Gᵀ N = 0, and round-off in the residuals feeds it. The motion does not
+// feel it, the reactions do: P' → P without N by the proximal-point iteration on (S + Σ)(P − P') from P' = 0, whose
+// residuals lie in the range of S.
+void System::remove_null_impulses() {
+  if (redundant_count_ == 0) return;
+  const Eigen::VectorXd wanted = impulses_;
+  impulses_.setZero();
+  for (int iteration = 0; iteration < kCleaningIterations; ++iteration) {
+    correction_ = wanted - impulses_;
+    solver_.multiply(correction_, residual_);
+    solver_.solve(residual_, correction_);
+    impulses_ += correction_;
+  }
+}
+
+// Reaction of a joint on B, about its point on B: F = Σ λ ∂φ/∂v_B, M = Σ λ ∂φ/∂ω_B − r_B × F; half of each
+// stage.
 void System::collect_reactions(double h, bool first_half) {
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     const Joint& joint = joints_[j];
-    const Mat3& R_a = joint.a == kGround ? *pose(kGround).R : (first_half ? base_[joint.a].R : bodies_[joint.a].R);
-    const Mat3& R_b = joint.b == kGround ? *pose(kGround).R : (first_half ? base_[joint.b].R : bodies_[joint.b].R);
+    const Mat3& R_a =
+        joint.a == kGround ? *pose(kGround).R : (first_half ? base_[joint.a].R : bodies_[joint.a].R);
+    const Mat3& R_b =
+        joint.b == kGround ? *pose(kGround).R : (first_half ? base_[joint.b].R : bodies_[joint.b].R);
     Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
     for (int i = joint.first_row; i < joint.first_row + joint.row_count; ++i) {
       force += impulses_[i] * jacobians_[i].v_b;
@@ -229,7 +256,8 @@ void System::collect_reactions(double h, bool first_half) {
   }
   for (Motor& motor : motors_)
     motor.last_force = (first_half ? 0.0 : motor.last_force) + impulses_[motor.row] / h;
-  for (std::size_t e = 0; e < elements_.size(); ++e) elements_[e].last_force += impulses_[constraint_rows_.size() + e] / h;
+  for (std::size_t e = 0; e < elements_.size(); ++e)
+    elements_[e].last_force += impulses_[constraint_rows_.size() + e] / h;
 }
 
 void System::step(double h) {
@@ -244,6 +272,7 @@ void System::step(double h) {
   element_forces(h, true);
   if (std::any_of(damping_.begin(), damping_.end(), [](double c) { return c > 0.0; })) factorize(true);
   solve_positions(h, end_time);
+  remove_null_impulses();
   collect_reactions(h, true);
 
   for (Body& body : bodies_) body.refresh();
@@ -252,6 +281,7 @@ void System::step(double h) {
   element_forces(h, false);
   factorize(false);
   solve_velocities(end_time);
+  remove_null_impulses();
   collect_reactions(h, false);
   ++count_;
   check_finite();
@@ -262,7 +292,8 @@ void System::check_finite() const {
     const double sum = body.state.position.sum() + body.state.velocity.sum() + body.angular_momentum.sum() +
                        body.state.orientation.coeffs().sum();
     if (!std::isfinite(sum))
-      throw physics_error("multibody: the state of body '" + body.name + "' is not finite at t = " + scientific(time()) + " s");
+      throw physics_error("multibody: the state of body '" + body.name +
+                          "' is not finite at t = " + scientific(time()) + " s");
   }
 }
 

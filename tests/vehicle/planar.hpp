@@ -1,0 +1,34 @@
+// Bodies and joints for mechanisms that move in the x–z plane, hinged about y.
+#pragma once
+
+#include <cmath>
+
+#include "vehicle/multibody/system.hpp"
+
+namespace furrow::testing {
+
+inline constexpr double kGravity = 9.81;  // m/s²
+
+/// A bar whose centre lies at `centre`, turned by `angle` about y; its own z axis runs along the bar.
+inline BodyState bar_state(const Vec3& centre, double angle) {
+  BodyState state;
+  state.position = centre;
+  state.orientation = Quat(Eigen::AngleAxisd(angle, Vec3::UnitY()));
+  return state;
+}
+
+inline JointPlace hinge(const Vec3& point) {
+  JointPlace place;
+  place.point = point;
+  place.axis = Vec3::UnitY();
+  return place;
+}
+
+inline JointPlace slide(const Vec3& point, const Vec3& axis) {
+  JointPlace place;
+  place.point = point;
+  place.axis = axis;
+  return place;
+}
+
+}  // namespace furrow::testing

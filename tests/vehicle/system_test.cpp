@@ -1,0 +1,94 @@
+// Clock, motions, saving, and refusal of bad states.
+#include "vehicle/multibody/system.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "protocol/error.hpp"
+
+using namespace furrow;
+
+namespace {
+
+struct Swing {
+  System system;
+  int cart, bob;
+  Swing() {
+    BodyState state;
+    cart = system.add_body("cart", 5.0, Mat3::Identity(), state);
+    state.position = Vec3(0.2, 0.1, -1.0);
+    state.angular_velocity = Vec3(0.1, 0.2, 3.0);
+    bob = system.add_body("bob", 2.0, Vec3(0.1, 0.2, 0.3).asDiagonal(), state);
+    JointPlace rail;
+    rail.axis = Vec3::UnitX();
+    const int joint = system.add_joint(JointKind::prismatic, "rail", kGround, cart, rail);
+    system.add_joint(JointKind::spherical, "ball", cart, bob, JointPlace{});
+    system.add_motor("drive", joint, [](double t) { return ramped_motion(t, 1.5, 0.3); });
+    system.add_line_element("strut", kGround, bob, Vec3(0, 1, 0), Vec3(0.2, 0.1, -1.0),
+                            linear_spring_damper(300, 1.2, 20));
+    system.assemble(0.0);
+  }
+};
+
+}  // namespace
+
+TEST(Motion, ramp_is_the_integral_of_its_speed_and_twice_continuous) {
+  const double v = 3.0, T = 0.2, h = 1e-6;
+  for (const double t : {0.02, 0.1, 0.19, 0.2, 0.5}) {
+    const double slope = (ramped_motion(t + h, v, T).value - ramped_motion(t - h, v, T).value) / (2 * h);
+    EXPECT_NEAR(slope, ramped_motion(t, v, T).rate, 1e-8);
+  }
+  const auto acceleration = [&](double t) {
+    return (ramped_motion(t + h, v, T).rate - ramped_motion(t - h, v, T).rate) / (2 * h);
+  };
+  EXPECT_NEAR(acceleration(1e-5), 0.0, 1e-2);
+  EXPECT_NEAR(acceleration(T - 1e-5), 0.0, 1e-2);
+  EXPECT_EQ(ramped_motion(0.0, v, 0.0).rate, v);
+  EXPECT_EQ(ramped_motion(0.0, v, 0.0).value, 0.0);
+}
+
+TEST(System, imposed_motion_is_met_in_position_and_speed_at_every_step) {
+  Swing swing;
+  for (int i = 1; i <= 500; ++i) {
+    swing.system.step(1e-3);
+    EXPECT_EQ(swing.system.time(), i * 1e-3);
+    const Motion motion = ramped_motion(i * 1e-3, 1.5, 0.3);
+    ASSERT_NEAR(swing.system.body(swing.cart).state.position.x(), motion.value, 1e-12);
+    ASSERT_NEAR(swing.system.body(swing.cart).state.velocity.x(), motion.rate, 1e-13);
+  }
+}
+
+TEST(System, restored_system_continues_bit_for_bit) {
+  Swing original, copy;
+  for (int i = 0; i < 137; ++i) original.system.step(1e-3);
+  Archive archive;
+  original.system.save(archive);
+  copy.system.restore(archive);
+  for (int i = 0; i < 100; ++i) {
+    original.system.step(1e-3);
+    copy.system.step(1e-3);
+  }
+  Archive a, b;
+  original.system.save(a);
+  copy.system.save(b);
+  for (const char* name : {"bodies", "clock", "reactions"}) {
+    const auto &x = a.get<double>(name), &y = b.get<double>(name);
+    ASSERT_EQ(x.size(), y.size());
+    EXPECT_EQ(std::memcmp(x.data(), y.data(), x.size() * sizeof(double)), 0) << name;
+  }
+}
+
+TEST(System, not_a_number_is_an_error) {
+  Swing swing;
+  swing.system.set_load(swing.bob, Vec3(std::numeric_limits<double>::quiet_NaN(), 0, 0), Vec3::Zero());
+  EXPECT_THROW(swing.system.step(1e-3), Error);
+}
+
+TEST(System, massless_bodies_are_refused) {
+  System system;
+  EXPECT_THROW(system.add_body("ghost", 0.0, Mat3::Identity(), BodyState{}), Error);
+  EXPECT_THROW(system.add_body("needle", 1.0, Vec3(1, 1, 0).asDiagonal(), BodyState{}), Error);
+}

@@ -1,5 +1,5 @@
-// The drawbar rig as a multibody system. Frame of travel: e = ±x, l = z × e (left when looking along e), z up.
-// All bodies ride in the vertical plane of the axle line; chassis and set-toe are carried by the rail.
+// The drawbar rig as a multibody system. Frame of travel: e = ±x, l = z × e (left when looking along e), z
+// up. All bodies ride in the vertical plane of the axle line; chassis and set-toe are carried by the rail.
 #include "rigs/drawbar_rig.hpp"
 
 #include <algorithm>
@@ -13,10 +13,11 @@
 namespace furrow {
 namespace {
 
-// Guided bodies never rotate, so their inertia has no effect on any result; it only scales the constraint matrix.
-constexpr double kGuidedInertia = 1.0;     // kg m², chassis and set-toe
-constexpr double kCarrierInertia = 20.0;   // kg m²
-constexpr double kSlipLimit = 1e6;         // reported instead of larger magnitudes when the wheel hardly turns
+// Guided bodies never rotate, so their inertia has no effect on any result; it only scales the constraint
+// matrix.
+constexpr double kGuidedInertia = 1.0;    // kg m², chassis and set-toe
+constexpr double kCarrierInertia = 20.0;  // kg m²
+constexpr double kSlipLimit = 1e6;        // reported instead of larger magnitudes when the wheel hardly turns
 
 void require(bool ok, const std::string& key, const std::string& what) {
   if (!ok) throw input_error("scenario", "rig." + key, what);
@@ -29,7 +30,8 @@ void validate(const DrawbarRigOptions& o) {
   require(o.mode != "fixed_speed" || o.slip < 1.0, "slip", "must be below 1 in mode fixed_speed");
   require(std::isfinite(o.angular_speed) && std::isfinite(o.speed), "angular_speed", "speeds must be finite");
   require(o.ramp >= 0.0 && std::isfinite(o.ramp), "ramp", "must be 0 or a positive time in s");
-  require(o.touchdown_damping >= 0.0 && std::isfinite(o.touchdown_damping), "touchdown_damping", "must not be negative");
+  require(o.touchdown_damping >= 0.0 && std::isfinite(o.touchdown_damping), "touchdown_damping",
+          "must not be negative");
   require(o.touchdown_time >= 0.0, "touchdown_time", "must not be negative");
   require(std::abs(o.toe_angle) < 0.5 * std::numbers::pi, "toe_angle", "must lie between -pi/2 and pi/2 rad");
   require(o.travel_sign == 1.0 || o.travel_sign == -1.0, "travel_sign", "must be 1 or -1");
@@ -78,22 +80,23 @@ class DrawbarRig final : public Rig {
 
   DrawbarRigOptions options_;
   Vec3 forward_, left_;
-  double radius_ = 0.0;         // undeformed tire radius, m
-  double travel_speed_ = 0.0;   // after the ramp, along travel, m/s
-  double spin_speed_ = 0.0;     // after the ramp, forward positive, rad/s
+  double radius_ = 0.0;        // undeformed tire radius, m
+  double travel_speed_ = 0.0;  // after the ramp, along travel, m/s
+  double spin_speed_ = 0.0;    // after the ramp, forward positive, rad/s
   MassProperties tire_;
 
-  std::optional<System> system_;  // built by place() or restore()
-  double placed_height_ = 0.0;    // axle height in which the joints were defined, m
-  int chassis_ = 0, set_toe_ = 0, carrier_ = 0, rim_ = 0;         // bodies
-  int rail_ = 0, toe_lock_ = 0, slider_ = 0, spindle_ = 0;        // joints
-  int drive_ = 0, spindle_motor_ = 0;                             // motors
-  int damper_ = 0;                                                // force element
+  std::optional<System> system_;                            // built by place() or restore()
+  double placed_height_ = 0.0;                              // axle height in which the joints were defined, m
+  int chassis_ = 0, set_toe_ = 0, carrier_ = 0, rim_ = 0;   // bodies
+  int rail_ = 0, toe_lock_ = 0, slider_ = 0, spindle_ = 0;  // joints
+  int drive_ = 0, spindle_motor_ = 0;                       // motors
+  int damper_ = 0;                                          // force element
   WheelReport report_;
 };
 
 void DrawbarRig::check_wheel(int wheel) const {
-  if (wheel != 0) throw physics_error("drawbar rig: it has one wheel, wheel " + std::to_string(wheel) + " was asked for");
+  if (wheel != 0)
+    throw physics_error("drawbar rig: it has one wheel, wheel " + std::to_string(wheel) + " was asked for");
 }
 
 void DrawbarRig::check_built() const {
@@ -135,12 +138,14 @@ void DrawbarRig::build(double axle_height) {
   chassis_ = system_->add_body("chassis", options_.chassis_mass, kGuidedInertia * Mat3::Identity(), state);
   state.orientation = Quat(Eigen::AngleAxisd(options_.toe_angle, Vec3::UnitZ()));
   set_toe_ = system_->add_body("set-toe", options_.set_toe_mass, kGuidedInertia * Mat3::Identity(), state);
-  carrier_ = system_->add_body("wheel carrier", options_.carrier_mass, kCarrierInertia * Mat3::Identity(), state);
+  carrier_ =
+      system_->add_body("wheel carrier", options_.carrier_mass, kCarrierInertia * Mat3::Identity(), state);
   const Vec3 axle = state.orientation * Vec3::UnitY();
-  const Vec3 diagonal(options_.rim_diametral_inertia, options_.rim_spin_inertia, options_.rim_diametral_inertia);
-  state.angular_velocity =
-      options_.travel_sign * ramped_motion(0.0, spin_speed_, options_.ramp).rate * axle;
-  rim_ = system_->add_body("rim", options_.rim_mass + tire_.mass, Mat3(diagonal.asDiagonal()) + tire_.inertia, state);
+  const Vec3 diagonal(options_.rim_diametral_inertia, options_.rim_spin_inertia,
+                      options_.rim_diametral_inertia);
+  state.angular_velocity = options_.travel_sign * ramped_motion(0.0, spin_speed_, options_.ramp).rate * axle;
+  rim_ = system_->add_body("rim", options_.rim_mass + tire_.mass, Mat3(diagonal.asDiagonal()) + tire_.inertia,
+                           state);
 
   const Vec3 centre = state.position;
   const auto place = [&](const Vec3& axis) {
@@ -151,26 +156,30 @@ void DrawbarRig::build(double axle_height) {
   };
   rail_ = system_->add_joint(JointKind::prismatic, "rail", kGround, chassis_, place(forward_));
   toe_lock_ = system_->add_joint(JointKind::fixed, "toe lock", chassis_, set_toe_, place(Vec3::UnitZ()));
-  slider_ = system_->add_joint(JointKind::prismatic, "vertical slider", set_toe_, carrier_, place(Vec3::UnitZ()));
+  slider_ =
+      system_->add_joint(JointKind::prismatic, "vertical slider", set_toe_, carrier_, place(Vec3::UnitZ()));
   spindle_ = system_->add_joint(JointKind::revolute, "spindle", carrier_, rim_, place(axle));
   const double ramp = options_.ramp;
-  drive_ = system_->add_motor("longitudinal drive", rail_,
-                             [speed = travel_speed_, ramp](double t) { return ramped_motion(t, speed, ramp); });
+  drive_ = system_->add_motor("longitudinal drive", rail_, [speed = travel_speed_, ramp](double t) {
+    return ramped_motion(t, speed, ramp);
+  });
   if (!free_rolling()) {
     const double spin = options_.travel_sign * spin_speed_;
     spindle_motor_ = system_->add_motor("spindle motor", spindle_,
-                                       [spin, ramp](double t) { return ramped_motion(t, spin, ramp); });
+                                        [spin, ramp](double t) { return ramped_motion(t, spin, ramp); });
   }
   const double c = options_.touchdown_damping, until = options_.touchdown_time;
-  damper_ = system_->add_joint_element("touch-down damper", slider_, [c, until](double, double rate, double t) {
-    return t < until ? ElementForce{-c * rate, c} : ElementForce{};
-  });
+  damper_ =
+      system_->add_joint_element("touch-down damper", slider_, [c, until](double, double rate, double t) {
+        return t < until ? ElementForce{-c * rate, c} : ElementForce{};
+      });
 }
 
 void DrawbarRig::place(std::span<const double> axle_height) {
   if (axle_height.size() != 1) throw physics_error("drawbar rig: expected one axle height");
   if (!std::isfinite(axle_height[0])) throw physics_error("drawbar rig: the axle height is not finite");
-  if (!(radius_ > 0.0)) throw physics_error("drawbar rig: the tire's mass and radius must be added before placing");
+  if (!(radius_ > 0.0))
+    throw physics_error("drawbar rig: the tire's mass and radius must be added before placing");
   build(axle_height[0]);
   system_->assemble(0.0);
   report_ = {};
@@ -190,7 +199,8 @@ RimState DrawbarRig::rim(int wheel) const {
 void DrawbarRig::advance(std::span<const Wrench> wrenches, double duration, int substeps) {
   check_built();
   if (wrenches.size() != 1) throw physics_error("drawbar rig: expected one wrench");
-  if (substeps < 1 || !(duration > 0.0)) throw physics_error("drawbar rig: duration and substeps must be positive");
+  if (substeps < 1 || !(duration > 0.0))
+    throw physics_error("drawbar rig: duration and substeps must be positive");
   const Wrench& wrench = wrenches[0];
   if (!wrench.force.allFinite() || !wrench.moment.allFinite())
     throw physics_error("drawbar rig: the tire's wrench is not finite");
@@ -211,7 +221,8 @@ void DrawbarRig::advance(std::span<const Wrench> wrenches, double duration, int 
   }
   report_.speed = (forward_.dot(system_->body(rim_).state.position) - position) / duration;
   report_.spin = turn / duration;
-  // The drive pushes the rig along e with F_d, so that m a = F_d + F_tire: raw = −F_d, corrected = −F_d + m a.
+  // The drive pushes the rig along e with F_d, so that m a = F_d + F_tire: raw = −F_d, corrected = −F_d + m
+  // a.
   report_.drawbar_pull_raw = -drive / substeps;
   report_.drawbar_pull = report_.drawbar_pull_raw + (forward_momentum() - momentum) / duration;
   report_.drive_torque = options_.travel_sign * torque / substeps;
@@ -232,8 +243,8 @@ void DrawbarRig::measure_end() {
   report_.axle_position = forward_.dot(rim.position);
   report_.vertical_speed = system_->body(carrier_).state.velocity.z();
   report_.carried_mass = options_.carrier_mass + options_.rim_mass + tire_.mass;
-  report_.vertical_momentum = options_.carrier_mass * report_.vertical_speed +
-                              (options_.rim_mass + tire_.mass) * rim.velocity.z();
+  report_.vertical_momentum =
+      options_.carrier_mass * report_.vertical_speed + (options_.rim_mass + tire_.mass) * rim.velocity.z();
   report_.joint_drift = system_->max_violation();
 }
 
@@ -248,8 +259,9 @@ void DrawbarRig::save(Archive& archive) const {
   const Archive::Scope scope(archive, "rig/");
   system_->save(archive);
   const WheelReport& r = report_;
-  archive.put("report", std::vector<double>{r.slip, r.speed, r.spin, r.drawbar_pull_raw, r.drawbar_pull,
-                                            r.drive_torque, r.lateral_force, r.aligning_moment, r.damper_force});
+  archive.put("report",
+              std::vector<double>{r.slip, r.speed, r.spin, r.drawbar_pull_raw, r.drawbar_pull, r.drive_torque,
+                                  r.lateral_force, r.aligning_moment, r.damper_force});
   archive.put("mass", system_->body(rim_).mass);
   archive.put("radius", radius_);
   archive.put("placed_height", placed_height_);

@@ -1,6 +1,6 @@
-// Single-tire drawbar-pull rig: ground –prismatic (imposed speed)– chassis –imposed toe angle– set-toe –vertical
-// slider– wheel carrier (ballast) –driven revolute (imposed angular speed)– rim.
-// Slip s = 1 − v/(ω r), r the undeformed tire radius.
+// Single-tire drawbar-pull rig: ground –prismatic (imposed speed)– chassis –imposed toe angle– set-toe
+// –vertical slider– wheel carrier (ballast) –driven revolute (imposed angular speed)– rim. Slip s = 1 − v/(ω
+// r), r the undeformed tire radius.
 #pragma once
 
 #include <memory>
@@ -14,20 +14,20 @@ struct DrawbarRigOptions {
   std::string mode = "fixed_angular_speed";  // fixed_angular_speed: ω given, v = ω r (1 − s)
                                              // fixed_speed: v given, ω = v / (r (1 − s))
                                              // free_rolling: v given, no spindle torque, ω free
-  double slip = 0.3;               // -, below 1 for fixed_speed
-  double angular_speed = 8.56;     // rad/s
-  double speed = 4.0;              // carriage speed, m/s, modes fixed_speed and free_rolling
-  double ramp = 0.15;              // smooth (C²) ramp of both motions from rest, s; 0: from t = 0 at full speed
-  double touchdown_damping = 12e3; // N s/m, vertical damper between set-toe and carrier
-  double touchdown_time = 0.35;    // s, how long it acts
-  double toe_angle = 0.0;          // rad, about +z
-  double travel_sign = 1.0;        // +1 along +x, −1 along −x (mirrored travel)
-  double start = 0.0;              // x of the axle at t = 0, m; the scenario loader fills a default
-  double carrier_mass = 450.0;     // wheel carrier with ballast, kg
-  double chassis_mass = 1.0;       // kg, rides on the rail
-  double set_toe_mass = 1.0;       // kg, rides on the rail
-  double rim_mass = 15.0;          // kg
-  double rim_spin_inertia = 0.7;   // kg m², about the axle
+  double slip = 0.3;                         // -, below 1 for fixed_speed
+  double angular_speed = 8.56;               // rad/s
+  double speed = 4.0;                        // carriage speed, m/s, modes fixed_speed and free_rolling
+  double ramp = 0.15;  // smooth (C²) ramp of both motions from rest, s; 0: from t = 0 at full speed
+  double touchdown_damping = 12e3;     // N s/m, vertical damper between set-toe and carrier
+  double touchdown_time = 0.35;        // s, how long it acts
+  double toe_angle = 0.0;              // rad, about +z
+  double travel_sign = 1.0;            // +1 along +x, −1 along −x (mirrored travel)
+  double start = 0.0;                  // x of the axle at t = 0, m; the scenario loader fills a default
+  double carrier_mass = 450.0;         // wheel carrier with ballast, kg
+  double chassis_mass = 1.0;           // kg, rides on the rail
+  double set_toe_mass = 1.0;           // kg, rides on the rail
+  double rim_mass = 15.0;              // kg
+  double rim_spin_inertia = 0.7;       // kg m², about the axle
   double rim_diametral_inertia = 0.4;  // kg m²
 };
 

@@ -11,16 +11,18 @@
 
 namespace furrow {
 
-/// What a rig measures of wheel k over the last advance (interval means), in the frame of travel:
-/// e forward, l left, z up.
+/// What a rig measures of wheel k over the last advance. Forces, torques, speed, spin and slip are means over
+/// it; positions, vertical speed and momentum, and drift are those of its end. Frame of travel: e forward, l
+/// = z × e (left when looking along e), z up.
 struct WheelReport {
-  double slip = 0.0;               // 1 − v/(ω r), r the undeformed radius
-  double speed = 0.0;              // carriage speed along the travel direction, m/s
-  double spin = 0.0;               // angular speed of the rim about its axle, rad/s
-  double drawbar_pull_raw = 0.0;   // reaction of the longitudinal drive, N, positive when the tire pulls the rig
-  double drawbar_pull = 0.0;       // raw + m·a of everything the drive carries, N
-  double drive_torque = 0.0;       // of the spindle motor about the axle, N m, positive when it drives forward
-  double lateral_force = 0.0;      // on the rim by the tire, along l, N
+  double slip = 0.0;   // 1 − v/(ω r), r the undeformed radius; at most ±1e6, 0 at rest
+  double speed = 0.0;  // carriage speed along the travel direction, m/s
+  double spin = 0.0;   // of the rim about its axle, rad/s, forward positive
+  double drawbar_pull_raw =
+      0.0;                     // reaction of the longitudinal drive, N, positive when the tire pulls the rig
+  double drawbar_pull = 0.0;   // raw + m·a of everything the drive carries, N
+  double drive_torque = 0.0;   // of the spindle motor about the axle, N m, positive when it drives forward
+  double lateral_force = 0.0;  // on the rim by the tire, along l, N
   double aligning_moment = 0.0;    // on the rim by the tire, about z, N m
   double axle_height = 0.0;        // z of the rim centre, m
   double axle_position = 0.0;      // along travel, m
@@ -35,7 +37,7 @@ class Rig {
  public:
   virtual ~Rig() = default;
 
-  virtual std::string kind() const = 0;   // "drawbar", …
+  virtual std::string kind() const = 0;  // "drawbar", …
   virtual int wheel_count() const = 0;
   virtual Vec3 travel_direction() const = 0;  // unit, W
 
@@ -47,7 +49,8 @@ class Rig {
 
   virtual RimState rim(int wheel) const = 0;
 
-  /// Advances by `duration` in `substeps` steps with the tires' wrenches (about the rim centres, W) held constant.
+  /// Advances by `duration` in `substeps` steps with the tires' wrenches (about the rim centres, W) held
+  /// constant.
   /// @throws Error(physics) when the constraints cannot be satisfied or a state is not finite.
   virtual void advance(std::span<const Wrench> wrenches, double duration, int substeps) = 0;
 

@@ -1,0 +1,177 @@
+// Motions of the rig: imposed ones exactly, the vertical one by Newton's law.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "protocol/error.hpp"
+#include "tests/rigs/rig_fixture.hpp"
+
+using namespace furrow;
+using namespace furrow::testing;
+
+TEST(Place, rim_stands_at_height_and_start_with_the_imposed_velocities) {
+  DrawbarRigOptions options = steady_options();
+  options.start = 1.7;
+  auto rig = placed_rig(options);
+  const double speed = options.angular_speed * kRadius * (1.0 - options.slip);
+  EXPECT_LT((rig->rim(0).position - Vec3(1.7, 0, 0.5)).norm(), 1e-15);
+  EXPECT_LT((rig->rim(0).velocity - Vec3(speed, 0, 0)).norm(), 1e-15);
+  EXPECT_LT((rig->rim(0).angular_velocity - Vec3(0, 8.56, 0)).norm(), 1e-14);
+  EXPECT_NEAR(rig->report(0).slip, 0.3, 1e-14);
+  options.ramp = 0.15;
+  rig = placed_rig(options);
+  EXPECT_EQ(rig->rim(0).velocity.norm(), 0.0);
+  EXPECT_EQ(rig->rim(0).angular_velocity.norm(), 0.0);
+}
+
+TEST(Modes, slip_is_what_was_asked_for_during_and_after_the_ramp) {
+  for (const char* mode : {"fixed_angular_speed", "fixed_speed"}) {
+    for (const double slip : {-0.2, 0.0, 0.3, 0.6}) {
+      DrawbarRigOptions options;
+      options.mode = mode;
+      options.slip = slip;
+      options.ramp = 0.05;
+      const auto rig = placed_rig(options);
+      for (int i = 1; i <= 2000; ++i) {
+        advance(*rig, Wrench{}, 1);
+        if (i % 100 == 0) {
+          ASSERT_NEAR(rig->report(0).slip, slip, 1e-7) << mode << i;
+        }
+      }
+      const WheelReport report = rig->report(0);
+      if (std::string(mode) == "fixed_speed") {
+        EXPECT_NEAR(report.speed, options.speed, 1e-9);
+        EXPECT_NEAR(rig->rim(0).angular_velocity.y(), options.speed / (kRadius * (1.0 - slip)), 1e-12);
+      } else {
+        EXPECT_NEAR(report.spin, options.angular_speed, 1e-9);
+        EXPECT_NEAR(rig->rim(0).velocity.x(), options.angular_speed * kRadius * (1.0 - slip), 1e-12);
+      }
+    }
+  }
+}
+
+TEST(Modes, imposed_position_and_angle_are_followed_without_drift) {
+  DrawbarRigOptions options;
+  const auto rig = placed_rig(options);
+  advance(*rig, wrench(Vec3(1500, 60, carried_mass(options) * kGravity), Vec3(30, -500, 20)), 25000);  // 1 s
+  const double time = 1.0 - 0.5 * options.ramp;  // the ramp's integral
+  EXPECT_NEAR(rig->report(0).axle_position, options.angular_speed * kRadius * 0.7 * time, 1e-11);
+  const Quat turned(Eigen::AngleAxisd(options.angular_speed * time, Vec3::UnitY()));
+  EXPECT_LT(rig->rim(0).orientation.angularDistance(turned), 1e-9);
+  EXPECT_LT(rig->report(0).joint_drift, 1e-12);
+}
+
+TEST(FreeRolling, moment_spins_rim_and_tire_up_with_their_sum_of_inertia) {
+  DrawbarRigOptions options = steady_options();
+  options.mode = "free_rolling";
+  const auto rig = placed_rig(options);
+  const double start = options.speed / kRadius, moment = 6.0;
+  EXPECT_NEAR(rig->rim(0).angular_velocity.y(), start, 1e-14);
+  advance(*rig, wrench(Vec3(-80.0, 0, 4600), Vec3(0, moment, 0)), 2500);
+  const double expected = start + moment * 0.1 / (options.rim_spin_inertia + kTireSpin);
+  EXPECT_NEAR(rig->rim(0).angular_velocity.y(), expected, 1e-10);
+  EXPECT_EQ(rig->report(0).drive_torque, 0.0);
+  EXPECT_NEAR(rig->report(0).drawbar_pull, -80.0, 1e-6);
+}
+
+TEST(FreeRolling, starts_at_rest_under_a_ramp_and_reports_a_bounded_slip) {
+  DrawbarRigOptions options;
+  options.mode = "free_rolling";
+  const auto rig = placed_rig(options);
+  advance(*rig, Wrench{}, 500);
+  EXPECT_EQ(rig->rim(0).angular_velocity.norm(), 0.0);
+  EXPECT_TRUE(std::isfinite(rig->report(0).slip));
+}
+
+TEST(Vertical, weight_in_balance_keeps_the_height) {
+  const DrawbarRigOptions options = steady_options();
+  const auto rig = placed_rig(options);
+  advance(*rig, wrench(Vec3(0, 0, carried_mass(options) * kGravity)), 5000);
+  EXPECT_NEAR(rig->report(0).axle_height, 0.5, 1e-12);
+  EXPECT_NEAR(rig->report(0).carried_mass, 469.8, 1e-12);
+}
+
+TEST(Vertical, free_fall_and_newtons_law) {
+  const DrawbarRigOptions options = steady_options();
+  const double mass = carried_mass(options);
+  for (const double force : {0.0, 7000.0}) {
+    const auto rig = placed_rig(options);
+    advance(*rig, wrench(Vec3(500, 0, force), Vec3(0, -100, 0)), 2500);
+    const double acceleration = force / mass - kGravity, t = 0.1;
+    EXPECT_NEAR(rig->report(0).axle_height, 0.5 + 0.5 * acceleration * t * t, 1e-11);
+    EXPECT_NEAR(rig->report(0).vertical_speed, acceleration * t, 1e-11);
+    EXPECT_NEAR(rig->report(0).vertical_momentum, mass * acceleration * t, 1e-8);
+  }
+}
+
+TEST(Vertical, touchdown_damper_acts_for_its_time_only) {
+  DrawbarRigOptions options = steady_options();
+  options.touchdown_damping = 12e3;
+  options.touchdown_time = 0.04;
+  const auto rig = placed_rig(options);
+  const double mass = carried_mass(options), z = 0.5 * kStep * options.touchdown_damping / mass;
+  double v = 0.0;
+  for (int i = 0; i < 2000; ++i) {
+    const bool active = i < 1000;
+    // Implicit midpoint: v₁ = v½ (1 − z) − g h/2, v½ = (v₀ − g h/2)/(1 + z).
+    const double c = active ? z : 0.0, half = (v - 0.5 * kStep * kGravity) / (1.0 + c);
+    v = half * (1.0 - c) - 0.5 * kStep * kGravity;
+    advance(*rig, Wrench{}, 1);
+    ASSERT_NEAR(rig->report(0).vertical_speed, v, 1e-11) << i;
+    ASSERT_NEAR(rig->report(0).damper_force, active ? -options.touchdown_damping * half : 0.0, 1e-6) << i;
+  }
+}
+
+TEST(Travel, mirrored_travel_mirrors_everything) {
+  DrawbarRigOptions options;
+  options.toe_angle = 0.1;
+  const auto forward = placed_rig(options);
+  options.travel_sign = -1.0;
+  options.toe_angle = -0.1;
+  const auto backward = placed_rig(options);
+  EXPECT_EQ(backward->travel_direction(), Vec3(-1, 0, 0));
+  // Mirror in the y–z plane: forces change x, moments (axial) change y and z.
+  advance(*forward, wrench(Vec3(900, 120, 4700), Vec3(15, -250, 8)), 5000);
+  advance(*backward, wrench(Vec3(-900, 120, 4700), Vec3(15, 250, -8)), 5000);
+  const WheelReport f = forward->report(0), b = backward->report(0);
+  EXPECT_NEAR(f.drawbar_pull, b.drawbar_pull, 1e-6);
+  EXPECT_NEAR(f.drawbar_pull_raw, b.drawbar_pull_raw, 1e-6);
+  EXPECT_NEAR(f.drive_torque, b.drive_torque, 1e-7);
+  EXPECT_NEAR(f.lateral_force, -b.lateral_force, 1e-12);  // l lies on the other side
+  EXPECT_NEAR(f.slip, b.slip, 1e-9);
+  EXPECT_NEAR(f.speed, b.speed, 1e-9);
+  EXPECT_NEAR(f.spin, b.spin, 1e-9);
+  EXPECT_NEAR(f.axle_position, b.axle_position, 1e-12);
+  EXPECT_NEAR(f.axle_height, b.axle_height, 1e-12);
+  EXPECT_LT(backward->rim(0).velocity.x(), 0.0);
+  EXPECT_LT(backward->rim(0).angular_velocity.y(), 0.0);
+}
+
+TEST(Travel, lateral_force_is_positive_to_the_left_of_travel) {
+  DrawbarRigOptions options = steady_options();
+  options.travel_sign = -1.0;
+  const auto rig = placed_rig(options);
+  advance(*rig, wrench(Vec3(0, 100, 4600)), 1);
+  EXPECT_EQ(rig->report(0).lateral_force, -100.0);
+}
+
+TEST(Refusals, bad_options_and_states_name_themselves) {
+  DrawbarRigOptions options;
+  options.mode = "fast";
+  EXPECT_THROW(make_drawbar_rig(options), Error);
+  options = {};
+  options.mode = "fixed_speed";
+  options.slip = 1.0;
+  EXPECT_THROW(make_drawbar_rig(options), Error);
+  options = {};
+  options.carrier_mass = -1.0;
+  EXPECT_THROW(make_drawbar_rig(options), Error);
+  const auto rig = placed_rig({});
+  try {
+    advance(*rig, wrench(Vec3(std::nan(""), 0, 0)), 1);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::physics);
+  }
+  EXPECT_THROW(make_drawbar_rig({})->rim(0), Error);
+}

@@ -1,0 +1,91 @@
+// What the rig reports against the wrench it was given: pull, torque, lateral force.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/rigs/rig_fixture.hpp"
+
+using namespace furrow;
+using namespace furrow::testing;
+
+namespace {
+const double kTolerance = 1e-6;  // N, N m: round-off of 470 kg × 4 m/s in one step of 4e-5 s
+}
+
+TEST(DrawbarPull, equals_the_force_on_the_rim_in_steady_state) {
+  const DrawbarRigOptions options = steady_options();
+  const auto rig = placed_rig(options);
+  const double weight = carried_mass(options) * kGravity;
+  for (const double force : {1500.0, -400.0, 0.0}) {
+    advance(*rig, wrench(Vec3(force, 0, weight)), 20);
+    EXPECT_NEAR(rig->report(0).drawbar_pull, force, kTolerance);
+    EXPECT_NEAR(rig->report(0).drawbar_pull_raw, force, kTolerance);
+  }
+}
+
+TEST(DrawbarPull, without_tire_force_a_ramp_shows_only_in_the_raw_pull) {
+  DrawbarRigOptions options;
+  options.ramp = 0.2;
+  const auto rig = placed_rig(options);
+  const double speed = options.angular_speed * kRadius * (1.0 - options.slip);
+  const double mass = carried_mass(options) + options.chassis_mass + options.set_toe_mass;
+  double largest = 0.0, before = 0.0;
+  for (int i = 1; i <= 5500; ++i) {
+    advance(*rig, Wrench{}, 1);
+    const double u = std::min(1.0, i * kStep / options.ramp);
+    const double now = speed * u * u * u * (10.0 - 15.0 * u + 6.0 * u * u);
+    ASSERT_NEAR(rig->report(0).drawbar_pull, 0.0, kTolerance) << i;
+    ASSERT_NEAR(rig->report(0).drawbar_pull_raw, -mass * (now - before) / kStep, 1e-5) << i;
+    largest = std::max(largest, -rig->report(0).drawbar_pull_raw);
+    before = now;
+  }
+  // Peak acceleration of the C² ramp: 15/8 v/T.
+  EXPECT_NEAR(largest, mass * 1.875 * speed / options.ramp, 1e-3 * largest);
+  EXPECT_NEAR(rig->report(0).drawbar_pull_raw, 0.0, kTolerance);
+}
+
+TEST(DrawbarPull, is_exact_in_the_ramp_with_substeps_and_force) {
+  DrawbarRigOptions options;
+  const auto rig = placed_rig(options);
+  for (int i = 0; i < 300; ++i) {
+    advance(*rig, wrench(Vec3(-820.0, 30.0, 4000.0), Vec3(10, -200, 5)), 1, 4e-4, 5);
+    ASSERT_NEAR(rig->report(0).drawbar_pull, -820.0, kTolerance);
+  }
+}
+
+TEST(DriveTorque, equals_minus_the_moment_on_the_rim_in_steady_state) {
+  const auto rig = placed_rig(steady_options());
+  advance(*rig, wrench(Vec3(0, 0, 4600), Vec3(40, -350, 25)), 20);
+  EXPECT_NEAR(rig->report(0).drive_torque, 350.0, kTolerance);
+  EXPECT_NEAR(rig->report(0).aligning_moment, 25.0, 0.0);
+}
+
+TEST(DriveTorque, carries_the_spin_up_of_rim_and_tire_during_the_ramp) {
+  DrawbarRigOptions options;
+  options.ramp = 0.2;
+  const auto rig = placed_rig(options);
+  double impulse = 0.0;
+  for (int i = 0; i < 6000; ++i) {
+    advance(*rig, Wrench{}, 1);
+    impulse += rig->report(0).drive_torque * kStep;
+  }
+  EXPECT_NEAR(impulse, (options.rim_spin_inertia + kTireSpin) * options.angular_speed, 1e-9);
+  EXPECT_NEAR(rig->report(0).drive_torque, 0.0, kTolerance);
+}
+
+TEST(Toe, wheel_points_and_forces_decompose_in_the_frame_of_travel) {
+  DrawbarRigOptions options = steady_options();
+  options.toe_angle = 0.15;
+  const auto rig = placed_rig(options);
+  const Vec3 axle(-std::sin(0.15), std::cos(0.15), 0.0);
+  EXPECT_LT((rig->rim(0).orientation * Vec3::UnitY() - axle).norm(), 1e-15);
+  EXPECT_LT((rig->rim(0).angular_velocity - options.angular_speed * axle).norm(), 1e-14);
+  const Vec3 force(900.0, -350.0, 4600.0), moment = 12.0 * Vec3::UnitX() - 300.0 * axle;
+  advance(*rig, wrench(force, moment), 50);
+  const WheelReport report = rig->report(0);
+  EXPECT_NEAR(report.drawbar_pull, 900.0, kTolerance);
+  EXPECT_EQ(report.lateral_force, -350.0);
+  EXPECT_NEAR(report.drive_torque, -moment.dot(axle), kTolerance);
+  EXPECT_LT((rig->rim(0).orientation * Vec3::UnitY() - axle).norm(), 1e-12);
+  EXPECT_NEAR(rig->rim(0).position.y(), 0.0, 1e-12);
+}

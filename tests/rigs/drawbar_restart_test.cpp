@@ -1,0 +1,62 @@
+// A restored rig continues bit for bit.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "protocol/error.hpp"
+#include "tests/rigs/rig_fixture.hpp"
+
+using namespace furrow;
+using namespace furrow::testing;
+
+namespace {
+
+Wrench varying(int i) {
+  return wrench(Vec3(300.0 + i, 40.0 - 0.3 * i, 4600.0 + 2.0 * i), Vec3(5.0, -100.0 - 0.5 * i, 0.1 * i));
+}
+
+void expect_equal(const Rig& a, const Rig& b) {
+  const WheelReport x = a.report(0), y = b.report(0);
+  EXPECT_EQ(std::memcmp(&x, &y, sizeof x), 0);
+  const RimState s = a.rim(0), t = b.rim(0);
+  EXPECT_EQ(s.position, t.position);
+  EXPECT_EQ(s.orientation.coeffs(), t.orientation.coeffs());
+  EXPECT_EQ(s.velocity, t.velocity);
+  EXPECT_EQ(s.angular_velocity, t.angular_velocity);
+}
+
+}  // namespace
+
+TEST(Restart, continues_bit_for_bit_whether_placed_before_or_not) {
+  for (const char* mode : {"fixed_angular_speed", "fixed_speed", "free_rolling"}) {
+    DrawbarRigOptions options;
+    options.mode = mode;
+    options.toe_angle = 0.05;
+    options.ramp = 0.01;
+    options.touchdown_time = 0.012;
+    const auto original = placed_rig(options);
+    int i = 0;
+    for (; i < 211; ++i) advance(*original, varying(i), 1, 4e-5, 2);
+    Archive archive;
+    original->save(archive);
+    const auto placed = placed_rig(options);
+    const auto fresh = make_drawbar_rig(options);
+    fresh->add_tire_mass(0, tire_mass(), kRadius);
+    placed->restore(archive);
+    fresh->restore(archive);
+    expect_equal(*original, *placed);
+    expect_equal(*original, *fresh);
+    for (; i < 500; ++i)
+      for (Rig* rig : {original.get(), placed.get(), fresh.get()}) advance(*rig, varying(i), 1, 4e-5, 2);
+    expect_equal(*original, *placed);
+    expect_equal(*original, *fresh);
+  }
+}
+
+TEST(Restart, refuses_the_state_of_another_tire) {
+  const auto original = placed_rig({});
+  Archive archive;
+  original->save(archive);
+  const auto other = placed_rig({}, tire_mass(2.0));
+  EXPECT_THROW(other->restore(archive), Error);
+}

@@ -1,0 +1,51 @@
+// A drawbar rig with a tire's mass on it, placed at half a metre.
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "rigs/drawbar_rig.hpp"
+
+namespace furrow::testing {
+
+inline constexpr double kGravity = 9.81;   // m/s²
+inline constexpr double kRadius = 0.4673;  // m
+inline constexpr double kTireMass = 4.8;   // kg
+inline constexpr double kTireSpin = 0.78;  // kg m²
+inline constexpr double kStep = 4e-5;      // s
+
+inline MassProperties tire_mass(double scale = 1.0) {
+  MassProperties tire;
+  tire.mass = scale * kTireMass;
+  tire.inertia = scale * Vec3(0.5, kTireSpin, 0.5).asDiagonal().toDenseMatrix();
+  return tire;
+}
+
+inline std::unique_ptr<Rig> placed_rig(const DrawbarRigOptions& options,
+                                       const MassProperties& tire = tire_mass()) {
+  auto rig = make_drawbar_rig(options);
+  rig->add_tire_mass(0, tire, kRadius);
+  const std::array<double, 1> height = {0.5};
+  rig->place(height);
+  return rig;
+}
+
+inline double carried_mass(const DrawbarRigOptions& options) {
+  return options.carrier_mass + options.rim_mass + kTireMass;
+}
+
+inline void advance(Rig& rig, const Wrench& wrench, int count, double step = kStep, int substeps = 1) {
+  for (int i = 0; i < count; ++i) rig.advance({&wrench, 1}, step, substeps);
+}
+
+inline Wrench wrench(const Vec3& force, const Vec3& moment = Vec3::Zero()) { return {force, moment}; }
+
+/// Full speed from the start, no touch-down damper.
+inline DrawbarRigOptions steady_options() {
+  DrawbarRigOptions options;
+  options.ramp = 0.0;
+  options.touchdown_damping = 0.0;
+  return options;
+}
+
+}  // namespace furrow::testing

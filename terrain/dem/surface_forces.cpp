@@ -16,13 +16,11 @@ NodalForceSum::NodalForceSum(int vertex_count)
       substep_force_(vertex_count, Vec3::Zero()),
       substep_touched_(vertex_count, 0) {}
 
-void NodalForceSum::add_substep(std::span<const SurfaceContactForce> contacts, const SurfaceCollider& surface,
+void NodalForceSum::add_substep(std::span<const SurfaceContactForce> contacts, const SurfaceNow& surface,
                                 double dt) {
   sums_.contacts = static_cast<std::int64_t>(contacts.size());
   if (contacts.empty()) return;
-  const auto& triangles = surface.mesh().triangles;
-  const auto position = surface.positions();
-  const auto velocity = surface.velocities();
+  const auto& [triangles, position, velocity] = surface;
 
   // Residuals are taken about the mean vertex, so that the distance to the world origin cannot hide them.
   Vec3 mean = Vec3::Zero();

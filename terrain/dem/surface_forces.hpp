@@ -23,13 +23,23 @@ struct SurfaceContactForce {
   Vec3 tangential = Vec3::Zero();     // N, W
 };
 
+/// A surface as it stands in one substep.
+struct SurfaceNow {
+  std::span<const std::array<int, 3>> triangles;
+  std::span<const Vec3> position;  // m
+  std::span<const Vec3> velocity;  // m/s
+};
+
 class NodalForceSum {
  public:
   explicit NodalForceSum(int vertex_count);
 
   /// Adds the forces of one substep of length dt. Serial, in the order given: the caller keeps that order fixed
   /// (for example by grain), then the bits do not depend on threads. Touches only vertices of touched triangles.
-  void add_substep(std::span<const SurfaceContactForce> contacts, const SurfaceCollider& surface, double dt);
+  void add_substep(std::span<const SurfaceContactForce> contacts, const SurfaceNow& surface, double dt);
+  void add_substep(std::span<const SurfaceContactForce> contacts, const SurfaceCollider& surface, double dt) {
+    add_substep(contacts, {surface.mesh().triangles, surface.positions(), surface.velocities()}, dt);
+  }
 
   /// Interval means: impulses divided by `duration`; clears the sums for the next interval.
   void finish(double duration, NodalForces& forces, ContactSums& sums);

@@ -1,0 +1,45 @@
+// Contact of one triangle with the plane z = 0 as an elastic layer (Winkler foundation): at depth g = −z the ground
+// pushes up with the pressure
+//
+//   p = max(0, κ g + d ġ),                       never tensile,
+//   t = −μ p tanh(c |v_t|) v_t/|v_t|,            regularised Coulomb friction on the resting ground,
+//
+// over the triangle's area projected onto the plane. The part of the triangle below the plane is integrated exactly
+// for a linear pressure and exactly for its moment: it is cut at z = 0 into one or two triangles, each with the
+// three-point rule of degree 2 [Strang & Fix, An Analysis of the Finite Element Method, 1973, p. 184]. Forces thus
+// vary smoothly as facets roll in, and do not depend on how a flat face is cut.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "protocol/vec.hpp"
+#include "terrain/dem/surface_forces.hpp"
+
+namespace furrow {
+
+struct GroundLaw {
+  double stiffness = 0.0;       // κ, N/m³
+  double damping = 0.0;         // d, N s/m³
+  double friction = 0.0;        // μ, -
+  double velocity_scale = 0.0;  // c, s/m
+};
+
+/// A part of a triangle below the plane: one integration point.
+struct GroundPoint {
+  std::array<double, 3> weight{};  // barycentric
+  double area = 0.0;               // projected, m²
+  double depth = 0.0;              // g ≥ 0, m
+};
+
+/// Most integration points of one triangle.
+inline constexpr int kMaxGroundPoints = 6;
+
+/// Integration points of the part of triangle x with z < 0; returns how many.
+int ground_points(const std::array<Vec3, 3>& x, std::array<GroundPoint, kMaxGroundPoints>& out);
+
+/// Force on the surface at one point that moves with velocity v; appends it to `contacts` unless there is none.
+void add_ground_force(const GroundLaw& law, int triangle, const GroundPoint& at, const Vec3& position,
+                      const Vec3& velocity, std::vector<SurfaceContactForce>& contacts);
+
+}  // namespace furrow

@@ -1,0 +1,257 @@
+#include "terrain/rigid/rigid_ground.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "terrain/dem/surface_forces.hpp"
+#include "terrain/rigid/ground_pressure.hpp"
+
+namespace furrow {
+namespace {
+
+// How deep a surface may stand in the ground when it is attached, m: static contact, not a misplaced tire.
+constexpr double kMostStartDepth = 5e-3;
+
+/// One attached surface and the buffers of its substeps.
+struct GroundSurface {
+  SurfaceMesh mesh;
+  ContactMaterial material;
+  double friction = 0.0;         // -, of the pair
+  std::vector<Vec3> last;        // where the ground last had the vertices, m
+  std::vector<Vec3> velocity;    // of the running interval, m/s
+  std::vector<Vec3> position;    // at the middle of the running substep, m
+  std::vector<SurfaceContactForce> contacts;
+  NodalForceSum sum;
+  std::int64_t contact_count = 0;
+  double elastic_energy = 0.0;   // J
+  double floor_force = 0.0;      // N
+};
+
+std::vector<double> flatten(const std::vector<Vec3>& points) {
+  std::vector<double> values;
+  values.reserve(3 * points.size());
+  for (const Vec3& p : points) values.insert(values.end(), {p.x(), p.y(), p.z()});
+  return values;
+}
+
+std::vector<Vec3> unflatten(const std::vector<double>& values) {
+  std::vector<Vec3> points(values.size() / 3);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points[i] = Vec3(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
+  return points;
+}
+
+Vec3 weighted(const std::array<double, 3>& weight, const std::vector<Vec3>& values, const std::array<int, 3>& at) {
+  return weight[0] * values[at[0]] + weight[1] * values[at[1]] + weight[2] * values[at[2]];
+}
+
+void require(const char* key, double value) {
+  if (!(value >= 0.0) || !std::isfinite(value))
+    throw input_error("terrain", std::string("terrain.") + key,
+                      std::to_string(value) + ", expected a finite number of at least 0");
+}
+
+class RigidGround final : public Terrain {
+ public:
+  explicit RigidGround(const TerrainOptions& options) : options_(options) {
+    require("ground_stiffness", options.ground_stiffness);
+    require("ground_damping", options.ground_damping);
+    require("friction", options.friction);
+    require("friction_velocity_scale", options.friction_velocity_scale);
+  }
+
+  double prepare(const ProgressCall&) override { return 0.0; }
+  double top_height(double, double, double, double) const override { return 0.0; }
+  double mean_height(double, double, double, double) const override { return 0.0; }
+  double floor_height() const override { return 0.0; }
+  HeightField height_field() const override;
+  void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) override;
+  TerrainStatus advance(std::span<const SurfaceState> targets, double duration, int substeps,
+                        std::span<NodalForces> forces, std::span<ContactSums> contact) override;
+  TerrainState state() const override;
+  std::int64_t size() const override { return 0; }
+  void frame(TerrainFrame& out) const override { out = TerrainFrame{}; }
+  void save(Archive& archive) const override;
+  void restore(const Archive& archive) override;
+
+ private:
+  void add_surface(const SurfaceMesh& mesh, const ContactMaterial& material, std::vector<Vec3> last);
+  void press(GroundSurface& surface) const;
+  void measure(GroundSurface& surface) const;
+
+  TerrainOptions options_;
+  std::vector<GroundSurface> surfaces_;
+  Vec3 surface_impulse_ = Vec3::Zero();  // by surfaces on the ground, N s
+  double surface_work_ = 0.0;            // by the ground on surfaces, J
+};
+
+HeightField RigidGround::height_field() const {
+  HeightField field;
+  field.cell = options_.length;
+  field.x0 = 0.5 * options_.length;
+  field.nx = field.ny = 1;
+  field.height = {0.0};
+  return field;
+}
+
+void RigidGround::add_surface(const SurfaceMesh& mesh, const ContactMaterial& material, std::vector<Vec3> last) {
+  GroundSurface surface{.mesh = mesh,
+                        .material = material,
+                        .friction = std::min(options_.friction, material.friction),
+                        .last = std::move(last),
+                        .velocity = std::vector<Vec3>(mesh.vertex_count, Vec3::Zero()),
+                        .position = {},
+                        .contacts = {},
+                        .sum = NodalForceSum(mesh.vertex_count)};
+  surface.position = surface.last;
+  surfaces_.push_back(std::move(surface));
+  measure(surfaces_.back());
+}
+
+void RigidGround::attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) {
+  const std::string who = "surface " + std::to_string(surfaces_.size());
+  if (start.position.size() != static_cast<std::size_t>(mesh.vertex_count))
+    throw input_error(who, "", std::to_string(start.position.size()) + " positions, expected " +
+                                   std::to_string(mesh.vertex_count));
+  for (const auto& triangle : mesh.triangles)
+    for (int v : triangle)
+      if (v < 0 || v >= mesh.vertex_count)
+        throw input_error(who, "", "a triangle names vertex " + std::to_string(v) + ", expected 0 to " +
+                                       std::to_string(mesh.vertex_count - 1));
+  double lowest = 0.0;
+  for (const Vec3& x : start.position) lowest = std::min(lowest, x.z());
+  if (lowest < -kMostStartDepth)
+    throw input_error(who, "", "starts " + std::to_string(-lowest) + " m below the ground, expected at most " +
+                                   std::to_string(kMostStartDepth) + " m");
+  add_surface(mesh, material, start.position);
+}
+
+/// Contact forces with the surface at `position`, moving with `velocity`.
+void RigidGround::press(GroundSurface& surface) const {
+  const GroundLaw law{options_.ground_stiffness, options_.ground_damping, surface.friction,
+                      options_.friction_velocity_scale};
+  surface.contacts.clear();
+  std::array<GroundPoint, kMaxGroundPoints> points;
+  const auto& x = surface.position;
+  for (int t = 0; t < static_cast<int>(surface.mesh.triangles.size()); ++t) {
+    const auto& v = surface.mesh.triangles[t];
+    if (x[v[0]].z() >= 0.0 && x[v[1]].z() >= 0.0 && x[v[2]].z() >= 0.0) continue;
+    const int count = ground_points({x[v[0]], x[v[1]], x[v[2]]}, points);
+    for (int i = 0; i < count; ++i)
+      add_ground_force(law, t, points[i], weighted(points[i].weight, x, v),
+                       weighted(points[i].weight, surface.velocity, v), surface.contacts);
+  }
+}
+
+/// Elastic energy ½ κ ∫ g² dA with the surface where the interval ended.
+void RigidGround::measure(GroundSurface& surface) const {
+  std::array<GroundPoint, kMaxGroundPoints> points;
+  surface.elastic_energy = 0.0;
+  const auto& x = surface.last;
+  for (const auto& v : surface.mesh.triangles) {
+    if (x[v[0]].z() >= 0.0 && x[v[1]].z() >= 0.0 && x[v[2]].z() >= 0.0) continue;
+    const int count = ground_points({x[v[0]], x[v[1]], x[v[2]]}, points);
+    for (int i = 0; i < count; ++i)
+      surface.elastic_energy += 0.5 * options_.ground_stiffness * points[i].depth * points[i].depth * points[i].area;
+  }
+}
+
+TerrainStatus RigidGround::advance(std::span<const SurfaceState> targets, double duration, int substeps,
+                                   std::span<NodalForces> forces, std::span<ContactSums> contact) {
+  if (targets.size() != surfaces_.size() || forces.size() != surfaces_.size() || contact.size() != surfaces_.size())
+    return {false, "the ground carries " + std::to_string(surfaces_.size()) + " surfaces, but " +
+                       std::to_string(targets.size()) + " were moved"};
+  const double dt = duration / substeps;
+  for (std::size_t k = 0; k < surfaces_.size(); ++k) {
+    GroundSurface& surface = surfaces_[k];
+    const std::size_t count = surface.last.size();
+    if (targets[k].position.size() != count || targets[k].velocity.size() != count)
+      return {false, "surface " + std::to_string(k) + " has " + std::to_string(count) + " vertices, but " +
+                         std::to_string(targets[k].position.size()) + " were moved"};
+    std::vector<Vec3> end(count);
+    for (std::size_t v = 0; v < count; ++v) {
+      end[v] = targets[k].position[v] + duration * targets[k].velocity[v];
+      if (!end[v].allFinite())
+        return {false, "vertex " + std::to_string(v) + " of surface " + std::to_string(k) + " is not finite"};
+      surface.velocity[v] = (end[v] - surface.last[v]) / duration;
+    }
+    for (int s = 0; s < substeps; ++s) {
+      const double share = (s + 0.5) / substeps;
+      for (std::size_t v = 0; v < count; ++v)
+        surface.position[v] = surface.last[v] + share * (end[v] - surface.last[v]);
+      press(surface);
+      surface.sum.add_substep(surface.contacts, {surface.mesh.triangles, surface.position, surface.velocity}, dt);
+    }
+    surface.contact_count = static_cast<std::int64_t>(surface.contacts.size());
+    surface.floor_force = 0.0;
+    for (const auto& one : surface.contacts) surface.floor_force += one.normal.z();
+    surface_impulse_ -= surface.sum.impulse();
+    surface.sum.finish(duration, forces[k], contact[k]);
+    surface_work_ += contact[k].work;
+    surface.last.swap(end);
+    measure(surface);
+  }
+  return {};
+}
+
+TerrainState RigidGround::state() const {
+  TerrainState state;
+  for (const GroundSurface& surface : surfaces_) {
+    state.elastic_energy += surface.elastic_energy;
+    state.floor_force += surface.floor_force;
+    state.contacts += surface.contact_count;
+  }
+  state.dissipation = -surface_work_ - state.elastic_energy;
+  state.surface_impulse = surface_impulse_;
+  state.wall_impulse = -surface_impulse_;  // the world holds the ground
+  return state;
+}
+
+void RigidGround::save(Archive& archive) const {
+  archive.put("ground/surfaces", static_cast<std::int64_t>(surfaces_.size()));
+  archive.put("ground/sums", std::vector<double>{surface_impulse_.x(), surface_impulse_.y(), surface_impulse_.z(),
+                                                 surface_work_});
+  for (std::size_t k = 0; k < surfaces_.size(); ++k) {
+    const GroundSurface& surface = surfaces_[k];
+    const Archive::Scope scope(archive, "ground/surface_" + std::to_string(k) + "/");
+    const ContactMaterial& m = surface.material;
+    std::vector<std::int32_t> corners;
+    for (const auto& t : surface.mesh.triangles) corners.insert(corners.end(), t.begin(), t.end());
+    archive.put("triangles", corners);
+    archive.put("material", std::vector<double>{m.young_modulus, m.poisson_ratio, m.friction, m.restitution,
+                                                m.normal_stiffness, m.normal_damping, m.cohesion});
+    archive.put("last", flatten(surface.last));
+    archive.put("floor_force", surface.floor_force);
+    archive.put("contacts", surface.contact_count);
+  }
+}
+
+void RigidGround::restore(const Archive& archive) {
+  surfaces_.clear();
+  const std::int64_t count = archive.get_int("ground/surfaces");
+  const auto& sums = archive.get<double>("ground/sums", 4);
+  surface_impulse_ = Vec3(sums[0], sums[1], sums[2]);
+  surface_work_ = sums[3];
+  for (std::int64_t k = 0; k < count; ++k) {
+    const Archive::Scope scope(archive, "ground/surface_" + std::to_string(k) + "/");
+    std::vector<Vec3> last = unflatten(archive.get<double>("last"));
+    SurfaceMesh mesh;
+    mesh.vertex_count = static_cast<int>(last.size());
+    const auto& corners = archive.get<std::int32_t>("triangles");
+    for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
+      mesh.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
+    const auto& m = archive.get<double>("material", 7);
+    add_surface(mesh, {m[0], m[1], m[2], m[3], m[4], m[5], m[6]}, std::move(last));
+    surfaces_.back().floor_force = archive.get_double("floor_force");
+    surfaces_.back().contact_count = archive.get_int("contacts");
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<Terrain> make_rigid_ground(const TerrainOptions& options) {
+  return std::make_unique<RigidGround>(options);
+}
+
+}  // namespace furrow

@@ -1,0 +1,315 @@
+// Rigid ground: closed forms of its pressure and friction, weight balance, energy, momentum, exact continuation.
+#include "terrain/rigid/rigid_ground.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/terrain/surface_meshes.hpp"
+
+namespace furrow {
+namespace {
+
+using testing::box;
+using testing::Surface;
+using testing::wheel;
+
+constexpr double kGravity = 9.81;  // m/s²
+
+ContactMaterial rubber(double friction = 0.8) {
+  ContactMaterial material;
+  material.friction = friction;
+  return material;
+}
+
+SurfaceState placed(const Surface& surface, const Vec3& shift, const Vec3& velocity, double turn = 0.0,
+                    double spin = 0.0) {
+  const Quat orientation(Eigen::AngleAxisd(turn, Vec3::UnitY()));
+  SurfaceState state;
+  for (const Vec3& x : surface.vertex) {
+    const Vec3 arm = orientation * x;
+    state.position.push_back(shift + arm);
+    state.velocity.push_back(velocity + Vec3(0.0, spin, 0.0).cross(arm));
+  }
+  return state;
+}
+
+struct Push {
+  NodalForces forces;
+  ContactSums sums;
+};
+
+/// One interval of a surface that moves with constant velocity and begins at `start`.
+Push push(Terrain& ground, const SurfaceState& start, double duration = 1e-6, int substeps = 1) {
+  Push result;
+  const TerrainStatus status = ground.advance({&start, 1}, duration, substeps, {&result.forces, 1}, {&result.sums, 1});
+  EXPECT_TRUE(status.ok) << status.message;
+  return result;
+}
+
+TEST(RigidGround, presses_a_block_with_stiffness_times_depth_times_area) {
+  TerrainOptions options;
+  const auto ground = make_rigid_ground(options);
+  const Surface block = box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
+  const SurfaceState start = placed(block, {3.0, 0.0, -4e-4}, Vec3::Zero());
+  ground->attach(block.mesh, rubber(), start);
+  const Push one = push(*ground, start);
+  EXPECT_NEAR(one.sums.force.z() / (options.ground_stiffness * 4e-4 * 0.02), 1.0, 1e-12);
+  EXPECT_NEAR(one.sums.tangential.norm(), 0.0, 1e-12);
+  EXPECT_NEAR(one.sums.moment.y() / (-3.0 * one.sums.force.z()), 1.0, 1e-12);
+  EXPECT_NEAR(ground->state().elastic_energy / (0.5 * options.ground_stiffness * 1.6e-7 * 0.02), 1.0, 1e-12);
+  EXPECT_NEAR(ground->state().floor_force, one.sums.force.z(), 1e-9);
+}
+
+TEST(RigidGround, presses_a_tilted_block_with_the_integral_of_its_depth) {
+  TerrainOptions options;
+  const auto ground = make_rigid_ground(options);
+  // Bottom face tilted about y, its low edge 1 mm deep, its high edge above: a wedge of pressure of length L.
+  const double tilt = 0.01, depth = 1e-3, length = depth / std::tan(tilt);
+  const Surface block = box({0.0, -0.05, 0.0}, {0.2, 0.05, 0.1});
+  const SurfaceState start = placed(block, {0.0, 0.0, -depth}, Vec3::Zero(), -tilt);
+  ground->attach(block.mesh, rubber(), start);
+  const Push one = push(*ground, start);
+  const double expected = options.ground_stiffness * 0.1 * 0.5 * depth * length;
+  EXPECT_NEAR(one.sums.force.z() / expected, 1.0, 1e-3);  // the vertical back face adds what it covers: sin² tilt
+  EXPECT_NEAR(-one.sums.moment.y() / one.sums.force.z() / (length / 3.0), 1.0, 1e-3);
+}
+
+TEST(RigidGround, does_not_depend_on_how_a_flat_face_is_cut) {
+  const auto coarse_ground = make_rigid_ground({}), fine_ground = make_rigid_ground({});
+  const Surface coarse = testing::sheet(-0.1, -0.1, 0.2, 1, 1, [](double, double) { return 0.0; });
+  const Surface fine = testing::sheet(-0.1, -0.1, 0.02, 10, 10, [](double, double) { return 0.0; });
+  const double tilt = 4e-3;
+  const Vec3 velocity(0.3, 0.1, -0.01);
+  const SurfaceState a = placed(coarse, {0.0, 0.0, -1e-4}, velocity, tilt);
+  const SurfaceState b = placed(fine, {0.0, 0.0, -1e-4}, velocity, tilt);
+  coarse_ground->attach(coarse.mesh, rubber(), a);
+  fine_ground->attach(fine.mesh, rubber(), b);
+  const Push from_coarse = push(*coarse_ground, a), from_fine = push(*fine_ground, b);
+  // Exact but for the rounding of velocities, which come from differences of positions.
+  EXPECT_LT((from_coarse.sums.force - from_fine.sums.force).norm() / from_fine.sums.force.norm(), 1e-10);
+  EXPECT_LT((from_coarse.sums.moment - from_fine.sums.moment).norm() / from_fine.sums.moment.norm(), 1e-10);
+}
+
+TEST(RigidGround, follows_the_regularised_friction_law) {
+  for (double scale : {5.0, 50.0})
+    for (double speed : {1e-4, 0.01, 0.1, 0.3, 3.0}) {
+      TerrainOptions options;
+      options.friction = 0.7;
+      options.friction_velocity_scale = scale;
+      const auto ground = make_rigid_ground(options);
+      const Surface block = box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
+      const Vec3 direction = Vec3(0.6, -0.8, 0.0);
+      const SurfaceState start = placed(block, {0.0, 0.0, -4e-4}, speed * direction);
+      ground->attach(block.mesh, rubber(0.9), start);  // the smaller coefficient rules
+      const Push one = push(*ground, start, 1e-3);
+      const Vec3 expected = -0.7 * one.sums.normal.z() * std::tanh(scale * speed) * direction;
+      EXPECT_LT((one.sums.tangential - expected).norm(), 1e-11 * one.sums.normal.norm()) << scale << ' ' << speed;
+      EXPECT_LE(one.sums.tangential.norm(), 0.7 * one.sums.normal.norm() * (1.0 + 1e-14));
+      EXPECT_LT(one.sums.transfer_force_residual, 1e-12);
+      EXPECT_LT(one.sums.transfer_moment_residual, 1e-12);
+    }
+}
+
+TEST(RigidGround, gives_no_tractive_effort_without_friction) {
+  for (double friction : {0.0, 0.5}) {
+    TerrainOptions options;
+    const auto ground = make_rigid_ground(options);
+    const Surface round = wheel(0.4673, 0.2, 60, 4);
+    const SurfaceState start = placed(round, {0.0, 0.0, 0.4673 - 1e-3}, {2.0, 0.0, 0.0}, 0.02, 8.56);
+    ground->attach(round.mesh, rubber(friction), start);
+    const Push one = push(*ground, start);
+    EXPECT_GT(one.sums.normal.z(), 1000.0);
+    EXPECT_EQ(one.sums.normal.x(), 0.0);
+    if (friction == 0.0) {
+      EXPECT_EQ(one.sums.tangential.norm(), 0.0);
+    } else {
+      EXPECT_NEAR(one.sums.tangential.x(), friction * one.sums.normal.z(), 1e-3 * one.sums.normal.z());
+    }
+  }
+}
+
+TEST(RigidGround, mirrors_what_is_mirrored) {
+  const Surface round = wheel(0.4673, 0.2, 60, 4);
+  Push there, back;
+  for (int sign : {1, -1}) {
+    const auto ground = make_rigid_ground({});
+    const SurfaceState start =
+        placed(round, {0.0, 0.0, 0.4673 - 1e-3}, {sign * 3.0, 0.0, 0.0}, sign * 0.013, sign * 8.56);
+    ground->attach(round.mesh, rubber(), start);
+    (sign > 0 ? there : back) = push(*ground, start);
+  }
+  EXPECT_NEAR(there.sums.force.x(), -back.sums.force.x(), 1e-9 * there.sums.force.norm());
+  EXPECT_NEAR(there.sums.force.z(), back.sums.force.z(), 1e-9 * there.sums.force.norm());
+}
+
+TEST(RigidGround, never_pulls) {
+  TerrainOptions options;
+  options.ground_damping = 1e7;
+  const auto ground = make_rigid_ground(options);
+  const Surface block = box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
+  const SurfaceState start = placed(block, {0.0, 0.0, -4e-4}, {0.0, 0.0, 1.0});
+  ground->attach(block.mesh, rubber(), start);
+  const Push one = push(*ground, start);
+  EXPECT_EQ(one.sums.force.norm(), 0.0);
+  EXPECT_TRUE(one.forces.vertex.empty());
+}
+
+TEST(RigidGround, evens_out_the_facets_of_a_rolling_wheel) {
+  // 60 facets: a vertex stands 0.64 mm farther out than a facet's middle; rigid contact would lift the wheel by that.
+  const Surface round = wheel(0.4673, 0.2, 60, 4);
+  auto load = [&](double height, double turn) {
+    const auto ground = make_rigid_ground({});
+    const SurfaceState start = placed(round, {0.0, 0.0, height}, Vec3::Zero(), turn);
+    ground->attach(round.mesh, rubber(), start);
+    return push(*ground, start).sums.force.z();
+  };
+  double lowest = 1e9, highest = 0.0;
+  for (int i = 0; i <= 30; ++i) {
+    double lo = 0.4640, hi = 0.4673;  // bisection for the height that carries 4609 N
+    for (int k = 0; k < 40; ++k) {
+      const double height = 0.5 * (lo + hi);
+      (load(height, 2.0 * M_PI / 60 * i / 30.0) > 4609.0 ? lo : hi) = height;
+    }
+    lowest = std::min(lowest, lo);
+    highest = std::max(highest, lo);
+  }
+  EXPECT_LT(highest - lowest, 2e-4);
+  EXPECT_LT(0.4673 - lowest, 2e-3);
+  RecordProperty("ripple_um", static_cast<int>(1e6 * (highest - lowest)));
+  RecordProperty("depth_um", static_cast<int>(1e6 * (0.4673 - lowest)));
+}
+
+/// A block of mass m that falls on the ground, stepped as a partner of the co-simulation: the force of an interval
+/// acts on it during the next.
+struct Faller {
+  Surface surface = box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
+  double mass = 50.0;                 // kg
+  Vec3 position{0.0, 0.0, 2e-3};      // m
+  Vec3 velocity = Vec3::Zero();       // m/s
+  Vec3 force = Vec3::Zero();          // N
+  double kinetic() const { return 0.5 * mass * velocity.squaredNorm(); }
+  SurfaceState state() const { return placed(surface, position, velocity); }
+  void advance(Terrain& ground, double h) {
+    const SurfaceState before = state();
+    NodalForces forces;
+    ContactSums sums;
+    ASSERT_TRUE(ground.advance({&before, 1}, h, 2, {&forces, 1}, {&sums, 1}).ok);
+    velocity += h * (force / mass - Vec3(0.0, 0.0, kGravity));
+    position += h * velocity;
+    force = Vec3::Zero();
+    for (const Vec3& f : forces.force) force += f;
+  }
+};
+
+TEST(RigidGround, brings_a_dropped_block_to_rest_with_its_weight_balanced) {
+  TerrainOptions options;
+  options.ground_damping = 1e6;
+  const auto ground = make_rigid_ground(options);
+  Faller block;
+  ground->attach(block.surface.mesh, rubber(), block.state());
+  const double h = 4e-5;
+  for (int i = 0; i < 20000; ++i) block.advance(*ground, h);
+  const double weight = block.mass * kGravity;
+  EXPECT_NEAR(block.force.z() / weight, 1.0, 1e-6);
+  EXPECT_NEAR(-block.position.z() / (weight / (options.ground_stiffness * 0.02)), 1.0, 1e-6);
+  EXPECT_LT(block.velocity.norm(), 1e-8);
+  // ∫ F dt − W T = Δp = 0, and the drop's energy has been dissipated.
+  const TerrainState state = ground->state();
+  const double received = -state.surface_impulse.z();
+  EXPECT_NEAR(received / (weight * 20000 * h), 1.0, 1e-4);  // one interval of force is still in flight
+  const double released = weight * (2e-3 - block.position.z());
+  EXPECT_NEAR((state.dissipation + state.elastic_energy) / released, 1.0, 0.02);  // coupling lag: k h²/m = 3e-4
+  EXPECT_EQ(state.wall_impulse, -state.surface_impulse);
+}
+
+TEST(RigidGround, damps_bouncing_as_a_linear_oscillator_would) {
+  TerrainOptions options;
+  options.ground_damping = 2e5;
+  const auto ground = make_rigid_ground(options);
+  Faller block;
+  block.position.z() = -0.5 * block.mass * kGravity / (options.ground_stiffness * 0.02);
+  ground->attach(block.surface.mesh, rubber(), block.state());
+  const double omega = std::sqrt(options.ground_stiffness * 0.02 / block.mass);
+  const double zeta = 0.5 * options.ground_damping * omega / options.ground_stiffness;
+  const double h = 1e-6, rest = -block.mass * kGravity / (options.ground_stiffness * 0.02);
+  const int period = static_cast<int>(2.0 * M_PI / (omega * std::sqrt(1.0 - zeta * zeta)) / h);
+  for (int i = 0; i < period; ++i) block.advance(*ground, h);
+  const double expected = (-0.5 - -1.0) * -rest * std::exp(-2.0 * M_PI * zeta / std::sqrt(1.0 - zeta * zeta));
+  EXPECT_NEAR((block.position.z() - rest) / expected, 1.0, 0.02);  // lag of h: 1.5 k h²… per cycle
+}
+
+TEST(RigidGround, work_of_its_spring_is_its_elastic_energy) {
+  TerrainOptions options;
+  options.ground_damping = 0.0;
+  options.friction = 0.0;
+  const auto ground = make_rigid_ground(options);
+  const Surface block = box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
+  ground->attach(block.mesh, rubber(), placed(block, {0.0, 0.0, 0.0}, Vec3::Zero()));
+  double work = 0.0;
+  for (int i = 0; i < 10; ++i)
+    work += push(*ground, placed(block, {0.0, 0.0, -1e-4 * i}, {0.0, 0.0, -0.1}), 1e-3, 3).sums.work;
+  const TerrainState state = ground->state();
+  EXPECT_NEAR(-work / state.elastic_energy, 1.0, 1e-12);
+  EXPECT_NEAR(state.dissipation / state.elastic_energy, 0.0, 1e-12);
+}
+
+TEST(RigidGround, carries_several_surfaces_each_with_its_own_force) {
+  const auto ground = make_rigid_ground({});
+  const Surface block = box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
+  std::vector<SurfaceState> state;
+  for (int k = 0; k < 4; ++k) {
+    state.push_back(placed(block, {1.0 * k, 0.0, -1e-4 * (k + 1)}, Vec3::Zero()));
+    ground->attach(block.mesh, rubber(), state.back());
+  }
+  std::vector<NodalForces> forces(4);
+  std::vector<ContactSums> sums(4);
+  ASSERT_TRUE(ground->advance(state, 4e-5, 1, forces, sums).ok);
+  for (int k = 0; k < 4; ++k) EXPECT_NEAR(sums[k].force.z() / (4e8 * 1e-4 * (k + 1) * 0.02), 1.0, 1e-12);
+}
+
+TEST(RigidGround, continues_a_saved_state_bit_for_bit) {
+  const auto ground = make_rigid_ground({});
+  const Surface round = wheel(0.4673, 0.2, 60, 4);
+  auto at = [&](int i) {
+    return placed(round, {1.2e-4 * i, 0.0, 0.4673 - 8e-4}, {3.0, 0.0, -0.01}, 3.4e-4 * i, 8.56);
+  };
+  ground->attach(round.mesh, rubber(), at(0));
+  for (int i = 0; i < 5; ++i) push(*ground, at(i), 4e-5, 2);
+  Archive archive;
+  ground->save(archive);
+  const auto again = make_rigid_ground({});
+  again->restore(archive);
+  EXPECT_EQ(again->state().dissipation, ground->state().dissipation);
+  for (int i = 5; i < 10; ++i) {
+    const Push a = push(*ground, at(i), 4e-5, 2), b = push(*again, at(i), 4e-5, 2);
+    ASSERT_EQ(a.forces.vertex, b.forces.vertex);
+    ASSERT_EQ(a.forces.force, b.forces.force);
+    ASSERT_EQ(a.sums.work, b.sums.work);
+    ASSERT_EQ(ground->state().dissipation, again->state().dissipation);
+    ASSERT_EQ(ground->state().floor_force, again->state().floor_force);
+  }
+}
+
+TEST(RigidGround, refuses_bad_options_and_surfaces) {
+  TerrainOptions options;
+  options.ground_stiffness = -1.0;
+  EXPECT_THROW(make_rigid_ground(options), Error);
+  options = {};
+  options.friction = std::nan("");
+  EXPECT_THROW(make_rigid_ground(options), Error);
+  const auto ground = make_rigid_ground({});
+  const Surface block = box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
+  EXPECT_THROW(ground->attach(block.mesh, rubber(), placed(block, {0.0, 0.0, -0.02}, Vec3::Zero())), Error);
+  ground->attach(block.mesh, rubber(), placed(block, Vec3::Zero(), Vec3::Zero()));
+  SurfaceState broken = placed(block, Vec3::Zero(), Vec3::Zero());
+  broken.position[3].x() = std::nan("");
+  NodalForces forces;
+  ContactSums sums;
+  const TerrainStatus status = ground->advance({&broken, 1}, 4e-5, 1, {&forces, 1}, {&sums, 1});
+  EXPECT_FALSE(status.ok);
+  EXPECT_NE(status.message.find("vertex 3"), std::string::npos) << status.message;
+}
+
+}  // namespace
+}  // namespace furrow

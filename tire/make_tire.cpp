@@ -1,7 +1,8 @@
-// Which model a tire file's options give. A new model is one line in model_for.
+// Which model a tire file's options give. A new model is one line in make_tire.
 #include <fmt/format.h>
 
 #include "protocol/error.hpp"
+#include "tire/ancf/ancf_tire.hpp"
 #include "tire/rigid/rigid_tire.hpp"
 #include "tire/tire.hpp"
 #include "tire/tire_file.hpp"
@@ -30,7 +31,7 @@ TireFile apply(const TireOptions& options) {
 std::unique_ptr<Tire> make_tire(const TireOptions& options) {
   const TireFile file = apply(options);
   if (options.rigid) return std::make_unique<RigidTire>(file);
-  throw input_error(file.path, "template", "only the rigid model of this file is built in this version");
+  return std::make_unique<AncfTire>(file);
 }
 
 }  // namespace furrow

@@ -1,0 +1,135 @@
+#include "tire/ancf/ancf_tire.hpp"
+
+#include <fmt/format.h>
+
+#include "tire/rim_archive.hpp"
+
+namespace furrow {
+
+AncfTire::AncfTire(const TireFile& file, const RingIntegratorParams& params)
+    : ring_(make_ring_mesh(file)), surface_mesh_(make_surface_mesh(ring_)), material_(file.contact),
+      rigid_mass_(furrow::rigid_mass(ring_, element_masses(file, ring_))), radius_(file.radius),
+      tread_width_(furrow::tread_width(file, ring_)),
+      integrator_(file, ring_, [&] {
+        RingIntegratorParams p = params;
+        p.damping = file.structural_damping;
+        return p;
+      }()) {
+  undeformed_volume_ = integrator_.shell().volume(undeformed(ring_), Vec3::Zero());
+  force_.assign(integrator_.layout().size(), 0.0);
+}
+
+void AncfTire::place(const RimState& rim) {
+  const RingLayout& layout = integrator_.layout();
+  const Field shape = inflate(integrator_.shell(), ring_, inflation_);
+  const Mat3 turn = rim.orientation.toRotationMatrix();
+  Field q(layout.size()), v(layout.size());
+  for (int j = 0; j < layout.rows; ++j)
+    for (int i = 0; i < layout.columns; ++i) {
+      const Vec3 arm = turn * layout.get(shape, i, j, 0), director = turn * layout.get(shape, i, j, 3);
+      layout.set(q, i, j, 0, rim.position + arm);
+      layout.set(q, i, j, 3, director);
+      layout.set(v, i, j, 0, rim.velocity + rim.angular_velocity.cross(arm));
+      layout.set(v, i, j, 3, rim.angular_velocity.cross(director));
+    }
+  layout.fill_padding(q);
+  layout.fill_padding(v);
+  integrator_.start(q, v);
+  rim_ = rim;
+  spindle_ = {};
+  steps_ = 0;
+}
+
+void AncfTire::surface(SurfaceState& out) const {
+  const RingLayout& layout = integrator_.layout();
+  out.position.resize(surface_mesh_.vertex_count);
+  out.velocity.resize(surface_mesh_.vertex_count);
+  for (int i = 0; i < layout.columns; ++i)
+    for (int j = 0; j < layout.rows; ++j) {
+      out.position[ring_.node(i, j)] = layout.get(integrator_.q(), i, j, 0);
+      out.velocity[ring_.node(i, j)] = layout.get(integrator_.v(), i, j, 0);
+    }
+  for (int side = 0; side < 2; ++side) {
+    const Vec3 arm = rim_.orientation * ring_.disc_centre(side);
+    out.position[ring_.nodes() + side] = rim_.position + arm;
+    out.velocity[ring_.nodes() + side] = rim_.velocity + rim_.angular_velocity.cross(arm);
+  }
+}
+
+TireStatus AncfTire::advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) {
+  const RingLayout& layout = integrator_.layout();
+  const Vec3 about = 0.5 * (rim.start().position + rim.end().position);
+  const double h = rim.duration() / substeps;
+  Wrench total, disc;
+  std::fill(force_.begin(), force_.end(), 0.0);
+  for (std::size_t k = 0; k < forces.vertex.size(); ++k) {
+    const int vertex = forces.vertex[k];
+    if (vertex < ring_.nodes()) {
+      layout.set(force_, vertex / ring_.rows, vertex % ring_.rows, 0, forces.force[k]);
+      continue;
+    }
+    const Mat3 mean = 0.5 * (rim.start().orientation.toRotationMatrix() + rim.end().orientation.toRotationMatrix());
+    disc.force += forces.force[k];
+    disc.moment += (mean * ring_.disc_centre(vertex - ring_.nodes())).cross(forces.force[k]);
+  }
+  for (int n = 1; n <= substeps; ++n) {
+    const RimState end = n == substeps ? rim.end() : rim.at(static_cast<double>(n) / substeps).state;
+    Wrench part;
+    TireStatus status = integrator_.step(h, end, force_, about, part);
+    if (!status.converged) {
+      status.message = fmt::format("tire did not converge at step {}: {}", steps_ + n, status.message);
+      return status;
+    }
+    total.force += part.force;
+    total.moment += part.moment;
+  }
+  steps_ += substeps;
+  rim_ = rim.end();
+  spindle_.force = total.force / substeps + disc.force;
+  spindle_.moment = total.moment / substeps + disc.moment;
+  return {};
+}
+
+TireDiagnostics AncfTire::diagnostics() const {
+  const RingLayout& layout = integrator_.layout();
+  const Field &q = integrator_.q(), &v = integrator_.v();
+  Field p(layout.size());
+  integrator_.mass().apply(v, 1.0, p);
+  TireDiagnostics d;
+  for (int j = 0; j < layout.rows; ++j)
+    for (int c = 0; c < 6; ++c) {
+      double sum = 0.0, energy = 0.0;
+      for (int i = 0; i < layout.columns; ++i) {
+        const std::size_t k = layout.offset(j, c) + i;
+        sum += p[k];
+        energy += 0.5 * p[k] * v[k];
+      }
+      d.kinetic_energy += energy;
+      if (c < 3) d.momentum[c] += sum;
+    }
+  const double volume = integrator_.shell().volume(q, rim_.position);
+  d.strain_energy = integrator_.elastic_energy() - integrator_.shell().pressure() * (volume - undeformed_volume_);
+  d.dissipation = integrator_.dissipation();
+  d.newton_iterations = integrator_.iterations();
+  d.factorizations = integrator_.factorizations();
+  d.residual = integrator_.residual();
+  return d;
+}
+
+void AncfTire::save(Archive& archive) const {
+  const Archive::Scope scope(archive, "ancf/");
+  save_rim(archive, "rim", rim_);
+  save_wrench(archive, "spindle", spindle_);
+  archive.put("steps", steps_);
+  integrator_.save(archive);
+}
+
+void AncfTire::restore(const Archive& archive) {
+  const Archive::Scope scope(archive, "ancf/");
+  rim_ = restore_rim(archive, "rim");
+  spindle_ = restore_wrench(archive, "spindle");
+  steps_ = archive.get_int("steps");
+  integrator_.restore(archive);
+}
+
+}  // namespace furrow

@@ -1,0 +1,49 @@
+// The layered ANCF shell tire: bead nodes follow the rim exactly, the rest is integrated implicitly.
+// The contact surface is the mid-surface (nodes), closed at each bead by a disc whose centre vertex moves with the rim;
+// forces on the disc centres go to the rim.
+#pragma once
+
+#include "tire/ancf/inflation.hpp"
+#include "tire/ancf/ring_integrator.hpp"
+
+namespace furrow {
+
+class AncfTire final : public Tire {
+ public:
+  explicit AncfTire(const TireFile& file, const RingIntegratorParams& params = {});
+
+  const SurfaceMesh& mesh() const override { return surface_mesh_; }
+  ContactMaterial material() const override { return material_; }
+  MassProperties mass_properties() const override { return rigid_mass_; }
+  double radius() const override { return radius_; }
+  double tread_width() const override { return tread_width_; }
+  int coordinates() const override { return 6 * ring_.nodes(); }
+
+  void place(const RimState& rim) override;
+  void surface(SurfaceState& out) const override;
+  TireStatus advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) override;
+  Wrench spindle_wrench() const override { return spindle_; }
+  TireDiagnostics diagnostics() const override;
+  void save(Archive& archive) const override;
+  void restore(const Archive& archive) override;
+
+  const RingIntegrator& integrator() const { return integrator_; }
+  const InflationReport& inflation() const { return inflation_; }
+
+ private:
+  RingMesh ring_;
+  SurfaceMesh surface_mesh_;
+  ContactMaterial material_;
+  MassProperties rigid_mass_;
+  double radius_ = 0.0;            // m
+  double tread_width_ = 0.0;       // m
+  double undeformed_volume_ = 0.0; // m³
+  RingIntegrator integrator_;
+  InflationReport inflation_;
+  RimState rim_;                   // now
+  Wrench spindle_;                 // of the last advance
+  std::int64_t steps_ = 0;
+  Field force_;                    // work
+};
+
+}  // namespace furrow

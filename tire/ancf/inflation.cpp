@@ -1,0 +1,153 @@
+#include "tire/ancf/inflation.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <memory>
+
+#include "protocol/error.hpp"
+#include "tire/ancf/shell_batch.hpp"
+#include "tire/ancf/shell_tangent.hpp"
+
+namespace furrow {
+namespace {
+
+constexpr double kCreepTime = 5e-3;      // τ, s
+constexpr double kFirstStep = 1e-3;      // s
+constexpr double kLargestStep = 10.0;    // s
+constexpr double kTolerance = 1e-9;      // of the static residual
+constexpr double kAccepted = 1e-2;       // of the static residual, after the last step
+constexpr int kRampSteps = 10;
+constexpr int kMaxSteps = 300;
+constexpr int kMaxNewton = 12;
+
+class ColumnCreep {
+ public:
+  ColumnCreep(const ShellRing& shell, const RingMesh& mesh) : shell_(shell), mesh_(mesh), layout_(shell.layout()) {
+    q_ = undeformed(mesh);
+    force_.assign(layout_.size(), 0.0);
+    shell_.strains(q_, strains_);
+  }
+
+  /// @returns false when the tangent lost its definiteness or Newton's method did not converge; q is then unchanged
+  bool step(double h) {
+    const Field before = q_;
+    const double c = 1.0 + kCreepTime / h;
+    Eigen::VectorXd r = residual(c);
+    const double reference = pressure_norm();
+    for (int n = 0; n < kMaxNewton; ++n) {
+      const Eigen::LLT<Eigen::MatrixXd> factor(tangent(c));
+      if (factor.info() != Eigen::Success) break;
+      add(-factor.solve(r));
+      r = residual(c);
+      if (!(r.norm() < 1e3 * reference)) break;
+      if (r.norm() < 0.1 * kTolerance * reference) {
+        shell_.strains(q_, strains_);
+        return true;
+      }
+    }
+    q_ = before;
+    return false;
+  }
+
+  void set_pressure(double pressure) { shell_.set_pressure(pressure); }
+  double static_residual() { return residual(1.0).norm() / pressure_norm(); }
+  const Field& q() const { return q_; }
+
+ private:
+  int unknowns() const { return 6 * (layout_.rows - 2); }
+
+  Eigen::VectorXd column(const Field& f) const {
+    Eigen::VectorXd v(unknowns());
+    for (int k = 0; k < unknowns(); ++k) v[k] = f[layout_.offset(1 + k / 6, k % 6)];
+    return v;
+  }
+  Eigen::VectorXd residual(double c) {
+    shell_.forces(q_, q_, strains_, c, force_);
+    return column(force_);
+  }
+  double pressure_norm() {
+    Field with(layout_.size()), without(layout_.size());
+    ShellRing bare = shell_;
+    bare.set_pressure(0.0);
+    shell_.forces(q_, q_, strains_, 0.0, with);
+    bare.forces(q_, q_, strains_, 0.0, without);
+    return std::max((column(with) - column(without)).norm(), 1e-6);
+  }
+  void add(const Eigen::VectorXd& change) {
+    for (int j = 1; j + 1 < layout_.rows; ++j)
+      for (const int s : {0, 3}) {
+        const Vec3 v = layout_.get(q_, 0, j, s) + change.segment<3>(6 * (j - 1) + s);
+        for (int i = 0; i < layout_.columns; ++i) layout_.set(q_, i, j, s, mesh_.turn(i) * v);
+      }
+    layout_.fill_padding(q_);
+  }
+  /// Element tangents with both columns tied to one: Tᵀ K T.
+  Eigen::MatrixXd tangent(double c) {
+    Eigen::MatrixXd k = Eigen::MatrixXd::Zero(6 * layout_.rows, 6 * layout_.rows);
+    const auto element = std::make_unique<BatchTangent>();
+    Eigen::Matrix<double, 24, 12> tie = Eigen::Matrix<double, 24, 12>::Zero();
+    for (int n = 0; n < 4; ++n)
+      for (const int s : {0, 3})
+        tie.block<3, 3>(6 * n + s, (n < 2 ? 0 : 6) + s) = n == 1 || n == 2 ? mesh_.turn(1) : Mat3::Identity();
+    for (int j = 0; j + 1 < layout_.rows; ++j) {
+      Lanes stress[kStrains];
+      shell_.batch_stress_at(q_, strains_, c, j, 0, stress);
+      BatchNodes nodes;
+      nodes.read(layout_, q_.data(), 0, j);
+      element->compute(shell_.stiffness(j), nodes, stress, c, 1.0, shell_.pressure());
+      Eigen::Matrix<double, 24, 24> e;
+      for (int a = 0; a < 24; ++a)
+        for (int b = 0; b <= a; ++b) e(a, b) = e(b, a) = element->k[a][b][0];
+      k.block<12, 12>(6 * j, 6 * j) += tie.transpose() * e * tie;
+    }
+    return k.block(6, 6, unknowns(), unknowns());
+  }
+
+  ShellRing shell_;
+  const RingMesh& mesh_;
+  RingLayout layout_;
+  Field q_, strains_, force_;
+};
+
+}  // namespace
+
+Field undeformed(const RingMesh& mesh) {
+  const RingLayout layout{mesh.columns, mesh.rows};
+  Field q(layout.size(), 0.0);
+  for (int j = 0; j < mesh.rows; ++j)
+    for (int i = 0; i < mesh.columns; ++i) {
+      layout.set(q, i, j, 0, mesh.turn(i) * mesh.position[j]);
+      layout.set(q, i, j, 3, mesh.turn(i) * mesh.director[j]);
+    }
+  layout.fill_padding(q);
+  return q;
+}
+
+Field inflate(const ShellRing& shell, const RingMesh& mesh, InflationReport& report) {
+  report = {};
+  if (shell.pressure() == 0.0) return undeformed(mesh);
+  ColumnCreep creep(shell, mesh);
+  double h = kFirstStep;
+  for (report.steps = 0; report.steps < kMaxSteps;) {
+    creep.set_pressure(shell.pressure() * std::min(1.0, (report.steps + 1.0) / kRampSteps));
+    if (!creep.step(h)) {
+      h *= 0.5;
+      ++report.shrunk;
+      if (h < 1e-7) break;
+      continue;
+    }
+    ++report.steps;
+    h = std::min(1.3 * h, kLargestStep);
+    report.residual = creep.static_residual();
+    if (report.steps >= kRampSteps && report.residual < kTolerance) break;
+  }
+  if (report.steps < kRampSteps || !(report.residual < kAccepted))
+    throw physics_error(fmt::format("tire inflation to {:.0f} Pa did not converge: residual {:.3g} of the pressure force after {} "
+                                    "steps; try a lower pressure or a finer mesh",
+                                    shell.pressure(), report.residual, report.steps));
+  return creep.q();
+}
+
+}  // namespace furrow

@@ -1,0 +1,25 @@
+// Inflates the undeformed ring on a rim at rest, axisymmetrically: one column of nodes is unknown, the others are it
+// turned. A layered tire need not be stable as a static body: the steel belts of the reference layup carry
+// compressive hoop force at the tread's edges. The equilibrium is therefore approached by creep under the
+// Kelvin–Voigt law (no inertia), B(q')ᵀ D̂ [E' + τ ΔE/h] = p ∂V/∂q(q'), whose step h grows while the tangent stays
+// positive definite and shrinks when its Cholesky factorization fails.
+#pragma once
+
+#include "tire/ancf/shell_ring.hpp"
+
+namespace furrow {
+
+struct InflationReport {
+  int steps = 0;
+  int shrunk = 0;         // times that a step was repeated with a smaller h
+  double residual = 0.0;  // of the static equations, relative to the pressure forces
+};
+
+/// Coordinates in rim axes, padding filled.
+/// @throws Error(physics) when the creep ends far from equilibrium.
+Field inflate(const ShellRing& shell, const RingMesh& mesh, InflationReport& report);
+
+/// The undeformed ring in rim axes, padding filled.
+Field undeformed(const RingMesh& mesh);
+
+}  // namespace furrow

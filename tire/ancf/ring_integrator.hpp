@@ -1,0 +1,118 @@
+// Implicit time integration of the ring of shell elements held by a moving rim.
+//
+// Over a step h from (q, v) to (q', v'), with q_f = θ q + (1 − θ) q' and E, E' the strains at q, q':
+//   q' − q = h [(1 − θ) v + θ v']                                                         (1) free nodes
+//   M (v' − v)/h + B(q_f)ᵀ D̂ [E + σ ΔE + τ ΔE/h] − p ∂V/∂q(q_f) = F + M g + Q,  ΔE = E' − E  (2)
+// F are the contact forces, constant over the step, Q the reactions at the beads. q', v' of the beads come from the rim.
+//  - θ = σ = (1 − α)/2: the same damping of the highest frequencies as the HHT method of this α, (1 − θ)/θ = (1 + α)/(1 − α).
+//  - Strain rates are the change of strain over the step, exactly zero for any rigid motion of the step's ends.
+//  - Force acts at q_f, so that with (1) the change of angular momentum Σ x × M v equals the moment impulse to round-off:
+//    x'×p' − x×p = x_f × Δp + Δx × [(1 − θ) p + θ p'], and the last term vanishes in the sum for Δx = h v_θ.
+// Compare Simo & Tarnow (1992), The discrete energy-momentum method, ZAMP 43, doi:10.1007/BF00913408 (θ = ½ here), and
+// Hilber, Hughes, Taylor (1977), doi:10.1002/eqe.4290050306.
+//
+// The equations are solved by a quasi-Newton method: an old Cholesky factor of the tangent, turned and renumbered to the
+// present orientation, corrected by BFGS pairs [Nocedal & Wright 2006, Alg. 7.4]; refactored when it has aged.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "tire/ancf/ring_factor.hpp"
+#include "tire/ancf/ring_mass.hpp"
+#include "tire/ancf/shell_ring.hpp"
+#include "tire/tire.hpp"
+
+namespace furrow {
+
+struct RingIntegratorParams {
+  double alpha = -0.2;        // numerical damping, −1/3…0
+  double damping = 0.005;     // τ, s
+  double tolerance = 1e-4;    // of the free residual, relative to the norm of the pressure forces
+  int max_iterations = 40;    // per attempt
+  int slow_iterations = 5;    // more than these and the factor is renewed
+  int slots = 4;              // factors kept, one per fraction of a pitch of rolling
+};
+
+class RingIntegrator {
+ public:
+  RingIntegrator(const TireFile& file, const RingMesh& mesh, const RingIntegratorParams& params);
+
+  /// Starts from the given coordinates and velocities (padding filled).
+  void start(const Field& q, const Field& v);
+
+  /// One step of size h to the rim state `end`. `force`: contact forces, padding zero. `about`: moments are taken about
+  /// this point. The wrench is what the tire exerts on the rim, the step's mean, without forces on the bead discs.
+  TireStatus step(double h, const RimState& end, const Field& force, const Vec3& about, Wrench& on_rim);
+
+  const Field& q() const { return q_; }
+  const Field& v() const { return v_; }
+  const RingLayout& layout() const { return layout_; }
+  const ShellRing& shell() const { return shell_; }
+  const RingMass& mass() const { return mass_; }
+  const RingIntegratorParams& params() const { return params_; }
+  int unknowns() const { return factor_.unknowns(); }
+
+  double elastic_energy() const { return elastic_; }   // J
+  double dissipation() const { return dissipation_; }  // J, cumulative
+  std::int64_t iterations() const { return iterations_; }
+  std::int64_t factorizations() const { return factorizations_; }
+  double residual() const { return residual_; }
+
+  /// Wall time spent in the parts of a step, s, cumulative; not part of the state.
+  struct Times {
+    double force = 0.0, jacobian = 0.0, factorize = 0.0, solve = 0.0, other = 0.0;
+  };
+  const Times& times() const { return times_; }
+
+  void save(Archive& archive) const;
+  void restore(const Archive& archive);
+
+ private:
+  /// What a factor was made from: enough to make it again.
+  struct Slot {
+    bool valid = false, stale = false;
+    Mat3 turn = Mat3::Identity();  // rim orientation
+    double h = 0.0;                // s
+    Field q_old, q_new;
+  };
+  struct Placement {
+    int slot = 0;
+    Mat3 turn = Mat3::Identity();
+    int shift = 0;
+  };
+
+  void set_bead(const RimState& rim);
+  void predict(double h);
+  void evaluate(double h, const Field& force);
+  double free_norm(const Field& f) const;
+  double coefficient(double h) const { return theta_ + params_.damping / h; }
+  bool make_factor(Slot& slot, int index);
+  Placement place_factor(double h, const Mat3& orientation, bool renew);
+  void direction(const Placement& at, int pairs);
+  bool iterate(double h, const Field& force, Placement& at, int& count, double& norm);
+  void finish(double h, const Field& force, const Vec3& about, Wrench& on_rim);
+
+  RingIntegratorParams params_;
+  double theta_ = 0.6;
+  RingMesh mesh_;
+  RingLayout layout_;
+  ShellRing shell_;
+  RingMass mass_;
+  RingFactor factor_;
+  std::vector<Slot> slots_;
+
+  Field q_, v_, dv_;             // state: coordinates (m, –), velocities, last change of velocity
+  double reference_ = 0.0;       // norm of the pressure forces, N
+  double elastic_ = 0.0, dissipation_ = 0.0, residual_ = 0.0;
+  std::int64_t iterations_ = 0, factorizations_ = 0;
+
+  Field strains_;                                  // at q_
+  Field gravity_;                                  // M g
+  Field q_new_, v_new_, q_force_, change_, r_, d_; // work
+  std::vector<Field> s_, y_;                       // BFGS pairs
+  std::vector<double> rho_;
+  Times times_;
+};
+
+}  // namespace furrow

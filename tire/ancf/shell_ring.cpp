@@ -1,0 +1,139 @@
+#include "tire/ancf/shell_ring.hpp"
+
+#include "tire/ancf/shell_batch.hpp"
+#include "tire/ancf/shell_matrices.hpp"
+
+namespace furrow {
+
+ShellRing::ShellRing(const TireFile& file, const RingMesh& mesh) : layout_{mesh.columns, mesh.rows}, pressure_(file.pressure) {
+  const Mat3 next = mesh.turn(1);
+  for (int j = 0; j < mesh.elements_width(); ++j) {
+    const Vec3 corner[4] = {mesh.position[j], next * mesh.position[j], next * mesh.position[j + 1], mesh.position[j + 1]};
+    const Vec3 director[4] = {mesh.director[j], next * mesh.director[j], next * mesh.director[j + 1], mesh.director[j + 1]};
+    ElementNodes reference;
+    for (int n = 0; n < 4; ++n) reference.row(2 * n) = corner[n], reference.row(2 * n + 1) = director[n];
+    stiffness_.push_back(shell_stiffness(reference, shell_layers(file, file.section(j))));
+    reference_.push_back(raw_strains(reference));
+  }
+}
+
+std::size_t ShellRing::strains_size() const {
+  return static_cast<std::size_t>(layout_.rows - 1) * layout_.batches() * kStrains * kLanes;
+}
+
+Lanes ShellRing::mask(int batch) const {
+  Lanes m;
+  for (int lane = 0; lane < kLanes; ++lane) m[lane] = batch * kLanes + lane < layout_.columns ? 1.0 : 0.0;
+  return m;
+}
+
+void ShellRing::batch_strains_at(const Field& q, int j, int batch, Lanes* e) const {
+  BatchNodes nodes;
+  nodes.read(layout_, q.data(), batch * kLanes, j);
+  batch_strains(nodes, e);
+  for (int k = 0; k < kStrains; ++k) e[k] -= reference_[j][k];
+}
+
+void ShellRing::strains(const Field& q, Field& e) const {
+  e.resize(strains_size());
+  Lanes now[kStrains];
+  for (int j = 0; j + 1 < layout_.rows; ++j)
+    for (int b = 0; b < layout_.batches(); ++b) {
+      batch_strains_at(q, j, b, now);
+      double* to = e.data() + (batch_of(e, j, b) - e.data());
+      for (int k = 0; k < kStrains; ++k) store(to + k * kLanes, now[k]);
+    }
+}
+
+void ShellRing::batch_stress_at(const Field& q_new, const Field& e_old, double c, int j, int batch, Lanes* stress) const {
+  Lanes e[kStrains];
+  batch_strains_at(q_new, j, batch, e);
+  const double* old = batch_of(e_old, j, batch);
+  for (int k = 0; k < kStrains; ++k) {
+    const Lanes before = load(old + k * kLanes);
+    e[k] = before + c * (e[k] - before);
+  }
+  batch_stress(stiffness_[j].data(), e, stress);
+}
+
+void ShellRing::forces(const Field& q_new, const Field& q_force, const Field& e_old, double c, Field& f) const {
+  std::fill(f.begin(), f.end(), 0.0);
+  Lanes stress[kStrains];
+  for (int j = 0; j + 1 < layout_.rows; ++j)
+    for (int b = 0; b < layout_.batches(); ++b) {
+      batch_stress_at(q_new, e_old, c, j, b, stress);
+      const Lanes valid = mask(b);
+      if (b + 1 == layout_.batches())
+        for (Lanes& s : stress) s *= valid;
+      BatchNodes nodes;
+      nodes.read(layout_, q_force.data(), b * kLanes, j);
+      BatchForces(nodes, stress, pressure_ * valid).add(layout_, f.data(), b * kLanes, j);
+    }
+  layout_.fold_padding(f);
+}
+
+ShellRing::Energies ShellRing::account(const Field& q, Field& e) const {
+  Lanes now[kStrains], delta[kStrains], s_now[kStrains], s_delta[kStrains];
+  Energies total;
+  for (int j = 0; j + 1 < layout_.rows; ++j) {
+    Lanes elastic = {}, change = {};
+    for (int b = 0; b < layout_.batches(); ++b) {
+      batch_strains_at(q, j, b, now);
+      double* old = e.data() + (batch_of(e, j, b) - e.data());
+      for (int k = 0; k < kStrains; ++k) {
+        delta[k] = now[k] - load(old + k * kLanes);
+        store(old + k * kLanes, now[k]);
+      }
+      batch_stress(stiffness_[j].data(), now, s_now);
+      batch_stress(stiffness_[j].data(), delta, s_delta);
+      const Lanes valid = mask(b);
+      for (int k = 0; k < kStrains; ++k) {
+        elastic += valid * now[k] * s_now[k];
+        change += valid * delta[k] * s_delta[k];
+      }
+    }
+    total.elastic += 0.5 * sum(elastic);
+    total.change += sum(change);
+  }
+  return total;
+}
+
+double ShellRing::volume(const Field& q, const Vec3& centre) const {
+  const Lanes3 c{spread(centre.x()), spread(centre.y()), spread(centre.z())};
+  double total = 0.0;
+  for (int j = 0; j + 1 < layout_.rows; ++j) {
+    Lanes row = {};
+    for (int b = 0; b < layout_.batches(); ++b) {
+      BatchNodes n;
+      n.read(layout_, q.data(), b * kLanes, j);
+      const BatchSlopes s(n);
+      for (int k = 0; k < 2; ++k)
+        for (int l = 0; l < 2; ++l) {
+          const double left = l == 0 ? kNear : kFar, bottom = k == 0 ? kNear : kFar;
+          const Lanes3 x = (left * bottom) * n.r[0] + ((1 - left) * bottom) * n.r[1] +
+                           ((1 - left) * (1 - bottom)) * n.r[2] + (left * (1 - bottom)) * n.r[3];
+          row += mask(b) * dot(x - c, cross(s.a1[k], s.a2[l]));
+        }
+    }
+    total += sum(row) / 3.0;
+  }
+  return total;
+}
+
+// Stokes: ∫ n dA = ½ ∮ x × dx and ∫ x × n dA = −½ ∮ |x|² dx around the boundary, here two polygons. With the surface
+// on its left the left loop runs with the columns, the right loop against them.
+Wrench ShellRing::pressure_resultant(const Field& q, const Vec3& centre) const {
+  Wrench w;
+  for (int side = 0; side < 2; ++side) {
+    const int j = side == 0 ? 0 : layout_.rows - 1;
+    const double sense = side == 0 ? pressure_ : -pressure_;
+    for (int i = 0; i < layout_.columns; ++i) {
+      const Vec3 a = layout_.get(q, i, j, 0) - centre, b = layout_.get(q, (i + 1) % layout_.columns, j, 0) - centre;
+      w.force += 0.5 * sense * a.cross(b);
+      w.moment -= sense / 6.0 * (a.squaredNorm() + a.dot(b) + b.squaredNorm()) * (b - a);
+    }
+  }
+  return w;
+}
+
+}  // namespace furrow

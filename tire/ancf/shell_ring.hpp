@@ -1,0 +1,59 @@
+// The elastic and pressure forces of a whole ring of layered shell elements. Elements at the same width position share
+// their matrices; they are processed row by row in batches of kLanes around the ring.
+//   f = Σ_e B(q_f)ᵀ D̂ [E_old + c (E(q_new) − E_old)] − p ∂V/∂q(q_f),   B = ∂E/∂q,   c a factor of the time integrator
+// The pressure acts on the current area of the mid-surface; V is the volume that it closes with the bead discs.
+#pragma once
+
+#include "tire/ancf/ring_layout.hpp"
+#include "tire/ancf/shell_strain.hpp"
+#include "tire/ring_mesh.hpp"
+
+namespace furrow {
+
+class ShellRing {
+ public:
+  ShellRing(const TireFile& file, const RingMesh& mesh);
+
+  const RingLayout& layout() const { return layout_; }
+  double pressure() const { return pressure_; }            // Pa
+  void set_pressure(double pressure) { pressure_ = pressure; }
+  const StrainMatrix& stiffness(int j) const { return stiffness_[j]; }
+
+  /// Strains of all elements: [row][batch][strain][lane].
+  std::size_t strains_size() const;
+  void strains(const Field& q, Field& e) const;
+
+  /// @param f every coordinate, overwritten
+  void forces(const Field& q_new, const Field& q_force, const Field& e_old, double c, Field& f) const;
+
+  struct Energies {
+    double elastic = 0.0;  // ½ Σ Eᵀ D̂ E, J
+    double change = 0.0;   // Σ ΔEᵀ D̂ ΔE, ΔE the change since the strains given, J
+  };
+  /// Strains of `q` replace those in `e`.
+  Energies account(const Field& q, Field& e) const;
+
+  /// Between the mid-surface and the two cones from the bead loops to `centre`, m³.
+  double volume(const Field& q, const Vec3& centre) const;
+
+  /// Resultant of the pressure on the mid-surface and its moment about `centre`; both depend on the bead loops alone.
+  Wrench pressure_resultant(const Field& q, const Vec3& centre) const;
+
+  /// Current strain-driven stress of one batch (used for the tangent).
+  void batch_stress_at(const Field& q_new, const Field& e_old, double c, int j, int batch, Lanes* stress) const;
+
+ private:
+  /// Lanes of a batch that are elements (1) and not padding (0).
+  Lanes mask(int batch) const;
+  void batch_strains_at(const Field& q, int j, int batch, Lanes* e) const;
+  const double* batch_of(const Field& e, int j, int batch) const {
+    return e.data() + static_cast<std::size_t>(j * layout_.batches() + batch) * kStrains * kLanes;
+  }
+
+  RingLayout layout_;
+  std::vector<StrainMatrix> stiffness_;  // D̂ of each width position, J
+  std::vector<StrainVector> reference_;  // raw strains of the undeformed element
+  double pressure_ = 0.0;                // gauge, Pa
+};
+
+}  // namespace furrow

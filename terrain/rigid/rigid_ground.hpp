@@ -13,8 +13,9 @@ namespace furrow {
 ///
 /// A rigid body of weight W bounces on it with the damping ratio ζ = d ω/(2κ), ω² = κ A/m with A the area in contact:
 /// small for a heavy wheel with the default damping, which is chosen for the light vertices of a flexible tire.
-/// Explicit coupling needs κ A H²/m < 1 and d A H/m < 1 for a vertex of mass m that carries the area A; the friction
-/// law acts as a dashpot c μ p A while |v_t| ≪ 1/c. The ground does not know the masses and limits nothing.
+/// A vertex of mass m that carries the area A and has no damping of its own is stable in explicit coupling while about
+/// κ A H²/m < 0.23 and 1.25 κ H < d < 0.5 m/(A H); friction acts as a dashpot c μ p A while |v_t| ≪ 1/c.
+/// The ground does not know the masses of what it carries and limits nothing.
 ///
 /// @throws Error(bad_input) when a stiffness, damping, friction or velocity scale is negative or not finite.
 std::unique_ptr<Terrain> make_rigid_ground(const TerrainOptions& options);

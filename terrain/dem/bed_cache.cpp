@@ -1,0 +1,194 @@
+#include "terrain/dem/bed_cache.hpp"
+
+#include <unistd.h>
+
+#include <array>
+#include <cstdlib>
+#include <cstring>
+#include <span>
+#include <variant>
+
+#include <hdf5.h>
+
+#include "protocol/hash.hpp"
+#include "terrain/dem/bed_settling.hpp"
+
+namespace furrow::dem {
+namespace {
+
+constexpr std::int64_t kBedFormat = 1;  // raise when the bits of a bed may change
+
+/// An HDF5 identifier that closes itself.
+class Handle {
+ public:
+  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  ~Handle() {
+    if (id_ >= 0) close_(id_);
+  }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  hid_t get() const { return id_; }
+  bool ok() const { return id_ >= 0; }
+  /// Closes now; false when what was buffered could not be written.
+  bool close() {
+    const bool good = close_(id_) >= 0;
+    id_ = -1;
+    return good;
+  }
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+/// Keeps HDF5 from printing its error stack while it lives.
+class Quiet {
+ public:
+  Quiet() {
+    H5Eget_auto2(H5E_DEFAULT, &call_, &data_);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  }
+  ~Quiet() { H5Eset_auto2(H5E_DEFAULT, call_, data_); }
+  Quiet(const Quiet&) = delete;
+  Quiet& operator=(const Quiet&) = delete;
+
+ private:
+  H5E_auto2_t call_ = nullptr;
+  void* data_ = nullptr;
+};
+
+template <class T>
+hid_t native_type() {
+  if constexpr (std::is_same_v<T, double>) return H5T_NATIVE_DOUBLE;
+  if constexpr (std::is_same_v<T, std::int64_t>) return H5T_NATIVE_INT64;
+  if constexpr (std::is_same_v<T, std::int32_t>) return H5T_NATIVE_INT32;
+  if constexpr (std::is_same_v<T, std::uint64_t>) return H5T_NATIVE_UINT64;
+  if constexpr (std::is_same_v<T, std::uint8_t>) return H5T_NATIVE_UINT8;
+}
+
+std::uint64_t checksum(const Archive& archive) {
+  Hash hash;
+  for (const auto& [name, array] : archive.arrays()) {
+    hash.add(name);
+    std::visit([&](const auto& values) { hash.add(std::span(values)); }, array);
+  }
+  return hash.value();
+}
+
+bool write_array(hid_t file, const std::string& name, const Archive::Array& array) {
+  return std::visit(
+      [&](const auto& values) {
+        using T = typename std::decay_t<decltype(values)>::value_type;
+        const hsize_t size = values.size();
+        const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
+        const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+        H5Pset_create_intermediate_group(links.get(), 1);
+        const Handle set(H5Dcreate2(file, name.c_str(), native_type<T>(), space.get(), links.get(), H5P_DEFAULT,
+                                    H5P_DEFAULT),
+                         H5Dclose);
+        if (!set.ok()) return false;
+        return size == 0 || H5Dwrite(set.get(), native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0;
+      },
+      array);
+}
+
+template <class T>
+bool read_as(hid_t set, hid_t type, hsize_t size, const std::string& name, Archive& archive) {
+  if (H5Tequal(type, native_type<T>()) <= 0) return false;
+  std::vector<T> values(size);
+  if (size > 0 && H5Dread(set, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) return false;
+  archive.put(name, values);
+  return true;
+}
+
+herr_t read_object(hid_t file, const char* name, const H5O_info_t* info, void* target) {
+  if (info->type != H5O_TYPE_DATASET) return 0;
+  const Handle set(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
+  if (!set.ok()) return -1;
+  const Handle space(H5Dget_space(set.get()), H5Sclose), type(H5Dget_type(set.get()), H5Tclose);
+  const auto size = static_cast<hsize_t>(H5Sget_simple_extent_npoints(space.get()));
+  auto& archive = *static_cast<Archive*>(target);
+  const bool good = read_as<double>(set.get(), type.get(), size, name, archive) ||
+                    read_as<std::int64_t>(set.get(), type.get(), size, name, archive) ||
+                    read_as<std::int32_t>(set.get(), type.get(), size, name, archive) ||
+                    read_as<std::uint64_t>(set.get(), type.get(), size, name, archive) ||
+                    read_as<std::uint8_t>(set.get(), type.get(), size, name, archive);
+  return good ? 0 : -1;
+}
+
+}  // namespace
+
+std::string bed_digest(const TerrainOptions& o) {
+  Hash hash;
+  hash.add(o.law);
+  const std::array<double, 15> numbers{
+      static_cast<double>(kBedFormat), o.radius, o.density, static_cast<double>(o.layers), o.length, o.width,
+      o.young_modulus, o.poisson_ratio, o.restitution, o.friction, o.rolling_friction, o.cohesion, o.normal_stiffness,
+      o.normal_damping, o.friction_velocity_scale};
+  hash.add(std::span<const double>(numbers));
+  const double step = settle_step(o);
+  hash.add(&step, sizeof step);
+  hash.add(&o.seed, sizeof o.seed);
+  return hash.hex();
+}
+
+std::filesystem::path bed_cache_file(const std::string& digest) {
+  std::filesystem::path folder;
+  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache) {
+    folder = cache;
+  } else if (const char* home = std::getenv("HOME"); home && *home) {
+    folder = std::filesystem::path(home) / ".cache";
+  } else {
+    return {};
+  }
+  return folder / "furrow" / "beds" / (digest + ".h5");
+}
+
+void write_bed(const std::filesystem::path& file, const Archive& archive) {
+  const Quiet quiet;
+  std::error_code failed;
+  std::filesystem::create_directories(file.parent_path(), failed);
+  std::array<char, 64> host{};
+  gethostname(host.data(), host.size() - 1);
+  const std::filesystem::path temporary =
+      file.string() + "." + host.data() + "." + std::to_string(getpid()) + ".partial";
+  bool good = false;
+  {
+    Handle out(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+    if (out.ok()) {
+      good = write_array(out.get(), "format_version", std::vector<std::int64_t>{kBedFormat}) &&
+             write_array(out.get(), "checksum", std::vector<std::uint64_t>{checksum(archive)});
+      for (const auto& [name, array] : archive.arrays()) good = good && write_array(out.get(), name, array);
+      good = good && H5Fflush(out.get(), H5F_SCOPE_GLOBAL) >= 0;
+      good = out.close() && good;
+    }
+  }
+  if (good) std::filesystem::rename(temporary, file, failed);
+  if (!good || failed) {
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    throw io_error(file.string(), "the bed could not be written");
+  }
+}
+
+Archive read_bed(const std::filesystem::path& file) {
+  const Quiet quiet;
+  if (!std::filesystem::exists(file)) throw io_error(file.string(), "no such bed file");
+  const Handle in(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (!in.ok()) throw io_error(file.string(), "not an HDF5 file, or damaged");
+  Archive all;
+  if (H5Ovisit2(in.get(), H5_INDEX_NAME, H5_ITER_NATIVE, read_object, &all, H5O_INFO_BASIC) < 0)
+    throw io_error(file.string(), "damaged");
+  if (!all.has("format_version") || !all.has("checksum")) throw io_error(file.string(), "not a bed of furrow");
+  if (all.get_int("format_version") > kBedFormat)
+    throw io_error(file.string(), "format_version " + std::to_string(all.get_int("format_version")) +
+                                      " is newer than this program's " + std::to_string(kBedFormat));
+  Archive archive;
+  for (const auto& [name, array] : all.arrays())
+    if (name != "format_version" && name != "checksum") archive.put_array(name, array);
+  if (checksum(archive) != all.get<std::uint64_t>("checksum", 1).front())
+    throw io_error(file.string(), "damaged: its checksum does not fit");
+  return archive;
+}
+
+}  // namespace furrow::dem

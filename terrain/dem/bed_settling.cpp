@@ -1,0 +1,79 @@
+#include "terrain/dem/bed_settling.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "protocol/error.hpp"
+
+namespace furrow::dem {
+namespace {
+
+constexpr double kStepShare = 0.8;          // of the stable step
+constexpr int kCheckEvery = 40;             // steps
+constexpr double kMaxSettleTime = 4.0;      // s
+constexpr double kFallDrag = 4.0;           // 1/s, while the layers fall
+constexpr double kRestDrag = 80.0;          // 1/s, once they lie
+constexpr double kLyingSpeed = 0.03;        // rms, m/s: slower counts as lying
+
+}  // namespace
+
+double settle_step(const TerrainOptions& options) {
+  LawSettings law = law_settings(options);
+  law.friction_impulse_limit = true;
+  law.step = options.step;
+  const GrainProperties grain = grain_properties(options.radius, options.density);
+  const ContactMaterial material = grain_material(options);
+  const ContactCoefficients pair = mix(material, material, Partner::grain, grain, law);
+  return kStepShare * stable_step(pair, grain, law, kStatedOverlap * options.radius).step;
+}
+
+SolverCoefficients settle_coefficients(const TerrainOptions& options) {
+  LawSettings law = law_settings(options);
+  law.friction_impulse_limit = true;
+  law.step = settle_step(options);
+  const GrainProperties grain = grain_properties(options.radius, options.density);
+  const ContactMaterial material = grain_material(options);
+  SolverCoefficients c;
+  c.pair = mix(material, material, Partner::grain, grain, law);
+  c.floor = c.side = mix(material, material, Partner::surface, grain, law);
+  c.side.friction = c.side.rolling_arm = 0.0;
+  return c;
+}
+
+SettleResult settle(GrainSolver& solver, const TerrainOptions& options, const ProgressCall& progress) {
+  SettleResult result;
+  const double dt = settle_step(options);
+  const GrainProperties& grain = solver.params().grain;
+  const double mass = grain.mass * solver.grains().count, weight = mass * solver.params().gravity;
+  solver.set_coefficients(settle_coefficients(options));
+  solver.set_drag(kFallDrag);
+  bool lying = false;
+  double best = 1.0;
+  const auto most = static_cast<std::int64_t>(kMaxSettleTime / dt);
+  while (result.steps < most && !result.settled) {
+    const bool check = ++result.steps % kCheckEvery == 0;
+    if (const int lost = solver.step(dt, check); lost >= 0)
+      throw physics_error("grain " + std::to_string(solver.grains().id[lost]) + " was lost while the bed settled");
+    if (!check) continue;
+    const Accounts& a = solver.accounts();
+    result.force_ratio = a.contact_force > 0.0 ? a.net_force / a.contact_force : 1.0;
+    result.floor_error = std::abs(a.floor_force - weight) / weight;
+    result.time = dt * static_cast<double>(result.steps);
+    const double speed = std::sqrt(2.0 * a.kinetic / mass);
+    if (!lying && a.contacts > solver.grains().count && speed < kLyingSpeed) {
+      lying = true;
+      solver.set_drag(kRestDrag);
+    }
+    result.settled = lying && result.force_ratio < kSettledForceRatio && result.floor_error < kSettledFloorError;
+    best = std::min(best, std::max(result.force_ratio, result.floor_error));
+    if (progress) {
+      const double decades = std::log10(1.0 / std::max(best, kSettledForceRatio)) / 3.0;
+      progress("settling the bed", std::clamp(std::max(decades, dt * result.steps / kMaxSettleTime), 0.0, 1.0));
+    }
+  }
+  solver.set_drag(0.0);
+  return result;
+}
+
+}  // namespace furrow::dem

@@ -1,0 +1,59 @@
+// From materials to the coefficients of a contact, and the step that a bed of such contacts allows.
+#pragma once
+
+#include <string>
+
+#include "protocol/surface.hpp"
+#include "terrain/dem/contact_law.hpp"
+#include "terrain/terrain_options.hpp"
+
+namespace furrow::dem {
+
+enum class LawKind { mindlin, coulomb };
+/// @throws Error(bad_input) listing the valid names.
+LawKind law_from(const std::string& name);
+
+/// Grains of one size.
+struct GrainProperties {
+  double radius = 0.0;   // m
+  double mass = 0.0;     // kg
+  double inertia = 0.0;  // 2/5 m r², kg m²
+};
+GrainProperties grain_properties(double radius, double density);
+
+/// The grains' own material as options state it.
+ContactMaterial grain_material(const TerrainOptions& options);
+
+/// What a law needs beyond the two materials.
+struct LawSettings {
+  LawKind kind = LawKind::mindlin;
+  double rolling_friction = 0.0;      // μ_r of the grains, against every partner, -
+  double velocity_scale = 5.0;        // c, s/m
+  bool friction_impulse_limit = true;
+  double step = 0.0;                  // s, for the impulse limit
+};
+LawSettings law_settings(const TerrainOptions& options);
+
+enum class Partner { grain, surface };  // surface: wall or tire, flat and of infinite mass
+
+/// Mixing: k_n, g_n arithmetic mean; μ, e, c_t minimum; 1/E* = Σ(1−ν²)/E, 1/G* = Σ 2(2−ν)(1+ν)/E; R* = r/2 or r;
+/// m* = m/2 or m. Cohesion area π r² of the grain.
+ContactCoefficients mix(const ContactMaterial& grain, const ContactMaterial& other, Partner partner,
+                        const GrainProperties& properties, const LawSettings& law);
+
+/// Largest stable step of semi-implicit Euler and what limits it.
+struct StableStep {
+  double step = 0.0;   // s
+  std::string reason;  // "stiffness", "damping", "friction viscosity"
+};
+/// For a bed whose contacts have overlap `overlap` and six neighbours per grain.
+StableStep stable_step(const ContactCoefficients& pair, const GrainProperties& grain, const LawSettings& law,
+                       double overlap);
+
+/// Overlap as a share of the radius at which scenarios are checked: 5 % of the diameter, reached under a tire.
+inline constexpr double kStatedOverlap = 0.10;
+
+/// β of the impulse limit, Eq. (6) of contact_law.hpp.
+inline constexpr double kImpulseShare = 0.3;
+
+}  // namespace furrow::dem

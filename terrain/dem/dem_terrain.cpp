@@ -1,0 +1,324 @@
+#include "terrain/dem/dem_terrain.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "protocol/error.hpp"
+#include "terrain/dem/bed_cache.hpp"
+#include "terrain/dem/bed_height.hpp"
+#include "terrain/dem/bed_layers.hpp"
+#include "terrain/dem/bed_settling.hpp"
+#include "terrain/dem/grain_solver.hpp"
+
+namespace furrow {
+namespace {
+
+using namespace dem;
+
+constexpr double kSkinShare = 0.3;          // of the radius
+constexpr double kLooseFraction = 0.50;     // solid fraction of a bed that settled with cohesion, estimate
+constexpr double kBytesPerGrain = 900.0;    // state, list with history, and what a rebuild holds twice
+
+void require(bool ok, const char* key, double value, const char* expected) {
+  if (!ok) throw input_error("scenario", std::string("terrain.") + key, fmt::format("{} is out of range, expected {}", value, expected));
+}
+
+void check(const TerrainOptions& o) {
+  law_from(o.law);
+  require(o.radius > 0.0 && o.radius < 1.0, "radius", o.radius, "0 < radius < 1 m");
+  require(o.density > 0.0 && std::isfinite(o.density), "density", o.density, "a positive number, kg/m³");
+  require(o.layers >= 1 && o.layers < 10000, "layers", o.layers, "1 to 9999");
+  require(o.length >= 4.0 * o.radius && std::isfinite(o.length), "length", o.length, "at least two grains, m");
+  require(o.width >= 4.0 * o.radius && std::isfinite(o.width), "width", o.width, "at least two grains, m");
+  require(o.young_modulus > 0.0, "young_modulus", o.young_modulus, "a positive number, Pa");
+  require(o.poisson_ratio > -1.0 && o.poisson_ratio <= 0.5, "poisson_ratio", o.poisson_ratio, "-1 < ν ≤ 0.5");
+  require(o.restitution >= 0.0 && o.restitution <= 1.0, "restitution", o.restitution, "0 to 1");
+  require(o.friction >= 0.0, "friction", o.friction, "0 or more");
+  require(o.rolling_friction >= 0.0, "rolling_friction", o.rolling_friction, "0 or more");
+  require(o.cohesion >= 0.0, "cohesion", o.cohesion, "0 or more, Pa");
+  require(o.normal_stiffness > 0.0, "normal_stiffness", o.normal_stiffness, "a positive number, N/m^1.5");
+  require(o.normal_damping >= 0.0, "normal_damping", o.normal_damping, "0 or more, N s/m^1.5");
+  require(o.friction_velocity_scale > 0.0, "friction_velocity_scale", o.friction_velocity_scale, "a positive number, s/m");
+  if (!(o.step > 0.0)) throw input_error("scenario", "run.step", fmt::format("{} is out of range, expected a positive number, s", o.step));
+}
+
+SolverCoefficients run_coefficients(const TerrainOptions& options, double step) {
+  LawSettings law = law_settings(options);
+  law.step = step;
+  const GrainProperties grain = grain_properties(options.radius, options.density);
+  const ContactMaterial material = grain_material(options);
+  const ContactCoefficients wall = mix(material, material, Partner::surface, grain, law);
+  return {mix(material, material, Partner::grain, grain, law), wall, wall};
+}
+
+StableStep stable_at(const TerrainOptions& options, double overlap) {
+  return stable_step(run_coefficients(options, options.step).pair, grain_properties(options.radius, options.density),
+                     law_settings(options), overlap);
+}
+
+SolverParams solver_params(const TerrainOptions& o) {
+  SolverParams p;
+  p.law = law_from(o.law);
+  p.rolling = o.rolling_friction > 0.0;
+  p.grain = grain_properties(o.radius, o.density);
+  p.bin = {o.length, o.width};
+  p.skin = kSkinShare * o.radius;
+  p.threads = std::max(1, o.threads);
+  return p;
+}
+
+class DemTerrain : public Terrain {
+ public:
+  explicit DemTerrain(const TerrainOptions& options)
+      : options_(options), solver_(solver_params(options)), dt_(options.step) {
+    solver_.set_coefficients(run_coefficients(options_, dt_));
+  }
+
+  double prepare(const ProgressCall& progress) override {
+    const auto begin = std::chrono::steady_clock::now();
+    Archive bed;
+    if (!options_.bed.empty()) {
+      bed = read_bed(options_.bed);
+      check_bed(bed);
+    } else {
+      const std::filesystem::path file = options_.cache ? bed_cache_file(bed_digest(options_)) : std::filesystem::path();
+      if (!from_cache(file, bed)) bed = settled_bed(file, progress);
+    }
+    // A run from a cached bed and the run that settled it both start here, from the same archive.
+    solver_.restore(bed);
+    solver_.set_threads(std::max(1, options_.threads));
+    solver_.set_coefficients(run_coefficients(options_, dt_));
+    solver_.reset_accounts();
+    if (progress && bed.get<double>("bed/settled", 4)[0] == 0.0) progress("bed not settled", 1.0);
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  }
+
+  double top_height(double x_min, double x_max, double y_min, double y_max) const override {
+    return dem::top_height(solver_.grains(), options_.radius, x_min, x_max, y_min, y_max);
+  }
+  double mean_height(double x_min, double x_max, double y_min, double y_max) const override {
+    return dem::mean_height(height_field(), x_min, x_max, y_min, y_max);
+  }
+  double floor_height() const override { return 0.0; }
+  HeightField height_field() const override {
+    return bed_height_field(solver_.grains(), solver_.params().bin, options_.radius);
+  }
+
+  void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) override {
+    if (static_cast<int>(start.position.size()) != mesh.vertex_count)
+      throw Error(ExitCode::bad_input, "a tire's contact surface has another number of vertices than positions");
+    for (const Vec3& x : start.position)
+      if (const char* wall = beyond(x, x))
+        throw input_error("scenario", "terrain", fmt::format("the tire starts beyond {}: it has a point at ({:.4g}, {:.4g}, {:.4g}) m; expected a larger bin or another start", wall, x.x(), x.y(), x.z()));
+    solver_.surfaces().attach(mesh, material, surface_coefficients(material), start);
+  }
+
+  TerrainStatus advance(std::span<const SurfaceState> targets, double duration, int substeps,
+                        std::span<NodalForces> forces, std::span<ContactSums> contact) override {
+    const double dt = duration / substeps;
+    if (dt != dt_) set_step(dt);
+    SurfaceContacts& surfaces = solver_.surfaces();
+    surfaces.set_targets(targets, duration);
+    TerrainStatus status;
+    for (int k = 0; k < surfaces.count(); ++k) {
+      const SurfaceBox box = surfaces.swept_bounds(k);
+      if (const char* wall = beyond(box.lo, box.hi))
+        return {false, fmt::format("tire {} reached {} of the bin", k, wall)};
+    }
+    if (surfaces.any()) surfaces.restrict_to(grain_box());
+    for (int s = 0; s < substeps; ++s) {
+      surfaces.move_to(static_cast<double>(s) / substeps);
+      const int lost = solver_.step(dt);
+      time_ += dt;
+      if (lost >= 0) return lost_grain(lost);
+    }
+    surfaces.move_to(1.0);
+    surfaces.finish(duration, forces, contact);
+    return still_stable();
+  }
+
+  TerrainState state() const override {
+    const Accounts& a = solver_.accounts();
+    const double mass = solver_.params().grain.mass;
+    TerrainState s;
+    s.kinetic_energy = a.kinetic;
+    s.potential_energy = mass * kGravity * a.height;
+    s.elastic_energy = a.elastic;
+    s.dissipation = -a.contact_work - (a.elastic - a.elastic_start);
+    s.momentum = mass * a.velocity;
+    s.wall_impulse = a.wall_impulse;
+    s.surface_impulse = a.surface_impulse;
+    s.floor_force = a.floor_force;
+    s.contacts = a.contacts;
+    s.active = solver_.grains().count;
+    s.list_rebuilds = solver_.pairs().rebuilds();
+    return s;
+  }
+
+  std::int64_t size() const override { return solver_.grains().count; }
+
+  void frame(TerrainFrame& out) const override {
+    const Grains& grains = solver_.grains();
+    const std::size_t n = grains.count;
+    out.position.resize(3 * n);
+    out.speed.resize(n);
+    out.radius.assign(n, static_cast<float>(options_.radius));
+    for (std::size_t g = 0; g < n; ++g) {
+      const std::size_t id = grains.id[g];
+      const Quad &x = grains.position[g], &v = grains.velocity[g];
+      out.position[3 * id] = static_cast<float>(x.x);
+      out.position[3 * id + 1] = static_cast<float>(x.y);
+      out.position[3 * id + 2] = static_cast<float>(x.z);
+      out.speed[id] = static_cast<float>(std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z));
+    }
+  }
+
+  void save(Archive& archive) const override {
+    Archive::Scope scope(archive, "terrain/");
+    archive.put("time", time_);
+    archive.put("step", dt_);
+    archive.put("stable_overlap", stable_overlap_);
+    solver_.save(archive);
+  }
+
+  void restore(const Archive& archive) override {
+    const Archive::Scope scope(archive, "terrain/");
+    time_ = archive.get_double("time");
+    solver_.restore(archive);
+    set_step(archive.get_double("step"));
+    stable_overlap_ = archive.get_double("stable_overlap");
+  }
+
+ private:
+  ContactCoefficients surface_coefficients(const ContactMaterial& material) const {
+    LawSettings law = law_settings(options_);
+    law.step = dt_;
+    law.rolling_friction = 0.0;  // a couple could not be handed to vertices
+    return mix(grain_material(options_), material, Partner::surface, solver_.params().grain, law);
+  }
+
+  void set_step(double dt) {
+    dt_ = dt;
+    solver_.set_coefficients(run_coefficients(options_, dt));
+    for (int k = 0; k < solver_.surfaces().count(); ++k)
+      solver_.surfaces().set_coefficients(k, surface_coefficients(solver_.surfaces().material(k)));
+  }
+
+  /// The side of the bin that the box (lo, hi) crosses, or null.
+  const char* beyond(const Vec3& lo, const Vec3& hi) const {
+    if (!(lo.x() >= 0.0)) return "the wall x = 0";
+    if (!(hi.x() <= options_.length)) return "the wall x = length";
+    if (!(lo.y() >= -0.5 * options_.width)) return "the wall y = -width/2";
+    if (!(hi.y() <= 0.5 * options_.width)) return "the wall y = width/2";
+    if (!(lo.z() >= 0.0)) return "the floor";
+    return nullptr;
+  }
+
+  /// All grains now, with room for what they may move in one interval.
+  SurfaceBox grain_box() const {
+    double top = 0.0;
+    for (const Quad& p : std::span(solver_.grains().position).first(solver_.grains().count)) top = std::max(top, p.z);
+    const double room = 10.0 * options_.radius;
+    return {Vec3(-room, -0.5 * options_.width - room, -room), Vec3(options_.length + room, 0.5 * options_.width + room, top + room)};
+  }
+
+  bool from_cache(const std::filesystem::path& file, Archive& bed) const {
+    if (file.empty()) return false;
+    try {
+      bed = read_bed(file);
+      check_bed(bed);
+      return true;
+    } catch (const Error&) {
+      return false;  // absent or damaged: made anew
+    }
+  }
+
+  Archive settled_bed(const std::filesystem::path& file, const ProgressCall& progress) {
+    GrainSolver solver(solver_params(options_));
+    solver.set_threads(std::max(1, options_.settle_threads));
+    solver.place(bed_layers(solver.params().bin, options_.radius, options_.layers, options_.seed));
+    const SettleResult result = settle(solver, options_, progress);
+    Archive bed;
+    solver.save(bed);
+    bed.put("bed/settled", std::vector<double>{result.settled ? 1.0 : 0.0, result.force_ratio, result.floor_error, result.time});
+    bed.put("bed/geometry", geometry());
+    bed.put("bed/law", std::vector<std::uint8_t>(options_.law.begin(), options_.law.end()));
+    if (!file.empty()) {
+      try {
+        write_bed(file, bed);
+      } catch (const Error& error) {
+        if (progress) progress(std::string("bed not cached: ") + error.what(), 1.0);
+      }
+    }
+    return bed;
+  }
+
+  std::vector<double> geometry() const { return {options_.radius, options_.density, options_.length, options_.width}; }
+
+  void check_bed(const Archive& bed) const {
+    const auto& made = bed.get<double>("bed/geometry", 4);
+    constexpr const char* kKey[] = {"radius", "density", "length", "width"};
+    const std::vector<double> wanted = geometry();
+    for (int k = 0; k < 4; ++k)
+      if (made[k] != wanted[k])
+        throw input_error("scenario", std::string("terrain.") + kKey[k], fmt::format("is {} but the bed '{}' was made with {}", wanted[k], options_.bed, made[k]));
+    const auto& law = bed.get<std::uint8_t>("bed/law");
+    if (std::string(law.begin(), law.end()) != options_.law)
+      throw input_error("scenario", "terrain.law", fmt::format("is {} but the bed '{}' was settled with {}", options_.law, options_.bed, std::string(law.begin(), law.end())));
+    if ((options_.rolling_friction > 0.0) && bed.get<double>("pairs/rolling").empty() && bed.get_int("count") > 0 &&
+        options_.law == "mindlin")
+      throw input_error("scenario", "terrain.rolling_friction", fmt::format("is {} but the bed '{}' was settled without", options_.rolling_friction, options_.bed));
+  }
+
+  TerrainStatus lost_grain(int index) const {
+    const Quad& x = solver_.grains().position[index];
+    return {false, fmt::format("grain {} left the bin or is not finite at t = {:.6g} s, x = ({:.6g}, {:.6g}, {:.6g}) m", solver_.grains().id[index], time_, x.x, x.y, x.z)};
+  }
+
+  /// Looks again at the stable step when a larger overlap than ever was met.
+  TerrainStatus still_stable() {
+    const double overlap = solver_.accounts().max_overlap;
+    if (overlap <= std::max(stable_overlap_, kStatedOverlap * options_.radius)) return {};
+    stable_overlap_ = overlap;
+    const StableStep stable = stable_at(options_, overlap);
+    if (dt_ <= stable.step || options_.allow_unstable_step) return {};
+    return {false, fmt::format("grains overlap by {:.3g} m ({:.1f} % of their diameter), where the stable step is {:.3g} s ({}) and the step is {:.3g} s", overlap, 50.0 * overlap / options_.radius, stable.step, stable.reason, dt_)};
+  }
+
+  TerrainOptions options_;
+  GrainSolver solver_;
+  double dt_;                   // s
+  double time_ = 0.0;           // advanced, s
+  double stable_overlap_ = 0.0; // largest overlap that the step was checked against, m
+};
+
+}  // namespace
+
+std::unique_ptr<Terrain> make_dem_terrain(const TerrainOptions& options) {
+  check(options);
+  const StableStep stable = stable_at(options, kStatedOverlap * options.radius);
+  if (options.step > stable.step && !options.allow_unstable_step)
+    throw input_error("scenario", "run.step", fmt::format("{} s is above the stable step {:.3g} s ({}); expected a smaller step, more terrain.substeps, or softer grains", options.step, stable.step, stable.reason));
+  return std::make_unique<DemTerrain>(options);
+}
+
+TerrainEstimate estimate_dem_terrain(const TerrainOptions& options) {
+  check(options);
+  TerrainEstimate e;
+  const StableStep stable = stable_at(options, kStatedOverlap * options.radius);
+  e.stable_step = stable.step;
+  e.stable_reason = stable.reason;
+  const double grains = options.layers * expected_layer_count({options.length, options.width}, options.radius);
+  e.grains = static_cast<std::int64_t>(std::llround(grains));
+  e.memory_bytes = kBytesPerGrain * grains;
+  const double volume = grains * 4.0 / 3.0 * std::numbers::pi * std::pow(options.radius, 3);
+  e.expected_height = volume / (kLooseFraction * options.length * options.width);
+  return e;
+}
+
+}  // namespace furrow

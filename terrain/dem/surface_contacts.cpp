@@ -1,0 +1,248 @@
+#include "terrain/dem/surface_contacts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "protocol/error.hpp"
+
+namespace furrow::dem {
+namespace {
+
+constexpr double kSameNormal = 0.5;  // cosine: history passes between points whose normals differ by less than 60°
+
+Triple<double> triple(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+Triple<double> triple(const Quad& q) { return {q.x, q.y, q.z}; }
+Vec3 vec(const Triple<double>& t) { return {t.x, t.y, t.z}; }
+void add(Quad& q, const Triple<double>& t) { q.x += t.x, q.y += t.y, q.z += t.z; }
+
+/// Spin of triangle (a, b, c) about unit n: half the circulation of the vertex velocities over the area, rad/s.
+double spin_about(const SurfaceCollider& surface, int triangle, const Vec3& n) {
+  const auto& t = surface.mesh().triangles[triangle];
+  const auto x = surface.positions(), v = surface.velocities();
+  const Vec3 ab = x[t[1]] - x[t[0]], ac = x[t[2]] - x[t[0]];
+  const Vec3 twice_area = ab.cross(ac);
+  const double area2 = twice_area.norm();
+  if (area2 == 0.0) return 0.0;
+  double circulation = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    const int a = t[k], b = t[(k + 1) % 3];
+    circulation += 0.5 * (v[a] + v[b]).dot(x[b] - x[a]);
+  }
+  return circulation / area2 * (twice_area.dot(n) / area2);
+}
+
+const SurfaceHistory* nearest(const std::vector<SurfaceHistory>& history, std::size_t from, std::size_t to,
+                              const Vec3& n) {
+  const SurfaceHistory* best = nullptr;
+  double cosine = kSameNormal;
+  for (std::size_t k = from; k < to; ++k) {
+    const Quad& m = history[k].normal;
+    const double c = m.x * n.x() + m.y * n.y() + m.z * n.z();
+    if (c > cosine) cosine = c, best = &history[k];
+  }
+  return best;
+}
+
+std::vector<double> flat(const std::vector<Vec3>& points) {
+  std::vector<double> out;
+  for (const Vec3& p : points) out.insert(out.end(), p.data(), p.data() + 3);
+  return out;
+}
+
+}  // namespace
+
+void SurfaceContacts::attach(const SurfaceMesh& mesh, const ContactMaterial& material,
+                             const ContactCoefficients& coefficients, const SurfaceState& start) {
+  Surface s;
+  s.collider = std::make_unique<SurfaceCollider>(mesh, grain_.radius);
+  s.sum = std::make_unique<NodalForceSum>(mesh.vertex_count);
+  s.material = material;
+  s.coefficients = coefficients;
+  s.start = s.end = start.position;
+  s.collider->set_motion(s.start, s.end, 1.0);
+  surfaces_.push_back(std::move(s));
+}
+
+void SurfaceContacts::set_targets(std::span<const SurfaceState> targets, double duration) {
+  for (std::size_t k = 0; k < surfaces_.size(); ++k) {
+    Surface& s = surfaces_[k];
+    s.start.swap(s.end);
+    for (std::size_t a = 0; a < s.end.size(); ++a)
+      s.end[a] = targets[k].position[a] + duration * targets[k].velocity[a];
+    s.collider->set_motion(s.start, s.end, duration);
+  }
+}
+
+void SurfaceContacts::move_to(double share) {
+  const Vec3 r = Vec3::Constant(grain_.radius);
+  for (Surface& s : surfaces_) {
+    s.collider->move_to(share);
+    s.near = s.collider->bounds();
+    s.near.lo -= r, s.near.hi += r;
+  }
+}
+
+void SurfaceContacts::restrict_to(const SurfaceBox& grains) {
+  for (Surface& s : surfaces_) s.collider->restrict_to(grains);
+}
+
+void SurfaceContacts::reorder(const std::vector<std::int32_t>& order) {
+  std::vector<SurfaceHistory> all;
+  for (SurfaceBlock& block : blocks_) {
+    all.insert(all.end(), block.history.begin(), block.history.end());
+    block.history.clear();
+    block.touches.clear();
+  }
+  if (all.empty()) return;
+  std::vector<std::int32_t> new_of(order.size());
+  for (std::size_t g = 0; g < order.size(); ++g) new_of[order[g]] = static_cast<std::int32_t>(g);
+  for (SurfaceHistory& h : all) h.grain = new_of[h.grain];
+  std::stable_sort(all.begin(), all.end(), [](const SurfaceHistory& a, const SurfaceHistory& b) {
+    return a.grain != b.grain ? a.grain < b.grain : a.surface < b.surface;
+  });
+  for (const SurfaceHistory& h : all) blocks_[h.grain / kBlockGrains].history.push_back(h);
+}
+
+template <class Law>
+void SurfaceContacts::touch(Grains& grains, PairBlock& block, SurfaceBlock& mine, int k, int g, double dt) {
+  const Surface& surface = surfaces_[k];
+  std::array<SurfaceHit, kMaxSurfaceHits> hits;
+  const Quad& x = grains.position[g];
+  const Vec3 centre(x.x, x.y, x.z);
+  const int count = surface.collider->hits(centre, grain_.radius, hits);
+  if (count == 0) return;
+  const auto before = [](const SurfaceHistory& h, const std::pair<int, int>& key) {
+    return std::pair<int, int>(h.grain, h.surface) < key;
+  };
+  const auto& old = mine.history;
+  const auto from = std::lower_bound(old.begin(), old.end(), std::pair(g, k), before);
+  const auto to = std::lower_bound(from, old.end(), std::pair(g, k + 1), before);
+
+  const Triple<double> v = triple(grains.velocity[g]), w = triple(grains.spin[g]);
+  for (int h = 0; h < count; ++h) {
+    const SurfaceHit& hit = hits[h];
+    const Triple<double> arm = triple(Vec3(hit.point - centre));
+    ContactMotion<double> motion;
+    motion.normal = triple(hit.normal);
+    motion.overlap = hit.overlap;
+    motion.velocity = v + cross(w, arm) - triple(surface.collider->velocity_at(hit));
+    motion.spin = 0.5 * (dot(w, motion.normal) + spin_about(*surface.collider, hit.triangle, hit.normal));
+    motion.roll = w;
+    ContactHistory<double> history{{0, 0, 0}, 0.0, {0, 0, 0}};
+    if (const SurfaceHistory* past = nearest(old, from - old.begin(), to - old.begin(), hit.normal))
+      history = {triple(past->tangential), past->tangential.w, triple(past->rolling)};
+    const ContactForce<double> f =
+        rolling_ ? Law::template force<true>(surface.coefficients, dt, motion, history)
+                 : Law::template force<false>(surface.coefficients, dt, motion, history);
+    const auto& t = history.tangential;
+    const auto& r = history.rolling;
+    const Quad normal{motion.normal.x, motion.normal.y, motion.normal.z, 0.0};
+    if constexpr (Law::kHistory)
+      mine.next.push_back({g, k, normal, {t.x, t.y, t.z, history.root_overlap}, {r.x, r.y, r.z, 0.0}});
+
+    const Triple<double> push = (hit.share * f.normal) * motion.normal, drag = hit.share * f.tangential;
+    add(grains.force[g], push + drag);
+    add(grains.torque[g], cross(arm, push + drag) + hit.share * f.rolling);
+    mine.touches.push_back({k, {hit.triangle, hit.weight, hit.point, -vec(push), -vec(drag)}});
+    block.sums.surface_power += hit.share * (power_of(f, motion) + dot(f.rolling, motion.roll));
+    block.sums.elastic += hit.share * f.energy;
+    block.sums.max_overlap = std::max(block.sums.max_overlap, hit.overlap);
+    ++block.sums.contacts;
+  }
+}
+
+template <class Law>
+void SurfaceContacts::evaluate(Grains& grains, PairBlock& block, int b, double dt) {
+  SurfaceBlock& mine = blocks_[b];
+  mine.next.clear();
+  mine.touches.clear();
+  const double slack = 2.0 * grain_.radius;  // grains stray from where they were listed by less
+  bool near = false;
+  for (const Surface& s : surfaces_)
+    near = near || (s.near.lo.x() < block.x_max + slack && s.near.hi.x() > block.x_min - slack);
+  if (near)
+    for (int g = block.first; g < block.last; ++g)
+      for (int k = 0; k < count(); ++k) {
+        const SurfaceBox& box = surfaces_[k].near;
+        const Quad& p = grains.position[g];
+        if (p.z > box.lo.z() && p.x > box.lo.x() && p.x < box.hi.x() && p.y > box.lo.y() && p.y < box.hi.y() &&
+            p.z < box.hi.z())
+          touch<Law>(grains, block, mine, k, g, dt);
+      }
+  mine.history.swap(mine.next);
+}
+
+template void SurfaceContacts::evaluate<MindlinLaw>(Grains&, PairBlock&, int, double);
+template void SurfaceContacts::evaluate<CoulombLaw>(Grains&, PairBlock&, int, double);
+
+Vec3 SurfaceContacts::hand_over(double dt) {
+  Vec3 on_grains = Vec3::Zero();
+  for (Surface& s : surfaces_) s.forces.clear();
+  for (const SurfaceBlock& block : blocks_)
+    for (const SurfaceTouch& touch : block.touches) {
+      surfaces_[touch.surface].forces.push_back(touch.force);
+      on_grains -= dt * (touch.force.normal + touch.force.tangential);
+    }
+  for (Surface& s : surfaces_) s.sum->add_substep(s.forces, *s.collider, dt);
+  return on_grains;
+}
+
+void SurfaceContacts::finish(double duration, std::span<NodalForces> forces, std::span<ContactSums> sums) {
+  for (std::size_t k = 0; k < surfaces_.size(); ++k) surfaces_[k].sum->finish(duration, forces[k], sums[k]);
+}
+
+// ---- state ----------------------------------------------------------------------------------------------------
+
+void SurfaceContacts::save(Archive& archive) const {
+  archive.put("surfaces/count", static_cast<std::int64_t>(surfaces_.size()));
+  for (std::size_t k = 0; k < surfaces_.size(); ++k) {
+    const Surface& s = surfaces_[k];
+    Archive::Scope scope(archive, "surface" + std::to_string(k) + "/");
+    std::vector<std::int32_t> triangles;
+    for (const auto& t : s.collider->mesh().triangles) triangles.insert(triangles.end(), t.begin(), t.end());
+    archive.put("triangles", triangles);
+    archive.put("position", flat(s.end));
+    const ContactMaterial& m = s.material;
+    archive.put("material", std::vector<double>{m.young_modulus, m.poisson_ratio, m.friction, m.restitution,
+                                                m.normal_stiffness, m.normal_damping, m.cohesion});
+  }
+  std::vector<std::int32_t> keys;
+  std::vector<double> values;
+  for (const SurfaceBlock& block : blocks_)
+    for (const SurfaceHistory& h : block.history) {
+      keys.insert(keys.end(), {h.grain, h.surface});
+      for (const Quad* q : {&h.normal, &h.tangential, &h.rolling}) values.insert(values.end(), {q->x, q->y, q->z, q->w});
+    }
+  archive.put("surfaces/keys", keys);
+  archive.put("surfaces/history", values);
+}
+
+void SurfaceContacts::restore(const Archive& archive) {
+  const auto count = archive.get_int("surfaces/count");
+  surfaces_.clear();
+  for (std::int64_t k = 0; k < count; ++k) {
+    Archive::Scope scope(archive, "surface" + std::to_string(k) + "/");
+    const auto& position = archive.get<double>("position");
+    const auto& triangles = archive.get<std::int32_t>("triangles");
+    const auto& m = archive.get<double>("material", 7);
+    SurfaceMesh mesh;
+    mesh.vertex_count = static_cast<int>(position.size() / 3);
+    for (std::size_t t = 0; t + 2 < triangles.size(); t += 3)
+      mesh.triangles.push_back({triangles[t], triangles[t + 1], triangles[t + 2]});
+    SurfaceState start;
+    for (std::size_t a = 0; a + 2 < position.size(); a += 3)
+      start.position.emplace_back(position[a], position[a + 1], position[a + 2]);
+    attach(mesh, {m[0], m[1], m[2], m[3], m[4], m[5], m[6]}, {}, start);
+  }
+  for (SurfaceBlock& block : blocks_) block = {};
+  const auto& keys = archive.get<std::int32_t>("surfaces/keys");
+  const auto& v = archive.get<double>("surfaces/history", 6 * keys.size());
+  for (std::size_t h = 0; 2 * h < keys.size(); ++h) {
+    const double* q = &v[12 * h];
+    blocks_[keys[2 * h] / kBlockGrains].history.push_back({keys[2 * h], keys[2 * h + 1], {q[0], q[1], q[2], q[3]},
+                                                           {q[4], q[5], q[6], q[7]}, {q[8], q[9], q[10], q[11]}});
+  }
+}
+
+}  // namespace furrow::dem

@@ -1,0 +1,97 @@
+// Grains against the moving surfaces of tires: finds the touched points, applies the grains' contact law there, and
+// collects what the surfaces receive.
+//
+// History is kept per (grain, surface): each touched point takes over the history of that earlier point of the same
+// grain and surface whose normal is nearest (within 60°), so that nothing is lost from triangle to triangle or where
+// a crease splits one point into two; it ends when the grain leaves the surface.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "terrain/dem/contact_mixing.hpp"
+#include "terrain/dem/pair_list.hpp"
+#include "terrain/dem/surface_collider.hpp"
+#include "terrain/dem/surface_forces.hpp"
+
+namespace furrow::dem {
+
+struct SurfaceHistory {
+  std::int32_t grain = 0;
+  std::int32_t surface = 0;
+  Quad normal;       // of the step before
+  Quad tangential;   // spring force on the grain, N; w = √δ
+  Quad rolling;      // N m
+};
+
+struct SurfaceTouch {
+  std::int32_t surface = 0;
+  SurfaceContactForce force;
+};
+
+/// What one block of grains has to do with surfaces; in ascending grain, surface.
+struct SurfaceBlock {
+  std::vector<SurfaceHistory> history, next;
+  std::vector<SurfaceTouch> touches;
+};
+
+class SurfaceContacts {
+ public:
+  SurfaceContacts(const GrainProperties& grain, bool rolling) : grain_(grain), rolling_(rolling) {}
+
+  /// @pre start has the mesh's vertex count.
+  void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const ContactCoefficients& coefficients,
+              const SurfaceState& start);
+  int count() const { return static_cast<int>(surfaces_.size()); }
+  bool any() const { return !surfaces_.empty(); }
+  const ContactMaterial& material(int k) const { return surfaces_[k].material; }
+  void set_coefficients(int k, const ContactCoefficients& c) { surfaces_[k].coefficients = c; }
+
+  /// Declares the motion of the coming interval from where each surface stands.
+  void set_targets(std::span<const SurfaceState> targets, double duration);
+  /// Moves all surfaces to a share of the interval; grains are looked for inside `grains`.
+  void move_to(double share);
+  void restrict_to(const SurfaceBox& grains);
+
+  void resize(int blocks) { blocks_.resize(blocks); }
+  /// Renames grains after sorting: order[new] = old.
+  void reorder(const std::vector<std::int32_t>& order);
+
+  /// Evaluates the contacts of one block and adds to the forces of its grains. Called by one thread per block.
+  template <class Law>
+  void evaluate(Grains& grains, PairBlock& block, int b, double dt);
+
+  /// Hands this substep's forces to the vertices, in the order of blocks and grains. Returns the impulse that the
+  /// grains received, N s.
+  Vec3 hand_over(double dt);
+  void finish(double duration, std::span<NodalForces> forces, std::span<ContactSums> sums);
+
+  /// Lowest, highest corner of surface k now.
+  SurfaceBox bounds(int k) const { return surfaces_[k].collider->bounds(); }
+  SurfaceBox swept_bounds(int k) const { return surfaces_[k].collider->swept_bounds(); }
+
+  void save(Archive& archive) const;
+  /// Into surfaces that were attached before, or that the archive brings along.
+  void restore(const Archive& archive);
+
+ private:
+  struct Surface {
+    std::unique_ptr<SurfaceCollider> collider;
+    std::unique_ptr<NodalForceSum> sum;
+    ContactMaterial material;
+    ContactCoefficients coefficients;
+    std::vector<Vec3> start, end;  // m
+    SurfaceBox near;               // bounds now, grown by the grain radius
+    std::vector<SurfaceContactForce> forces;
+  };
+  template <class Law>
+  void touch(Grains& grains, PairBlock& block, SurfaceBlock& mine, int k, int g, double dt);
+
+  GrainProperties grain_;
+  bool rolling_;
+  std::vector<Surface> surfaces_;
+  std::vector<SurfaceBlock> blocks_;
+};
+
+}  // namespace furrow::dem

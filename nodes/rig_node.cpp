@@ -79,7 +79,10 @@ class RigNode : public Node {
     std::vector<FinalReport> reports{own};
     for (std::size_t i = 1; i < cards_.size(); ++i)
       reports.push_back(receive<FinalReport>(transport, cards_[i].self));
-    if (results_) results_->finish(reports, builders_, wall_s() - wall_start_, stopped_);
+    if (!results_) return;
+    std::vector<double> carried_mass;
+    for (int k = 0; k < rig_->wheel_count(); ++k) carried_mass.push_back(rig_->report(k).carried_mass);
+    results_->finish(reports, builders_, carried_mass, wall_s() - wall_start_, stopped_);
   }
 
   void save(Archive& archive) const override {

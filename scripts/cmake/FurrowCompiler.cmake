@@ -2,6 +2,10 @@
 add_library(furrow_options INTERFACE)
 target_include_directories(furrow_options INTERFACE ${CMAKE_SOURCE_DIR})
 target_compile_options(furrow_options INTERFACE -Wall -Wextra -Wpedantic -fno-math-errno -fno-trapping-math)
+# GCC 12 warns of overlapping copies inside std::string's own operator+ (GCC bug 105651).
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  target_compile_options(furrow_options INTERFACE -Wno-restrict)
+endif()
 target_compile_definitions(furrow_options INTERFACE EIGEN_DONT_PARALLELIZE)
 # Eigen's alignment, and with it the layout of every class that holds an Eigen type, follows the instruction
 # set. It is pinned so that objects built with and without -march=native can be linked together.

@@ -1,0 +1,68 @@
+#include "nodes/results.hpp"
+
+#include <fmt/format.h>
+
+#include "nodes/hdf5_file.hpp"
+#include "nodes/text_file.hpp"
+#include "nodes/xdmf.hpp"
+
+namespace furrow {
+namespace {
+
+std::string numbered(const std::string& stem, std::size_t wheel, const std::string& extension) {
+  return wheel == 0 ? stem + extension : fmt::format("{}_wheel{}{}", stem, wheel, extension);
+}
+
+void put_heights(Hdf5Writer& file, const std::string& name, const HeightField& field) {
+  if (field.nx == 0) return;
+  file.put(name, field.height, {static_cast<hsize_t>(field.nx), static_cast<hsize_t>(field.ny)});
+  file.put(name + "_grid", std::vector<double>{field.x0, field.y0, field.cell}, {3});
+}
+
+}  // namespace
+
+Results::Results(const Scenario& scenario, std::vector<NodeCard> cards, const TerrainSetup& setup,
+                 const std::filesystem::path& directory)
+    : scenario_(scenario), cards_(std::move(cards)), setup_(setup), directory_(directory) {
+  write_whole_file(directory_ / "scenario.json", scenario_.completed + "\n");
+  const std::size_t wheels = scenario_.tires.size();
+  rows_.resize(wheels);
+  for (std::size_t k = 0; k < wheels; ++k)
+    writers_.push_back(std::make_unique<SeriesWriter>(directory_ / numbered("timeseries", k, ".csv")));
+}
+
+void Results::add(int wheel, const SeriesRow& row) {
+  rows_[wheel].push_back(row);
+  writers_[wheel]->add(row);
+}
+
+void Results::write_hdf5(std::span<const FinalReport> reports) const {
+  Hdf5Writer file(directory_ / "results.h5");
+  file.attribute("scenario", scenario_.name);
+  file.attribute("scenario_digest", scenario_.digest);
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    std::vector<double> values(rows_[k].size());
+    for (const SeriesColumn& column : series_columns()) {
+      for (std::size_t i = 0; i < values.size(); ++i) values[i] = column.value(rows_[k][i]);
+      file.put(fmt::format("series/wheel{}/{}", k, column.name), values, {values.size()});
+    }
+  }
+  put_heights(file, "terrain/height_before", reports.back().height_before);
+  put_heights(file, "terrain/height_after", reports.back().height_after);
+  file.finish();
+}
+
+void Results::finish(std::span<const FinalReport> reports, std::span<const SeriesBuilder> builders,
+                     std::span<const double> carried_mass, double wall, bool stopped) {
+  for (auto& writer : writers_) writer->flush();
+  write_hdf5(reports);
+  write_xdmf_index(directory_);
+  if (stopped) return;
+  for (std::size_t k = builders.size(); k-- > 0;) {
+    const SummaryInput input{scenario_, cards_, setup_, reports, rows_[k], builders[k], carried_mass[k], wall,
+                             static_cast<int>(k)};
+    write_whole_file(directory_ / numbered("summary", k, ".json"), summary_text(input));
+  }
+}
+
+}  // namespace furrow

@@ -1,0 +1,55 @@
+// What a run leaves behind, written by the rig's rank: timeseries.csv, results.h5, results.xdmf, summary.json.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "nodes/scenario.hpp"
+#include "nodes/series.hpp"
+#include "nodes/series_builder.hpp"
+#include "protocol/messages.hpp"
+
+namespace furrow {
+
+/// Everything the summary of one wheel is computed from.
+struct SummaryInput {
+  const Scenario& scenario;
+  std::span<const NodeCard> cards;        // rig, tires, terrain
+  const TerrainSetup& setup;
+  std::span<const FinalReport> reports;   // as cards
+  std::span<const SeriesRow> rows;
+  const SeriesBuilder& builder;           // totals at the end
+  double carried_mass = 0.0;              // kg
+  double wall = 0.0;                      // s, without settling
+  int wheel = 0;
+};
+
+/// summary.json's text. Values that could not be measured are null.
+std::string summary_text(const SummaryInput& input);
+
+class Results {
+ public:
+  /// Opens the series files of all wheels in the existing run directory; writes scenario.json. @throws Error(io)
+  Results(const Scenario& scenario, std::vector<NodeCard> cards, const TerrainSetup& setup,
+          const std::filesystem::path& directory);
+
+  void add(int wheel, const SeriesRow& row);
+
+  /// Writes results.h5, results.xdmf and, unless the run was stopped early, summary.json. @throws Error(io)
+  void finish(std::span<const FinalReport> reports, std::span<const SeriesBuilder> builders,
+              std::span<const double> carried_mass, double wall, bool stopped);
+
+ private:
+  void write_hdf5(std::span<const FinalReport> reports) const;
+
+  Scenario scenario_;
+  std::vector<NodeCard> cards_;
+  TerrainSetup setup_;
+  std::filesystem::path directory_;
+  std::vector<std::unique_ptr<SeriesWriter>> writers_;
+  std::vector<std::vector<SeriesRow>> rows_;  // per wheel
+};
+
+}  // namespace furrow

@@ -1,0 +1,62 @@
+#include "nodes/statistics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace furrow {
+namespace {
+
+constexpr double kWindow = 5.0;  // lags summed, in integrated autocorrelation times
+
+double mean_of(std::span<const double> x) {
+  return std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
+}
+
+double integrated_autocorrelation_time(std::span<const double> x, double mean, double variance) {
+  const std::size_t n = x.size();
+  double tau = 1.0;
+  for (std::size_t lag = 1; lag < n / 2; ++lag) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i + lag < n; ++i) sum += (x[i] - mean) * (x[i + lag] - mean);
+    tau += 2.0 * sum / (static_cast<double>(n) * variance);
+    if (static_cast<double>(lag) >= kWindow * tau) break;
+  }
+  return std::max(tau, 1.0);
+}
+
+double slope(std::span<const double> x, double mean) {
+  const double middle = 0.5 * static_cast<double>(x.size() - 1);
+  double xy = 0.0, xx = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double t = static_cast<double>(i) - middle;
+    xy += t * (x[i] - mean);
+    xx += t * t;
+  }
+  return xx > 0.0 ? xy / xx : 0.0;
+}
+
+}  // namespace
+
+SeriesStatistics statistics(std::span<const double> x) {
+  SeriesStatistics s;
+  const std::size_t n = x.size();
+  if (n == 0) return s;
+  s.mean = mean_of(x);
+  s.sem = std::numeric_limits<double>::infinity();
+  if (n < 4) return s;
+  double squares = 0.0;
+  for (const double value : x) squares += (value - s.mean) * (value - s.mean);
+  const double variance = squares / static_cast<double>(n);
+  s.std = std::sqrt(squares / static_cast<double>(n - 1));
+  s.n_eff = static_cast<double>(n);
+  if (variance > 0.0) s.n_eff /= integrated_autocorrelation_time(x, s.mean, variance);
+  s.sem = s.std / std::sqrt(s.n_eff);
+  s.drift = slope(x, s.mean);
+  const double apart = std::abs(mean_of(x.first(n / 2)) - mean_of(x.subspan(n / 2)));
+  s.halves_agree = apart <= 2.0 * std::sqrt(2.0) * s.sem;
+  return s;
+}
+
+}  // namespace furrow

@@ -1,0 +1,227 @@
+#include <cmath>
+#include <fstream>
+#include <numbers>
+
+#include <nlohmann/json.hpp>
+
+#include "nodes/node.hpp"
+#include "nodes/results.hpp"
+#include "nodes/rut.hpp"
+#include "nodes/statistics.hpp"
+#include "protocol/hash.hpp"
+
+namespace furrow {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kSteadySem = 0.02;      // of the load: largest standard error of a steady pull
+constexpr double kBouncePeriod = 0.25;   // s, of a loaded wheel (about 4 Hz)
+constexpr double kBounces = 3.0;         // the window must hold
+constexpr double kSteadyTravel = 2.0;    // undeformed radii the window must hold
+constexpr int kDefaultFacets = 90;       // of the shipped tires
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+/// The averaging window: rows [first, last], whose means describe the time from `before` to the last row.
+struct Window {
+  std::span<const SeriesRow> rows;
+  SeriesRow before;
+  double duration() const { return rows.empty() ? 0.0 : rows.back().time - before.time; }
+  template <class Get>
+  double mean(Get get) const {
+    double sum = 0.0;
+    for (const SeriesRow& row : rows) sum += get(row);
+    return rows.empty() ? NAN : sum / static_cast<double>(rows.size());
+  }
+  template <class Get>
+  double rate(Get get) const {
+    return rows.empty() ? NAN : (get(rows.back()) - get(before)) / duration();
+  }
+};
+
+/// The window of the scenario, shortened at its beginning to a whole number of tire facets.
+Window averaging_window(const SummaryInput& in) {
+  const auto& rows = in.rows;
+  std::size_t first = 1;
+  while (first < rows.size() && rows[first].time < in.scenario.run.average_from) ++first;
+  if (first >= rows.size()) return {};
+  const int given = in.scenario.tires[in.wheel].elements_circumference;
+  const double facet = 2.0 * std::numbers::pi / (given > 0 ? given : kDefaultFacets);
+  double turned = 0.0;
+  std::size_t start = rows.size() - 1;
+  double best = std::abs(turned);
+  std::size_t chosen = first;
+  bool whole = false;
+  for (; start >= first; --start) {
+    turned += std::abs(rows[start].spin) * (rows[start].time - rows[start - 1].time);
+    const double off = std::abs(std::remainder(turned, facet));
+    if (start < first + 50 && turned > facet && (!whole || off < best)) {
+      best = off;
+      chosen = start;
+      whole = true;
+    }
+  }
+  return {rows.subspan(chosen), rows[chosen - 1]};
+}
+
+std::string cpu_model() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);)
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  return "unknown";
+}
+
+Json pull_statistics(const SummaryInput& in, const Window& w, double load) {
+  std::vector<double> samples;
+  for (const SeriesRow& row : w.rows) samples.push_back(row.drawbar_pull);
+  const SeriesStatistics s = statistics(samples);
+  const double interval = w.rows.empty() ? NAN : w.duration() / static_cast<double>(w.rows.size());
+  const double travel = w.rows.empty() ? 0.0 : std::abs(w.rows.back().position - w.before.position);
+  const double turned = w.mean([](const SeriesRow& r) { return std::abs(r.spin); }) * w.duration() *
+                        in.cards[1 + in.wheel].tire_radius;
+  const bool steady = !w.rows.empty() && s.halves_agree && s.sem <= kSteadySem * load &&
+                      w.duration() >= kBounces * kBouncePeriod &&
+                      std::max(travel, turned) >= kSteadyTravel * in.cards[1 + in.wheel].tire_radius;
+  return {{"mean", number(s.mean)}, {"std", number(s.std)}, {"sem", number(s.sem)}, {"n_eff", number(s.n_eff)},
+          {"drift_N_per_s", number(s.drift / interval)}, {"steady", steady},
+          {"from_s", number(w.rows.empty() ? NAN : w.before.time)},
+          {"to_s", number(w.rows.empty() ? NAN : w.rows.back().time)}};
+}
+
+/// T ω − P v = dissipation in soil and tire + rate of stored energy + what the lag of the interfaces loses.
+Json power_balance(const Window& w) {
+  const double spindle = w.rate([](const SeriesRow& r) { return r.spindle_work; });
+  const double pull = w.rate([](const SeriesRow& r) { return r.pull_work; });
+  const double soil = w.rate([](const SeriesRow& r) { return r.soil_dissipation; });
+  const double tire = w.rate([](const SeriesRow& r) { return r.tire_dissipation; });
+  const double damper = w.rate([](const SeriesRow& r) { return r.damper_dissipation; });
+  const double stored = w.rate([](const SeriesRow& r) {
+    return r.terrain_kinetic_energy + r.terrain_potential_energy + r.terrain_elastic_energy + r.tire_energy +
+           r.carried_energy;
+  });
+  const double interface = -w.rate([](const SeriesRow& r) { return r.energy_error + r.rim_energy_error; });
+  const double residual = spindle - pull - soil - tire - damper - stored - interface;
+  return {{"spindle_power_W", number(spindle)}, {"pull_power_W", number(pull)},
+          {"soil_dissipation_W", number(soil)}, {"tire_dissipation_W", number(tire)},
+          {"damper_dissipation_W", number(damper)}, {"stored_rate_W", number(stored)},
+          {"interface_loss_W", number(interface)}, {"residual_W", number(residual)},
+          {"residual_share", number(residual / (spindle - pull))}};
+}
+
+void add_rut(const SummaryInput& in, Json& json) {
+  const FinalReport& terrain = in.reports.back();
+  RutOptions options;
+  options.direction = in.scenario.rig.travel_sign;
+  options.axle = options.direction * in.rows.back().position;
+  options.start = options.direction * in.rows.front().position;
+  options.tread_width = in.cards[1 + in.wheel].tire_width;
+  const Rut rut = measure_rut(terrain.height_before, terrain.height_after, options);
+  json["rut_depth_m"] = number(rut.measured ? rut.depth : NAN);
+  json["rut_width_m"] = number(rut.measured ? rut.width : NAN);
+}
+
+void add_mobility(const SummaryInput& in, const Window& w, Json& json) {
+  const double load = in.carried_mass * kGravity, radius = in.cards[1 + in.wheel].tire_radius;
+  json["drawbar_pull_N"] = pull_statistics(in, w, load);
+  const auto mean = [&](auto get) { return w.mean(get); };
+  const double pull = mean([](const SeriesRow& r) { return r.drawbar_pull; });
+  const double speed = mean([](const SeriesRow& r) { return r.speed; });
+  const double spin = mean([](const SeriesRow& r) { return r.spin; });
+  const double torque = mean([](const SeriesRow& r) { return r.drive_torque; });
+  const double force_z = mean([](const SeriesRow& r) { return r.force.z(); });
+  const double lowest = mean([](const SeriesRow& r) { return r.lowest_point; });
+  const double axle = mean([](const SeriesRow& r) { return r.axle_height; });
+  json["drawbar_coefficient"] = number(pull / load);
+  json["sinkage_m"] = number(mean([](const SeriesRow& r) { return r.sinkage; }));
+  json["sinkage_kinematic_m"] = number(mean([](const SeriesRow& r) { return r.sinkage_kinematic; }));
+  add_rut(in, json);
+  json["tire_deflection_m"] = number(radius - (axle - lowest));
+  json["effective_rolling_radius_m"] = number(spin != 0.0 ? speed / spin : NAN);
+  json["bed_clearance_m"] = number(lowest - in.setup.floor_height);
+  json["vertical_load_N"] = number(load);
+  json["net_terrain_force_N"] = {number(mean([](const SeriesRow& r) { return r.force.x(); })),
+                                 number(mean([](const SeriesRow& r) { return r.force.y(); })), number(force_z)};
+  const double momentum_rate = w.rate([](const SeriesRow& r) { return r.vertical_momentum; });
+  json["vertical_balance_residual"] = number((force_z - load - momentum_rate) / load);
+  json["terrain_resistance_N"] = number(-mean([](const SeriesRow& r) { return r.normal_force_travel; }));
+  json["tractive_effort_N"] = number(mean([](const SeriesRow& r) { return r.tractive_effort; }));
+  json["drive_torque_Nm"] = number(torque);
+  json["lateral_force_N"] = number(mean([](const SeriesRow& r) { return r.lateral_force; }));
+  json["aligning_moment_Nm"] = number(mean([](const SeriesRow& r) { return r.aligning_moment; }));
+  json["tractive_efficiency"] = number(pull * speed / (torque * spin));
+  json["motion_resistance_coefficient"] = number((torque / radius - pull) / load);
+}
+
+Json rank_table(const SummaryInput& in) {
+  Json ranks = Json::array();
+  for (std::size_t i = 0; i < in.reports.size(); ++i) {
+    const FinalReport& r = in.reports[i];
+    ranks.push_back({{"rank", i}, {"node", to_string(r.self)}, {"kind", in.cards[i].node_kind}, {"threads", r.threads},
+                     {"cpu_s", r.cpu_s}, {"compute_s", r.compute_s}, {"wait_s", r.wait_s},
+                     {"busy_share", number(r.compute_s / (r.compute_s + r.wait_s))}});
+  }
+  return ranks;
+}
+
+void add_accounts(const SummaryInput& in, const Window& w, Json& json) {
+  const SeriesRow& end = in.builder.now();
+  const double sent = in.builder.impulse_sent_abs();
+  json["power_balance"] = power_balance(w);
+  json["interface_energy_error_J"] = number(end.energy_error);
+  json["interface_energy_error_abs_J"] = number(end.energy_error_abs);
+  json["rim_energy_error_J"] = number(end.rim_energy_error);
+  json["interface_work_J"] = number(end.spindle_work);
+  json["momentum_residual"] =
+      number(sent > 0.0 ? (in.builder.impulse_sent_arrived() - end.impulse_received).norm() / sent : 0.0);
+  json["transfer_force_residual"] = number(end.transfer_force_residual);
+  json["transfer_moment_residual"] = number(end.transfer_moment_residual);
+}
+
+void add_cost(const SummaryInput& in, Json& json) {
+  const SeriesRow& end = in.builder.now();
+  const double steps = std::max(1.0, std::round(end.time / in.scenario.run.step));
+  json["simulated_s"] = end.time;
+  json["wall_s"] = in.wall;
+  json["settle_wall_s"] = in.setup.settle_wall_s;
+  json["wall_s_per_simulated_s"] = number(in.wall / end.time);
+  json["ranks"] = rank_table(in);
+  json["segments"] = Json::array({{{"from_step", 0}, {"to_step", static_cast<std::int64_t>(steps)},
+                                   {"wall_s", in.wall}, {"threads", in.reports.back().threads}}});
+  json["grains"] = in.setup.grains;
+  double contacts = 0.0, active = 0.0;
+  for (const SeriesRow& row : in.rows) {
+    contacts += row.contacts_terrain / static_cast<double>(in.rows.size());
+    active += row.active_share / static_cast<double>(in.rows.size());
+  }
+  json["contacts_mean"] = number(contacts);
+  json["active_share_mean"] = number(active);
+  json["tire_coordinates"] = in.cards[1 + in.wheel].size;
+  json["newton_iterations_mean"] = number(end.newton_iterations / steps);
+  json["factorizations"] = end.factorizations;
+  json["compiler"] = "g++ " __VERSION__;
+  json["cpu"] = cpu_model();
+}
+
+}  // namespace
+
+std::string summary_text(const SummaryInput& in) {
+  Hash state;
+  for (const FinalReport& report : in.reports) state.add(&report.state_hash, sizeof report.state_hash);
+  Json json;
+  json["format_version"] = 1;
+  json["version"] = FURROW_VERSION;
+  json["scenario"] = in.scenario.name;
+  json["scenario_digest"] = in.scenario.digest;
+  json["state_hash"] = state.hex();
+  json["terrain_engine"] = in.scenario.terrain.engine;
+  json["law"] = in.scenario.terrain.law;
+  json["slip"] = in.scenario.rig.slip;
+  const Window window = averaging_window(in);
+  if (!in.rows.empty()) add_mobility(in, window, json);
+  add_accounts(in, window, json);
+  add_cost(in, json);
+  return json.dump(2) + "\n";
+}
+
+}  // namespace furrow

@@ -1,0 +1,18 @@
+// Whole files appear or do not: written under a temporary name, flushed to the disk, then renamed.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace furrow {
+
+/// @throws Error(io) naming the file
+void write_whole_file(const std::filesystem::path& file, const std::string& text);
+
+/// Flushes `written` to the disk and renames it to `file`. @throws Error(io)
+void publish_file(const std::filesystem::path& written, const std::filesystem::path& file);
+
+/// The temporary name beside `file`.
+std::filesystem::path temporary_name(const std::filesystem::path& file);
+
+}  // namespace furrow

@@ -1,0 +1,102 @@
+// XDMF 3, https://www.xdmf.org/index.php/XDMF_Model_and_Format: a temporal collection of spatial collections, one grid
+// per tire and one for the grains; every grid points into that frame's HDF5 file.
+#include "nodes/xdmf.hpp"
+
+#include <hdf5.h>
+
+#include <map>
+#include <regex>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "nodes/text_file.hpp"
+
+namespace furrow {
+namespace {
+
+struct Frame {
+  std::string file;  // relative to the run directory
+  double time = 0.0;
+  hsize_t points = 0, triangles = 0;
+};
+
+hsize_t rows(hid_t file, const char* name) {
+  if (H5Lexists(file, name, H5P_DEFAULT) <= 0) return 0;
+  const hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
+  const hid_t space = H5Dget_space(set);
+  hsize_t shape[2] = {0, 0};
+  H5Sget_simple_extent_dims(space, shape, nullptr);
+  H5Sclose(space);
+  H5Dclose(set);
+  return shape[0];
+}
+
+/// False for a file that cannot be read: it is left out.
+bool read_frame(const std::filesystem::path& path, Frame& frame) {
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (file < 0) return false;
+  bool ok = false;
+  if (H5Aexists(file, "time_s") > 0) {
+    const hid_t attribute = H5Aopen(file, "time_s", H5P_DEFAULT);
+    ok = H5Aread(attribute, H5T_NATIVE_DOUBLE, &frame.time) >= 0;
+    H5Aclose(attribute);
+  }
+  frame.points = rows(file, "position");
+  frame.triangles = rows(file, "triangle");
+  frame.file = "frames/" + path.filename().string();
+  H5Fclose(file);
+  return ok && frame.points > 0;
+}
+
+std::string data_item(const Frame& f, const char* name, hsize_t count, int width, const char* type) {
+  const std::string shape = width > 1 ? fmt::format("{} {}", count, width) : fmt::format("{}", count);
+  return fmt::format("<DataItem Dimensions=\"{}\" NumberType=\"{}\" Precision=\"4\" Format=\"HDF\">{}:/{}</DataItem>",
+                     shape, type, f.file, name);
+}
+
+std::string attribute(const Frame& f, const char* name, int width) {
+  return fmt::format("<Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"Node\">{}</Attribute>\n", name,
+                     width > 1 ? "Vector" : "Scalar", data_item(f, name, f.points, width, "Float"));
+}
+
+std::string grid(const Frame& f, const std::string& name) {
+  std::string text = fmt::format("<Grid Name=\"{}\" GridType=\"Uniform\">\n", name);
+  if (f.triangles > 0)
+    text += fmt::format("<Topology TopologyType=\"Triangle\" NumberOfElements=\"{}\">{}</Topology>\n", f.triangles,
+                        data_item(f, "triangle", f.triangles, 3, "Int"));
+  else
+    text += fmt::format("<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\" NodesPerElement=\"1\"/>\n",
+                        f.points);
+  text += fmt::format("<Geometry GeometryType=\"XYZ\">{}</Geometry>\n", data_item(f, "position", f.points, 3, "Float"));
+  text += f.triangles > 0 ? attribute(f, "velocity", 3) + attribute(f, "force", 3)
+                          : attribute(f, "speed", 1) + attribute(f, "radius", 1);
+  return text + "</Grid>\n";
+}
+
+}  // namespace
+
+void write_xdmf_index(const std::filesystem::path& run) {
+  if (!std::filesystem::is_directory(run / "frames")) return;
+  static const std::regex pattern(R"((tire\d+|terrain)_(\d+)\.h5)");
+  std::map<std::string, std::map<std::string, Frame>> series;  // by index, then by kind
+  for (const auto& entry : std::filesystem::directory_iterator(run / "frames")) {
+    std::smatch match;
+    const std::string name = entry.path().filename().string();
+    Frame frame;
+    if (std::regex_match(name, match, pattern) && read_frame(entry.path(), frame)) series[match[2]][match[1]] = frame;
+  }
+  if (series.empty()) return;
+  std::string text =
+      "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\"><Domain>\n"
+      "<Grid Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+  for (const auto& [index, frames] : series) {
+    text += fmt::format("<Grid Name=\"{}\" GridType=\"Collection\" CollectionType=\"Spatial\"><Time Value=\"{:.9g}\"/>\n",
+                        index, frames.begin()->second.time);
+    for (const auto& [kind, frame] : frames) text += grid(frame, kind);
+    text += "</Grid>\n";
+  }
+  write_whole_file(run / "results.xdmf", text + "</Grid></Domain></Xdmf>\n");
+}
+
+}  // namespace furrow

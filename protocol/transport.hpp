@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "protocol/error.hpp"
+#include "protocol/host.hpp"
 #include "protocol/messages.hpp"
 
 namespace furrow {
@@ -35,6 +36,8 @@ class Transport {
 
   virtual Address self() const = 0;
   virtual int tire_count() const = 0;
+  /// The nodes whose processes run on this machine, in rank order, this one included.
+  virtual std::vector<HostNode> host_nodes() const { return {{self(), allowed_cores(), true}}; }
 
   /// Non-blocking; the transport owns the payload until it is delivered. Order is kept per (sender, receiver, kind).
   virtual void send(Address to, MessageKind kind, std::vector<std::byte> payload) = 0;
@@ -44,6 +47,11 @@ class Transport {
   ///         Error(rank_lost) "A waited N s for B (kind)" after peer_timeout of this process's own running time
   ///         without message or heartbeat from that peer.
   virtual std::vector<std::byte> receive(Address from, MessageKind kind) = 0;
+
+  /// Waits until everything sent has left this process. To be called when all sends and receives of a synchronization
+  /// are done and before long work: a message under way makes no progress while its sender computes.
+  /// Peers take what is sent to them in any call that waits, so no order of sends and receives can deadlock.
+  virtual void flush() {}
 
   /// Tells all others that this node is alive while it does something long (settling).
   virtual void heartbeat() = 0;

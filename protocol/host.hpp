@@ -1,0 +1,20 @@
+// What a node needs to know of the machine that it shares with other nodes.
+#pragma once
+
+#include <vector>
+
+#include "protocol/messages.hpp"
+
+namespace furrow {
+
+/// A node and the processor cores that its process may use: one logical CPU number per physical core, increasing.
+struct HostNode {
+  Address node;
+  std::vector<int> cores;
+  bool self = false;  // this very process: a terrain of several ranks has one address
+};
+
+/// Cores that this process may use; logical CPUs that share a core count once. Never empty.
+std::vector<int> allowed_cores();
+
+}  // namespace furrow

@@ -9,7 +9,7 @@ namespace furrow::dem {
 namespace {
 
 constexpr int kTries = 30;               // candidates around a sample before it is retired [Bridson 2007]
-constexpr double kDiskCoverage = 0.49;   // share of the area covered by discs of the spacing's diameter, measured
+constexpr double kDiskCoverage = 0.491;  // share of the area covered by discs of the spacing's diameter, measured
 
 class Uniform {
  public:
@@ -57,7 +57,7 @@ std::vector<Quad> poisson_layer(const Bin& bin, double radius, std::uint64_t see
     bool found = false;
     for (int k = 0; k < kTries && !found; ++k) {
       const double angle = 2.0 * std::numbers::pi * uniform();
-      const double distance = spacing * std::sqrt(1.0 + 3.0 * uniform());  // uniform over the ring's area
+      const double distance = spacing * (1.0 + uniform());
       const double x = from.x + distance * std::cos(angle), y = from.y + distance * std::sin(angle);
       if (x < 0.0 || x > length || y < 0.0 || y > width || !free(x, y)) continue;
       accept(x, y);
@@ -87,9 +87,9 @@ std::vector<Quad> bed_layers(const Bin& bin, double radius, int layers, std::uin
 
 double expected_layer_count(const Bin& bin, double radius) {
   const double disc = 0.25 * std::numbers::pi * kSpacing * kSpacing * radius * radius;
-  // The samples' domain, grown by half a spacing: discs at its edge reach out.
-  const double edge = (kSpacing - 2.0) * radius;
-  return kDiskCoverage * (bin.length + edge) * (bin.width + edge) / disc;
+  // Discs reach half a spacing beyond the samples' domain; half of that rim is gained.
+  const double rim = (0.5 * kSpacing - 2.0) * radius;
+  return kDiskCoverage * (bin.length + rim) * (bin.width + rim) / disc;
 }
 
 }  // namespace furrow::dem

@@ -1,0 +1,281 @@
+// The grains behind the terrain interface: beds, cache, tires, state.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "protocol/hash.hpp"
+#include "terrain/dem/bed_cache.hpp"
+#include "terrain/terrain_options.hpp"
+
+namespace furrow {
+namespace {
+
+namespace fs = std::filesystem;
+
+class DemTerrain : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("furrow_bed_test_" + std::to_string(::getpid()));
+    fs::create_directories(folder_);
+    setenv("XDG_CACHE_HOME", folder_.c_str(), 1);
+    options_.radius = 0.01;
+    options_.layers = 4;
+    options_.length = 0.3;
+    options_.width = 0.2;
+    options_.cohesion = 20e3;
+    options_.step = 6e-5;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path cached() const { return dem::bed_cache_file(dem::bed_digest(options_)); }
+
+  fs::path folder_;
+  TerrainOptions options_;
+};
+
+std::uint64_t hash_of(const Terrain& terrain) {
+  Archive archive;
+  terrain.save(archive);
+  Hash hash;
+  for (const auto& [name, array] : archive.arrays()) {
+    hash.add(name);
+    std::visit([&](const auto& v) { hash.add(std::span(v)); }, array);
+  }
+  return hash.value();
+}
+
+/// A square plate of n × n cells, outside below, so that it presses down on grains.
+struct Plate {
+  SurfaceMesh mesh;
+  SurfaceState state;
+
+  Plate(double x0, double y0, double size, int n, double z) {
+    for (int i = 0; i <= n; ++i)
+      for (int j = 0; j <= n; ++j) state.position.emplace_back(x0 + size * i / n, y0 + size * j / n, z);
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) {
+        const int a = i * (n + 1) + j, b = a + n + 1;
+        mesh.triangles.push_back({a, b + 1, b});
+        mesh.triangles.push_back({a, a + 1, b + 1});
+      }
+    mesh.vertex_count = static_cast<int>(state.position.size());
+    state.velocity.assign(state.position.size(), Vec3::Zero());
+  }
+  void move(const Vec3& v, double dt) {
+    for (std::size_t a = 0; a < state.position.size(); ++a) {
+      state.position[a] += dt * state.velocity[a];
+      state.velocity[a] = v;
+    }
+  }
+};
+
+const ContactMaterial kRubber{2e7, 0.4, 0.9, 0.2, 2e6, 13.0, 0.0};
+
+struct Press {
+  std::vector<NodalForces> forces{1};
+  std::vector<ContactSums> sums{1};
+  double work = 0.0;
+  Vec3 impulse = Vec3::Zero();
+
+  TerrainStatus run(Terrain& terrain, Plate& plate, const Vec3& v, int steps, double dt, int substeps = 1) {
+    for (int k = 0; k < steps; ++k) {
+      plate.move(v, dt);
+      const TerrainStatus status = terrain.advance({&plate.state, 1}, dt, substeps, forces, sums);
+      if (!status.ok) return status;
+      work += sums[0].work;
+      impulse += dt * sums[0].force;
+    }
+    return {};
+  }
+};
+
+TEST_F(DemTerrain, bed_settles_and_stands_at_a_plausible_height) {
+  const auto terrain = make_terrain(options_);
+  std::string said;
+  terrain->prepare([&](const std::string& what, double) { said = what; });
+  EXPECT_EQ(said, "settling the bed");
+  const TerrainState s = terrain->state();
+  const double mass = 2500 * 4.0 / 3.0 * M_PI * 1e-6 * static_cast<double>(terrain->size());
+  EXPECT_NEAR(s.floor_force, mass * 9.81, 1e-3 * mass * 9.81);
+  const double height = terrain->mean_height(0.03, 0.27, -0.08, 0.08), top = terrain->top_height(0.03, 0.27, -0.08, 0.08);
+  const double solid = mass / 2500 / (0.3 * 0.2 * height);
+  EXPECT_GT(solid, 0.35);
+  EXPECT_LT(solid, 0.64);
+  EXPECT_GT(top, height);
+  EXPECT_LT(top, height + 0.03);
+  const TerrainEstimate e = estimate_terrain(options_);
+  EXPECT_NEAR(static_cast<double>(e.grains), static_cast<double>(terrain->size()), 0.1 * static_cast<double>(e.grains));
+}
+
+TEST_F(DemTerrain, run_from_cached_bed_equals_the_run_that_settled_it) {
+  const auto first = make_terrain(options_);
+  first->prepare({});
+  ASSERT_TRUE(fs::exists(cached()));
+  bool settled_again = false;
+  const auto second = make_terrain(options_);
+  second->prepare([&](const std::string&, double) { settled_again = true; });
+  EXPECT_FALSE(settled_again);
+  EXPECT_EQ(hash_of(*first), hash_of(*second));
+  for (int k = 0; k < 200; ++k) {
+    ASSERT_TRUE(first->advance({}, 6e-5, 1, {}, {}).ok);
+    ASSERT_TRUE(second->advance({}, 6e-5, 1, {}, {}).ok);
+  }
+  EXPECT_EQ(hash_of(*first), hash_of(*second));
+
+  options_.bed = cached().string();
+  const auto named = make_terrain(options_);
+  named->prepare({});
+  for (int k = 0; k < 200; ++k) ASSERT_TRUE(named->advance({}, 6e-5, 1, {}, {}).ok);
+  EXPECT_EQ(hash_of(*first), hash_of(*named));
+  options_.radius = 0.011;
+  EXPECT_THROW(make_terrain(options_)->prepare({}), Error);
+}
+
+TEST_F(DemTerrain, damaged_cache_is_made_anew) {
+  const auto first = make_terrain(options_);
+  first->prepare({});
+  {
+    std::fstream file(cached(), std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(static_cast<std::streamoff>(fs::file_size(cached()) / 2));
+    file.write("damage", 6);
+  }
+  EXPECT_THROW(dem::read_bed(cached()), Error);
+  bool settled_again = false;
+  const auto second = make_terrain(options_);
+  second->prepare([&](const std::string&, double) { settled_again = true; });
+  EXPECT_TRUE(settled_again);
+  EXPECT_EQ(hash_of(*first), hash_of(*second));
+  EXPECT_NO_THROW(dem::read_bed(cached()));
+  for (const auto& entry : fs::directory_iterator(cached().parent_path())) EXPECT_EQ(entry.path().extension(), ".h5");
+}
+
+TEST_F(DemTerrain, digest_tells_beds_apart) {
+  const std::string digest = dem::bed_digest(options_);
+  TerrainOptions other = options_;
+  other.threads = 7, other.step = 1e-5, other.activity = false;
+  EXPECT_EQ(dem::bed_digest(other), digest);
+  other = options_, other.seed = 2;
+  EXPECT_NE(dem::bed_digest(other), digest);
+  other = options_, other.law = "coulomb";
+  EXPECT_NE(dem::bed_digest(other), digest);
+  other = options_, other.friction = 0.91;
+  EXPECT_NE(dem::bed_digest(other), digest);
+}
+
+TEST_F(DemTerrain, plate_books_force_momentum_and_energy) {
+  for (const char* law : {"mindlin", "coulomb"}) {
+    options_.law = law;
+    const auto terrain = make_terrain(options_);
+    terrain->prepare({});
+    const double top = terrain->top_height(0.1, 0.2, -0.05, 0.05);
+    Plate plate(0.1, -0.05, 0.1, 4, top + 1e-4);
+    terrain->attach(plate.mesh, kRubber, plate.state);
+    const TerrainState before = terrain->state();
+    Press press;
+    const double dt = 6e-5;
+    const TerrainStatus status = press.run(*terrain, plate, Vec3(0.1, 0.0, -0.2), 1000, dt, 2);
+    ASSERT_TRUE(status.ok) << status.message;
+    const TerrainState after = terrain->state();
+    const ContactSums& sums = press.sums[0];
+
+    EXPECT_GT(press.impulse.z(), 0.05);
+    EXPECT_LT((sums.force - sums.normal - sums.tangential).norm(), 1e-12 * sums.force.norm());
+    Vec3 nodal = Vec3::Zero();
+    for (const Vec3& f : press.forces[0].force) nodal += f;
+    EXPECT_LT((nodal - sums.force).norm(), 1e-10 * sums.force.norm());
+    EXPECT_LT(sums.transfer_force_residual, 1e-12);
+    EXPECT_LT(sums.transfer_moment_residual, 1e-12);
+    EXPECT_LT((press.impulse + after.surface_impulse).norm(), 1e-11 * press.impulse.norm());
+
+    const double mass = 2500 * 4.0 / 3.0 * M_PI * 1e-6 * static_cast<double>(terrain->size());
+    const Vec3 change = after.momentum - before.momentum - after.surface_impulse - after.wall_impulse +
+                        Vec3(0, 0, mass * 9.81 * 1000 * dt);
+    EXPECT_LT(change.norm(), 1e-10 * mass * 9.81 * 1000 * dt) << law;
+
+    // The plate's work on the grains is what they hold more and what they lost.
+    const double held = after.kinetic_energy + after.potential_energy + after.elastic_energy - before.kinetic_energy -
+                        before.potential_energy - before.elastic_energy;
+    EXPECT_GT(after.dissipation, 0.0);
+    EXPECT_NEAR(-press.work, held + after.dissipation, 1e-3 * std::abs(press.work)) << law;
+  }
+}
+
+TEST_F(DemTerrain, restored_terrain_with_a_tire_continues_bit_for_bit) {
+  options_.rolling_friction = 0.1;
+  const auto a = make_terrain(options_);
+  a->prepare({});
+  Plate plate(0.1, -0.05, 0.1, 4, a->top_height(0.1, 0.2, -0.05, 0.05));
+  a->attach(plate.mesh, kRubber, plate.state);
+  Press press;
+  ASSERT_TRUE(press.run(*a, plate, Vec3(0.3, 0.0, -0.3), 300, 6e-5).ok);
+  Archive archive;
+  a->save(archive);
+  options_.threads = 2;
+  const auto b = make_terrain(options_);
+  b->restore(archive);
+  Plate other = plate;
+  Press again;
+  ASSERT_TRUE(press.run(*a, plate, Vec3(0.3, 0.0, -0.1), 300, 6e-5).ok);
+  ASSERT_TRUE(again.run(*b, other, Vec3(0.3, 0.0, -0.1), 300, 6e-5).ok);
+  EXPECT_EQ(hash_of(*a), hash_of(*b));
+  ASSERT_EQ(press.forces[0].force.size(), again.forces[0].force.size());
+  for (std::size_t k = 0; k < press.forces[0].force.size(); ++k)
+    EXPECT_EQ(press.forces[0].force[k], again.forces[0].force[k]);
+}
+
+TEST_F(DemTerrain, tire_that_reaches_the_floor_stops_the_run_with_a_message) {
+  const auto terrain = make_terrain(options_);
+  terrain->prepare({});
+  Plate plate(0.1, -0.05, 0.1, 2, 0.2);
+  terrain->attach(plate.mesh, kRubber, plate.state);
+  Press press;
+  const TerrainStatus status = press.run(*terrain, plate, Vec3(0, 0, -4000), 1, 6e-5);
+  EXPECT_FALSE(status.ok);
+  EXPECT_NE(status.message.find("floor"), std::string::npos);
+  Plate outside(-0.05, -0.05, 0.1, 2, 0.2);
+  EXPECT_THROW(terrain->attach(outside.mesh, kRubber, outside.state), Error);
+}
+
+TEST_F(DemTerrain, unstable_step_is_refused_by_number_unless_allowed) {
+  options_.step = 5e-4;
+  try {
+    make_terrain(options_);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::bad_input);
+    EXPECT_NE(std::string(error.what()).find("run.step"), std::string::npos) << error.what();
+  }
+  options_.allow_unstable_step = true;
+  EXPECT_NO_THROW(make_terrain(options_));
+  options_.step = 6e-5;
+  options_.allow_unstable_step = false;
+  options_.law = "coulomb";
+  options_.friction_impulse_limit = false;
+  EXPECT_THROW(make_terrain(options_), Error);
+  EXPECT_EQ(estimate_terrain(options_).stable_reason, "friction viscosity");
+}
+
+TEST_F(DemTerrain, bad_values_are_refused_by_key) {
+  for (const auto& [key, spoil] : std::initializer_list<std::pair<const char*, void (*)(TerrainOptions&)>>{
+           {"terrain.radius", [](TerrainOptions& o) { o.radius = -1; }},
+           {"terrain.density", [](TerrainOptions& o) { o.density = std::nan(""); }},
+           {"terrain.layers", [](TerrainOptions& o) { o.layers = 0; }},
+           {"terrain.width", [](TerrainOptions& o) { o.width = 0.01; }},
+           {"terrain.law", [](TerrainOptions& o) { o.law = "hooke"; }},
+           {"terrain.engine", [](TerrainOptions& o) { o.engine = "clay"; }}}) {
+    TerrainOptions bad = options_;
+    spoil(bad);
+    try {
+      make_terrain(bad);
+      ADD_FAILURE() << key;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(key), std::string::npos) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace furrow

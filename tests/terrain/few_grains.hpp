@@ -1,0 +1,51 @@
+// A handful of grains in a bin, for tests of laws and solver.
+#pragma once
+
+#include <vector>
+
+#include "terrain/dem/grain_solver.hpp"
+
+namespace furrow::dem {
+
+struct FewGrains {
+  TerrainOptions options;
+  double gravity = 0.0;  // m/s²
+
+  FewGrains() {
+    options.length = 0.6;
+    options.width = 0.6;
+    options.step = 1e-6;
+  }
+
+  GrainSolver make(const std::vector<Quad>& positions) const {
+    SolverParams params;
+    params.law = law_from(options.law);
+    params.rolling = options.rolling_friction > 0.0;
+    params.grain = grain_properties(options.radius, options.density);
+    params.bin = {options.length, options.width};
+    params.gravity = gravity;
+    params.skin = 0.3 * options.radius;
+    GrainSolver solver(params);
+    solver.set_coefficients(coefficients());
+    solver.place(positions);
+    return solver;
+  }
+  SolverCoefficients coefficients() const {
+    const ContactMaterial material = grain_material(options);
+    const GrainProperties grain = grain_properties(options.radius, options.density);
+    const LawSettings law = law_settings(options);
+    const ContactCoefficients wall = mix(material, material, Partner::surface, grain, law);
+    return {mix(material, material, Partner::grain, grain, law), wall, wall};
+  }
+};
+
+inline Vec3 vec(const Quad& q) { return {q.x, q.y, q.z}; }
+inline Quad quad(const Vec3& v) { return {v.x(), v.y(), v.z(), 0.0}; }
+inline Vec3 position(const GrainSolver& s, int id) { return vec(s.grains().position[s.index_of(id)]); }
+inline Vec3 velocity(const GrainSolver& s, int id) { return vec(s.grains().velocity[s.index_of(id)]); }
+inline Vec3 spin(const GrainSolver& s, int id) { return vec(s.grains().spin[s.index_of(id)]); }
+inline Vec3 force(const GrainSolver& s, int id) { return vec(s.grains().force[s.index_of(id)]); }
+inline void set_velocity(GrainSolver& s, int id, const Vec3& v) { s.grains().velocity[s.index_of(id)] = quad(v); }
+inline void set_spin(GrainSolver& s, int id, const Vec3& w) { s.grains().spin[s.index_of(id)] = quad(w); }
+
+}  // namespace furrow::dem

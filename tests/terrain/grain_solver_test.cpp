@@ -1,0 +1,272 @@
+// Few grains through the whole solver: collisions, equilibria, conservation, identities.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "protocol/hash.hpp"
+#include "tests/terrain/few_grains.hpp"
+
+namespace furrow::dem {
+namespace {
+
+constexpr double kRadius = 0.006;
+
+/// Head-on collision; returns the ratio of relative speeds after and before.
+double rebound(const FewGrains& few, double speed) {
+  GrainSolver s = few.make({{0.3 - 0.00605, 0, 0.3}, {0.3 + 0.00605, 0, 0.3}});
+  set_velocity(s, 0, {0.5 * speed, 0, 0});
+  set_velocity(s, 1, {-0.5 * speed, 0, 0});
+  bool touched = false;
+  for (int k = 0; k < 200000; ++k) {
+    s.step(few.options.step);
+    const bool now = s.accounts().contacts > 0;
+    if (touched && !now) return (velocity(s, 1) - velocity(s, 0)).x() / speed;
+    touched = now;
+  }
+  return 0.0;  // they never part
+}
+
+TEST(GrainSolver, restitution_is_the_one_asked_for) {
+  for (double e : {0.2, 0.3, 0.5, 0.7, 0.9, 1.0})
+    for (double speed : {0.1, 1.0}) {
+      FewGrains few;
+      few.options.restitution = e;
+      few.options.step = 2e-7;
+      EXPECT_NEAR(rebound(few, speed), e, 2e-3) << "e = " << e << ", speed = " << speed;
+    }
+}
+
+TEST(GrainSolver, restitution_zero_takes_the_limit) {
+  FewGrains few;
+  few.options.restitution = 0.0;
+  few.options.step = 1e-6;
+  EXPECT_LT(std::abs(rebound(few, 1.0)), 5e-3);
+}
+
+TEST(GrainSolver, wall_restitution_is_the_one_asked_for) {
+  FewGrains few;
+  few.options.restitution = 0.6;
+  GrainSolver s = few.make({{0.3, 0, 0.00601}});
+  set_velocity(s, 0, {0, 0, -0.5});
+  for (int k = 0; k < 20000 && velocity(s, 0).z() < 0.2999; ++k) s.step(1e-6);
+  EXPECT_NEAR(velocity(s, 0).z(), 0.3, 1e-3);
+}
+
+TEST(GrainSolver, oblique_collision_conserves_momentum_and_angular_momentum) {
+  for (const char* law : {"mindlin", "coulomb"})
+    for (double rolling : {0.0, 0.2}) {
+      FewGrains few;
+      few.options.law = law;
+      few.options.rolling_friction = rolling;
+      GrainSolver s = few.make({{0.3, 0.0, 0.3}, {0.3 + 0.0105, 0.0055, 0.302}});
+      set_velocity(s, 0, {1.0, 0.3, 0.1});
+      set_spin(s, 0, {30, -200, 100});
+      set_spin(s, 1, {-70, 20, 150});
+      const GrainProperties& g = s.params().grain;
+      const auto totals = [&] {
+        Vec3 p = Vec3::Zero(), l = Vec3::Zero();
+        for (int id : {0, 1}) {
+          p += g.mass * velocity(s, id);
+          l += g.mass * (position(s, id) - Vec3(0.3, 0, 0.3)).cross(velocity(s, id)) + g.inertia * spin(s, id);
+        }
+        return std::pair(p, l);
+      };
+      const auto before = totals();
+      for (int k = 0; k < 20000; ++k) s.step(1e-6);
+      EXPECT_GT((spin(s, 0) - Vec3(30, -200, 100)).norm(), 1.0);
+      const auto after = totals();
+      EXPECT_LT((after.first - before.first).norm(), 1e-15) << law;
+      // Round-off of positions (0.3 m) over 20000 steps: 20000 · 5e-17 m · m v = 2.5e-15.
+      EXPECT_LT((after.second - before.second).norm(), 2.5e-15) << law << rolling;
+      EXPECT_GT(before.second.norm(), 1e-5);
+    }
+}
+
+TEST(GrainSolver, sliding_sphere_rolls_at_five_sevenths) {
+  for (const char* law : {"mindlin", "coulomb"}) {
+    FewGrains few;
+    few.options.law = law;
+    few.options.friction = 0.3;
+    few.options.friction_velocity_scale = 500.0;
+    few.gravity = kGravity;
+    const double load = grain_properties(kRadius, 2500).mass * kGravity;
+    const double delta = std::pow(load / few.coefficients().floor.stiffness, 2.0 / 3.0);
+    GrainSolver s = few.make({{0.1, 0, kRadius - delta}});
+    set_velocity(s, 0, {0.4, 0, 0});
+    for (int k = 0; k < 20000; ++k) s.step(1e-5);
+    EXPECT_NEAR(velocity(s, 0).x(), 0.4 * 5.0 / 7.0, 1e-3) << law;
+    EXPECT_NEAR(spin(s, 0).y() * kRadius, velocity(s, 0).x(), 1e-3) << law;
+  }
+}
+
+TEST(GrainSolver, cohesive_grains_rest_at_the_reports_overlap) {
+  FewGrains few;
+  few.options.law = "coulomb";
+  few.options.cohesion = 80e3;
+  GrainSolver s = few.make({{0.3, 0, 0.3}, {0.3 + 0.01185, 0, 0.3}});
+  for (int k = 0; k < 20000; ++k) s.step(1e-5);
+  EXPECT_NEAR(2 * kRadius - (position(s, 1) - position(s, 0)).norm(), 0.434e-3, 1e-6);
+}
+
+/// A grain on the floor pulled along x by a tilted gravity; returns its speed at the end.
+double speed_on_incline(const FewGrains& few, double angle, double time) {
+  FewGrains tilted = few;
+  tilted.gravity = kGravity * std::cos(angle);
+  const double mass = grain_properties(kRadius, 2500).mass;
+  GrainSolver s = tilted.make({{0.1, 0, kRadius - std::pow(mass * tilted.gravity / tilted.coefficients().floor.stiffness, 2.0 / 3.0)}});
+  const double dt = few.options.step;
+  for (double t = 0; t < time; t += dt) {
+    s.step(dt);
+    Vec3 v = velocity(s, 0);
+    v.x() += dt * kGravity * std::sin(angle);
+    set_velocity(s, 0, v);
+    set_spin(s, 0, Vec3::Zero());  // a block: only sliding
+  }
+  return velocity(s, 0).x();
+}
+
+TEST(GrainSolver, coulomb_creeps_on_an_incline_at_its_closed_form_rate_and_mindlin_holds) {
+  FewGrains few;
+  few.options.friction = 0.9;
+  few.options.step = 1e-5;
+  const double angle = 0.3;
+  EXPECT_LT(std::abs(speed_on_incline(few, angle, 0.3)), 1e-4);
+  few.options.law = "coulomb";
+  few.options.friction_impulse_limit = false;
+  // m g sin = μ m g cos tanh(c v)
+  const double creep = std::atanh(std::tan(angle) / 0.9) / 5.0;
+  EXPECT_NEAR(speed_on_incline(few, angle, 1.0), creep, 2e-3 * creep);
+}
+
+TEST(GrainSolver, floor_carries_the_weight) {
+  FewGrains few;
+  few.gravity = kGravity;
+  GrainSolver s = few.make({{0.3, 0, 0.0059}, {0.3, 0.1, 0.006}, {0.3, 0.1, 0.0179}});
+  s.set_drag(50.0);
+  for (int k = 0; k < 20000; ++k) s.step(2e-5);
+  EXPECT_NEAR(s.accounts().floor_force, 3 * s.params().grain.mass * kGravity, 1e-6);
+}
+
+std::vector<Quad> cloud(int n, double spacing, std::uint64_t seed) {
+  std::mt19937_64 bits(seed);
+  const auto uniform = [&] { return static_cast<double>(bits() >> 11) * 0x1p-53 - 0.5; };
+  std::vector<Quad> out;
+  for (int k = 0; k < n; ++k)
+    out.push_back({0.03 + spacing * (k % 18) + 4e-4 * uniform(), -0.1 + spacing * (k / 18 % 12) + 4e-4 * uniform(),
+                   0.0065 + spacing * (k / 216) + 4e-4 * uniform(), 0.0});
+  return out;
+}
+
+GrainSolver random_bed(FewGrains& few, int n, double speed) {
+  few.options.length = 0.3, few.options.width = 0.24;
+  GrainSolver s = few.make(cloud(n, 0.0126, 3));
+  std::mt19937_64 bits(5);
+  for (int id = 0; id < n; ++id)
+    set_velocity(s, id, speed * Vec3::NullaryExpr([&] { return static_cast<double>(bits() >> 11) * 0x1p-52 - 1.0; }));
+  s.reset_accounts();
+  return s;
+}
+
+std::uint64_t hash_of(const GrainSolver& s) {
+  Hash hash;
+  for (const auto* a : {&s.grains().position, &s.grains().velocity, &s.grains().spin})
+    hash.add(std::span(*a).first(s.grains().count));
+  return hash.value();
+}
+
+TEST(GrainSolver, crowd_keeps_momentum_and_books_its_energy) {
+  for (const char* law : {"mindlin", "coulomb"}) {
+    FewGrains few;
+    few.options.law = law;
+    few.options.cohesion = 20e3;
+    few.options.step = 1e-5;
+    GrainSolver s = random_bed(few, 1500, 0.5);
+    const Vec3 p0 = s.accounts().velocity;
+    const double k0 = s.accounts().kinetic, m = s.params().grain.mass;
+    for (int k = 0; k < 1500; ++k) ASSERT_EQ(s.step(1e-5), -1);
+    const Accounts& a = s.accounts();
+    EXPECT_GT(s.pairs().rebuilds(), 1);
+    EXPECT_LT((m * (a.velocity - p0) - a.wall_impulse).norm(), 1e-13 * m * 1500) << law;
+    const double dissipation = -a.contact_work - (a.elastic - a.elastic_start);
+    EXPECT_NEAR(a.kinetic + a.elastic - a.elastic_start + dissipation, k0, 1e-9 * k0) << law;
+    EXPECT_GT(dissipation, 0.05 * k0);
+  }
+}
+
+TEST(GrainSolver, frictionless_elastic_crowd_keeps_its_energy) {
+  FewGrains few;
+  few.options.restitution = 1.0;
+  few.options.friction = 0.0;
+  GrainSolver s = random_bed(few, 700, 0.5);
+  const double k0 = s.accounts().kinetic;
+  for (int k = 0; k < 6000; ++k) s.step(5e-6);
+  EXPECT_NEAR(s.accounts().kinetic + s.accounts().elastic, k0, 2e-4 * k0);
+}
+
+TEST(GrainSolver, same_bits_for_one_and_two_threads) {
+  for (const char* law : {"mindlin", "coulomb"}) {
+    FewGrains few;
+    few.options.law = law;
+    few.options.rolling_friction = 0.1;
+    few.gravity = kGravity;
+    GrainSolver one = random_bed(few, 2500, 0.5), two = random_bed(few, 2500, 0.5);
+    two.set_threads(2);
+    for (int k = 0; k < 300; ++k) one.step(2e-5);
+    for (int k = 0; k < 300; ++k) two.step(2e-5);
+    EXPECT_GT(one.pairs().rebuilds(), 1);
+    EXPECT_EQ(hash_of(one), hash_of(two)) << law;
+    EXPECT_EQ(one.accounts().contact_work, two.accounts().contact_work);
+  }
+}
+
+TEST(GrainSolver, restored_solver_continues_bit_for_bit) {
+  FewGrains few;
+  few.options.rolling_friction = 0.1;
+  few.options.cohesion = 10e3;
+  few.gravity = kGravity;
+  GrainSolver s = random_bed(few, 1500, 0.5);
+  for (int k = 0; k < 700; ++k) s.step(2e-5);
+  Archive archive;
+  s.save(archive);
+  GrainSolver t(s.params());
+  t.set_coefficients(few.coefficients());
+  t.restore(archive);
+  const auto rebuilds = s.pairs().rebuilds();
+  for (int k = 0; k < 700; ++k) s.step(2e-5), t.step(2e-5);
+  EXPECT_GT(s.pairs().rebuilds(), rebuilds);
+  EXPECT_EQ(hash_of(s), hash_of(t));
+  EXPECT_EQ(s.accounts().contact_work, t.accounts().contact_work);
+  EXPECT_EQ(s.pairs().rebuilds(), t.pairs().rebuilds());
+}
+
+TEST(GrainSolver, neighbour_list_misses_no_contact) {
+  FewGrains few;
+  few.gravity = kGravity;
+  GrainSolver s = random_bed(few, 1500, 0.8);
+  for (int round = 0; round < 10; ++round) {
+    for (int k = 0; k < 60; ++k) s.step(2e-5);
+    const auto& x = s.grains().position;
+    std::int64_t contacts = 0;
+    for (int i = 0; i < s.grains().count; ++i) {
+      for (int j = i + 1; j < s.grains().count; ++j) contacts += (vec(x[i]) - vec(x[j])).norm() < 2 * kRadius;
+      for (int w = 0; w < kWalls; ++w) contacts += s.params().bin.distance(w, x[i]) < kRadius;
+    }
+    s.step(2e-5);  // evaluates at the positions just counted
+    EXPECT_EQ(s.accounts().contacts, contacts);
+  }
+}
+
+TEST(GrainSolver, lost_and_invalid_grains_are_named) {
+  FewGrains few;
+  GrainSolver s = few.make({{0.3, 0, 0.3}, {0.1, 0, 0.3}});
+  set_velocity(s, 1, {-1e5, 0, 0});
+  EXPECT_EQ(s.step(1e-5), s.index_of(1));
+  GrainSolver t = few.make({{0.3, 0, 0.3}, {0.1, 0, 0.3}});
+  set_velocity(t, 0, {0, std::nan(""), 0});
+  EXPECT_EQ(t.step(1e-5), t.index_of(0));
+}
+
+}  // namespace
+}  // namespace furrow::dem

@@ -8,6 +8,7 @@
 #include "protocol/error.hpp"
 #include "terrain/dem/surface_geometry.hpp"
 #include "terrain/dem/surface_grid.hpp"
+#include "terrain/dem/surface_topology.hpp"
 
 namespace furrow {
 namespace {
@@ -68,17 +69,15 @@ struct SurfaceCollider::Data {
   std::vector<Vec3> start, end, position, velocity;
   std::vector<Vec3> built_at;                         // positions the grid was built with
   std::vector<TrianglePlane> plane;
-  std::vector<std::array<int, 3>> neighbour;          // across edge k; −1 at a boundary
-  std::vector<int> incident_first, incident;          // vertex → its triangles
-  std::vector<std::uint8_t> boundary_vertex;
+  SurfaceTopology topology;
   std::vector<int> listed;                            // triangles in the grid
   SurfaceBox limit{Vec3::Constant(-std::numeric_limits<double>::infinity()),
                    Vec3::Constant(std::numeric_limits<double>::infinity())};
-  bool limit_changed = false;
+  SurfaceBox built_limit = limit;                     // that the grid was built with
+  bool beyond_built_limit = false;
   SurfaceGrid grid;
   std::int64_t rebuilds = 0;
 
-  void connect();
   void update_planes();
   bool grid_is_stale() const;
   void rebuild();
@@ -95,44 +94,6 @@ struct SurfaceCollider::Data {
   int share_out(const CandidateList& found, const Vec3& centre, double radius, std::span<SurfaceHit> out) const;
 };
 
-void SurfaceCollider::Data::connect() {
-  const int count = static_cast<int>(mesh.triangles.size());
-  // Half-edges sorted by their two vertices: those of one edge stand side by side.
-  struct HalfEdge {
-    int low, high, triangle, edge;
-  };
-  std::vector<HalfEdge> half;
-  half.reserve(3 * mesh.triangles.size());
-  incident_first.assign(mesh.vertex_count + 1, 0);
-  for (int t = 0; t < count; ++t)
-    for (int k = 0; k < 3; ++k) {
-      const int a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
-      half.push_back({std::min(a, b), std::max(a, b), t, k});
-      ++incident_first[a + 1];
-    }
-  std::sort(half.begin(), half.end(), [](const HalfEdge& p, const HalfEdge& q) {
-    return std::array{p.low, p.high, p.triangle, p.edge} < std::array{q.low, q.high, q.triangle, q.edge};
-  });
-  neighbour.assign(count, {-1, -1, -1});
-  boundary_vertex.assign(mesh.vertex_count, 0);
-  for (std::size_t i = 0; i < half.size();) {
-    std::size_t end = i + 1;
-    while (end < half.size() && half[end].low == half[i].low && half[end].high == half[i].high) ++end;
-    if (end - i == 2) {
-      neighbour[half[i].triangle][half[i].edge] = half[i + 1].triangle;
-      neighbour[half[i + 1].triangle][half[i + 1].edge] = half[i].triangle;
-    } else {
-      boundary_vertex[half[i].low] = boundary_vertex[half[i].high] = 1;
-    }
-    i = end;
-  }
-  for (int v = 0; v < mesh.vertex_count; ++v) incident_first[v + 1] += incident_first[v];
-  incident.resize(3 * mesh.triangles.size());
-  std::vector<int> next(incident_first.begin(), incident_first.end() - 1);
-  for (int t = 0; t < count; ++t)
-    for (int v : mesh.triangles[t]) incident[next[v]++] = t;
-}
-
 void SurfaceCollider::Data::update_planes() {
   for (int t : listed) {
     const Vec3 area = cross(t);
@@ -143,7 +104,7 @@ void SurfaceCollider::Data::update_planes() {
 }
 
 bool SurfaceCollider::Data::grid_is_stale() const {
-  if (built_at.empty() || limit_changed) return true;
+  if (built_at.empty() || beyond_built_limit) return true;
   double farthest = 0.0;
   for (std::size_t v = 0; v < position.size(); ++v)
     farthest = std::max(farthest, (position[v] - built_at[v]).squaredNorm());
@@ -161,7 +122,8 @@ void SurfaceCollider::Data::rebuild() {
   }
   grid.build(position, mesh.triangles, listed, margin);
   built_at = position;
-  limit_changed = false;
+  built_limit = limit;
+  beyond_built_limit = false;
   ++rebuilds;
 }
 
@@ -171,7 +133,7 @@ bool SurfaceCollider::Data::behind(const Candidate& nearest, const Vec3& centre)
   const int t = nearest.triangle;
   if (nearest.at.region == TriangleRegion::face) return plane[t].normal.dot(centre) < plane[t].offset;
   if (nearest.at.region <= TriangleRegion::edge_2) {
-    const int other = neighbour[t][static_cast<int>(nearest.at.region) - static_cast<int>(TriangleRegion::edge_0)];
+    const int other = topology.neighbour[t][static_cast<int>(nearest.at.region) - static_cast<int>(TriangleRegion::edge_0)];
     if (other < 0) return false;
     const Vec3 area = cross(other);
     return (plane[t].normal + area / std::max(area.norm(), 1e-300)).dot(offset) < 0.0;
@@ -182,14 +144,13 @@ bool SurfaceCollider::Data::behind(const Candidate& nearest, const Vec3& centre)
 
 /// Angle-weighted pseudo-normal of a vertex; the angles are only computed when its triangles disagree.
 bool SurfaceCollider::Data::behind_vertex(int vertex, const Vec3& offset) const {
-  if (boundary_vertex[vertex]) return false;
+  if (topology.boundary_vertex[vertex]) return false;
   int front = 0, back = 0;
   double sum = 0.0;
-  for (int i = incident_first[vertex]; i < incident_first[vertex + 1]; ++i)
-    (cross(incident[i]).dot(offset) < 0.0 ? back : front) += 1;
+  for (int t : topology.around(vertex)) (cross(t).dot(offset) < 0.0 ? back : front) += 1;
   if (front == 0 || back == 0) return front == 0;
-  for (int i = incident_first[vertex]; i < incident_first[vertex + 1]; ++i) {
-    const auto& v = mesh.triangles[incident[i]];
+  for (int t : topology.around(vertex)) {
+    const auto& v = mesh.triangles[t];
     const int k = static_cast<int>(std::find(v.begin(), v.end(), vertex) - v.begin());
     const Vec3 a = position[v[(k + 1) % 3]] - position[vertex], b = position[v[(k + 2) % 3]] - position[vertex];
     const Vec3 area = a.cross(b);
@@ -266,7 +227,7 @@ SurfaceCollider::SurfaceCollider(const SurfaceMesh& mesh, double reach) : data_(
   data_->reach = reach;
   data_->skin = kSkinShare * reach;
   data_->plane.resize(mesh.triangles.size());
-  data_->connect();
+  data_->topology = SurfaceTopology(mesh);
 }
 
 SurfaceCollider::~SurfaceCollider() = default;
@@ -286,7 +247,7 @@ void SurfaceCollider::set_motion(std::span<const Vec3> start, std::span<const Ve
   d.velocity.resize(count);
   for (std::size_t v = 0; v < count; ++v) d.velocity[v] = (end[v] - start[v]) / duration;
   // An interval that begins where the last one ended finds everything up to date.
-  if (d.position != d.start || d.limit_changed) move_to(0.0);
+  if (d.position != d.start || d.beyond_built_limit) move_to(0.0);
 }
 
 void SurfaceCollider::move_to(double share) {
@@ -301,8 +262,12 @@ void SurfaceCollider::move_to(double share) {
 }
 
 void SurfaceCollider::restrict_to(const SurfaceBox& box) {
-  data_->limit = box;
-  data_->limit_changed = true;
+  Data& d = *data_;
+  const SurfaceBox& built = d.built_limit;
+  d.beyond_built_limit = (box.lo.array() < built.lo.array()).any() || (box.hi.array() > built.hi.array()).any();
+  // Room for small changes, so that they do not cost a grid each.
+  d.limit.lo = box.lo.array() - 2.0 * d.reach;
+  d.limit.hi = box.hi.array() + 2.0 * d.reach;
 }
 
 SurfaceBox SurfaceCollider::bounds() const {

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
+#include <ctime>
 
 #include "tire/ancf/shell_batch.hpp"
 
@@ -19,22 +19,28 @@ double dot(const Field& a, const Field& b, const RingLayout& layout) {
   return Eigen::Map<const Eigen::VectorXd>(a.data() + first, count).dot(Eigen::Map<const Eigen::VectorXd>(b.data() + first, count));
 }
 
+/// Processor time of this thread: what the work costs, whoever else uses the machine.
 class Stopwatch {
  public:
-  explicit Stopwatch(double& total) : total_(total), start_(std::chrono::steady_clock::now()) {}
-  ~Stopwatch() { total_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  explicit Stopwatch(double& total) : total_(total), start_(now()) {}
+  ~Stopwatch() { total_ += now() - start_; }
 
  private:
+  static double now() {
+    timespec t;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+  }
   double& total_;
-  std::chrono::steady_clock::time_point start_;
+  double start_;
 };
 
 }  // namespace
 
 RingIntegrator::RingIntegrator(const TireFile& file, const RingMesh& mesh, const RingIntegratorParams& params)
-    : params_(params), theta_(0.5 * (1.0 - params.alpha)), mesh_(mesh), layout_{mesh.columns, mesh.rows}, shell_(file, mesh),
+    : params_(params), mesh_(mesh), layout_{mesh.columns, mesh.rows}, shell_(file, mesh),
       mass_(mesh, element_masses(file, mesh)), factor_(layout_, params.slots), slots_(params.slots) {
-  for (Field* f : {&q_, &v_, &dv_, &gravity_, &q_new_, &v_new_, &q_force_, &change_, &r_, &d_}) f->assign(layout_.size(), 0.0);
+  for (Field* f : {&q_, &v_, &v_before_, &gravity_, &q_new_, &v_new_, &q_force_, &change_, &r_, &d_}) f->assign(layout_.size(), 0.0);
   s_.assign(kPairs, r_);
   y_.assign(kPairs, r_);
   rho_.assign(kPairs, 0.0);
@@ -48,7 +54,7 @@ RingIntegrator::RingIntegrator(const TireFile& file, const RingMesh& mesh, const
 void RingIntegrator::start(const Field& q, const Field& v) {
   q_ = q;
   v_ = v;
-  std::fill(dv_.begin(), dv_.end(), 0.0);
+  v_before_ = v;
   shell_.strains(q_, strains_);
   elastic_ = shell_.account(q_, strains_).elastic;
   dissipation_ = residual_ = 0.0;
@@ -86,10 +92,10 @@ void RingIntegrator::set_bead(const RimState& rim) {
     }
 }
 
-/// Free nodes go on with their last change of velocity.
+/// Free nodes go on with their velocities, linearly extrapolated.
 void RingIntegrator::predict(double h) {
   const std::size_t first = layout_.free_begin(), last = first + layout_.free_size();
-  for (std::size_t k = first; k < last; ++k) q_new_[k] = q_[k] + h * (v_[k] + theta_ * dv_[k]);
+  for (std::size_t k = first; k < last; ++k) q_new_[k] = q_[k] + h * (2.0 * v_[k] - v_before_[k]);
 }
 
 /// Residual of (2) at q_new_ into r_, at the beads the reactions Q.
@@ -97,10 +103,9 @@ void RingIntegrator::evaluate(double h, const Field& force) {
   const Stopwatch watch(times_.force);
   layout_.fill_padding(q_new_);
   const std::size_t first = layout_.free_begin(), last = first + layout_.free_size();
-  const double a = 1.0 / (theta_ * h), b = (1.0 - theta_) / theta_;
-  for (std::size_t k = first; k < last; ++k) v_new_[k] = a * (q_new_[k] - q_[k]) - b * v_[k];
+  for (std::size_t k = first; k < last; ++k) v_new_[k] = (q_new_[k] - q_[k]) / h;
   for (std::size_t k = 0; k < q_.size(); ++k) {
-    q_force_[k] = q_[k] + (1.0 - theta_) * (q_new_[k] - q_[k]);
+    q_force_[k] = 0.5 * (q_[k] + q_new_[k]);
     change_[k] = v_new_[k] - v_[k];
   }
   shell_.forces(q_new_, q_force_, strains_, coefficient(h), r_);
@@ -112,11 +117,11 @@ bool RingIntegrator::make_factor(Slot& slot, int index) {
   Field strains;
   shell_.strains(slot.q_old, strains);
   Field at(slot.q_old.size());
-  for (std::size_t k = 0; k < at.size(); ++k) at[k] = slot.q_old[k] + (1.0 - theta_) * (slot.q_new[k] - slot.q_old[k]);
-  const double c = coefficient(slot.h), inertia = 1.0 / (theta_ * slot.h * slot.h);
+  for (std::size_t k = 0; k < at.size(); ++k) at[k] = 0.5 * (slot.q_old[k] + slot.q_new[k]);
+  const double c = coefficient(slot.h), inertia = 1.0 / (slot.h * slot.h);
   auto tangent = std::make_unique<BatchTangent>();
   ++factorizations_;
-  for (const double geometric : {1.0 - theta_, 0.0}) {  // without its geometric part the tangent is positive definite
+  for (const double geometric : {0.5, 0.0}) {  // without its geometric part the tangent is positive definite
     {
       const Stopwatch watch(times_.jacobian);
       factor_.clear();
@@ -239,7 +244,7 @@ TireStatus RingIntegrator::step(double h, const RimState& end, const Field& forc
     if (converged) {
       iterations_ += count;
       residual_ = norm / reference_;
-      finish(h, force, about, on_rim);
+      finish(h, about, on_rim);
       return {};
     }
   }
@@ -248,9 +253,9 @@ TireStatus RingIntegrator::step(double h, const RimState& end, const Field& forc
                              norm / reference_, count, params_.tolerance)};
 }
 
-/// Spindle wrench from (2): −Σ Q − pressure resultant; what is left of the free residual is counted with the beads, so
-/// that momentum balances to round-off. Beads do not obey (1): ε = Δx − h v_θ adds ε × p_θ to the moment.
-void RingIntegrator::finish(double h, const Field&, const Vec3& about, Wrench& on_rim) {
+/// Spindle wrench from (2): −Σ Q − pressure resultant, moments at q_f, and the term Δx × ½ (p + p')/h. What is left of the
+/// free residual is counted with the beads, so that momentum balances to round-off.
+void RingIntegrator::finish(double h, const Vec3& about, Wrench& on_rim) {
   const Stopwatch watch(times_.other);
   on_rim = {};
   for (int j = 0; j < layout_.rows; ++j)
@@ -263,18 +268,16 @@ void RingIntegrator::finish(double h, const Field&, const Vec3& about, Wrench& o
   const Wrench air = shell_.pressure_resultant(q_force_, about);
   on_rim.force -= air.force;
   on_rim.moment -= air.moment;
-  for (std::size_t k = 0; k < v_.size(); ++k) change_[k] = v_[k] + theta_ * (v_new_[k] - v_[k]);
-  mass_.apply(change_, 1.0, d_);
-  for (const int j : {0, layout_.rows - 1})
-    for (int i = 0; i < layout_.columns; ++i)
-      for (const int s : {0, 3}) {
-        const Vec3 off = (layout_.get(q_new_, i, j, s) - layout_.get(q_, i, j, s)) / h - layout_.get(change_, i, j, s);
-        on_rim.moment -= off.cross(layout_.get(d_, i, j, s));
-      }
   layout_.fill_padding(v_new_);
-  for (std::size_t k = 0; k < v_.size(); ++k) dv_[k] = v_new_[k] - v_[k];
-  q_.swap(q_new_);
+  for (std::size_t k = 0; k < v_.size(); ++k) change_[k] = 0.5 * (v_[k] + v_new_[k]);
+  mass_.apply(change_, 1.0 / h, d_);
+  for (int j = 0; j < layout_.rows; ++j)
+    for (int i = 0; i < layout_.columns; ++i)
+      for (const int s : {0, 3})
+        on_rim.moment -= (layout_.get(q_new_, i, j, s) - layout_.get(q_, i, j, s)).cross(layout_.get(d_, i, j, s));
+  v_before_.swap(v_);
   v_.swap(v_new_);
+  q_.swap(q_new_);
   const ShellRing::Energies energies = shell_.account(q_, strains_);
   elastic_ = energies.elastic;
   dissipation_ += params_.damping / h * energies.change;
@@ -283,7 +286,7 @@ void RingIntegrator::finish(double h, const Field&, const Vec3& about, Wrench& o
 void RingIntegrator::save(Archive& archive) const {
   archive.put("q", q_);
   archive.put("v", v_);
-  archive.put("dv", dv_);
+  archive.put("v_before", v_before_);
   archive.put("scalars", std::vector<double>{reference_, elastic_, dissipation_, residual_});
   archive.put("counts", std::vector<std::int64_t>{iterations_, factorizations_});
   for (std::size_t k = 0; k < slots_.size(); ++k) {
@@ -300,7 +303,7 @@ void RingIntegrator::save(Archive& archive) const {
 void RingIntegrator::restore(const Archive& archive) {
   q_ = archive.get<double>("q", layout_.size());
   v_ = archive.get<double>("v", layout_.size());
-  dv_ = archive.get<double>("dv", layout_.size());
+  v_before_ = archive.get<double>("v_before", layout_.size());
   shell_.strains(q_, strains_);
   const auto& scalars = archive.get<double>("scalars", 4);
   const auto& counts = archive.get<std::int64_t>("counts", 2);

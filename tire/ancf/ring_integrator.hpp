@@ -1,15 +1,18 @@
 // Implicit time integration of the ring of shell elements held by a moving rim.
 //
-// Over a step h from (q, v) to (q', v'), with q_f = θ q + (1 − θ) q' and E, E' the strains at q, q':
-//   q' − q = h [(1 − θ) v + θ v']                                                         (1) free nodes
-//   M (v' − v)/h + B(q_f)ᵀ D̂ [E + σ ΔE + τ ΔE/h] − p ∂V/∂q(q_f) = F + M g + Q,  ΔE = E' − E  (2)
+// Over a step h from (q, v) to (q', v'), with q_f = ½ (q + q') and E, E' the strains at q, q':
+//   q' − q = h v'                                                                          (1) free nodes
+//   M (v' − v)/h + B(q_f)ᵀ D̂ [E' + τ (E' − E)/h] − p ∂V/∂q(q_f) = F + M g + Q              (2)
 // F are the contact forces, constant over the step, Q the reactions at the beads. q', v' of the beads come from the rim.
-//  - θ = σ = (1 − α)/2: the same damping of the highest frequencies as the HHT method of this α, (1 − θ)/θ = (1 + α)/(1 − α).
-//  - Strain rates are the change of strain over the step, exactly zero for any rigid motion of the step's ends.
-//  - Force acts at q_f, so that with (1) the change of angular momentum Σ x × M v equals the moment impulse to round-off:
-//    x'×p' − x×p = x_f × Δp + Δx × [(1 − θ) p + θ p'], and the last term vanishes in the sum for Δx = h v_θ.
-// Compare Simo & Tarnow (1992), The discrete energy-momentum method, ZAMP 43, doi:10.1007/BF00913408 (θ = ½ here), and
-// Hilber, Hughes, Taylor (1977), doi:10.1002/eqe.4290050306.
+//  - As E is quadratic in q, E' − E = B(q_f) (q' − q): strain rates vanish exactly for a rigid motion of the step's ends,
+//    and the work of the internal forces is Δ(elastic energy) + ½ ΔEᵀ D̂ ΔE + (τ/h) ΔEᵀ D̂ ΔE. With the ½ Δvᵀ M Δv that (1)
+//    removes, energy cannot grow: the numerical part of the damping acts like a τ of h/2, 1 % of the material's.
+//  - Velocities are those of the backward Euler rule: what is stiff through τ K does not ring, as it does with trapezoidal
+//    or HHT velocities, where a contact force that is one interval late and depends on velocity would feed it.
+//  - Δp and ΔL over the step are the impulses of F, M g and the spindle to round-off: the identity
+//      x'×p' − x×p = x_f × Δp + Δx × ½ (p + p')
+//    gives the moment impulse; its last term, O(h) for (1), is counted with the spindle.
+// Force evaluation at the middle: Simo & Tarnow (1992), The discrete energy-momentum method, ZAMP 43, doi:10.1007/BF00913408.
 //
 // The equations are solved by a quasi-Newton method: an old Cholesky factor of the tangent, turned and renumbered to the
 // present orientation, corrected by BFGS pairs [Nocedal & Wright 2006, Alg. 7.4]; refactored when it has aged.
@@ -26,7 +29,6 @@
 namespace furrow {
 
 struct RingIntegratorParams {
-  double alpha = -0.2;        // numerical damping, −1/3…0
   double damping = 0.005;     // τ, s
   double tolerance = 1e-4;    // of the free residual, relative to the norm of the pressure forces
   int max_iterations = 40;    // per attempt
@@ -59,7 +61,7 @@ class RingIntegrator {
   std::int64_t factorizations() const { return factorizations_; }
   double residual() const { return residual_; }
 
-  /// Wall time spent in the parts of a step, s, cumulative; not part of the state.
+  /// Processor time spent in the parts of a step, s, cumulative; not part of the state.
   struct Times {
     double force = 0.0, jacobian = 0.0, factorize = 0.0, solve = 0.0, other = 0.0;
   };
@@ -86,15 +88,14 @@ class RingIntegrator {
   void predict(double h);
   void evaluate(double h, const Field& force);
   double free_norm(const Field& f) const;
-  double coefficient(double h) const { return theta_ + params_.damping / h; }
+  double coefficient(double h) const { return 1.0 + params_.damping / h; }
   bool make_factor(Slot& slot, int index);
   Placement place_factor(double h, const Mat3& orientation, bool renew);
   void direction(const Placement& at, int pairs);
   bool iterate(double h, const Field& force, Placement& at, int& count, double& norm);
-  void finish(double h, const Field& force, const Vec3& about, Wrench& on_rim);
+  void finish(double h, const Vec3& about, Wrench& on_rim);
 
   RingIntegratorParams params_;
-  double theta_ = 0.6;
   RingMesh mesh_;
   RingLayout layout_;
   ShellRing shell_;
@@ -102,7 +103,8 @@ class RingIntegrator {
   RingFactor factor_;
   std::vector<Slot> slots_;
 
-  Field q_, v_, dv_;             // state: coordinates (m, –), velocities, last change of velocity
+  Field q_, v_;                  // state: coordinates (m, –) and velocities
+  Field v_before_;               // velocities one step earlier, for the prediction
   double reference_ = 0.0;       // norm of the pressure forces, N
   double elastic_ = 0.0, dissipation_ = 0.0, residual_ = 0.0;
   std::int64_t iterations_ = 0, factorizations_ = 0;

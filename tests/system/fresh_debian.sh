@@ -1,0 +1,141 @@
+#!/usr/bin/env bash
+# The README's commands, word for word, on a bare Debian 12: debootstrap makes a minimal system in a temporary folder,
+# a clean clone of this repository goes into it, and the commands run there as a new user would run them.
+# Prints a report in JSON. Exit status: 0 all well, 1 a command failed or took longer than its budget, 77 cannot run here.
+set -euo pipefail
+here=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")" && pwd -P)
+repository=$(cd -- "$here/../.." && pwd -P)
+readonly setup_budget_s=180 build_budget_s=180 small_budget_s=180
+
+say() { printf 'fresh_debian: %s\n' "$*" >&2; }
+usage() { cat <<'HELP'
+usage: tests/system/fresh_debian.sh [--keep] [--results DIR]
+Needs root, debootstrap, git and the network (the mirror is that of this machine's apt configuration).
+  --keep         leave the system's folder for a look inside
+  --results DIR  copy the runs' results there
+HELP
+}
+
+keep=false results=''
+all=("$@")
+while (($#)); do
+  case $1 in
+    --keep) keep=true ;;
+    --results) results=$(realpath -m -- "$2"); shift ;;
+    -h|--help) usage; exit 0 ;;
+    *) usage >&2; exit 1 ;;
+  esac
+  shift
+done
+((EUID == 0)) || { say 'skipped: needs root'; exit 77; }
+for program in debootstrap git apt-get unshare; do
+  command -v "$program" >/dev/null || { say "skipped: needs $program"; exit 77; }
+done
+
+# Mounts and processes live in namespaces of their own: both are gone with this script, however it ends.
+if [[ ${FURROW_FRESH_NAMESPACE:-} != "$$" && ${FURROW_FRESH_NAMESPACE:-} != inside ]]; then
+  exec env FURROW_FRESH_NAMESPACE=inside unshare --mount --propagation private --pid --fork --kill-child \
+    bash "$here/fresh_debian.sh" "${all[@]}"
+fi
+
+work=$(mktemp -d "${TMPDIR:-/tmp}/furrow-fresh.XXXXXX")
+system=$work/system
+checkout='/srv/furrow checkout'  # a path with a space
+log=$work/commands.log
+cleanup() {
+  local mount
+  for mount in "$system"/{dev/shm,dev,proc,sys,tmp}; do
+    if mountpoint -q -- "$mount"; then umount -- "$mount" || umount -l -- "$mount"; fi
+  done
+  if $keep; then say "kept: $work"; else rm -rf --one-file-system -- "$work"; fi
+}
+trap cleanup EXIT
+trap 'exit 130' INT
+trap 'exit 143' TERM HUP
+
+# 1. The machine. Debian's archives as this machine's apt knows them: URI, suite, component.
+archives=$(apt-get indextargets --format '$(ORIGIN)|$(REPO_URI)|$(RELEASE)|$(COMPONENT)' 'Created-By: Packages' |
+  awk -F'|' '$1 == "Debian" && $3 ~ /^bookworm/ {print $2, $3, $4}' | sort -u)
+mirror=$(awk '$2 == "bookworm" {print $1; exit}' <<<"$archives")
+[[ -n $mirror ]] || { say "skipped: this machine's apt knows no Debian 12 archive (apt-get update first?)"; exit 77; }
+say 'making a minimal Debian 12'
+debootstrap --variant=minbase bookworm "$system" "$mirror" >"$work/debootstrap.log" 2>&1 ||
+  { tail -n 20 "$work/debootstrap.log" >&2; exit 1; }
+sed 's/^/deb /' <<<"$archives" >"$system/etc/apt/sources.list"
+apt-config dump | grep -E '^Acquire::(http|https|Check-|Retries|ForceIPv)' >"$system/etc/apt/apt.conf.d/90host" || true
+if [[ $archives == *https:* && -r /etc/ssl/certs/ca-certificates.crt ]]; then
+  install -D /etc/ssl/certs/ca-certificates.crt "$system/etc/ssl/certs/ca-certificates.crt"
+fi
+cp -L /etc/resolv.conf /etc/hosts "$system/etc/"
+mount -t proc proc "$system/proc"
+mount -t sysfs -o ro sysfs "$system/sys"
+mount --rbind /dev "$system/dev"
+mount -t tmpfs -o mode=1777,size=50% tmpfs "$system/tmp"
+git -c safe.directory='*' clone --quiet --no-hardlinks -- "$repository" "$system$checkout"
+commit=$(git -c safe.directory='*' -C "$system$checkout" rev-parse --short HEAD)
+
+# 2. The commands: what stands in the README's code block behind the mark.
+readme_command() {
+  awk -v mark="<!-- command: $1 -->" '$0 == mark {found = 1; next} found && /^```/ {if (inside) exit; inside = 1; next}
+    inside {print}' "$system$checkout/README.md"
+}
+installed() { chroot "$system" dpkg-query -W -f '${Installed-Size}\n' | awk '{n++; kib += $1} END {printf "%d %d", n, kib * 1.024e-3}'; }
+now() { echo "${EPOCHREALTIME/,/.}"; }
+elapsed() { awk -v a="$1" -v b="$2" 'BEGIN {printf "%.1f", b - a}'; }
+
+# Runs a command in the new system; its time goes to wall, the times at which packages and build were done to
+# setup_done and build_done.
+run() {
+  local name=$1 command status=0 began line
+  command=$(readme_command "$name")
+  [[ -n $command ]] || { say "README.md has no command marked '$name'"; exit 1; }
+  say "$command"
+  began=$(now) setup_done=$began build_done=''
+  while IFS= read -r line; do
+    printf '%s\n' "$line" >>"$log"
+    case $line in
+      'setup: installed in'*) setup_done=$(now) ;;
+      'build: done in'*) build_done=$(now) ;;
+      'status: '*) status=${line#status: } ;;
+      *) printf '  | %s\n' "$line" >&2 ;;
+    esac
+  done < <(chroot "$system" /usr/bin/env -i HOME=/root TERM=dumb LANG=C.UTF-8 PATH=/usr/sbin:/usr/bin:/sbin:/bin \
+             http_proxy="${http_proxy:-}" https_proxy="${https_proxy:-}" \
+             bash -c 'cd -- "$1" && eval "$2"; echo "status: $?"' bash "$checkout" "$command" 2>&1 </dev/null | tr '\r' '\n')
+  build_done=${build_done:-$setup_done}
+  setup_s=$(elapsed "$began" "$setup_done") build_s=$(elapsed "$setup_done" "$build_done") run_s=$(elapsed "$build_done" "$(now)")
+  ((status == 0)) || { say "'$command' ended with status $status"; exit 1; }
+}
+
+read -r packages_before mb_before < <(installed)
+run first_look
+first=("$setup_s" "$build_s" "$run_s")
+read -r packages mb < <(installed)
+run test
+tests=$(sed -n 's/.*tests passed, .* tests failed out of \([0-9]*\).*/\1/p' "$log" | tail -n 1)
+test=("$build_s" "$run_s")
+run drawbar_pull_small
+if [[ -n $results ]]; then mkdir -p -- "$results" && cp -r "$system$checkout/results/." "$results/"; fi
+pull=$(grep -hA1 '"drawbar_pull_N"' "$system$checkout"/results/drawbar_pull_small*/summary.json | tr -d '\n' || true)
+pull_mean=$(sed -n 's/.*"mean": *\([-0-9.e+]*\).*/\1/p' <<<"$pull")
+
+within() { awk -v s="$1" -v budget="$2" 'BEGIN {exit !(s <= budget)}' && echo true || echo false; }
+cat <<JSON
+{
+  "commit": "$commit",
+  "cores": $(nproc),
+  "packages": {"before": $packages_before, "added": $((packages - packages_before))},
+  "installed_MB": {"before": $mb_before, "added": $((mb - mb_before))},
+  "setup_s": ${first[0]},
+  "build_s": ${first[1]},
+  "first_look_s": ${first[2]},
+  "build_tests_s": ${test[0]},
+  "test_s": ${test[1]},
+  "tests": ${tests:-0},
+  "drawbar_pull_small_s": $run_s,
+  "drawbar_pull_small_N": ${pull_mean:-null},
+  "within_budget": {"setup": $(within "${first[0]}" $setup_budget_s), "build": $(within "${first[1]}" $build_budget_s), "drawbar_pull_small": $(within "$run_s" $small_budget_s)}
+}
+JSON
+[[ $(within "${first[0]}" $setup_budget_s)$(within "${first[1]}" $build_budget_s)$(within "$run_s" $small_budget_s) == truetruetrue ]] ||
+  { say 'a budget was exceeded'; exit 1; }

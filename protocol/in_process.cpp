@@ -1,112 +1,102 @@
-// Queues between threads of one process, with the failure and time-out semantics of the MPI transport.
+// A wire of queues between threads of one process.
 #include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <map>
 #include <mutex>
-#include <optional>
-#include <tuple>
+#include <utility>
 
-#include "protocol/peer_clock.hpp"
-#include "protocol/transport.hpp"
+#include "protocol/node_transport.hpp"
 
 namespace furrow {
 namespace {
 
-struct Failure {
-  ExitCode code;
-  Address who;
-  std::string text;
-};
-
-/// What all transports of one run share.
-struct Exchange {
+/// What has arrived at one node.
+struct Mailbox {
   std::mutex mutex;
   std::condition_variable changed;
-  std::map<std::tuple<int, int, MessageKind>, std::deque<std::vector<std::byte>>> queues;  // from, to, kind
-  std::vector<std::int64_t> heartbeats;  // per node, counted
-  std::optional<Failure> failure;
+  std::map<std::pair<int, MessageKind>, std::deque<Bytes>> data;  // by sender and kind
+  std::deque<ControlBytes> control;
+  std::int64_t arrivals = 0;
 };
 
-class InProcessTransport final : public Transport {
+class QueueWire final : public Wire {
  public:
-  InProcessTransport(std::shared_ptr<Exchange> exchange, Address self, int tire_count)
-      : exchange_(std::move(exchange)), self_(self), tire_count_(tire_count) {}
+  QueueWire(std::shared_ptr<std::vector<Mailbox>> boxes, int self) : boxes_(std::move(boxes)), self_(self) {}
 
-  Address self() const override { return self_; }
-  int tire_count() const override { return tire_count_; }
+  int self() const override { return self_; }
+  int node_count() const override { return static_cast<int>(boxes_->size()); }
 
-  void send(Address to, MessageKind kind, std::vector<std::byte> payload) override {
-    const std::lock_guard lock(exchange_->mutex);
-    exchange_->queues[{number(self_), number(to), kind}].push_back(std::move(payload));
-    exchange_->changed.notify_all();
+  void send(int to, MessageKind kind, Bytes payload) override {
+    deliver(to, [&](Mailbox& box) { box.data[{self_, kind}].push_back(std::move(payload)); });
+  }
+  void send_control(int to, Bytes payload) override {
+    deliver(to, [&](Mailbox& box) { box.control.push_back({self_, std::move(payload)}); });
   }
 
-  std::vector<std::byte> receive(Address from, MessageKind kind) override {
-    std::unique_lock lock(exchange_->mutex);
-    auto& queue = exchange_->queues[{number(from), number(self_), kind}];
-    PeerClock clock(timeout_);
-    std::int64_t heard = exchange_->heartbeats[number(from)];
-    while (queue.empty()) {
-      throw_failure();
-      exchange_->changed.wait_for(lock, std::chrono::milliseconds(20));
-      if (exchange_->heartbeats[number(from)] != heard) {
-        heard = exchange_->heartbeats[number(from)];
-        clock.heard();
-      }
-      if (clock.expired()) throw lost_peer(self_, from, kind, timeout_);
-    }
-    clock_.waited_s += clock.total();
-    std::vector<std::byte> payload = std::move(queue.front());
-    queue.pop_front();
-    return payload;
+  void progress() override {
+    const std::lock_guard lock(own().mutex);
+    arrivals_seen_ = own().arrivals;
   }
-
-  void heartbeat() override {
-    const std::lock_guard lock(exchange_->mutex);
-    ++exchange_->heartbeats[number(self_)];
+  std::optional<Bytes> take(int from, MessageKind kind) override {
+    const std::lock_guard lock(own().mutex);
+    return pop(own().data[{from, kind}]);
   }
-
-  void announce_failure(ExitCode code, const std::string& text) noexcept override {
-    const std::lock_guard lock(exchange_->mutex);
-    if (!exchange_->failure) exchange_->failure = Failure{code, self_, text};
-    exchange_->changed.notify_all();
+  std::optional<ControlBytes> take_control() override {
+    const std::lock_guard lock(own().mutex);
+    return pop(own().control);
   }
+  int unsent_to() const override { return -1; }
 
-  void check_peers() override {
-    const std::lock_guard lock(exchange_->mutex);
-    throw_failure();
+  void idle(int, double) override {
+    std::unique_lock lock(own().mutex);
+    own().changed.wait_for(lock, std::chrono::milliseconds(20), [&] { return own().arrivals != arrivals_seen_; });
   }
-
-  const WaitClock& wait_clock() const override { return clock_; }
-  void set_peer_timeout(double seconds) override { timeout_ = seconds; }
+  void expect_losses(double, int) noexcept override {}
 
  private:
-  int number(Address node) const {
-    return node.role == Role::rig ? 0 : node.role == Role::tire ? 1 + node.index : 1 + tire_count_;
+  Mailbox& own() { return (*boxes_)[self_]; }
+
+  template <class Put>
+  void deliver(int to, const Put& put) {
+    Mailbox& box = (*boxes_)[to];
+    const std::lock_guard lock(box.mutex);
+    put(box);
+    ++box.arrivals;
+    box.changed.notify_all();
   }
-  void throw_failure() const {
-    if (exchange_->failure && exchange_->failure->who != self_)
-      throw PeerFailure(exchange_->failure->code, exchange_->failure->who, exchange_->failure->text);
+  template <class T>
+  static std::optional<T> pop(std::deque<T>& queue) {
+    if (queue.empty()) return std::nullopt;
+    std::optional<T> first(std::move(queue.front()));
+    queue.pop_front();
+    return first;
   }
 
-  std::shared_ptr<Exchange> exchange_;
-  Address self_;
-  int tire_count_;
-  double timeout_ = 60.0;
-  WaitClock clock_;
+  std::shared_ptr<std::vector<Mailbox>> boxes_;
+  int self_;
+  std::int64_t arrivals_seen_ = 0;
 };
 
 }  // namespace
 
 std::vector<std::unique_ptr<Transport>> make_in_process_transports(int tire_count) {
-  auto exchange = std::make_shared<Exchange>();
-  exchange->heartbeats.assign(tire_count + 2, 0);
+  const int nodes = tire_count + 2;
+  auto boxes = std::make_shared<std::vector<Mailbox>>(nodes);
+  std::vector<HostNode> host;
+  for (int i = 0; i < nodes; ++i) {
+    const Address address = i == 0            ? Address{Role::rig, 0}
+                            : i <= tire_count ? Address{Role::tire, i - 1}
+                                              : Address{Role::terrain, 0};
+    host.push_back({address, allowed_cores(), false});
+  }
   std::vector<std::unique_ptr<Transport>> transports;
-  transports.push_back(std::make_unique<InProcessTransport>(exchange, Address{Role::rig, 0}, tire_count));
-  for (int k = 0; k < tire_count; ++k)
-    transports.push_back(std::make_unique<InProcessTransport>(exchange, Address{Role::tire, k}, tire_count));
-  transports.push_back(std::make_unique<InProcessTransport>(exchange, Address{Role::terrain, 0}, tire_count));
+  for (int i = 0; i < nodes; ++i) {
+    std::vector<HostNode> seen = host;
+    seen[i].self = true;
+    transports.push_back(
+        std::make_unique<NodeTransport>(std::make_unique<QueueWire>(boxes, i), tire_count, std::move(seen)));
+  }
   return transports;
 }
 

@@ -1,9 +1,5 @@
 #include "protocol/messages.hpp"
 
-#include <fmt/format.h>
-
-#include "protocol/peer_clock.hpp"
-
 namespace furrow {
 
 std::string to_string(Role role) {
@@ -33,12 +29,6 @@ std::string to_string(MessageKind kind) {
     case MessageKind::control: return "control";
   }
   return "unknown kind";
-}
-
-Error lost_peer(Address self, Address from, MessageKind kind, double timeout) {
-  return Error(ExitCode::rank_lost, to_string(self) + " waited " + fmt::format("{:g}", timeout) + " s for " +
-                                        to_string(from) + " (" + to_string(kind) +
-                                        "): it does not answer; raise run.peer_timeout if it is only slow");
 }
 
 }  // namespace furrow

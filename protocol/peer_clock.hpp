@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <chrono>
 
-#include "protocol/transport.hpp"
-
 namespace furrow {
 
 class PeerClock {
@@ -22,19 +20,19 @@ class PeerClock {
     last_ = at;
     return silent_ > timeout_;
   }
+  /// Silence counted so far, s.
+  double silent() const { return silent_; }
   /// Wall time since construction, s.
   double total() const { return now() - begin_; }
 
- private:
-  static constexpr double kLongestGap = 0.25;  // s, counted for one poll at most
   static double now() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
   }
+
+ private:
+  static constexpr double kLongestGap = 0.25;  // s, counted for one poll at most
   double timeout_, begin_, last_;
   double silent_ = 0.0;
 };
-
-/// "terrain waited 60 s for tire 0 (surface_motion)"
-Error lost_peer(Address self, Address from, MessageKind kind, double timeout);
 
 }  // namespace furrow

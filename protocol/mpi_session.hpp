@@ -1,0 +1,49 @@
+// MPI itself and communicators, owned.
+#pragma once
+
+#include <mpi.h>
+
+namespace furrow {
+
+/// MPI from init to finalize. All MPI calls come from the thread that made this (MPI_THREAD_FUNNELED).
+class MpiSession {
+ public:
+  MpiSession(int* argc, char*** argv);
+  /// Waits for all ranks, as MPI_Finalize does; after expect_losses only for a while.
+  ~MpiSession();
+  MpiSession(const MpiSession&) = delete;
+  MpiSession& operator=(const MpiSession&) = delete;
+
+  /// Some rank failed, and others may be gone: leave with `exit_code` if MPI_Finalize takes longer than `patience` s.
+  void expect_losses(double patience, int exit_code) noexcept;
+
+ private:
+  double patience_ = 0.0;  // s; 0: for ever
+  int exit_code_ = 0;
+};
+
+int world_size();
+int world_rank();
+
+/// A communicator that is freed with its owner.
+class Communicator {
+ public:
+  static Communicator duplicate(MPI_Comm of);
+  static Communicator split(MPI_Comm of, int colour);
+  /// The processes that share this machine's memory.
+  static Communicator machine(MPI_Comm of);
+
+  Communicator(Communicator&& other) noexcept;
+  Communicator& operator=(Communicator&&) = delete;
+  ~Communicator();
+
+  MPI_Comm get() const { return comm_; }
+  int size() const;
+  int rank() const;
+
+ private:
+  explicit Communicator(MPI_Comm comm) : comm_(comm) {}
+  MPI_Comm comm_;
+};
+
+}  // namespace furrow

@@ -1,0 +1,129 @@
+#include "protocol/mpi_wire.hpp"
+
+#include <sched.h>
+
+#include <algorithm>
+#include <climits>
+#include <cmath>
+#include <ctime>
+
+#include "protocol/error.hpp"
+#include "protocol/peer_clock.hpp"
+
+namespace furrow {
+namespace {
+
+constexpr int kYields = 20;                // polls before the first sleep
+constexpr double kShortestSleep = 10e-6;   // s
+constexpr double kShareOfWait = 1.0 / 40;  // of a long wait, may be lost by sleeping too long
+constexpr double kShortWaitSleep = 100e-6; // s; longest sleep while the wait is short
+constexpr double kLongestSleep = 2e-3;     // s
+
+bool receive_any(const Communicator& comm, int& from, int& tag, Bytes& payload) {
+  int there = 0;
+  MPI_Message message;
+  MPI_Status status;
+  MPI_Improbe(MPI_ANY_SOURCE, MPI_ANY_TAG, comm.get(), &there, &message, &status);
+  if (!there) return false;
+  int count = 0;
+  MPI_Get_count(&status, MPI_BYTE, &count);
+  payload.resize(static_cast<std::size_t>(count));
+  MPI_Mrecv(payload.data(), count, MPI_BYTE, &message, MPI_STATUS_IGNORE);
+  from = status.MPI_SOURCE;
+  tag = status.MPI_TAG;
+  return true;
+}
+
+void sleep_for(double seconds) {
+  const timespec length{0, static_cast<long>(seconds * 1e9)};
+  nanosleep(&length, nullptr);
+}
+
+}  // namespace
+
+MpiWire::MpiWire(std::unique_ptr<MpiSession> session, int role)
+    : session_(std::move(session)),
+      data_(Communicator::duplicate(MPI_COMM_WORLD)),
+      control_(Communicator::duplicate(MPI_COMM_WORLD)),
+      role_(Communicator::split(MPI_COMM_WORLD, role)),
+      self_(world_rank()),
+      nodes_(world_size()) {}
+
+MpiWire::~MpiWire() {
+  drain(1.0);
+  // A node that failed never took these; their memory must outlive MPI, which may still touch it.
+  for (auto* sends : {&sends_, &control_sends_})
+    if (!sends->empty()) new std::deque<PendingSend>(std::move(*sends));
+}
+
+void MpiWire::send(int to, MessageKind kind, Bytes payload) {
+  post(sends_, data_, to, static_cast<int>(kind), std::move(payload));
+}
+
+void MpiWire::send_control(int to, Bytes payload) { post(control_sends_, control_, to, 0, std::move(payload)); }
+
+void MpiWire::post(std::deque<PendingSend>& sends, const Communicator& comm, int to, int tag, Bytes payload) {
+  if (payload.size() > static_cast<std::size_t>(INT_MAX))
+    throw Error(ExitCode::rank_lost, "a message of more than 2 GiB cannot be sent");
+  complete(sends);
+  PendingSend& send = sends.emplace_back();
+  send.to = to;
+  send.payload = std::move(payload);
+  MPI_Isend(send.payload.data(), static_cast<int>(send.payload.size()), MPI_BYTE, to, tag, comm.get(), &send.request);
+}
+
+void MpiWire::complete(std::deque<PendingSend>& sends) {
+  while (!sends.empty()) {
+    int done = 0;
+    MPI_Test(&sends.front().request, &done, MPI_STATUS_IGNORE);
+    if (!done) break;
+    sends.pop_front();
+  }
+}
+
+void MpiWire::progress() {
+  int from = 0, tag = 0;
+  Bytes payload;
+  while (receive_any(data_, from, tag, payload)) arrived_[{from, tag}].push_back(std::move(payload));
+  while (receive_any(control_, from, tag, payload)) control_arrived_.push_back({from, std::move(payload)});
+  complete(sends_);
+  complete(control_sends_);
+}
+
+std::optional<Bytes> MpiWire::take(int from, MessageKind kind) {
+  const auto found = arrived_.find({from, static_cast<int>(kind)});
+  if (found == arrived_.end() || found->second.empty()) return std::nullopt;
+  std::optional<Bytes> first(std::move(found->second.front()));
+  found->second.pop_front();
+  return first;
+}
+
+std::optional<ControlBytes> MpiWire::take_control() {
+  if (control_arrived_.empty()) return std::nullopt;
+  std::optional<ControlBytes> first(std::move(control_arrived_.front()));
+  control_arrived_.pop_front();
+  return first;
+}
+
+void MpiWire::idle(int polls, double waited) {
+  if (polls < kYields) {
+    sched_yield();
+    return;
+  }
+  const double longest = std::clamp(kShareOfWait * waited, kShortWaitSleep, kLongestSleep);
+  const double growing = kShortestSleep * std::exp2(std::min(polls - kYields, 10));
+  sleep_for(std::min(growing, longest));
+}
+
+void MpiWire::expect_losses(double patience, int exit_code) noexcept { session_->expect_losses(patience, exit_code); }
+
+/// Gives what is still under way a moment to leave, so that a failure notice is not lost.
+void MpiWire::drain(double longest) {
+  PeerClock clock(longest);
+  while (!(sends_.empty() && control_sends_.empty()) && !clock.expired()) {
+    progress();
+    sleep_for(kShortWaitSleep);
+  }
+}
+
+}  // namespace furrow

@@ -1,0 +1,128 @@
+#include "protocol/peer_watch.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "protocol/byte_stream.hpp"
+#include "protocol/peer_clock.hpp"
+
+namespace furrow {
+namespace {
+
+constexpr double kHeartbeatInterval = 1.0;  // s
+
+/// First field of a control message.
+enum class Control : std::int32_t { heartbeat = 0, failure = 1, waiting = 2 };
+
+}  // namespace
+
+PeerWatch::PeerWatch(Wire& wire, int tire_count)
+    : wire_(wire),
+      tire_count_(tire_count),
+      peers_(wire.node_count()),
+      last_heartbeat_(-std::numeric_limits<double>::infinity()) {}
+
+Address PeerWatch::address(int node) const {
+  if (node == 0) return {Role::rig, 0};
+  if (node <= tire_count_) return {Role::tire, node - 1};
+  return {Role::terrain, 0};
+}
+
+void PeerWatch::listen() {
+  while (const auto message = wire_.take_control()) {
+    Peer& peer = peers_[message->from];
+    ByteReader reader(message->payload);
+    Control what{};
+    reader(what);
+    if (what == Control::heartbeat) {
+      std::int32_t origin = 0;
+      std::int64_t count = 0;
+      reader(origin);
+      reader(count);
+      if (origin == wire_.self() || origin < 0 || origin >= wire_.node_count()) continue;
+      ++peer.heard;
+      if (waits_for_ == message->from && peers_[origin].passed_on < count) {
+        peers_[origin].passed_on = count;
+        to_all_others(message->payload);
+      }
+    } else if (what == Control::waiting) {
+      std::int32_t target = -1;
+      reader(target);
+      peer.waits_for = target;
+    } else if (what == Control::failure) {
+      ExitCode code{};
+      std::string text;
+      reader(code);
+      reader(text);
+      if (!failure_) failure_.emplace(code, address(message->from), text);
+    }
+  }
+  if (failure_) throw *failure_;
+}
+
+void PeerWatch::heartbeat() {
+  const double at = PeerClock::now();
+  if (at - last_heartbeat_ < kHeartbeatInterval) return;
+  last_heartbeat_ = at;
+  ByteWriter writer;
+  writer(Control::heartbeat);
+  writer(static_cast<std::int32_t>(wire_.self()));
+  writer(++heartbeats_);
+  to_all_others(writer.take());
+}
+
+void PeerWatch::announce_failure(ExitCode code, const std::string& text) {
+  if (failed()) return;  // one failure is told once, by the node that had it
+  announced_ = true;
+  ByteWriter writer;
+  writer(Control::failure);
+  writer(code);
+  writer(text);
+  to_all_others(writer.take());
+}
+
+void PeerWatch::begin_wait(int node) { waits_for_ = node; }
+
+void PeerWatch::tell_wait() {
+  if (told_) return;
+  told_ = true;
+  tell(waits_for_);
+}
+
+void PeerWatch::end_wait() {
+  waits_for_ = -1;
+  if (told_) tell(-1);
+  told_ = false;
+}
+
+void PeerWatch::tell(int target) {
+  ByteWriter writer;
+  writer(Control::waiting);
+  writer(static_cast<std::int32_t>(target));
+  to_all_others(writer.take());
+}
+
+Error PeerWatch::lost(int from, const std::string& what, double timeout) const {
+  std::string text = fmt::format("{} waited {:g} s for {} ({})", to_string(address(wire_.self())), timeout,
+                                 to_string(address(from)), what);
+  std::vector<bool> met(peers_.size(), false);
+  met[wire_.self()] = true;
+  int silent = from;
+  while (!met[silent] && peers_[silent].waits_for >= 0) {
+    met[silent] = true;
+    silent = peers_[silent].waits_for;
+    text += fmt::format(", which waits for {}", to_string(address(silent)));
+  }
+  if (met[silent]) return Error(ExitCode::rank_lost, text + ": the nodes wait for one another");
+  return Error(ExitCode::rank_lost, text + fmt::format(": {} does not answer; raise run.peer_timeout if it is only slow",
+                                                       to_string(address(silent))));
+}
+
+void PeerWatch::to_all_others(const Bytes& payload) {
+  for (int node = 0; node < wire_.node_count(); ++node)
+    if (node != wire_.self()) wire_.send_control(node, payload);
+}
+
+}  // namespace furrow

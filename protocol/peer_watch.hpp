@@ -1,0 +1,63 @@
+// What a node knows of its peers' lives: heartbeats, who waits for whom, who failed.
+//
+// Heartbeats pass along chains of waiting. While the terrain settles its bed, the rig waits for the terrain and the
+// tire for the rig; the rig is alive, but blocked. So a node that hears a heartbeat from the peer it waits for passes
+// it on, each heartbeat of each origin once; a node that waits for itself in the end is told nothing, so a circle of
+// waiting nodes does time out.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "protocol/transport.hpp"
+#include "protocol/wire.hpp"
+
+namespace furrow {
+
+class PeerWatch {
+ public:
+  PeerWatch(Wire& wire, int tire_count);
+
+  /// Reads all control messages that have arrived. @throws PeerFailure, again at every call once a node has failed
+  void listen();
+
+  void heartbeat();                      // at most one a second goes out
+  void announce_failure(ExitCode code, const std::string& text);
+  bool failed() const { return announced_ || failure_.has_value(); }
+
+  /// Counts the signs of life from a node.
+  std::int64_t heard(int node) const { return peers_[node].heard; }
+
+  /// This node's own waiting; the others are told only of a wait that lasts.
+  void begin_wait(int node);
+  void tell_wait();
+  void end_wait();
+
+  /// "rig waited 60 s for terrain (terrain report), which waits for tire 0: tire 0 does not answer; …"
+  Error lost(int from, const std::string& what, double timeout) const;
+
+  Address address(int node) const;
+
+ private:
+  struct Peer {
+    std::int64_t heard = 0;
+    std::int64_t passed_on = 0;  // newest of its heartbeats that this node passed on
+    int waits_for = -1;
+  };
+  void tell(int target);
+  void to_all_others(const Bytes& payload);
+
+  Wire& wire_;
+  int tire_count_;
+  std::vector<Peer> peers_;
+  std::optional<PeerFailure> failure_;
+  std::int64_t heartbeats_ = 0;
+  double last_heartbeat_;
+  int waits_for_ = -1;
+  bool told_ = false;
+  bool announced_ = false;
+};
+
+}  // namespace furrow

@@ -9,12 +9,14 @@
 namespace furrow::dem {
 namespace {
 
-constexpr double kStepShare = 0.8;          // of the stable step
+constexpr double kStepShareMindlin = 0.8;   // of the stable step
+constexpr double kStepShareCoulomb = 0.7;   // grains that fall on each other overlap more without history
 constexpr int kCheckEvery = 40;             // steps
 constexpr double kMaxSettleTime = 4.0;      // s
 constexpr double kFallDrag = 4.0;           // 1/s, while the layers fall
-constexpr double kRestDrag = 80.0;          // 1/s, once they lie
+constexpr double kRestDrag = 20.0;          // 1/s, once they lie; grains on top must still roll to their places
 constexpr double kLyingSpeed = 0.03;        // rms, m/s: slower counts as lying
+constexpr double kRestSpeed = 0.002;        // rms, m/s: slower counts as at rest
 
 }  // namespace
 
@@ -25,7 +27,8 @@ double settle_step(const TerrainOptions& options) {
   const GrainProperties grain = grain_properties(options.radius, options.density);
   const ContactMaterial material = grain_material(options);
   const ContactCoefficients pair = mix(material, material, Partner::grain, grain, law);
-  return kStepShare * stable_step(pair, grain, law, kStatedOverlap * options.radius).step;
+  const double share = law.kind == LawKind::mindlin ? kStepShareMindlin : kStepShareCoulomb;
+  return share * stable_step(pair, grain, law, kStatedOverlap * options.radius).step;
 }
 
 SolverCoefficients settle_coefficients(const TerrainOptions& options) {
@@ -65,7 +68,8 @@ SettleResult settle(GrainSolver& solver, const TerrainOptions& options, const Pr
       lying = true;
       solver.set_drag(kRestDrag);
     }
-    result.settled = lying && result.force_ratio < kSettledForceRatio && result.floor_error < kSettledFloorError;
+    result.settled = lying && speed < kRestSpeed && result.force_ratio < kSettledForceRatio &&
+                     result.floor_error < kSettledFloorError;
     best = std::min(best, std::max(result.force_ratio, result.floor_error));
     if (progress) {
       const double decades = std::log10(1.0 / std::max(best, kSettledForceRatio)) / 3.0;

@@ -89,7 +89,8 @@ ContactCoefficients mix(const ContactMaterial& grain, const ContactMaterial& oth
 // neighbours in antiphase the stiffest modes of translation and of rotation (I = 2/5 m r²) are
 //   ω² = 2 z/3 (k_n + 2 k_t)/m   and   ω² = 2 z (2/3) (5/2) k_t/m,     likewise γ with the dashpots;
 // the larger of each is taken. v ← v − dt (γ v + ω² x), x ← x + dt v is stable for ω² dt² + 2 γ dt < 4.
-// Friction without history is a dashpot c μ F_e at small |v_t|: 7 c μ F_e dt / m < 2 between equal spheres.
+// The impulse limit of law coulomb makes friction a dashpot c_t = β m/(7 dt), which takes its part of the 4.
+// Friction without history or limit is a dashpot c μ F_e at small |v_t|: 7 c μ F_e dt / m < 2 between equal spheres.
 StableStep stable_step(const ContactCoefficients& pair, const GrainProperties& grain, const LawSettings& law,
                        double overlap) {
   const double s = std::sqrt(overlap), q = std::sqrt(s), m = grain.mass;
@@ -100,8 +101,10 @@ StableStep stable_step(const ContactCoefficients& pair, const GrainProperties& g
   };
   const double omega2 = s * stiffest(1.5 * pair.stiffness, pair.shear_stiffness);
   const double gamma = (history ? q : s) * stiffest(pair.damping, pair.shear_damping);
+  const bool limited = !history && law.friction_impulse_limit;
+  const double room = 4.0 - (limited ? 2.0 * stiffest(0.0, kImpulseShare * m / 7.0) : 0.0);
   StableStep out;
-  out.step = (std::sqrt(gamma * gamma + 4.0 * omega2) - gamma) / omega2;
+  out.step = (std::sqrt(gamma * gamma + room * omega2) - gamma) / omega2;
   out.reason = gamma * gamma > omega2 ? "damping" : "stiffness";
   if (!history && !law.friction_impulse_limit && pair.friction > 0.0) {
     const double bearing = pair.stiffness * s * overlap;

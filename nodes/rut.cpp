@@ -27,12 +27,21 @@ std::vector<double> transverse_profile(const HeightField& before, const HeightFi
   return profile;
 }
 
-/// Where the profile falls below `level`, going from cell `from` in steps of `step`; linear between cells.
+/// Where the profile falls below `level` for two cells or more, going from cell `from` in steps of `step`; linear
+/// between cells. Cells without grains are passed over; the bin's edge ends the search.
 double crossing(const std::vector<double>& y, const std::vector<double>& profile, int from, int step, double level) {
-  for (int i = from; i + step >= 0 && i + step < static_cast<int>(y.size()); i += step) {
-    const double here = profile[i], next = profile[i + step];
-    if (!std::isfinite(next)) return y[i];
-    if (next < level) return y[i] + (y[i + step] - y[i]) * (here - level) / (here - next);
+  const int count = static_cast<int>(y.size());
+  const auto inside = [count](int i) { return i >= 0 && i < count; };
+  const auto below = [&](int i) { return !inside(i) || !(profile[i] >= level); };
+  int last = from;  // the last cell seen at or above the level
+  for (int i = from; inside(i); i += step) {
+    if (!std::isfinite(profile[i])) continue;
+    if (profile[i] >= level) {
+      last = i;
+    } else if (below(i + step)) {
+      if (!(profile[last] >= level)) return y[i];
+      return y[last] + (y[i] - y[last]) * (profile[last] - level) / (profile[last] - profile[i]);
+    }
   }
   return step > 0 ? y.back() : y.front();
 }
@@ -60,6 +69,8 @@ Rut measure_rut(const HeightField& before, const HeightField& after, const RutOp
   if (count == 0) return rut;
   rut.measured = true;
   rut.depth = sum / count;
+  rut.width = std::nan("");
+  if (rut.depth <= 0.0) return rut;  // the wheel left no rut: it has no width
   rut.width = crossing(rut.y, rut.profile, middle, 1, 0.5 * rut.depth) -
               crossing(rut.y, rut.profile, middle, -1, 0.5 * rut.depth);
   return rut;

@@ -5,10 +5,16 @@
 #include <limits>
 #include <numeric>
 
+#include <fmt/format.h>
+
 namespace furrow {
 namespace {
 
-constexpr double kWindow = 5.0;  // lags summed, in integrated autocorrelation times
+constexpr double kWindow = 5.0;        // lags summed, in integrated autocorrelation times
+constexpr double kSteadySem = 0.02;    // of the load: largest standard error of a steady pull
+constexpr double kBouncePeriod = 0.25; // s, of a loaded wheel (about 4 Hz)
+constexpr double kBounces = 3.0;       // the window must hold
+constexpr double kSteadyTravel = 2.0;  // undeformed radii the window must hold
 
 double mean_of(std::span<const double> x) {
   return std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
@@ -17,13 +23,14 @@ double mean_of(std::span<const double> x) {
 double integrated_autocorrelation_time(std::span<const double> x, double mean, double variance) {
   const std::size_t n = x.size();
   double tau = 1.0;
-  for (std::size_t lag = 1; lag < n / 2; ++lag) {
+  std::size_t lag = 1;
+  for (; lag < n / 2; ++lag) {
     double sum = 0.0;
     for (std::size_t i = 0; i + lag < n; ++i) sum += (x[i] - mean) * (x[i + lag] - mean);
     tau += 2.0 * sum / (static_cast<double>(n) * variance);
     if (static_cast<double>(lag) >= kWindow * tau) break;
   }
-  return std::max(tau, 1.0);
+  return std::max(tau * (1.0 + static_cast<double>(2 * lag + 1) / static_cast<double>(n)), 1.0);
 }
 
 double slope(std::span<const double> x, double mean) {
@@ -42,9 +49,8 @@ double slope(std::span<const double> x, double mean) {
 SeriesStatistics statistics(std::span<const double> x) {
   SeriesStatistics s;
   const std::size_t n = x.size();
-  if (n == 0) return s;
-  s.mean = mean_of(x);
   s.sem = std::numeric_limits<double>::infinity();
+  s.mean = n > 0 ? mean_of(x) : std::numeric_limits<double>::quiet_NaN();
   if (n < 4) return s;
   double squares = 0.0;
   for (const double value : x) squares += (value - s.mean) * (value - s.mean);
@@ -57,6 +63,24 @@ SeriesStatistics statistics(std::span<const double> x) {
   const double apart = std::abs(mean_of(x.first(n / 2)) - mean_of(x.subspan(n / 2)));
   s.halves_agree = apart <= 2.0 * std::sqrt(2.0) * s.sem;
   return s;
+}
+
+std::vector<std::string> unsteady_because(const SeriesStatistics& pull, const SteadyWindow& window) {
+  std::vector<std::string> reasons;
+  const auto require = [&reasons](bool ok, std::string reason) {
+    if (!ok) reasons.push_back(std::move(reason));
+  };
+  require(pull.halves_agree, "the halves of the averaging window differ by more than 2√2 standard errors");
+  require(pull.sem <= kSteadySem * window.load,
+          fmt::format("the standard error {:.3g} N is above {:.0f} % of the load", pull.sem, 100.0 * kSteadySem));
+  require(window.duration >= kBounces * kBouncePeriod,
+          fmt::format("the window of {:.3g} s is shorter than {:.0f} bounce periods ({:.3g} s)", window.duration,
+                      kBounces, kBounces * kBouncePeriod));
+  require(window.travel >= kSteadyTravel * window.radius,
+          fmt::format("the window holds {:.3g} m of rolling, less than {:.0f} tire radii", window.travel,
+                      kSteadyTravel));
+  require(window.whole_facets, "the window does not hold a whole number of tire facets");
+  return reasons;
 }
 
 }  // namespace furrow

@@ -15,11 +15,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kSteadySem = 0.02;      // of the load: largest standard error of a steady pull
-constexpr double kBouncePeriod = 0.25;   // s, of a loaded wheel (about 4 Hz)
-constexpr double kBounces = 3.0;         // the window must hold
-constexpr double kSteadyTravel = 2.0;    // undeformed radii the window must hold
-constexpr int kDefaultFacets = 90;       // of the shipped tires
+constexpr int kDefaultFacets = 90;           // of the shipped tires
+constexpr std::size_t kMostLinesLeftOut = 50;  // at the window's beginning, for a whole number of facets
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
@@ -27,6 +24,7 @@ Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nul
 struct Window {
   std::span<const SeriesRow> rows;
   SeriesRow before;
+  bool whole_facets = false;
   double duration() const { return rows.empty() ? 0.0 : rows.back().time - before.time; }
   template <class Get>
   double mean(Get get) const {
@@ -48,21 +46,19 @@ Window averaging_window(const SummaryInput& in) {
   if (first >= rows.size()) return {};
   const int given = in.scenario.tires[in.wheel].elements_circumference;
   const double facet = 2.0 * std::numbers::pi / (given > 0 ? given : kDefaultFacets);
-  double turned = 0.0;
-  std::size_t start = rows.size() - 1;
-  double best = std::abs(turned);
+  double turned = 0.0, least = INFINITY;
   std::size_t chosen = first;
   bool whole = false;
-  for (; start >= first; --start) {
-    turned += std::abs(rows[start].spin) * (rows[start].time - rows[start - 1].time);
+  for (std::size_t start = rows.size() - 1; start >= first; --start) {
+    const double turn = std::abs(rows[start].spin) * (rows[start].time - rows[start - 1].time);
+    turned += turn;
     const double off = std::abs(std::remainder(turned, facet));
-    if (start < first + 50 && turned > facet && (!whole || off < best)) {
-      best = off;
-      chosen = start;
-      whole = true;
-    }
+    if (start >= first + kMostLinesLeftOut || turned < 0.5 * facet || off >= least) continue;
+    least = off;
+    chosen = start;
+    whole = off <= turn;
   }
-  return {rows.subspan(chosen), rows[chosen - 1]};
+  return {rows.subspan(chosen), rows[chosen - 1], whole};
 }
 
 std::string cpu_model() {
@@ -80,11 +76,12 @@ Json pull_statistics(const SummaryInput& in, const Window& w, double load) {
   const double travel = w.rows.empty() ? 0.0 : std::abs(w.rows.back().position - w.before.position);
   const double turned = w.mean([](const SeriesRow& r) { return std::abs(r.spin); }) * w.duration() *
                         in.cards[1 + in.wheel].tire_radius;
-  const bool steady = !w.rows.empty() && s.halves_agree && s.sem <= kSteadySem * load &&
-                      w.duration() >= kBounces * kBouncePeriod &&
-                      std::max(travel, turned) >= kSteadyTravel * in.cards[1 + in.wheel].tire_radius;
+  const double radius = in.cards[1 + in.wheel].tire_radius;
+  const auto reasons =
+      unsteady_because(s, {load, w.duration(), std::max(travel, turned), radius, w.whole_facets});
   return {{"mean", number(s.mean)}, {"std", number(s.std)}, {"sem", number(s.sem)}, {"n_eff", number(s.n_eff)},
-          {"drift_N_per_s", number(s.drift / interval)}, {"steady", steady},
+          {"drift_N_per_s", number(s.drift / interval)}, {"steady", reasons.empty()},
+          {"unsteady_because", reasons},
           {"from_s", number(w.rows.empty() ? NAN : w.before.time)},
           {"to_s", number(w.rows.empty() ? NAN : w.rows.back().time)}};
 }
@@ -111,12 +108,15 @@ Json power_balance(const Window& w) {
 
 void add_rut(const SummaryInput& in, Json& json) {
   const FinalReport& terrain = in.reports.back();
-  RutOptions options;
-  options.direction = in.scenario.rig.travel_sign;
-  options.axle = options.direction * in.rows.back().position;
-  options.start = options.direction * in.rows.front().position;
-  options.tread_width = in.cards[1 + in.wheel].tire_width;
-  const Rut rut = measure_rut(terrain.height_before, terrain.height_after, options);
+  Rut rut;
+  if (!in.rows.empty()) {
+    RutOptions options;
+    options.direction = in.scenario.rig.travel_sign;
+    options.axle = options.direction * in.rows.back().position;
+    options.start = options.direction * in.rows.front().position;
+    options.tread_width = in.cards[1 + in.wheel].tire_width;
+    rut = measure_rut(terrain.height_before, terrain.height_after, options);
+  }
   json["rut_depth_m"] = number(rut.measured ? rut.depth : NAN);
   json["rut_width_m"] = number(rut.measured ? rut.width : NAN);
 }
@@ -218,7 +218,7 @@ std::string summary_text(const SummaryInput& in) {
   json["law"] = in.scenario.terrain.law;
   json["slip"] = in.scenario.rig.slip;
   const Window window = averaging_window(in);
-  if (!in.rows.empty()) add_mobility(in, window, json);
+  add_mobility(in, window, json);
   add_accounts(in, window, json);
   add_cost(in, json);
   return json.dump(2) + "\n";

@@ -2,15 +2,16 @@
 // per tire and one for the grains; every grid points into that frame's HDF5 file.
 #include "nodes/xdmf.hpp"
 
-#include <hdf5.h>
-
 #include <map>
 #include <regex>
+#include <set>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "nodes/hdf5_file.hpp"
 #include "nodes/text_file.hpp"
+#include "protocol/error.hpp"
 
 namespace furrow {
 namespace {
@@ -21,32 +22,18 @@ struct Frame {
   hsize_t points = 0, triangles = 0;
 };
 
-hsize_t rows(hid_t file, const char* name) {
-  if (H5Lexists(file, name, H5P_DEFAULT) <= 0) return 0;
-  const hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
-  const hid_t space = H5Dget_space(set);
-  hsize_t shape[2] = {0, 0};
-  H5Sget_simple_extent_dims(space, shape, nullptr);
-  H5Sclose(space);
-  H5Dclose(set);
-  return shape[0];
-}
-
 /// False for a file that cannot be read: it is left out.
 bool read_frame(const std::filesystem::path& path, Frame& frame) {
-  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (file < 0) return false;
-  bool ok = false;
-  if (H5Aexists(file, "time_s") > 0) {
-    const hid_t attribute = H5Aopen(file, "time_s", H5P_DEFAULT);
-    ok = H5Aread(attribute, H5T_NATIVE_DOUBLE, &frame.time) >= 0;
-    H5Aclose(attribute);
+  try {
+    const Hdf5Reader file(path);
+    frame.time = file.number("time_s");
+    frame.points = file.shape("position").at(0);
+    if (file.has("triangle")) frame.triangles = file.shape("triangle").at(0);
+    frame.file = "frames/" + path.filename().string();
+    return frame.points > 0;
+  } catch (const Error&) {
+    return false;
   }
-  frame.points = rows(file, "position");
-  frame.triangles = rows(file, "triangle");
-  frame.file = "frames/" + path.filename().string();
-  H5Fclose(file);
-  return ok && frame.points > 0;
 }
 
 std::string data_item(const Frame& f, const char* name, hsize_t count, int width, const char* type) {
@@ -87,10 +74,14 @@ void write_xdmf_index(const std::filesystem::path& run) {
     if (std::regex_match(name, match, pattern) && read_frame(entry.path(), frame)) series[match[2]][match[1]] = frame;
   }
   if (series.empty()) return;
+  std::set<std::string> kinds;
+  for (const auto& [index, frames] : series)
+    for (const auto& [kind, frame] : frames) kinds.insert(kind);
   std::string text =
       "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\"><Domain>\n"
       "<Grid Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
   for (const auto& [index, frames] : series) {
+    if (frames.size() < kinds.size()) continue;
     text += fmt::format("<Grid Name=\"{}\" GridType=\"Collection\" CollectionType=\"Spatial\"><Time Value=\"{:.9g}\"/>\n",
                         index, frames.begin()->second.time);
     for (const auto& [kind, frame] : frames) text += grid(frame, kind);

@@ -5,7 +5,8 @@
 
 namespace furrow {
 
-/// Writes <run>/results.xdmf for all complete frames under <run>/frames. Nothing when there are none. @throws Error(io)
+/// Writes <run>/results.xdmf for the frames under <run>/frames: the instants at which every tire and the terrain left a
+/// readable file. Nothing when there are no frames. @throws Error(io)
 void write_xdmf_index(const std::filesystem::path& run);
 
 }  // namespace furrow

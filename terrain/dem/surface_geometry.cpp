@@ -168,7 +168,7 @@ int solve_push_out(std::span<const Vec3> normal, std::span<const double> overlap
 }
 
 void share_depth(std::span<const Vec3> normal, std::span<const double> overlap, std::span<double> shared) {
-  constexpr double kFull = 0.8, kNone = 0.3;  // cosines between which w goes from 1 to 0
+  constexpr double kFull = 0.7, kNone = 0.3;  // cosines between which w goes from 1 to 0
   for (std::size_t i = 0; i < overlap.size(); ++i) {
     shared[i] = overlap[i];
     for (std::size_t j = 0; j < overlap.size(); ++j) {

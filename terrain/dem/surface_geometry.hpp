@@ -38,7 +38,7 @@ int solve_push_out(std::span<const Vec3> normal, std::span<const double> overlap
 
 /// Overlap that the contact law gets for each candidate. λ is not unique where more than three walls meet in a shallow
 /// pit, and a law that is not linear would make the choice felt; so walls of nearly one direction share the depth of
-/// the deepest of them:  δ̂_i = max_j [δ_i + w(n_i·n_j) max(0, δ_j − δ_i)],  w = 1 up to 37° apart, 0 from 73°.
+/// the deepest of them:  δ̂_i = max_j [δ_i + w(n_i·n_j) max(0, δ_j − δ_i)],  w = 1 up to 45° apart, 0 from 73°.
 void share_depth(std::span<const Vec3> normal, std::span<const double> overlap, std::span<double> shared);
 
 }  // namespace furrow

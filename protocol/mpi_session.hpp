@@ -14,10 +14,15 @@ class MpiSession {
   MpiSession(const MpiSession&) = delete;
   MpiSession& operator=(const MpiSession&) = delete;
 
+  /// True when a receiver fetches large messages from the sender's memory by itself: Open MPI between processes of one
+  /// machine, where the system allows it. Otherwise a message moves only while its sender is inside MPI too.
+  bool receivers_pull() const { return receivers_pull_; }
+
   /// Some rank failed, and others may be gone: leave with `exit_code` if MPI_Finalize takes longer than `patience` s.
   void expect_losses(double patience, int exit_code) noexcept;
 
  private:
+  bool receivers_pull_ = false;
   double patience_ = 0.0;  // s; 0: for ever
   int exit_code_ = 0;
 };

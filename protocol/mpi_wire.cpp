@@ -13,10 +13,11 @@
 namespace furrow {
 namespace {
 
-constexpr int kYields = 20;                // polls before the first sleep
-constexpr double kShortestSleep = 10e-6;   // s
+constexpr int kYields = 4;                 // polls before the first sleep
+constexpr double kFirstSleep = 20e-6;      // s
+constexpr double kSleepGrowth = 1.5;       // from one sleep to the next
+constexpr double kShortWaitSleep = 200e-6; // s; longest sleep while the wait is short
 constexpr double kShareOfWait = 1.0 / 40;  // of a long wait, may be lost by sleeping too long
-constexpr double kShortWaitSleep = 100e-6; // s; longest sleep while the wait is short
 constexpr double kLongestSleep = 2e-3;     // s
 
 bool receive_any(const Communicator& comm, int& from, int& tag, Bytes& payload) {
@@ -90,6 +91,11 @@ void MpiWire::progress() {
   complete(control_sends_);
 }
 
+int MpiWire::unsent_to() const {
+  if (sends_.empty() || session_->receivers_pull()) return -1;
+  return sends_.front().to;
+}
+
 std::optional<Bytes> MpiWire::take(int from, MessageKind kind) {
   const auto found = arrived_.find({from, static_cast<int>(kind)});
   if (found == arrived_.end() || found->second.empty()) return std::nullopt;
@@ -111,8 +117,7 @@ void MpiWire::idle(int polls, double waited) {
     return;
   }
   const double longest = std::clamp(kShareOfWait * waited, kShortWaitSleep, kLongestSleep);
-  const double growing = kShortestSleep * std::exp2(std::min(polls - kYields, 10));
-  sleep_for(std::min(growing, longest));
+  sleep_for(std::min(kFirstSleep * std::pow(kSleepGrowth, std::min(polls - kYields, 20)), longest));
 }
 
 void MpiWire::expect_losses(double patience, int exit_code) noexcept { session_->expect_losses(patience, exit_code); }

@@ -59,9 +59,9 @@ void NodeTransport::send(Address to, MessageKind kind, std::vector<std::byte> pa
 /// Waits until ready() for `peer()`, a node number that may change while it lasts.
 template <class Ready, class Peer>
 void NodeTransport::wait_until(const Ready& ready, const Peer& peer, const std::string& what) {
+  Wait wait(watch_, clock_, timeout_);  // first of all: even to look may take long where cores are scarce
   check_peers();
   if (ready()) return;
-  Wait wait(watch_, clock_, timeout_);
   const double worth_telling = std::min(kWaitWorthTelling, 0.25 * timeout_);
   int from = -1;
   std::int64_t heard = 0;

@@ -34,7 +34,7 @@ class Wire {
   virtual std::optional<Bytes> take(int from, MessageKind kind) = 0;
   virtual std::optional<ControlBytes> take_control() = 0;
 
-  /// A node to which something is still under way, or −1.
+  /// A node to which something is still under way that needs this process to get there, or −1.
   virtual int unsent_to() const = 0;
 
   /// Passes the time politely until something may have arrived.

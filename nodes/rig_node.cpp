@@ -6,6 +6,7 @@
 #include "nodes/node.hpp"
 #include "nodes/results.hpp"
 #include "nodes/series_builder.hpp"
+#include "rigs/rig_row.hpp"
 
 namespace furrow {
 namespace {
@@ -105,7 +106,12 @@ class RigNode : public Node {
   static constexpr Address kSelf{Role::rig, 0};
   static constexpr Address kTerrain{Role::terrain, 0};
 
-  static std::unique_ptr<Rig> make_rig(const Scenario& scenario) { return make_drawbar_rig(scenario.rig); }
+  static std::unique_ptr<Rig> make_rig(const Scenario& scenario) {
+    if (scenario.rigs.size() < 2) return make_drawbar_rig(scenario.rig);
+    std::vector<std::unique_ptr<Rig>> rigs;
+    for (const DrawbarRigOptions& options : scenario.rigs) rigs.push_back(make_drawbar_rig(options));
+    return make_rig_row(std::move(rigs));
+  }
 
   void record() {
     for (std::size_t k = 0; k < builders_.size(); ++k) {

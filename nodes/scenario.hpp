@@ -45,7 +45,8 @@ struct Scenario {
   std::string name;              // file name without extension
   std::string completed;         // the whole scenario as JSON text with defaults filled in
   std::string digest;            // hash of `completed`
-  DrawbarRigOptions rig;
+  DrawbarRigOptions rig;         // of the first wheel
+  std::vector<DrawbarRigOptions> rigs;  // one per wheel; rigs[0] is `rig`. Empty: the one
   int rig_substeps = 1;
   std::vector<TireOptions> tires;
   int tire_substeps = 1;
@@ -55,6 +56,7 @@ struct Scenario {
   RunOptions run;
   OutputOptions output;
   ExpectedResult expected;
+  std::vector<std::string> warnings;  // what looks wrong but is allowed
 };
 
 /// Reads, applies `--set key=value` pairs, validates and completes a scenario.

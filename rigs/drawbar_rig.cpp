@@ -36,6 +36,7 @@ void validate(const DrawbarRigOptions& o) {
   require(std::abs(o.toe_angle) < 0.5 * std::numbers::pi, "toe_angle", "must lie between -pi/2 and pi/2 rad");
   require(o.travel_sign == 1.0 || o.travel_sign == -1.0, "travel_sign", "must be 1 or -1");
   require(std::isfinite(o.start), "start", "must be finite");
+  require(std::isfinite(o.lateral), "lateral", "must be finite");
   const auto positive = [](double value, const char* key) {
     require(value > 0.0 && std::isfinite(value), key, "must be positive");
   };
@@ -126,7 +127,7 @@ void DrawbarRig::set_speeds() {
 
 BodyState DrawbarRig::moving(double axle_height) const {
   BodyState state;
-  state.position = Vec3(options_.start, 0.0, axle_height);
+  state.position = Vec3(options_.start, options_.lateral, axle_height);
   state.velocity = ramped_motion(0.0, travel_speed_, options_.ramp).rate * forward_;
   return state;
 }

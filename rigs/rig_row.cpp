@@ -1,0 +1,71 @@
+#include "rigs/rig_row.hpp"
+
+#include <utility>
+
+#include "protocol/error.hpp"
+
+namespace furrow {
+namespace {
+
+class RigRow final : public Rig {
+ public:
+  explicit RigRow(std::vector<std::unique_ptr<Rig>> rigs) : rigs_(std::move(rigs)) {
+    if (rigs_.empty()) throw physics_error("a row of rigs needs at least one rig");
+    for (std::size_t i = 0; i < rigs_.size(); ++i)
+      for (int wheel = 0; wheel < rigs_[i]->wheel_count(); ++wheel) wheels_.emplace_back(i, wheel);
+  }
+
+  std::string kind() const override { return rigs_.front()->kind() + " row"; }
+  int wheel_count() const override { return static_cast<int>(wheels_.size()); }
+  Vec3 travel_direction() const override { return rigs_.front()->travel_direction(); }
+
+  void add_tire_mass(int wheel, const MassProperties& tire, double tire_radius) override {
+    rig_of(wheel).add_tire_mass(wheels_[wheel].second, tire, tire_radius);
+  }
+  void place(std::span<const double> axle_height) override {
+    for_each_rig(axle_height, [](Rig& rig, std::span<const double> part) { rig.place(part); });
+  }
+  RimState rim(int wheel) const override { return rig_of(wheel).rim(wheels_[wheel].second); }
+  void advance(std::span<const Wrench> wrenches, double duration, int substeps) override {
+    for_each_rig(wrenches,
+                 [=](Rig& rig, std::span<const Wrench> part) { rig.advance(part, duration, substeps); });
+  }
+  WheelReport report(int wheel) const override { return rig_of(wheel).report(wheels_[wheel].second); }
+
+  void save(Archive& archive) const override {
+    for (std::size_t i = 0; i < rigs_.size(); ++i) {
+      const Archive::Scope scope(archive, "row" + std::to_string(i) + "/");
+      rigs_[i]->save(archive);
+    }
+  }
+  void restore(const Archive& archive) override {
+    for (std::size_t i = 0; i < rigs_.size(); ++i) {
+      const Archive::Scope scope(archive, "row" + std::to_string(i) + "/");
+      rigs_[i]->restore(archive);
+    }
+  }
+
+ private:
+  Rig& rig_of(int wheel) const { return *rigs_[wheels_.at(wheel).first]; }
+
+  /// Gives each rig its own wheels' part of `values`.
+  template <class T, class Call>
+  void for_each_rig(std::span<const T> values, Call call) {
+    if (values.size() != wheels_.size()) throw physics_error("row of rigs: expected one value per wheel");
+    for (auto& rig : rigs_) {
+      call(*rig, values.first(rig->wheel_count()));
+      values = values.subspan(rig->wheel_count());
+    }
+  }
+
+  std::vector<std::unique_ptr<Rig>> rigs_;
+  std::vector<std::pair<std::size_t, int>> wheels_;  // rig, and wheel within it
+};
+
+}  // namespace
+
+std::unique_ptr<Rig> make_rig_row(std::vector<std::unique_ptr<Rig>> rigs) {
+  return std::make_unique<RigRow>(std::move(rigs));
+}
+
+}  // namespace furrow

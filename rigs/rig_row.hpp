@@ -1,0 +1,15 @@
+// Several rigs side by side on one terrain, each with a wheel or more of its own.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "rigs/rig.hpp"
+
+namespace furrow {
+
+/// Wheels are numbered through the rigs in order; all travel in the first rig's direction.
+/// @throws Error(physics) when `rigs` is empty
+std::unique_ptr<Rig> make_rig_row(std::vector<std::unique_ptr<Rig>> rigs);
+
+}  // namespace furrow

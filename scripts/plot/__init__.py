@@ -1,0 +1,1 @@
+"""Plots of a run directory, used by scripts/report.py."""

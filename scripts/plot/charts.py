@@ -1,0 +1,218 @@
+"""Time series, rank shares and the power balance."""
+import matplotlib.pyplot as plt
+import numpy as np
+
+from .run_data import Missing
+from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, mark_window, panels
+
+SMOOTHING = 0.05  # s, width of the running mean drawn over noisy forces
+
+
+def smooth(time, values):
+    """Running mean over SMOOTHING, shorter at the ends; None when the series is too short for one."""
+    if len(time) < 3:
+        return None
+    half = int(0.5 * SMOOTHING / max(float(np.median(np.diff(time))), 1e-12))
+    if half < 2 or len(time) < 4 * half:
+        return None
+    total = np.concatenate([[0.0], np.cumsum(values)])
+    index = np.arange(len(values))
+    low, high = np.maximum(index - half, 0), np.minimum(index + half + 1, len(values))
+    return (total[high] - total[low]) / (high - low)
+
+
+def settled_limits(axis, run, *curves):
+    """Limits that show what happens after touch-down; the impact itself may run out of the picture."""
+    time = run.column("time_s")
+    late = time > (run.window[0] if run.window else 0.4 * time[-1])
+    if late.sum() < 10:
+        return
+    values = np.concatenate([curve[late] for curve in curves])
+    low, high = min(values.min(), 0.0), max(values.max(), 0.0)
+    margin = 0.35 * (high - low)
+    if margin > 0.0:
+        axis.set_ylim(low - margin, high + margin)
+
+
+def noisy(axis, time, values, colour, label):
+    """A thin curve of the samples with its running mean over it."""
+    mean = smooth(time, values)
+    if mean is None:
+        axis.plot(time, values, color=colour, label=label)
+        return
+    axis.plot(time, values, color=colour, alpha=0.3, lw=0.7)
+    axis.plot(time, mean, color=colour, label=label)
+
+
+def pull_slip_sinkage(run):
+    time, pull = run.column("time_s"), run.column("drawbar_pull_N")
+    figure, (top, middle, bottom) = panels(run, 3, 9.0, gridspec_kw={"height_ratios": [2.2, 1, 1.3]})
+
+    raw = run.series.get("drawbar_pull_raw_N")
+    if raw is not None:
+        top.plot(time, raw, color=GREY, lw=0.8, alpha=0.6, label="raw: force on the rail")
+    noisy(top, time, pull, BLUE, "corrected for the inertia of what the rig carries (running mean 50 ms)")
+    statistics = run.summary.get("drawbar_pull_N") or {}
+    mark_window(top, run, "averaging window")
+    if run.window and statistics.get("mean") is not None:
+        mean, sem = statistics["mean"], statistics.get("sem") or np.nan
+        share = run.number("drawbar_coefficient")
+        text = f"mean {mean:.0f} ± {sem:.0f} N (standard error)" + (f" = {100 * share:.1f} % of load" if share else "")
+        top.plot(run.window, [mean, mean], color=RED, lw=1.8, label=text)
+        if np.isfinite(sem):
+            top.fill_between(run.window, mean - sem, mean + sem, color=RED, alpha=0.3, lw=0)
+        if not statistics.get("steady", False):
+            reasons = statistics.get("unsteady_because") or ["see summary.json"]
+            top.text(0.99, 0.02, "NOT STEADY\n" + "\n".join(reasons), transform=top.transAxes, ha="right",
+                     va="bottom", color=RED, fontsize=8.5)
+    top.axhline(0.0, color="black", lw=0.8)
+    settled_limits(top, run, pull)
+    top.set_ylabel("drawbar pull, N")
+    top.set_title("Drawbar pull: positive when the tire pulls the rig along")
+    top.legend(loc="upper right", ncol=1)
+
+    middle.plot(time, run.column("slip"), color=GREEN)
+    middle.set_ylim(min(-0.05, 1.1 * np.nanmin(run.series["slip"])), max(1.05, 1.05 * np.nanmax(run.series["slip"])))
+    mark_window(middle, run)
+    middle.set_ylabel("slip, –")
+    middle.set_title("Slip: 1 − v/(ω R), R undeformed radius; positive when driven")
+
+    bottom.plot(time, 1e3 * run.column("sinkage_m"), color=BLUE, label="lowest point of the tire")
+    if "sinkage_kinematic_m" in run.series:
+        bottom.plot(time, 1e3 * run.series["sinkage_kinematic_m"], color=ORANGE,
+                    label="kinematic: from the axle's height and the undeformed radius")
+    mark_window(bottom, run)
+    bottom.invert_yaxis()
+    bottom.set_ylabel("sinkage, mm")
+    bottom.set_title("Sinkage below the undisturbed surface: positive down")
+    bottom.legend(loc="upper right")
+    bottom.set_xlabel("time, s")
+    bottom.set_xlim(0.0, time[-1])
+    return figure
+
+
+def forces(run):
+    time = run.column("time_s")
+    figure, (top, middle, bottom) = panels(run, 3, 9.5)
+    vertical = run.column("force_z_N")
+    noisy(top, time, vertical, BLUE, "vertical force of the ground")
+    if run.number("vertical_load_N"):
+        top.axhline(run.number("vertical_load_N"), color=RED, ls="--", lw=1.2,
+                    label=f"load (weight carried) {run.number('vertical_load_N'):.0f} N")
+    top.set_ylabel("N")
+    settled_limits(top, run, vertical)
+    top.set_title("Vertical force on the tire by the ground: positive up")
+
+    curves = [("tractive_effort_N", 1.0, GREEN, "tractive effort (friction)"),
+              ("terrain_resistance_N", -1.0, RED, "−terrain resistance (pressure)"),
+              ("drawbar_pull_N", 1.0, BLUE, "net: drawbar pull")]
+    shown = [(run.series[name] * sign, colour, label) for name, sign, colour, label in curves if name in run.series]
+    for values, colour, label in shown:
+        noisy(middle, time, values, colour, label)
+    middle.axhline(0.0, color="black", lw=0.8)
+    if shown:
+        settled_limits(middle, run, *[values for values, _, _ in shown])
+    middle.set_ylabel("N")
+    middle.set_title("Forces on the tire along the direction of travel: positive forward")
+
+    noisy(bottom, time, run.column("spindle_torque_Nm"), PURPLE, "drive torque on the spindle")
+    radius = run.number("tire_radius_m")
+    if radius and "tractive_effort_N" in run.series:
+        mean = smooth(time, run.series["tractive_effort_N"] * radius)
+        if mean is not None:
+            bottom.plot(time, mean, color=GREEN, ls="--", lw=1.2, label="tractive effort × undeformed radius")
+    settled_limits(bottom, run, run.series["spindle_torque_Nm"])
+    bottom.set_ylabel("N m")
+    bottom.set_title("Spindle torque: positive when it drives the wheel forward")
+    bottom.set_xlabel("time, s")
+    bottom.set_xlim(0.0, time[-1])
+    for axis in (top, middle, bottom):
+        mark_window(axis, run)
+        axis.legend(loc="upper right")
+    return figure
+
+
+def ranks(run):
+    table = run.summary.get("ranks")
+    if not table:
+        raise Missing("summary.json has no table of ranks")
+    figure, axis = plt.subplots(figsize=(9, 1.8 + 0.55 * len(table)))
+    names = [f"rank {r['rank']}: {r['node']}" + (f" ({r['kind']})" if r.get("kind") else "")
+             + f", {r['threads']} thread{'s' if r['threads'] != 1 else ''}" for r in table]
+    compute = np.array([r["compute_s"] for r in table])
+    wait = np.array([r["wait_s"] for r in table])
+    position = np.arange(len(table))
+    axis.barh(position, compute, color=BLUE, label="computing")
+    axis.barh(position, wait, left=compute, color="#d0d0d0", label="waiting for others")
+    longest = max((compute + wait).max(), 1e-12)
+    for i, r in enumerate(table):
+        share = r.get("busy_share")
+        text = f"{100 * share:.0f} % busy" if share is not None else ""
+        axis.text(compute[i] + wait[i] + 0.01 * longest, i, f"{text}, {r['cpu_s']:.0f} s CPU", va="center", fontsize=9)
+    axis.set_yticks(position, names)
+    axis.invert_yaxis()
+    axis.grid(axis="y", visible=False)
+    axis.set_xlim(0.0, 1.22 * longest)
+    axis.set_xlabel("wall time of the stepping loop, s")
+    per_second = run.number("wall_s_per_simulated_s")
+    axis.set_title(f"{run.title}\nWho computes and who waits"
+                   + (f" · {per_second:.1f} s of wall time per simulated second" if per_second else ""))
+    axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), ncol=2)
+    return figure
+
+
+def cumulative_work(run, axis):
+    """Stacked cumulative work: where the spindle's work went."""
+    time = run.column("time_s")
+    stored = ["terrain_kinetic_energy_J", "terrain_potential_energy_J", "terrain_elastic_energy_J", "tire_energy_J",
+              "carried_energy_J"]
+    axis.plot(time, run.column("spindle_work_J"), color="black", lw=2.0, label="put in by the spindle")
+    parts = [(run.series[name], colour, label) for name, colour, label in (
+        ("pull_work_J", BLUE, "work of the drawbar pull"), ("soil_dissipation_J", ORANGE, "dissipated in the soil"),
+        ("tire_dissipation_J", GREEN, "dissipated in the tire"),
+        ("damper_dissipation_J", SKY, "dissipated in the touch-down damper")) if name in run.series]
+    if all(name in run.series for name in stored):
+        total = sum(run.series[name] for name in stored)
+        parts.append((total - total[0], PURPLE, "stored since the first line"))
+    for values, colour, label in parts:
+        axis.plot(time, values, color=colour, label=label)
+    if parts:
+        axis.plot(time, sum(values for values, _, _ in parts), color=RED, ls="--", lw=1.3, label="sum of all but the first")
+    mark_window(axis, run)
+    axis.set_xlim(0.0, time[-1])
+    axis.set_xlabel("time, s")
+    axis.set_ylabel("work since the start, J")
+    axis.set_title("Where the spindle's work goes")
+    axis.legend(loc="upper left", fontsize=8)
+
+
+def energy(run):
+    figure, (left, right) = plt.subplots(1, 2, figsize=(13, 5.2))
+    figure.suptitle(run.title, fontsize=11.5, x=0.01, ha="left", fontweight="bold")
+    cumulative_work(run, left)
+    balance = run.summary.get("power_balance") or {}
+    entries = [("spindle_power_W", "spindle T·ω", "black"), ("pull_power_W", "pull × speed", BLUE),
+               ("soil_dissipation_W", "soil dissipation", ORANGE), ("tire_dissipation_W", "tire dissipation", GREEN),
+               ("damper_dissipation_W", "damper", SKY), ("stored_rate_W", "stored", PURPLE),
+               ("interface_loss_W", "lag of the interfaces", GREY), ("residual_W", "residual", RED)]
+    entries = [(balance[key], label, colour) for key, label, colour in entries if balance.get(key) is not None]
+    if not entries:
+        right.axis("off")
+        right.text(0.5, 0.5, "no power balance in summary.json", ha="center", va="center", color=GREY)
+        return figure
+    values, labels, colours = zip(*entries)
+    position = np.arange(len(values))
+    right.barh(position, values, color=colours)
+    span = max(max(values), 0.0) - min(min(values), 0.0) or 1.0
+    for i, value in enumerate(values):
+        right.text(max(value, 0.0) + 0.01 * span, i, f"{value:.1f} W", va="center", fontsize=9)
+    right.set_yticks(position, labels)
+    right.invert_yaxis()
+    right.grid(axis="y", visible=False)
+    right.set_xlim(min(min(values), 0.0) - 0.02 * span, max(max(values), 0.0) + 0.18 * span)
+    right.axvline(0.0, color="black", lw=0.8)
+    right.set_xlabel("mean power in the averaging window, W")
+    share = balance.get("residual_share")
+    right.set_title("Power balance: spindle = all the others"
+                    + (f"; residual {100 * share:.2f} % of (spindle − pull)" if share is not None else ""))
+    return figure

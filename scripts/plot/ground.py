@@ -1,0 +1,90 @@
+"""The rut: the height field seen from above, across and along the wheel's path."""
+import matplotlib.pyplot as plt
+import numpy as np
+
+from .run_data import Missing
+from .style import BLUE, GREY, ORANGE, RED
+
+NEAREST, FARTHEST = 0.3, 0.55  # m behind the axle: where the rut is measured
+
+
+def row_mean(values, axis):
+    """Mean without NaN; NaN where nothing is."""
+    good = np.isfinite(values)
+    count = good.sum(axis)
+    return np.where(count > 0, np.where(good, values, 0.0).sum(axis) / np.maximum(count, 1), np.nan)
+
+
+def rut(run):
+    before, after = run.heights()
+    depth = 1e3 * (before.z - after.z)  # mm
+    if not np.isfinite(depth).any():
+        raise Missing("the height fields are empty")
+    sign = run.travel_sign
+    start, end = (sign * run.column("position_m")[[0, -1]]).tolist()
+    tread = run.number("tread_width_m")
+    figure = plt.figure(figsize=(12, 7.6))
+    grid = figure.add_gridspec(2, 2, height_ratios=[1, 1.15], width_ratios=[1, 1.5])
+    figure.suptitle(run.title, fontsize=11.5, x=0.01, ha="left", fontweight="bold")
+    top_view(figure, figure.add_subplot(grid[0, :]), after, depth, start, end, sign, tread)
+    across(figure.add_subplot(grid[1, 0]), run, after, depth, end, sign, tread)
+    along(figure.add_subplot(grid[1, 1]), before, after, start, end, sign, tread)
+    return figure
+
+
+def top_view(figure, axis, field, depth, start, end, sign, tread):
+    limit = max(float(np.nanpercentile(np.abs(depth), 99.5)), 1.0)
+    image = axis.pcolormesh(field.x, field.y, depth.T, cmap="RdBu_r", vmin=-limit, vmax=limit, shading="nearest")
+    figure.colorbar(image, ax=axis, label="depth below the surface before, mm\n(red: rut, blue: heaped up)", pad=0.01, shrink=0.8)
+    axis.set_aspect("equal")
+    axis.grid(False)
+    axis.plot([start, end], [0.0, 0.0], color="black", ls=":", lw=1.0)
+    axis.plot(start, 0.0, "o", color="black", ms=5, label="axle at the start")
+    axis.plot(end, 0.0, ">" if sign > 0 else "<", color="black", ms=9, label="axle at the end, in direction of travel")
+    if tread:
+        window = sorted([end - sign * NEAREST, end - sign * FARTHEST])
+        axis.add_patch(plt.Rectangle((window[0], -0.5 * tread), window[1] - window[0], tread, fill=False, lw=1.4,
+                                     label="tread width, where the rut is measured"))
+    axis.set_xlabel("x, m")
+    axis.set_ylabel("y, m (left of +x)")
+    axis.set_title("Seen from above")
+    axis.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=3)
+
+
+def across(axis, run, field, depth, end, sign, tread):
+    behind = sign * (end - field.x)
+    chosen = (behind >= NEAREST) & (behind <= FARTHEST)
+    axis.set_title(f"Across, mean over {NEAREST}–{FARTHEST} m behind the axle")
+    if chosen.any():
+        axis.plot(1e3 * field.y, -row_mean(depth[chosen], 0), color=BLUE, lw=2.0)
+    axis.axhline(0.0, color=GREY, lw=1.0)
+    if tread:
+        axis.axvspan(-500.0 * tread, 500.0 * tread, color=ORANGE, alpha=0.12, lw=0,
+                     label=f"tread width {1e3 * tread:.0f} mm")
+    measured, width = run.number("rut_depth_m"), run.number("rut_width_m")
+    if measured is not None:
+        axis.axhline(-1e3 * measured, color=RED, ls="--", lw=1.2, label=f"rut depth {1e3 * measured:.1f} mm")
+    if measured is not None and width is not None:
+        axis.axhline(-500.0 * measured, color=RED, ls=":", lw=1.2, label=f"width at half depth {1e3 * width:.0f} mm")
+    axis.set_xlabel("y, mm")
+    axis.set_ylabel("height change, mm")
+    axis.margins(y=0.25)
+    axis.legend(loc="lower right", fontsize=8)
+
+
+def along(axis, before, after, start, end, sign, tread):
+    half = 0.25 * (tread or 0.2)
+    middle = np.abs(after.y) <= half
+    axis.plot(before.x, 1e3 * row_mean(before.z[:, middle], 1), color=GREY, label="before")
+    axis.plot(after.x, 1e3 * row_mean(after.z[:, middle], 1), color=BLUE, lw=1.8, label="after")
+    axis.axvline(end, color="black", lw=1.0)
+    axis.axvline(start, color="black", lw=1.0, ls=":")
+    axis.annotate("axle at the end", (end, 1.0), xycoords=("data", "axes fraction"), fontsize=8.5,
+                  xytext=(3 if sign > 0 else -3, -10), textcoords="offset points", ha="left" if sign > 0 else "right")
+    window = sorted([end - sign * NEAREST, end - sign * FARTHEST])
+    axis.axvspan(*window, color=RED, alpha=0.10, lw=0, label="where the rut is measured")
+    axis.set_xlabel("x, m")
+    axis.set_ylabel("surface height z, mm")
+    axis.set_title("Along, mean over the middle half of the tread width")
+    axis.margins(y=0.25)
+    axis.legend(loc="best", fontsize=8)

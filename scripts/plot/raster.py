@@ -1,0 +1,194 @@
+"""A small z-buffered renderer of spheres and triangles in numpy.
+
+Fragments (pixel, depth, normal, colour) are kept per pixel for the nearest surface only; light, shadow and ambient
+occlusion are added to the finished buffers, so that the cost grows with pixels and not with grains.
+"""
+import numpy as np
+
+CHUNK = 1_500_000  # fragments at a time
+
+
+class Camera:
+    """Perspective camera; depth is measured along its axis, m. With `width_m` given it is orthographic."""
+
+    def __init__(self, eye, target, width, height, field_of_view=None, width_m=None):
+        self.eye = np.asarray(eye, float)
+        forward = np.asarray(target, float) - self.eye
+        self.forward = forward / np.linalg.norm(forward)
+        right = np.cross(self.forward, [0.0, 0.0, 1.0])
+        self.right = right / np.linalg.norm(right)
+        self.up = np.cross(self.right, self.forward)
+        self.width, self.height = width, height
+        self.perspective = width_m is None
+        self.scale = 0.5 * width / np.tan(0.5 * field_of_view) if self.perspective else width / width_m
+
+    def project(self, points):
+        """Pixel coordinates (column, row), depth, and pixels per metre there."""
+        relative = np.asarray(points, float) - self.eye
+        depth = relative @ self.forward
+        scale = self.scale / np.maximum(depth, 1e-6) if self.perspective else np.full(len(depth), self.scale)
+        return (0.5 * self.width + scale * (relative @ self.right),
+                0.5 * self.height - scale * (relative @ self.up), depth, scale)
+
+    def world(self, column, row, depth):
+        """The points that project() takes to (column, row, depth)."""
+        scale = self.scale / depth if self.perspective else self.scale
+        x, y = (column - 0.5 * self.width) / scale, (0.5 * self.height - row) / scale
+        return (self.eye + depth[:, None] * self.forward + x[:, None] * self.right + y[:, None] * self.up)
+
+
+class Buffers:
+    """What is seen in each pixel: depth (m, inf: nothing), normal (world), colour (linear RGB), gloss."""
+
+    def __init__(self, camera, depth_only=False):
+        self.camera = camera
+        pixels = camera.width * camera.height
+        self.depth = np.full(pixels, np.inf)
+        self.depth_only = depth_only
+        if not depth_only:
+            self.normal = np.zeros((pixels, 3), np.float32)
+            self.colour = np.zeros((pixels, 3), np.float32)
+            self.gloss = np.zeros(pixels, np.float32)
+
+    def put(self, pixel, depth, normal=None, colour=None, gloss=0.0):
+        """Fragments with columns in common; the nearest of each pixel stays."""
+        nearer = depth < self.depth[pixel]
+        order = np.flatnonzero(nearer)
+        order = order[np.argsort(-depth[order], kind="stable")]  # of equal pixels the last assignment, the nearest, stays
+        pixel = pixel[order]
+        self.depth[pixel] = depth[order]
+        if self.depth_only:
+            return
+        self.normal[pixel] = normal[order]
+        self.colour[pixel] = colour[order]
+        self.gloss[pixel] = gloss
+
+    def spheres(self, centre, radius, colour=None):
+        camera = self.camera
+        column, row, depth, scale = camera.project(centre)
+        reach = np.ceil(radius * scale + 0.5).astype(int)
+        seen = ((depth > 0.0) & (column > -reach) & (column < camera.width + reach) & (row > -reach)
+                & (row < camera.height + reach))
+        for size in np.unique(reach[seen]):
+            members = np.flatnonzero(seen & (reach == size))
+            stamp = np.mgrid[-size:size + 1, -size:size + 1].reshape(2, -1)
+            step = max(1, CHUNK // stamp.shape[1])
+            for first in range(0, len(members), step):
+                chosen = members[first:first + step]
+                self._stamp(chosen, stamp, column, row, depth, scale, radius, colour)
+
+    def _stamp(self, chosen, stamp, column, row, depth, scale, radius, colour):
+        camera = self.camera
+        px = np.floor(column[chosen]).astype(int)[:, None] + stamp[1]
+        py = np.floor(row[chosen]).astype(int)[:, None] + stamp[0]
+        in_pixels = (radius[chosen] * scale[chosen])[:, None]
+        u = (px + 0.5 - column[chosen][:, None]) / in_pixels
+        v = (row[chosen][:, None] - py - 0.5) / in_pixels
+        inside = (u * u + v * v < 1.0) & (px >= 0) & (px < camera.width) & (py >= 0) & (py < camera.height)
+        which, _ = np.nonzero(inside)
+        u, v = u[inside], v[inside]
+        w = np.sqrt(1.0 - u * u - v * v)
+        grain = chosen[which]
+        surface = depth[grain] - radius[grain] * w
+        pixel = py[inside] * camera.width + px[inside]
+        if self.depth_only:
+            self.put(pixel, surface)
+            return
+        normal = (u[:, None] * camera.right + v[:, None] * camera.up - w[:, None] * camera.forward).astype(np.float32)
+        self.put(pixel, surface, normal, colour[grain])
+
+    def triangles(self, vertex, index, normal=None, colour=None, gloss=0.0, edge=None):
+        """`normal` per vertex, `colour` per triangle; `edge`: (n, 3) which sides, opposite to each corner, are drawn."""
+        column, row, depth, _ = self.camera.project(vertex)
+        for t, corners in enumerate(index):
+            if (depth[corners] <= 0.0).any():
+                continue
+            found = self._covered(column[corners], row[corners])
+            if found is None:
+                continue
+            px, py, weight, sharp = found
+            inverse = weight @ (1.0 / depth[corners]) if self.camera.perspective else None
+            z = 1.0 / inverse if self.camera.perspective else weight @ depth[corners]
+            pixel = py * self.camera.width + px
+            if self.depth_only:
+                self.put(pixel, z)
+                continue
+            shade = np.repeat(colour[t][None], len(z), 0)
+            if edge is not None and edge[t].any():
+                line = ((weight / sharp < 0.8) & edge[t]).any(1)
+                shade[line] *= 0.45
+            self.put(pixel, z, (weight @ normal[corners]).astype(np.float32), shade, gloss)
+
+    def _covered(self, x, y):
+        """Pixels of a triangle with barycentric weights and the weights' change per pixel."""
+        camera = self.camera
+        left, right = max(int(x.min()), 0), min(int(x.max()) + 1, camera.width)
+        above, below = max(int(y.min()), 0), min(int(y.max()) + 1, camera.height)
+        area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0])
+        if left >= right or above >= below or abs(area) < 1e-9:
+            return None
+        py, px = np.mgrid[above:below, left:right].reshape(2, -1)
+        dx = np.roll(x, -2) - np.roll(x, -1)
+        dy = np.roll(y, -2) - np.roll(y, -1)
+        weight = ((py[:, None] + 0.5 - np.roll(y, -1)) * dx - (px[:, None] + 0.5 - np.roll(x, -1)) * dy) / area
+        inside = (weight >= 0.0).all(1)
+        if not inside.any():
+            return None
+        return px[inside], py[inside], weight[inside], np.hypot(dx, dy) / abs(area)
+
+
+def box_blur(image, half):
+    """Mean over a square of 2 half + 1 pixels, edges repeated."""
+    for axis in (0, 1):
+        padded = np.pad(image, [(half + 1, half) if a == axis else (0, 0) for a in (0, 1)], mode="edge")
+        total = np.cumsum(padded, axis)
+        n = image.shape[axis]
+        image = (np.take(total, range(2 * half + 1, 2 * half + 1 + n), axis)
+                 - np.take(total, range(n), axis)) / (2 * half + 1)
+    return image
+
+
+def occlusion(buffers, sizes, depth_scale):
+    """How much of the sky is hidden by what stands in front nearby, 0…1, from the depth buffer alone."""
+    camera = buffers.camera
+    depth = buffers.depth.reshape(camera.height, camera.width)
+    far = np.isfinite(depth)
+    filled = np.where(far, depth, depth[far].max() if far.any() else 1.0)
+    hidden = np.zeros_like(filled)
+    for half in sizes:
+        hidden += np.clip((filled - box_blur(filled, half)) / depth_scale, 0.0, 1.0) / len(sizes)
+    return hidden.ravel()
+
+
+def shadow(buffers, light_buffers, bias):
+    """Share of light, 0…1, by a shadow map with 3 × 3 samples."""
+    camera, light = buffers.camera, light_buffers.camera
+    pixel = np.flatnonzero(np.isfinite(buffers.depth))
+    point = camera.world(pixel % camera.width + 0.5, pixel // camera.width + 0.5, buffers.depth[pixel])
+    column, row, depth, _ = light.project(point)
+    lit = np.zeros(len(pixel))
+    for dy in (-1, 0, 1):
+        for dx in (-1, 0, 1):
+            x = np.clip(column.astype(int) + dx, 0, light.width - 1)
+            y = np.clip(row.astype(int) + dy, 0, light.height - 1)
+            lit += (depth <= light_buffers.depth[y * light.width + x] + bias) / 9.0
+    result = np.ones(len(buffers.depth))
+    result[pixel] = lit
+    return result
+
+
+def shade(buffers, light_direction, light_share, hidden, background):
+    """The picture, (height, width, 3) sRGB 0…1. `light_direction` points to the light."""
+    camera = buffers.camera
+    seen = np.isfinite(buffers.depth)
+    normal = buffers.normal / np.maximum(np.linalg.norm(buffers.normal, axis=1, keepdims=True), 1e-9)
+    lambert = np.clip(normal @ light_direction, 0.0, 1.0) * light_share
+    sky = 0.5 + 0.5 * normal[:, 2]
+    ambient = (0.20 + 0.30 * sky) * (1.0 - 0.85 * hidden)
+    half = light_direction - camera.forward
+    half /= np.linalg.norm(half)
+    specular = buffers.gloss * np.clip(normal @ half, 0.0, 1.0) ** 30 * light_share
+    linear = buffers.colour * (ambient + 0.85 * lambert)[:, None] + specular[:, None]
+    image = np.clip(linear, 0.0, 1.0) ** (1.0 / 2.2)
+    image[~seen] = background.reshape(-1, 3)[~seen]
+    return image.reshape(camera.height, camera.width, 3)

@@ -16,7 +16,8 @@ namespace {
 constexpr double kCreepTime = 5e-3;      // τ, s
 constexpr double kFirstStep = 1e-3;      // s
 constexpr double kLargestStep = 10.0;    // s
-constexpr double kTolerance = 1e-9;      // of the static residual
+constexpr double kTolerance = 1e-8;      // of the static residual, relative to the full pressure's forces
+constexpr double kNewton = 1e-9;         // of a step's residual, likewise
 constexpr double kAccepted = 1e-2;       // of the static residual, after the last step
 constexpr int kRampSteps = 10;
 constexpr int kMaxSteps = 300;
@@ -28,6 +29,7 @@ class ColumnCreep {
     q_ = undeformed(mesh);
     force_.assign(layout_.size(), 0.0);
     shell_.strains(q_, strains_);
+    reference_ = pressure_norm();
   }
 
   /// @returns false when the tangent lost its definiteness or Newton's method did not converge; q is then unchanged
@@ -35,14 +37,13 @@ class ColumnCreep {
     const Field before = q_;
     const double c = 1.0 + kCreepTime / h;
     Eigen::VectorXd r = residual(c);
-    const double reference = pressure_norm();
     for (int n = 0; n < kMaxNewton; ++n) {
       const Eigen::LLT<Eigen::MatrixXd> factor(tangent(c));
       if (factor.info() != Eigen::Success) break;
       add(-factor.solve(r));
       r = residual(c);
-      if (!(r.norm() < 1e3 * reference)) break;
-      if (r.norm() < 0.1 * kTolerance * reference) {
+      if (!(r.norm() < 1e3 * reference_)) break;
+      if (r.norm() < kNewton * reference_) {
         shell_.strains(q_, strains_);
         return true;
       }
@@ -52,7 +53,7 @@ class ColumnCreep {
   }
 
   void set_pressure(double pressure) { shell_.set_pressure(pressure); }
-  double static_residual() { return residual(1.0).norm() / pressure_norm(); }
+  double static_residual() { return residual(1.0).norm() / reference_; }
   const Field& q() const { return q_; }
 
  private:
@@ -73,7 +74,7 @@ class ColumnCreep {
     bare.set_pressure(0.0);
     shell_.forces(q_, q_, strains_, 0.0, with);
     bare.forces(q_, q_, strains_, 0.0, without);
-    return std::max((column(with) - column(without)).norm(), 1e-6);
+    return (column(with) - column(without)).norm();
   }
   void add(const Eigen::VectorXd& change) {
     for (int j = 1; j + 1 < layout_.rows; ++j)
@@ -109,6 +110,7 @@ class ColumnCreep {
   const RingMesh& mesh_;
   RingLayout layout_;
   Field q_, strains_, force_;
+  double reference_ = 0.0;  // norm of the pressure forces on the undeformed column, N
 };
 
 }  // namespace

@@ -92,10 +92,10 @@ void RingIntegrator::set_bead(const RimState& rim) {
     }
 }
 
-/// Free nodes go on with their velocities, linearly extrapolated.
-void RingIntegrator::predict(double h) {
+/// Free nodes go on with their velocities and a share of the last change of these.
+void RingIntegrator::predict(double h, double share) {
   const std::size_t first = layout_.free_begin(), last = first + layout_.free_size();
-  for (std::size_t k = first; k < last; ++k) q_new_[k] = q_[k] + h * (2.0 * v_[k] - v_before_[k]);
+  for (std::size_t k = first; k < last; ++k) q_new_[k] = q_[k] + h * (v_[k] + share * (v_[k] - v_before_[k]));
 }
 
 /// Residual of (2) at q_new_ into r_, at the beads the reactions Q.
@@ -232,7 +232,7 @@ TireStatus RingIntegrator::step(double h, const RimState& end, const Field& forc
   double norm = 0.0;
   int count = 0;
   for (int attempt = 0; attempt < 3; ++attempt) {
-    predict(h);
+    predict(h, attempt < 2 ? 1.0 : 0.0);
     evaluate(h, force);
     norm = free_norm(r_);
     bool converged = norm <= params_.tolerance * reference_;

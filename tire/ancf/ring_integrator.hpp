@@ -85,7 +85,7 @@ class RingIntegrator {
   };
 
   void set_bead(const RimState& rim);
-  void predict(double h);
+  void predict(double h, double share);
   void evaluate(double h, const Field& force);
   double free_norm(const Field& f) const;
   double coefficient(double h) const { return 1.0 + params_.damping / h; }

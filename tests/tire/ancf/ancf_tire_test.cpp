@@ -1,0 +1,176 @@
+// The layered tire as a whole: rigid-body limits, free flight, restart, failure.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "small_tire.hpp"
+
+namespace furrow::test {
+namespace {
+
+TEST(AncfTire, free_fall_at_speed_asks_nothing_of_the_spindle_once_the_start_has_died_out) {
+  RingIntegratorParams params;
+  params.tolerance = 1e-8;
+  AncfTire tire(small_file(), params);
+  RimState rim;
+  rim.velocity = Vec3(4, 0, 0);
+  tire.place(rim);
+  RimTrajectory t(rim);
+  const double h = 1e-4;
+  for (int n = 0; n < 400; ++n) {
+    t.extend(rim, h);
+    ASSERT_TRUE(tire.advance(t, {}, 1).converged);
+    rim.velocity.z() -= 9.81 * h;
+    rim.position += h * rim.velocity;
+  }
+  EXPECT_LT(tire.spindle_wrench().force.norm(), 2e-3 * tire.mass_properties().mass * 9.81);
+  // The first-order rule (1) leaves a moment of h v × m g: 0.019 N m here.
+  EXPECT_LT(tire.spindle_wrench().moment.norm(), 1.1 * h * 4 * tire.mass_properties().mass * 9.81);
+}
+
+TEST(AncfTire, steady_spin_asks_only_for_the_weight) {
+  AncfTire tire(small_file());
+  RimState rim;
+  rim.angular_velocity = Vec3(0, 8.56, 0);
+  tire.place(rim);
+  RimTrajectory t(rim);
+  const double h = 1e-4;
+  double drag = 0.0;
+  for (int n = 0; n < 400; ++n) {
+    t.extend(rim, h);
+    ASSERT_TRUE(tire.advance(t, {}, 1).converged);
+    rim.orientation = (Quat(Eigen::AngleAxisd(8.56 * h, Vec3::UnitY())) * rim.orientation).normalized();
+    if (n >= 200) drag += tire.spindle_wrench().moment.y() / 200;
+  }
+  EXPECT_NEAR(tire.spindle_wrench().force.z(), -9.81 * tire.mass_properties().mass, 0.5);
+  EXPECT_LT(std::abs(drag), 0.1);  // N m: hysteresis of the carcass hanging in the rim, and J Ω³ h of the method
+}
+
+TEST(AncfTire, mass_matrix_and_mass_properties_agree_for_rigid_velocity_fields) {
+  TireFile file = small_file();
+  file.pressure = 0.0;  // undeformed
+  AncfTire tire(file);
+  RimState rim;
+  rim.position = Vec3(2, 1, 0.5);
+  rim.orientation = Quat(Eigen::AngleAxisd(0.4, Vec3(1, 1, 0).normalized()));
+  rim.velocity = Vec3(1, -2, 3);
+  rim.angular_velocity = Vec3(0.5, 8, -0.3);
+  tire.place(rim);
+  const MassProperties m = tire.mass_properties();
+  const Mat3 turn = rim.orientation.toRotationMatrix(), inertia = turn * m.inertia * turn.transpose();
+  const auto [p, l] = momenta(tire);
+  EXPECT_LT((p - m.mass * rim.velocity).norm(), 1e-12 * p.norm());
+  const Vec3 expected = rim.position.cross(m.mass * rim.velocity) + inertia * rim.angular_velocity;
+  EXPECT_LT((l - expected).norm(), 1e-12 * expected.norm());
+  const double kinetic = 0.5 * m.mass * rim.velocity.squaredNorm() + 0.5 * rim.angular_velocity.dot(inertia * rim.angular_velocity);
+  EXPECT_NEAR(tire.diagnostics().kinetic_energy, kinetic, 1e-12 * kinetic);
+}
+
+TEST(AncfTire, inflated_tire_at_rest_hangs_its_weight_on_the_rim) {
+  AncfTire tire(small_file());
+  RimState rim;
+  tire.place(rim);
+  RimTrajectory t(rim);
+  for (int n = 0; n < 600; ++n) {
+    t.extend(rim, 2e-4);
+    ASSERT_TRUE(tire.advance(t, {}, 1).converged);
+  }
+  const Wrench w = tire.spindle_wrench();
+  EXPECT_NEAR(w.force.z(), -9.81 * tire.mass_properties().mass, 0.3);  // N
+  EXPECT_LT(std::hypot(w.force.x(), w.force.y()), 0.05);
+}
+
+TEST(AncfTire, restored_tire_continues_bit_for_bit) {
+  const double h = 1e-4, speed = 8.0, depth = 0.008;
+  AncfTire tire(small_file()), other(small_file());
+  RimTrajectory t(rolling_rim(0, tire.radius(), speed, depth));
+  tire.place(t.start());
+  Archive archive;
+  const auto advance = [&](AncfTire& which, RimTrajectory& path, int n) {
+    path.extend(rolling_rim(n * h, which.radius(), speed, depth), h);
+    ASSERT_TRUE(which.advance(path, ground_forces(which), 2).converged);
+  };
+  for (int n = 0; n < 120; ++n) advance(tire, t, n);
+  tire.save(archive);
+  RimTrajectory again = t;
+  other.restore(archive);
+  for (int n = 120; n < 200; ++n) {
+    advance(tire, t, n);
+    advance(other, again, n);
+  }
+  EXPECT_EQ(tire.integrator().q(), other.integrator().q());
+  EXPECT_EQ(tire.integrator().v(), other.integrator().v());
+  EXPECT_EQ(tire.spindle_wrench().moment, other.spindle_wrench().moment);
+  const TireDiagnostics a = tire.diagnostics(), b = other.diagnostics();
+  EXPECT_EQ(a.newton_iterations, b.newton_iterations);
+  EXPECT_EQ(a.factorizations, b.factorizations);
+  EXPECT_EQ(a.dissipation, b.dissipation);
+  EXPECT_GT(a.factorizations, 0);
+}
+
+TEST(AncfTire, mirrored_forces_give_the_mirrored_wrench) {
+  AncfTire tire(small_file("hmmwv_lumped.json"));
+  const int rows = static_cast<int>(tire.integrator().layout().rows);
+  RimState rim;
+  Wrench w[2];
+  for (int side = 0; side < 2; ++side) {
+    tire.place(rim);
+    RimTrajectory t(rim);
+    NodalForces f;
+    const int j = side == 0 ? 2 : rows - 3;
+    f.vertex = {3 * rows + j};
+    f.force = {Vec3(100, side == 0 ? 40 : -40, 300)};
+    for (int n = 0; n < 40; ++n) {
+      t.extend(rim, 1e-4);
+      ASSERT_TRUE(tire.advance(t, f, 1).converged);
+    }
+    w[side] = tire.spindle_wrench();
+  }
+  EXPECT_NEAR(w[0].force.z(), w[1].force.z(), 0.5);
+  EXPECT_NEAR(w[0].force.y(), -w[1].force.y(), 0.5);
+  EXPECT_NEAR(w[0].moment.y(), w[1].moment.y(), 0.3);
+  EXPECT_NEAR(w[0].moment.x(), -w[1].moment.x(), 0.3);
+}
+
+TEST(AncfTire, a_blow_that_cannot_be_integrated_is_a_status_with_advice) {
+  AncfTire tire(small_file());
+  RimState rim;
+  tire.place(rim);
+  RimTrajectory t(rim);
+  NodalForces f;
+  f.vertex = {3};
+  f.force = {Vec3(0, 0, 1e12)};
+  TireStatus status;
+  for (int n = 0; n < 5 && status.converged; ++n) {
+    t.extend(rim, 1e-3);
+    status = tire.advance(t, f, 1);
+  }
+  EXPECT_FALSE(status.converged);
+  EXPECT_EQ(status.message.rfind("tire did not converge at step", 0), 0u) << status.message;
+  EXPECT_NE(status.message.find("try"), std::string::npos);
+}
+
+TEST(AncfTire, pressed_on_a_plane_it_carries_350_to_800_newtons_per_millimetre) {
+  TireFile file = small_file("hmmwv_layered.json", 48, 12);
+  AncfTire tire(file);
+  const double h = 2e-4, depth = 0.010;
+  RimTrajectory t(rolling_rim(0, tire.radius(), 0.0, depth));
+  tire.place(t.start());
+  double deflection = 0.0;
+  for (int n = 0; n < 500; ++n) {
+    t.extend(rolling_rim(n * h, tire.radius(), 0.0, depth), h);
+    const TireStatus status = tire.advance(t, ground_forces(tire), 1);
+    ASSERT_TRUE(status.converged) << status.message;
+  }
+  SurfaceState s;
+  tire.surface(s);
+  const double load = tire.spindle_wrench().force.z();
+  double sunk = 0.0;
+  for (const Vec3& x : s.position) sunk = std::max(sunk, -x.z());
+  deflection = depth - 0.5 * sunk;  // less about half the penalty ground's own
+  EXPECT_GT(load / deflection, 350e3);
+  EXPECT_LT(load / deflection, 800e3);
+}
+
+}  // namespace
+}  // namespace furrow::test

@@ -1,0 +1,60 @@
+// Static inflation: known growth of the layered tire, membrane theory for the torus.
+#include "tire/ancf/inflation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "small_tire.hpp"
+
+namespace furrow::test {
+namespace {
+
+TEST(Inflation, layered_crown_grows_by_four_tenths_of_a_millimetre) {
+  const TireFile file = small_file("hmmwv_layered.json", 60, 24);
+  const RingMesh mesh = make_ring_mesh(file);
+  const ShellRing shell(file, mesh);
+  InflationReport report;
+  const Field q = inflate(shell, mesh, report);
+  EXPECT_LT(report.residual, 1e-7);
+  const double crown = shell.layout().get(q, 0, mesh.rows / 2, 0).norm();
+  EXPECT_NEAR(crown - file.radius, 0.4e-3, 0.1e-3);  // m, independent linearised model ± 20 %
+}
+
+TEST(Inflation, shape_is_axisymmetric_and_mirrored) {
+  const TireFile file = small_file("toroidal.json", 24, 12);
+  const RingMesh mesh = make_ring_mesh(file);
+  const ShellRing shell(file, mesh);
+  InflationReport report;
+  const Field q = inflate(shell, mesh, report);
+  const RingLayout& layout = shell.layout();
+  for (int j = 0; j < mesh.rows; ++j) {
+    const Vec3 here = layout.get(q, 0, j, 0), there = layout.get(q, 0, mesh.rows - 1 - j, 0);
+    EXPECT_LT((layout.get(q, 7, j, 0) - mesh.turn(7) * here).norm(), 1e-12);
+    EXPECT_NEAR(here.z(), there.z(), 1e-9);
+    EXPECT_NEAR(here.y(), -there.y(), 1e-9);
+  }
+}
+
+TEST(Inflation, pressure_zero_leaves_the_reference) {
+  TireFile file = small_file();
+  file.pressure = 0.0;
+  const RingMesh mesh = make_ring_mesh(file);
+  InflationReport report;
+  EXPECT_EQ(inflate(ShellRing(file, mesh), mesh, report), undeformed(mesh));
+}
+
+TEST(Inflation, all_shipped_tires_inflate_at_low_and_full_pressure) {
+  for (const char* name : {"hmmwv_layered.json", "hmmwv_lumped.json", "toroidal.json"})
+    for (const double share : {0.35, 1.0, 1.5}) {
+      TireFile file = small_file(name, 30, 12);
+      file.pressure *= share;
+      const RingMesh mesh = make_ring_mesh(file);
+      InflationReport report;
+      inflate(ShellRing(file, mesh), mesh, report);
+      EXPECT_LT(report.residual, 1e-6) << name << " at " << file.pressure;
+    }
+}
+
+}  // namespace
+}  // namespace furrow::test

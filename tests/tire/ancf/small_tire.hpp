@@ -1,0 +1,56 @@
+// A coarse layered tire and a ground to press it on, for the tests of the whole model.
+#pragma once
+
+#include "tire/ancf/ancf_tire.hpp"
+
+namespace furrow::test {
+
+inline TireFile small_file(const char* name = "hmmwv_layered.json", int columns = 24, int width = 6) {
+  TireFile file = read_tire_file(std::string(TIRE_DATA "/") + name);
+  file.elements_circumference = columns;
+  set_elements_width(file, width);
+  return file;
+}
+
+/// Penalty springs at z = 0 with viscous friction, one interval late like any terrain.
+inline NodalForces ground_forces(const Tire& tire) {
+  SurfaceState s;
+  tire.surface(s);
+  NodalForces f;
+  for (int k = 0; k < tire.mesh().vertex_count; ++k) {
+    const double depth = -s.position[k].z();
+    if (depth <= 0.0) continue;
+    const double normal = std::max(0.0, 2e5 * depth - 30.0 * s.velocity[k].z());
+    f.vertex.push_back(k);
+    f.force.push_back(Vec3(-20.0 * s.velocity[k].x(), -20.0 * s.velocity[k].y(), normal));
+  }
+  return f;
+}
+
+/// A rim that rolls at `speed` and sinks from just above the ground; smooth in time.
+inline RimState rolling_rim(double time, double radius, double speed, double depth) {
+  RimState r;
+  const double share = std::min(1.0, time / 0.02);
+  r.position = Vec3(speed * radius * time, 0.0, radius - depth * share * share * (3 - 2 * share));
+  r.velocity = Vec3(speed * radius, 0.0, share < 1.0 ? -depth * 6 * share * (1 - share) / 0.02 : 0.0);
+  r.angular_velocity = Vec3(0.0, speed, 0.0);
+  r.orientation = Quat(Eigen::AngleAxisd(speed * time, Vec3::UnitY()));
+  return r;
+}
+
+/// Momentum and angular momentum about the origin by the consistent mass.
+inline std::pair<Vec3, Vec3> momenta(const AncfTire& tire) {
+  const RingLayout& layout = tire.integrator().layout();
+  const Field &q = tire.integrator().q(), &v = tire.integrator().v();
+  Field p(layout.size(), 0.0);
+  tire.integrator().mass().apply(v, 1.0, p);
+  Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();
+  for (int j = 0; j < layout.rows; ++j)
+    for (int i = 0; i < layout.columns; ++i) {
+      linear += layout.get(p, i, j, 0);
+      for (const int s : {0, 3}) angular += layout.get(q, i, j, s).cross(layout.get(p, i, j, s));
+    }
+  return {linear, angular};
+}
+
+}  // namespace furrow::test

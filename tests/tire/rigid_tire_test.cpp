@@ -1,0 +1,95 @@
+// The rigid tire against Newton's and Euler's equations.
+#include "tire/rigid/rigid_tire.hpp"
+
+#include <gtest/gtest.h>
+
+namespace furrow {
+namespace {
+
+RigidTire make() {
+  TireFile file = read_tire_file(TIRE_DATA "/hmmwv_layered.json");
+  file.elements_circumference = 24;
+  set_elements_width(file, 6);
+  return RigidTire(file);
+}
+
+TEST(RigidTire, free_drop_and_free_spin_ask_nothing_of_the_spindle) {
+  RigidTire tire = make();
+  RimState rim;
+  rim.angular_velocity = Vec3(0, 8.56, 0);
+  tire.place(rim);
+  RimTrajectory t(rim);
+  const double h = 1e-4;
+  Wrench last;
+  for (int n = 0; n < 100; ++n) {
+    t.extend(rim, h);
+    tire.advance(t, {}, 1);
+    last = tire.spindle_wrench();
+    rim.velocity.z() -= 9.81 * h;
+    rim.position += h * rim.velocity;
+    rim.orientation = (Quat(Eigen::AngleAxisd(8.56 * h, Vec3::UnitY())) * rim.orientation).normalized();
+    EXPECT_LT(last.moment.norm(), 1e-9);
+    if (n > 0) {
+      EXPECT_LT(last.force.norm(), 1e-9);
+    }
+  }
+}
+
+TEST(RigidTire, spin_up_needs_inertia_times_angular_acceleration) {
+  RigidTire tire = make();
+  RimState rim;
+  tire.place(rim);
+  RimTrajectory t(rim);
+  rim.angular_velocity = Vec3(0, 0.01, 0);
+  t.extend(rim, 1e-3);
+  tire.advance(t, {}, 1);
+  EXPECT_NEAR(tire.spindle_wrench().moment.y(), -tire.mass_properties().inertia(1, 1) * 10.0, 1e-12);
+  EXPECT_NEAR(tire.spindle_wrench().force.z(), -9.81 * tire.mass_properties().mass, 1e-10);
+}
+
+TEST(RigidTire, contact_forces_reach_the_spindle_with_their_arm) {
+  RigidTire tire = make();
+  RimState rim;
+  rim.position = Vec3(3, 1, 0.5);
+  tire.place(rim);
+  RimTrajectory t(rim);
+  SurfaceState s;
+  tire.surface(s);
+  NodalForces f;
+  f.vertex = {5, 40, tire.mesh().vertex_count - 1};
+  f.force = {Vec3(10, 20, 300), Vec3(-5, 0, 100), Vec3(0, -30, 7)};
+  t.extend(rim, 1e-4);
+  tire.advance(t, f, 1);
+  Vec3 force(0, 0, -9.81 * tire.mass_properties().mass), moment = Vec3::Zero();
+  for (int k = 0; k < 3; ++k) {
+    force += f.force[k];
+    moment += (s.position[f.vertex[k]] - rim.position).cross(f.force[k]);
+  }
+  EXPECT_LT((tire.spindle_wrench().force - force).norm(), 1e-10);
+  EXPECT_LT((tire.spindle_wrench().moment - moment).norm(), 1e-10);
+}
+
+TEST(RigidTire, restored_state_is_the_saved_one) {
+  RigidTire tire = make(), other = make();
+  RimState rim;
+  rim.position = Vec3(1, 2, 3);
+  rim.angular_velocity = Vec3(0.1, 5, 0);
+  tire.place(rim);
+  RimTrajectory t(rim);
+  t.extend(rim, 1e-3);
+  tire.advance(t, {}, 1);
+  Archive a;
+  tire.save(a);
+  other.restore(a);
+  SurfaceState s, r;
+  tire.surface(s);
+  other.surface(r);
+  for (std::size_t k = 0; k < s.position.size(); ++k) {
+    EXPECT_EQ(s.position[k], r.position[k]);
+    EXPECT_EQ(s.velocity[k], r.velocity[k]);
+  }
+  EXPECT_EQ(tire.spindle_wrench().moment, other.spindle_wrench().moment);
+}
+
+}  // namespace
+}  // namespace furrow

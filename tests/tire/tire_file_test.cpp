@@ -1,0 +1,196 @@
+// Tire files: what is read, and that every mistake names file, key and what is allowed.
+#include "tire/tire_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "protocol/error.hpp"
+#include "tire/json_reader.hpp"
+#include "tire/ring_mesh.hpp"
+#include "tire/tire.hpp"
+
+namespace furrow {
+namespace {
+
+using nlohmann::json;
+
+class TireFileTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() / ("furrow_tire_file_" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder_);
+    std::ifstream in(TIRE_DATA "/hmmwv_layered.json");
+    good_ = json::parse(in);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::string write(const std::string& text) {
+    const auto file = folder_ / "tire.json";
+    std::ofstream(file) << text;
+    return file.string();
+  }
+  /// The error that reading this text gives, without the file's name.
+  std::string complaint(const std::string& text) {
+    const std::string file = write(text);
+    try {
+      read_tire_file(file);
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ExitCode::bad_input);
+      const std::string what = e.what();
+      EXPECT_EQ(what.rfind(file + ": ", 0), 0u) << what;
+      return what.substr(file.size() + 2);
+    }
+    return "no error";
+  }
+
+  std::filesystem::path folder_;
+  json good_;
+};
+
+TEST_F(TireFileTest, layered_hmmwv_holds_the_reference_layup) {
+  const TireFile f = read_tire_file(TIRE_DATA "/hmmwv_layered.json");
+  EXPECT_EQ(f.elements_circumference, 90);
+  EXPECT_EQ(f.elements_width(), 24);
+  EXPECT_DOUBLE_EQ(f.pressure, 200e3);
+  EXPECT_DOUBLE_EQ(f.structural_damping, 0.005);
+  EXPECT_NEAR(f.bead.thickness(), 6.0e-3, 1e-12);
+  EXPECT_NEAR(f.sidewall.thickness(), 1.1e-3, 1e-12);
+  EXPECT_NEAR(f.tread.thickness(), 2.1e-3, 1e-12);
+  EXPECT_EQ(f.profile.size(), 71u);
+  EXPECT_DOUBLE_EQ(f.contact.friction, 0.9);
+}
+
+TEST_F(TireFileTest, shipped_files_make_both_models) {
+  for (const char* name : {"hmmwv_layered.json", "hmmwv_lumped.json", "toroidal.json"}) {
+    TireOptions options;
+    options.file = std::string(TIRE_DATA "/") + name;
+    options.elements_circumference = 12;
+    options.elements_width = 6;
+    EXPECT_EQ(make_tire(options)->coordinates(), 12 * 7 * 6) << name;
+    options.rigid = true;
+    EXPECT_GT(make_tire(options)->mass_properties().mass, 1.0) << name;
+  }
+}
+
+TEST_F(TireFileTest, options_replace_the_file_s_values_and_split_sections_in_proportion) {
+  TireFile f = read_tire_file(TIRE_DATA "/hmmwv_layered.json");
+  set_elements_width(f, 12);
+  EXPECT_EQ(f.bead.elements_per_side, 1);
+  EXPECT_EQ(f.sidewall.elements_per_side, 2);
+  EXPECT_EQ(f.tread.elements_per_side, 3);
+  EXPECT_THROW(set_elements_width(f, 7), Error);
+  EXPECT_THROW(set_elements_width(f, 4), Error);
+}
+
+TEST_F(TireFileTest, every_mistake_names_its_key) {
+  const auto with = [&](auto change) {
+    json changed = good_;
+    change(changed);
+    return complaint(changed.dump());
+  };
+  EXPECT_EQ(with([](json& j) { j["presure"] = 1; }), "key 'presure': is unknown, did you mean 'pressure'?");
+  EXPECT_EQ(with([](json& j) { j["contact"]["frction"] = 1; }), "key 'contact.frction': is unknown, did you mean 'friction'?");
+  EXPECT_EQ(with([](json& j) { j["template"] = "ring"; }), "key 'template': is 'ring', expected one of: ancf_shell, ANCFTire");
+  EXPECT_EQ(with([](json& j) { j.erase("template"); }), "key 'template': is missing, expected one of: ancf_shell, ANCFTire");
+  EXPECT_EQ(with([](json& j) { j.erase("radius"); }), "key 'radius': is missing");
+  EXPECT_EQ(with([](json& j) { j["radius"] = -0.4; }), "key 'radius': is -0.4, expected a number above zero");
+  EXPECT_EQ(with([](json& j) { j["radius"] = "big"; }), "key 'radius': is \"big\", expected a finite number");
+  EXPECT_EQ(with([](json& j) { j["pressure"] = -1; }), "key 'pressure': is -1, expected a number of zero or above");
+  EXPECT_EQ(with([](json& j) { j["pressure"] = nullptr; }), "key 'pressure': is null, expected a finite number");
+  EXPECT_EQ(with([](json& j) { j["elements_circumference"] = 4.5; }),
+            "key 'elements_circumference': is 4.5, expected a whole number of at least 8");
+  EXPECT_EQ(with([](json& j) { j["sections"]["tread"]["layers"][1]["material"] = "steel"; }),
+            "key 'sections.tread.layers[1].material': is 'steel', expected one of: carcass cord, rubber, steel cord");
+  EXPECT_EQ(with([](json& j) { j["sections"]["bead"]["layers"] = json::array(); }),
+            "key 'sections.bead.layers': is empty, expected at least one layer");
+  EXPECT_EQ(with([](json& j) { j["profile"][3] = {0.5, 0.01}; }), "key 'profile[3]': expected three numbers t, x, y");
+  EXPECT_EQ(with([](json& j) { j["profile"][3][0] = 0.001; }), "key 'profile[3]': expected t to increase");
+  EXPECT_EQ(with([](json& j) { j["profile"][3][1] = -0.1; }),
+            "key 'profile[3]': lies below the rim radius, expected x of zero or above");
+  EXPECT_EQ(with([](json& j) { j["radius"] = 0.6; }).rfind("key 'profile': rises to", 0), 0u);
+  EXPECT_EQ(with([](json& j) { j["materials"]["rubber"]["poisson_ratio"] = 0.6; }).rfind("key 'materials.rubber.poisson_ratio'", 0), 0u);
+  EXPECT_EQ(with([](json& j) { j["format_version"] = 99; }), "key 'format_version': is 99, this program reads up to 1");
+}
+
+TEST_F(TireFileTest, files_that_are_not_json_objects_are_refused) {
+  EXPECT_EQ(complaint("").rfind("is not valid JSON", 0), 0u);
+  EXPECT_EQ(complaint("{\"template\": ").rfind("is not valid JSON", 0), 0u);
+  EXPECT_EQ(complaint("{\"radius\": NaN}").rfind("is not valid JSON", 0), 0u);
+  EXPECT_EQ(complaint("{\"radius\": 1e400}").rfind("is not valid JSON", 0), 0u);
+  EXPECT_EQ(complaint("\xff\xfe\"").rfind("is not valid JSON", 0), 0u);
+  EXPECT_EQ(complaint("[1, 2]"), "expected a JSON object");
+  EXPECT_EQ(complaint("{\"radius\": 1, \"radius\": 2}"), "key 'radius': stands twice in the same object");
+  EXPECT_THROW(read_tire_file(folder_), Error);
+  EXPECT_THROW(read_tire_file(folder_ / "none.json"), Error);
+}
+
+/// The layered tire in the public layout.
+json public_layout(const TireFile& f) {
+  json j = {{"Name", "HMMWV"}, {"Type", "Tire"}, {"Template", "ANCFTire"}, {"Tire Radius", f.radius},
+            {"Rim Radius", f.rim_radius}, {"Rim Width", f.rim_width}, {"8-Node Elements", false},
+            {"Structural Damping Coefficient", f.structural_damping}, {"Default Pressure", f.pressure},
+            {"Number Elements Circumference", 90}};
+  j["Contact Material"] = {{"Coefficient of Friction", 0.9}, {"Coefficient of Restitution", 0.1},
+                           {"Properties", {{"Young Modulus", 2e6}, {"Poisson Ratio", 0.3}}},
+                           {"Coefficients", {{"Normal Stiffness", 2e6}, {"Normal Damping", 13}, {"Tangential Stiffness", 1e6},
+                                             {"Tangential Damping", 0}}}};
+  for (const LayerMaterial& m : f.materials)
+    j["Materials"].push_back({{"Type", "Orthotropic"}, {"Density", m.density},
+                              {"E", {m.young_modulus.x(), m.young_modulus.y(), m.young_modulus.z()}},
+                              {"nu", {m.poisson_ratio.x(), m.poisson_ratio.y(), m.poisson_ratio.z()}},
+                              {"G", {m.shear_modulus.x(), m.shear_modulus.y(), m.shear_modulus.z()}}});
+  const std::pair<const char*, const Section*> sections[] = {
+      {"Bead Section", &f.bead}, {"Sidewall Section", &f.sidewall}, {"Tread Section", &f.tread}};
+  for (const auto& [name, s] : sections) {
+    json entry = {{"Number Elements", s->elements_per_side}};
+    for (const Layer& layer : s->layers) {
+      entry["Layer Thickness"].push_back(layer.thickness);
+      entry["Ply Angle"].push_back(std::lround(layer.angle * 180 / 3.14159265358979));
+      entry["Material ID"].push_back(layer.material);
+    }
+    j[name] = entry;
+  }
+  for (const ProfileKnot& k : f.profile) j["Profile"].push_back({k.t, k.x, k.y});
+  return j;
+}
+
+TEST_F(TireFileTest, public_layout_gives_the_same_tire_as_ours) {
+  const TireFile ours = read_tire_file(TIRE_DATA "/hmmwv_layered.json");
+  const TireFile theirs = read_tire_file(write(public_layout(ours).dump()));
+  EXPECT_EQ(theirs.elements_width(), ours.elements_width());
+  EXPECT_DOUBLE_EQ(theirs.contact.young_modulus, 2e6);
+  const auto mass = [](const TireFile& f) {
+    const RingMesh mesh = make_ring_mesh(f);
+    return rigid_mass(mesh, element_masses(f, mesh)).mass;
+  };
+  EXPECT_DOUBLE_EQ(mass(theirs), mass(ours));
+}
+
+TEST_F(TireFileTest, public_layout_mistakes_name_their_key) {
+  const json good = public_layout(read_tire_file(TIRE_DATA "/hmmwv_layered.json"));
+  const auto with = [&](auto change) {
+    json changed = good;
+    change(changed);
+    return complaint(changed.dump());
+  };
+  EXPECT_EQ(with([](json&) {}), "no error");
+  EXPECT_EQ(with([](json& j) { j["Tire Radios"] = 1; }), "key 'Tire Radios': is unknown, did you mean 'Tire Radius'?");
+  EXPECT_EQ(with([](json& j) { j["Template"] = "FialaTire"; }), "key 'Template': is 'FialaTire', expected one of: ancf_shell, ANCFTire");
+  EXPECT_EQ(with([](json& j) { j["Tread Section"]["Material ID"][0] = 7; }),
+            "key 'Tread Section.Material ID': holds 7, expected whole numbers from 0 to 2");
+  EXPECT_EQ(with([](json& j) { j["Materials"][0]["Type"] = "Fabric"; }),
+            "key 'Materials[0].Type': is 'Fabric', expected one of: Isotropic, Orthotropic");
+  EXPECT_EQ(with([](json& j) { j["8-Node Elements"] = true; }),
+            "key '8-Node Elements': is true, only tires of 4-node elements (false) can be read");
+}
+
+TEST(NearestName, suggests_only_what_is_near) {
+  EXPECT_EQ(nearest_name("presure", {"pressure", "radius"}), "pressure");
+  EXPECT_EQ(nearest_name("xyz", {"pressure", "radius"}), "");
+}
+
+}  // namespace
+}  // namespace furrow

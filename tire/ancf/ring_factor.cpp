@@ -1,5 +1,7 @@
 #include "tire/ancf/ring_factor.hpp"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <set>
 
@@ -10,9 +12,23 @@ extern "C" void openblas_set_num_threads(int);
 namespace furrow {
 namespace {
 constexpr int kColumn[4] = {0, 1, 1, 0}, kRow[4] = {0, 0, 1, 1};
-}
+
+/// While it lives, parallel regions of the libraries below run on the calling thread alone: CHOLMOD otherwise starts
+/// four threads, whatever the cores are.
+class Serial {
+ public:
+  Serial() : before_(omp_get_max_active_levels()) { omp_set_max_active_levels(0); }
+  ~Serial() { omp_set_max_active_levels(before_); }
+  Serial(const Serial&) = delete;
+  Serial& operator=(const Serial&) = delete;
+
+ private:
+  int before_;
+};
+}  // namespace
 
 RingFactor::RingFactor(const RingLayout& layout, int slots) : layout_(layout), factors_(slots, nullptr) {
+  const Serial serial;
   openblas_set_num_threads(1);  // results and timing must not depend on the library's own threads
   cholmod_start(&common_);
   common_.supernodal = CHOLMOD_SUPERNODAL;
@@ -99,6 +115,7 @@ void RingFactor::add(const BatchTangent& tangent, const ElementMass& mass, doubl
 }
 
 bool RingFactor::factorize(int slot) {
+  const Serial serial;
   cholmod_factor*& factor = factors_[slot];
   if (!factor) factor = cholmod_copy_factor(symbolic_, &common_);
   const bool done = cholmod_factorize(matrix_, factor, &common_) != 0;
@@ -117,6 +134,7 @@ void RingFactor::solve(int slot, const Mat3& turn, int shift, const Field& rhs, 
         Eigen::Map<Vec3>(b + 6 * (i * across + j) + 3 * s) = back * Vec3(p[0], p[stride], p[2 * stride]);
       }
   }
+  const Serial serial;
   cholmod_solve2(CHOLMOD_A, factors_[slot], rhs_, nullptr, &x_, nullptr, &y_, &e_, &common_);
   const auto* solution = static_cast<const double*>(x_->x);
   for (int i = 0; i < columns; ++i) {

@@ -19,17 +19,8 @@ void require_same(const NodeCard& first, const NodeCard& card, const char* what,
                                                what, to_string(first.self), a, to_string(card.self), b));
 }
 
-}  // namespace
-
-std::vector<NodeCard> handshake(Transport& transport, const NodeCard& own) {
-  const std::vector<Address> nodes = all_nodes(transport.tire_count());
-  for (const Address& node : nodes)
-    if (node != transport.self()) send(transport, node, own);
-  std::vector<NodeCard> cards;
-  for (const Address& node : nodes)
-    cards.push_back(node == transport.self() ? own : receive<NodeCard>(transport, node));
-
-  const NodeCard& rig = cards.front();
+void check(const std::vector<NodeCard>& cards, const std::vector<Address>& nodes) {
+  const NodeCard &rig = cards.front(), &terrain = cards.back();
   for (std::size_t i = 0; i < cards.size(); ++i) {
     const NodeCard& card = cards[i];
     if (card.self != nodes[i])
@@ -43,13 +34,33 @@ std::vector<NodeCard> handshake(Transport& transport, const NodeCard& own) {
       throw Error(ExitCode::bad_input, fmt::format("handshake: {} takes {} substeps; expected 1 or more",
                                                    to_string(card.self), card.substeps));
   }
-  const int tires = transport.tire_count();
+  const int tires = static_cast<int>(cards.size()) - 2;
   if (rig.wheel_count != tires)
     throw Error(ExitCode::bad_input, fmt::format("handshake: the rig carries {} wheel(s) but the scenario has {} tire(s)",
                                                  rig.wheel_count, tires));
-  if (cards.back().tire_count != tires)
-    throw Error(ExitCode::bad_input, fmt::format("handshake: the terrain expects {} tire(s) but there are {}",
-                                                 cards.back().tire_count, tires));
+  for (const NodeCard* card : {&rig, &terrain})
+    if (card->tire_count != tires)
+      throw Error(ExitCode::bad_input, fmt::format("handshake: the {} expects {} tire(s) but there are {}",
+                                                   to_string(card->self), card->tire_count, tires));
+}
+
+}  // namespace
+
+std::vector<NodeCard> handshake(Transport& transport, const NodeCard& own) {
+  const std::vector<Address> nodes = all_nodes(transport.tire_count());
+  for (const Address& node : nodes)
+    if (node != transport.self()) send(transport, node, own);
+  std::vector<NodeCard> cards;
+  for (const Address& node : nodes)
+    cards.push_back(node == transport.self() ? own : receive<NodeCard>(transport, node));
+
+  try {
+    check(cards, nodes);
+  } catch (const Error& error) {
+    // All nodes find the same; it is the rig's to tell.
+    if (transport.self() == nodes.front()) throw;
+    throw PeerFailure(error.code(), nodes.front(), error.what());
+  }
   return cards;
 }
 

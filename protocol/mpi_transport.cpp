@@ -50,7 +50,9 @@ std::vector<HostNode> gather_host_nodes(int tire_count) {
 }  // namespace
 
 std::unique_ptr<Transport> make_mpi_transport(int* argc, char*** argv, int tire_count, int terrain_ranks) {
-  auto session = std::make_unique<MpiSession>(argc, argv);
+  // MPI ends with the process, not with the transport: a launcher ends all ranks as soon as one has ended with an
+  // error, so none may end before the one that tells the user has done so.
+  static MpiSession session(argc, argv);
   const int needed = 1 + tire_count + terrain_ranks, given = world_size();
   if (given != needed)
     throw Error(ExitCode::bad_input,
@@ -59,7 +61,7 @@ std::unique_ptr<Transport> make_mpi_transport(int* argc, char*** argv, int tire_
                             needed, 1, tire_count, terrain_ranks, given, needed));
   const int role = static_cast<int>(address_of(world_rank(), tire_count).role);
   std::vector<HostNode> host = gather_host_nodes(tire_count);
-  return std::make_unique<NodeTransport>(std::make_unique<MpiWire>(std::move(session), role), tire_count,
+  return std::make_unique<NodeTransport>(std::make_unique<MpiWire>(session, role), tire_count,
                                          std::move(host));
 }
 

@@ -42,8 +42,8 @@ void sleep_for(double seconds) {
 
 }  // namespace
 
-MpiWire::MpiWire(std::unique_ptr<MpiSession> session, int role)
-    : session_(std::move(session)),
+MpiWire::MpiWire(MpiSession& session, int role)
+    : session_(session),
       data_(Communicator::duplicate(MPI_COMM_WORLD)),
       control_(Communicator::duplicate(MPI_COMM_WORLD)),
       role_(Communicator::split(MPI_COMM_WORLD, role)),
@@ -92,7 +92,7 @@ void MpiWire::progress() {
 }
 
 int MpiWire::unsent_to() const {
-  if (sends_.empty() || session_->receivers_pull()) return -1;
+  if (sends_.empty() || session_.receivers_pull()) return -1;
   return sends_.front().to;
 }
 
@@ -120,7 +120,7 @@ void MpiWire::idle(int polls, double waited) {
   sleep_for(std::min(kFirstSleep * std::pow(kSleepGrowth, std::min(polls - kYields, 20)), longest));
 }
 
-void MpiWire::expect_losses(double patience, int exit_code) noexcept { session_->expect_losses(patience, exit_code); }
+void MpiWire::expect_losses(double patience, int exit_code) noexcept { session_.expect_losses(patience, exit_code); }
 
 /// Gives what is still under way a moment to leave, so that a failure notice is not lost.
 void MpiWire::drain(double longest) {

@@ -9,7 +9,6 @@
 
 #include <deque>
 #include <map>
-#include <memory>
 #include <utility>
 
 #include "protocol/mpi_session.hpp"
@@ -20,7 +19,7 @@ namespace furrow {
 class MpiWire final : public Wire {
  public:
   /// The nodes are the ranks of the world; those of one role share a communicator.
-  MpiWire(std::unique_ptr<MpiSession> session, int role);
+  MpiWire(MpiSession& session, int role);
   ~MpiWire() override;
 
   const Communicator& role() const { return role_; }
@@ -46,7 +45,7 @@ class MpiWire final : public Wire {
   static void complete(std::deque<PendingSend>& sends);
   void drain(double longest);
 
-  std::unique_ptr<MpiSession> session_;
+  MpiSession& session_;
   Communicator data_, control_, role_;
   int self_, nodes_;
   std::deque<PendingSend> sends_, control_sends_;

@@ -95,14 +95,15 @@ M receive_step(Transport& transport, Address from, std::int64_t step) {
 
 /// Every node's card, gathered by all and checked by all, so that a mismatch is the same clear error everywhere.
 /// Returned in the order rig, tires, terrain.
-/// @throws Error(bad_input) when versions, digests, steps, or tire and wheel counts disagree.
+/// @throws Error(bad_input) when versions, digests, steps, or tire and wheel counts disagree; on nodes other than the
+///         rig as a PeerFailure of the rig with the same text, so that the user reads it once.
 std::vector<NodeCard> handshake(Transport& transport, const NodeCard& own);
 
 /// In one process: one transport per node, each to be used by a thread of its own (protocol/in_process.cpp).
 std::vector<std::unique_ptr<Transport>> make_in_process_transports(int tire_count);
 
 /// World rank 0 is the rig, 1…k the tires, the rest the terrain (protocol/mpi_transport.cpp).
-/// MPI is initialised here and finalised when the transport goes.
+/// MPI is initialised here, and finalised when the process ends.
 /// @throws Error(bad_input) when the world has fewer than tire_count + 2 ranks, or more than terrain_ranks allow.
 std::unique_ptr<Transport> make_mpi_transport(int* argc, char*** argv, int tire_count, int terrain_ranks);
 

@@ -1,0 +1,192 @@
+// Every message survives packing bit for bit, and a payload of any other length is refused.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "protocol/transport.hpp"
+
+namespace furrow {
+namespace {
+
+NodeCard node_card() {
+  NodeCard m;
+  m.protocol_version = 7;
+  m.self = {Role::tire, 3};
+  m.node_kind = "ancf";
+  m.scenario_digest = "0123456789abcdef";
+  m.step = 4e-5;
+  m.steps = 1'000'000'000'000;
+  m.substeps = 2;
+  m.wheel_count = 4;
+  m.tire_count = 5;
+  m.threads = 6;
+  m.pid = 4711;
+  m.host = "node-17";
+  m.tire_mass.mass = 4.8;
+  m.tire_mass.inertia << 1, 2, 3, 4, 5, 6, 7, 8, 9;
+  m.tire_radius = 0.4673;
+  m.tire_width = 0.3;
+  m.size = 13'500;
+  return m;
+}
+SurfaceSetup surface_setup() {
+  return {{5, {{0, 1, 2}, {2, 3, 4}}}, {1e7, 0.45, 0.9, 0.2, 1e6, 30.0, 0.0}};
+}
+TerrainSetup terrain_setup() { return {{0.1, 0.2}, {0.3, 0.4}, -0.5, 12.5, 382'500}; }
+RimMotion rim_motion() {
+  return {{42, 1.5}, {{1, 2, 3}, Quat(0.5, -0.5, 0.5, -0.5), {4, 5, 6}, {7, 8, 9}}, true};
+}
+SpindleReport spindle_report() {
+  SpindleReport m;
+  m.header = {43, 1.6};
+  m.wrench = {{1, 2, 3}, {4, 5, 6}};
+  m.spindle = {{-1, -2, -3}, {-4, -5, -6}};
+  m.lowest_point = 0.01;
+  m.momentum = {7, 8, 9};
+  m.impulse_received = {10, 11, 12};
+  m.impulse_received_abs = 13;
+  m.terrain_work = 14;
+  m.rim_work = 15;
+  m.dissipation = 16;
+  m.kinetic_energy = 17;
+  m.strain_energy = 18;
+  m.newton_iterations = 19;
+  m.factorizations = 20;
+  m.residual = 21;
+  return m;
+}
+SurfaceMotion surface_motion(int vertices) {
+  SurfaceMotion m;
+  m.header = {44, 1.7};
+  for (int i = 0; i < vertices; ++i) {
+    m.surface.position.emplace_back(i, 0.1 * i, -0.0);
+    m.surface.velocity.emplace_back(std::sqrt(i), 1e-310, -i);
+  }
+  m.stop_now = true;
+  return m;
+}
+TerrainForces terrain_forces() { return {{45, 1.8}, {{1, 5, 9}, {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}}}}; }
+TerrainReport terrain_report() {
+  TerrainReport m;
+  m.header = {46, 1.9};
+  m.state = {1, 2, 3, 4, 5, {6, 7, 8}, {9, 10, 11}, {12, 13, 14}, 15, 16, 17, 18};
+  m.contact.resize(2);
+  m.contact[0] = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, {10, 11, 12}, 13, 14, 15, 16};
+  m.contact[1].contacts = 99;
+  return m;
+}
+FinalReport final_report() {
+  FinalReport m;
+  m.self = {Role::terrain, 0};
+  m.state_hash = 0xfedcba9876543210ULL;
+  m.cpu_s = 1;
+  m.compute_s = 2;
+  m.wait_s = 3;
+  m.threads = 4;
+  m.height_before = {0.1, 0.2, 0.3, 2, 1, {0.4, std::nan("")}};
+  m.height_after = {0.5, 0.6, 0.7, 1, 1, {0.8}};
+  return m;
+}
+
+/// Packing what was unpacked gives the same bytes, so nothing is lost or changed; a field missing from both
+/// directions is caught by the field-by-field tests below.
+template <class M>
+void expect_round_trip(const M& message) {
+  const std::vector<std::byte> bytes = pack(message);
+  EXPECT_EQ(pack(unpack<M>(bytes)), bytes);
+  EXPECT_NE(pack(M{}), bytes);
+}
+
+template <class M>
+void expect_other_lengths_refused(const M& message) {
+  const std::vector<std::byte> bytes = pack(message);
+  for (std::size_t length = 0; length < bytes.size(); ++length) {
+    const std::vector<std::byte> cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length));
+    EXPECT_THROW(unpack<M>(cut), Error) << length << " of " << bytes.size() << " bytes";
+  }
+  std::vector<std::byte> longer = bytes;
+  longer.push_back(std::byte{0});
+  try {
+    unpack<M>(longer);
+    ADD_FAILURE() << "a byte too many was accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::rank_lost);
+  }
+}
+
+TEST(Pack, every_message_survives_bit_for_bit) {
+  expect_round_trip(node_card());
+  expect_round_trip(surface_setup());
+  expect_round_trip(terrain_setup());
+  expect_round_trip(rim_motion());
+  expect_round_trip(spindle_report());
+  expect_round_trip(surface_motion(4));
+  expect_round_trip(terrain_forces());
+  expect_round_trip(terrain_report());
+  expect_round_trip(final_report());
+}
+
+TEST(Pack, truncated_and_trailing_bytes_are_refused) {
+  expect_other_lengths_refused(node_card());
+  expect_other_lengths_refused(surface_setup());
+  expect_other_lengths_refused(terrain_setup());
+  expect_other_lengths_refused(rim_motion());
+  expect_other_lengths_refused(spindle_report());
+  expect_other_lengths_refused(surface_motion(4));
+  expect_other_lengths_refused(terrain_forces());
+  expect_other_lengths_refused(terrain_report());
+  expect_other_lengths_refused(final_report());
+}
+
+// One byte flipped in a length must not allocate the machine's memory.
+TEST(Pack, an_absurd_length_is_refused) {
+  std::vector<std::byte> bytes = pack(terrain_setup());
+  for (int i = 0; i < 8; ++i) bytes[static_cast<std::size_t>(i)] = std::byte{0xff};
+  EXPECT_THROW(unpack<TerrainSetup>(bytes), Error);
+}
+
+// The number of bytes is that of all fields of the struct, so a field forgotten in the list is noticed.
+TEST(Pack, every_field_is_there) {
+  constexpr std::size_t kLength = 8, kHeader = 16, kVec = 24, kWrench = 48, kSums = 4 * kVec + 3 * 8 + 8;
+  EXPECT_EQ(pack(node_card()).size(), 4 + 8 + (kLength + 4) + (kLength + 16) + 8 + 8 + 5 * 4 + (kLength + 7) + 80 +
+                                          8 + 8 + 8);
+  EXPECT_EQ(pack(surface_setup()).size(), 4 + kLength + 2 * 12 + 7 * 8);
+  EXPECT_EQ(pack(terrain_setup()).size(), 2 * (kLength + 16) + 8 + 8 + 8);
+  EXPECT_EQ(pack(rim_motion()).size(), kHeader + 3 * kVec + 32 + 1);
+  EXPECT_EQ(pack(spindle_report()).size(), kHeader + 2 * kWrench + 2 * kVec + 10 * 8);
+  EXPECT_EQ(pack(surface_motion(4)).size(), kHeader + 2 * (kLength + 4 * kVec) + 1);
+  EXPECT_EQ(pack(terrain_forces()).size(), kHeader + kLength + 3 * 4 + kLength + 3 * kVec);
+  EXPECT_EQ(pack(terrain_report()).size(), kHeader + 9 * 8 + 3 * kVec + kLength + 2 * kSums);
+  EXPECT_EQ(pack(final_report()).size(), 4 + 4 + 8 + 3 * 8 + 4 + 2 * (3 * 8 + 2 * 4 + kLength) + 3 * 8);
+}
+
+TEST(Pack, fields_arrive_where_they_belong) {
+  const auto card = unpack<NodeCard>(pack(node_card()));
+  EXPECT_EQ(card.self, (Address{Role::tire, 3}));
+  EXPECT_EQ(card.host, "node-17");
+  EXPECT_EQ(card.tire_mass.inertia, node_card().tire_mass.inertia);
+  const auto motion = unpack<RimMotion>(pack(rim_motion()));
+  EXPECT_EQ(motion.rim.orientation.coeffs(), rim_motion().rim.orientation.coeffs());
+  EXPECT_TRUE(motion.stop_next);
+  const auto report = unpack<TerrainReport>(pack(terrain_report()));
+  EXPECT_EQ(report.contact[0].moment, Vec3(10, 11, 12));
+  EXPECT_EQ(report.contact[1].contacts, 99);
+  EXPECT_TRUE(std::isnan(unpack<FinalReport>(pack(final_report())).height_before.height[1]));
+}
+
+TEST(Pack, a_surface_of_10000_vertices_takes_less_than_2_ms) {
+  const SurfaceMotion motion = surface_motion(10'000);
+  double best = 1.0;
+  for (int i = 0; i < 20; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    const auto copy = unpack<SurfaceMotion>(pack(motion));
+    best = std::min(best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    EXPECT_EQ(copy.surface.velocity.back(), motion.surface.velocity.back());
+  }
+  RecordProperty("microseconds", static_cast<int>(1e6 * best));
+  EXPECT_LT(best, 2e-3);
+}
+
+}  // namespace
+}  // namespace furrow

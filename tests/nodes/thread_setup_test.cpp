@@ -1,0 +1,196 @@
+// Who gets which cores: the plan is a pure function of the machine; applying it is checked on this machine.
+#include "nodes/thread_setup.hpp"
+
+#include <gtest/gtest.h>
+#include <omp.h>
+#include <sched.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <numeric>
+#include <set>
+#include <string>
+#include <thread>
+
+namespace furrow {
+namespace {
+
+/// Rig, tires and one terrain that may all use the cores 0 … n − 1 of a machine with as many.
+HostView machine(int cores, int tires = 1) {
+  HostView host;
+  host.machine_cores = cores;
+  std::vector<int> all(static_cast<std::size_t>(cores));
+  std::iota(all.begin(), all.end(), 0);
+  host.nodes.push_back({{Role::rig, 0}, all, false});
+  for (int k = 0; k < tires; ++k) host.nodes.push_back({{Role::tire, k}, all, false});
+  host.nodes.push_back({{Role::terrain, 0}, all, false});
+  return host;
+}
+
+std::vector<ThreadPlan> plan_all(const HostView& host, int terrain_threads = 0) {
+  std::vector<ThreadPlan> plans;
+  for (std::size_t i = 0; i < host.nodes.size(); ++i) plans.push_back(plan_threads(host, i, terrain_threads));
+  return plans;
+}
+
+std::vector<int> threads_of(const std::vector<ThreadPlan>& plans) {
+  std::vector<int> threads;
+  for (const ThreadPlan& plan : plans) threads.push_back(plan.threads);
+  return threads;
+}
+
+/// No two computing threads share a core; the rig's may be shared.
+void expect_disjoint(const std::vector<ThreadPlan>& plans) {
+  std::set<int> used;
+  for (std::size_t i = 1; i < plans.size(); ++i) {
+    EXPECT_TRUE(plans[i].disjoint);
+    EXPECT_EQ(static_cast<int>(plans[i].cores.size()), plans[i].threads);
+    for (const int core : plans[i].cores) EXPECT_TRUE(used.insert(core).second) << "core " << core << " twice";
+  }
+}
+
+TEST(ThreadPlan, two_cores_are_left_to_the_system) {
+  const auto plans = plan_all(machine(2));
+  EXPECT_EQ(threads_of(plans), (std::vector<int>{1, 1, 1}));
+  for (const ThreadPlan& plan : plans) {
+    EXPECT_FALSE(plan.disjoint);
+    EXPECT_TRUE(plan.cores.empty());
+    EXPECT_TRUE(plan.note.empty());
+  }
+}
+
+TEST(ThreadPlan, four_cores_leave_three_to_the_terrain_and_the_rig_sits_with_the_tire) {
+  const auto plans = plan_all(machine(4));
+  EXPECT_EQ(threads_of(plans), (std::vector<int>{1, 1, 3}));
+  expect_disjoint(plans);
+  EXPECT_EQ(plans[0].cores, plans[1].cores);
+}
+
+TEST(ThreadPlan, many_cores_give_the_rig_one_of_its_own) {
+  const auto plans = plan_all(machine(16, 4));
+  EXPECT_EQ(threads_of(plans), (std::vector<int>{1, 1, 1, 1, 1, 11}));
+  expect_disjoint(plans);
+  for (std::size_t i = 1; i < plans.size(); ++i) EXPECT_NE(plans[i].cores.front(), plans[0].cores.front());
+}
+
+TEST(ThreadPlan, four_tires_on_two_cores_are_left_to_the_system) {
+  const auto plans = plan_all(machine(2, 4));
+  EXPECT_EQ(threads_of(plans), (std::vector<int>{1, 1, 1, 1, 1, 1}));
+  for (const ThreadPlan& plan : plans) EXPECT_FALSE(plan.disjoint);
+}
+
+TEST(ThreadPlan, the_terrain_takes_no_more_than_pays_by_itself) {
+  EXPECT_EQ(plan_all(machine(128)).back().threads, kMostAutoThreads);
+  EXPECT_EQ(plan_all(machine(128), 100).back().threads, 100);
+}
+
+TEST(ThreadPlan, what_the_user_wants_is_done_even_where_it_does_not_fit) {
+  const auto plans = plan_all(machine(2), 6);
+  EXPECT_EQ(plans.back().threads, 6);
+  EXPECT_FALSE(plans.back().disjoint);
+  EXPECT_NE(plans.back().note.find("terrain runs 6 threads on 2 cores"), std::string::npos) << plans.back().note;
+}
+
+TEST(ThreadPlan, a_busy_machine_or_a_limited_container_is_not_bound) {
+  HostView host = machine(8);
+  host.load = 5.0;
+  EXPECT_FALSE(plan_all(host).back().disjoint);
+  host.load = 0.2;
+  expect_disjoint(plan_all(host));
+  host.cpu_limit = 2.0;
+  EXPECT_FALSE(plan_all(host).back().disjoint);
+  EXPECT_EQ(plan_all(host).back().threads, 1);
+}
+
+TEST(ThreadPlan, ranks_that_the_launcher_bound_stay_within_their_cores) {
+  HostView host = machine(8);
+  host.nodes[0].cores = {0};
+  host.nodes[1].cores = {1, 2};
+  host.nodes[2].cores = {4, 5, 6, 7};
+  const auto plans = plan_all(host);
+  EXPECT_EQ(threads_of(plans), (std::vector<int>{1, 1, 4}));
+  expect_disjoint(plans);
+  EXPECT_EQ(plans[2].cores, (std::vector<int>{4, 5, 6, 7}));
+  for (const ThreadPlan& plan : plans) EXPECT_TRUE(plan.note.empty()) << plan.note;
+}
+
+TEST(ThreadPlan, a_terrain_pinned_to_one_core_is_warned_about) {
+  HostView host = machine(8);
+  for (int i = 0; i < 3; ++i) host.nodes[static_cast<std::size_t>(i)].cores = {i};
+  const auto plans = plan_all(host, 4);
+  EXPECT_EQ(plans[2].threads, 4);
+  EXPECT_NE(plans[2].note.find("terrain is pinned to core 2 of 8 while 4 threads are wanted"), std::string::npos)
+      << plans[2].note;
+  EXPECT_NE(plans[2].note.find("--bind-to none"), std::string::npos);
+  EXPECT_TRUE(plans[1].note.empty());
+  EXPECT_EQ(plan_all(host)[2].threads, 1);
+  EXPECT_FALSE(plan_all(host)[2].note.empty());
+}
+
+// In a thread of its own: OpenMP gives it a team of its own, and this test's settings go with it.
+TEST(Apply, every_thread_flushes_denormals_and_is_bound) {
+  std::thread([] {
+    const std::vector<int> cores = allowed_cores();
+    ThreadPlan plan;
+    plan.threads = static_cast<int>(std::min<std::size_t>(cores.size(), 3));
+    plan.cores.assign(cores.begin(), cores.begin() + plan.threads);
+    apply(plan);
+    EXPECT_EQ(omp_get_max_threads(), plan.threads);
+    std::vector<int> core(static_cast<std::size_t>(plan.threads), -1), flushed(core);
+#pragma omp parallel
+    {
+      const auto me = static_cast<std::size_t>(omp_get_thread_num());
+      cpu_set_t set;
+      if (sched_getaffinity(0, sizeof set, &set) == 0 && CPU_COUNT(&set) == 1)
+        for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu)
+          if (CPU_ISSET(cpu, &set)) core[me] = cpu;
+      volatile double tiny = 1e-300;
+      flushed[me] = tiny * 1e-20 == 0.0;
+    }
+    EXPECT_EQ(core, plan.cores);
+    EXPECT_EQ(flushed, std::vector<int>(flushed.size(), 1));
+  }).join();
+}
+
+TEST(Apply, a_plan_without_cores_leaves_the_process_where_it_may_run) {
+  std::thread([] {
+    cpu_set_t before, after;
+    sched_getaffinity(0, sizeof before, &before);
+    apply({2, {}, false, {}});
+    sched_getaffinity(0, sizeof after, &after);
+    EXPECT_TRUE(CPU_EQUAL(&before, &after));
+  }).join();
+}
+
+// Run by the next test, in a process of its own.
+TEST(WaitPassively, DISABLED_child) {
+  std::ifstream file("/proc/self/cmdline", std::ios::binary);
+  std::vector<std::string> words;
+  for (std::string word; std::getline(file, word, '\0');) words.push_back(word);
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  wait_passively(argv.data());
+  std::printf("<%s|%d>\n", std::getenv("OMP_WAIT_POLICY"), static_cast<int>(words.size()));
+}
+
+TEST(WaitPassively, starts_the_program_anew_once_with_the_same_arguments) {
+  const auto said = [](const std::string& environment) {
+    const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
+    const std::string command = "env " + environment + " '" + self +
+                                "' --gtest_filter=*child --gtest_also_run_disabled_tests 2>&1";
+    FILE* pipe = popen(command.c_str(), "r");
+    char text[4096] = {};
+    const std::size_t length = fread(text, 1, sizeof text - 1, pipe);
+    EXPECT_EQ(pclose(pipe), 0);
+    return std::string(text, length);
+  };
+  const std::string anew = said("-u OMP_WAIT_POLICY"), kept = said("OMP_WAIT_POLICY=active");
+  EXPECT_NE(anew.find("<passive|3>"), std::string::npos) << anew;
+  EXPECT_NE(kept.find("<active|3>"), std::string::npos) << kept;
+}
+
+}  // namespace
+}  // namespace furrow

@@ -9,12 +9,12 @@ namespace furrow::dem {
 namespace {
 
 void put_quads(Archive& archive, const std::string& name, const Quad* quads, std::size_t count) {
-  archive.put(name, std::span<const double>(&quads->x, 4 * count));
+  archive.put(name, std::span<const double>(reinterpret_cast<const double*>(quads), 4 * count));
 }
 
 void get_quads(const Archive& archive, const std::string& name, Quad* quads, std::size_t count) {
   const auto& values = archive.get<double>(name, 4 * count);
-  std::copy(values.begin(), values.end(), &quads->x);
+  std::copy(values.begin(), values.end(), reinterpret_cast<double*>(quads));
 }
 
 std::vector<double> flat(const Accounts& a) {

@@ -10,9 +10,6 @@
 
 namespace furrow::dem {
 
-// A lane type of 32 bytes is passed in registers only where AVX exists; everything here is inlined.
-#pragma GCC diagnostic ignored "-Wpsabi"
-
 typedef double Lane __attribute__((vector_size(32)));
 using LaneMask = decltype(Lane{} < Lane{});
 inline constexpr int kLanes = 4;

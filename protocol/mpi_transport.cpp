@@ -3,6 +3,7 @@
 #include <mpi.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <utility>
 
@@ -72,7 +73,10 @@ int role_communicator(const Transport& transport) {
   return MPI_Comm_c2f(wire->role().get());
 }
 
-void abandon_mpi(int exit_code) { _exit(exit_code); }
+void abandon_mpi(int exit_code) {
+  std::fflush(nullptr);
+  _exit(exit_code);
+}
 
 bool launched_by_mpi() {
   return std::getenv("OMPI_COMM_WORLD_RANK") || std::getenv("PMIX_RANK") || std::getenv("PMI_RANK");

@@ -172,6 +172,26 @@ void settling(Transport& t) {
   say("%s: settled\n", to_string(t.self()).c_str());
 }
 
+/// The rig itself is stopped while it waits, for longer than its time-out, and goes on waiting afterwards.
+void waiting_one_is_stopped(Transport& t) {
+  if (t.self() == kRig) {
+    t.set_peer_timeout(2.0);
+    NodeCard card;
+    card.pid = getpid();
+    send(t, kTerrain, card);
+    receive<TerrainSetup>(t, kTerrain);
+  } else if (t.self() == kTerrain) {
+    const int rig = receive<NodeCard>(t, kRig).pid;
+    sleep_for(0.3);
+    kill(rig, SIGSTOP);
+    sleep_for(3.0);
+    kill(rig, SIGCONT);
+    sleep_for(0.3);
+    send(t, kRig, TerrainSetup{});
+  }
+  say("%s: patient\n", to_string(t.self()).c_str());
+}
+
 int play(const std::string& scene, int argc, char** argv) {
   std::unique_ptr<Transport> transport;
   try {
@@ -183,6 +203,7 @@ int play(const std::string& scene, int argc, char** argv) {
     if (scene == "one_fails") one_fails(*transport);
     if (scene == "one_stops") one_stops(*transport);
     if (scene == "one_fails_one_stops") one_fails_one_stops(*transport);
+    if (scene == "waiting_one_is_stopped") waiting_one_is_stopped(*transport);
     if (scene == "settling") settling(*transport);
     return 0;
   } catch (const PeerFailure& failure) {

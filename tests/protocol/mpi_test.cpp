@@ -97,6 +97,12 @@ TEST(Mpi, a_settling_terrain_keeps_those_alive_who_wait_for_it) {
   EXPECT_EQ(outcome.count("settled"), 3) << outcome.output;
 }
 
+TEST(Mpi, time_during_which_the_waiting_rank_itself_was_stopped_does_not_count) {
+  const Outcome outcome = start("waiting_one_is_stopped");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_EQ(outcome.count("patient"), 3) << outcome.output;
+}
+
 // The stated goal is 10 % while a rank waits 95 % of 4 ms steps; the limits here leave room for a busy machine.
 TEST(Mpi, a_waiting_rank_leaves_its_core_alone) {
   const Outcome outcome = start("waiting");

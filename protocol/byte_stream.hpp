@@ -43,10 +43,8 @@ class ByteWriter {
 
  private:
   void append(const void* from, std::size_t count) {
-    if (count == 0) return;
-    const std::size_t at = bytes_.size();
-    bytes_.resize(at + count);
-    std::memcpy(bytes_.data() + at, from, count);
+    const auto* bytes = static_cast<const std::byte*>(from);
+    bytes_.insert(bytes_.end(), bytes, bytes + count);
   }
   std::vector<std::byte> bytes_;
 };

@@ -1,9 +1,260 @@
 #include "nodes/scenario.hpp"
 
+#include <unistd.h>
+#include <climits>
 #include <cmath>
+#include <cstdlib>
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "nodes/json_text.hpp"
+#include "nodes/scenario_checks.hpp"
+#include "nodes/schema.hpp"
+#include "protocol/error.hpp"
+#include "protocol/hash.hpp"
+#include "protocol/host.hpp"
 
 namespace furrow {
+namespace {
+
+using nlohmann::json;
+using Settings = std::vector<std::pair<std::string, std::string>>;
+
+constexpr int kFormatVersion = 1;
+
+std::vector<std::string> split(const std::string& key) {
+  std::vector<std::string> parts(1);
+  for (const char c : key)
+    if (c == '.')
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  return parts;
+}
+
+/// Puts the value of `--set key=value` into the document, making sections that it lacks.
+void set_value(json& document, const std::string& key, const std::string& text, const std::string& file) {
+  const std::vector<std::string> parts = split(key);
+  if (std::find(parts.begin(), parts.end(), "") != parts.end())
+    throw input_error(file, key, "is no key, expected --set section.key=value");
+  const json value = parse_value(text, file, key);
+  json* at = &document;
+  for (const std::string& part : parts) {
+    if (at->is_null()) *at = json::object();
+    if (at->is_array()) {
+      const bool index = part.size() < 4 && std::all_of(part.begin(), part.end(),
+                                                        [](unsigned char c) { return std::isdigit(c); });
+      if (!index || std::stoul(part) >= at->size())
+        throw input_error(
+            file, key,
+            fmt::format("there is no entry '{}', expected 0 to {}", part, static_cast<int>(at->size()) - 1));
+      at = &(*at)[std::stoul(part)];
+    } else if (at->is_object()) {
+      at = &(*at)[part];
+    } else {
+      throw input_error(
+          file, key,
+          fmt::format("there is nothing below {}, expected a section before '.{}'", value_text(*at), part));
+    }
+  }
+  *at = value;
+}
+
+Error all_problems(const std::string& file, const std::vector<Problem>& problems) {
+  std::string text;
+  for (const Problem& problem : problems)
+    text += (text.empty() ? "" : "\n") + std::string(input_error(file, problem.key, problem.what).what());
+  return Error(ExitCode::bad_input, text);
+}
+
+json read_document(const std::string& file, const Settings& settings) {
+  json document = parse_json(read_text_file(file, "a scenario in JSON"), file);
+  if (!document.is_object())
+    throw input_error(file, "", "is " + value_text(document) + ", expected an object { }");
+  for (const auto& [key, text] : settings) set_value(document, key, text, file);
+  if (document.contains("format_version") && document["format_version"].is_number_integer() &&
+      document["format_version"] > kFormatVersion)
+    throw input_error(file, "format_version",
+                      fmt::format("is {}: the file is newer than this program, expected at most {}",
+                                  value_text(document["format_version"]), kFormatVersion));
+  if (document.contains("vehicle"))
+    throw input_error(file, "vehicle", "whole vehicles are not available in this version, expected 'rig'");
+  return document;
+}
+
+void complete(json& document, const std::string& file) {
+  const Schema schema = Schema::load();
+  schema.normalize(document);
+  if (const auto problems = schema.problems(document); !problems.empty()) throw all_problems(file, problems);
+  if (document.contains("tire") && document.contains("tires"))
+    throw input_error(file, "tires", "is given beside 'tire', expected one of the two");
+  if (!document.contains("tire") && !document.contains("tires"))
+    throw input_error(file, "tire", "is missing, expected an object { } with the tire's file");
+  schema.fill_defaults(document);
+  schema.normalize(document);
+}
+
+double number_or(const json& value, double absent) { return value.is_null() ? absent : value.get<double>(); }
+int count_or(const json& value, int absent) { return value.is_null() ? absent : value.get<int>(); }
+
+void take_rig(const json& j, Scenario& s) {
+  DrawbarRigOptions& o = s.rig;
+  o.mode = j["mode"];
+  o.slip = j["slip"];
+  o.angular_speed = j["angular_speed"];
+  o.speed = j["speed"];
+  o.ramp = j["ramp"];
+  o.touchdown_damping = j["touchdown_damping"];
+  o.touchdown_time = j["touchdown_time"];
+  o.toe_angle = j["toe_angle"];
+  o.travel_sign = j["travel_sign"];
+  o.start = number_or(j["start"], 0.0);
+  o.carrier_mass = j["carrier_mass"];
+  o.chassis_mass = j["chassis_mass"];
+  o.set_toe_mass = j["set_toe_mass"];
+  o.rim_mass = j["rim_mass"];
+  o.rim_spin_inertia = j["rim_spin_inertia"];
+  o.rim_diametral_inertia = j["rim_diametral_inertia"];
+  s.rig_substeps = j["substeps"];
+}
+
+void take_tire(const json& j, const std::string& key, Scenario& s) {
+  TireOptions o;
+  o.file = find_file(j["file"], key + ".file", s.file);
+  o.pressure = number_or(j["pressure"], -1.0);
+  o.friction = number_or(j["friction"], -1.0);
+  o.elements_circumference = count_or(j["elements_circumference"], 0);
+  o.elements_width = count_or(j["elements_width"], 0);
+  o.structural_damping = number_or(j["structural_damping"], -1.0);
+  o.rigid = j["rigid"];
+  const int substeps = j["substeps"];
+  if (!s.tires.empty() && substeps != s.tire_substeps)
+    throw input_error(s.file.string(), key + ".substeps",
+                      fmt::format("is {}, expected {} as for the first tire", substeps, s.tire_substeps));
+  s.tire_substeps = substeps;
+  o.substep = s.run.step / substeps;
+  s.tires.push_back(o);
+}
+
+void take_run(const json& j, const json& output, Scenario& s) {
+  s.run.step = j["step"];
+  s.run.end = j["end"];
+  s.run.average_from = j["average_from"];
+  s.run.threads = j["threads"].is_string() ? 0 : j["threads"].get<int>();
+  s.run.seed = j["seed"];
+  s.run.peer_timeout = j["peer_timeout"];
+  s.output.series_interval = output["series_interval"];
+  s.output.frame_interval = output["frame_interval"];
+}
+
+/// While the bed settles the other ranks wait, but the terrain may be bound to its own cores.
+int settle_threads(int wanted) {
+  if (wanted > 0) return wanted;
+  const int cores = static_cast<int>(allowed_cores().size());
+  const int of_others = cores < 4 ? 0 : cores < 8 ? 1 : 2;
+  return std::clamp(cores - of_others, 1, 32);
+}
+
+void take_terrain(const json& j, Scenario& s) {
+  TerrainOptions& o = s.terrain;
+  o.engine = j["engine"];
+  o.law = j["law"];
+  o.radius = j["radius"];
+  o.density = j["density"];
+  o.layers = j["layers"];
+  o.length = j["length"];
+  o.width = j["width"];
+  o.seed = s.run.seed;
+  if (j["bed"].is_string()) o.bed = find_file(j["bed"], "terrain.bed", s.file).string();
+  o.cache = j["cache"];
+  o.young_modulus = j["young_modulus"];
+  o.poisson_ratio = j["poisson_ratio"];
+  o.restitution = j["restitution"];
+  o.friction = j["friction"];
+  o.rolling_friction = j["rolling_friction"];
+  o.cohesion = j["cohesion"];
+  o.normal_stiffness = j["normal_stiffness"];
+  o.normal_damping = j["normal_damping"];
+  o.friction_velocity_scale = j["friction_velocity_scale"];
+  o.friction_impulse_limit = j["friction_impulse_limit"];
+  o.activity = j["activity"];
+  o.ground_stiffness = j["ground_stiffness"];
+  o.ground_damping = j["ground_damping"];
+  o.allow_unstable_step = j["allow_unstable_step"];
+  o.settle_threads = settle_threads(s.run.threads);
+  s.terrain_ranks = j["ranks"];
+  s.terrain_substeps = j["substeps"];
+  o.step = s.run.step / s.terrain_substeps;
+}
+
+/// The expected result holds for the scenario as shipped; a setting that changes the physics makes it void.
+bool changes_results(const std::string& key) {
+  for (const char* harmless :
+       {"run.threads", "run.peer_timeout", "output.", "checkpoint.", "expected", "description", "$schema"})
+    if (key.starts_with(harmless)) return false;
+  return true;
+}
+
+std::string digest_of(json completed, const Scenario& s) {
+  for (const char* harmless : {"description", "$schema", "expected", "checkpoint"}) completed.erase(harmless);
+  for (const char* harmless : {"threads", "peer_timeout"}) completed["run"].erase(harmless);
+  completed["terrain"].erase("cache");
+  Hash hash;
+  hash.add(completed.dump());
+  for (const TireOptions& tire : s.tires) hash.add(read_text_file(tire.file, "a tire file in JSON"));
+  return hash.hex();
+}
+
+}  // namespace
 
 std::int64_t RunOptions::steps() const { return std::llround(end / step); }
+
+Scenario load_scenario(const std::filesystem::path& file, const Settings& settings) {
+  Scenario s;
+  s.file = file;
+  s.name = file.stem().string();
+  json document = read_document(file.string(), settings);
+  const bool checkpoints = document.contains("checkpoint");
+  complete(document, file.string());
+  take_run(document["run"], document["output"], s);
+  take_rig(document["rig"], s);
+  if (document.contains("tire"))
+    take_tire(document["tire"], "tire", s);
+  else
+    for (std::size_t k = 0; k < document["tires"].size(); ++k)
+      take_tire(document["tires"][k], fmt::format("tires.{}", k), s);
+  take_terrain(document["terrain"], s);
+  if (document.contains("expected")) {
+    s.expected.drawbar_pull = document["expected"]["drawbar_pull"];
+    s.expected.drawbar_pull_spread = document["expected"]["drawbar_pull_spread"];
+    s.expected.given = std::none_of(settings.begin(), settings.end(),
+                                    [](const auto& setting) { return changes_results(setting.first); });
+  }
+  for (const Problem& problem : Schema::load().unusual(document))
+    s.warnings.push_back(input_error(file.string(), problem.key, problem.what).what());
+  if (checkpoints)
+    s.warnings.push_back(
+        input_error(file.string(), "checkpoint", "this version writes no checkpoints").what());
+  check_scenario(s, document["rig"]["start"].is_null());
+  document["rig"]["start"] = s.rig.start;
+  s.completed = document.dump(2);
+  s.digest = digest_of(document, s);
+  return s;
+}
+
+std::filesystem::path data_folder() {
+  if (const char* home = std::getenv("FURROW_HOME"); home && *home) return home;
+  std::error_code error;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  for (std::filesystem::path folder = program.parent_path(); !error && folder.has_relative_path();
+       folder = folder.parent_path()) {
+    if (std::filesystem::exists(folder / "rigs" / "scenario.schema.json", error)) return folder;
+    if (std::filesystem::exists(folder / "share" / "furrow" / "rigs" / "scenario.schema.json", error))
+      return folder / "share" / "furrow";
+  }
+  return FURROW_SOURCE_FOLDER;  // of the build: programs run from another build folder
+}
 
 }  // namespace furrow

@@ -1,5 +1,5 @@
-// A scenario: what the user's JSON file says, validated, completed with the schema's defaults, and made into the
-// options of each room.
+// A scenario: what the user's JSON file says, validated, completed with the schema's defaults, and made into
+// the options of each room.
 #pragma once
 
 #include <cstdint>
@@ -18,13 +18,13 @@ namespace furrow {
 
 /// `run.*`
 struct RunOptions {
-  double step = 4e-5;           // communication step H, s
-  double end = 1.5;             // s
-  double average_from = 0.8;    // start of the averaging window, s
-  int threads = 0;              // terrain's OpenMP threads; 0: auto
+  double step = 4e-5;         // communication step H, s
+  double end = 1.5;           // s
+  double average_from = 0.8;  // start of the averaging window, s
+  int threads = 0;            // terrain's OpenMP threads; 0: auto
   std::uint64_t seed = 1;
-  double peer_timeout = 60.0;   // s
-  std::int64_t steps() const;   // round(end / step)
+  double peer_timeout = 60.0;  // s
+  std::int64_t steps() const;  // round(end / step)
 };
 
 /// `output.*`
@@ -42,10 +42,10 @@ struct ExpectedResult {
 
 struct Scenario {
   std::filesystem::path file;
-  std::string name;              // file name without extension
-  std::string completed;         // the whole scenario as JSON text with defaults filled in
-  std::string digest;            // hash of `completed`
-  DrawbarRigOptions rig;         // of the first wheel
+  std::string name;       // file name without extension
+  std::string completed;  // the whole scenario as JSON text with defaults filled in
+  std::string digest;     // hash of all in `completed` that decides the results, and of the tire files
+  DrawbarRigOptions rig;  // of the first wheel
   std::vector<DrawbarRigOptions> rigs;  // one per wheel; rigs[0] is `rig`. Empty: the one
   int rig_substeps = 1;
   std::vector<TireOptions> tires;
@@ -60,7 +60,7 @@ struct Scenario {
 };
 
 /// Reads, applies `--set key=value` pairs, validates and completes a scenario.
-/// @throws Error(bad_input) naming file, key, what is wrong and what is expected.
+/// @throws Error(bad_input) naming file, key, what is wrong and what is expected; one line per mistake.
 Scenario load_scenario(const std::filesystem::path& file,
                        const std::vector<std::pair<std::string, std::string>>& settings);
 

@@ -27,6 +27,7 @@ std::string to_string(MessageKind kind) {
     case MessageKind::terrain_report: return "terrain report";
     case MessageKind::final_report: return "final report";
     case MessageKind::control: return "control";
+    case MessageKind::run_folder: return "run folder";
   }
   return "unknown kind";
 }

@@ -43,6 +43,7 @@ enum class MessageKind : std::int32_t {
   terrain_report = 8,
   final_report = 9,
   control = 10,
+  run_folder = 11,
 };
 std::string to_string(MessageKind kind);
 
@@ -173,6 +174,12 @@ struct HeightField {
   double cell = 0.0;          // m
   std::int32_t nx = 0, ny = 0;
   std::vector<double> height; // m, [ix * ny + iy]
+};
+
+/// rig → every node, before the handshake of a program's run: the folder that takes the results.
+struct RunFolder {
+  static constexpr MessageKind kKind = MessageKind::run_folder;
+  std::string path;
 };
 
 /// Every node → rig at the end.

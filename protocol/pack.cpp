@@ -97,6 +97,11 @@ void visit_fields(Stream& s, M& m) {
   each(s, m.x0, m.y0, m.cell, m.nx, m.ny, m.height);
 }
 template <class Stream, class M>
+  requires std::is_same_v<std::remove_const_t<M>, RunFolder>
+void visit_fields(Stream& s, M& m) {
+  s(m.path);
+}
+template <class Stream, class M>
   requires std::is_same_v<std::remove_const_t<M>, FinalReport>
 void visit_fields(Stream& s, M& m) {
   each(s, m.self.role, m.self.index, m.state_hash, m.cpu_s, m.compute_s, m.wait_s, m.threads);
@@ -132,6 +137,7 @@ FURROW_MESSAGE(SurfaceMotion)
 FURROW_MESSAGE(TerrainForces)
 FURROW_MESSAGE(TerrainReport)
 FURROW_MESSAGE(FinalReport)
+FURROW_MESSAGE(RunFolder)
 #undef FURROW_MESSAGE
 
 }  // namespace furrow

@@ -1,0 +1,155 @@
+#include "nodes/commands.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "nodes/explain.hpp"
+#include "nodes/rank_table.hpp"
+#include "nodes/scenario.hpp"
+#include "nodes/schema.hpp"
+#include "nodes/validate.hpp"
+#include "protocol/mpi_transport.hpp"
+
+namespace furrow {
+namespace {
+
+/// What the user typed, as CLI11 fills it in.
+struct Typed {
+  std::string scenario, out, threads, key, directory;
+  std::vector<std::string> settings;
+  bool overwrite = false, json = false;
+};
+
+Error usage_error(const std::string& what) { return input_error("command line", "", what); }
+
+void add_scenario(CLI::App& command, Typed& typed) {
+  command.add_option("SCENARIO", typed.scenario, "scenario file (JSON)")->required();
+  command
+      .add_option("--set", typed.settings,
+                  "key=value: sets a scenario key by its dotted path; may be repeated")
+      ->take_all()
+      ->allow_extra_args(false);
+  command.add_option("--threads", typed.threads, "threads of the terrain: a number or auto (run.threads)");
+}
+
+Settings settings_of(const Typed& typed) {
+  Settings settings;
+  for (const std::string& text : typed.settings) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos || equals == 0)
+      throw input_error("command line", "--set", "'" + text + "' is no setting, expected key=value");
+    settings.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+  }
+  if (!typed.threads.empty()) settings.emplace_back("run.threads", typed.threads);
+  return settings;
+}
+
+Scenario load(const Typed& typed) {
+  Scenario scenario = load_scenario(typed.scenario, settings_of(typed));
+  for (const std::string& warning : scenario.warnings) print_warning(warning);
+  return scenario;
+}
+
+ExitCode validate_command(const Typed& typed) {
+  const Scenario scenario = load(typed);
+  std::cout << (typed.json ? validation_report(scenario).dump(2) + "\n" : validation_text(scenario));
+  return ExitCode::done;
+}
+
+ExitCode ranks_command(const Typed& typed, const std::vector<std::string>& command_line) {
+  const Scenario scenario = load(typed);
+  std::vector<std::string> arguments = command_line;
+  *std::find(arguments.begin(), arguments.end(), "ranks") = "run";
+  std::cout << rank_table_text(scenario) << "\n" << launch_lines(scenario, arguments);
+  return ExitCode::done;
+}
+
+ExitCode report_command(const Typed& typed) {
+  for (const auto& plot : make_report(typed.directory, false)) std::cout << plot.string() << "\n";
+  return ExitCode::done;
+}
+
+ExitCode run_command(const Typed& typed, int argc, char** argv) {
+  const RunArguments arguments{typed.scenario, settings_of(typed), typed.out, typed.overwrite};
+  return launched_by_mpi() ? run_as_rank(arguments, argc, argv) : run_supervised(arguments);
+}
+
+/// CLI11's words, with a guess at what was meant.
+std::string parse_problem(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+  std::vector<std::string> commands;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    commands.push_back(command->get_name());
+  const std::string first = argc > 1 ? argv[1] : "";
+  if (first.empty())
+    return fmt::format("no command is given, expected one of: {}; see furrow --help",
+                       fmt::join(commands, ", "));
+  if (first[0] != '-' && std::find(commands.begin(), commands.end(), first) == commands.end()) {
+    const std::vector<std::string> similar = nearest_words(first, commands);
+    return fmt::format("'{}' is no command, expected {}", first,
+                       similar.empty()
+                           ? fmt::format("one of: {}; see furrow --help", fmt::join(commands, ", "))
+                           : "'" + similar.front() + "'?");
+  }
+  return fmt::format("{}, see furrow {}--help", error.what(), first[0] != '-' ? first + " " : "");
+}
+
+void print_lines(const char* kind, const std::string& text) {
+  std::size_t from = 0;
+  for (std::size_t end; from <= text.size(); from = end + 1) {
+    end = std::min(text.find('\n', from), text.size());
+    std::fprintf(stderr, "furrow: %s: %s\n", kind, text.substr(from, end - from).c_str());
+  }
+}
+
+}  // namespace
+
+void print_error(const std::string& text) { print_lines("error", text); }
+void print_warning(const std::string& text) { print_lines("warning", text); }
+
+ExitCode run_command_line(int argc, char** argv) {
+  CLI::App app("Furrow: how much a flexible tire pulls on granular soil, and how deep it sinks.", "furrow");
+  app.set_version_flag("--version", "furrow " FURROW_VERSION);
+  app.require_subcommand(1);
+  app.footer(
+      "Exit codes: 0 done, 2 bad input, 3 the physics failed, 4 a rank was lost, 5 input/output, 75 stopped "
+      "by a signal.");
+  Typed typed;
+
+  CLI::App& run = *app.add_subcommand("run", "runs a scenario; prints the folder that holds the results");
+  add_scenario(run, typed);
+  run.add_option("--out", typed.out, "new folder for the results (default: results/<scenario>-NNN here)");
+  run.add_flag("--overwrite", typed.overwrite, "let --out replace the results of an earlier run");
+  CLI::App& validate =
+      *app.add_subcommand("validate", "checks a scenario and says what a run of it will need");
+  add_scenario(validate, typed);
+  validate.add_flag("--json", typed.json, "print JSON");
+  CLI::App& ranks = *app.add_subcommand("ranks", "which MPI rank does what, and how to start them by hand");
+  add_scenario(ranks, typed);
+  CLI::App& explained =
+      *app.add_subcommand("explain", "what a scenario key means; without KEY lists all keys");
+  explained.add_option("KEY", typed.key, "dotted path, for example terrain.cohesion");
+  CLI::App& report = *app.add_subcommand("report", "plots of a finished run, as PNG files in its folder");
+  report.add_option("DIR", typed.directory, "folder of the run")->required();
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    app.exit(asked);
+    return ExitCode::done;
+  } catch (const CLI::ParseError& error) {
+    throw usage_error(parse_problem(app, error, argc, argv));
+  }
+  if (run.parsed()) return run_command(typed, argc, argv);
+  if (validate.parsed()) return validate_command(typed);
+  if (ranks.parsed()) return ranks_command(typed, {argv, argv + argc});
+  if (report.parsed()) return report_command(typed);
+  std::cout << explain(typed.key);
+  return ExitCode::done;
+}
+
+}  // namespace furrow

@@ -1,0 +1,40 @@
+// The command line of `furrow`. Results for machines go to standard output, everything else to standard
+// error.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "protocol/error.hpp"
+
+namespace furrow {
+
+using Settings = std::vector<std::pair<std::string, std::string>>;  // --set key=value
+
+struct RunArguments {
+  std::filesystem::path scenario;
+  Settings settings;
+  std::filesystem::path out;  // empty: a fresh folder under results/
+  bool overwrite = false;
+};
+
+/// Everything that `furrow` does. @throws Error
+ExitCode run_command_line(int argc, char** argv);
+
+/// `furrow run` outside MPI (commands_run.cpp) and as one of its ranks (commands_rank.cpp).
+ExitCode run_supervised(const RunArguments& arguments);
+ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv);
+
+/// `furrow report`: makes the plots of a run (commands_report.cpp). @throws Error
+std::vector<std::filesystem::path> make_report(const std::filesystem::path& run, bool quiet);
+
+/// What the end of a run tells people, from summary.json (commands_result.cpp).
+std::string result_text(const std::filesystem::path& run, const struct Scenario& scenario);
+
+/// "furrow: error: …", one line for every line of `text`.
+void print_error(const std::string& text);
+void print_warning(const std::string& text);
+
+}  // namespace furrow

@@ -1,0 +1,167 @@
+// One rank of `furrow run`, started by a supervisor or by the user's own mpirun or srun.
+#include <unistd.h>
+#include <csignal>
+#include <cstdlib>
+#include <iostream>
+#include <string>
+
+#include <chrono>
+#include <optional>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "nodes/commands.hpp"
+#include "nodes/run_directory.hpp"
+#include "nodes/run_node.hpp"
+#include "nodes/signals.hpp"
+#include "nodes/supervisor_lines.hpp"
+#include "nodes/thread_setup.hpp"
+#include "protocol/mpi_transport.hpp"
+
+namespace furrow {
+namespace {
+
+constexpr auto kTimeForTheFirst = std::chrono::seconds(1);
+constexpr auto kTimeForNews = std::chrono::milliseconds(300);
+
+/// Speaks to the supervisor, or to the user where there is none.
+class Voice {
+ public:
+  Voice() : supervised_(std::getenv(kSupervisedVariable) != nullptr), rank_(launched_rank()) {}
+
+  bool supervised() const { return supervised_; }
+  int rank() const { return rank_; }
+
+  void started() const {
+    if (supervised_) send({RankLine::Kind::started, rank_, {}, ExitCode::done, {}});
+  }
+  void note(const std::string& text) {
+    if (supervised_)
+      send({RankLine::Kind::note, rank_, text, ExitCode::done, {}});
+    else
+      display_.say("furrow: " + text);
+  }
+  void error(const Error& error) {
+    if (supervised_) return send({RankLine::Kind::error, rank_, error.what(), error.code(), {}});
+    display_.clear();
+    if (error.code() == ExitCode::stopped)
+      display_.say(std::string("furrow: ") + error.what());
+    else
+      print_error(error.what());
+  }
+  void show(const Progress& progress) {
+    if (supervised_)
+      send({RankLine::Kind::progress, rank_, {}, ExitCode::done, progress});
+    else
+      display_.show(progress);
+  }
+  void clear() { display_.clear(); }
+
+ private:
+  /// One write, so that lines of several ranks do not mix.
+  static void send(const RankLine& line) {
+    const std::string text = encode(line);
+    if (write(STDOUT_FILENO, text.data(), text.size()) < 0) return;  // nobody listens: nobody needs it
+  }
+  bool supervised_;
+  int rank_;
+  ProgressDisplay display_;
+};
+
+/// A mistake that every rank finds is told by the first. If only others find it, they tell it, a little
+/// later: by then the launcher has ended them if the first told it.
+void tell_common_error(Voice& voice, const Error& error) {
+  if (voice.rank() != 0) std::this_thread::sleep_for(kTimeForTheFirst);
+  voice.error(error);
+}
+
+/// True when another node failed of the very same, and tells it.
+bool told_by_another(Transport& transport, const Error& error) {
+  if (transport.self() == Address{Role::rig, 0}) return false;
+  std::this_thread::sleep_for(kTimeForNews);
+  try {
+    transport.check_peers();
+  } catch (const PeerFailure& peer) {
+    return std::string(peer.what()) == error.what();
+  } catch (const Error&) {
+  }
+  return false;
+}
+
+/// The rig's rank makes the folder, unless a supervisor has, and tells the others.
+std::filesystem::path agree_on_directory(Transport& transport, const Scenario& scenario,
+                                         const RunArguments& arguments, const Voice& voice,
+                                         std::optional<RunDirectory>& made) {
+  if (voice.supervised()) return arguments.out;
+  const Address rig{Role::rig, 0};
+  if (transport.self() != rig) return receive<RunFolder>(transport, rig).path;
+  made.emplace(scenario.name, arguments.out, arguments.overwrite);
+  const RunFolder folder{std::filesystem::absolute(made->path()).string()};
+  for (int k = 0; k < transport.tire_count(); ++k) send(transport, Address{Role::tire, k}, folder);
+  send(transport, Address{Role::terrain, 0}, folder);
+  return made->path();
+}
+
+ExitCode run_this_node(Transport& transport, const Scenario& scenario, const RunArguments& arguments,
+                       Voice& voice) {
+  std::optional<RunDirectory> made;
+  try {
+    RunContext context;
+    transport.set_peer_timeout(scenario.run.peer_timeout);
+    try {
+      context.directory = agree_on_directory(transport, scenario, arguments, voice, made);
+    } catch (const PeerFailure&) {
+      throw;
+    } catch (const Error& error) {
+      transport.announce_failure(error.code(), error.what());
+      throw;
+    }
+    const ThreadPlan plan = plan_threads(transport, scenario.run.threads);
+    apply(plan);
+    if (!plan.note.empty()) voice.note(plan.note);
+    context.threads = plan.threads;
+    context.stop_requested = [] { return stop_signalled(); };
+    context.progress = [&](const Progress& progress) { voice.show(progress); };
+    const ExitCode code = run_node(scenario, transport, context);
+    voice.clear();
+    if (made && code == ExitCode::done) std::cerr << result_text(made->path(), scenario);
+    if (made) std::cout << made->path().string() << std::endl;
+    return code;
+  } catch (const PeerFailure& failure) {
+    if (made && failure.code() == ExitCode::bad_input) made->discard();
+    return failure.code();  // whoever failed has told the user
+  } catch (const Error& error) {
+    if (made && error.code() == ExitCode::bad_input) made->discard();
+    if (!told_by_another(transport, error)) voice.error(error);
+    if (error.code() == ExitCode::rank_lost) abandon_mpi(static_cast<int>(error.code()));
+    return error.code();
+  } catch (const std::exception& error) {
+    voice.error(physics_error(std::string("unexpected: ") + error.what()));
+    return ExitCode::physics;
+  }
+}
+
+}  // namespace
+
+ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
+  die_with_parent(SIGKILL, getppid());
+  catch_stop_signals();
+  Voice voice;
+  std::optional<Scenario> scenario;
+  std::unique_ptr<Transport> transport;
+  try {
+    scenario = load_scenario(arguments.scenario, arguments.settings);
+    if (!voice.supervised() && voice.rank() == 0)
+      for (const std::string& warning : scenario->warnings) print_warning(warning);
+    transport =
+        make_mpi_transport(&argc, &argv, static_cast<int>(scenario->tires.size()), scenario->terrain_ranks);
+  } catch (const Error& error) {
+    tell_common_error(voice, error);
+    return error.code();
+  }
+  voice.started();
+  return run_this_node(*transport, *scenario, arguments, voice);
+}
+
+}  // namespace furrow

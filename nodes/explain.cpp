@@ -1,0 +1,59 @@
+#include "nodes/explain.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "nodes/json_text.hpp"
+#include "nodes/schema.hpp"
+#include "protocol/error.hpp"
+
+namespace furrow {
+namespace {
+
+using nlohmann::json;
+
+std::string meaning(const json& node) { return node.value("description", std::string()); }
+
+std::string key_list(const Schema& schema, const std::string& prefix) {
+  std::string text;
+  for (const std::string& key : schema.keys())
+    if (key.starts_with(prefix)) text += fmt::format("{:<34} {}\n", key, meaning(*schema.find(key)));
+  return text;
+}
+
+std::string value_help(const std::string& key, const json& node) {
+  std::string text = key + "\n  " + meaning(node) + "\n";
+  const auto line = [&](const char* name, const std::string& value) {
+    text += fmt::format("  {:<8} {}\n", name, value);
+  };
+  if (node.contains("unit")) line("unit", node["unit"]);
+  line("values", Schema::expectation(node));
+  if (const std::string range = Schema::range(node); !range.empty()) line("range", range);
+  if (node.contains("usual"))
+    line("usual",
+         number_text(node["usual"][0].get<double>()) + " to " + number_text(node["usual"][1].get<double>()));
+  line("default", node.contains("default") ? value_text(node["default"]) : std::string("none"));
+  return text;
+}
+
+}  // namespace
+
+std::string explain(const std::string& key) {
+  const Schema schema = Schema::load();
+  if (key.empty()) return key_list(schema, "");
+  const json* node = schema.find(key);
+  if (!node) {
+    const std::vector<std::string> similar = schema.nearest(key);
+    throw input_error("explain", key,
+                      similar.empty()
+                          ? "is unknown, expected one of those that 'furrow explain' lists"
+                          : fmt::format("is unknown, expected '{}'?", fmt::join(similar, "' or '")));
+  }
+  if (node->contains("properties")) {
+    const std::string section = key.starts_with("tires") ? "tire" : key;
+    return key + "\n  " + meaning(*node) + "\n\n" + key_list(schema, section + ".");
+  }
+  return value_help(key, *node);
+}
+
+}  // namespace furrow

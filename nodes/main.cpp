@@ -1,0 +1,22 @@
+// furrow: the program. Every error ends here, as one message and the exit code that users script against.
+#include <exception>
+#include <string>
+
+#include "nodes/commands.hpp"
+#include "nodes/thread_setup.hpp"
+#include "protocol/mpi_transport.hpp"
+
+int main(int argc, char** argv) {
+  if (furrow::launched_by_mpi()) furrow::wait_passively(argv);
+  furrow::ExitCode code = furrow::ExitCode::done;
+  try {
+    code = furrow::run_command_line(argc, argv);
+  } catch (const furrow::Error& error) {
+    if (!furrow::launched_by_mpi() || furrow::launched_rank() == 0) furrow::print_error(error.what());
+    code = error.code();
+  } catch (const std::exception& error) {
+    furrow::print_error(std::string("unexpected: ") + error.what());
+    code = furrow::ExitCode::physics;
+  }
+  return static_cast<int>(code);
+}

@@ -1,0 +1,114 @@
+#include "nodes/run_directory.hpp"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "protocol/error.hpp"
+
+namespace furrow {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kMostNumbers = 100000;
+
+/// What runs leave behind; nothing else is ever removed.
+bool is_result(const fs::path& entry) {
+  const std::string name = entry.filename().string();
+  constexpr std::array<const char*, 7> kNames{"summary.json", "scenario.json", "results.h5", "results.xdmf",
+                                              "run.log",      "profile.json",  "report.json"};
+  return std::find(kNames.begin(), kNames.end(), name) != kNames.end() || name == "frames" ||
+         name == "checkpoints" || (name.starts_with("timeseries") && entry.extension() == ".csv") ||
+         entry.extension() == ".png";
+}
+
+bool is_run(const fs::path& folder) {
+  std::error_code error;
+  return fs::exists(folder / "run.log", error) || fs::exists(folder / "scenario.json", error);
+}
+
+}  // namespace
+
+RunDirectory::RunDirectory(const std::string& scenario, const fs::path& out, bool overwrite) {
+  if (!out.empty()) {
+    path_ = out;
+    std::error_code error;
+    if (!fs::exists(fs::symlink_status(out, error)) && make(out)) return;
+    if (!fs::is_directory(out, error))
+      throw input_error(out.string(), "--out", "exists and is no folder, expected a new folder");
+    if (!overwrite)
+      throw input_error(out.string(), "--out", "exists already, expected a new folder or --overwrite");
+    take_over();
+    return;
+  }
+  for (int number = 1; number < kMostNumbers; ++number) {
+    path_ = fs::path("results") / fmt::format("{}-{:03}", scenario, number);
+    std::error_code error;
+    if (fs::exists(fs::symlink_status(path_, error))) continue;
+    if (make(path_)) return;
+  }
+  throw input_error("results", "", "holds too many runs of " + scenario + ", expected --out");
+}
+
+bool RunDirectory::make(const fs::path& folder) {
+  std::vector<fs::path> missing;
+  std::error_code error;
+  for (fs::path at = folder.lexically_normal(); !at.empty() && !fs::exists(at, error); at = at.parent_path())
+    if (at.has_filename()) missing.push_back(at);
+  std::reverse(missing.begin(), missing.end());
+  for (const fs::path& at : missing) {
+    if (mkdir(at.c_str(), 0777) == 0) {
+      if (made_.empty()) made_ = at;
+      continue;
+    }
+    const int reason = errno;
+    if (reason == EEXIST && at != missing.back()) continue;  // another run made it at the same time
+    discard();
+    if (reason == EEXIST) return false;
+    throw input_error(
+        folder.string(), "--out",
+        fmt::format("cannot be made ({}), expected a place that can be written", std::strerror(reason)));
+  }
+  return true;
+}
+
+void RunDirectory::take_over() {
+  std::error_code error;
+  if (!fs::is_empty(path_, error) && !is_run(path_))
+    throw input_error(path_.string(), "--out",
+                      "holds no run, expected a run's folder to overwrite, or a new one");
+  if (access(path_.c_str(), W_OK | X_OK) != 0)
+    throw input_error(path_.string(), "--out", "cannot be written, expected a place that can be written");
+  for (const auto& entry : fs::directory_iterator(path_, error))
+    if (is_result(entry.path())) fs::remove_all(entry.path(), error);
+}
+
+void RunDirectory::discard() {
+  std::error_code error;
+  if (made_.empty()) return;
+  for (const char* name : {"run.log", "scenario.json"}) fs::remove(path_ / name, error);
+  // Upwards as long as nothing else stands there.
+  for (fs::path at = path_.lexically_normal(); fs::remove(at, error) && at != made_.lexically_normal();)
+    at = at.parent_path();
+  made_.clear();
+}
+
+void require_run_directory(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::exists(folder, error))
+    throw input_error(folder.string(), "", "does not exist, expected the folder of a run");
+  if (!fs::is_directory(folder, error))
+    throw input_error(folder.string(), "", "is no folder, expected the folder of a run");
+  if (!is_run(folder))
+    throw input_error(folder.string(), "", "holds no run, expected scenario.json or run.log in it");
+}
+
+}  // namespace furrow

@@ -1,0 +1,222 @@
+#include "nodes/scenario_checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "nodes/json_text.hpp"
+#include "nodes/validate.hpp"
+#include "protocol/error.hpp"
+#include "tire/tire_file.hpp"
+
+namespace furrow {
+namespace {
+
+constexpr double kMostSteps = 1e10;    // beyond it a run is a slip of the pen
+constexpr double kFewestGrains = 4.0;  // radii that the bin must measure at least
+constexpr double kCoarseGrain = 0.1;   // of the tire radius
+constexpr double kGigabyte = 1e9;
+
+class Checks {
+ public:
+  explicit Checks(Scenario& scenario) : s_(scenario), file_(scenario.file.string()) {}
+
+  Error wrong(const std::string& key, const std::string& what) const { return input_error(file_, key, what); }
+  void warn(const std::string& key, const std::string& what) {
+    s_.warnings.push_back(wrong(key, what).what());
+  }
+
+  void times();
+  void rig();
+  void tires();
+  void bin();
+  void start(bool use_default);
+  void step();
+  void machine();
+
+ private:
+  bool grains() const { return s_.terrain.engine == "dem"; }
+  const TireSize& tire() const { return tires_.front(); }
+
+  Scenario& s_;
+  std::string file_;
+  std::vector<TireSize> tires_;
+};
+
+void Checks::times() {
+  const RunOptions& run = s_.run;
+  if (run.end < run.step)
+    throw wrong("run.end", fmt::format("is {} s, expected at least one run.step of {} s",
+                                       number_text(run.end), number_text(run.step)));
+  if (run.end / run.step > kMostSteps)
+    throw wrong("run.end",
+                fmt::format("{} s are {:.2g} steps of {} s, expected at most {:g} steps",
+                            number_text(run.end), run.end / run.step, number_text(run.step), kMostSteps));
+  if (run.average_from >= run.end)
+    throw wrong("run.average_from",
+                fmt::format("is {} s, expected a window that begins before the run ends at {} s",
+                            number_text(run.average_from), number_text(run.end)));
+  const double first_line = s_.output.series_interval;
+  if (run.end - run.average_from < first_line)
+    throw wrong("output.series_interval",
+                fmt::format("is {} s, expected at most the averaging window of {} s", number_text(first_line),
+                            number_text(run.end - run.average_from)));
+  if (s_.rig.ramp + 1e-12 > run.average_from && s_.rig.ramp > 0.0)
+    warn("run.average_from",
+         fmt::format("the window begins at {} s, while the wheel still speeds up until rig.ramp = {} s",
+                     number_text(run.average_from), number_text(s_.rig.ramp)));
+}
+
+void Checks::rig() {
+  const DrawbarRigOptions& rig = s_.rig;
+  if (rig.mode == "fixed_speed" && rig.slip >= 1.0)
+    throw wrong(
+        "rig.slip",
+        fmt::format("is {}, expected below 1 in mode fixed_speed: a carriage that moves cannot slip fully",
+                    number_text(rig.slip)));
+  if (s_.tires.size() != 1)
+    throw wrong("tires",
+                fmt::format("has {} entries, expected one: the drawbar rig has one wheel", s_.tires.size()));
+}
+
+void Checks::tires() {
+  for (const TireOptions& options : s_.tires) tires_.push_back(tire_size(options));
+  if (!grains()) return;
+  for (const TireSize& tire : tires_) {
+    const double width = tire.width + 2.0 * kWallMargin, length = 2.0 * (tire.radius + kWallMargin);
+    if (width > s_.terrain.width)
+      throw wrong("terrain.width",
+                  fmt::format("is {} m, expected at least {:.2f} m: the tire is {:.2f} m wide",
+                              number_text(s_.terrain.width), width, tire.width));
+    if (length > s_.terrain.length)
+      throw wrong("terrain.length",
+                  fmt::format("is {} m, expected at least {:.2f} m: the tire is {:.2f} m long",
+                              number_text(s_.terrain.length), length, 2.0 * tire.radius));
+    if (s_.terrain.radius > kCoarseGrain * tire.radius)
+      warn("terrain.radius", fmt::format("grains of {} m are coarse under a tire of radius {} m",
+                                         number_text(s_.terrain.radius), number_text(tire.radius)));
+  }
+}
+
+void Checks::bin() {
+  if (!grains()) return;
+  const double least = kFewestGrains * s_.terrain.radius;
+  for (const auto& [key, size] :
+       {std::pair{"terrain.length", s_.terrain.length}, {"terrain.width", s_.terrain.width}})
+    if (size < least)
+      throw wrong(key, fmt::format("is {} m, expected at least {} m, two grains", number_text(size),
+                                   number_text(least)));
+}
+
+void Checks::start(bool use_default) {
+  const double reach = tire().radius + kWallMargin;
+  DrawbarRigOptions& rig = s_.rig;
+  if (use_default) {
+    const AxlePath path = axle_path(s_, tire().radius);
+    const bool forward = path.to - rig.start >= 0.0;
+    rig.start = !grains() ? 0.0 : forward ? reach : s_.terrain.length - reach;
+  }
+  if (!grains()) return;
+  const AxlePath path = axle_path(s_, tire().radius);
+  const double length = s_.terrain.length, radius = tire().radius;
+  if (path.from - radius < 0.0 || path.from + radius > length)
+    throw wrong(
+        "rig.start",
+        fmt::format(
+            "is {} m, expected {:.3f} to {:.3f} m: the tire of radius {} m would stand in a wall of the bin",
+            number_text(path.from), radius, length - radius, number_text(radius)));
+  if (path.to - radius < 0.0 || path.to + radius > length)
+    throw wrong("terrain.length",
+                fmt::format("is {} m, but the axle travels from x = {:.3f} to {:.3f} m and the tire's radius "
+                            "is {} m: it would hit the end wall; expected at least {:.2f} m or a shorter run",
+                            number_text(length), path.from, path.to, number_text(radius),
+                            std::abs(path.to - path.from) + 2.0 * reach));
+}
+
+void Checks::step() {
+  const TerrainEstimate estimate = estimate_terrain(s_.terrain);
+  if (s_.terrain.step <= estimate.stable_step) return;
+  const std::string what =
+      fmt::format("{} s is above the stable step of {:.3g} s ({})", number_text(s_.terrain.step),
+                  estimate.stable_step, estimate.stable_reason);
+  if (s_.terrain.allow_unstable_step)
+    return warn("run.step", what + ", allowed by terrain.allow_unstable_step");
+  throw wrong("run.step", what + ", expected a smaller step, more terrain.substeps or softer grains");
+}
+
+void Checks::machine() {
+  const Estimate estimate = furrow::estimate(s_);
+  const MachineState here = machine_state();
+  if (here.memory_free > 0.0 && estimate.memory > here.memory_free)
+    warn("", fmt::format("needs about {:.1f} GB of memory, this machine has {:.1f} GB free",
+                         estimate.memory / kGigabyte, here.memory_free / kGigabyte));
+  if (here.disk_free > 0.0 && estimate.disk > here.disk_free)
+    warn("output.frame_interval",
+         fmt::format("results need about {:.1f} GB of disk, there are {:.1f} GB free here",
+                     estimate.disk / kGigabyte, here.disk_free / kGigabyte));
+}
+
+}  // namespace
+
+TireSize tire_size(const TireOptions& options) {
+  TireFile file = read_tire_file(options.file);
+  if (options.elements_circumference > 0) file.elements_circumference = options.elements_circumference;
+  if (options.elements_width > 0) set_elements_width(file, options.elements_width);
+  TireSize size;
+  size.radius = file.radius;
+  for (const ProfileKnot& knot : file.profile) size.width = std::max(size.width, 2.0 * std::abs(knot.y));
+  size.pressure = options.pressure >= 0.0 ? options.pressure : file.pressure;
+  size.elements_circumference = file.elements_circumference;
+  size.elements_width = file.elements_width();
+  size.rigid = options.rigid;
+  return size;
+}
+
+std::filesystem::path find_file(const std::string& name, const std::string& key,
+                                const std::filesystem::path& scenario) {
+  const std::filesystem::path given(name);
+  std::vector<std::filesystem::path> places;
+  if (given.is_absolute()) {
+    places = {given};
+  } else {
+    const std::filesystem::path data = data_folder();
+    places = {scenario.parent_path() / given, data / "rigs" / given, data / "tire" / "data" / given};
+  }
+  std::error_code error;
+  for (const auto& place : places)
+    if (std::filesystem::is_regular_file(place, error)) return place;
+  for (const auto& place : places)
+    if (std::filesystem::exists(place, error))
+      throw input_error(scenario.string(), key,
+                        "'" + place.string() + "' is not a regular file, expected one");
+  std::string looked;
+  for (const auto& place : places)
+    looked +=
+        (looked.empty() ? "" : ", ") + std::filesystem::absolute(place, error).lexically_normal().string();
+  throw input_error(scenario.string(), key,
+                    "'" + name + "' does not exist, expected a file at one of: " + looked);
+}
+
+AxlePath axle_path(const Scenario& scenario, double tire_radius) {
+  const DrawbarRigOptions& rig = scenario.rig;
+  const double speed =
+      rig.mode == "fixed_angular_speed" ? rig.angular_speed * tire_radius * (1.0 - rig.slip) : rig.speed;
+  // Over the ramp the mean speed is half of the full one.
+  const double ramped = std::min(rig.ramp, scenario.run.end);
+  const double travel = speed * (scenario.run.end - 0.5 * ramped);
+  return {rig.start, rig.start + rig.travel_sign * travel};
+}
+
+void check_scenario(Scenario& scenario, bool default_start) {
+  Checks checks(scenario);
+  checks.times();
+  checks.rig();
+  checks.bin();
+  checks.tires();
+  checks.start(default_start);
+  checks.step();
+  checks.machine();
+}
+
+}  // namespace furrow

@@ -1,0 +1,140 @@
+// Whole co-simulations in one process: what crosses the interfaces is conserved, and a restored run continues.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "in_process_run.hpp"
+#include "nodes/series_builder.hpp"
+
+namespace furrow {
+namespace {
+
+using testing::InProcessRun;
+
+std::filesystem::path tire_file(const std::string& name) {
+  return std::filesystem::path(FURROW_SOURCE_FOLDER) / "tire" / "data" / name;
+}
+
+Scenario rigid_wheel_on_plane() {
+  Scenario scenario;
+  scenario.name = "test";
+  scenario.digest = "test";
+  scenario.rig.mode = "fixed_angular_speed";
+  scenario.rig.slip = 0.2;
+  scenario.rig.angular_speed = 4.0;
+  scenario.rig.ramp = 0.05;
+  scenario.rig.touchdown_damping = 12e3;
+  scenario.rig.touchdown_time = 0.2;
+  scenario.rig.start = 1.0;
+  TireOptions tire;
+  tire.file = tire_file("hmmwv_layered.json");
+  tire.rigid = true;
+  tire.elements_circumference = 60;
+  tire.elements_width = 12;
+  tire.substep = 1e-4;
+  scenario.tires = {tire};
+  scenario.terrain.engine = "rigid";
+  scenario.terrain.length = 4.0;
+  scenario.terrain.step = 1e-4;
+  scenario.run.step = 1e-4;
+  scenario.run.end = 0.3;
+  scenario.output.frame_interval = 0.0;
+  return scenario;
+}
+
+Scenario rigid_wheel_on_grains() {
+  Scenario scenario = rigid_wheel_on_plane();
+  scenario.rig.carrier_mass = 20.0;
+  scenario.rig.start = 0.55;
+  scenario.terrain.engine = "dem";
+  scenario.terrain.radius = 0.03;
+  scenario.terrain.layers = 2;
+  scenario.terrain.length = 1.2;
+  scenario.terrain.width = 0.5;
+  scenario.terrain.cohesion = 10e3;
+  scenario.terrain.cache = false;
+  scenario.terrain.activity = false;
+  return scenario;
+}
+
+void expect_same_bits_after_restore(const Scenario& scenario, std::int64_t half, std::int64_t end) {
+  InProcessRun whole(scenario);
+  whole.steps(0, half);
+  const std::vector<Archive> saved = whole.save();
+  whole.steps(half, end);
+
+  InProcessRun resumed(scenario);
+  resumed.restore(saved);
+  resumed.steps(half, end);
+  EXPECT_EQ(whole.hashes(), resumed.hashes());
+}
+
+TEST(Coupling, restored_nodes_continue_bit_for_bit_on_rigid_ground) {
+  expect_same_bits_after_restore(rigid_wheel_on_plane(), 150, 300);
+}
+
+TEST(Coupling, restored_nodes_continue_bit_for_bit_on_grains) {
+  expect_same_bits_after_restore(rigid_wheel_on_grains(), 100, 200);
+}
+
+TEST(Coupling, restored_flexible_tire_continues_bit_for_bit) {
+  Scenario scenario = rigid_wheel_on_plane();
+  scenario.tires[0].rigid = false;
+  scenario.tires[0].elements_circumference = 30;
+  expect_same_bits_after_restore(scenario, 60, 120);
+}
+
+TEST(Coupling, momentum_received_equals_momentum_sent_one_interval_before) {
+  InProcessRun run(rigid_wheel_on_grains());
+  run.steps(0, 400);
+  run.synchronize(400);
+  const auto saved = run.save();
+  SeriesBuilder builder(0.4673, 0.0, 1e-4);
+  Archive::Scope scope(saved[0], "wheel0/");
+  builder.restore(saved[0]);
+  const Vec3 sent = builder.impulse_sent_arrived(), received = builder.now().impulse_received;
+  EXPECT_GT(builder.impulse_sent_abs(), 0.0) << "the wheel never touched the grains";
+  EXPECT_LE((sent - received).norm(), 1e-12 * builder.impulse_sent_abs());
+  EXPECT_LE(builder.now().transfer_force_residual, 1e-12);
+  EXPECT_LE(builder.now().transfer_moment_residual, 1e-12);
+}
+
+TEST(Coupling, one_thread_and_two_threads_give_the_same_bits) {
+  RunContext one, two;
+  one.threads = 1;
+  two.threads = 2;
+  InProcessRun first(rigid_wheel_on_grains(), one), second(rigid_wheel_on_grains(), two);
+  first.steps(0, 200);
+  second.steps(0, 200);
+  EXPECT_EQ(first.hashes(), second.hashes());
+}
+
+TEST(Coupling, another_seed_gives_another_state) {
+  Scenario other = rigid_wheel_on_grains();
+  other.terrain.seed = 2;
+  InProcessRun first(rigid_wheel_on_grains()), second(other);
+  first.steps(0, 10);
+  second.steps(0, 10);
+  EXPECT_NE(first.hashes(), second.hashes());
+}
+
+TEST(Coupling, a_mismatch_of_digests_stops_every_node) {
+  auto transports = make_in_process_transports(1);
+  std::vector<std::thread> threads;
+  std::vector<std::string> texts(transports.size());
+  for (std::size_t i = 0; i < transports.size(); ++i)
+    threads.emplace_back([&, i] {
+      Scenario scenario = rigid_wheel_on_plane();
+      if (i == 1) scenario.digest = "other";
+      try {
+        run_node(scenario, *transports[i], {});
+      } catch (const std::exception& error) {
+        texts[i] = error.what();
+      }
+    });
+  for (auto& thread : threads) thread.join();
+  for (const std::string& text : texts) EXPECT_NE(text, "");
+}
+
+}  // namespace
+}  // namespace furrow

@@ -53,7 +53,7 @@ class Ground {
 
  private:
   static constexpr double kNormal = 3e5, kTangential = 2e5;  // N/m
-  static constexpr double kDamping = 60.0;                   // N s/m
+  static constexpr double kDamping = 10.0;                   // N s/m
   std::vector<Vec3> slip_;                                   // of the tangential spring, m
   double friction_;
 };

@@ -13,6 +13,7 @@ namespace {
 constexpr double kGravity = 9.81;          // m/s²
 constexpr double kDirectorLength = 0.01;   // m, makes director residuals (N m) comparable with forces
 constexpr int kPairs = 12;
+constexpr int kAged = 3;                   // iterations
 
 double dot(const Field& a, const Field& b, const RingLayout& layout) {
   const std::size_t first = layout.free_begin(), count = layout.free_size();
@@ -169,7 +170,7 @@ RingIntegrator::Placement RingIntegrator::place_factor(double h, const Mat3& ori
     best.slot = unused;
   }
   Slot& slot = slots_[best.slot];
-  slot = {false, false, orientation, h, q_, q_new_};
+  slot = {false, false, orientation, h, -1, q_, q_new_};
   make_factor(slot, best.slot);
   return {best.slot, Mat3::Identity(), 0};
 }
@@ -225,6 +226,12 @@ bool RingIntegrator::iterate(double h, const Field& force, Placement& at, int& c
   return false;
 }
 
+/// A factorization costs some fifteen iterations; it is not worth it where a new factor was no better.
+void RingIntegrator::judge(Slot& slot, int count) {
+  if (slot.first_iterations < 0) slot.first_iterations = count;
+  slot.stale = count > std::max(params_.slow_iterations, slot.first_iterations + kAged);
+}
+
 TireStatus RingIntegrator::step(double h, const RimState& end, const Field& force, const Vec3& about, Wrench& on_rim) {
   set_bead(end);
   layout_.fill_padding(v_new_);
@@ -239,7 +246,7 @@ TireStatus RingIntegrator::step(double h, const RimState& end, const Field& forc
     if (!converged) {
       Placement at = place_factor(h, orientation, attempt > 0);
       converged = slots_[at.slot].valid && iterate(h, force, at, count, norm);
-      if (count > params_.slow_iterations) slots_[at.slot].stale = true;
+      judge(slots_[at.slot], count);
     }
     if (converged) {
       iterations_ += count;
@@ -292,7 +299,7 @@ void RingIntegrator::save(Archive& archive) const {
   for (std::size_t k = 0; k < slots_.size(); ++k) {
     const Archive::Scope scope(archive, fmt::format("factor{}/", k));
     const Slot& slot = slots_[k];
-    archive.put("flags", std::vector<std::int64_t>{slot.valid, slot.stale});
+    archive.put("flags", std::vector<std::int64_t>{slot.valid, slot.stale, slot.first_iterations});
     archive.put("turn", std::vector<double>(slot.turn.data(), slot.turn.data() + 9));
     archive.put("h", slot.h);
     archive.put("q_old", slot.q_old);
@@ -310,8 +317,9 @@ void RingIntegrator::restore(const Archive& archive) {
   for (std::size_t k = 0; k < slots_.size(); ++k) {
     const Archive::Scope scope(archive, fmt::format("factor{}/", k));
     Slot& slot = slots_[k];
-    const auto& flags = archive.get<std::int64_t>("flags", 2);
+    const auto& flags = archive.get<std::int64_t>("flags", 3);
     slot.stale = flags[1] != 0;
+    slot.first_iterations = static_cast<int>(flags[2]);
     std::copy_n(archive.get<double>("turn", 9).data(), 9, slot.turn.data());
     slot.h = archive.get_double("h");
     slot.q_old = archive.get<double>("q_old");

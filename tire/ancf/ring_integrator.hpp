@@ -32,7 +32,7 @@ struct RingIntegratorParams {
   double damping = 0.005;     // τ, s
   double tolerance = 1e-4;    // of the free residual, relative to the norm of the pressure forces
   int max_iterations = 40;    // per attempt
-  int slow_iterations = 5;    // more than these and the factor is renewed
+  int slow_iterations = 5;    // more than these, and kAged more than when it was new: the factor is renewed
   int slots = 4;              // factors kept, one per fraction of a pitch of rolling
 };
 
@@ -76,6 +76,7 @@ class RingIntegrator {
     bool valid = false, stale = false;
     Mat3 turn = Mat3::Identity();  // rim orientation
     double h = 0.0;                // s
+    int first_iterations = -1;     // needed when it was new; -1 before
     Field q_old, q_new;
   };
   struct Placement {
@@ -92,6 +93,7 @@ class RingIntegrator {
   bool make_factor(Slot& slot, int index);
   Placement place_factor(double h, const Mat3& orientation, bool renew);
   void direction(const Placement& at, int pairs);
+  void judge(Slot& slot, int count);
   bool iterate(double h, const Field& force, Placement& at, int& count, double& norm);
   void finish(double h, const Vec3& about, Wrench& on_rim);
 

@@ -67,11 +67,20 @@ memory_kib=$(awk '$1 == "MemAvailable:" {print $2}' /proc/meminfo 2>/dev/null ||
 by_memory=$((${memory_kib:-1500000} / 1500000))
 ((by_memory >= jobs)) || jobs=$((by_memory > 0 ? by_memory : 1))
 
-if [[ -t 2 && ${TERM:-dumb} != dumb ]]; then
-  show() { awk '/^\[[0-9]+\/[0-9]+\]/ {printf "\rbuild: %s ", $1 > "/dev/stderr"; n++} END {if (n) printf "\r\033[K" > "/dev/stderr"}'; }
-else
-  show() { awk '/^\[[0-9]+\/[0-9]+\]/ {split(substr($1, 2), n, "[/\\]]"); part = int(5 * n[1] / n[2])
-                 if (n[2] >= 10 && part > shown) {shown = part; printf "build: %d of %d\n", n[1], n[2] > "/dev/stderr"}}'; }
-fi
+# What is compiled: a counter on a terminal, else a line at each fifth.
+show() {
+  local line shown=0 done all
+  while IFS= read -r line; do
+    [[ $line =~ ^\[([0-9]+)/([0-9]+)\] ]] || continue
+    done=${BASH_REMATCH[1]} all=${BASH_REMATCH[2]}
+    if [[ -t 2 ]]; then
+      printf '\rbuild: %d of %d\033[K' "$done" "$all" >&2
+    elif ((all >= 10 && 5 * done / all > shown)); then
+      shown=$((5 * done / all))
+      say "$done of $all"
+    fi
+  done
+  [[ ! -t 2 ]] || printf '\r\033[K' >&2
+}
 ninja -C "$build" -j "$jobs" "${targets[@]}" 2>&1 | tee "$log" | show || fail 'compilation failed'
 if ((SECONDS - start > 2)); then say "done in $((SECONDS - start)) s"; fi

@@ -2,14 +2,17 @@
 add_library(furrow_options INTERFACE)
 target_include_directories(furrow_options INTERFACE ${CMAKE_SOURCE_DIR})
 target_compile_options(furrow_options INTERFACE -Wall -Wextra -Wpedantic -fno-math-errno -fno-trapping-math)
-# GCC 12 warns of overlapping copies inside std::string's own operator+ (GCC bug 105651).
+# GCC 12 warns of overlaps and overflows inside std::string and std::vector where there are none (GCC bug 105651 and
+# the like); the sanitizers look for real ones.
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-  target_compile_options(furrow_options INTERFACE -Wno-restrict)
+  target_compile_options(furrow_options INTERFACE -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow
+    -Wno-stringop-overread)
 endif()
 target_compile_definitions(furrow_options INTERFACE EIGEN_DONT_PARALLELIZE)
 # Eigen's alignment, and with it the layout of every class that holds an Eigen type, follows the instruction
 # set. It is pinned so that objects built with and without -march=native can be linked together.
-target_compile_definitions(furrow_options INTERFACE EIGEN_MAX_STATIC_ALIGN_BYTES=16)
+# So is the alignment of what it allocates: it decides whether memory is freed by free() or by Eigen's own means.
+target_compile_definitions(furrow_options INTERFACE EIGEN_MAX_STATIC_ALIGN_BYTES=16 EIGEN_MAX_ALIGN_BYTES=64)
 target_link_libraries(furrow_options INTERFACE Eigen3::Eigen fmt::fmt OpenMP::OpenMP_CXX Threads::Threads)
 if(FURROW_NATIVE)
   target_compile_options(furrow_options INTERFACE -march=native)
@@ -22,11 +25,45 @@ if(FURROW_SANITIZE)
   target_link_options(furrow_options INTERFACE -fsanitize=address,undefined)
 endif()
 
+# Precompiled headers save a third of the build. Sources include what they use all the same: the audit preset
+# builds without.
+if(FURROW_PCH)
+  set(_headers <Eigen/Core> <Eigen/Geometry> <algorithm> <filesystem> <functional> <memory> <span> <string> <vector>)
+  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/precompiled.cpp CONTENT "// Only there to compile the precompiled headers.\n")
+  add_library(furrow_pch OBJECT ${CMAKE_BINARY_DIR}/precompiled.cpp)
+  target_link_libraries(furrow_pch PRIVATE furrow_options)
+  target_precompile_headers(furrow_pch PRIVATE ${_headers})
+endif()
+
+# furrow_precompile(<folder>...): lets the libraries and programs made in these folders use the precompiled headers.
+function(furrow_precompile)
+  if(NOT FURROW_PCH)
+    return()
+  endif()
+  foreach(folder ${ARGN})
+    get_directory_property(targets DIRECTORY ${folder} BUILDSYSTEM_TARGETS)
+    foreach(target ${targets})
+      get_target_property(type ${target} TYPE)
+      if(type MATCHES "^(STATIC_LIBRARY|EXECUTABLE)$")
+        target_precompile_headers(${target} REUSE_FROM furrow_pch)
+      endif()
+    endforeach()
+  endforeach()
+endfunction()
+
 # furrow_test(<name> LABELS <label>… LIBS <target>… SOURCES <file>… [TIMEOUT <s>]): one GoogleTest program, one CTest entry.
 function(furrow_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT" "LABELS;LIBS;SOURCES" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE furrow_options ${ARG_LIBS} GTest::gtest GTest::gtest_main)
+  if(FURROW_PCH)
+    if(NOT TARGET furrow_test_pch)
+      add_library(furrow_test_pch OBJECT ${CMAKE_BINARY_DIR}/precompiled.cpp)
+      target_link_libraries(furrow_test_pch PRIVATE furrow_options GTest::gtest)
+      target_precompile_headers(furrow_test_pch PRIVATE ${_headers} <gtest/gtest.h>)
+    endif()
+    target_precompile_headers(${name} REUSE_FROM furrow_test_pch)
+  endif()
   add_test(NAME ${name} COMMAND ${name})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 120)

@@ -38,6 +38,7 @@ std::int64_t run_steps(Node& node, Transport& transport, double step, std::int64
   for (std::int64_t n = from; n < to; ++n) {
     const StepHeader header{n, static_cast<double>(n) * step};
     node.synchronize(transport, header);
+    transport.flush();
     if (node.stopped()) return n;
     node.advance(header);
   }
@@ -56,7 +57,10 @@ ExitCode run_node(const Scenario& scenario, Transport& transport, const RunConte
     const std::int64_t steps = scenario.run.steps();
     const double wall_start = wall_s(), cpu_start = cpu_s(), waited_start = transport.wait_clock().waited_s;
     run_steps(*node, transport, scenario.run.step, 0, steps);
-    if (!node->stopped()) node->synchronize(transport, {steps, static_cast<double>(steps) * scenario.run.step});
+    if (!node->stopped()) {
+      node->synchronize(transport, {steps, static_cast<double>(steps) * scenario.run.step});
+      transport.flush();
+    }
     FinalReport own;
     own.self = transport.self();
     own.wait_s = transport.wait_clock().waited_s - waited_start;

@@ -39,7 +39,8 @@ std::string shown(const json& value) {
 }  // namespace
 
 json load_json(const std::filesystem::path& file) {
-  if (std::filesystem::is_directory(file)) throw input_error(file.string(), "", "is a directory, expected a tire file");
+  if (std::filesystem::is_directory(file))
+    throw input_error(file.string(), "", "is a directory, expected a tire file");
   std::ifstream in(file, std::ios::binary);
   if (!in) throw input_error(file.string(), "", "cannot be read, expected a tire file in JSON");
   std::vector<std::set<std::string>> keys;

@@ -1,5 +1,5 @@
-// Reads objects of a tire file key by key. Every complaint names the file, the dotted key, the offending value and
-// what is allowed; keys that nobody asked for are errors with the nearest valid key suggested.
+// Reads objects of a tire file key by key. Every complaint names the file, the dotted key, the offending
+// value and what is allowed; keys that nobody asked for are errors with the nearest valid key suggested.
 #pragma once
 
 #include <filesystem>

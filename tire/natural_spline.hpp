@@ -1,4 +1,5 @@
-// Natural cubic spline through given points: twice continuously differentiable, second derivative zero at both ends.
+// Natural cubic spline through given points: twice continuously differentiable, second derivative zero at
+// both ends.
 #pragma once
 
 #include <vector>

@@ -4,9 +4,10 @@ namespace furrow {
 
 void save_rim(Archive& archive, const std::string& name, const RimState& r) {
   const auto& q = r.orientation.coeffs();
-  archive.put(name, std::vector<double>{r.position.x(), r.position.y(), r.position.z(), q[0], q[1], q[2], q[3],
-                                        r.velocity.x(), r.velocity.y(), r.velocity.z(), r.angular_velocity.x(),
-                                        r.angular_velocity.y(), r.angular_velocity.z()});
+  archive.put(name,
+              std::vector<double>{r.position.x(), r.position.y(), r.position.z(), q[0], q[1], q[2], q[3],
+                                  r.velocity.x(), r.velocity.y(), r.velocity.z(), r.angular_velocity.x(),
+                                  r.angular_velocity.y(), r.angular_velocity.z()});
 }
 
 RimState restore_rim(const Archive& archive, const std::string& name) {
@@ -20,7 +21,8 @@ RimState restore_rim(const Archive& archive, const std::string& name) {
 }
 
 void save_wrench(Archive& archive, const std::string& name, const Wrench& w) {
-  archive.put(name, std::vector<double>{w.force.x(), w.force.y(), w.force.z(), w.moment.x(), w.moment.y(), w.moment.z()});
+  archive.put(name, std::vector<double>{w.force.x(), w.force.y(), w.force.z(), w.moment.x(), w.moment.y(),
+                                        w.moment.z()});
 }
 
 Wrench restore_wrench(const Archive& archive, const std::string& name) {

@@ -1,6 +1,6 @@
-// x(s) = h₀₀ x₀ + h₁₀ T v₀ + h₀₁ x₁ + h₁₁ T v₁ with the cubic Hermite basis, s = (t − t₀)/T. The orientation is
-// exp(φ(s)) q₀ with φ the same curve from 0 to the turn between the end orientations. φ̇ equals ω only to first
-// order in φ: a turn of one interval is ωT ≈ 4e-4 rad and ω keeps its direction, so that the commutator
+// x(s) = h₀₀ x₀ + h₁₀ T v₀ + h₀₁ x₁ + h₁₁ T v₁ with the cubic Hermite basis, s = (t − t₀)/T. The orientation
+// is exp(φ(s)) q₀ with φ the same curve from 0 to the turn between the end orientations. φ̇ equals ω only to
+// first order in φ: a turn of one interval is ωT ≈ 4e-4 rad and ω keeps its direction, so that the commutator
 // ½ φ × φ̇ vanishes for steady spin and is below 1e-7 rad/s otherwise. Both end states are met exactly.
 #include "tire/rim_trajectory.hpp"
 

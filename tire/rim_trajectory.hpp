@@ -1,6 +1,7 @@
-// The continuous (C¹) motion that a tire gives its bead over one communication interval. The rim's state arrives at
-// the interval's start t₀; the tire extrapolates it to t₁ = t₀ + H and goes there from the pose it last used:
-// a cubic Hermite curve in position, and in the rotation vector relative to the starting orientation.
+// The continuous (C¹) motion that a tire gives its bead over one communication interval. The rim's state
+// arrives at the interval's start t₀; the tire extrapolates it to t₁ = t₀ + H and goes there from the pose it
+// last used: a cubic Hermite curve in position, and in the rotation vector relative to the starting
+// orientation.
 #pragma once
 
 #include "protocol/archive.hpp"
@@ -20,8 +21,8 @@ class RimTrajectory {
   /// At rest on `start`; start() = end() = start.
   explicit RimTrajectory(const RimState& start = {});
 
-  /// Begins the next interval: from where the last one ended to `received` extrapolated by `duration` at constant
-  /// velocity and angular velocity.
+  /// Begins the next interval: from where the last one ended to `received` extrapolated by `duration` at
+  /// constant velocity and angular velocity.
   void extend(const RimState& received, double duration);
 
   /// @param s share of the interval, 0…1

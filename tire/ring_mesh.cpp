@@ -35,7 +35,8 @@ struct Corner {
     return g1.cross(g2).dot(blend(shape(xi, eta), d));
   }
   static std::array<double, 4> shape(double xi, double eta) {
-    return {(1 - xi) * (1 - eta) / 4, (1 + xi) * (1 - eta) / 4, (1 + xi) * (1 + eta) / 4, (1 - xi) * (1 + eta) / 4};
+    return {(1 - xi) * (1 - eta) / 4, (1 + xi) * (1 - eta) / 4, (1 + xi) * (1 + eta) / 4,
+            (1 - xi) * (1 + eta) / 4};
   }
 };
 
@@ -53,7 +54,9 @@ double RingMesh::pitch() const { return 2.0 * std::numbers::pi / columns; }
 
 Mat3 RingMesh::turn(int i) const { return Eigen::AngleAxisd(i * pitch(), Vec3::UnitY()).toRotationMatrix(); }
 
-Vec3 RingMesh::disc_centre(int side) const { return Vec3(0.0, (side == 0 ? position.front() : position.back()).y(), 0.0); }
+Vec3 RingMesh::disc_centre(int side) const {
+  return Vec3(0.0, (side == 0 ? position.front() : position.back()).y(), 0.0);
+}
 
 RingMesh make_ring_mesh(const TireFile& file) {
   std::vector<double> t, x, y;
@@ -67,7 +70,8 @@ RingMesh make_ring_mesh(const TireFile& file) {
     const Vec3 r(0.0, axial.value(s), file.rim_radius + height.value(s));
     const Vec3 normal(0.0, -height.slope(s), axial.slope(s));  // e_t × tangent
     if (!(r.z() > 0.0) || !(normal.norm() > 1e-6))
-      throw input_error(file.path, "profile", fmt::format("cannot be used at t = {:.3f}: it meets the axis or stands still", s));
+      throw input_error(file.path, "profile",
+                        fmt::format("cannot be used at t = {:.3f}: it meets the axis or stands still", s));
     mesh.position.push_back(r);
     mesh.director.push_back(normal.normalized());
   }
@@ -76,9 +80,11 @@ RingMesh make_ring_mesh(const TireFile& file) {
     const Corner corner(mesh, j);
     for (const double z : {-half, half})
       if (!(corner.jacobian(-1, -1, z) > 0.0 && corner.jacobian(-1, 1, z) > 0.0))
-        throw input_error(file.path, "profile",
-                          fmt::format("folds back between t = {:.3f} and {:.3f}: the curvature radius is below half the thickness",
-                                      static_cast<double>(j) / (mesh.rows - 1), static_cast<double>(j + 1) / (mesh.rows - 1)));
+        throw input_error(
+            file.path, "profile",
+            fmt::format(
+                "folds back between t = {:.3f} and {:.3f}: the curvature radius is below half the thickness",
+                static_cast<double>(j) / (mesh.rows - 1), static_cast<double>(j + 1) / (mesh.rows - 1)));
   }
   return mesh;
 }
@@ -90,7 +96,8 @@ SurfaceMesh make_surface_mesh(const RingMesh& mesh) {
   for (int i = 0; i < mesh.columns; ++i) {
     const int next = (i + 1) % mesh.columns;
     for (int j = 0; j < last; ++j) {
-      const int a = mesh.node(i, j), b = mesh.node(next, j), c = mesh.node(next, j + 1), d = mesh.node(i, j + 1);
+      const int a = mesh.node(i, j), b = mesh.node(next, j), c = mesh.node(next, j + 1),
+                d = mesh.node(i, j + 1);
       if (2 * j < last) {
         surface.triangles.push_back({a, b, c});
         surface.triangles.push_back({a, c, d});
@@ -118,23 +125,24 @@ std::vector<ElementMass> element_masses(const TireFile& file, const RingMesh& me
         for (const Layer& layer : section.layers) {
           for (int c = 0; c < 3; ++c) {
             const double zc = z + 0.5 * layer.thickness * (1.0 + kGauss[c]);
-            const double volume =
-                corner.jacobian(kGauss[a], kGauss[b], zc) * kWeight[a] * kWeight[b] * 0.5 * layer.thickness * kWeight[c];
+            const double volume = corner.jacobian(kGauss[a], kGauss[b], zc) * kWeight[a] * kWeight[b] * 0.5 *
+                                  layer.thickness * kWeight[c];
             add_point(m, kGauss[a], kGauss[b], zc, file.materials[layer.material].density * volume);
           }
           z += layer.thickness;
         }
         if (tread)
-          add_point(m, kGauss[a], kGauss[b], z,
-                    file.tread_mass_per_area * corner.jacobian(kGauss[a], kGauss[b], z) * kWeight[a] * kWeight[b]);
+          add_point(
+              m, kGauss[a], kGauss[b], z,
+              file.tread_mass_per_area * corner.jacobian(kGauss[a], kGauss[b], z) * kWeight[a] * kWeight[b]);
       }
     masses.push_back(m);
   }
   return masses;
 }
 
-// T = ½ ωᵀ J ω with the nodal velocities ω × r and ω × d: J = Σ M_ab (x_a·x_b I − x_a x_bᵀ), x = r or d; the sum over
-// the columns averages the two axes across the spin.
+// T = ½ ωᵀ J ω with the nodal velocities ω × r and ω × d: J = Σ M_ab (x_a·x_b I − x_a x_bᵀ), x = r or d; the
+// sum over the columns averages the two axes across the spin.
 MassProperties rigid_mass(const RingMesh& mesh, const std::vector<ElementMass>& masses) {
   MassProperties properties;
   Mat3 one = Mat3::Zero();

@@ -36,9 +36,9 @@ class Tire {
   virtual const SurfaceMesh& mesh() const = 0;
   virtual ContactMaterial material() const = 0;
   virtual MassProperties mass_properties() const = 0;
-  virtual double radius() const = 0;        // of the undeformed contact surface, m
-  virtual double tread_width() const = 0;   // m
-  virtual int coordinates() const = 0;      // unknowns
+  virtual double radius() const = 0;       // of the undeformed contact surface, m
+  virtual double tread_width() const = 0;  // m
+  virtual int coordinates() const = 0;     // unknowns
 
   /// Puts the tire on the rim, inflated, with the velocity field of a rigid body moving with the rim.
   /// @throws Error(physics) when inflation does not converge.
@@ -51,8 +51,9 @@ class Tire {
   /// Gravity (0, 0, −9.81 m/s²) acts.
   virtual TireStatus advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) = 0;
 
-  /// Force and moment about the rim centre that the tire exerts on the rim, averaged over the last advance; complete,
-  /// with the tire's inertia and weight, so that impulse = Δ momentum holds to round-off for the tire as a whole.
+  /// Force and moment about the rim centre that the tire exerts on the rim, averaged over the last advance;
+  /// complete, with the tire's inertia and weight, so that impulse = Δ momentum holds to round-off for the
+  /// tire as a whole.
   virtual Wrench spindle_wrench() const = 0;
 
   virtual TireDiagnostics diagnostics() const = 0;
@@ -64,14 +65,14 @@ class Tire {
 
 /// What a scenario says about a tire.
 struct TireOptions {
-  std::filesystem::path file;      // resolved
-  double pressure = -1.0;          // gauge, Pa; negative: the file's default
-  double friction = -1.0;          // contact friction; negative: the file's
-  int elements_circumference = 0;  // 0: the file's
-  int elements_width = 0;          // 0: the file's; split over the sections in the file's proportions
+  std::filesystem::path file;        // resolved
+  double pressure = -1.0;            // gauge, Pa; negative: the file's default
+  double friction = -1.0;            // contact friction; negative: the file's
+  int elements_circumference = 0;    // 0: the file's
+  int elements_width = 0;            // 0: the file's; split over the sections in the file's proportions
   double structural_damping = -1.0;  // s; negative: the file's
-  bool rigid = false;              // same surface, no deformation
-  double substep = 0.0;            // s, time step the tire will be advanced with
+  bool rigid = false;                // same surface, no deformation
+  double substep = 0.0;              // s, time step the tire will be advanced with
 };
 
 /// Reads a tire file (our layout or the public ANCFTire layout) and makes the model it describes.

@@ -78,7 +78,8 @@ ContactMaterial read_contact(JsonReader reader) {
   c.restitution = reader.not_negative("restitution");
   c.normal_stiffness = reader.positive("normal_stiffness");
   c.normal_damping = reader.not_negative("normal_damping");
-  if (c.poisson_ratio >= 0.5) reader.fail("poisson_ratio", fmt::format("is {}, expected 0 to below 0.5", c.poisson_ratio));
+  if (c.poisson_ratio >= 0.5)
+    reader.fail("poisson_ratio", fmt::format("is {}, expected 0 to below 0.5", c.poisson_ratio));
   if (c.restitution > 1.0) reader.fail("restitution", fmt::format("is {}, expected 0 to 1", c.restitution));
   reader.finish();
   return c;
@@ -120,15 +121,18 @@ struct Template {
   const char* name;
   TireFile (*read)(JsonReader&);
 };
-constexpr std::array<Template, 2> kTemplates{{{"template", "ancf_shell", read_own}, {"Template", "ANCFTire", read_chrono}}};
+constexpr std::array<Template, 2> kTemplates{
+    {{"template", "ancf_shell", read_own}, {"Template", "ANCFTire", read_chrono}}};
 
 void check(const TireFile& f) {
   double top = 0.0;
   for (const ProfileKnot& knot : f.profile) top = std::max(top, knot.x);
   if (std::abs(f.rim_radius + top - f.radius) > 0.01 * f.radius)
-    throw input_error(f.path, "profile",
-                      fmt::format("rises to {:.4f} m above the rim radius of {:.4f} m, expected the tire radius of {:.4f} m",
-                                  top, f.rim_radius, f.radius));
+    throw input_error(
+        f.path, "profile",
+        fmt::format(
+            "rises to {:.4f} m above the rim radius of {:.4f} m, expected the tire radius of {:.4f} m", top,
+            f.rim_radius, f.radius));
   for (const LayerMaterial& material : f.materials) stiffness(material, f.path);
 }
 
@@ -144,16 +148,21 @@ std::vector<ProfileKnot> read_profile(JsonReader& reader, const std::string& key
   std::vector<ProfileKnot> profile;
   for (const json& row : reader.array(key)) {
     const std::size_t k = profile.size();
-    const bool three = row.is_array() && row.size() == 3 && row[0].is_number() && row[1].is_number() && row[2].is_number();
+    const bool three =
+        row.is_array() && row.size() == 3 && row[0].is_number() && row[1].is_number() && row[2].is_number();
     if (!three) reader.fail(fmt::format("{}[{}]", key, k), "expected three numbers t, x, y");
     profile.push_back({row[0].get<double>(), row[1].get<double>(), row[2].get<double>()});
-    if (profile[k].x < -1e-9) reader.fail(fmt::format("{}[{}]", key, k), "lies below the rim radius, expected x of zero or above");
-    if (k > 0 && !(profile[k].t > profile[k - 1].t)) reader.fail(fmt::format("{}[{}]", key, k), "expected t to increase");
+    if (profile[k].x < -1e-9)
+      reader.fail(fmt::format("{}[{}]", key, k), "lies below the rim radius, expected x of zero or above");
+    if (k > 0 && !(profile[k].t > profile[k - 1].t))
+      reader.fail(fmt::format("{}[{}]", key, k), "expected t to increase");
   }
   if (profile.size() < 4) reader.fail(key, fmt::format("has {} knots, expected at least 4", profile.size()));
   if (std::abs(profile.front().t) > 1e-9 || std::abs(profile.back().t - 1.0) > 1e-9)
-    reader.fail(key, fmt::format("runs from t = {} to {}, expected 0 to 1", profile.front().t, profile.back().t));
-  if (!(profile.back().y > profile.front().y)) reader.fail(key, "expected y to run from the left (negative) to the right bead");
+    reader.fail(key,
+                fmt::format("runs from t = {} to {}, expected 0 to 1", profile.front().t, profile.back().t));
+  if (!(profile.back().y > profile.front().y))
+    reader.fail(key, "expected y to run from the left (negative) to the right bead");
   return profile;
 }
 
@@ -176,7 +185,8 @@ TireFile read_tire_file(const std::filesystem::path& file) {
   reader.fail("template", fmt::format("is missing, expected one of: {}", fmt::join(valid, ", ")));
 }
 
-// Compliance: S_xx = 1/E_x, S_xy = −ν_xy/E_x, S_xz = −ν_xz/E_x, S_yz = −ν_yz/E_y, shear 1/G [Jones 1999, Eq. (2.25)].
+// Compliance: S_xx = 1/E_x, S_xy = −ν_xy/E_x, S_xz = −ν_xz/E_x, S_yz = −ν_yz/E_y, shear 1/G [Jones 1999, Eq.
+// (2.25)].
 Eigen::Matrix<double, 6, 6> stiffness(const LayerMaterial& m, const std::string& file) {
   const Vec3& e = m.young_modulus;
   const Vec3& nu = m.poisson_ratio;
@@ -185,8 +195,9 @@ Eigen::Matrix<double, 6, 6> stiffness(const LayerMaterial& m, const std::string&
       -nu.x() / e.x(), 1.0 / e.y(), -nu.z() / e.y(),   //
       -nu.y() / e.x(), -nu.z() / e.y(), 1.0 / e.z();
   if (s.llt().info() != Eigen::Success)
-    throw input_error(file, "materials." + m.name + ".poisson_ratio",
-                      "gives a material that is not stable (negative strain energy), expected smaller ratios");
+    throw input_error(
+        file, "materials." + m.name + ".poisson_ratio",
+        "gives a material that is not stable (negative strain energy), expected smaller ratios");
   const Mat3 c = s.inverse();
   Eigen::Matrix<double, 6, 6> full = Eigen::Matrix<double, 6, 6>::Zero();
   constexpr std::array<int, 3> kNormal{0, 1, 3};
@@ -200,7 +211,8 @@ Eigen::Matrix<double, 6, 6> stiffness(const LayerMaterial& m, const std::string&
 
 void set_elements_width(TireFile& f, int elements) {
   if (elements < 6 || elements % 2 != 0)
-    throw input_error(f.path, "elements_width", fmt::format("is {}, expected an even number of at least 6", elements));
+    throw input_error(f.path, "elements_width",
+                      fmt::format("is {}, expected an even number of at least 6", elements));
   const int side = elements / 2;
   const double scale = 2.0 * side / f.elements_width();
   const auto share = [&](int n) { return std::max(1, static_cast<int>(std::lround(n * scale))); };
@@ -208,7 +220,8 @@ void set_elements_width(TireFile& f, int elements) {
   int sidewall = share(f.sidewall.elements_per_side);
   if (bead + sidewall >= side) sidewall = side - bead - 1;
   if (sidewall < 1)
-    throw input_error(f.path, "elements_width", fmt::format("is {}, too few for the tire's three sections", elements));
+    throw input_error(f.path, "elements_width",
+                      fmt::format("is {}, too few for the tire's three sections", elements));
   f.bead.elements_per_side = bead;
   f.sidewall.elements_per_side = sidewall;
   f.tread.elements_per_side = side - bead - sidewall;

@@ -14,10 +14,10 @@ namespace furrow {
 /// Orthotropic linear elastic material; x along the fibre, y across it in the layer, z through the thickness.
 struct LayerMaterial {
   std::string name;
-  double density = 0.0;                // kg/m³
-  Vec3 young_modulus = Vec3::Zero();   // x, y, z, Pa
-  Vec3 poisson_ratio = Vec3::Zero();   // ν_xy, ν_xz, ν_yz with ν_xy / E_x = ν_yx / E_y
-  Vec3 shear_modulus = Vec3::Zero();   // xy, xz, yz, Pa
+  double density = 0.0;               // kg/m³
+  Vec3 young_modulus = Vec3::Zero();  // x, y, z, Pa
+  Vec3 poisson_ratio = Vec3::Zero();  // ν_xy, ν_xz, ν_yz with ν_xy / E_x = ν_yx / E_y
+  Vec3 shear_modulus = Vec3::Zero();  // xy, xz, yz, Pa
 };
 
 struct Layer {

@@ -1,7 +1,8 @@
 // Milliseconds per step of the layered tire, and its load–deflection secant.
 //
-// The tire carries a ballast on a flat ground, rolling at constant angular speed (or standing, at speed 0). Ground: a
-// penalty of 3e5 N/m per vertex with a tangential spring of 2e5 N/m limited by Coulomb friction, both explicit.
+// The tire carries a ballast on a flat ground, rolling at constant angular speed (or standing, at speed 0).
+// Ground: a penalty of 3e5 N/m per vertex with a tangential spring of 2e5 N/m limited by Coulomb friction,
+// both explicit.
 //   tire_step FILE [COLUMNS WIDTH SPEED STEP END BALLAST FRICTION]
 #include <fmt/format.h>
 
@@ -59,10 +60,10 @@ class Ground {
 };
 
 struct Run {
-  double speed = 4.28;    // rad/s
-  double step = 6e-5;     // s
-  double end = 0.5;       // s
-  double ballast = 465;   // kg
+  double speed = 4.28;   // rad/s
+  double step = 6e-5;    // s
+  double end = 0.5;      // s
+  double ballast = 465;  // kg
   double friction = 0.9;
 };
 
@@ -73,8 +74,9 @@ void roll(AncfTire& tire, const Run& run) {
   rim.angular_velocity = Vec3(0, run.speed, 0);
   double start = processor_time();
   tire.place(rim);
-  fmt::print("placed in {:.2f} s, {} creep steps, {} repeated, static residual {:.1e}\n", processor_time() - start,
-             tire.inflation().steps, tire.inflation().shrunk, tire.inflation().residual);
+  fmt::print("placed in {:.2f} s, {} creep steps, {} repeated, static residual {:.1e}\n",
+             processor_time() - start, tire.inflation().steps, tire.inflation().shrunk,
+             tire.inflation().residual);
   RimTrajectory trajectory(rim);
   Ground ground(tire.mesh().vertex_count, run.friction);
   NodalForces forces;
@@ -95,7 +97,8 @@ void roll(AncfTire& tire, const Run& run) {
     const double damper = n * run.step < 0.6 * run.end ? 12e3 : 0.0;
     rim.velocity.z() += run.step * ((wrench.force.z() - damper * rim.velocity.z()) / run.ballast - 9.81);
     rim.position += run.step * rim.velocity;
-    rim.orientation = (Quat(Eigen::AngleAxisd(run.step * run.speed, Vec3::UnitY())) * rim.orientation).normalized();
+    rim.orientation =
+        (Quat(Eigen::AngleAxisd(run.step * run.speed, Vec3::UnitY())) * rim.orientation).normalized();
     load += wrench.force.z() / block;
     deflection += (tire.radius() - rim.position.z()) / block;
     worst = std::max(worst, tire.integrator().residual());
@@ -103,13 +106,17 @@ void roll(AncfTire& tire, const Run& run) {
     const TireDiagnostics d = tire.diagnostics();
     const RingIntegrator::Times t = tire.integrator().times();
     const double k = 1e3 / block;
-    fmt::print("t {:.3f} s  load {:.0f} N  deflection {:.2f} mm  secant {:.0f} kN/m  Fx {:.0f} N  vertices {}  iterations {:.2f}  "
-               "factorizations {}  ms/step {:.2f} = force {:.2f} jacobian {:.2f} factorize {:.2f} solve {:.2f} other {:.2f}  "
-               "residual {:.1e}\n",
-               n * run.step, load, deflection * 1e3, load / deflection * 1e-3, wrench.force.x(), forces.vertex.size(),
-               static_cast<double>(d.newton_iterations - last.newton_iterations) / block, d.factorizations - last.factorizations,
-               spent * k, (t.force - before.force) * k, (t.jacobian - before.jacobian) * k, (t.factorize - before.factorize) * k,
-               (t.solve - before.solve) * k, (t.other - before.other) * k, worst);
+    fmt::print(
+        "t {:.3f} s  load {:.0f} N  deflection {:.2f} mm  secant {:.0f} kN/m  Fx {:.0f} N  vertices {}  "
+        "iterations {:.2f}  "
+        "factorizations {}  ms/step {:.2f} = force {:.2f} jacobian {:.2f} factorize {:.2f} solve {:.2f} "
+        "other {:.2f}  "
+        "residual {:.1e}\n",
+        n * run.step, load, deflection * 1e3, load / deflection * 1e-3, wrench.force.x(),
+        forces.vertex.size(), static_cast<double>(d.newton_iterations - last.newton_iterations) / block,
+        d.factorizations - last.factorizations, spent * k, (t.force - before.force) * k,
+        (t.jacobian - before.jacobian) * k, (t.factorize - before.factorize) * k,
+        (t.solve - before.solve) * k, (t.other - before.other) * k, worst);
     std::fflush(stdout);
     before = t, last = d;
     load = deflection = spent = worst = 0.0;
@@ -130,8 +137,8 @@ int main(int argc, char** argv) {
     if (const char* slow = std::getenv("TIRE_SLOW")) params.slow_iterations = std::atoi(slow);
     AncfTire tire(file, params);
     const Run defaults;
-    roll(tire, {number(4, defaults.speed), number(5, defaults.step), number(6, defaults.end), number(7, defaults.ballast),
-                number(8, defaults.friction)});
+    roll(tire, {number(4, defaults.speed), number(5, defaults.step), number(6, defaults.end),
+                number(7, defaults.ballast), number(8, defaults.friction)});
   } catch (const Error& e) {
     fmt::print(stderr, "furrow: error: {}\n", e.what());
     return static_cast<int>(e.code());

@@ -17,14 +17,16 @@ struct Made {
   RingMesh mesh;
   std::vector<ElementMass> masses;
   explicit Made(const char* name)
-      : file(read_tire_file(std::string(TIRE_DATA "/") + name)), mesh(make_ring_mesh(file)), masses(element_masses(file, mesh)) {}
+      : file(read_tire_file(std::string(TIRE_DATA "/") + name)),
+        mesh(make_ring_mesh(file)),
+        masses(element_masses(file, mesh)) {}
 };
 
 TEST(RingMesh, layered_tire_weighs_what_its_layup_says) {
   const Made tire("hmmwv_layered.json");
   const MassProperties m = rigid_mass(tire.mesh, tire.masses);
-  EXPECT_NEAR(m.mass, 4.82, 0.02);             // kg
-  EXPECT_GT(m.inertia(1, 1), 0.78);            // kg m²
+  EXPECT_NEAR(m.mass, 4.82, 0.02);   // kg
+  EXPECT_GT(m.inertia(1, 1), 0.78);  // kg m²
   EXPECT_LT(m.inertia(1, 1), 0.79);
   EXPECT_NEAR(m.inertia(0, 0), m.inertia(2, 2), 1e-12);
 }
@@ -42,15 +44,19 @@ TEST(RingMesh, half_torus_mass_matches_pappus) {
   set_elements_width(tire.file, 60);
   const RingMesh mesh = make_ring_mesh(tire.file);
   // Half circle of radius a, centroid 2a/π outside the rim radius: A = π a · 2π (R + 2a/π)
-  const double a = 0.195, area = std::numbers::pi * a * 2 * std::numbers::pi * (0.35 + 2 * a / std::numbers::pi);
-  EXPECT_NEAR(rigid_mass(mesh, element_masses(tire.file, mesh)).mass, 500 * 0.014 * area, 2e-3 * 500 * 0.014 * area);
+  const double a = 0.195,
+               area = std::numbers::pi * a * 2 * std::numbers::pi * (0.35 + 2 * a / std::numbers::pi);
+  EXPECT_NEAR(rigid_mass(mesh, element_masses(tire.file, mesh)).mass, 500 * 0.014 * area,
+              2e-3 * 500 * 0.014 * area);
 }
 
 TEST(RingMesh, tread_rubber_adds_its_mass) {
   Made tire("hmmwv_layered.json");
   tire.file.tread_mass_per_area = 10.0;
-  const double heavier = rigid_mass(tire.mesh, element_masses(tire.file, tire.mesh)).mass - rigid_mass(tire.mesh, tire.masses).mass;
-  EXPECT_NEAR(heavier, 10.0 * 2 * std::numbers::pi * 0.4673 * 0.29, 1.0);  // meridian length of the tread about 0.29 m
+  const double heavier = rigid_mass(tire.mesh, element_masses(tire.file, tire.mesh)).mass -
+                         rigid_mass(tire.mesh, tire.masses).mass;
+  EXPECT_NEAR(heavier, 10.0 * 2 * std::numbers::pi * 0.4673 * 0.29,
+              1.0);  // meridian length of the tread about 0.29 m
 }
 
 TEST(RingMesh, surface_is_closed_and_faces_outwards) {
@@ -89,7 +95,8 @@ TEST(RingMesh, surface_triangles_are_mirrored_about_the_mid_plane) {
   for (const auto& t : surface.triangles) {
     std::array<int, 3> mirrored;
     for (int k = 0; k < 3; ++k)
-      mirrored[k] = t[k] >= nodes ? nodes + 1 - (t[k] - nodes) : t[k] - t[k] % rows + (rows - 1 - t[k] % rows);
+      mirrored[k] =
+          t[k] >= nodes ? nodes + 1 - (t[k] - nodes) : t[k] - t[k] % rows + (rows - 1 - t[k] % rows);
     EXPECT_EQ(set.count(key(mirrored)), 1u);
   }
 }

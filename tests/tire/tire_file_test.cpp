@@ -92,27 +92,40 @@ TEST_F(TireFileTest, every_mistake_names_its_key) {
     return complaint(changed.dump());
   };
   EXPECT_EQ(with([](json& j) { j["presure"] = 1; }), "key 'presure': is unknown, did you mean 'pressure'?");
-  EXPECT_EQ(with([](json& j) { j["contact"]["frction"] = 1; }), "key 'contact.frction': is unknown, did you mean 'friction'?");
-  EXPECT_EQ(with([](json& j) { j["template"] = "ring"; }), "key 'template': is 'ring', expected one of: ancf_shell, ANCFTire");
-  EXPECT_EQ(with([](json& j) { j.erase("template"); }), "key 'template': is missing, expected one of: ancf_shell, ANCFTire");
+  EXPECT_EQ(with([](json& j) { j["contact"]["frction"] = 1; }),
+            "key 'contact.frction': is unknown, did you mean 'friction'?");
+  EXPECT_EQ(with([](json& j) { j["template"] = "ring"; }),
+            "key 'template': is 'ring', expected one of: ancf_shell, ANCFTire");
+  EXPECT_EQ(with([](json& j) { j.erase("template"); }),
+            "key 'template': is missing, expected one of: ancf_shell, ANCFTire");
   EXPECT_EQ(with([](json& j) { j.erase("radius"); }), "key 'radius': is missing");
   EXPECT_EQ(with([](json& j) { j["radius"] = -0.4; }), "key 'radius': is -0.4, expected a number above zero");
   EXPECT_EQ(with([](json& j) { j["radius"] = "big"; }), "key 'radius': is \"big\", expected a finite number");
-  EXPECT_EQ(with([](json& j) { j["pressure"] = -1; }), "key 'pressure': is -1, expected a number of zero or above");
-  EXPECT_EQ(with([](json& j) { j["pressure"] = nullptr; }), "key 'pressure': is null, expected a finite number");
+  EXPECT_EQ(with([](json& j) { j["pressure"] = -1; }),
+            "key 'pressure': is -1, expected a number of zero or above");
+  EXPECT_EQ(with([](json& j) { j["pressure"] = nullptr; }),
+            "key 'pressure': is null, expected a finite number");
   EXPECT_EQ(with([](json& j) { j["elements_circumference"] = 4.5; }),
             "key 'elements_circumference': is 4.5, expected a whole number of at least 8");
   EXPECT_EQ(with([](json& j) { j["sections"]["tread"]["layers"][1]["material"] = "steel"; }),
-            "key 'sections.tread.layers[1].material': is 'steel', expected one of: carcass cord, rubber, steel cord");
+            "key 'sections.tread.layers[1].material': is 'steel', expected one of: carcass cord, rubber, "
+            "steel cord");
   EXPECT_EQ(with([](json& j) { j["sections"]["bead"]["layers"] = json::array(); }),
             "key 'sections.bead.layers': is empty, expected at least one layer");
-  EXPECT_EQ(with([](json& j) { j["profile"][3] = {0.5, 0.01}; }), "key 'profile[3]': expected three numbers t, x, y");
+  EXPECT_EQ(with([](json& j) {
+              j["profile"][3] = {0.5, 0.01};
+            }),
+            "key 'profile[3]': expected three numbers t, x, y");
   EXPECT_EQ(with([](json& j) { j["profile"][3][0] = 0.001; }), "key 'profile[3]': expected t to increase");
   EXPECT_EQ(with([](json& j) { j["profile"][3][1] = -0.1; }),
             "key 'profile[3]': lies below the rim radius, expected x of zero or above");
   EXPECT_EQ(with([](json& j) { j["radius"] = 0.6; }).rfind("key 'profile': rises to", 0), 0u);
-  EXPECT_EQ(with([](json& j) { j["materials"]["rubber"]["poisson_ratio"] = 0.6; }).rfind("key 'materials.rubber.poisson_ratio'", 0), 0u);
-  EXPECT_EQ(with([](json& j) { j["format_version"] = 99; }), "key 'format_version': is 99, this program reads up to 1");
+  EXPECT_EQ(with([](json& j) {
+              j["materials"]["rubber"]["poisson_ratio"] = 0.6;
+            }).rfind("key 'materials.rubber.poisson_ratio'", 0),
+            0u);
+  EXPECT_EQ(with([](json& j) { j["format_version"] = 99; }),
+            "key 'format_version': is 99, this program reads up to 1");
 }
 
 TEST_F(TireFileTest, files_that_are_not_json_objects_are_refused) {
@@ -129,16 +142,27 @@ TEST_F(TireFileTest, files_that_are_not_json_objects_are_refused) {
 
 /// The layered tire in the public layout.
 json public_layout(const TireFile& f) {
-  json j = {{"Name", "HMMWV"}, {"Type", "Tire"}, {"Template", "ANCFTire"}, {"Tire Radius", f.radius},
-            {"Rim Radius", f.rim_radius}, {"Rim Width", f.rim_width}, {"8-Node Elements", false},
-            {"Structural Damping Coefficient", f.structural_damping}, {"Default Pressure", f.pressure},
+  json j = {{"Name", "HMMWV"},
+            {"Type", "Tire"},
+            {"Template", "ANCFTire"},
+            {"Tire Radius", f.radius},
+            {"Rim Radius", f.rim_radius},
+            {"Rim Width", f.rim_width},
+            {"8-Node Elements", false},
+            {"Structural Damping Coefficient", f.structural_damping},
+            {"Default Pressure", f.pressure},
             {"Number Elements Circumference", 90}};
-  j["Contact Material"] = {{"Coefficient of Friction", 0.9}, {"Coefficient of Restitution", 0.1},
+  j["Contact Material"] = {{"Coefficient of Friction", 0.9},
+                           {"Coefficient of Restitution", 0.1},
                            {"Properties", {{"Young Modulus", 2e6}, {"Poisson Ratio", 0.3}}},
-                           {"Coefficients", {{"Normal Stiffness", 2e6}, {"Normal Damping", 13}, {"Tangential Stiffness", 1e6},
-                                             {"Tangential Damping", 0}}}};
+                           {"Coefficients",
+                            {{"Normal Stiffness", 2e6},
+                             {"Normal Damping", 13},
+                             {"Tangential Stiffness", 1e6},
+                             {"Tangential Damping", 0}}}};
   for (const LayerMaterial& m : f.materials)
-    j["Materials"].push_back({{"Type", "Orthotropic"}, {"Density", m.density},
+    j["Materials"].push_back({{"Type", "Orthotropic"},
+                              {"Density", m.density},
                               {"E", {m.young_modulus.x(), m.young_modulus.y(), m.young_modulus.z()}},
                               {"nu", {m.poisson_ratio.x(), m.poisson_ratio.y(), m.poisson_ratio.z()}},
                               {"G", {m.shear_modulus.x(), m.shear_modulus.y(), m.shear_modulus.z()}}});
@@ -177,8 +201,10 @@ TEST_F(TireFileTest, public_layout_mistakes_name_their_key) {
     return complaint(changed.dump());
   };
   EXPECT_EQ(with([](json&) {}), "no error");
-  EXPECT_EQ(with([](json& j) { j["Tire Radios"] = 1; }), "key 'Tire Radios': is unknown, did you mean 'Tire Radius'?");
-  EXPECT_EQ(with([](json& j) { j["Template"] = "FialaTire"; }), "key 'Template': is 'FialaTire', expected one of: ancf_shell, ANCFTire");
+  EXPECT_EQ(with([](json& j) { j["Tire Radios"] = 1; }),
+            "key 'Tire Radios': is unknown, did you mean 'Tire Radius'?");
+  EXPECT_EQ(with([](json& j) { j["Template"] = "FialaTire"; }),
+            "key 'Template': is 'FialaTire', expected one of: ancf_shell, ANCFTire");
   EXPECT_EQ(with([](json& j) { j["Tread Section"]["Material ID"][0] = 7; }),
             "key 'Tread Section.Material ID': holds 7, expected whole numbers from 0 to 2");
   EXPECT_EQ(with([](json& j) { j["Materials"][0]["Type"] = "Fabric"; }),

@@ -7,8 +7,11 @@
 namespace furrow {
 
 AncfTire::AncfTire(const TireFile& file, const RingIntegratorParams& params)
-    : ring_(make_ring_mesh(file)), surface_mesh_(make_surface_mesh(ring_)), material_(file.contact),
-      rigid_mass_(furrow::rigid_mass(ring_, element_masses(file, ring_))), radius_(file.radius),
+    : ring_(make_ring_mesh(file)),
+      surface_mesh_(make_surface_mesh(ring_)),
+      material_(file.contact),
+      rigid_mass_(furrow::rigid_mass(ring_, element_masses(file, ring_))),
+      radius_(file.radius),
       tread_width_(furrow::tread_width(file, ring_)),
       integrator_(file, ring_, [&] {
         RingIntegratorParams p = params;
@@ -68,7 +71,8 @@ TireStatus AncfTire::advance(const RimTrajectory& rim, const NodalForces& forces
       layout.set(force_, vertex / ring_.rows, vertex % ring_.rows, 0, forces.force[k]);
       continue;
     }
-    const Mat3 mean = 0.5 * (rim.start().orientation.toRotationMatrix() + rim.end().orientation.toRotationMatrix());
+    const Mat3 mean =
+        0.5 * (rim.start().orientation.toRotationMatrix() + rim.end().orientation.toRotationMatrix());
     disc.force += forces.force[k];
     disc.moment += (mean * ring_.disc_centre(vertex - ring_.nodes())).cross(forces.force[k]);
   }
@@ -108,7 +112,8 @@ TireDiagnostics AncfTire::diagnostics() const {
       if (c < 3) d.momentum[c] += sum;
     }
   const double volume = integrator_.shell().volume(q, rim_.position);
-  d.strain_energy = integrator_.elastic_energy() - integrator_.shell().pressure() * (volume - undeformed_volume_);
+  d.strain_energy =
+      integrator_.elastic_energy() - integrator_.shell().pressure() * (volume - undeformed_volume_);
   d.dissipation = integrator_.dissipation();
   d.newton_iterations = integrator_.iterations();
   d.factorizations = integrator_.factorizations();

@@ -1,6 +1,6 @@
 // The layered ANCF shell tire: bead nodes follow the rim exactly, the rest is integrated implicitly.
-// The contact surface is the mid-surface (nodes), closed at each bead by a disc whose centre vertex moves with the rim;
-// forces on the disc centres go to the rim.
+// The contact surface is the mid-surface (nodes), closed at each bead by a disc whose centre vertex moves
+// with the rim; forces on the disc centres go to the rim.
 #pragma once
 
 #include "tire/ancf/inflation.hpp"
@@ -35,15 +35,15 @@ class AncfTire final : public Tire {
   SurfaceMesh surface_mesh_;
   ContactMaterial material_;
   MassProperties rigid_mass_;
-  double radius_ = 0.0;            // m
-  double tread_width_ = 0.0;       // m
-  double undeformed_volume_ = 0.0; // m³
+  double radius_ = 0.0;             // m
+  double tread_width_ = 0.0;        // m
+  double undeformed_volume_ = 0.0;  // m³
   RingIntegrator integrator_;
   InflationReport inflation_;
-  RimState rim_;                   // now
-  Wrench spindle_;                 // of the last advance
+  RimState rim_;    // now
+  Wrench spindle_;  // of the last advance
   std::int64_t steps_ = 0;
-  Field force_;                    // work
+  Field force_;  // work
 };
 
 }  // namespace furrow

@@ -13,26 +13,28 @@
 namespace furrow {
 namespace {
 
-constexpr double kCreepTime = 5e-3;      // τ, s
-constexpr double kFirstStep = 1e-3;      // s
-constexpr double kLargestStep = 10.0;    // s
-constexpr double kTolerance = 1e-8;      // of the static residual, relative to the full pressure's forces
-constexpr double kNewton = 1e-9;         // of a step's residual, likewise
-constexpr double kAccepted = 1e-2;       // of the static residual, after the last step
+constexpr double kCreepTime = 5e-3;    // τ, s
+constexpr double kFirstStep = 1e-3;    // s
+constexpr double kLargestStep = 10.0;  // s
+constexpr double kTolerance = 1e-8;    // of the static residual, relative to the full pressure's forces
+constexpr double kNewton = 1e-9;       // of a step's residual, likewise
+constexpr double kAccepted = 1e-2;     // of the static residual, after the last step
 constexpr int kRampSteps = 10;
 constexpr int kMaxSteps = 300;
 constexpr int kMaxNewton = 12;
 
 class ColumnCreep {
  public:
-  ColumnCreep(const ShellRing& shell, const RingMesh& mesh) : shell_(shell), mesh_(mesh), layout_(shell.layout()) {
+  ColumnCreep(const ShellRing& shell, const RingMesh& mesh)
+      : shell_(shell), mesh_(mesh), layout_(shell.layout()) {
     q_ = undeformed(mesh);
     force_.assign(layout_.size(), 0.0);
     shell_.strains(q_, strains_);
     reference_ = pressure_norm();
   }
 
-  /// @returns false when the tangent lost its definiteness or Newton's method did not converge; q is then unchanged
+  /// @returns false when the tangent lost its definiteness or Newton's method did not converge; q is then
+  /// unchanged
   bool step(double h) {
     const Field before = q_;
     const double c = 1.0 + kCreepTime / h;
@@ -146,9 +148,10 @@ Field inflate(const ShellRing& shell, const RingMesh& mesh, InflationReport& rep
     if (report.steps >= kRampSteps && report.residual < kTolerance) break;
   }
   if (report.steps < kRampSteps || !(report.residual < kAccepted))
-    throw physics_error(fmt::format("tire inflation to {:.0f} Pa did not converge: residual {:.3g} of the pressure force after {} "
-                                    "steps; try a lower pressure or a finer mesh",
-                                    shell.pressure(), report.residual, report.steps));
+    throw physics_error(fmt::format(
+        "tire inflation to {:.0f} Pa did not converge: residual {:.3g} of the pressure force after {} "
+        "steps; try a lower pressure or a finer mesh",
+        shell.pressure(), report.residual, report.steps));
   return creep.q();
 }
 

@@ -1,8 +1,8 @@
-// Inflates the undeformed ring on a rim at rest, axisymmetrically: one column of nodes is unknown, the others are it
-// turned. A layered tire need not be stable as a static body: the steel belts of the reference layup carry
-// compressive hoop force at the tread's edges. The equilibrium is therefore approached by creep under the
-// Kelvin–Voigt law (no inertia), B(q')ᵀ D̂ [E' + τ ΔE/h] = p ∂V/∂q(q'), whose step h grows while the tangent stays
-// positive definite and shrinks when its Cholesky factorization fails.
+// Inflates the undeformed ring on a rim at rest, axisymmetrically: one column of nodes is unknown, the others
+// are it turned. A layered tire need not be stable as a static body: the steel belts of the reference layup
+// carry compressive hoop force at the tread's edges. The equilibrium is therefore approached by creep under
+// the Kelvin–Voigt law (no inertia), B(q')ᵀ D̂ [E' + τ ΔE/h] = p ∂V/∂q(q'), whose step h grows while the
+// tangent stays positive definite and shrinks when its Cholesky factorization fails.
 #pragma once
 
 #include "tire/ancf/shell_ring.hpp"

@@ -1,5 +1,5 @@
-// Four doubles that are worked on at once: one lane per element of a batch around the ring. GCC and Clang vector
-// extensions; without AVX the compiler splits them.
+// Four doubles that are worked on at once: one lane per element of a batch around the ring. GCC and Clang
+// vector extensions; without AVX the compiler splits them.
 #pragma once
 
 namespace furrow {

@@ -13,8 +13,8 @@ namespace furrow {
 namespace {
 constexpr int kColumn[4] = {0, 1, 1, 0}, kRow[4] = {0, 0, 1, 1};
 
-/// While it lives, parallel regions of the libraries below run on the calling thread alone: CHOLMOD otherwise starts
-/// four threads, whatever the cores are.
+/// While it lives, parallel regions of the libraries below run on the calling thread alone: CHOLMOD otherwise
+/// starts four threads, whatever the cores are.
 class Serial {
  public:
   Serial() : before_(omp_get_max_active_levels()) { omp_set_max_active_levels(0); }
@@ -64,7 +64,8 @@ RingFactor::RingFactor(const RingLayout& layout, int slots) : layout_(layout), f
   column[n] = static_cast<int>(start_[nodes]);
   symbolic_ = cholmod_analyze(matrix_, &common_);
   rhs_ = cholmod_zeros(n, 1, CHOLMOD_REAL, &common_);
-  if (!symbolic_ || !rhs_) throw physics_error("the tire's stiffness matrix could not be analysed: out of memory");
+  if (!symbolic_ || !rhs_)
+    throw physics_error("the tire's stiffness matrix could not be analysed: out of memory");
 }
 
 RingFactor::~RingFactor() {
@@ -77,7 +78,8 @@ RingFactor::~RingFactor() {
 
 std::size_t RingFactor::column_start(int node, int c) const {
   const std::size_t below = 6 * (neighbours_[node].size() - 1);
-  return start_[node] + static_cast<std::size_t>(c) * below + static_cast<std::size_t>(6 * c - c * (c - 1) / 2);
+  return start_[node] + static_cast<std::size_t>(c) * below +
+         static_cast<std::size_t>(6 * c - c * (c - 1) / 2);
 }
 
 void RingFactor::clear() {
@@ -85,7 +87,8 @@ void RingFactor::clear() {
   std::fill(values, values + start_.back(), 0.0);
 }
 
-void RingFactor::add(const BatchTangent& tangent, const ElementMass& mass, double mass_factor, int j, int batch) {
+void RingFactor::add(const BatchTangent& tangent, const ElementMass& mass, double mass_factor, int j,
+                     int batch) {
   auto* values = static_cast<double*>(matrix_->x);
   const int across = layout_.rows - 2;
   for (int lane = 0; lane < kLanes; ++lane) {
@@ -94,13 +97,15 @@ void RingFactor::add(const BatchTangent& tangent, const ElementMass& mass, doubl
     int node[4];
     for (int n = 0; n < 4; ++n) {
       const int free_row = j + kRow[n] - 1;
-      node[n] = free_row < 0 || free_row >= across ? -1 : (i + kColumn[n]) % layout_.columns * across + free_row;
+      node[n] =
+          free_row < 0 || free_row >= across ? -1 : (i + kColumn[n]) % layout_.columns * across + free_row;
     }
     for (int n = 0; n < 4; ++n)
       for (int m = 0; m < 4; ++m) {
         if (node[n] < 0 || node[m] < 0 || node[n] < node[m]) continue;
         const auto& near = neighbours_[node[m]];
-        const auto rank = static_cast<std::size_t>(std::lower_bound(near.begin(), near.end(), node[n]) - near.begin());
+        const auto rank =
+            static_cast<std::size_t>(std::lower_bound(near.begin(), near.end(), node[n]) - near.begin());
         for (int c = 0; c < 6; ++c) {
           const std::size_t base = column_start(node[m], c) + (rank == 0 ? 0 : 6 - c + 6 * (rank - 1));
           for (int r = rank == 0 ? c : 0; r < 6; ++r) {

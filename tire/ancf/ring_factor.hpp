@@ -1,7 +1,8 @@
-// Sparse Cholesky factors (CHOLMOD) of a symmetric matrix on the free nodes of a ring, assembled element by element.
-// The pattern is analysed once; several numeric factors ("slots") share it. A factor made in one orientation and
-// numbering is used in another by turning and shifting right-hand side and solution:
-//   A(q turned by Q, columns shifted by m) = P_m Q A Qᵀ P_mᵀ  exactly, because strain energy and mass are objective.
+// Sparse Cholesky factors (CHOLMOD) of a symmetric matrix on the free nodes of a ring, assembled element by
+// element. The pattern is analysed once; several numeric factors ("slots") share it. A factor made in one
+// orientation and numbering is used in another by turning and shifting right-hand side and solution:
+//   A(q turned by Q, columns shifted by m) = P_m Q A Qᵀ P_mᵀ  exactly, because strain energy and mass are
+//   objective.
 #pragma once
 
 #include <cholmod.h>

@@ -10,14 +10,15 @@
 namespace furrow {
 namespace {
 
-constexpr double kGravity = 9.81;          // m/s²
-constexpr double kDirectorLength = 0.01;   // m, makes director residuals (N m) comparable with forces
+constexpr double kGravity = 9.81;         // m/s²
+constexpr double kDirectorLength = 0.01;  // m, makes director residuals (N m) comparable with forces
 constexpr int kPairs = 12;
-constexpr int kAged = 3;                   // iterations
+constexpr int kAged = 3;  // iterations
 
 double dot(const Field& a, const Field& b, const RingLayout& layout) {
   const std::size_t first = layout.free_begin(), count = layout.free_size();
-  return Eigen::Map<const Eigen::VectorXd>(a.data() + first, count).dot(Eigen::Map<const Eigen::VectorXd>(b.data() + first, count));
+  return Eigen::Map<const Eigen::VectorXd>(a.data() + first, count)
+      .dot(Eigen::Map<const Eigen::VectorXd>(b.data() + first, count));
 }
 
 /// Processor time of this thread: what the work costs, whoever else uses the machine.
@@ -39,9 +40,15 @@ class Stopwatch {
 }  // namespace
 
 RingIntegrator::RingIntegrator(const TireFile& file, const RingMesh& mesh, const RingIntegratorParams& params)
-    : params_(params), mesh_(mesh), layout_{mesh.columns, mesh.rows}, shell_(file, mesh),
-      mass_(mesh, element_masses(file, mesh)), factor_(layout_, params.slots), slots_(params.slots) {
-  for (Field* f : {&q_, &v_, &v_before_, &gravity_, &q_new_, &v_new_, &q_force_, &change_, &r_, &d_}) f->assign(layout_.size(), 0.0);
+    : params_(params),
+      mesh_(mesh),
+      layout_{mesh.columns, mesh.rows},
+      shell_(file, mesh),
+      mass_(mesh, element_masses(file, mesh)),
+      factor_(layout_, params.slots),
+      slots_(params.slots) {
+  for (Field* f : {&q_, &v_, &v_before_, &gravity_, &q_new_, &v_new_, &q_force_, &change_, &r_, &d_})
+    f->assign(layout_.size(), 0.0);
   s_.assign(kPairs, r_);
   y_.assign(kPairs, r_);
   rho_.assign(kPairs, 0.0);
@@ -142,7 +149,8 @@ bool RingIntegrator::make_factor(Slot& slot, int index) {
   return slot.valid = false;
 }
 
-/// The factor whose rim stood, after turning by whole pitches, nearest to `orientation`; a new one when none is near.
+/// The factor whose rim stood, after turning by whole pitches, nearest to `orientation`; a new one when none
+/// is near.
 RingIntegrator::Placement RingIntegrator::place_factor(double h, const Mat3& orientation, bool renew) {
   const double pitch = mesh_.pitch();
   Placement best;
@@ -179,7 +187,9 @@ RingIntegrator::Placement RingIntegrator::place_factor(double h, const Mat3& ori
 void RingIntegrator::direction(const Placement& at, int pairs) {
   const Stopwatch watch(times_.solve);
   const std::size_t first = layout_.free_begin();
-  const auto part = [&](Field& f) { return Eigen::Map<Eigen::VectorXd>(f.data() + first, layout_.free_size()); };
+  const auto part = [&](Field& f) {
+    return Eigen::Map<Eigen::VectorXd>(f.data() + first, layout_.free_size());
+  };
   double weight[kPairs];
   part(change_) = part(r_);
   for (int k = pairs - 1; k >= 0; --k) {
@@ -232,7 +242,8 @@ void RingIntegrator::judge(Slot& slot, int count) {
   slot.stale = count > std::max(params_.slow_iterations, slot.first_iterations + kAged);
 }
 
-TireStatus RingIntegrator::step(double h, const RimState& end, const Field& force, const Vec3& about, Wrench& on_rim) {
+TireStatus RingIntegrator::step(double h, const RimState& end, const Field& force, const Vec3& about,
+                                Wrench& on_rim) {
   set_bead(end);
   layout_.fill_padding(v_new_);
   const Mat3 orientation = end.orientation.toRotationMatrix();
@@ -255,13 +266,14 @@ TireStatus RingIntegrator::step(double h, const RimState& end, const Field& forc
       return {};
     }
   }
-  return {false, fmt::format("residual {:.3g} of the pressure force after {} iterations and a new factorization, allowed {:.3g}; "
+  return {false, fmt::format("residual {:.3g} of the pressure force after {} iterations and a new "
+                             "factorization, allowed {:.3g}; "
                              "try a smaller run.step or more tire.substeps",
                              norm / reference_, count, params_.tolerance)};
 }
 
-/// Spindle wrench from (2): −Σ Q − pressure resultant, moments at q_f, and the term Δx × ½ (p + p')/h. What is left of the
-/// free residual is counted with the beads, so that momentum balances to round-off.
+/// Spindle wrench from (2): −Σ Q − pressure resultant, moments at q_f, and the term Δx × ½ (p + p')/h. What
+/// is left of the free residual is counted with the beads, so that momentum balances to round-off.
 void RingIntegrator::finish(double h, const Vec3& about, Wrench& on_rim) {
   const Stopwatch watch(times_.other);
   on_rim = {};
@@ -281,7 +293,8 @@ void RingIntegrator::finish(double h, const Vec3& about, Wrench& on_rim) {
   for (int j = 0; j < layout_.rows; ++j)
     for (int i = 0; i < layout_.columns; ++i)
       for (const int s : {0, 3})
-        on_rim.moment -= (layout_.get(q_new_, i, j, s) - layout_.get(q_, i, j, s)).cross(layout_.get(d_, i, j, s));
+        on_rim.moment -=
+            (layout_.get(q_new_, i, j, s) - layout_.get(q_, i, j, s)).cross(layout_.get(d_, i, j, s));
   v_before_.swap(v_);
   v_.swap(v_new_);
   q_.swap(q_new_);

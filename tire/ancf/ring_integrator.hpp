@@ -3,19 +3,26 @@
 // Over a step h from (q, v) to (q', v'), with q_f = ½ (q + q') and E, E' the strains at q, q':
 //   q' − q = h v'                                                                          (1) free nodes
 //   M (v' − v)/h + B(q_f)ᵀ D̂ [E' + τ (E' − E)/h] − p ∂V/∂q(q_f) = F + M g + Q              (2)
-// F are the contact forces, constant over the step, Q the reactions at the beads. q', v' of the beads come from the rim.
-//  - As E is quadratic in q, E' − E = B(q_f) (q' − q): strain rates vanish exactly for a rigid motion of the step's ends,
-//    and the work of the internal forces is Δ(elastic energy) + ½ ΔEᵀ D̂ ΔE + (τ/h) ΔEᵀ D̂ ΔE. With the ½ Δvᵀ M Δv that (1)
-//    removes, energy cannot grow: the numerical part of the damping acts like a τ of h/2, 1 % of the material's.
-//  - Velocities are those of the backward Euler rule: what is stiff through τ K does not ring, as it does with trapezoidal
-//    or HHT velocities, where a contact force that is one interval late and depends on velocity would feed it.
+// F are the contact forces, constant over the step, Q the reactions at the beads. q', v' of the beads come
+// from the rim.
+//  - As E is quadratic in q, E' − E = B(q_f) (q' − q): strain rates vanish exactly for a rigid motion of the
+//  step's ends,
+//    and the work of the internal forces is Δ(elastic energy) + ½ ΔEᵀ D̂ ΔE + (τ/h) ΔEᵀ D̂ ΔE. With the ½ Δvᵀ M
+//    Δv that (1) removes, energy cannot grow: the numerical part of the damping acts like a τ of h/2, 1 % of
+//    the material's.
+//  - Velocities are those of the backward Euler rule: what is stiff through τ K does not ring, as it does
+//  with trapezoidal
+//    or HHT velocities, where a contact force that is one interval late and depends on velocity would feed
+//    it.
 //  - Δp and ΔL over the step are the impulses of F, M g and the spindle to round-off: the identity
 //      x'×p' − x×p = x_f × Δp + Δx × ½ (p + p')
 //    gives the moment impulse; its last term, O(h) for (1), is counted with the spindle.
-// Force evaluation at the middle: Simo & Tarnow (1992), The discrete energy-momentum method, ZAMP 43, doi:10.1007/BF00913408.
+// Force evaluation at the middle: Simo & Tarnow (1992), The discrete energy-momentum method, ZAMP 43,
+// doi:10.1007/BF00913408.
 //
-// The equations are solved by a quasi-Newton method: an old Cholesky factor of the tangent, turned and renumbered to the
-// present orientation, corrected by BFGS pairs [Nocedal & Wright 2006, Alg. 7.4]; refactored when it has aged.
+// The equations are solved by a quasi-Newton method: an old Cholesky factor of the tangent, turned and
+// renumbered to the present orientation, corrected by BFGS pairs [Nocedal & Wright 2006, Alg. 7.4];
+// refactored when it has aged.
 #pragma once
 
 #include <cstdint>
@@ -29,11 +36,11 @@
 namespace furrow {
 
 struct RingIntegratorParams {
-  double damping = 0.005;     // τ, s
-  double tolerance = 1e-4;    // of the free residual, relative to the norm of the pressure forces
-  int max_iterations = 40;    // per attempt
-  int slow_iterations = 5;    // more than these, and kAged more than when it was new: the factor is renewed
-  int slots = 4;              // factors kept, one per fraction of a pitch of rolling
+  double damping = 0.005;   // τ, s
+  double tolerance = 1e-4;  // of the free residual, relative to the norm of the pressure forces
+  int max_iterations = 40;  // per attempt
+  int slow_iterations = 5;  // more than these, and kAged more than when it was new: the factor is renewed
+  int slots = 4;            // factors kept, one per fraction of a pitch of rolling
 };
 
 class RingIntegrator {
@@ -43,8 +50,9 @@ class RingIntegrator {
   /// Starts from the given coordinates and velocities (padding filled).
   void start(const Field& q, const Field& v);
 
-  /// One step of size h to the rim state `end`. `force`: contact forces, padding zero. `about`: moments are taken about
-  /// this point. The wrench is what the tire exerts on the rim, the step's mean, without forces on the bead discs.
+  /// One step of size h to the rim state `end`. `force`: contact forces, padding zero. `about`: moments are
+  /// taken about this point. The wrench is what the tire exerts on the rim, the step's mean, without forces
+  /// on the bead discs.
   TireStatus step(double h, const RimState& end, const Field& force, const Vec3& about, Wrench& on_rim);
 
   const Field& q() const { return q_; }
@@ -105,16 +113,16 @@ class RingIntegrator {
   RingFactor factor_;
   std::vector<Slot> slots_;
 
-  Field q_, v_;                  // state: coordinates (m, –) and velocities
-  Field v_before_;               // velocities one step earlier, for the prediction
-  double reference_ = 0.0;       // norm of the pressure forces, N
+  Field q_, v_;             // state: coordinates (m, –) and velocities
+  Field v_before_;          // velocities one step earlier, for the prediction
+  double reference_ = 0.0;  // norm of the pressure forces, N
   double elastic_ = 0.0, dissipation_ = 0.0, residual_ = 0.0;
   std::int64_t iterations_ = 0, factorizations_ = 0;
 
-  Field strains_;                                  // at q_
-  Field gravity_;                                  // M g
-  Field q_new_, v_new_, q_force_, change_, r_, d_; // work
-  std::vector<Field> s_, y_;                       // BFGS pairs
+  Field strains_;                                   // at q_
+  Field gravity_;                                   // M g
+  Field q_new_, v_new_, q_force_, change_, r_, d_;  // work
+  std::vector<Field> s_, y_;                        // BFGS pairs
   std::vector<double> rho_;
   Times times_;
 };

@@ -1,5 +1,5 @@
-// Where a nodal field of the ring lies in memory. One line per (row, component) with the columns side by side, so
-// that neighbouring elements around the ring fill the lanes of a vector:
+// Where a nodal field of the ring lies in memory. One line per (row, component) with the columns side by
+// side, so that neighbouring elements around the ring fill the lanes of a vector:
 //   field[offset(j, c) + i],  j row across, c component (0–2 position, 3–5 director), i column
 // Each line is continued cyclically on both sides ("padding"), so that no index wraps in the inner loops.
 #pragma once

@@ -12,7 +12,8 @@ RingMass::RingMass(const RingMesh& mesh, std::vector<ElementMass> elements)
       for (int m = 0; m < 4; ++m)
         for (int s = 0; s < 2; ++s)
           for (int t = 0; t < 2; ++t)
-            rows_[e + kRow[n]].c[s][kRow[m] - kRow[n] + 1][kColumn[m] - kColumn[n] + 1][t] += elements_[e](2 * n + s, 2 * m + t);
+            rows_[e + kRow[n]].c[s][kRow[m] - kRow[n] + 1][kColumn[m] - kColumn[n] + 1][t] +=
+                elements_[e](2 * n + s, 2 * m + t);
 }
 
 void RingMass::apply(const Field& field, double factor, Field& out) const {
@@ -34,7 +35,8 @@ void RingMass::add(const Field& field, double factor, Field& out) const {
           const double* from = field.data() + layout_.offset(j + dj, 3 * t + c % 3);
           const auto& k = rows_[j].c[c / 3][dj + 1];
           const double before = factor * k[0][t], here = factor * k[1][t], after = factor * k[2][t];
-          for (int i = 0; i < layout_.columns; ++i) to[i] += before * from[i - 1] + here * from[i] + after * from[i + 1];
+          for (int i = 0; i < layout_.columns; ++i)
+            to[i] += before * from[i - 1] + here * from[i] + after * from[i + 1];
         }
       }
     }

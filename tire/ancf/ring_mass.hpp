@@ -1,5 +1,5 @@
-// Consistent mass of the ring as a stencil: by rotational symmetry one set of coefficients per node row, the same for
-// every column and Cartesian component.
+// Consistent mass of the ring as a stencil: by rotational symmetry one set of coefficients per node row, the
+// same for every column and Cartesian component.
 #pragma once
 
 #include "tire/ancf/ring_layout.hpp"

@@ -34,9 +34,14 @@ struct BatchSlopes {
   Lanes3 a1[2], d1[2], a2[2], d2[2];
 
   explicit BatchSlopes(const BatchNodes& n)
-      : ab(0.5 * (n.r[1] - n.r[0])), at(0.5 * (n.r[2] - n.r[3])), al(0.5 * (n.r[3] - n.r[0])),
-        ar(0.5 * (n.r[2] - n.r[1])), db(0.5 * (n.d[1] - n.d[0])), dt(0.5 * (n.d[2] - n.d[3])),
-        dl(0.5 * (n.d[3] - n.d[0])), dr(0.5 * (n.d[2] - n.d[1])) {
+      : ab(0.5 * (n.r[1] - n.r[0])),
+        at(0.5 * (n.r[2] - n.r[3])),
+        al(0.5 * (n.r[3] - n.r[0])),
+        ar(0.5 * (n.r[2] - n.r[1])),
+        db(0.5 * (n.d[1] - n.d[0])),
+        dt(0.5 * (n.d[2] - n.d[3])),
+        dl(0.5 * (n.d[3] - n.d[0])),
+        dr(0.5 * (n.d[2] - n.d[1])) {
     a1[0] = kNear * ab + kFar * at, a1[1] = kFar * ab + kNear * at;
     d1[0] = kNear * db + kFar * dt, d1[1] = kFar * db + kNear * dt;
     a2[0] = kNear * al + kFar * ar, a2[1] = kFar * al + kNear * ar;
@@ -112,8 +117,10 @@ struct BatchForces {
     add_shear(stress + e13(1), s.at, s.dt, n.d[3], n.d[2], fat, fdt, d[3], d[2]);
     add_shear(stress + e23(0), s.al, s.dl, n.d[0], n.d[3], fal, fdl, d[0], d[3]);
     add_shear(stress + e23(1), s.ar, s.dr, n.d[1], n.d[2], far, fdr, d[1], d[2]);
-    r[0] += -0.5 * (fab + fal), r[1] += 0.5 * (fab - far), r[2] += 0.5 * (fat + far), r[3] += 0.5 * (fal - fat);
-    d[0] += -0.5 * (fdb + fdl), d[1] += 0.5 * (fdb - fdr), d[2] += 0.5 * (fdt + fdr), d[3] += 0.5 * (fdl - fdt);
+    r[0] += -0.5 * (fab + fal), r[1] += 0.5 * (fab - far), r[2] += 0.5 * (fat + far),
+        r[3] += 0.5 * (fal - fat);
+    d[0] += -0.5 * (fdb + fdl), d[1] += 0.5 * (fdb - fdr), d[2] += 0.5 * (fdt + fdr),
+        d[3] += 0.5 * (fdl - fdt);
   }
 
   void add(const RingLayout& layout, double* field, int i, int j) const {

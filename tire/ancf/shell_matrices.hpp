@@ -1,10 +1,12 @@
 // Stiffness of one layered shell element in terms of its 36 generalised strains, integrated once at set-up:
 //   W = ½ eᵀ D̂ e,  D̂ = D − Lᵀ K_αα⁻¹ L
-//   D    = Σ_layers ∫ Nᵀ Tᵀ C T N j dξ dη dz        N covariant map, T(ξ,η,z) covariant → material axes, j = det J₀(z)
-//   L    = Σ_layers ∫ Gᵀ C T N j dξ dη dz,   K_αα = Σ_layers ∫ Gᵀ C G j dξ dη dz
-// The enhanced strain G α = (j₀/j) T₀ M(ξ, η, ζ) α holds one set of parameters for the whole element, each of zero mean:
-// ξ on 11, η on 22, ξ and η on 12, and ζ (1, ξ, η, ξη) on 33. As the material is linear α is eliminated exactly.
-//   Simo & Rifai (1990), A class of mixed assumed strain methods, Int. J. Numer. Methods Eng. 29, doi:10.1002/nme.1620290802.
+//   D    = Σ_layers ∫ Nᵀ Tᵀ C T N j dξ dη dz        N covariant map, T(ξ,η,z) covariant → material axes, j =
+//   det J₀(z) L    = Σ_layers ∫ Gᵀ C T N j dξ dη dz,   K_αα = Σ_layers ∫ Gᵀ C G j dξ dη dz
+// The enhanced strain G α = (j₀/j) T₀ M(ξ, η, ζ) α holds one set of parameters for the whole element, each of
+// zero mean: ξ on 11, η on 22, ξ and η on 12, and ζ (1, ξ, η, ξη) on 33. As the material is linear α is
+// eliminated exactly.
+//   Simo & Rifai (1990), A class of mixed assumed strain methods, Int. J. Numer. Methods Eng. 29,
+//   doi:10.1002/nme.1620290802.
 #pragma once
 
 #include <vector>
@@ -18,8 +20,8 @@ inline constexpr int kEnhanced = 8;
 
 /// A layer with its stiffness in material axes (order xx, yy, 2xy, zz, 2xz, 2yz), from the inside outwards.
 struct ShellLayer {
-  double thickness = 0.0;  // m
-  double angle = 0.0;      // of the fibre from g₁ towards g₂, rad
+  double thickness = 0.0;                 // m
+  double angle = 0.0;                     // of the fibre from g₁ towards g₂, rad
   Eigen::Matrix<double, 6, 6> stiffness;  // Pa
 };
 

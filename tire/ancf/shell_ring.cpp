@@ -5,11 +5,14 @@
 
 namespace furrow {
 
-ShellRing::ShellRing(const TireFile& file, const RingMesh& mesh) : layout_{mesh.columns, mesh.rows}, pressure_(file.pressure) {
+ShellRing::ShellRing(const TireFile& file, const RingMesh& mesh)
+    : layout_{mesh.columns, mesh.rows}, pressure_(file.pressure) {
   const Mat3 next = mesh.turn(1);
   for (int j = 0; j < mesh.elements_width(); ++j) {
-    const Vec3 corner[4] = {mesh.position[j], next * mesh.position[j], next * mesh.position[j + 1], mesh.position[j + 1]};
-    const Vec3 director[4] = {mesh.director[j], next * mesh.director[j], next * mesh.director[j + 1], mesh.director[j + 1]};
+    const Vec3 corner[4] = {mesh.position[j], next * mesh.position[j], next * mesh.position[j + 1],
+                            mesh.position[j + 1]};
+    const Vec3 director[4] = {mesh.director[j], next * mesh.director[j], next * mesh.director[j + 1],
+                              mesh.director[j + 1]};
     ElementNodes reference;
     for (int n = 0; n < 4; ++n) reference.row(2 * n) = corner[n], reference.row(2 * n + 1) = director[n];
     stiffness_.push_back(shell_stiffness(reference, shell_layers(file, file.section(j))));
@@ -45,7 +48,8 @@ void ShellRing::strains(const Field& q, Field& e) const {
     }
 }
 
-void ShellRing::batch_stress_at(const Field& q_new, const Field& e_old, double c, int j, int batch, Lanes* stress) const {
+void ShellRing::batch_stress_at(const Field& q_new, const Field& e_old, double c, int j, int batch,
+                                Lanes* stress) const {
   Lanes e[kStrains];
   batch_strains_at(q_new, j, batch, e);
   const double* old = batch_of(e_old, j, batch);
@@ -56,7 +60,8 @@ void ShellRing::batch_stress_at(const Field& q_new, const Field& e_old, double c
   batch_stress(stiffness_[j].data(), e, stress);
 }
 
-void ShellRing::forces(const Field& q_new, const Field& q_force, const Field& e_old, double c, Field& f) const {
+void ShellRing::forces(const Field& q_new, const Field& q_force, const Field& e_old, double c,
+                       Field& f) const {
   std::fill(f.begin(), f.end(), 0.0);
   Lanes stress[kStrains];
   for (int j = 0; j + 1 < layout_.rows; ++j)
@@ -120,15 +125,16 @@ double ShellRing::volume(const Field& q, const Vec3& centre) const {
   return total;
 }
 
-// Stokes: ∫ n dA = ½ ∮ x × dx and ∫ x × n dA = −½ ∮ |x|² dx around the boundary, here two polygons. With the surface
-// on its left the left loop runs with the columns, the right loop against them.
+// Stokes: ∫ n dA = ½ ∮ x × dx and ∫ x × n dA = −½ ∮ |x|² dx around the boundary, here two polygons. With the
+// surface on its left the left loop runs with the columns, the right loop against them.
 Wrench ShellRing::pressure_resultant(const Field& q, const Vec3& centre) const {
   Wrench w;
   for (int side = 0; side < 2; ++side) {
     const int j = side == 0 ? 0 : layout_.rows - 1;
     const double sense = side == 0 ? pressure_ : -pressure_;
     for (int i = 0; i < layout_.columns; ++i) {
-      const Vec3 a = layout_.get(q, i, j, 0) - centre, b = layout_.get(q, (i + 1) % layout_.columns, j, 0) - centre;
+      const Vec3 a = layout_.get(q, i, j, 0) - centre,
+                 b = layout_.get(q, (i + 1) % layout_.columns, j, 0) - centre;
       w.force += 0.5 * sense * a.cross(b);
       w.moment -= sense / 6.0 * (a.squaredNorm() + a.dot(b) + b.squaredNorm()) * (b - a);
     }

@@ -1,7 +1,9 @@
-// The elastic and pressure forces of a whole ring of layered shell elements. Elements at the same width position share
-// their matrices; they are processed row by row in batches of kLanes around the ring.
-//   f = Σ_e B(q_f)ᵀ D̂ [E_old + c (E(q_new) − E_old)] − p ∂V/∂q(q_f),   B = ∂E/∂q,   c a factor of the time integrator
-// The pressure acts on the current area of the mid-surface; V is the volume that it closes with the bead discs.
+// The elastic and pressure forces of a whole ring of layered shell elements. Elements at the same width
+// position share their matrices; they are processed row by row in batches of kLanes around the ring.
+//   f = Σ_e B(q_f)ᵀ D̂ [E_old + c (E(q_new) − E_old)] − p ∂V/∂q(q_f),   B = ∂E/∂q,   c a factor of the time
+//   integrator
+// The pressure acts on the current area of the mid-surface; V is the volume that it closes with the bead
+// discs.
 #pragma once
 
 #include "tire/ancf/ring_layout.hpp"
@@ -15,7 +17,7 @@ class ShellRing {
   ShellRing(const TireFile& file, const RingMesh& mesh);
 
   const RingLayout& layout() const { return layout_; }
-  double pressure() const { return pressure_; }            // Pa
+  double pressure() const { return pressure_; }  // Pa
   void set_pressure(double pressure) { pressure_ = pressure; }
   const StrainMatrix& stiffness(int j) const { return stiffness_[j]; }
 
@@ -36,11 +38,13 @@ class ShellRing {
   /// Between the mid-surface and the two cones from the bead loops to `centre`, m³.
   double volume(const Field& q, const Vec3& centre) const;
 
-  /// Resultant of the pressure on the mid-surface and its moment about `centre`; both depend on the bead loops alone.
+  /// Resultant of the pressure on the mid-surface and its moment about `centre`; both depend on the bead
+  /// loops alone.
   Wrench pressure_resultant(const Field& q, const Vec3& centre) const;
 
   /// Current strain-driven stress of one batch (used for the tangent).
-  void batch_stress_at(const Field& q_new, const Field& e_old, double c, int j, int batch, Lanes* stress) const;
+  void batch_stress_at(const Field& q_new, const Field& e_old, double c, int j, int batch,
+                       Lanes* stress) const;
 
  private:
   /// Lanes of a batch that are elements (1) and not padding (0).

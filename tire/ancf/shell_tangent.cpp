@@ -30,7 +30,8 @@ void strain_gradients(const Scalars& s, Lanes (*b)[24]) {
   }
 }
 
-/// ∂²V/∂r_i∂r_m symmetrised = ½ Σ [(N_i N_m,η − N_m N_i,η) [a₁]× − (N_i N_m,ξ − N_m N_i,ξ) [a₂]×]; subtracts `factor` × it.
+/// ∂²V/∂r_i∂r_m symmetrised = ½ Σ [(N_i N_m,η − N_m N_i,η) [a₁]× − (N_i N_m,ξ − N_m N_i,ξ) [a₂]×]; subtracts
+/// `factor` × it.
 void subtract_pressure(const BatchSlopes& s, double factor, Lanes (*k)[24]) {
   constexpr double sx[4] = {-1, 1, 1, -1}, se[4] = {-1, -1, 1, 1};
   for (int g = 0; g < 4; ++g) {
@@ -44,7 +45,8 @@ void subtract_pressure(const BatchSlopes& s, double factor, Lanes (*k)[24]) {
     }
     for (int i = 0; i < 4; ++i)
       for (int m = 0; m < i; ++m) {
-        const double u = 0.5 * factor * (n[i] * n2[m] - n[m] * n2[i]), v = 0.5 * factor * (n[i] * n1[m] - n[m] * n1[i]);
+        const double u = 0.5 * factor * (n[i] * n2[m] - n[m] * n2[i]),
+                     v = 0.5 * factor * (n[i] * n1[m] - n[m] * n1[i]);
         const Lanes3 w = u * a1 - v * a2;  // [w]×
         Lanes(*block)[24] = k + 6 * i;
         block[0][6 * m + 1] += w.z, block[0][6 * m + 2] -= w.y;
@@ -56,8 +58,8 @@ void subtract_pressure(const BatchSlopes& s, double factor, Lanes (*k)[24]) {
 
 }  // namespace
 
-void BatchTangent::compute(const StrainMatrix& d, const BatchNodes& nodes, const Lanes* stress, double material,
-                           double geometric, double pressure) {
+void BatchTangent::compute(const StrainMatrix& d, const BatchNodes& nodes, const Lanes* stress,
+                           double material, double geometric, double pressure) {
   static thread_local Lanes b[kStrains][24], db[kStrains][24];
   strain_gradients(Scalars(nodes), b);
   for (int r = 0; r < kStrains; ++r)

@@ -1,4 +1,5 @@
-// Over an interval H with constant nodal forces f at vertices x, rim centre c, tire mass m at the centre and inertia J:
+// Over an interval H with constant nodal forces f at vertices x, rim centre c, tire mass m at the centre and
+// inertia J:
 //   F_spindle = Σ f + m g − Δ(m v)/H
 //   M_spindle = Σ (x − c) × f − Δ(J ω)/H,  x − c the mean of the interval's ends
 #include "tire/rigid/rigid_tire.hpp"
@@ -59,7 +60,8 @@ TireStatus RigidTire::advance(const RimTrajectory& rim, const NodalForces& force
 TireDiagnostics RigidTire::diagnostics() const {
   TireDiagnostics d;
   d.momentum = mass_.mass * rim_.velocity;
-  d.kinetic_energy = 0.5 * mass_.mass * rim_.velocity.squaredNorm() + 0.5 * rim_.angular_velocity.dot(angular_momentum(rim_));
+  d.kinetic_energy = 0.5 * mass_.mass * rim_.velocity.squaredNorm() +
+                     0.5 * rim_.angular_velocity.dot(angular_momentum(rim_));
   return d;
 }
 

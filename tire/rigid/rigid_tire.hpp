@@ -1,4 +1,5 @@
-// A tire that does not deform: the undeformed contact surface and mass of a tire file, moving exactly with the rim.
+// A tire that does not deform: the undeformed contact surface and mass of a tire file, moving exactly with
+// the rim.
 #pragma once
 
 #include "tire/ring_mesh.hpp"

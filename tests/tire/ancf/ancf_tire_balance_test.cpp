@@ -19,7 +19,8 @@ Field consistent_weight(const AncfTire& tire) {
   return weight;
 }
 
-TEST(AncfTireBalance, momentum_and_angular_momentum_change_by_contact_gravity_and_spindle_impulse_to_round_off) {
+TEST(AncfTireBalance,
+     momentum_and_angular_momentum_change_by_contact_gravity_and_spindle_impulse_to_round_off) {
   AncfTire tire(small_file());
   const RingLayout& layout = tire.integrator().layout();
   const Field weight = consistent_weight(tire);
@@ -49,7 +50,8 @@ TEST(AncfTireBalance, momentum_and_angular_momentum_change_by_contact_gravity_an
       for (int i = 0; i < layout.columns; ++i) {
         force += layout.get(weight, i, j, 0);
         for (const int s : {0, 3})
-          moment += (0.5 * (layout.get(before, i, j, s) + layout.get(after, i, j, s))).cross(layout.get(weight, i, j, s));
+          moment += (0.5 * (layout.get(before, i, j, s) + layout.get(after, i, j, s)))
+                        .cross(layout.get(weight, i, j, s));
       }
     scale += 9.81 * tire.mass_properties().mass;
     for (std::size_t k = 0; k < f.vertex.size(); ++k) {
@@ -81,7 +83,8 @@ TEST(AncfTireBalance, dissipation_grows_and_energy_does_not_appear_from_nothing)
     for (std::size_t k = 0; k < f.vertex.size(); ++k)
       work += f.force[k].dot(after.position[f.vertex[k]] - before.position[f.vertex[k]]);
     const Wrench w = tire.spindle_wrench();
-    work -= w.force.dot(t.end().position - from.position) + w.moment.dot(0.5 * kStep * (t.end().angular_velocity + from.angular_velocity));
+    work -= w.force.dot(t.end().position - from.position) +
+            w.moment.dot(0.5 * kStep * (t.end().angular_velocity + from.angular_velocity));
     work += tire.mass_properties().mass * -9.81 * (t.end().position.z() - from.position.z());
     const TireDiagnostics d = tire.diagnostics();
     EXPECT_GE(d.dissipation, dissipation);
@@ -91,7 +94,8 @@ TEST(AncfTireBalance, dissipation_grows_and_energy_does_not_appear_from_nothing)
   const double stored = end.kinetic_energy + end.strain_energy - start.kinetic_energy - start.strain_energy;
   EXPECT_GT(dissipation, 0.1);  // J
   EXPECT_LE(stored + dissipation, work + 0.02 * dissipation);
-  EXPECT_NEAR(stored + dissipation, work, 0.06 * (dissipation + std::abs(stored)));  // numerical damping of order h/τ
+  EXPECT_NEAR(stored + dissipation, work,
+              0.06 * (dissipation + std::abs(stored)));  // numerical damping of order h/τ
 }
 
 }  // namespace

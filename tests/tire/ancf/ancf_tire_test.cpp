@@ -43,7 +43,8 @@ TEST(AncfTire, steady_spin_asks_only_for_the_weight) {
     if (n >= 200) drag += tire.spindle_wrench().moment.y() / 200;
   }
   EXPECT_NEAR(tire.spindle_wrench().force.z(), -9.81 * tire.mass_properties().mass, 0.5);
-  EXPECT_LT(std::abs(drag), 0.1);  // N m: hysteresis of the carcass hanging in the rim, and J Ω³ h of the method
+  EXPECT_LT(std::abs(drag),
+            0.1);  // N m: hysteresis of the carcass hanging in the rim, and J Ω³ h of the method
 }
 
 TEST(AncfTire, mass_matrix_and_mass_properties_agree_for_rigid_velocity_fields) {
@@ -62,7 +63,8 @@ TEST(AncfTire, mass_matrix_and_mass_properties_agree_for_rigid_velocity_fields) 
   EXPECT_LT((p - m.mass * rim.velocity).norm(), 1e-12 * p.norm());
   const Vec3 expected = rim.position.cross(m.mass * rim.velocity) + inertia * rim.angular_velocity;
   EXPECT_LT((l - expected).norm(), 1e-12 * expected.norm());
-  const double kinetic = 0.5 * m.mass * rim.velocity.squaredNorm() + 0.5 * rim.angular_velocity.dot(inertia * rim.angular_velocity);
+  const double kinetic = 0.5 * m.mass * rim.velocity.squaredNorm() +
+                         0.5 * rim.angular_velocity.dot(inertia * rim.angular_velocity);
   EXPECT_NEAR(tire.diagnostics().kinetic_energy, kinetic, 1e-12 * kinetic);
 }
 

@@ -22,7 +22,8 @@ inline ShellLayer isotropic_layer(double thickness, double young, double poisson
 class FlatPatch {
  public:
   /// Nodes in the plane z = 0 with directors along z.
-  FlatPatch(std::vector<Vec3> nodes, std::vector<std::array<int, 4>> elements, const std::vector<ShellLayer>& layers)
+  FlatPatch(std::vector<Vec3> nodes, std::vector<std::array<int, 4>> elements,
+            const std::vector<ShellLayer>& layers)
       : elements_(std::move(elements)) {
     reference_.resize(6 * nodes.size());
     for (std::size_t n = 0; n < nodes.size(); ++n) reference_.segment<6>(6 * n) << nodes[n], Vec3::UnitZ();
@@ -34,7 +35,14 @@ class FlatPatch {
 
   /// 5 elements around a distorted inner quadrilateral of a 2 × 1 rectangle, nodes 0–3 outside, 4–7 inside.
   static FlatPatch distorted(const std::vector<ShellLayer>& layers) {
-    return FlatPatch({{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}, {0.4, 0.2, 0}, {1.5, 0.3, 0}, {1.3, 0.8, 0}, {0.6, 0.7, 0}},
+    return FlatPatch({{0, 0, 0},
+                      {2, 0, 0},
+                      {2, 1, 0},
+                      {0, 1, 0},
+                      {0.4, 0.2, 0},
+                      {1.5, 0.3, 0},
+                      {1.3, 0.8, 0},
+                      {0.6, 0.7, 0}},
                      {{0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}, {4, 5, 6, 7}}, layers);
   }
 

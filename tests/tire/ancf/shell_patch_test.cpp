@@ -1,4 +1,5 @@
-// Patch tests on a distorted mesh and a cantilever; references: the exact states themselves, plate and beam theory.
+// Patch tests on a distorted mesh and a cantilever; references: the exact states themselves, plate and beam
+// theory.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -33,8 +34,9 @@ TEST(ShellPatch, membrane_state_of_constant_plane_stress_is_exact) {
   patch.solve(q, free, Eigen::VectorXd::Zero(q.size()));
   EXPECT_LT((q - exact).norm(), 1e-11);
   const double plane = kYoung / (1 - kPoisson * kPoisson);
-  const double density = 0.5 * plane * (e(0, 0) * e(0, 0) + e(1, 1) * e(1, 1) + 2 * kPoisson * e(0, 0) * e(1, 1) +
-                                        2 * (1 - kPoisson) * e(0, 1) * e(0, 1));
+  const double density = 0.5 * plane *
+                         (e(0, 0) * e(0, 0) + e(1, 1) * e(1, 1) + 2 * kPoisson * e(0, 0) * e(1, 1) +
+                          2 * (1 - kPoisson) * e(0, 1) * e(0, 1));
   EXPECT_NEAR(patch.energy(q), density * 2.0 * kThickness, 1e-10 * density);
 }
 
@@ -46,7 +48,8 @@ TEST(ShellPatch, thickness_state_keeps_the_full_stiffness_c33) {
   q[6 * 4] += 0.01, q[6 * 6 + 1] -= 0.02;
   patch.solve(q, coordinates(4, 8, 0, 3), Eigen::VectorXd::Zero(q.size()));
   EXPECT_LT((q - exact).norm(), 1e-11);
-  const double e33 = 0.5 * (1.02 * 1.02 - 1), c33 = kYoung * (1 - kPoisson) / ((1 + kPoisson) * (1 - 2 * kPoisson));
+  const double e33 = 0.5 * (1.02 * 1.02 - 1),
+               c33 = kYoung * (1 - kPoisson) / ((1 + kPoisson) * (1 - 2 * kPoisson));
   EXPECT_NEAR(patch.energy(q), 0.5 * c33 * e33 * e33 * 2.0 * kThickness, 1e-9 * patch.energy(q));
 }
 
@@ -65,7 +68,8 @@ TEST(ShellPatch, bending_state_of_constant_moment_matches_kirchhoff_plate_energy
   patch.solve(q, coordinates(4, 8, 0, 6), Eigen::VectorXd::Zero(q.size()));
   EXPECT_LT((q - exact).norm(), 1e-9);  // second-order terms of the large-rotation strain
   const double d = kYoung * std::pow(kThickness, 3) / (12 * (1 - kPoisson * kPoisson));
-  const double theory = 0.5 * d * (kxx * kxx + kyy * kyy + 2 * kPoisson * kxx * kyy + 2 * (1 - kPoisson) * kxy * kxy) * 2.0;
+  const double theory =
+      0.5 * d * (kxx * kxx + kyy * kyy + 2 * kPoisson * kxx * kyy + 2 * (1 - kPoisson) * kxy * kxy) * 2.0;
   EXPECT_NEAR(patch.energy(q), theory, 1e-5 * theory);
 }
 
@@ -100,7 +104,8 @@ double cantilever_tip(int elements, double height, double force) {
 TEST(ShellPatch, cantilever_tip_matches_beam_theory_for_thick_and_thin_strips) {
   for (const double height : {0.05, 0.005}) {
     const double inertia = 0.1 * std::pow(height, 3) / 12, force = 1e-5 * kYoung * inertia;
-    const double shear = force / (kYoung / 2.6 * 0.1 * height);  // δ = F L³/(3 E I) + F L/(G A), no shear correction
+    const double shear =
+        force / (kYoung / 2.6 * 0.1 * height);  // δ = F L³/(3 E I) + F L/(G A), no shear correction
     const double theory = force / (3 * kYoung * inertia) + shear;
     const double tip = cantilever_tip(20, height, force);
     EXPECT_NEAR(tip, theory, 0.01 * theory) << "height " << height;

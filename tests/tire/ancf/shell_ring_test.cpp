@@ -37,7 +37,8 @@ struct Ring {
     for (int j = 1; j + 1 < layout.rows; ++j)
       for (int c = 0; c < 6; ++c)
         for (int i = 0; i < layout.columns; ++i)
-          q[layout.offset(j, c) + i] += (c < 3 ? amount : 10 * amount) * (std::rand() / (0.5 * RAND_MAX) - 1.0);
+          q[layout.offset(j, c) + i] +=
+              (c < 3 ? amount : 10 * amount) * (std::rand() / (0.5 * RAND_MAX) - 1.0);
     layout.fill_padding(q);
     return q;
   }
@@ -77,7 +78,8 @@ TEST(ShellRing, vector_strains_equal_the_quadratic_forms) {
   for (int j = 0; j + 1 < ring.layout.rows; ++j)
     for (int i = 0; i < ring.layout.columns; ++i) {
       ElementNodes now;
-      const int column[4] = {i, (i + 1) % ring.layout.columns, (i + 1) % ring.layout.columns, i}, row[4] = {j, j, j + 1, j + 1};
+      const int column[4] = {i, (i + 1) % ring.layout.columns, (i + 1) % ring.layout.columns, i},
+                row[4] = {j, j, j + 1, j + 1};
       for (int n = 0; n < 4; ++n)
         for (int s = 0; s < 2; ++s) now.row(2 * n + s) = ring.layout.get(q, column[n], row[n], 3 * s);
       ElementNodes was;
@@ -85,8 +87,10 @@ TEST(ShellRing, vector_strains_equal_the_quadratic_forms) {
       for (int n = 0; n < 4; ++n)
         for (int s = 0; s < 2; ++s) was.row(2 * n + s) = ring.layout.get(start, column[n], row[n], 3 * s);
       const StrainVector reference = raw_strains(now) - raw_strains(was);
-      const std::size_t at = (static_cast<std::size_t>(j) * ring.layout.batches() + i / kLanes) * kStrains * kLanes + i % kLanes;
-      for (int k = 0; k < kStrains; ++k) EXPECT_NEAR(e[at + k * kLanes], reference[k], 1e-13) << "strain " << k;
+      const std::size_t at =
+          (static_cast<std::size_t>(j) * ring.layout.batches() + i / kLanes) * kStrains * kLanes + i % kLanes;
+      for (int k = 0; k < kStrains; ++k)
+        EXPECT_NEAR(e[at + k * kLanes], reference[k], 1e-13) << "strain " << k;
     }
 }
 
@@ -131,7 +135,8 @@ Eigen::MatrixXd dense_tangent(const Ring& ring, const Field& q) {
           for (int c = 0; c < 24; ++c) {
             const int rn = row[r / 6], cn = row[c / 6];
             if (rn < 0 || rn >= across || cn < 0 || cn >= across) continue;
-            k(6 * node[r / 6] + r % 6, 6 * node[c / 6] + c % 6) += r >= c ? element->k[r][c][lane] : element->k[c][r][lane];
+            k(6 * node[r / 6] + r % 6, 6 * node[c / 6] + c % 6) +=
+                r >= c ? element->k[r][c][lane] : element->k[c][r][lane];
           }
       }
     }
@@ -191,7 +196,8 @@ TEST(ShellRing, pressure_resultant_depends_on_the_bead_loops_alone_and_vanishes_
 TEST(ShellRing, pressure_resultant_of_an_open_surface_follows_stokes) {
   Ring ring(12, 6);
   Field q = ring.disturbed(5e-3);
-  for (int i = 0; i < ring.layout.columns; ++i) q[ring.layout.offset(0, 1) + i] += 0.01 * std::sin(i);  // warped bead
+  for (int i = 0; i < ring.layout.columns; ++i)
+    q[ring.layout.offset(0, 1) + i] += 0.01 * std::sin(i);  // warped bead
   ring.layout.fill_padding(q);
   const Field with = ring.forces(q);
   const double pressure = ring.shell->pressure();
@@ -248,7 +254,8 @@ TEST(RingFactor, turned_and_shifted_solution_solves_the_turned_and_shifted_matri
     for (const int s : {0, 3}) {
       const int i = n / across, j = 1 + n % across;
       const Vec3 expected = turn * ring.layout.get(x, i, j, s);
-      EXPECT_LT((ring.layout.get(z, (i + shift) % ring.layout.columns, j, s) - expected).norm(), 1e-11 * largest);
+      EXPECT_LT((ring.layout.get(z, (i + shift) % ring.layout.columns, j, s) - expected).norm(),
+                1e-11 * largest);
     }
 }
 
@@ -260,7 +267,8 @@ TEST(RingMass, acts_as_the_assembled_element_masses) {
   mass.apply(v, 1.0, p);
   for (int j = 0; j + 1 < ring.layout.rows; ++j)
     for (int i = 0; i < ring.layout.columns; ++i) {
-      const int next = (i + 1) % ring.layout.columns, column[4] = {i, next, next, i}, row[4] = {j, j, j + 1, j + 1};
+      const int next = (i + 1) % ring.layout.columns, column[4] = {i, next, next, i},
+                row[4] = {j, j, j + 1, j + 1};
       for (int a = 0; a < 8; ++a)
         for (int b = 0; b < 8; ++b)
           for (int x = 0; x < 3; ++x)

@@ -50,7 +50,7 @@ Scenario rigid_wheel_on_grains() {
   scenario.terrain.engine = "dem";
   scenario.terrain.radius = 0.03;
   scenario.terrain.layers = 2;
-  scenario.terrain.length = 1.2;
+  scenario.terrain.length = 1.6;
   scenario.terrain.width = 0.5;
   scenario.terrain.cohesion = 10e3;
   scenario.terrain.cache = false;

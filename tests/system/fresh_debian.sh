@@ -32,26 +32,31 @@ for program in debootstrap git apt-get unshare; do
   command -v "$program" >/dev/null || { say "skipped: needs $program"; exit 77; }
 done
 
-# Mounts and processes live in namespaces of their own: both are gone with this script, however it ends.
-if [[ ${FURROW_FRESH_NAMESPACE:-} != "$$" && ${FURROW_FRESH_NAMESPACE:-} != inside ]]; then
-  exec env FURROW_FRESH_NAMESPACE=inside unshare --mount --propagation private --pid --fork --kill-child \
-    bash "$here/fresh_debian.sh" "${all[@]}"
+# Mounts and processes live in namespaces of their own and are gone with the last process there. The folder is removed
+# out here, where nothing is mounted on it.
+if [[ -z ${FURROW_FRESH_FOLDER:-} ]]; then
+  FURROW_FRESH_FOLDER=$(mktemp -d "${TMPDIR:-/tmp}/furrow-fresh.XXXXXX")
+  export FURROW_FRESH_FOLDER
+  inside=
+  cleanup() {
+    if [[ -n $inside ]]; then kill -KILL "$inside" 2>/dev/null || true; wait "$inside" || true; fi
+    if $keep; then say "kept: $FURROW_FRESH_FOLDER"; else rm -rf --one-file-system -- "$FURROW_FRESH_FOLDER"; fi
+  }
+  trap cleanup EXIT
+  trap 'exit 130' INT
+  trap 'exit 143' TERM HUP
+  unshare --mount --propagation private --pid --fork --kill-child bash "$here/fresh_debian.sh" "${all[@]}" &
+  inside=$!
+  status=0
+  wait "$inside" || status=$?
+  inside=
+  exit "$status"
 fi
-
-work=$(mktemp -d "${TMPDIR:-/tmp}/furrow-fresh.XXXXXX")
+trap 'say "line $LINENO failed"' ERR
+work=$FURROW_FRESH_FOLDER
 system=$work/system
 checkout='/srv/furrow checkout'  # a path with a space
 log=$work/commands.log
-cleanup() {
-  local mount
-  for mount in "$system"/{dev/shm,dev,proc,sys,tmp}; do
-    if mountpoint -q -- "$mount"; then umount -- "$mount" || umount -l -- "$mount"; fi
-  done
-  if $keep; then say "kept: $work"; else rm -rf --one-file-system -- "$work"; fi
-}
-trap cleanup EXIT
-trap 'exit 130' INT
-trap 'exit 143' TERM HUP
 
 # 1. The machine. Debian's archives as this machine's apt knows them: URI, suite, component.
 archives=$(apt-get indextargets --format '$(ORIGIN)|$(REPO_URI)|$(RELEASE)|$(COMPONENT)' 'Created-By: Packages' |
@@ -79,19 +84,20 @@ readme_command() {
   awk -v mark="<!-- command: $1 -->" '$0 == mark {found = 1; next} found && /^```/ {if (inside) exit; inside = 1; next}
     inside {print}' "$system$checkout/README.md"
 }
-installed() { chroot "$system" dpkg-query -W -f '${Installed-Size}\n' | awk '{n++; kib += $1} END {printf "%d %d", n, kib * 1.024e-3}'; }
+installed() { chroot "$system" dpkg-query -W -f '${Installed-Size}\n' | awk '{n++; kib += $1} END {printf "%d %d\n", n, kib * 1.024e-3}'; }
 now() { echo "${EPOCHREALTIME/,/.}"; }
 elapsed() { awk -v a="$1" -v b="$2" 'BEGIN {printf "%.1f", b - a}'; }
 
 # Runs a command in the new system; its time goes to wall, the times at which packages and build were done to
 # setup_done and build_done.
 run() {
-  local name=$1 command status=0 began line
+  local name=$1 command status=1 began line
   command=$(readme_command "$name")
   [[ -n $command ]] || { say "README.md has no command marked '$name'"; exit 1; }
   say "$command"
   began=$(now) setup_done=$began build_done=''
   while IFS= read -r line; do
+    line=${line##*$'\r'}
     printf '%s\n' "$line" >>"$log"
     case $line in
       'setup: installed in'*) setup_done=$(now) ;;
@@ -101,7 +107,7 @@ run() {
     esac
   done < <(chroot "$system" /usr/bin/env -i HOME=/root TERM=dumb LANG=C.UTF-8 PATH=/usr/sbin:/usr/bin:/sbin:/bin \
              http_proxy="${http_proxy:-}" https_proxy="${https_proxy:-}" \
-             bash -c 'cd -- "$1" && eval "$2"; echo "status: $?"' bash "$checkout" "$command" 2>&1 </dev/null | tr '\r' '\n')
+             bash -c 'cd -- "$1" && eval "$2"; echo "status: $?"' bash "$checkout" "$command" 2>&1 </dev/null)
   build_done=${build_done:-$setup_done}
   setup_s=$(elapsed "$began" "$setup_done") build_s=$(elapsed "$setup_done" "$build_done") run_s=$(elapsed "$build_done" "$(now)")
   ((status == 0)) || { say "'$command' ended with status $status"; exit 1; }

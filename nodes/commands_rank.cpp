@@ -22,7 +22,6 @@
 namespace furrow {
 namespace {
 
-constexpr auto kTimeForTheFirst = std::chrono::seconds(1);
 constexpr auto kTimeForNews = std::chrono::milliseconds(300);
 
 /// Speaks to the supervisor, or to the user where there is none.
@@ -69,11 +68,11 @@ class Voice {
   ProgressDisplay display_;
 };
 
-/// A mistake that every rank finds is told by the first. If only others find it, they tell it, a little
-/// later: by then the launcher has ended them if the first told it.
-void tell_common_error(Voice& voice, const Error& error) {
-  if (voice.rank() != 0) std::this_thread::sleep_for(kTimeForTheFirst);
-  voice.error(error);
+/// A mistake in the scenario is found by every rank; the first on each machine tells it.
+bool first_on_machine() {
+  for (const char* variable : {"OMPI_COMM_WORLD_LOCAL_RANK", "MPI_LOCALRANKID", "SLURM_LOCALID"})
+    if (const char* value = std::getenv(variable)) return std::atoi(value) == 0;
+  return launched_rank() == 0;
 }
 
 /// True when another node failed of the very same, and tells it.
@@ -149,15 +148,20 @@ ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
   catch_stop_signals();
   Voice voice;
   std::optional<Scenario> scenario;
-  std::unique_ptr<Transport> transport;
   try {
     scenario = load_scenario(arguments.scenario, arguments.settings);
-    if (!voice.supervised() && voice.rank() == 0)
-      for (const std::string& warning : scenario->warnings) print_warning(warning);
+  } catch (const Error& error) {
+    if (first_on_machine()) voice.error(error);
+    return error.code();
+  }
+  if (!voice.supervised() && voice.rank() == 0)
+    for (const std::string& warning : scenario->warnings) print_warning(warning);
+  std::unique_ptr<Transport> transport;
+  try {
     transport =
         make_mpi_transport(&argc, &argv, static_cast<int>(scenario->tires.size()), scenario->terrain_ranks);
   } catch (const Error& error) {
-    tell_common_error(voice, error);
+    if (voice.rank() == 0) voice.error(error);
     return error.code();
   }
   voice.started();

@@ -27,8 +27,7 @@ std::string value_help(const std::string& key, const json& node) {
     text += fmt::format("  {:<8} {}\n", name, value);
   };
   if (node.contains("unit")) line("unit", node["unit"]);
-  line("values", Schema::expectation(node));
-  if (const std::string range = Schema::range(node); !range.empty()) line("range", range);
+  line("range", Schema::expectation(node));
   if (node.contains("usual"))
     line("usual",
          number_text(node["usual"][0].get<double>()) + " to " + number_text(node["usual"][1].get<double>()));

@@ -202,10 +202,16 @@ json parse_value(const std::string& text, const std::string& name, const std::st
 }
 
 std::string number_text(double value) {
-  if (std::abs(value) >= 1e4 && std::abs(value) < 1e7 && std::fmod(value, 100.0) == 0.0)
-    return fmt::format("{:g}e3", value / 1e3);
-  if (value == std::round(value) && std::abs(value) < 1e6) return fmt::format("{}", std::llround(value));
-  return fmt::format("{}", value);
+  const double size = std::abs(value);
+  if (size >= 1e4 && size < 1e6 && std::fmod(value, 100.0) == 0.0) return fmt::format("{:g}e3", value / 1e3);
+  if (value == std::round(value) && size < 1e6) return fmt::format("{}", std::llround(value));
+  std::string text = fmt::format("{:g}", value);
+  if (std::strtod(text.c_str(), nullptr) != value) text = fmt::format("{}", value);
+  // 1e+09 and 4e-05 as 1e9 and 4e-5.
+  for (const char* long_form : {"e+0", "e-0", "e+"})
+    if (const std::size_t at = text.find(long_form); at != std::string::npos)
+      return text.replace(at, std::strlen(long_form), long_form[1] == '-' ? "e-" : "e");
+  return text;
 }
 
 std::string value_text(const json& value) {

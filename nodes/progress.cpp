@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kTerminalInterval = 0.2;  // s between redrawings
 constexpr double kPlainInterval = 5.0;     // s between lines
+constexpr double kShareForGuess = 0.005;   // of the run, before which the time left is anyone's guess
 constexpr std::size_t kPlainWidth = 80;    // of a terminal that does not say
 
 double wall_s() {
@@ -42,7 +43,7 @@ std::string progress_text(const Progress& p) {
   }
   std::string text = fmt::format("t {:.3f} of {:g} s   pull {:.0f} N   sinkage {:.1f} mm   {:.2f} m/s",
                                  p.time, p.end, p.pull, 1e3 * p.sinkage, p.speed);
-  if (p.eta >= 0.0) text += fmt::format("   {} left", duration_text(p.eta));
+  if (p.eta >= 0.0 && p.share >= kShareForGuess) text += fmt::format("   {} left", duration_text(p.eta));
   return text;
 }
 

@@ -30,6 +30,7 @@ constexpr double kStopPatience = 30.0;   // s from the wish to stop until mpirun
 constexpr double kStartPatience = 20.0;  // s that a wish to stop waits for ranks that are still starting
 constexpr double kKillPatience = 5.0;    // s from that until it is killed
 constexpr double kDrainPatience = 1.0;   // s to read what is left once mpirun has ended
+constexpr double kLogInterval = 5.0;     // s between lines of progress in the log
 constexpr int kPollInterval = 100;       // ms
 constexpr int kCannotRun = 127;
 
@@ -163,8 +164,8 @@ class Supervisor {
   pid_t child_ = -1;
   bool reaped_ = false;
   int status_ = 0;
+  double logged_ = 0.0;  // wall time of the last progress in the log, s
   double reaped_at_ = 0.0, stop_seen_ = 0.0, asked_ = 0.0, ended_ = 0.0;  // wall time, s; 0: not yet
-  int stops_passed_ = 0;
 };
 
 void Supervisor::start() {
@@ -226,7 +227,10 @@ void Supervisor::take_output(std::string_view text) {
       break;
     case RankLine::Kind::progress:
       if (asked_ == 0.0) display_.show(line->progress);
-      log_ << progress_text(line->progress) << '\n';
+      if (const double now = wall_s(); now - logged_ >= kLogInterval) {
+        logged_ = now;
+        log_ << progress_text(line->progress) << '\n';
+      }
       break;
     case RankLine::Kind::note:
       display_.say("furrow: " + line->text);

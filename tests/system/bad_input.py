@@ -1,0 +1,223 @@
+#!/usr/bin/python3
+"""Whatever is wrong with the input: exit code 2, one clear line per mistake, nothing left behind, within seconds."""
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import time
+import unittest
+
+from program import PROGRAM, SMALL, SystemTest, changed, furrow, main, write_scenario
+
+LONGEST = 5.0  # s
+
+
+def text(**sections):
+    return json.dumps(changed(**sections))
+
+
+# (name, file text or bytes, flags of `furrow run`, what the error line must hold)
+SCENARIOS = [
+    ("unknown_key", text(rig={"slipp": 0.3}), [], "key 'rig.slipp': is unknown, expected 'rig.slip'?"),
+    ("unknown_section", text(terain={"layers": 3}), [], "key 'terain': is unknown, expected 'terrain'?"),
+    ("key_in_wrong_section", text(run={"cohesion": 1e3}), [], "key 'run.cohesion': is unknown, expected 'terrain.cohesion'?"),
+    ("negative_radius", text(terrain={"radius": -0.006}), [], "key 'terrain.radius': is -0.006 m, expected a number"),
+    ("radius_in_millimetres", text(terrain={"radius": 6}), [], "key 'terrain.radius': is 6 m, expected a number"),
+    ("zero_step", text(run={"step": 0}), [], "key 'run.step': is 0 s, expected a number"),
+    ("negative_end", text(run={"end": -1}), [], "key 'run.end': is -1 s"),
+    ("slip_above_one", text(rig={"slip": 1.5}), [], "key 'rig.slip': is 1.5, expected a number, -10 to 1"),
+    ("full_slip_at_fixed_speed", text(rig={"slip": 1, "mode": "fixed_speed"}), [], "key 'rig.slip': is 1, expected below 1"),
+    ("toe_angle_in_degrees", text(rig={"toe_angle": 2}), [], "key 'rig.toe_angle': is 2 rad"),
+    ("text_for_number", text(rig={"slip": "much"}), [], "key 'rig.slip': is 'much', expected a number"),
+    ("null_for_number", text(rig={"slip": None}), [], "key 'rig.slip': is null, expected a number"),
+    ("number_for_text", text(rig={"mode": 3}), [], "key 'rig.mode': is 3, expected 'fixed_angular_speed'"),
+    ("fraction_for_whole", text(terrain={"layers": 2.5}), [], "key 'terrain.layers': is 2.5, expected a whole number"),
+    ("section_is_number", text(rig=3), [], "key 'rig': is 3, expected an object"),
+    ("unknown_law", text(terrain={"law": "hertz"}), [], "key 'terrain.law': is 'hertz', expected 'mindlin' or 'coulomb'"),
+    ("engine_of_later", text(terrain={"engine": "liggghts"}), [], "'liggghts' is not available in this version, expected 'dem' or 'rigid'"),
+    ("two_terrain_ranks", text(terrain={"ranks": 2}), [], "key 'terrain.ranks': is 2"),
+    ("vehicle", text(vehicle={"file": "hmmwv"}, rig=None), [], "key 'vehicle': whole vehicles are not available in this version, expected 'rig'"),
+    ("newer_format", text(format_version=2), [], "key 'format_version': is 2: the file is newer than this program"),
+    ("no_tire", text(tire=None), [], "key 'tire': is missing"),
+    ("no_tire_file_key", text(tire=None).replace('"terrain"', '"tire": {}, "terrain"'), [], "key 'tire.file': is missing"),
+    ("two_tires", json.dumps({**changed(tire=None), "tires": [SMALL["tire"]] * 2}), [],
+     "key 'tires': has 2 entries, expected one"),
+    ("tire_and_tires", json.dumps({**SMALL, "tires": [SMALL["tire"]]}), [], "key 'tires': is given beside 'tire'"),
+    ("missing_tire_file", text(tire={"file": "no_such_tire.json"}), [], "key 'tire.file': 'no_such_tire.json' does not exist, expected a file at one of"),
+    ("tire_file_is_folder", text(tire={"file": "/usr"}), [], "key 'tire.file': '/usr' is not a regular file"),
+    ("scenario_as_tire", text(tire={"file": "first_look.json"}), [], "first_look.json"),
+    ("unstable_step", text(run={"step": 2e-3}), [], "key 'run.step': 0.002 s is above the stable step of"),
+    ("tire_wider_than_bin", text(terrain={"width": 0.3}), [], "key 'terrain.width': is 0.3 m, expected at least"),
+    ("tire_longer_than_bin", text(terrain={"length": 0.9}), [], "key 'terrain.length': is 0.9 m, expected at least"),
+    ("empty_bin", text(terrain={"layers": 0}), [], "key 'terrain.layers': is 0, expected a whole number, 1 to 9999"),
+    ("runs_into_the_wall", text(run={"end": 5, "average_from": 1}), [], "it would hit the end wall"),
+    ("starts_in_the_wall", text(rig={"start": 0.1}), [], "key 'rig.start': is 0.1 m, expected 0.467 to"),
+    ("window_after_the_end", text(run={"average_from": 0.05}), [], "key 'run.average_from': is 0.05 s, expected"),
+    ("bad_threads", text(run={"threads": "many"}), [], "key 'run.threads': is 'many', expected a whole number, 1 to 1024 or 'auto'"),
+    ("missing_bed", text(terrain={"bed": "bed.h5"}), [], "key 'terrain.bed': 'bed.h5' does not exist"),
+    ("not_a_number", json.dumps(SMALL).replace("0.3", "NaN", 1), [], "is not valid JSON"),
+    ("overflow", json.dumps(SMALL).replace("0.3", "1e400", 1), [], "key 'rig.slip': is a number too large for a double"),
+    ("duplicate_key", '{"rig": {"slip": 0.1, "slip": 0.2}}', [], "key 'rig.slip': is given twice"),
+    ("empty_file", "", [], "is empty, expected a scenario in JSON"),
+    ("blank_file", " \n\n", [], "is empty, expected a scenario in JSON"),
+    ("not_utf8", b'{"description": "caf\xe9"}', [], ":1:21: byte 0xe9 is not UTF-8"),
+    ("missing_comma", '{\n  "rig": {}\n  "run": {}\n}', [], ":3:"),
+    ("cut_short", json.dumps(SMALL)[:-20], [], "is not valid JSON"),
+    ("a_list", "[1, 2]", [], "is [1,2], expected an object"),
+    ("comment", "// a comment\n{}", [], ":1:"),
+    ("set_without_value", json.dumps(SMALL), ["--set", "rig.slip"], "key '--set': 'rig.slip' is no setting, expected key=value"),
+    ("set_unknown", json.dumps(SMALL), ["--set", "rig.slpi=0.1"], "key 'rig.slpi': is unknown, expected 'rig.slip'?"),
+    ("set_overflow", json.dumps(SMALL), ["--set", "rig.slip=1e400"], "key 'rig.slip': '1e400' is a number too large"),
+    ("set_nan", json.dumps(SMALL), ["--set", "rig.slip=nan"], "key 'rig.slip': is 'nan', expected a number"),
+    ("set_below_a_value", json.dumps(SMALL), ["--set", "rig.slip.x=1"], "key 'rig.slip.x': there is nothing below 0.3"),
+    ("set_list_entry", json.dumps(SMALL), ["--set", "tires.0.file=x"], "key 'tires"),
+    ("zero_threads", json.dumps(SMALL), ["--threads", "0"], "key 'run.threads': is 0, expected a whole number, 1 to 1024"),
+    ("unknown_flag", json.dumps(SMALL), ["--fast"], "--fast"),
+    ("missing_flag_value", json.dumps(SMALL), ["--out"], "--out"),
+    ("two_scenarios", json.dumps(SMALL), ["other.json"], "other.json"),
+]
+
+
+class BadScenario(SystemTest):
+    """One test per row of SCENARIOS."""
+
+    def check(self, content, flags, expected):
+        path = self.folder / "in.json"
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        begin = time.monotonic()
+        done = furrow("run", "in.json", *flags, cwd=self.folder)
+        wall = time.monotonic() - begin
+        lines = [line for line in done.stderr.splitlines() if not line.startswith("furrow: warning: ")]
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertEqual(done.stdout, "")
+        self.assertTrue(lines and all(line.startswith("furrow: error: ") for line in lines), done.stderr)
+        self.assertIn(expected, lines[0])
+        self.assertEqual(self.names(), ["in.json"], "left behind")
+        self.assertLess(wall, LONGEST)
+
+
+def add_test(name, content, flags, expected):
+    setattr(BadScenario, "test_" + name, lambda self: self.check(content, flags, expected))
+
+
+for row in SCENARIOS:
+    add_test(*row)
+
+
+class BadFile(SystemTest):
+    def error_of(self, *arguments, cwd=None, code=2, **options):
+        done = furrow(*arguments, cwd=cwd or self.folder, **options)
+        self.assertEqual(done.returncode, code, done.stderr)
+        self.assertEqual(done.stdout, "")
+        lines = done.stderr.splitlines()
+        self.assertEqual(len(lines), 1, done.stderr)
+        self.assertTrue(lines[0].startswith("furrow: error: "), lines[0])
+        return lines[0]
+
+    def test_missing_scenario(self):
+        self.assertIn("nowhere.json: does not exist, expected a scenario", self.error_of("run", "nowhere.json"))
+
+    def test_folder_as_scenario(self):
+        self.assertIn("is a directory, expected a scenario", self.error_of("run", self.folder))
+
+    def test_device_as_scenario(self):
+        self.assertIn("is not a regular file", self.error_of("run", "/dev/zero"))
+
+    def test_tire_of_another_template(self):
+        (self.folder / "tire.json").write_text('{"Name": "x", "Type": "Tire", "Template": "FialaTire"}')
+        path = write_scenario(self.folder, changed(tire={"file": "tire.json"}))
+        self.assertIn("FialaTire", self.error_of("run", path))
+        self.assertEqual(self.names(), ["small.json", "tire.json"])
+
+    def test_existing_output(self):
+        path = write_scenario(self.folder)
+        (self.folder / "out").mkdir()
+        self.assertIn("out: key '--out': exists already, expected a new folder or --overwrite", self.error_of("run", path, "--out", "out"))
+        self.assertEqual(list((self.folder / "out").iterdir()), [])
+
+    def test_overwriting_what_is_no_run(self):
+        path = write_scenario(self.folder)
+        (self.folder / "out").mkdir()
+        (self.folder / "out" / "letter.txt").write_text("dear")
+        self.assertIn("holds no run", self.error_of("run", path, "--out", "out", "--overwrite"))
+        self.assertEqual((self.folder / "out" / "letter.txt").read_text(), "dear")
+
+    def test_output_below_a_file(self):
+        path = write_scenario(self.folder)
+        self.assertIn("cannot be made", self.error_of("run", path, "--out", "small.json/out"))
+
+    def test_unwritable_output(self):
+        path = write_scenario(self.folder)
+        self.assertIn("cannot be made", self.error_of("run", path, "--out", "/proc/furrow/out"))
+
+    @unittest.skipIf(os.geteuid() == 0 and not shutil.which("setpriv"), "needs a user who is not root")
+    def test_unwritable_working_folder(self):
+        path = write_scenario(self.folder)
+        closed = self.folder / "closed"
+        closed.mkdir()
+        os.chmod(self.folder, 0o755)
+        os.chmod(closed, 0o555)
+        command = [PROGRAM, "run", str(path)]
+        if os.geteuid() == 0:
+            command = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups", *command]
+        done = subprocess.run(command, cwd=closed, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("furrow: error: results/small-001: key '--out': cannot be made (Permission denied)", done.stderr)
+        self.assertEqual(list(closed.iterdir()), [])
+
+    def test_several_mistakes_are_all_told(self):
+        path = write_scenario(self.folder, changed(rig={"slipp": 1}, run={"step": -1}, terrain={"law": "x"}))
+        done = furrow("run", path, cwd=self.folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertEqual(len(done.stderr.splitlines()), 3, done.stderr)
+        for key in ("rig.slipp", "run.step", "terrain.law"):
+            self.assertIn(f"key '{key}'", done.stderr)
+
+    def test_unknown_command(self):
+        self.assertIn("'rnu' is no command, expected 'run'?", self.error_of("rnu"))
+
+    def test_no_command(self):
+        self.assertIn("no command is given", self.error_of())
+
+    def test_unknown_key_to_explain(self):
+        self.assertIn("expected 'terrain.cohesion'?", self.error_of("explain", "terrain.cohesin"))
+
+    def test_report_of_nothing(self):
+        self.assertIn("does not exist", self.error_of("report", "nowhere"))
+        self.assertIn("holds no run", self.error_of("report", self.folder))
+
+    def test_no_launcher(self):
+        path = write_scenario(self.folder)
+        line = self.error_of("run", path, code=5, env={"FURROW_MPIRUN": "/no/mpirun"})
+        self.assertIn("FURROW_MPIRUN", line)
+        self.assertEqual(self.names(), ["small.json"])
+
+    def test_suspicious_magnitude_is_a_warning(self):
+        path = write_scenario(self.folder, changed(tire={"pressure": 200}))
+        done = furrow("validate", path, cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stderr, r"^furrow: warning: .*small.json: key 'tire.pressure': 200 Pa is unusually small, usual is .*: did you mean 200e3\?\n$")
+
+    def test_wrong_rank_count_under_the_users_mpirun(self):
+        path = write_scenario(self.folder)
+        mpirun = shutil.which("mpirun")
+        command = [mpirun, "-q", "--allow-run-as-root", "--oversubscribe", "-n", "2", PROGRAM, "run", str(path)]
+        done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        told = [line for line in done.stderr.splitlines() if line.startswith("furrow: error: ")]
+        self.assertEqual(len(told), 1, done.stderr)
+        self.assertIn("needs 3 ranks", told[0])
+        self.assertIn("mpirun started 2", told[0])
+        self.assertEqual(self.names(), ["small.json"])
+
+    def test_bad_scenario_under_the_users_mpirun_is_told_once(self):
+        path = write_scenario(self.folder, changed(rig={"slip": 7}))
+        command = [shutil.which("mpirun"), "-q", "--allow-run-as-root", "--oversubscribe", "-n", "3", PROGRAM, "run", str(path)]
+        done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertEqual(done.stderr.count("furrow: error: "), 1, done.stderr)
+
+
+if __name__ == "__main__":
+    main()

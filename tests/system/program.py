@@ -1,0 +1,115 @@
+"""What the system tests share: the program under test, a scenario that runs in a second, and how to look at processes."""
+import copy
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PROGRAM = os.environ.get("FURROW", str(ROOT / "build" / "furrow"))
+
+# A rigid wheel on a few large grains.
+SMALL = {
+    "format_version": 1,
+    "rig": {"type": "drawbar", "slip": 0.3, "angular_speed": 4.28, "ramp": 0.01, "carrier_mass": 450},
+    "tire": {"file": "hmmwv_layered.json", "rigid": True},
+    "terrain": {"radius": 0.03, "cohesion": 80e3, "layers": 4, "length": 1.4, "width": 0.4},
+    "run": {"step": 1e-4, "end": 0.05, "average_from": 0.02},
+    "output": {"series_interval": 1e-3, "frame_interval": 0.02},
+}
+
+
+def changed(**sections):
+    """SMALL with some keys of its sections replaced; None removes a section."""
+    scenario = copy.deepcopy(SMALL)
+    for name, values in sections.items():
+        if values is None:
+            del scenario[name]
+        elif isinstance(values, dict):
+            scenario[name] = {**scenario.get(name, {}), **values}
+        else:
+            scenario[name] = values
+    return scenario
+
+
+def write_scenario(folder, scenario=None, name="small.json"):
+    path = pathlib.Path(folder) / name
+    path.write_text(json.dumps(scenario if scenario is not None else SMALL))
+    return path
+
+
+def furrow(*arguments, cwd, timeout=120, env=None):
+    """Runs the program to its end."""
+    return subprocess.run([PROGRAM, *map(str, arguments)], cwd=cwd, timeout=timeout, text=True, errors="replace",
+                          stdin=subprocess.DEVNULL, capture_output=True, env={**os.environ, **(env or {})})
+
+
+def start(*arguments, cwd, env=None):
+    """Starts the program, whose output can be read when it has ended."""
+    return subprocess.Popen([PROGRAM, *map(str, arguments)], cwd=cwd, text=True, stdin=subprocess.DEVNULL,
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, env={**os.environ, **(env or {})})
+
+
+def ranks(mark):
+    """{rank: pid} of the living ranks whose command line holds `mark`."""
+    found = {}
+    for entry in pathlib.Path("/proc").iterdir():
+        if not entry.name.isdigit():
+            continue
+        try:
+            command = (entry / "cmdline").read_bytes().decode(errors="replace")
+            environment = (entry / "environ").read_bytes().decode(errors="replace").split("\0")
+        except OSError:
+            continue
+        for variable in environment:
+            if variable.startswith("OMPI_COMM_WORLD_RANK=") and str(mark) in command:
+                found[int(variable.split("=")[1])] = int(entry.name)
+    return found
+
+
+def survivors(mark):
+    """Command lines of all living processes that hold `mark`, this one's aside."""
+    found = []
+    for entry in pathlib.Path("/proc").iterdir():
+        if not entry.name.isdigit() or int(entry.name) == os.getpid():
+            continue
+        try:
+            command = (entry / "cmdline").read_bytes().decode(errors="replace").replace("\0", " ")
+        except OSError:
+            continue
+        if str(mark) in command:
+            found.append(f"{entry.name}: {command}")
+    return found
+
+
+def wait_for(condition, seconds, what):
+    """The first true value of condition()."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        value = condition()
+        if value:
+            return value
+        time.sleep(0.05)
+    raise AssertionError(f"{what}: not within {seconds} s")
+
+
+class SystemTest(unittest.TestCase):
+    """Every test has a folder of its own, with a space in its name."""
+
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory(prefix="furrow test ")
+        self.addCleanup(holder.cleanup)
+        self.folder = pathlib.Path(holder.name)
+
+    def names(self):
+        return sorted(path.name for path in self.folder.iterdir())
+
+
+def main():
+    if not os.access(PROGRAM, os.X_OK):
+        sys.exit(f"{PROGRAM} is not there; set FURROW to the program under test")
+    unittest.main(verbosity=2)

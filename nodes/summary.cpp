@@ -191,11 +191,12 @@ void add_cost(const SummaryInput& in, Json& json) {
   json["grains"] = in.setup.grains;
   double contacts = 0.0, active = 0.0;
   for (const SeriesRow& row : in.rows) {
-    contacts += row.contacts_terrain / static_cast<double>(in.rows.size());
-    active += row.active_share / static_cast<double>(in.rows.size());
+    contacts += row.contacts_terrain;
+    active += row.active_share;
   }
-  json["contacts_mean"] = number(contacts);
-  json["active_share_mean"] = number(active);
+  const auto lines = static_cast<double>(in.rows.size());
+  json["contacts_mean"] = number(contacts / lines);
+  json["active_share_mean"] = number(active / lines);
   json["tire_coordinates"] = in.cards[1 + in.wheel].size;
   json["newton_iterations_mean"] = number(end.newton_iterations / steps);
   json["factorizations"] = end.factorizations;
@@ -217,6 +218,10 @@ std::string summary_text(const SummaryInput& in) {
   json["terrain_engine"] = in.scenario.terrain.engine;
   json["law"] = in.scenario.terrain.law;
   json["slip"] = in.scenario.rig.slip;
+  json["travel_sign"] = in.scenario.rig.travel_sign;
+  json["tire_radius_m"] = in.cards[1 + in.wheel].tire_radius;
+  json["tread_width_m"] = in.cards[1 + in.wheel].tire_width;
+  json["surface_height_m"] = number(in.setup.mean_height.at(in.wheel));
   const Window window = averaging_window(in);
   add_mobility(in, window, json);
   add_accounts(in, window, json);

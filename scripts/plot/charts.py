@@ -81,6 +81,7 @@ def pull_slip_sinkage(run):
     if "sinkage_kinematic_m" in run.series:
         bottom.plot(time, 1e3 * run.series["sinkage_kinematic_m"], color=ORANGE,
                     label="kinematic: from the axle's height and the undeformed radius")
+    bottom.axhline(0.0, color="black", lw=0.8)
     mark_window(bottom, run)
     bottom.invert_yaxis()
     bottom.set_ylabel("sinkage, mm")
@@ -152,7 +153,7 @@ def ranks(run):
     axis.set_yticks(position, names)
     axis.invert_yaxis()
     axis.grid(axis="y", visible=False)
-    axis.set_xlim(0.0, 1.22 * longest)
+    axis.set_xlim(0.0, 1.3 * longest)
     axis.set_xlabel("wall time of the stepping loop, s")
     per_second = run.number("wall_s_per_simulated_s")
     axis.set_title(f"{run.title}\nWho computes and who waits"
@@ -213,6 +214,6 @@ def energy(run):
     right.axvline(0.0, color="black", lw=0.8)
     right.set_xlabel("mean power in the averaging window, W")
     share = balance.get("residual_share")
-    right.set_title("Power balance: spindle = all the others"
-                    + (f"; residual {100 * share:.2f} % of (spindle − pull)" if share is not None else ""))
+    right.set_title("Power: spindle = all others"
+                    + (f"; residual {100 * share:.2f} % of what is lost" if share is not None else ""))
     return figure

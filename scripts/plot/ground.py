@@ -1,4 +1,6 @@
 """The rut: the height field seen from above, across and along the wheel's path."""
+import warnings
+
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -32,7 +34,18 @@ def rut(run):
     return figure
 
 
+def median3(values):
+    """Median over 3 × 3 cells, without NaN: single grains lost or gained in a cell do not hide the rut."""
+    padded = np.pad(values, 1, constant_values=np.nan)
+    nx, ny = values.shape
+    stack = np.stack([padded[i:i + nx, j:j + ny] for i in range(3) for j in range(3)])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # cells all of NaN
+        return np.nanmedian(stack, axis=0)
+
+
 def top_view(figure, axis, field, depth, start, end, sign, tread):
+    depth = median3(depth)
     limit = max(float(np.nanpercentile(np.abs(depth), 99.5)), 1.0)
     image = axis.pcolormesh(field.x, field.y, depth.T, cmap="RdBu_r", vmin=-limit, vmax=limit, shading="nearest")
     figure.colorbar(image, ax=axis, label="depth below the surface before, mm\n(red: rut, blue: heaped up)", pad=0.01, shrink=0.8)
@@ -47,8 +60,8 @@ def top_view(figure, axis, field, depth, start, end, sign, tread):
                                      label="tread width, where the rut is measured"))
     axis.set_xlabel("x, m")
     axis.set_ylabel("y, m (left of +x)")
-    axis.set_title("Seen from above")
-    axis.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=3)
+    axis.set_title("Seen from above (medians over 3 × 3 cells)")
+    axis.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncol=3)
 
 
 def across(axis, run, field, depth, end, sign, tread):

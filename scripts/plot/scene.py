@@ -58,7 +58,7 @@ class Soil:
         np.maximum.at(top, (ix, iy), position[:, 2])
         near = np.maximum(1.5 * radius.max(), 0.01)
         cut = (ahead < -BEHIND + 2 * near) | (position[:, 1] < position[:, 1].min() + 2 * near)
-        shown = cut | (position[:, 2] > top[ix, iy] - 3.5 * radius.max())
+        shown = cut | (position[:, 2] > top[ix, iy] - 6.0 * radius.max())
         self.position, self.radius = position[shown], radius[shown]
         self.surface = float(np.median(top[np.isfinite(top)])) + float(np.median(radius))
 
@@ -115,9 +115,9 @@ def render(tire, soil, colours, centre, sign, ground):
     """(picture, its camera)."""
     size = np.ptp(tire[0][:, 2])
     along = np.array([sign, 0.0, 0.0])
-    target = np.array([centre[0], 0.0, ground]) - 0.30 * along + [0.0, 0.0, 0.27 * size]
+    target = np.array([centre[0], 0.0, ground]) - 0.30 * along + [0.0, 0.0, 0.26 * size]
     eye = target - 3.5 * along + [0.0, -4.5, 2.9]
-    camera = Camera(eye, target, 2 * WIDTH, 2 * HEIGHT, field_of_view=np.radians(21.5))
+    camera = Camera(eye, target, 2 * WIDTH, 2 * HEIGHT, field_of_view=np.radians(24.5))
     light = LIGHT * [sign, 1.0, 1.0] / np.linalg.norm(LIGHT)
     picture = Buffers(camera)
     draw(picture, tire, soil, colours, centre, sign, ground)
@@ -141,7 +141,7 @@ def annotate(axis, run, time, camera, centre, sign, ground):
     start, end = (at((centre[0] + sign * a, edge, below)) for a in (0.10, 0.60))
     axis.annotate("", end, start, arrowprops={"arrowstyle": "-|>", "lw": 2.5, "color": "#333333"})
     axis.annotate("travel", start, xytext=(4, -16), textcoords="offset points", ha="left", fontsize=11)
-    left, right = (at((centre[0] + sign * a, edge, below)) for a in (-1.15, -0.65))
+    left, right = (at((centre[0] + sign * a, edge, below)) for a in (-0.85, -0.35))
     axis.plot([left[0], right[0]], [left[1], right[1]], color="#333333", lw=3, solid_capstyle="butt")
     axis.annotate("0.5 m", left, xytext=(6, -12), textcoords="offset points", ha="left", fontsize=11)
     lines = [f"t = {time:.2f} s"]

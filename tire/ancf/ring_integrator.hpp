@@ -3,21 +3,19 @@
 // Over a step h from (q, v) to (q', v'), with q_f = ½ (q + q') and E, E' the strains at q, q':
 //   q' − q = h v'                                                                          (1) free nodes
 //   M (v' − v)/h + B(q_f)ᵀ D̂ [E' + τ (E' − E)/h] − p ∂V/∂q(q_f) = F + M g + Q              (2)
-// F are the contact forces, constant over the step, Q the reactions at the beads. q', v' of the beads come
-// from the rim.
-//  - As E is quadratic in q, E' − E = B(q_f) (q' − q): strain rates vanish exactly for a rigid motion of the
-//  step's ends,
-//    and the work of the internal forces is Δ(elastic energy) + ½ ΔEᵀ D̂ ΔE + (τ/h) ΔEᵀ D̂ ΔE. With the ½ Δvᵀ M
-//    Δv that (1) removes, energy cannot grow: the numerical part of the damping acts like a τ of h/2, 1 % of
-//    the material's.
-//  - Velocities are those of the backward Euler rule: what is stiff through τ K does not ring, as it does
-//  with trapezoidal
-//    or HHT velocities, where a contact force that is one interval late and depends on velocity would feed
-//    it.
+// F are the contact forces, constant over the step, Q the reactions at the beads. q', v' of the beads come from
+// the rim.
+//  - As E is quadratic in q, E' − E = B(q_f) (q' − q): strain rates vanish exactly for a rigid motion between
+//    the step's ends, and the work of the internal forces is Δ(elastic energy) + ½ ΔEᵀ D̂ ΔE + (τ/h) ΔEᵀ D̂ ΔE.
+//    With the ½ Δvᵀ M Δv that (1) removes, energy cannot grow; the numerical damping acts like h of
+//    additional τ, 1 % of the material's.
+//  - Velocities are those of the backward Euler rule: what is stiff through τ K does not ring, as it does with
+//    trapezoidal or HHT velocities, where a contact force that comes one interval late and depends on
+//    velocity would feed it.
 //  - Δp and ΔL over the step are the impulses of F, M g and the spindle to round-off: the identity
 //      x'×p' − x×p = x_f × Δp + Δx × ½ (p + p')
 //    gives the moment impulse; its last term, O(h) for (1), is counted with the spindle.
-// Force evaluation at the middle: Simo & Tarnow (1992), The discrete energy-momentum method, ZAMP 43,
+// Forces at the middle: Simo & Tarnow (1992), The discrete energy-momentum method, ZAMP 43,
 // doi:10.1007/BF00913408.
 //
 // The equations are solved by a quasi-Newton method: an old Cholesky factor of the tangent, turned and

@@ -6,8 +6,8 @@
 //   E_22      = [½ a₂·a₂] + z [a₂·d₂] + z² [½ d₂·d₂]               at ξ = ∓1/√3
 //   2E_12     = [a₁·a₂] + z [a₁·d₂ + d₁·a₂] + z² [d₁·d₂]           at the four Gauss points
 //   E_33      = [½ d·d] at the corners, bilinear between (assumed natural strain [Betsch & Stein 1995])
-//   2E_13     = [a₁·d] + z [d₁·d] at η = ∓1, ξ = 0, linear in η   (assumed natural strain [Dvorkin & Bathe
-//   1984]) 2E_23     = [a₂·d] + z [d₂·d] at ξ = ∓1, η = 0, linear in ξ
+//   2E_13     = [a₁·d] + z [d₁·d] at η = ∓1, ξ = 0, linear in η    (the same [Dvorkin & Bathe 1984])
+//   2E_23     = [a₂·d] + z [d₂·d] at ξ = ∓1, η = 0, linear in ξ
 // each less its value in the curved reference. Every strain is a quadratic form ½ Σ_x q_xᵀ H_k q_x of the
 // scalar unknowns q_x = (r_0, d_0, …, r_3, d_3)_x, x = 1…3, with constant 8 × 8 matrices H_k.
 //   Yamashita, Valkeapää, Jayakumar, Sugiyama (2015), Continuum mechanics based bilinear shear deformable

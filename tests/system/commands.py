@@ -1,0 +1,139 @@
+#!/usr/bin/python3
+"""The commands that start nothing: validate, ranks, explain, --help, --version."""
+import json
+import pathlib
+import unittest
+
+from program import ROOT, SystemTest, changed, furrow, main, write_scenario
+
+SHIPPED = sorted(path.name for path in (ROOT / "rigs").glob("*.json") if path.name != "scenario.schema.json")
+
+
+class Commands(SystemTest):
+    def output(self, *arguments):
+        done = furrow(*arguments, cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout
+
+    def test_version(self):
+        self.assertRegex(self.output("--version"), r"^furrow \d+\.\d+\.\d+\n$")
+
+    def test_help_names_every_command(self):
+        text = self.output("--help")
+        for command in ("run", "validate", "ranks", "explain", "report"):
+            self.assertIn(command, text)
+            self.assertIn("SCENARIO" if command in ("run", "validate", "ranks") else "KEY" if command == "explain" else "DIR",
+                          self.output(command, "--help"))
+
+    def test_shipped_scenarios_are_valid(self):
+        self.assertIn("first_look.json", SHIPPED)
+        for name in SHIPPED:
+            with self.subTest(name):
+                report = json.loads(self.output("validate", ROOT / "rigs" / name, "--json"))
+                self.assertEqual(report["scenario"], name[:-5])
+                self.assertGreater(report["steps"], 0)
+                self.assertEqual([rank["node"] for rank in report["ranks"]], ["rig", "tire 0", "terrain"])
+                if not name.endswith("_tr.json"):
+                    self.assertEqual(report["warnings"], [])
+                    if report["stable_step_s"] is not None:
+                        self.assertLess(report["terrain_step_s"], report["stable_step_s"])
+
+    def test_full_size_is_that_of_the_report(self):
+        # 382,500 grains and 13,500 coordinates in the report; our layers hold 1 % fewer grains.
+        report = json.loads(self.output("validate", ROOT / "rigs" / "drawbar_pull.json", "--json"))
+        self.assertAlmostEqual(report["grains"], 382500, delta=0.02 * 382500)
+        self.assertEqual(report["tire_coordinates"], 13500)
+
+    def test_validate_tells_people(self):
+        text = self.output("validate", write_scenario(self.folder))
+        for word in ("of the stable", "grains", "coordinates" if "layered" not in text else "radius", "memory", "disk", "terrain"):
+            self.assertIn(word, text)
+
+    def test_validate_writes_nothing(self):
+        self.output("validate", write_scenario(self.folder))
+        self.assertEqual(self.names(), ["small.json"])
+
+    def test_unstable_step_can_be_allowed(self):
+        path = write_scenario(self.folder, changed(run={"step": 2e-3}, output={"series_interval": 2e-3},
+                                                   terrain={"allow_unstable_step": True}))
+        done = furrow("validate", path, cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("furrow: warning: ", done.stderr)
+        self.assertIn("is above the stable step", done.stderr)
+
+    def test_set_changes_the_digest_and_threads_do_not(self):
+        path = write_scenario(self.folder)
+        digest = lambda *flags: json.loads(self.output("validate", path, "--json", *flags))["scenario_digest"]
+        self.assertEqual(digest(), digest("--threads", "2"))
+        self.assertEqual(digest(), digest("--set", "rig.slip=0.30"))
+        self.assertNotEqual(digest(), digest("--set", "rig.slip=0.31"))
+
+    def test_mirrored_travel_starts_at_the_other_end(self):
+        path = write_scenario(self.folder)
+        there = json.loads(self.output("validate", path, "--json"))["axle_path_m"][0]
+        back = json.loads(self.output("validate", path, "--json", "--set", "rig.travel_sign=-1"))["axle_path_m"][0]
+        self.assertAlmostEqual(there[0] + back[0], 1.4)
+        self.assertAlmostEqual(there[1] + back[1], 1.4)
+
+    def test_tires_as_a_list_of_one(self):
+        scenario = changed(tire=None)
+        scenario["tires"] = [{"file": "hmmwv_layered.json", "rigid": True}]
+        report = json.loads(self.output("validate", write_scenario(self.folder, scenario), "--json"))
+        self.assertEqual(len(report["ranks"]), 3)
+
+    def test_tire_file_beside_the_scenario_comes_first(self):
+        own = json.loads((ROOT / "tire" / "data" / "hmmwv_layered.json").read_text())
+        own["elements_circumference"] = 30
+        (self.folder / "hmmwv_layered.json").write_text(json.dumps(own))
+        path = write_scenario(self.folder, changed(tire={"rigid": False}))
+        self.assertIn("30 × ", self.output("validate", path))
+
+    def test_ranks(self):
+        path = write_scenario(self.folder)
+        text = self.output("ranks", path, "--set", "rig.slip=0.2")
+        self.assertRegex(text, r"(?m)^ +0 +rig .*\n +1 +tire 0 .*\n +2 +terrain ")
+        self.assertRegex(text, r"(?m)^mpirun -n 3 .* run '.*small.json' --set rig.slip=0.2$")
+        self.assertRegex(text, r"(?m)^srun -n 3 .* run '.*small.json' --set rig.slip=0.2$")
+
+    def test_explain(self):
+        text = self.output("explain", "terrain.cohesion")
+        for word in ("Pa", "default", "range", "attract"):
+            self.assertIn(word, text)
+        self.assertIn("rig.slip", self.output("explain", "rig"))
+        self.assertIn("tire.pressure", self.output("explain"))
+        self.assertIn("tire.pressure", self.output("explain", "tires"))
+
+    def test_every_key_is_explained_in_words_with_unit_and_default(self):
+        keys = [line.split()[0] for line in self.output("explain").splitlines()]
+        self.assertGreater(len(keys), 50)
+        schema = json.loads((ROOT / "rigs" / "scenario.schema.json").read_text())
+        for key in keys:
+            node = schema["definitions"]["tire"] if key.startswith("tire.") else schema
+            for part in key.split(".")[1 if key.startswith("tire.") else 0:]:
+                node = node["properties"][part]
+            self.assertIn("description", node, key)
+            if node.get("type") == "number" or node.get("type") == ["number", "null"]:
+                self.assertIn("unit", node, key)
+            if "default" not in node:
+                self.assertIn(key.split(".")[0], ("$schema", "description", "expected", "tire", "tires"), key)
+
+    def test_skeleton_of_the_contract_is_accepted(self):
+        scenario = {
+            "format_version": 1,
+            "rig": {"type": "drawbar", "slip": 0.3, "mode": "fixed_angular_speed", "angular_speed": 8.56, "ramp": 0.15,
+                    "touchdown_damping": 12e3, "touchdown_time": 0.35, "toe_angle": 0.0, "carrier_mass": 450,
+                    "chassis_mass": 1, "set_toe_mass": 1, "rim_mass": 15},
+            "tire": {"file": "hmmwv_layered.json", "pressure": 200e3, "substeps": 1},
+            "terrain": {"engine": "dem", "ranks": 1, "law": "mindlin", "radius": 0.006, "density": 2500,
+                        "young_modulus": 2.49e7, "poisson_ratio": 0.3, "restitution": 0.2, "friction": 0.9,
+                        "rolling_friction": 0.0, "cohesion": 80e3, "layers": 15, "length": 10, "width": 0.6,
+                        "activity": True, "bed": None, "substeps": 1},
+            "run": {"step": 4e-5, "end": 1.5, "average_from": 0.8, "threads": "auto", "seed": 1, "peer_timeout": 60},
+            "output": {"series_interval": 1e-3, "frame_interval": 0.02},
+            "checkpoint": {"wall_interval": 600, "keep": 2},
+        }
+        self.output("validate", write_scenario(self.folder, scenario))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,162 @@
+#!/usr/bin/python3
+"""`furrow run` for real: what it leaves behind, and what it does when ranks die, stop, or it is told to stop."""
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import time
+import unittest
+
+from program import PROGRAM, ROOT, SystemTest, changed, furrow, main, ranks, start, survivors, wait_for, write_scenario
+
+FIRST_LOOK = ROOT / "rigs" / "first_look.json"
+SHORT = ["--set", "run.end=0.05", "--set", "run.average_from=0.02"]
+RESULTS = {"summary.json", "timeseries.csv", "results.h5", "results.xdmf", "scenario.json", "run.log", "frames"}
+
+
+class Run(SystemTest):
+    def test_first_look_shortened_leaves_its_results(self):
+        done = furrow("run", FIRST_LOOK, *SHORT, cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stdout, "results/first_look-001\n")
+        run = self.folder / "results" / "first_look-001"
+        self.assertLessEqual(RESULTS, {path.name for path in run.iterdir()})
+        summary = json.loads((run / "summary.json").read_text())
+        self.assertAlmostEqual(summary["simulated_s"], 0.05)
+        self.assertGreater(summary["grains"], 1000)
+        self.assertEqual([rank["node"] for rank in summary["ranks"]], ["rig", "tire 0", "terrain"])
+        for word in ("drawbar pull", "% of the load", "sinkage", "not steady", "busy"):
+            self.assertIn(word, done.stderr)
+        self.assertNotIn("mpirun", done.stderr)
+        self.assertNotIn("expected", done.stderr)
+        self.assertEqual(survivors(self.folder), [])
+
+        again = furrow("run", FIRST_LOOK, *SHORT, cwd=self.folder)
+        self.assertEqual(again.stdout, "results/first_look-002\n")
+
+    def test_threads_do_not_change_the_result_and_the_seed_does(self):
+        path = write_scenario(self.folder)
+        hashes = []
+        for number, flags in enumerate((["--threads", "1"], ["--threads", "2"], ["--set", "run.seed=2"])):
+            done = furrow("run", path, "--out", f"out{number}", *flags, cwd=self.folder)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            hashes.append(json.loads((self.folder / f"out{number}" / "summary.json").read_text())["state_hash"])
+        self.assertEqual(hashes[0], hashes[1])
+        self.assertNotEqual(hashes[0], hashes[2])
+
+    def test_overwrite_replaces_results_and_nothing_else(self):
+        path = write_scenario(self.folder)
+        self.assertEqual(furrow("run", path, "--out", "out", cwd=self.folder).returncode, 0)
+        (self.folder / "out" / "notes.txt").write_text("mine")
+        (self.folder / "out" / "frames" / "terrain_009999.h5").write_text("of an older, longer run")
+        done = furrow("run", path, "--out", "out", "--overwrite", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual((self.folder / "out" / "notes.txt").read_text(), "mine")
+        self.assertFalse((self.folder / "out" / "frames" / "terrain_009999.h5").exists())
+
+    def test_under_the_users_mpirun(self):
+        path = write_scenario(self.folder)
+        command = [shutil.which("mpirun"), "--allow-run-as-root", "--oversubscribe", "--bind-to", "none", "-n", "3",
+                   PROGRAM, "run", str(path)]
+        done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=120)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stdout, "results/small-001\n")
+        self.assertTrue((self.folder / "results" / "small-001" / "summary.json").exists())
+        self.assertEqual(done.stderr.count("drawbar pull"), 1, done.stderr)
+
+    def test_report_makes_plots(self):
+        path = write_scenario(self.folder)
+        self.assertEqual(furrow("run", path, "--out", "out", cwd=self.folder).returncode, 0)
+        for plot in (self.folder / "out").glob("*.png"):
+            plot.unlink()
+        done = furrow("report", "out", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue(done.stdout)
+        for name in done.stdout.splitlines():
+            self.assertEqual((self.folder / name).read_bytes()[:4], b"\x89PNG")
+
+
+class Interrupted(SystemTest):
+    """A run that would take a while, disturbed once the wheel moves."""
+
+    def setUp(self):
+        super().setUp()
+        self.path = write_scenario(self.folder, changed(run={"end": 60.0, "average_from": 1.0, "step": 1e-4, "peer_timeout": 2},
+                                                        rig={"mode": "fixed_speed", "speed": 0.005, "slip": 0.3},
+                                                        output={"frame_interval": 0.05}))
+
+    def started(self):
+        process = start("run", self.path, "--out", "out", cwd=self.folder)
+        self.addCleanup(process.kill)
+        series = self.folder / "out" / "timeseries.csv"
+        wait_for(lambda: series.exists() and len(ranks(self.path)) == 3 and process.poll() is None, 60, "the run begins")
+        frames = self.folder / "out" / "frames"
+        wait_for(lambda: frames.exists() and len(list(frames.glob("tire0_*.h5"))) >= 2, 60, "the run moves")
+        return process
+
+    def end(self, process, code, seconds=20):
+        out, err = process.communicate(timeout=seconds)
+        self.assertEqual(process.returncode, code, err)
+        wait_for(lambda: not survivors(self.path), 5, f"all processes end, still there: {survivors(self.path)}")
+        return out, err
+
+    def error_line(self, err):
+        told = [line for line in err.splitlines() if line.startswith("furrow: error: ")]
+        self.assertEqual(len(told), 1, err)
+        self.assertNotIn("mpirun", err)
+        self.assertNotIn("-----", err)
+        return told[0]
+
+    def test_killed_rank_is_named(self):
+        for rank, name in ((0, "rig"), (1, "tire 0"), (2, "terrain")):
+            with self.subTest(name):
+                shutil.rmtree(self.folder / "out", ignore_errors=True)
+                process = self.started()
+                os.kill(ranks(self.path)[rank], signal.SIGKILL)
+                _, err = self.end(process, 4)
+                self.assertIn(f"furrow: error: rank {rank} ({name}) was lost: killed by signal 9", self.error_line(err))
+
+    def test_stopped_rank_is_named_within_the_time_out(self):
+        process = self.started()
+        os.kill(ranks(self.path)[1], signal.SIGSTOP)
+        _, err = self.end(process, 4)
+        self.assertRegex(self.error_line(err), r"waited 2 s for tire 0 .*tire 0 does not answer")
+
+    def test_term_int_hup_and_usr1_stop_it_cleanly(self):
+        for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGUSR1):
+            with self.subTest(number.name):
+                shutil.rmtree(self.folder / "out", ignore_errors=True)
+                process = self.started()
+                process.send_signal(number)
+                out, err = self.end(process, 75)
+                self.assertEqual(out, "out\n")
+                self.assertIn("stopped by a signal", err)
+                self.assertNotIn("error", err)
+                self.assertTrue((self.folder / "out" / "results.h5").exists())
+                self.assertFalse((self.folder / "out" / "summary.json").exists())
+
+    def test_stop_while_starting(self):
+        process = start("run", self.path, "--out", "out", cwd=self.folder)
+        self.addCleanup(process.kill)
+        wait_for(lambda: (self.folder / "out" / "run.log").exists(), 20, "the supervisor begins")
+        process.send_signal(signal.SIGTERM)
+        self.end(process, 75, 60)
+
+    def test_killed_supervisor_leaves_no_process(self):
+        process = self.started()
+        process.kill()
+        process.communicate(timeout=10)
+        wait_for(lambda: not survivors(self.path), 10, "all processes end")
+
+    def test_killed_launcher_leaves_no_process(self):
+        process = self.started()
+        children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+        os.kill(int(children[0]), signal.SIGKILL)
+        _, err = self.end(process, 4)
+        self.assertIn("furrow: error: mpirun was killed by signal 9", err)
+
+
+if __name__ == "__main__":
+    main()

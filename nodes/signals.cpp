@@ -22,10 +22,17 @@ void set_handler(int signal, void (*handler)(int)) {
   sigaction(signal, &action, nullptr);  // without SA_RESTART: waiting calls return, and look at the flag
 }
 
+/// Who starts a program with nohup, or in the background of a script, wants it to live on.
+bool ignored(int signal) {
+  struct sigaction action = {};
+  return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
 }  // namespace
 
 void catch_stop_signals() {
-  for (const int signal : kStopSignals) set_handler(signal, count_stop);
+  for (const int signal : kStopSignals)
+    if (!ignored(signal)) set_handler(signal, count_stop);
   set_handler(SIGPIPE, SIG_IGN);
 }
 

@@ -3,7 +3,8 @@
 
 namespace furrow {
 
-/// Counts stop signals from now on instead of dying of them; a write to a closed pipe becomes an error.
+/// Counts stop signals from now on instead of dying of them, except those that this process was started to ignore; a
+/// write to a closed pipe becomes an error.
 void catch_stop_signals();
 
 /// How many have come.

@@ -11,20 +11,25 @@ using nlohmann::json;
 
 constexpr std::string_view kMark = "@furrow ";
 constexpr std::array<const char*, 4> kKinds{"started", "progress", "note", "error"};
-constexpr std::size_t kLongestText = 1800;  // bytes; escaping may double it
+constexpr std::size_t kLongestLine = 4096;  // bytes: PIPE_BUF of Linux, what a write keeps together
 
 }  // namespace
 
 std::string encode(const RankLine& line) {
   json j{{"kind", kKinds[static_cast<std::size_t>(line.kind)]}, {"rank", line.rank}};
-  if (!line.text.empty()) j["text"] = line.text.substr(0, kLongestText);
   if (line.kind == RankLine::Kind::error) j["code"] = static_cast<int>(line.code);
   if (line.kind == RankLine::Kind::progress) {
     const Progress& p = line.progress;
     j["phase"] = p.phase;
     j["values"] = {p.share, p.time, p.end, p.pull, p.sinkage, p.speed, p.eta};
   }
-  return std::string(kMark) + j.dump(-1, ' ', true, json::error_handler_t::replace) + "\n";
+  std::string text = line.text, encoded;
+  do {
+    if (!text.empty()) j["text"] = text;
+    encoded = std::string(kMark) + j.dump(-1, ' ', true, json::error_handler_t::replace) + "\n";
+    text.resize(text.size() * 3 / 4);
+  } while (encoded.size() > kLongestLine && !text.empty());
+  return encoded;
 }
 
 std::optional<RankLine> decode(std::string_view text) {

@@ -22,6 +22,8 @@ def rut(run):
     depth = 1e3 * (before.z - after.z)  # mm
     if not np.isfinite(depth).any():
         raise Missing("the height fields are empty")
+    if not np.nanmax(np.abs(depth)) > 0.0:
+        raise Missing("the ground has not changed its shape")
     sign = run.travel_sign
     start, end = (sign * run.column("position_m")[[0, -1]]).tolist()
     tread = run.number("tread_width_m")
@@ -82,7 +84,8 @@ def across(axis, run, field, depth, end, sign, tread):
     axis.set_xlabel("y, mm")
     axis.set_ylabel("height change, mm")
     axis.margins(y=0.25)
-    axis.legend(loc="lower right", fontsize=8)
+    if axis.get_legend_handles_labels()[0]:
+        axis.legend(loc="lower right", fontsize=8)
 
 
 def along(axis, before, after, start, end, sign, tread):

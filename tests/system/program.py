@@ -3,6 +3,7 @@ import copy
 import json
 import os
 import pathlib
+import signal
 import subprocess
 import sys
 import tempfile
@@ -48,10 +49,17 @@ def furrow(*arguments, cwd, timeout=120, env=None):
                           stdin=subprocess.DEVNULL, capture_output=True, env={**os.environ, **(env or {})})
 
 
+def attend_to_signals():
+    """Whoever runs the tests in the background has them ignore these."""
+    for number in (signal.SIGINT, signal.SIGHUP):
+        signal.signal(number, signal.SIG_DFL)
+
+
 def start(*arguments, cwd, env=None):
     """Starts the program, whose output can be read when it has ended."""
     return subprocess.Popen([PROGRAM, *map(str, arguments)], cwd=cwd, text=True, stdin=subprocess.DEVNULL,
-                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, env={**os.environ, **(env or {})})
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, env={**os.environ, **(env or {})},
+                            preexec_fn=attend_to_signals)
 
 
 def ranks(mark):

@@ -1,0 +1,42 @@
+// Scenario files on disk, for tests of what reads them.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "nodes/scenario.hpp"
+#include "protocol/error.hpp"
+#include "tests/nodes/temporary_folder.hpp"
+
+namespace furrow::testing {
+
+/// The smallest valid scenario.
+inline constexpr const char* kSmallest = R"({"tire": {"file": "hmmwv_layered.json"}, "terrain": {}})";
+
+class ScenarioFile {
+ public:
+  explicit ScenarioFile(const std::string& text) : path_(folder_.path() / "test.json") {
+    std::ofstream(path_) << text;
+  }
+  const std::filesystem::path& path() const { return path_; }
+  Scenario load(const std::vector<std::pair<std::string, std::string>>& settings = {}) const {
+    return load_scenario(path_, settings);
+  }
+  /// What load() complains of, without the file's name; empty when it does not.
+  std::string complaint(const std::vector<std::pair<std::string, std::string>>& settings = {}) const {
+    try {
+      load(settings);
+    } catch (const Error& error) {
+      const std::string text = error.what(), name = path_.string();
+      return text.starts_with(name) ? text.substr(name.size()) : text;
+    }
+    return {};
+  }
+
+ private:
+  TemporaryFolder folder_;
+  std::filesystem::path path_;
+};
+
+}  // namespace furrow::testing

@@ -1,0 +1,200 @@
+// What the loader makes of a scenario: defaults from the schema, settings, digests, starting places.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+#include "nodes/scenario_checks.hpp"
+#include "nodes/schema.hpp"
+#include "tests/nodes/scenario_fixture.hpp"
+
+namespace furrow {
+namespace {
+
+using testing::kSmallest;
+using testing::ScenarioFile;
+
+/// The options as their structs default them; the schema must say the same.
+TEST(Scenario, defaults_of_the_schema_are_those_of_the_options) {
+  const Scenario s = ScenarioFile(kSmallest).load();
+  const DrawbarRigOptions rig;
+  EXPECT_EQ(s.rig.mode, rig.mode);
+  EXPECT_EQ(s.rig.slip, rig.slip);
+  EXPECT_EQ(s.rig.angular_speed, rig.angular_speed);
+  EXPECT_EQ(s.rig.speed, rig.speed);
+  EXPECT_EQ(s.rig.ramp, rig.ramp);
+  EXPECT_EQ(s.rig.touchdown_damping, rig.touchdown_damping);
+  EXPECT_EQ(s.rig.touchdown_time, rig.touchdown_time);
+  EXPECT_EQ(s.rig.toe_angle, rig.toe_angle);
+  EXPECT_EQ(s.rig.travel_sign, rig.travel_sign);
+  EXPECT_EQ(s.rig.carrier_mass, rig.carrier_mass);
+  EXPECT_EQ(s.rig.chassis_mass, rig.chassis_mass);
+  EXPECT_EQ(s.rig.set_toe_mass, rig.set_toe_mass);
+  EXPECT_EQ(s.rig.rim_mass, rig.rim_mass);
+  EXPECT_EQ(s.rig.rim_spin_inertia, rig.rim_spin_inertia);
+  EXPECT_EQ(s.rig.rim_diametral_inertia, rig.rim_diametral_inertia);
+  const TerrainOptions terrain;
+  EXPECT_EQ(s.terrain.engine, terrain.engine);
+  EXPECT_EQ(s.terrain.law, terrain.law);
+  EXPECT_EQ(s.terrain.radius, terrain.radius);
+  EXPECT_EQ(s.terrain.density, terrain.density);
+  EXPECT_EQ(s.terrain.layers, terrain.layers);
+  EXPECT_EQ(s.terrain.length, terrain.length);
+  EXPECT_EQ(s.terrain.width, terrain.width);
+  EXPECT_EQ(s.terrain.bed, terrain.bed);
+  EXPECT_EQ(s.terrain.cache, terrain.cache);
+  EXPECT_EQ(s.terrain.young_modulus, terrain.young_modulus);
+  EXPECT_EQ(s.terrain.poisson_ratio, terrain.poisson_ratio);
+  EXPECT_EQ(s.terrain.restitution, terrain.restitution);
+  EXPECT_EQ(s.terrain.friction, terrain.friction);
+  EXPECT_EQ(s.terrain.rolling_friction, terrain.rolling_friction);
+  EXPECT_EQ(s.terrain.cohesion, terrain.cohesion);
+  EXPECT_EQ(s.terrain.normal_stiffness, terrain.normal_stiffness);
+  EXPECT_EQ(s.terrain.normal_damping, terrain.normal_damping);
+  EXPECT_EQ(s.terrain.friction_velocity_scale, terrain.friction_velocity_scale);
+  EXPECT_EQ(s.terrain.friction_impulse_limit, terrain.friction_impulse_limit);
+  EXPECT_EQ(s.terrain.activity, terrain.activity);
+  EXPECT_EQ(s.terrain.ground_stiffness, terrain.ground_stiffness);
+  EXPECT_EQ(s.terrain.ground_damping, terrain.ground_damping);
+  EXPECT_EQ(s.terrain.allow_unstable_step, terrain.allow_unstable_step);
+  EXPECT_EQ(s.terrain.step, terrain.step);
+  EXPECT_EQ(s.terrain.seed, terrain.seed);
+  const TireOptions tire;
+  ASSERT_EQ(s.tires.size(), 1U);
+  EXPECT_EQ(s.tires[0].pressure, tire.pressure);
+  EXPECT_EQ(s.tires[0].friction, tire.friction);
+  EXPECT_EQ(s.tires[0].elements_circumference, tire.elements_circumference);
+  EXPECT_EQ(s.tires[0].elements_width, tire.elements_width);
+  EXPECT_EQ(s.tires[0].structural_damping, tire.structural_damping);
+  EXPECT_EQ(s.tires[0].rigid, tire.rigid);
+  const RunOptions run;
+  EXPECT_EQ(s.run.step, run.step);
+  EXPECT_EQ(s.run.end, run.end);
+  EXPECT_EQ(s.run.average_from, run.average_from);
+  EXPECT_EQ(s.run.threads, run.threads);
+  EXPECT_EQ(s.run.seed, run.seed);
+  EXPECT_EQ(s.run.peer_timeout, run.peer_timeout);
+  EXPECT_EQ(s.output.series_interval, OutputOptions().series_interval);
+  EXPECT_EQ(s.output.frame_interval, OutputOptions().frame_interval);
+  EXPECT_FALSE(s.expected.given);
+  EXPECT_TRUE(s.warnings.empty());
+}
+
+TEST(Scenario, a_setting_of_every_kind_arrives) {
+  const Scenario s = ScenarioFile(kSmallest).load({{"rig.slip", "0.5"},
+                                                   {"rig.mode", "fixed_speed"},
+                                                   {"tire.rigid", "true"},
+                                                   {"tire.elements_width", "12"},
+                                                   {"terrain.substeps", "2"},
+                                                   {"tire.substeps", "4"},
+                                                   {"run.threads", "3"},
+                                                   {"run.seed", "7"}});
+  EXPECT_EQ(s.rig.slip, 0.5);
+  EXPECT_EQ(s.rig.mode, "fixed_speed");
+  EXPECT_TRUE(s.tires[0].rigid);
+  EXPECT_EQ(s.tires[0].elements_width, 12);
+  EXPECT_EQ(s.terrain.step, 2e-5);
+  EXPECT_EQ(s.tires[0].substep, 1e-5);
+  EXPECT_EQ(s.run.threads, 3);
+  EXPECT_EQ(s.terrain.seed, 7U);
+}
+
+TEST(Scenario, completed_text_is_a_scenario_that_gives_the_same_digest) {
+  const Scenario s = ScenarioFile(kSmallest).load({{"rig.slip", "0.2"}});
+  const Scenario again = ScenarioFile(s.completed).load();
+  EXPECT_EQ(again.digest, s.digest);
+  EXPECT_EQ(again.completed, s.completed);
+}
+
+TEST(Scenario, digest_depends_on_what_decides_the_results_alone) {
+  const ScenarioFile file(kSmallest);
+  const std::string digest = file.load().digest;
+  EXPECT_EQ(file.load({{"run.threads", "2"}}).digest, digest);
+  EXPECT_EQ(file.load({{"run.peer_timeout", "5"}}).digest, digest);
+  EXPECT_EQ(file.load({{"terrain.cache", "false"}}).digest, digest);
+  EXPECT_EQ(file.load({{"rig.carrier_mass", "450.0"}, {"terrain.layers", "15.0"}}).digest, digest);
+  EXPECT_NE(file.load({{"rig.carrier_mass", "451"}}).digest, digest);
+  EXPECT_NE(file.load({{"run.seed", "2"}}).digest, digest);
+}
+
+TEST(Scenario, axle_starts_clear_of_the_wall_behind_it) {
+  const ScenarioFile file(kSmallest);
+  const double radius = 0.4673;  // m, of the tire
+  const Scenario forward = file.load(), backward = file.load({{"rig.travel_sign", "-1"}});
+  EXPECT_DOUBLE_EQ(forward.rig.start, radius + kWallMargin);
+  EXPECT_DOUBLE_EQ(backward.rig.start, 10.0 - radius - kWallMargin);
+  EXPECT_DOUBLE_EQ(file.load({{"rig.start", "3"}}).rig.start, 3.0);
+  // v = ω R (1 − s) over the run, half of it over the ramp.
+  const AxlePath path = axle_path(forward, radius);
+  EXPECT_NEAR(path.to - path.from, 8.56 * radius * 0.7 * (1.5 - 0.075), 1e-12);
+  EXPECT_NEAR(axle_path(backward, radius).to - backward.rig.start, -(path.to - path.from), 1e-12);
+}
+
+TEST(Scenario, expected_result_is_void_once_the_physics_is_changed) {
+  const ScenarioFile file(R"({"tire": {"file": "hmmwv_layered.json"}, "terrain": {},
+                              "expected": {"drawbar_pull": 1500, "drawbar_pull_spread": 100}})");
+  EXPECT_TRUE(file.load().expected.given);
+  EXPECT_TRUE(file.load({{"run.threads", "2"}, {"output.frame_interval", "0"}}).expected.given);
+  EXPECT_FALSE(file.load({{"rig.slip", "0.2"}}).expected.given);
+}
+
+TEST(Scenario, mistakes_are_named_with_what_is_expected) {
+  const ScenarioFile file(kSmallest);
+  EXPECT_EQ(file.complaint({{"rig.slipp", "1"}}), ": key 'rig.slipp': is unknown, expected 'rig.slip'?");
+  EXPECT_EQ(file.complaint({{"tire.elements_width", "7"}}),
+            ": key 'tire.elements_width': is 7, expected a whole number, 6 to 1000, a multiple of 2 or null");
+  EXPECT_EQ(file.complaint({{"terrain.layers", "many"}}),
+            ": key 'terrain.layers': is 'many', expected a whole number, 1 to 9999");
+  EXPECT_EQ(file.complaint({{"run.step", "1e-3"}}).substr(0, 66),
+            ": key 'run.step': 0.001 s is above the stable step of 6.35e-05 s (");
+  EXPECT_EQ(file.complaint({{"run.step", "1e-3"},
+                            {"output.series_interval", "1e-3"},
+                            {"terrain.allow_unstable_step", "true"}}),
+            "");
+}
+
+TEST(Scenario, magnitudes_of_another_unit_are_warned_of) {
+  const ScenarioFile file(kSmallest);
+  const auto warnings = file.load({{"tire.pressure", "2"}, {"terrain.density", "2.5"}, {"terrain.substeps", "100"}}).warnings;
+  ASSERT_EQ(warnings.size(), 2U);
+  EXPECT_NE(warnings[0].find("key 'terrain.density': 2.5 kg/m³ is unusually small"), std::string::npos)
+      << warnings[0];
+  EXPECT_NE(warnings[0].find("did you mean 2500?"), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[1].find("did you mean 200e3?"), std::string::npos) << warnings[1];
+  EXPECT_TRUE(file.load({{"tire.pressure", "0"}, {"terrain.cohesion", "0"}}).warnings.empty());
+}
+
+TEST(Schema, every_key_of_the_defaults_is_found_and_no_other) {
+  const Schema schema = Schema::load();
+  std::set<std::string> unique;
+  for (const std::string& key : schema.keys()) {
+    EXPECT_NE(schema.find(key), nullptr) << key;
+    EXPECT_TRUE(unique.insert(key).second) << key;
+  }
+  EXPECT_NE(schema.find("tires.3.pressure"), nullptr);
+  EXPECT_EQ(schema.find("tires.pressure"), nullptr);
+  EXPECT_EQ(schema.find("rig.slip.x"), nullptr);
+  EXPECT_EQ(schema.find(""), nullptr);
+}
+
+TEST(Schema, defaults_obey_the_schema) {
+  nlohmann::json document = nlohmann::json::parse(kSmallest);
+  const Schema schema = Schema::load();
+  schema.fill_defaults(document);
+  schema.normalize(document);
+  EXPECT_TRUE(schema.problems(document).empty());
+  EXPECT_TRUE(schema.unusual(document).empty());
+}
+
+/// Damerau–Levenshtein distance (optimal string alignment) of known pairs.
+TEST(Schema, edit_distance_of_known_pairs) {
+  EXPECT_EQ(edit_distance("", "abc"), 3U);
+  EXPECT_EQ(edit_distance("kitten", "sitting"), 3U);
+  EXPECT_EQ(edit_distance("slip", "SLIP"), 0U);
+  EXPECT_EQ(edit_distance("slip", "slpi"), 1U);
+  EXPECT_EQ(edit_distance("ca", "abc"), 3U);
+}
+
+}  // namespace
+}  // namespace furrow

@@ -14,10 +14,10 @@ using nlohmann::json;
 
 std::string meaning(const json& node) { return node.value("description", std::string()); }
 
-std::string key_list(const Schema& schema, const std::string& prefix) {
+std::string key_list(const Schema& schema, const std::string& section) {
   std::string text;
-  for (const std::string& key : schema.keys())
-    if (key.starts_with(prefix)) text += fmt::format("{:<34} {}\n", key, meaning(*schema.find(key)));
+  for (const std::string& key : schema.keys(section))
+    text += fmt::format("{:<34} {}\n", key, meaning(*schema.find(key)));
   return text;
 }
 
@@ -48,11 +48,8 @@ std::string explain(const std::string& key) {
                           ? "is unknown, expected one of those that 'furrow explain' lists"
                           : fmt::format("is unknown, expected '{}'?", fmt::join(similar, "' or '")));
   }
-  if (node->contains("properties")) {
-    const std::string section = key.starts_with("tires") ? "tire" : key;
-    return key + "\n  " + meaning(*node) + "\n\n" + key_list(schema, section + ".");
-  }
-  return value_help(key, *node);
+  const std::string members = key_list(schema, key);
+  return members.empty() ? value_help(key, *node) : key + "\n  " + meaning(*node) + "\n\n" + members;
 }
 
 }  // namespace furrow

@@ -9,7 +9,8 @@ namespace furrow {
 
 std::vector<RankEntry> rank_table(const Scenario& s) {
   std::vector<RankEntry> table;
-  table.push_back({0, "rig", fmt::format("drawbar rig, {}; writes the results; 1 thread", s.rig.mode)});
+  table.push_back({0, "rig", fmt::format("{} drawbar rig{}, {}; writes the results; 1 thread", s.rigs.size(),
+                                         s.rigs.size() > 1 ? "s" : "", s.rigs.front().mode)});
   for (std::size_t k = 0; k < s.tires.size(); ++k)
     table.push_back({static_cast<int>(k) + 1, fmt::format("tire {}", k),
                      fmt::format("{}, {}; 1 thread", s.tires[k].file.filename().string(),

@@ -107,7 +107,7 @@ class RigNode : public Node {
   static constexpr Address kTerrain{Role::terrain, 0};
 
   static std::unique_ptr<Rig> make_rig(const Scenario& scenario) {
-    if (scenario.rigs.size() < 2) return make_drawbar_rig(scenario.rig);
+    if (scenario.rigs.size() == 1) return make_drawbar_rig(scenario.rigs.front());
     std::vector<std::unique_ptr<Rig>> rigs;
     for (const DrawbarRigOptions& options : scenario.rigs) rigs.push_back(make_drawbar_rig(options));
     return make_rig_row(std::move(rigs));

@@ -99,8 +99,8 @@ void complete(json& document, const std::string& file) {
 double number_or(const json& value, double absent) { return value.is_null() ? absent : value.get<double>(); }
 int count_or(const json& value, int absent) { return value.is_null() ? absent : value.get<int>(); }
 
-void take_rig(const json& j, Scenario& s) {
-  DrawbarRigOptions& o = s.rig;
+DrawbarRigOptions rig_options(const json& j) {
+  DrawbarRigOptions o;
   o.mode = j["mode"];
   o.slip = j["slip"];
   o.angular_speed = j["angular_speed"];
@@ -117,7 +117,23 @@ void take_rig(const json& j, Scenario& s) {
   o.rim_mass = j["rim_mass"];
   o.rim_spin_inertia = j["rim_spin_inertia"];
   o.rim_diametral_inertia = j["rim_diametral_inertia"];
+  return o;
+}
+
+void take_rig(const json& j, Scenario& s) {
+  s.rigs = {rig_options(j)};
   s.rig_substeps = j["substeps"];
+  if (j["wheels"].empty()) return;
+  s.rigs.assign(j["wheels"].size(), s.rigs.front());
+  for (std::size_t k = 0; k < s.rigs.size(); ++k) {
+    const json& wheel = j["wheels"][k];
+    DrawbarRigOptions& o = s.rigs[k];
+    o.lateral = wheel["lateral"];
+    o.slip = number_or(wheel["slip"], o.slip);
+    o.toe_angle = number_or(wheel["toe_angle"], o.toe_angle);
+    o.start = number_or(wheel["start"], o.start);
+    o.carrier_mass = number_or(wheel["carrier_mass"], o.carrier_mass);
+  }
 }
 
 void take_tire(const json& j, const std::string& key, Scenario& s) {
@@ -182,6 +198,7 @@ void take_terrain(const json& j, Scenario& s) {
   o.activity = j["activity"];
   o.ground_stiffness = j["ground_stiffness"];
   o.ground_damping = j["ground_damping"];
+  o.ground_shear_stiffness = j["ground_shear_stiffness"];
   o.allow_unstable_step = j["allow_unstable_step"];
   o.settle_threads = settle_threads(s.run.threads);
   s.terrain_ranks = j["ranks"];
@@ -221,7 +238,7 @@ Scenario load_scenario(const std::filesystem::path& file, const Settings& settin
   take_run(document["run"], document["output"], s);
   take_rig(document["rig"], s);
   if (document.contains("tire"))
-    take_tire(document["tire"], "tire", s);
+    for (std::size_t k = 0; k < s.rigs.size(); ++k) take_tire(document["tire"], "tire", s);
   else
     for (std::size_t k = 0; k < document["tires"].size(); ++k)
       take_tire(document["tires"][k], fmt::format("tires.{}", k), s);
@@ -237,8 +254,13 @@ Scenario load_scenario(const std::filesystem::path& file, const Settings& settin
   if (checkpoints)
     s.warnings.push_back(
         input_error(file.string(), "checkpoint", "this version writes no checkpoints").what());
-  check_scenario(s, document["rig"]["start"].is_null());
-  document["rig"]["start"] = s.rig.start;
+  std::vector<bool> default_start(s.rigs.size(), document["rig"]["start"].is_null());
+  for (std::size_t k = 0; k < document["rig"]["wheels"].size(); ++k)
+    default_start[k] = default_start[k] && document["rig"]["wheels"][k]["start"].is_null();
+  check_scenario(s, default_start);
+  document["rig"]["start"] = s.rigs.front().start;
+  for (std::size_t k = 0; k < document["rig"]["wheels"].size(); ++k)
+    document["rig"]["wheels"][k]["start"] = s.rigs[k].start;
   s.completed = document.dump(2);
   s.digest = digest_of(document, s);
   return s;

@@ -45,10 +45,9 @@ struct Scenario {
   std::string name;       // file name without extension
   std::string completed;  // the whole scenario as JSON text with defaults filled in
   std::string digest;     // hash of all in `completed` that decides the results, and of the tire files
-  DrawbarRigOptions rig;  // of the first wheel
-  std::vector<DrawbarRigOptions> rigs;  // one per wheel; rigs[0] is `rig`. Empty: the one
+  std::vector<DrawbarRigOptions> rigs = std::vector<DrawbarRigOptions>(1);  // one per wheel
   int rig_substeps = 1;
-  std::vector<TireOptions> tires;
+  std::vector<TireOptions> tires;  // one per wheel
   int tire_substeps = 1;
   TerrainOptions terrain;
   int terrain_ranks = 1;

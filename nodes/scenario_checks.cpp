@@ -31,13 +31,17 @@ class Checks {
   void rig();
   void tires();
   void bin();
-  void start(bool use_default);
+  void start(const std::vector<bool>& use_default);
+  void overlaps();
   void step();
   void machine();
 
  private:
   bool grains() const { return s_.terrain.engine == "dem"; }
-  const TireSize& tire() const { return tires_.front(); }
+  /// The key of a wheel's value: the rig's own while there is no list of wheels.
+  std::string wheel_key(std::size_t wheel, const std::string& name) const {
+    return s_.rigs.size() == 1 ? "rig." + name : fmt::format("rig.wheels.{}.{}", wheel, name);
+  }
 
   Scenario& s_;
   std::string file_;
@@ -62,33 +66,37 @@ void Checks::times() {
     throw wrong("output.series_interval",
                 fmt::format("is {} s, expected at most the averaging window of {} s", number_text(first_line),
                             number_text(run.end - run.average_from)));
-  if (s_.rig.ramp + 1e-12 > run.average_from && s_.rig.ramp > 0.0)
+  const double ramp = s_.rigs.front().ramp;
+  if (ramp + 1e-12 > run.average_from && ramp > 0.0)
     warn("run.average_from",
          fmt::format("the window begins at {} s, while the wheel still speeds up until rig.ramp = {} s",
-                     number_text(run.average_from), number_text(s_.rig.ramp)));
+                     number_text(run.average_from), number_text(ramp)));
 }
 
 void Checks::rig() {
-  const DrawbarRigOptions& rig = s_.rig;
-  if (rig.mode == "fixed_speed" && rig.slip >= 1.0)
-    throw wrong(
-        "rig.slip",
-        fmt::format("is {}, expected below 1 in mode fixed_speed: a carriage that moves cannot slip fully",
-                    number_text(rig.slip)));
-  if (s_.tires.size() != 1)
-    throw wrong("tires",
-                fmt::format("has {} entries, expected one: the drawbar rig has one wheel", s_.tires.size()));
+  for (std::size_t k = 0; k < s_.rigs.size(); ++k)
+    if (s_.rigs[k].mode == "fixed_speed" && s_.rigs[k].slip >= 1.0)
+      throw wrong(
+          wheel_key(k, "slip"),
+          fmt::format("is {}, expected below 1 in mode fixed_speed: a carriage that moves cannot slip fully",
+                      number_text(s_.rigs[k].slip)));
+  if (s_.tires.size() != s_.rigs.size())
+    throw wrong("tires", fmt::format("has {} entries, expected {}: one per wheel of rig.wheels", s_.tires.size(),
+                                     s_.rigs.size()));
 }
 
 void Checks::tires() {
   for (const TireOptions& options : s_.tires) tires_.push_back(tire_size(options));
   if (!grains()) return;
-  for (const TireSize& tire : tires_) {
-    const double width = tire.width + 2.0 * kWallMargin, length = 2.0 * (tire.radius + kWallMargin);
+  for (std::size_t k = 0; k < tires_.size(); ++k) {
+    const TireSize& tire = tires_[k];
+    const double off = std::abs(s_.rigs[k].lateral);
+    const double width = tire.width + 2.0 * (off + kWallMargin), length = 2.0 * (tire.radius + kWallMargin);
     if (width > s_.terrain.width)
       throw wrong("terrain.width",
-                  fmt::format("is {} m, expected at least {:.2f} m: the tire is {:.2f} m wide",
-                              number_text(s_.terrain.width), width, tire.width));
+                  fmt::format("is {} m, expected at least {:.2f} m: the tire is {:.2f} m wide{}",
+                              number_text(s_.terrain.width), width, tire.width,
+                              off > 0.0 ? fmt::format(", {} m off the middle", number_text(off)) : ""));
     if (length > s_.terrain.length)
       throw wrong("terrain.length",
                   fmt::format("is {} m, expected at least {:.2f} m: the tire is {:.2f} m long",
@@ -109,29 +117,46 @@ void Checks::bin() {
                                    number_text(least)));
 }
 
-void Checks::start(bool use_default) {
-  const double reach = tire().radius + kWallMargin;
-  DrawbarRigOptions& rig = s_.rig;
-  if (use_default) {
-    const AxlePath path = axle_path(s_, tire().radius);
-    const bool forward = path.to - rig.start >= 0.0;
-    rig.start = !grains() ? 0.0 : forward ? reach : s_.terrain.length - reach;
+void Checks::start(const std::vector<bool>& use_default) {
+  for (std::size_t k = 0; k < tires_.size(); ++k) {
+    DrawbarRigOptions& rig = s_.rigs[k];
+    const double length = s_.terrain.length, radius = tires_[k].radius, reach = radius + kWallMargin;
+    if (use_default[k]) {
+      const AxlePath path = axle_path(s_, k, radius);
+      const bool forward = path.to - rig.start >= 0.0;
+      rig.start = !grains() ? 0.0 : forward ? reach : length - reach;
+    }
+    if (!grains()) continue;
+    const AxlePath path = axle_path(s_, k, radius);
+    if (path.from - radius < 0.0 || path.from + radius > length)
+      throw wrong(
+          wheel_key(k, "start"),
+          fmt::format(
+              "is {} m, expected {:.3f} to {:.3f} m: the tire of radius {} m would stand in a wall of the bin",
+              number_text(path.from), radius, length - radius, number_text(radius)));
+    if (path.to - radius < 0.0 || path.to + radius > length)
+      throw wrong("terrain.length",
+                  fmt::format("is {} m, but the axle travels from x = {:.3f} to {:.3f} m and the tire's radius "
+                              "is {} m: it would hit the end wall; expected at least {:.2f} m or a shorter run",
+                              number_text(length), path.from, path.to, number_text(radius),
+                              std::abs(path.to - path.from) + 2.0 * reach));
   }
-  if (!grains()) return;
-  const AxlePath path = axle_path(s_, tire().radius);
-  const double length = s_.terrain.length, radius = tire().radius;
-  if (path.from - radius < 0.0 || path.from + radius > length)
-    throw wrong(
-        "rig.start",
-        fmt::format(
-            "is {} m, expected {:.3f} to {:.3f} m: the tire of radius {} m would stand in a wall of the bin",
-            number_text(path.from), radius, length - radius, number_text(radius)));
-  if (path.to - radius < 0.0 || path.to + radius > length)
-    throw wrong("terrain.length",
-                fmt::format("is {} m, but the axle travels from x = {:.3f} to {:.3f} m and the tire's radius "
-                            "is {} m: it would hit the end wall; expected at least {:.2f} m or a shorter run",
-                            number_text(length), path.from, path.to, number_text(radius),
-                            std::abs(path.to - path.from) + 2.0 * reach));
+}
+
+/// Wheels do not feel each other: one that stands in another would push the same grains twice.
+void Checks::overlaps() {
+  for (std::size_t k = 1; k < tires_.size(); ++k)
+    for (std::size_t i = 0; i < k; ++i) {
+      const double along = tires_[i].radius + tires_[k].radius, across = 0.5 * (tires_[i].width + tires_[k].width);
+      if (std::abs(s_.rigs[i].lateral - s_.rigs[k].lateral) >= across) continue;
+      const double from = s_.rigs[k].start - s_.rigs[i].start;
+      const double to = axle_path(s_, k, tires_[k].radius).to - axle_path(s_, i, tires_[i].radius).to;
+      if (std::min(std::abs(from), std::abs(to)) >= along && from * to > 0.0) continue;
+      throw wrong(wheel_key(k, "start"),
+                  fmt::format("puts this wheel in the way of wheel {}, expected {:.2f} m between their axles or "
+                              "{:.2f} m between their mid-planes (lateral)",
+                              i, along, across));
+    }
 }
 
 void Checks::step() {
@@ -198,8 +223,8 @@ std::filesystem::path find_file(const std::string& name, const std::string& key,
                     "'" + name + "' does not exist, expected a file at one of: " + looked);
 }
 
-AxlePath axle_path(const Scenario& scenario, double tire_radius) {
-  const DrawbarRigOptions& rig = scenario.rig;
+AxlePath axle_path(const Scenario& scenario, std::size_t wheel, double tire_radius) {
+  const DrawbarRigOptions& rig = scenario.rigs[wheel];
   const double speed =
       rig.mode == "fixed_angular_speed" ? rig.angular_speed * tire_radius * (1.0 - rig.slip) : rig.speed;
   // Over the ramp the mean speed is half of the full one.
@@ -208,13 +233,14 @@ AxlePath axle_path(const Scenario& scenario, double tire_radius) {
   return {rig.start, rig.start + rig.travel_sign * travel};
 }
 
-void check_scenario(Scenario& scenario, bool default_start) {
+void check_scenario(Scenario& scenario, const std::vector<bool>& default_start) {
   Checks checks(scenario);
   checks.times();
   checks.rig();
   checks.bin();
   checks.tires();
   checks.start(default_start);
+  checks.overlaps();
   checks.step();
   checks.machine();
 }

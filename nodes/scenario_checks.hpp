@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "nodes/scenario.hpp"
 
@@ -32,13 +33,13 @@ std::filesystem::path find_file(const std::string& name, const std::string& key,
 struct AxlePath {
   double from = 0.0, to = 0.0;
 };
-AxlePath axle_path(const Scenario& scenario, double tire_radius);
+AxlePath axle_path(const Scenario& scenario, std::size_t wheel, double tire_radius);
 
 /// Distance that a tire keeps from a wall by default: room for what it bulges, m.
 inline constexpr double kWallMargin = 0.02;
 
-/// Fills scenario.rig.start if `default_start`, checks all, and adds warnings.
+/// Fills scenario.rigs[k].start if `default_start[k]`, checks all, and adds warnings.
 /// @throws Error(bad_input)
-void check_scenario(Scenario& scenario, bool default_start);
+void check_scenario(Scenario& scenario, const std::vector<bool>& default_start);
 
 }  // namespace furrow

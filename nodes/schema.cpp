@@ -297,9 +297,11 @@ void Schema::add_keys(const json& node, const std::string& path, std::vector<std
   }
 }
 
-std::vector<std::string> Schema::keys() const {
+std::vector<std::string> Schema::keys(const std::string& section) const {
   std::vector<std::string> names;
-  add_keys(root_, "", names);
+  const json* node = section.empty() ? &root_ : find(section);
+  if (node && node->contains("items")) return keys(section + ".0");
+  if (node && node->contains("properties")) add_keys(*node, section, names);
   return names;
 }
 

@@ -31,8 +31,8 @@ class Schema {
 
   /// The schema of a dotted key, references resolved; null when there is none.
   const nlohmann::json* find(const std::string& key) const;
-  /// All dotted keys that hold values, sorted; "tire.…" but not "tires.…".
-  std::vector<std::string> keys() const;
+  /// All dotted keys of a section ("": of all) that hold values or lists, sorted; of a list those of its entry 0.
+  std::vector<std::string> keys(const std::string& section = "") const;
   /// Known keys that look like this one, best first, at most three.
   std::vector<std::string> nearest(const std::string& key) const;
 

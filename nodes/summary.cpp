@@ -7,6 +7,7 @@
 #include "nodes/node.hpp"
 #include "nodes/results.hpp"
 #include "nodes/rut.hpp"
+#include "nodes/scenario_checks.hpp"
 #include "nodes/statistics.hpp"
 #include "protocol/hash.hpp"
 
@@ -15,7 +16,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kDefaultFacets = 90;           // of the shipped tires
 constexpr std::size_t kMostLinesLeftOut = 50;  // at the window's beginning, for a whole number of facets
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -44,8 +44,7 @@ Window averaging_window(const SummaryInput& in) {
   std::size_t first = 1;
   while (first < rows.size() && rows[first].time < in.scenario.run.average_from) ++first;
   if (first >= rows.size()) return {};
-  const int given = in.scenario.tires[in.wheel].elements_circumference;
-  const double facet = 2.0 * std::numbers::pi / (given > 0 ? given : kDefaultFacets);
+  const double facet = 2.0 * std::numbers::pi / tire_size(in.scenario.tires[in.wheel]).elements_circumference;
   double turned = 0.0, least = INFINITY;
   std::size_t chosen = first;
   bool whole = false;
@@ -111,7 +110,7 @@ void add_rut(const SummaryInput& in, Json& json) {
   Rut rut;
   if (!in.rows.empty()) {
     RutOptions options;
-    options.direction = in.scenario.rig.travel_sign;
+    options.direction = in.scenario.rigs[in.wheel].travel_sign;
     options.axle = options.direction * in.rows.back().position;
     options.start = options.direction * in.rows.front().position;
     options.tread_width = in.cards[1 + in.wheel].tire_width;
@@ -217,8 +216,8 @@ std::string summary_text(const SummaryInput& in) {
   json["state_hash"] = state.hex();
   json["terrain_engine"] = in.scenario.terrain.engine;
   json["law"] = in.scenario.terrain.law;
-  json["slip"] = in.scenario.rig.slip;
-  json["travel_sign"] = in.scenario.rig.travel_sign;
+  json["slip"] = in.scenario.rigs[in.wheel].slip;
+  json["travel_sign"] = in.scenario.rigs[in.wheel].travel_sign;
   json["tire_radius_m"] = in.cards[1 + in.wheel].tire_radius;
   json["tread_width_m"] = in.cards[1 + in.wheel].tire_width;
   json["surface_height_m"] = number(in.setup.mean_height.at(in.wheel));

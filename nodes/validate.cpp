@@ -74,8 +74,8 @@ nlohmann::ordered_json validation_report(const Scenario& s) {
   json["tire_coordinates"] = e.coordinates;
   json["memory_MB"] = std::round(e.memory / kMegabyte);
   json["disk_MB"] = std::round(e.disk / kMegabyte);
-  for (const TireOptions& options : s.tires) {
-    const AxlePath path = axle_path(s, tire_size(options).radius);
+  for (std::size_t k = 0; k < s.tires.size(); ++k) {
+    const AxlePath path = axle_path(s, k, tire_size(s.tires[k]).radius);
     json["axle_path_m"].push_back({path.from, path.to});
   }
   for (const RankEntry& rank : rank_table(s))
@@ -103,9 +103,10 @@ std::string validation_text(const Scenario& s) {
                             e.terrain.grains, 1e3 * s.terrain.radius, s.terrain.law,
                             1e3 * e.terrain.expected_height, s.terrain.length, s.terrain.width)
               : std::string("rigid plane z = 0"));
-  for (const TireOptions& options : s.tires) {
+  for (std::size_t k = 0; k < s.tires.size(); ++k) {
+    const TireOptions& options = s.tires[k];
     const TireSize size = tire_size(options);
-    const AxlePath path = axle_path(s, size.radius);
+    const AxlePath path = axle_path(s, k, size.radius);
     line("tire",
          size.rigid
              ? fmt::format("{}, rigid, radius {:g} m", options.file.filename().string(), size.radius)

@@ -42,7 +42,7 @@ template <class Stream, class M>
 void visit_fields(Stream& s, M& m) {
   auto& c = m.material;
   each(s, m.mesh.vertex_count, m.mesh.triangles, c.young_modulus, c.poisson_ratio, c.friction, c.restitution,
-       c.normal_stiffness, c.normal_damping, c.cohesion);
+       c.normal_stiffness, c.normal_damping, c.cohesion, c.area_density);
 }
 template <class Stream, class M>
   requires std::is_same_v<std::remove_const_t<M>, TerrainSetup>

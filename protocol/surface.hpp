@@ -61,6 +61,7 @@ struct ContactMaterial {
   double normal_stiffness = 0.0;   // N/m^1.5, law coulomb
   double normal_damping = 0.0;     // N s/m^1.5, law coulomb
   double cohesion = 0.0;           // Pa; the tire's is zero
+  double area_density = 0.0;       // mass of the surface that a contact moves, kg/m²; 0: a rigid, heavy one
 };
 
 }  // namespace furrow

@@ -30,7 +30,7 @@ libliggghts-dev                           distributed DEM engine
 LIST
 }
 vtk_packages() { cat <<'LIST'
-python3-vtk9                              tests that open the XDMF index with VTK
+python3-paraview                          its VTK reads XDMF, which python3-vtk9 does not: one test
 LIST
 }
 
@@ -38,7 +38,7 @@ usage() { cat <<'HELP'
 usage: scripts/setup.sh [--liggghts] [--vtk] [-y]
 Installs the missing Debian packages, after saying which and how large, and asking.
   --liggghts  also the LIGGGHTS engine (optional distributed terrain)
-  --vtk       also VTK for Python (needed by one test only; large)
+  --vtk       also the VTK that reads XDMF (needed by one test only; large)
   -y, --yes   do not ask; nor is asked where CI is set, or as root without a terminal
   --check     install nothing; exit 0 if nothing is missing, 1 if something is
 HELP

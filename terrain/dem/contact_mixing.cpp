@@ -29,6 +29,12 @@ double effective_shear(const ContactMaterial& a, const ContactMaterial& b) {
                 2.0 * (2.0 - b.poisson_ratio) * (1.0 + b.poisson_ratio) / b.young_modulus);
 }
 
+/// What a grain's contact moves of a surface: its mass over the area that one of closely packed grains covers.
+double surface_mass(const ContactMaterial& surface, double radius) {
+  const double footprint = 2.0 * std::numbers::sqrt3 * radius * radius;
+  return surface.area_density > 0.0 ? surface.area_density * footprint : kInfinite;
+}
+
 }  // namespace
 
 LawKind law_from(const std::string& name) {
@@ -54,7 +60,10 @@ ContactCoefficients mix(const ContactMaterial& grain, const ContactMaterial& oth
                         const GrainProperties& properties, const LawSettings& law) {
   const bool pair = partner == Partner::grain;
   const double r = properties.radius, r_star = pair ? 0.5 * r : r;
-  const double m_star = pair ? 0.5 * properties.mass : properties.mass;
+  const double other_mass = pair ? properties.mass : surface_mass(other, r);
+  const double m_star = 1.0 / (1.0 / properties.mass + 1.0 / other_mass);
+  // Sliding also spins the spheres, which resist as 2/7 of their mass.
+  const double m_slide = 1.0 / (3.5 / properties.mass + (pair ? 3.5 : 1.0) / other_mass);
   const double i_star = pair ? 0.5 * properties.inertia : properties.inertia;
 
   ContactCoefficients c;
@@ -68,7 +77,7 @@ ContactCoefficients mix(const ContactMaterial& grain, const ContactMaterial& oth
     c.stiffness = 0.5 * (grain.normal_stiffness + other.normal_stiffness);
     c.damping = 0.5 * (grain.normal_damping + other.normal_damping);
     if (law.friction_impulse_limit) {
-      c.slip_limit = kImpulseShare * properties.mass * (pair ? 1.0 : 2.0) / 7.0 / law.step;
+      c.slip_limit = kImpulseShare * m_slide / law.step;
       c.roll_limit = kImpulseShare * i_star / law.step;
     }
     return c;
@@ -80,7 +89,7 @@ ContactCoefficients mix(const ContactMaterial& grain, const ContactMaterial& oth
   c.shear_stiffness = 8.0 * g_star * root_r;
   const double factor = 2.0 * std::sqrt(5.0 / 6.0) * beta;
   c.damping = factor * std::sqrt(2.0 * e_star * root_r * m_star);
-  c.shear_damping = factor * std::sqrt(c.shear_stiffness * 2.0 / 7.0 * m_star);
+  c.shear_damping = factor * std::sqrt(c.shear_stiffness * m_slide);
   c.rolling_damping = 2.0 * kRollingDampingRatio * std::sqrt(c.shear_stiffness * r_star * r_star * i_star);
   return c;
 }

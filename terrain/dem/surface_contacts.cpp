@@ -205,7 +205,8 @@ void SurfaceContacts::save(Archive& archive) const {
     archive.put("position", flat(s.end));
     const ContactMaterial& m = s.material;
     archive.put("material", std::vector<double>{m.young_modulus, m.poisson_ratio, m.friction, m.restitution,
-                                                m.normal_stiffness, m.normal_damping, m.cohesion});
+                                                m.normal_stiffness, m.normal_damping, m.cohesion,
+                                                m.area_density});
   }
   std::vector<std::int32_t> keys;
   std::vector<double> values;
@@ -225,7 +226,7 @@ void SurfaceContacts::restore(const Archive& archive) {
     Archive::Scope scope(archive, "surface" + std::to_string(k) + "/");
     const auto& position = archive.get<double>("position");
     const auto& triangles = archive.get<std::int32_t>("triangles");
-    const auto& m = archive.get<double>("material", 7);
+    const auto& m = archive.get<double>("material", 8);
     SurfaceMesh mesh;
     mesh.vertex_count = static_cast<int>(position.size() / 3);
     for (std::size_t t = 0; t + 2 < triangles.size(); t += 3)
@@ -233,7 +234,7 @@ void SurfaceContacts::restore(const Archive& archive) {
     SurfaceState start;
     for (std::size_t a = 0; a + 2 < position.size(); a += 3)
       start.position.emplace_back(position[a], position[a + 1], position[a + 2]);
-    attach(mesh, {m[0], m[1], m[2], m[3], m[4], m[5], m[6]}, {}, start);
+    attach(mesh, {m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7]}, {}, start);
   }
   for (SurfaceBlock& block : blocks_) block = {};
   const auto& keys = archive.get<std::int32_t>("surfaces/keys");

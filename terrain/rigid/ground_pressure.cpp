@@ -58,21 +58,17 @@ int ground_points(const std::array<Vec3, 3>& x, std::array<GroundPoint, kMaxGrou
   return count;
 }
 
-void add_ground_force(const GroundLaw& law, int triangle, const GroundPoint& at, const Vec3& position,
-                      const Vec3& velocity, std::vector<SurfaceContactForce>& contacts) {
+double add_ground_force(const GroundLaw& law, int triangle, const GroundPoint& at, const Vec3& position,
+                        const Vec3& velocity, std::vector<SurfaceContactForce>& contacts) {
   const double pressure = law.stiffness * at.depth - law.damping * velocity.z();
-  if (!(pressure > 0.0)) return;
+  if (!(pressure > 0.0)) return 0.0;
   SurfaceContactForce contact;
   contact.triangle = triangle;
   contact.weight = at.weight;
   contact.point = position;
   contact.normal = Vec3(0.0, 0.0, pressure * at.area);
-  const double speed = std::hypot(velocity.x(), velocity.y());
-  if (speed > 0.0) {
-    const double traction = law.friction * pressure * at.area * std::tanh(law.velocity_scale * speed) / speed;
-    contact.tangential = Vec3(-traction * velocity.x(), -traction * velocity.y(), 0.0);
-  }
   contacts.push_back(contact);
+  return contact.normal.z();
 }
 
 }  // namespace furrow

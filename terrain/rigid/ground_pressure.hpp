@@ -1,8 +1,7 @@
 // Contact of one triangle with the plane z = 0 as an elastic layer (Winkler foundation): at depth g = −z the ground
 // pushes up with the pressure
 //
-//   p = max(0, κ g + d ġ),                       never tensile,
-//   t = −μ p tanh(c |v_t|) v_t/|v_t|,            regularised Coulomb friction on the resting ground,
+//   p = max(0, κ g + d ġ),  never tensile,
 //
 // over the triangle's area projected onto the plane. The part of the triangle below the plane is integrated exactly
 // for a linear pressure and exactly for its moment: it is cut at z = 0 into one or two triangles, each with the
@@ -20,7 +19,8 @@ namespace furrow {
 
 struct GroundLaw {
   double stiffness = 0.0;       // κ, N/m³
-  double damping = 0.0;         // d, N s/m³
+  double damping = 0.0;         // d, N s/m³, in pressure and in shear
+  double shear_stiffness = 0.0; // κ_t, N/m³
   double friction = 0.0;        // μ, -
   double velocity_scale = 0.0;  // c, s/m
 };
@@ -38,8 +38,9 @@ inline constexpr int kMaxGroundPoints = 6;
 /// Integration points of the part of triangle x with z < 0; returns how many.
 int ground_points(const std::array<Vec3, 3>& x, std::array<GroundPoint, kMaxGroundPoints>& out);
 
-/// Force on the surface at one point that moves with velocity v; appends it to `contacts` unless there is none.
-void add_ground_force(const GroundLaw& law, int triangle, const GroundPoint& at, const Vec3& position,
-                      const Vec3& velocity, std::vector<SurfaceContactForce>& contacts);
+/// Normal force on the surface at one point that moves with velocity v; appends it to `contacts` unless there is none.
+/// @returns it, N
+double add_ground_force(const GroundLaw& law, int triangle, const GroundPoint& at, const Vec3& position,
+                        const Vec3& velocity, std::vector<SurfaceContactForce>& contacts);
 
 }  // namespace furrow

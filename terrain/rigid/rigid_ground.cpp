@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "terrain/dem/surface_forces.hpp"
+#include "terrain/rigid/ground_friction.hpp"
 #include "terrain/rigid/ground_pressure.hpp"
 
 namespace furrow {
@@ -21,7 +23,10 @@ struct GroundSurface {
   std::vector<Vec3> last;        // where the ground last had the vertices, m
   std::vector<Vec3> velocity;    // of the running interval, m/s
   std::vector<Vec3> position;    // at the middle of the running substep, m
+  std::vector<Vec3> shear;       // of the layer under each vertex, m
+  std::vector<double> load, area;  // of each vertex in the running substep, N, m²
   std::vector<SurfaceContactForce> contacts;
+  std::vector<std::pair<int, int>> corner;  // of each vertex: one of its triangles, and which corner it is there
   NodalForceSum sum;
   std::int64_t contact_count = 0;
   double elastic_energy = 0.0;   // J
@@ -57,6 +62,7 @@ class RigidGround final : public Terrain {
   explicit RigidGround(const TerrainOptions& options) : options_(options) {
     require("ground_stiffness", options.ground_stiffness);
     require("ground_damping", options.ground_damping);
+    require("ground_shear_stiffness", options.ground_shear_stiffness);
     require("friction", options.friction);
     require("friction_velocity_scale", options.friction_velocity_scale);
   }
@@ -77,7 +83,7 @@ class RigidGround final : public Terrain {
 
  private:
   void add_surface(const SurfaceMesh& mesh, const ContactMaterial& material, std::vector<Vec3> last);
-  void press(GroundSurface& surface) const;
+  void press(GroundSurface& surface, double dt) const;
   void measure(GroundSurface& surface) const;
 
   TerrainOptions options_;
@@ -102,9 +108,15 @@ void RigidGround::add_surface(const SurfaceMesh& mesh, const ContactMaterial& ma
                         .last = std::move(last),
                         .velocity = std::vector<Vec3>(mesh.vertex_count, Vec3::Zero()),
                         .position = {},
+                        .shear = std::vector<Vec3>(mesh.vertex_count, Vec3::Zero()),
+                        .load = std::vector<double>(mesh.vertex_count, 0.0),
+                        .area = std::vector<double>(mesh.vertex_count, 0.0),
                         .contacts = {},
+                        .corner = std::vector<std::pair<int, int>>(mesh.vertex_count, {-1, 0}),
                         .sum = NodalForceSum(mesh.vertex_count)};
   surface.position = surface.last;
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t)
+    for (int k = 0; k < 3; ++k) surface.corner[mesh.triangles[t][k]] = {t, k};
   surfaces_.push_back(std::move(surface));
   measure(surfaces_.back());
 }
@@ -127,27 +139,51 @@ void RigidGround::attach(const SurfaceMesh& mesh, const ContactMaterial& materia
   add_surface(mesh, material, start.position);
 }
 
-/// Contact forces with the surface at `position`, moving with `velocity`.
-void RigidGround::press(GroundSurface& surface) const {
-  const GroundLaw law{options_.ground_stiffness, options_.ground_damping, surface.friction,
+/// Contact forces with the surface at `position`, moving with `velocity` for dt.
+void RigidGround::press(GroundSurface& surface, double dt) const {
+  const GroundLaw law{options_.ground_stiffness, options_.ground_damping, options_.ground_shear_stiffness, surface.friction,
                       options_.friction_velocity_scale};
   surface.contacts.clear();
+  std::fill(surface.load.begin(), surface.load.end(), 0.0);
+  std::fill(surface.area.begin(), surface.area.end(), 0.0);
   std::array<GroundPoint, kMaxGroundPoints> points;
   const auto& x = surface.position;
   for (int t = 0; t < static_cast<int>(surface.mesh.triangles.size()); ++t) {
     const auto& v = surface.mesh.triangles[t];
     if (x[v[0]].z() >= 0.0 && x[v[1]].z() >= 0.0 && x[v[2]].z() >= 0.0) continue;
     const int count = ground_points({x[v[0]], x[v[1]], x[v[2]]}, points);
-    for (int i = 0; i < count; ++i)
-      add_ground_force(law, t, points[i], weighted(points[i].weight, x, v),
-                       weighted(points[i].weight, surface.velocity, v), surface.contacts);
+    for (int i = 0; i < count; ++i) {
+      const double force = add_ground_force(law, t, points[i], weighted(points[i].weight, x, v),
+                                            weighted(points[i].weight, surface.velocity, v), surface.contacts);
+      for (int k = 0; k < 3 && force > 0.0; ++k) {
+        surface.load[v[k]] += points[i].weight[k] * force;
+        surface.area[v[k]] += points[i].weight[k] * points[i].area;
+      }
+    }
+  }
+  surface.contact_count = static_cast<std::int64_t>(surface.contacts.size());
+  surface.floor_force = 0.0;
+  for (const auto& one : surface.contacts) surface.floor_force += one.normal.z();
+  for (std::size_t vertex = 0; vertex < surface.shear.size(); ++vertex) {
+    const Vec3 force =
+        slide(law, surface.load[vertex], surface.area[vertex], surface.velocity[vertex], dt, surface.shear[vertex]);
+    if (force.isZero(0.0)) continue;
+    SurfaceContactForce contact;
+    const auto [triangle, corner] = surface.corner[vertex];
+    contact.triangle = triangle;
+    contact.weight[corner] = 1.0;
+    contact.point = x[vertex];
+    contact.tangential = force;
+    surface.contacts.push_back(contact);
   }
 }
 
-/// Elastic energy ½ κ ∫ g² dA with the surface where the interval ended.
+/// Elastic energy ½ κ ∫ g² dA with the surface where the interval ended, and ½ κ_t Σ A ξ² of its shear.
 void RigidGround::measure(GroundSurface& surface) const {
   std::array<GroundPoint, kMaxGroundPoints> points;
   surface.elastic_energy = 0.0;
+  for (std::size_t v = 0; v < surface.shear.size(); ++v)
+    surface.elastic_energy += 0.5 * options_.ground_shear_stiffness * surface.area[v] * surface.shear[v].squaredNorm();
   const auto& x = surface.last;
   for (const auto& v : surface.mesh.triangles) {
     if (x[v[0]].z() >= 0.0 && x[v[1]].z() >= 0.0 && x[v[2]].z() >= 0.0) continue;
@@ -180,12 +216,9 @@ TerrainStatus RigidGround::advance(std::span<const SurfaceState> targets, double
       const double share = (s + 0.5) / substeps;
       for (std::size_t v = 0; v < count; ++v)
         surface.position[v] = surface.last[v] + share * (end[v] - surface.last[v]);
-      press(surface);
+      press(surface, dt);
       surface.sum.add_substep(surface.contacts, {surface.mesh.triangles, surface.position, surface.velocity}, dt);
     }
-    surface.contact_count = static_cast<std::int64_t>(surface.contacts.size());
-    surface.floor_force = 0.0;
-    for (const auto& one : surface.contacts) surface.floor_force += one.normal.z();
     surface_impulse_ -= surface.sum.impulse();
     surface.sum.finish(duration, forces[k], contact[k]);
     surface_work_ += contact[k].work;
@@ -220,8 +253,11 @@ void RigidGround::save(Archive& archive) const {
     for (const auto& t : surface.mesh.triangles) corners.insert(corners.end(), t.begin(), t.end());
     archive.put("triangles", corners);
     archive.put("material", std::vector<double>{m.young_modulus, m.poisson_ratio, m.friction, m.restitution,
-                                                m.normal_stiffness, m.normal_damping, m.cohesion});
+                                                m.normal_stiffness, m.normal_damping, m.cohesion,
+                                                m.area_density});
     archive.put("last", flatten(surface.last));
+    archive.put("shear", flatten(surface.shear));
+    archive.put("area", surface.area);
     archive.put("floor_force", surface.floor_force);
     archive.put("contacts", surface.contact_count);
   }
@@ -241,8 +277,11 @@ void RigidGround::restore(const Archive& archive) {
     const auto& corners = archive.get<std::int32_t>("triangles");
     for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
       mesh.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
-    const auto& m = archive.get<double>("material", 7);
-    add_surface(mesh, {m[0], m[1], m[2], m[3], m[4], m[5], m[6]}, std::move(last));
+    const auto& m = archive.get<double>("material", 8);
+    add_surface(mesh, {m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7]}, std::move(last));
+    surfaces_.back().shear = unflatten(archive.get<double>("shear"));
+    surfaces_.back().area = archive.get<double>("area");
+    measure(surfaces_.back());
     surfaces_.back().floor_force = archive.get_double("floor_force");
     surfaces_.back().contact_count = archive.get_int("contacts");
   }

@@ -19,13 +19,13 @@ Scenario rigid_wheel_on_plane() {
   Scenario scenario;
   scenario.name = "test";
   scenario.digest = "test";
-  scenario.rig.mode = "fixed_angular_speed";
-  scenario.rig.slip = 0.2;
-  scenario.rig.angular_speed = 4.0;
-  scenario.rig.ramp = 0.05;
-  scenario.rig.touchdown_damping = 12e3;
-  scenario.rig.touchdown_time = 0.2;
-  scenario.rig.start = 1.0;
+  scenario.rigs[0].mode = "fixed_angular_speed";
+  scenario.rigs[0].slip = 0.2;
+  scenario.rigs[0].angular_speed = 4.0;
+  scenario.rigs[0].ramp = 0.05;
+  scenario.rigs[0].touchdown_damping = 12e3;
+  scenario.rigs[0].touchdown_time = 0.2;
+  scenario.rigs[0].start = 1.0;
   TireOptions tire;
   tire.file = tire_file("hmmwv_layered.json");
   tire.rigid = true;
@@ -44,9 +44,9 @@ Scenario rigid_wheel_on_plane() {
 
 Scenario rigid_wheel_on_grains() {
   Scenario scenario = rigid_wheel_on_plane();
-  scenario.rig.carrier_mass = 20.0;
-  scenario.rig.touchdown_damping = 300.0;
-  scenario.rig.start = 0.55;
+  scenario.rigs[0].carrier_mass = 20.0;
+  scenario.rigs[0].touchdown_damping = 300.0;
+  scenario.rigs[0].start = 0.55;
   scenario.terrain.engine = "dem";
   scenario.terrain.radius = 0.03;
   scenario.terrain.layers = 2;
@@ -117,6 +117,34 @@ TEST(Coupling, another_seed_gives_another_state) {
   first.steps(0, 10);
   second.steps(0, 10);
   EXPECT_NE(first.hashes(), second.hashes());
+}
+
+/// z impulse that each wheel's tire has sent for up to now, N s.
+std::vector<double> vertical_impulses(const InProcessRun& run, std::size_t wheels) {
+  const Archive rig = run.save().front();
+  std::vector<double> impulses;
+  for (std::size_t k = 0; k < wheels; ++k) {
+    SeriesBuilder builder(0.4673, 0.0, 1e-4);
+    Archive::Scope scope(rig, "wheel" + std::to_string(k) + "/");
+    builder.restore(rig);
+    impulses.push_back(builder.now().impulse_sent.z());
+  }
+  return impulses;
+}
+
+TEST(Coupling, each_of_four_wheels_on_one_bed_carries_its_own_weight) {
+  const Scenario scenario =
+      load_scenario(std::filesystem::path(FURROW_SOURCE_FOLDER) / "rigs" / "four_wheels.json",
+                    {{"terrain.radius", "0.03"}, {"terrain.layers", "3"}, {"terrain.cache", "false"}});
+  InProcessRun run(scenario);
+  run.steps(0, 9000);
+  const auto before = vertical_impulses(run, 4);
+  run.steps(9000, 12000);
+  const auto after = vertical_impulses(run, 4);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double tire = 4.811, weight = kGravity * (scenario.rigs[k].carrier_mass + scenario.rigs[k].rim_mass + tire);
+    EXPECT_NEAR((after[k] - before[k]) / 0.3, weight, 0.005 * weight) << "wheel " << k;
+  }
 }
 
 TEST(Coupling, a_mismatch_of_digests_stops_every_node) {

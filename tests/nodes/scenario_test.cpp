@@ -19,21 +19,21 @@ using testing::ScenarioFile;
 TEST(Scenario, defaults_of_the_schema_are_those_of_the_options) {
   const Scenario s = ScenarioFile(kSmallest).load();
   const DrawbarRigOptions rig;
-  EXPECT_EQ(s.rig.mode, rig.mode);
-  EXPECT_EQ(s.rig.slip, rig.slip);
-  EXPECT_EQ(s.rig.angular_speed, rig.angular_speed);
-  EXPECT_EQ(s.rig.speed, rig.speed);
-  EXPECT_EQ(s.rig.ramp, rig.ramp);
-  EXPECT_EQ(s.rig.touchdown_damping, rig.touchdown_damping);
-  EXPECT_EQ(s.rig.touchdown_time, rig.touchdown_time);
-  EXPECT_EQ(s.rig.toe_angle, rig.toe_angle);
-  EXPECT_EQ(s.rig.travel_sign, rig.travel_sign);
-  EXPECT_EQ(s.rig.carrier_mass, rig.carrier_mass);
-  EXPECT_EQ(s.rig.chassis_mass, rig.chassis_mass);
-  EXPECT_EQ(s.rig.set_toe_mass, rig.set_toe_mass);
-  EXPECT_EQ(s.rig.rim_mass, rig.rim_mass);
-  EXPECT_EQ(s.rig.rim_spin_inertia, rig.rim_spin_inertia);
-  EXPECT_EQ(s.rig.rim_diametral_inertia, rig.rim_diametral_inertia);
+  EXPECT_EQ(s.rigs[0].mode, rig.mode);
+  EXPECT_EQ(s.rigs[0].slip, rig.slip);
+  EXPECT_EQ(s.rigs[0].angular_speed, rig.angular_speed);
+  EXPECT_EQ(s.rigs[0].speed, rig.speed);
+  EXPECT_EQ(s.rigs[0].ramp, rig.ramp);
+  EXPECT_EQ(s.rigs[0].touchdown_damping, rig.touchdown_damping);
+  EXPECT_EQ(s.rigs[0].touchdown_time, rig.touchdown_time);
+  EXPECT_EQ(s.rigs[0].toe_angle, rig.toe_angle);
+  EXPECT_EQ(s.rigs[0].travel_sign, rig.travel_sign);
+  EXPECT_EQ(s.rigs[0].carrier_mass, rig.carrier_mass);
+  EXPECT_EQ(s.rigs[0].chassis_mass, rig.chassis_mass);
+  EXPECT_EQ(s.rigs[0].set_toe_mass, rig.set_toe_mass);
+  EXPECT_EQ(s.rigs[0].rim_mass, rig.rim_mass);
+  EXPECT_EQ(s.rigs[0].rim_spin_inertia, rig.rim_spin_inertia);
+  EXPECT_EQ(s.rigs[0].rim_diametral_inertia, rig.rim_diametral_inertia);
   const TerrainOptions terrain;
   EXPECT_EQ(s.terrain.engine, terrain.engine);
   EXPECT_EQ(s.terrain.law, terrain.law);
@@ -57,6 +57,7 @@ TEST(Scenario, defaults_of_the_schema_are_those_of_the_options) {
   EXPECT_EQ(s.terrain.activity, terrain.activity);
   EXPECT_EQ(s.terrain.ground_stiffness, terrain.ground_stiffness);
   EXPECT_EQ(s.terrain.ground_damping, terrain.ground_damping);
+  EXPECT_EQ(s.terrain.ground_shear_stiffness, terrain.ground_shear_stiffness);
   EXPECT_EQ(s.terrain.allow_unstable_step, terrain.allow_unstable_step);
   EXPECT_EQ(s.terrain.step, terrain.step);
   EXPECT_EQ(s.terrain.seed, terrain.seed);
@@ -90,8 +91,8 @@ TEST(Scenario, a_setting_of_every_kind_arrives) {
                                                    {"tire.substeps", "4"},
                                                    {"run.threads", "3"},
                                                    {"run.seed", "7"}});
-  EXPECT_EQ(s.rig.slip, 0.5);
-  EXPECT_EQ(s.rig.mode, "fixed_speed");
+  EXPECT_EQ(s.rigs[0].slip, 0.5);
+  EXPECT_EQ(s.rigs[0].mode, "fixed_speed");
   EXPECT_TRUE(s.tires[0].rigid);
   EXPECT_EQ(s.tires[0].elements_width, 12);
   EXPECT_EQ(s.terrain.step, 2e-5);
@@ -122,13 +123,13 @@ TEST(Scenario, axle_starts_clear_of_the_wall_behind_it) {
   const ScenarioFile file(kSmallest);
   const double radius = 0.4673;  // m, of the tire
   const Scenario forward = file.load(), backward = file.load({{"rig.travel_sign", "-1"}});
-  EXPECT_DOUBLE_EQ(forward.rig.start, radius + kWallMargin);
-  EXPECT_DOUBLE_EQ(backward.rig.start, 10.0 - radius - kWallMargin);
-  EXPECT_DOUBLE_EQ(file.load({{"rig.start", "3"}}).rig.start, 3.0);
+  EXPECT_DOUBLE_EQ(forward.rigs[0].start, radius + kWallMargin);
+  EXPECT_DOUBLE_EQ(backward.rigs[0].start, 10.0 - radius - kWallMargin);
+  EXPECT_DOUBLE_EQ(file.load({{"rig.start", "3"}}).rigs[0].start, 3.0);
   // v = ω R (1 − s) over the run, half of it over the ramp.
-  const AxlePath path = axle_path(forward, radius);
+  const AxlePath path = axle_path(forward, 0, radius);
   EXPECT_NEAR(path.to - path.from, 8.56 * radius * 0.7 * (1.5 - 0.075), 1e-12);
-  EXPECT_NEAR(axle_path(backward, radius).to - backward.rig.start, -(path.to - path.from), 1e-12);
+  EXPECT_NEAR(axle_path(backward, 0, radius).to - backward.rigs[0].start, -(path.to - path.from), 1e-12);
 }
 
 TEST(Scenario, expected_result_is_void_once_the_physics_is_changed) {

@@ -32,7 +32,9 @@ class Commands(SystemTest):
                 report = json.loads(self.output("validate", ROOT / "rigs" / name, "--json"))
                 self.assertEqual(report["scenario"], name[:-5])
                 self.assertGreater(report["steps"], 0)
-                self.assertEqual([rank["node"] for rank in report["ranks"]], ["rig", "tire 0", "terrain"])
+                tires = 4 if name == "four_wheels.json" else 1
+                self.assertEqual([rank["node"] for rank in report["ranks"]],
+                                 ["rig", *(f"tire {k}" for k in range(tires)), "terrain"])
                 if not name.endswith("_tr.json"):
                     self.assertEqual(report["warnings"], [])
                     if report["stable_step_s"] is not None:
@@ -101,7 +103,8 @@ class Commands(SystemTest):
             self.assertIn(word, text)
         self.assertIn("rig.slip", self.output("explain", "rig"))
         self.assertIn("tire.pressure", self.output("explain"))
-        self.assertIn("tire.pressure", self.output("explain", "tires"))
+        self.assertIn("tires.0.pressure", self.output("explain", "tires"))
+        self.assertIn("rig.wheels.0.lateral", self.output("explain", "rig.wheels"))
 
     def test_every_key_is_explained_in_words_with_unit_and_default(self):
         keys = [line.split()[0] for line in self.output("explain").splitlines()]

@@ -66,6 +66,19 @@ class Run(SystemTest):
         self.assertTrue((self.folder / "results" / "small-001" / "summary.json").exists())
         self.assertEqual(done.stderr.count("drawbar pull"), 1, done.stderr)
 
+    def test_four_wheels_on_one_bed_each_read_their_own_weight(self):
+        done = furrow("run", ROOT / "rigs" / "four_wheels.json", "--out", "out", "--set", "terrain.radius=0.03",
+                      "--set", "terrain.layers=3", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        masses = [200, 320, 450, 700]
+        for wheel, mass in enumerate(masses):
+            name = "summary.json" if wheel == 0 else f"summary_wheel{wheel}.json"
+            summary = json.loads((self.folder / "out" / name).read_text())
+            weight = summary["vertical_load_N"]
+            self.assertAlmostEqual(weight, 9.81 * (mass + 15 + 4.8), delta=0.5)
+            self.assertAlmostEqual(summary["net_terrain_force_N"][2], weight, delta=0.005 * weight, msg=name)
+        self.assertEqual(len(summary["ranks"]), 6)
+
     def test_report_makes_plots(self):
         path = write_scenario(self.folder)
         self.assertEqual(furrow("run", path, "--out", "out", cwd=self.folder).returncode, 0)

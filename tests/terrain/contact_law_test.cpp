@@ -131,6 +131,12 @@ TEST(Mixing, follows_the_stated_rules) {
   c = mix(grain_material(few.options), tire, Partner::surface, grain, law);
   const double e_star = 1.0 / ((1 - 0.09) / 2.49e7 + (1 - 0.16) / 2e7);
   EXPECT_NEAR(c.stiffness, 4.0 / 3.0 * e_star * std::sqrt(0.006), 1e-6);
+  // A tire of 4.2 kg/m² moves with 0.52 g under a grain of 2.26 g: its damper is that of the lighter pair.
+  const double heavy = c.damping, heavy_shear = c.shear_damping, skin = 4.2 * 2.0 * std::sqrt(3.0) * 0.006 * 0.006;
+  tire.area_density = 4.2;
+  c = mix(grain_material(few.options), tire, Partner::surface, grain, law);
+  EXPECT_NEAR(c.damping / heavy, std::sqrt(skin / (skin + grain.mass)), 1e-12);
+  EXPECT_NEAR(c.shear_damping / heavy_shear, std::sqrt(skin / (skin + grain.mass / 3.5)), 1e-12);
 }
 
 TEST(StableStep, names_what_limits_it) {

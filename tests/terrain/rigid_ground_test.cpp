@@ -47,6 +47,16 @@ Push push(Terrain& ground, const SurfaceState& start, double duration = 1e-6, in
   return result;
 }
 
+/// The push on a surface that has slid with constant velocity for as long as the layer's shear takes to settle.
+Push slide_steadily(Terrain& ground, SurfaceState state, double duration = 5e-3, int intervals = 500) {
+  Push result;
+  for (int i = 0; i < intervals; ++i) {
+    result = push(ground, state, duration);
+    for (std::size_t v = 0; v < state.position.size(); ++v) state.position[v] += duration * state.velocity[v];
+  }
+  return result;
+}
+
 TEST(RigidGround, presses_a_block_with_stiffness_times_depth_times_area) {
   TerrainOptions options;
   const auto ground = make_rigid_ground(options);
@@ -80,12 +90,12 @@ TEST(RigidGround, does_not_depend_on_how_a_flat_face_is_cut) {
   const Surface coarse = testing::sheet(-0.1, -0.1, 0.2, 1, 1, [](double, double) { return 0.0; });
   const Surface fine = testing::sheet(-0.1, -0.1, 0.02, 10, 10, [](double, double) { return 0.0; });
   const double tilt = 4e-3;
-  const Vec3 velocity(0.3, 0.1, -0.01);
+  const Vec3 velocity(0.3, 0.1, 0.0);
   const SurfaceState a = placed(coarse, {0.0, 0.0, -1e-4}, velocity, tilt);
   const SurfaceState b = placed(fine, {0.0, 0.0, -1e-4}, velocity, tilt);
   coarse_ground->attach(coarse.mesh, rubber(), a);
   fine_ground->attach(fine.mesh, rubber(), b);
-  const Push from_coarse = push(*coarse_ground, a), from_fine = push(*fine_ground, b);
+  const Push from_coarse = slide_steadily(*coarse_ground, a), from_fine = slide_steadily(*fine_ground, b);
   // Exact but for the rounding of velocities, which come from differences of positions.
   EXPECT_LT((from_coarse.sums.force - from_fine.sums.force).norm() / from_fine.sums.force.norm(), 1e-10);
   EXPECT_LT((from_coarse.sums.moment - from_fine.sums.moment).norm() / from_fine.sums.moment.norm(), 1e-10);
@@ -102,13 +112,62 @@ TEST(RigidGround, follows_the_regularised_friction_law) {
       const Vec3 direction = Vec3(0.6, -0.8, 0.0);
       const SurfaceState start = placed(block, {0.0, 0.0, -4e-4}, speed * direction);
       ground->attach(block.mesh, rubber(0.9), start);  // the smaller coefficient rules
-      const Push one = push(*ground, start, 1e-3);
+      const Push one = slide_steadily(*ground, start);
       const Vec3 expected = -0.7 * one.sums.normal.z() * std::tanh(scale * speed) * direction;
       EXPECT_LT((one.sums.tangential - expected).norm(), 1e-11 * one.sums.normal.norm()) << scale << ' ' << speed;
       EXPECT_LE(one.sums.tangential.norm(), 0.7 * one.sums.normal.norm() * (1.0 + 1e-14));
       EXPECT_LT(one.sums.transfer_force_residual, 1e-12);
       EXPECT_LT(one.sums.transfer_moment_residual, 1e-12);
     }
+}
+
+TEST(RigidGround, sticks_like_a_spring_before_it_slides) {
+  // A block pushed sideways by less than μ N: κ A ξ holds it, and gives the work back.
+  TerrainOptions options;
+  options.friction = 0.7;
+  options.friction_velocity_scale = 1e6;
+  options.ground_damping = 0.0;
+  const auto ground = make_rigid_ground(options);
+  const Surface block = box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
+  const SurfaceState start = placed(block, {0.0, 0.0, -4e-4}, {1e-2, 0.0, 0.0});
+  ground->attach(block.mesh, rubber(), start);
+  const double at_rest = ground->state().elastic_energy;
+  const Push one = push(*ground, start, 1e-2, 1000);  // 0.1 mm; it would slide from 1.1 mm on
+  const double stiffness = options.ground_shear_stiffness * 0.02;
+  EXPECT_NEAR(one.sums.tangential.x() / (-stiffness * 0.5e-4), 1.0, 2e-3);  // mean while it grows
+  EXPECT_NEAR((ground->state().elastic_energy - at_rest) / (0.5 * stiffness * 1e-8), 1.0, 2e-3);
+  EXPECT_NEAR((ground->state().dissipation + at_rest) / (0.5 * stiffness * 1e-8), 0.0, 2e-3);
+}
+
+TEST(RigidGround, does_not_let_a_light_vertex_chatter) {
+  // A tread vertex of 2 g under 50 N is driven along by 5 N through its spring of 1e5 N/m; forces come one step late.
+  // The bare law, a dashpot of c μ N = 1750 N s/m, would throw it back and forth by (c μ N h/m) v.
+  for (double scale : {5.0, 50.0}) {
+    TerrainOptions options;
+    options.friction = 0.7;
+    options.friction_velocity_scale = scale;
+    const auto ground = make_rigid_ground(options);
+    Surface patch = box({-0.01, -0.025, 0.0}, {0.01, 0.025, 0.01});
+    const double mass = 2e-3, h = 4e-5, drive = 1e5, speed = 0.02;
+    Vec3 position(0.0, 0.0, -50.0 / (options.ground_stiffness * 1e-3)), velocity = Vec3::Zero();
+    double pulled = 0.0, force = 0.0, last = 0.0, swing = 0.0, mean = 0.0;
+    ground->attach(patch.mesh, rubber(), placed(patch, position, velocity));
+    for (int i = 0; i < 20000; ++i) {
+      const Push one = push(*ground, placed(patch, position, velocity), h);
+      pulled += h * speed;
+      const double damping = 0.5 * std::sqrt(drive * mass) * (speed - velocity.x());
+      velocity.x() += h / mass * (drive * (pulled - position.x()) + damping + force);
+      position.x() += h * velocity.x();
+      force = one.sums.force.x();
+      if (i >= 10000) {
+        swing = std::max(swing, std::abs(velocity.x() - last));
+        mean += force / 10000.0;
+      }
+      last = velocity.x();
+    }
+    EXPECT_LT(swing, 1e-4 * speed) << scale;
+    EXPECT_NEAR(mean / (-0.7 * 50.0 * std::tanh(scale * speed)), 1.0, 1e-6) << scale;
+  }
 }
 
 TEST(RigidGround, gives_no_tractive_effort_without_friction) {
@@ -118,9 +177,12 @@ TEST(RigidGround, gives_no_tractive_effort_without_friction) {
     const Surface round = wheel(0.4673, 0.2, 60, 4);
     const SurfaceState start = placed(round, {0.0, 0.0, 0.4673 - 1e-3}, {2.0, 0.0, 0.0}, 0.02, 8.56);
     ground->attach(round.mesh, rubber(friction), start);
-    const Push one = push(*ground, start);
-    EXPECT_GT(one.sums.normal.z(), 1000.0);
-    EXPECT_EQ(one.sums.normal.x(), 0.0);
+    const Push first = push(*ground, start, 4e-4, 40);
+    SurfaceState later = start;
+    for (std::size_t v = 0; v < later.position.size(); ++v) later.position[v] += 4e-4 * start.velocity[v];
+    const Push one = push(*ground, later, 1e-6);
+    EXPECT_GT(first.sums.normal.z(), 1000.0);
+    EXPECT_EQ(first.sums.normal.x(), 0.0);
     if (friction == 0.0) {
       EXPECT_EQ(one.sums.tangential.norm(), 0.0);
     } else {
@@ -137,7 +199,7 @@ TEST(RigidGround, mirrors_what_is_mirrored) {
     const SurfaceState start =
         placed(round, {0.0, 0.0, 0.4673 - 1e-3}, {sign * 3.0, 0.0, 0.0}, sign * 0.013, sign * 8.56);
     ground->attach(round.mesh, rubber(), start);
-    (sign > 0 ? there : back) = push(*ground, start);
+    (sign > 0 ? there : back) = push(*ground, start, 4e-4, 10);
   }
   EXPECT_NEAR(there.sums.force.x(), -back.sums.force.x(), 1e-9 * there.sums.force.norm());
   EXPECT_NEAR(there.sums.force.z(), back.sums.force.z(), 1e-9 * there.sums.force.norm());

@@ -2,9 +2,24 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "tire/rim_archive.hpp"
 
 namespace furrow {
+namespace {
+
+/// Area of the shell, m².
+double shell_area(const RingMesh& ring, const SurfaceMesh& surface, const RingLayout& layout) {
+  const Field shape = undeformed(ring);
+  const auto at = [&](int v) { return layout.get(shape, v / ring.rows, v % ring.rows, 0); };
+  double area = 0.0;
+  for (const auto& [a, b, c] : surface.triangles)
+    if (std::max({a, b, c}) < ring.nodes()) area += 0.5 * (at(b) - at(a)).cross(at(c) - at(a)).norm();
+  return area;
+}
+
+}  // namespace
 
 AncfTire::AncfTire(const TireFile& file, const RingIntegratorParams& params)
     : ring_(make_ring_mesh(file)),
@@ -18,6 +33,7 @@ AncfTire::AncfTire(const TireFile& file, const RingIntegratorParams& params)
         p.damping = file.structural_damping;
         return p;
       }()) {
+  material_.area_density = rigid_mass_.mass / shell_area(ring_, surface_mesh_, integrator_.layout());
   undeformed_volume_ = integrator_.shell().volume(undeformed(ring_), Vec3::Zero());
   force_.assign(integrator_.layout().size(), 0.0);
 }

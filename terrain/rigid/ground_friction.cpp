@@ -1,0 +1,43 @@
+#include "terrain/rigid/ground_friction.hpp"
+
+#include <cmath>
+
+namespace furrow {
+namespace {
+
+constexpr int kMostIterations = 60;
+constexpr double kTolerance = 1e-15;  // of the sliding speed
+
+/// Root of g s + limit tanh(c s) = drive. The left side is concave, so Newton's method from 0 rises to it.
+double sliding_speed(double drive, double g, double limit, double c) {
+  double s = 0.0;
+  for (int n = 0; n < kMostIterations; ++n) {
+    const double t = std::tanh(c * s);
+    const double change = (drive - g * s - limit * t) / (g + limit * c * (1.0 - t * t));
+    s += change;
+    if (!(change > kTolerance * s)) break;
+  }
+  return s;
+}
+
+}  // namespace
+
+Vec3 slide(const GroundLaw& law, double load, double area, const Vec3& velocity, double dt, Vec3& shear) {
+  const double limit = law.friction * load, stiffness = law.shear_stiffness * area;
+  if (!(limit > 0.0) || !(stiffness > 0.0)) {
+    shear = Vec3::Zero();
+    return Vec3::Zero();
+  }
+  // Backward Euler: ξ' = ξ + dt (v − s), so the layer's force is drive − g s along one direction.
+  const Vec3 flat(velocity.x(), velocity.y(), 0.0);
+  const double g = stiffness * dt + law.damping * area;
+  const Vec3 drive = stiffness * shear + g * flat;
+  const double size = drive.norm();
+  if (!(size > 0.0)) return Vec3::Zero();
+  const Vec3 direction = drive / size;
+  const double sliding = sliding_speed(size, g, limit, law.velocity_scale);
+  shear += dt * (flat - sliding * direction);
+  return -(size - g * sliding) * direction;
+}
+
+}  // namespace furrow

@@ -9,6 +9,8 @@
 namespace furrow {
 namespace {
 
+constexpr int kMostHalvings = 4;  // of a step that does not converge
+
 /// Area of the shell, m².
 double shell_area(const RingMesh& ring, const SurfaceMesh& surface, const RingLayout& layout) {
   const Field shape = undeformed(ring);
@@ -77,9 +79,9 @@ void AncfTire::surface(SurfaceState& out) const {
 
 TireStatus AncfTire::advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) {
   const RingLayout& layout = integrator_.layout();
-  const Vec3 about = 0.5 * (rim.start().position + rim.end().position);
-  const double h = rim.duration() / substeps;
-  Wrench total, disc;
+  about_ = 0.5 * (rim.start().position + rim.end().position);
+  spindle_ = {};
+  Wrench disc;
   std::fill(force_.begin(), force_.end(), 0.0);
   for (std::size_t k = 0; k < forces.vertex.size(); ++k) {
     const int vertex = forces.vertex[k];
@@ -93,21 +95,34 @@ TireStatus AncfTire::advance(const RimTrajectory& rim, const NodalForces& forces
     disc.moment += (mean * ring_.disc_centre(vertex - ring_.nodes())).cross(forces.force[k]);
   }
   for (int n = 1; n <= substeps; ++n) {
-    const RimState end = n == substeps ? rim.end() : rim.at(static_cast<double>(n) / substeps).state;
-    Wrench part;
-    TireStatus status = integrator_.step(h, end, force_, about, part);
+    TireStatus status = step(rim, n - 1.0, n, substeps, kMostHalvings);
     if (!status.converged) {
       status.message = fmt::format("tire did not converge at step {}: {}", steps_ + n, status.message);
       return status;
     }
-    total.force += part.force;
-    total.moment += part.moment;
   }
   steps_ += substeps;
   rim_ = rim.end();
-  spindle_.force = total.force / substeps + disc.force;
-  spindle_.moment = total.moment / substeps + disc.moment;
+  spindle_.force += disc.force;
+  spindle_.moment += disc.moment;
   return {};
+}
+
+/// The step from `from` to `to`, counted in substeps; in halves of it where the iteration does not converge.
+TireStatus AncfTire::step(const RimTrajectory& rim, double from, double to, int substeps, int halvings) {
+  const double share = (to - from) / substeps;
+  const RimState end = to == substeps ? rim.end() : rim.at(to / substeps).state;
+  Wrench part;
+  TireStatus status = integrator_.step(share * rim.duration(), end, force_, about_, part);
+  if (status.converged) {
+    spindle_.force += share * part.force;
+    spindle_.moment += share * part.moment;
+    return status;
+  }
+  if (halvings == 0) return status;
+  const double middle = 0.5 * (from + to);
+  status = step(rim, from, middle, substeps, halvings - 1);
+  return status.converged ? step(rim, middle, to, substeps, halvings - 1) : status;
 }
 
 TireDiagnostics AncfTire::diagnostics() const {

@@ -31,6 +31,8 @@ class AncfTire final : public Tire {
   const InflationReport& inflation() const { return inflation_; }
 
  private:
+  TireStatus step(const RimTrajectory& rim, double from, double to, int substeps, int halvings);
+
   RingMesh ring_;
   SurfaceMesh surface_mesh_;
   ContactMaterial material_;
@@ -43,7 +45,8 @@ class AncfTire final : public Tire {
   RimState rim_;    // now
   Wrench spindle_;  // of the last advance
   std::int64_t steps_ = 0;
-  Field force_;  // work
+  Field force_;                 // of the running interval
+  Vec3 about_ = Vec3::Zero();   // where its moments are taken, m
 };
 
 }  // namespace furrow

@@ -22,7 +22,7 @@ namespace {
 struct Typed {
   std::string scenario, out, threads, key, directory;
   std::vector<std::string> settings;
-  bool overwrite = false, json = false;
+  bool overwrite = false, profile = false, json = false;
 };
 
 Error usage_error(const std::string& what) { return input_error("command line", "", what); }
@@ -75,7 +75,8 @@ ExitCode report_command(const Typed& typed) {
 }
 
 ExitCode run_command(const Typed& typed, int argc, char** argv) {
-  const RunArguments arguments{typed.scenario, settings_of(typed), typed.out, typed.overwrite};
+  const RunArguments arguments{typed.scenario, settings_of(typed), typed.out, typed.overwrite,
+                               typed.profile};
   return launched_by_mpi() ? run_as_rank(arguments, argc, argv) : run_supervised(arguments);
 }
 
@@ -124,6 +125,7 @@ ExitCode run_command_line(int argc, char** argv) {
   add_scenario(run, typed);
   run.add_option("--out", typed.out, "new folder for the results (default: results/<scenario>-NNN here)");
   run.add_flag("--overwrite", typed.overwrite, "let --out replace the results of an earlier run");
+  run.add_flag("--profile", typed.profile, "also write profile.json: where the time of each step goes (Chrome trace)");
   CLI::App& validate =
       *app.add_subcommand("validate", "checks a scenario and says what a run of it will need");
   add_scenario(validate, typed);

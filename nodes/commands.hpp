@@ -18,6 +18,7 @@ struct RunArguments {
   Settings settings;
   std::filesystem::path out;  // empty: a fresh folder under results/
   bool overwrite = false;
+  bool profile = false;
 };
 
 /// Everything that `furrow` does. @throws Error

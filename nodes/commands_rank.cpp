@@ -120,6 +120,7 @@ ExitCode run_this_node(Transport& transport, const Scenario& scenario, const Run
     apply(plan);
     if (!plan.note.empty()) voice.note(plan.note);
     context.threads = plan.threads;
+    context.profile = arguments.profile;
     context.stop_requested = [] { return stop_signalled(); };
     context.progress = [&](const Progress& progress) { voice.show(progress); };
     const ExitCode code = run_node(scenario, transport, context);

@@ -20,6 +20,7 @@ std::vector<std::string> rank_arguments(const RunArguments& arguments,
     list.push_back("--set");
     list.push_back(key + "=" + value);
   }
+  if (arguments.profile) list.push_back("--profile");
   return list;
 }
 

@@ -47,7 +47,8 @@ std::unique_ptr<Node> make_node(const Scenario& scenario, Address self, int thre
 
 /// Synchronizes and advances for n = from … to − 1. Stops early, after a synchronization, when the node says so.
 /// @returns the step it stands at; not yet synchronized there unless it stopped early
-std::int64_t run_steps(Node& node, Transport& transport, double step, std::int64_t from, std::int64_t to);
+std::int64_t run_steps(Node& node, Transport& transport, double step, std::int64_t from, std::int64_t to,
+                       class StepProfile* profile = nullptr);
 
 /// Hash of everything that save() holds.
 std::uint64_t state_hash(const Node& node);

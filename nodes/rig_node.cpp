@@ -1,9 +1,9 @@
 // The rig's rank: moves the wheels, gathers what all report, and writes the results.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "nodes/node.hpp"
+#include "nodes/profile.hpp"
 #include "nodes/results.hpp"
 #include "nodes/series_builder.hpp"
 #include "rigs/rig_row.hpp"
@@ -13,10 +13,6 @@ namespace {
 
 constexpr double kPlacementGap = 1e-3;      // m, between the highest grain and the undeformed tire
 constexpr double kProgressInterval = 0.25;  // s of wall time
-
-double wall_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 class RigNode : public Node {
  public:
@@ -49,7 +45,7 @@ class RigNode : public Node {
     wrenches_.resize(wheels);
     series_steps_ = steps_between(scenario_.output.series_interval, scenario_.run.step);
     if (!context.directory.empty()) results_ = std::make_unique<Results>(scenario_, cards_, setup_, context.directory);
-    wall_start_ = wall_s();
+    wall_start_ = machine_clock();
   }
 
   void synchronize(Transport& transport, const StepHeader& header) override {
@@ -81,9 +77,10 @@ class RigNode : public Node {
     for (std::size_t i = 1; i < cards_.size(); ++i)
       reports.push_back(receive<FinalReport>(transport, cards_[i].self));
     if (!results_) return;
+    if (context_.profile) write_profile(context_.directory / "profile.json", reports);
     std::vector<double> carried_mass;
     for (int k = 0; k < rig_->wheel_count(); ++k) carried_mass.push_back(rig_->report(k).carried_mass);
-    results_->finish(reports, builders_, carried_mass, wall_s() - wall_start_, stopped_);
+    results_->finish(reports, builders_, carried_mass, machine_clock() - wall_start_, stopped_);
   }
 
   void save(Archive& archive) const override {
@@ -122,7 +119,7 @@ class RigNode : public Node {
   }
 
   void show_progress(const StepHeader& header) {
-    const double now = wall_s();
+    const double now = machine_clock();
     if (!context_.progress || header.step == 0 || now - shown_ < kProgressInterval) return;
     shown_ = now;
     Progress p;

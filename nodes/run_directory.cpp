@@ -23,10 +23,11 @@ constexpr int kMostNumbers = 100000;
 /// What runs leave behind; nothing else is ever removed.
 bool is_result(const fs::path& entry) {
   const std::string name = entry.filename().string();
-  constexpr std::array<const char*, 7> kNames{"summary.json", "scenario.json", "results.h5", "results.xdmf",
-                                              "run.log",      "profile.json",  "report.json"};
+  constexpr std::array<const char*, 6> kNames{"scenario.json", "results.h5",   "results.xdmf",
+                                              "run.log",       "profile.json", "report.json"};
   return std::find(kNames.begin(), kNames.end(), name) != kNames.end() || name == "frames" ||
          name == "checkpoints" || (name.starts_with("timeseries") && entry.extension() == ".csv") ||
+         (name.starts_with("summary") && entry.extension() == ".json") ||
          entry.extension() == ".png";
 }
 

@@ -2,17 +2,12 @@
 
 #include <ctime>
 
-#include <chrono>
-
 #include "nodes/node.hpp"
+#include "nodes/profile.hpp"
 #include "protocol/hash.hpp"
 
 namespace furrow {
 namespace {
-
-double wall_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// CPU time of all threads of this process, s; in-process tests share it.
 double cpu_s() {
@@ -34,13 +29,17 @@ std::uint64_t state_hash(const Node& node) {
   return hash.value();
 }
 
-std::int64_t run_steps(Node& node, Transport& transport, double step, std::int64_t from, std::int64_t to) {
+std::int64_t run_steps(Node& node, Transport& transport, double step, std::int64_t from, std::int64_t to,
+                       StepProfile* profile) {
   for (std::int64_t n = from; n < to; ++n) {
     const StepHeader header{n, static_cast<double>(n) * step};
+    if (profile) profile->begin(n);
     node.synchronize(transport, header);
     transport.flush();
+    if (profile) profile->exchanged(n);
     if (node.stopped()) return n;
     node.advance(header);
+    if (profile) profile->advanced(n);
   }
   return to;
 }
@@ -55,8 +54,9 @@ ExitCode run_node(const Scenario& scenario, Transport& transport, const RunConte
     node->set_up(transport, cards, context);
 
     const std::int64_t steps = scenario.run.steps();
-    const double wall_start = wall_s(), cpu_start = cpu_s(), waited_start = transport.wait_clock().waited_s;
-    run_steps(*node, transport, scenario.run.step, 0, steps);
+    StepProfile profile(context.profile ? steps : 0);
+    const double wall_start = machine_clock(), cpu_start = cpu_s(), waited_start = transport.wait_clock().waited_s;
+    run_steps(*node, transport, scenario.run.step, 0, steps, &profile);
     if (!node->stopped()) {
       node->synchronize(transport, {steps, static_cast<double>(steps) * scenario.run.step});
       transport.flush();
@@ -64,9 +64,10 @@ ExitCode run_node(const Scenario& scenario, Transport& transport, const RunConte
     FinalReport own;
     own.self = transport.self();
     own.wait_s = transport.wait_clock().waited_s - waited_start;
-    own.compute_s = wall_s() - wall_start - own.wait_s;
+    own.compute_s = machine_clock() - wall_start - own.wait_s;
     own.cpu_s = cpu_s() - cpu_start;
     own.threads = context.threads;
+    own.profile = profile.times();
     own.state_hash = state_hash(*node);
     node->finish(transport, own);
     return node->stopped() ? ExitCode::stopped : ExitCode::done;

@@ -13,6 +13,7 @@ namespace furrow {
 struct RunContext {
   std::filesystem::path directory;    // existing run directory; empty: write nothing (tests)
   int threads = 1;                    // OpenMP threads of this node while stepping
+  bool profile = false;               // record the time of steps
   std::function<bool()> stop_requested;  // a signal asked for a stop
   ProgressSink progress;              // called by the rig's node
 };

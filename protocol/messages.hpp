@@ -189,6 +189,7 @@ struct FinalReport {
   std::uint64_t state_hash = 0;
   double cpu_s = 0.0, compute_s = 0.0, wait_s = 0.0;  // of the stepping loop
   std::int32_t threads = 1;
+  std::vector<double> profile;                        // what StepProfile::times() holds; empty unless asked for
   HeightField height_before, height_after;            // terrain
 };
 

@@ -104,7 +104,8 @@ void visit_fields(Stream& s, M& m) {
 template <class Stream, class M>
   requires std::is_same_v<std::remove_const_t<M>, FinalReport>
 void visit_fields(Stream& s, M& m) {
-  each(s, m.self.role, m.self.index, m.state_hash, m.cpu_s, m.compute_s, m.wait_s, m.threads);
+  each(s, m.self.role, m.self.index, m.state_hash, m.cpu_s, m.compute_s, m.wait_s, m.threads,
+       m.profile);
   visit_fields(s, m.height_before);
   visit_fields(s, m.height_after);
 }

@@ -84,6 +84,7 @@ FinalReport final_report() {
   m.compute_s = 2;
   m.wait_s = 3;
   m.threads = 4;
+  m.profile = {0.5, 1.5};
   m.height_before = {0.1, 0.2, 0.3, 2, 1, {0.4, std::nan("")}};
   m.height_after = {0.5, 0.6, 0.7, 1, 1, {0.8}};
   return m;
@@ -161,7 +162,7 @@ TEST(Pack, every_field_is_there) {
   EXPECT_EQ(pack(terrain_forces()).size(), kHeader + kLength + 3 * 4 + kLength + 3 * kVec);
   EXPECT_EQ(pack(terrain_report()).size(), kHeader + 9 * 8 + 3 * kVec + kLength + 2 * kSums);
   EXPECT_EQ(pack(run_folder()).size(), kLength + 22);
-  EXPECT_EQ(pack(final_report()).size(), 4 + 4 + 8 + 3 * 8 + 4 + 2 * (3 * 8 + 2 * 4 + kLength) + 3 * 8);
+  EXPECT_EQ(pack(final_report()).size(), 4 + 4 + 8 + 3 * 8 + 4 + (kLength + 16) + 2 * (3 * 8 + 2 * 4 + kLength) + 3 * 8);
 }
 
 TEST(Pack, fields_arrive_where_they_belong) {

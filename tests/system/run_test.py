@@ -68,7 +68,7 @@ class Run(SystemTest):
 
     def test_four_wheels_on_one_bed_each_read_their_own_weight(self):
         done = furrow("run", ROOT / "rigs" / "four_wheels.json", "--out", "out", "--set", "terrain.radius=0.03",
-                      "--set", "terrain.layers=3", cwd=self.folder)
+                      "--set", "terrain.layers=3", "--set", "run.step=2e-4", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         masses = [200, 320, 450, 700]
         for wheel, mass in enumerate(masses):
@@ -78,6 +78,18 @@ class Run(SystemTest):
             self.assertAlmostEqual(weight, 9.81 * (mass + 15 + 4.8), delta=0.5)
             self.assertAlmostEqual(summary["net_terrain_force_N"][2], weight, delta=0.005 * weight, msg=name)
         self.assertEqual(len(summary["ranks"]), 6)
+
+    def test_profile_is_a_chrome_trace_of_all_ranks(self):
+        done = furrow("run", write_scenario(self.folder), "--out", "out", "--profile", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        events = json.loads((self.folder / "out" / "profile.json").read_text())["traceEvents"]
+        names = {event["pid"]: event["args"]["name"] for event in events if event["ph"] == "M"}
+        self.assertEqual(list(names.values()), ["rig", "tire 0", "terrain"])
+        for rank in names:
+            steps = [event for event in events if event["pid"] == rank and event["ph"] == "X"]
+            self.assertEqual(len(steps), 2 * 500)
+            for before, after in zip(steps, steps[1:]):
+                self.assertLessEqual(before["ts"] + before["dur"], after["ts"] + 0.2)
 
     def test_report_makes_plots(self):
         path = write_scenario(self.folder)

@@ -1,0 +1,70 @@
+#!/usr/bin/python3
+"""Charts of the studies' CSV files, beside them: step_size.png, rigid_ground.png."""
+import csv
+import pathlib
+import re
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[1] / "scripts"))
+import plot.style  # noqa: E402, F401  the look of all plots
+
+
+def table(name):
+    with open(HERE / f"{name}.csv") as file:
+        return list(csv.DictReader(file))
+
+
+def step_size():
+    """Mean drawbar pull over the step, one line per contact law, bars of two standard errors."""
+    lines = {}
+    for row in table("step_size"):
+        law, share = re.fullmatch(r"(.*)_step_1(?:_(\d+))?", row["case"]).groups()
+        lines.setdefault(law, []).append((60.0 / int(share or 1), float(row["drawbar_pull_N.mean"]),
+                                          2.0 * float(row["drawbar_pull_N.sem"])))
+    names = {"mindlin": "Hertz–Mindlin with history", "coulomb_limited": "tanh friction, impulse limit on",
+             "coulomb_unlimited": "tanh friction as in the report"}
+    figure, axes = plt.subplots(figsize=(6.4, 4.0))
+    for (law, points), marker in zip(lines.items(), "os^"):
+        step, pull, bar = zip(*sorted(points))
+        axes.errorbar(step, pull, bar, marker=marker, capsize=3, label=names[law])
+    axes.set(xscale="log", xlabel="step in µs", ylabel="drawbar pull in N", title="Rigid wheel, slip 0.3, bed of 10 mm grains")
+    axes.set_xticks([15, 30, 60], ["15", "30", "60"])
+    axes.minorticks_off()
+    axes.axhline(0.0, color="0.8", zorder=0)
+    axes.legend()
+    save(figure, "step_size")
+
+
+def rigid_ground():
+    """Drawbar pull over load against slip on hard ground."""
+    lines = {}
+    for row in table("rigid_ground"):
+        found = re.fullmatch(r"(flexible|rigid)_c(\d+)_slip_([\d.]+)", row["case"])
+        if found:
+            tire, c, slip = found.groups()
+            lines.setdefault((tire, c), []).append((float(slip), float(row["drawbar_coefficient"])))
+    figure, axes = plt.subplots(figsize=(6.4, 4.0))
+    for (tire, c), points in lines.items():
+        axes.plot(*zip(*sorted(points)), marker="o" if tire == "flexible" else "s",
+                  linestyle="-" if c == "50" else "--", label=f"{tire} tire, c = {c} s/m")
+    axes.axhline(0.9, color="0.8", zorder=0)
+    axes.annotate("friction 0.9", (0.5, 0.9), ha="right", va="bottom", color="0.5")
+    axes.set(xlabel="slip", ylabel="drawbar pull / load", title="Hard ground, 4.6 kN, 200 kPa")
+    axes.legend()
+    save(figure, "rigid_ground")
+
+
+def save(figure, name):
+    figure.savefig(HERE / f"{name}.png", dpi=110)
+
+
+if __name__ == "__main__":
+    for name, draw in (("step_size", step_size), ("rigid_ground", rigid_ground)):
+        if (HERE / f"{name}.csv").exists():
+            draw()

@@ -35,11 +35,16 @@ std::string checksum(const Archive& archive) {
 
 Archive::Array read_array(const Hdf5Reader& file, const std::string& name) {
   switch (file.type(name)) {
-    case Hdf5Type::float64: return file.get<double>(name);
-    case Hdf5Type::int64: return file.get<std::int64_t>(name);
-    case Hdf5Type::int32: return file.get<std::int32_t>(name);
-    case Hdf5Type::uint64: return file.get<std::uint64_t>(name);
-    default: return file.get<std::uint8_t>(name);
+    case Hdf5Type::float64:
+      return file.get<double>(name);
+    case Hdf5Type::int64:
+      return file.get<std::int64_t>(name);
+    case Hdf5Type::int32:
+      return file.get<std::int32_t>(name);
+    case Hdf5Type::uint64:
+      return file.get<std::uint64_t>(name);
+    default:
+      return file.get<std::uint8_t>(name);
   }
 }
 
@@ -51,7 +56,8 @@ void write_archive(const std::filesystem::path& path, const Archive& archive) {
   file.attribute("arrays", static_cast<std::int64_t>(archive.arrays().size()));
   file.attribute("checksum", checksum(archive));
   for (const auto& [name, array] : archive.arrays()) {
-    if (name.find(':') != std::string::npos) throw io_error(path.string(), "array name '" + name + "' holds a ':'");
+    if (name.find(':') != std::string::npos)
+      throw io_error(path.string(), "array name '" + name + "' holds a ':'");
     const std::string stored = std::string(kGroup) + "/" + swapped(name, '/', ':');
     std::visit([&](const auto& values) { file.put(stored, std::span(values), {values.size()}); }, array);
   }

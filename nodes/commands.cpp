@@ -75,8 +75,7 @@ ExitCode report_command(const Typed& typed) {
 }
 
 ExitCode run_command(const Typed& typed, int argc, char** argv) {
-  const RunArguments arguments{typed.scenario, settings_of(typed), typed.out, typed.overwrite,
-                               typed.profile};
+  const RunArguments arguments{typed.scenario, settings_of(typed), typed.out, typed.overwrite, typed.profile};
   return launched_by_mpi() ? run_as_rank(arguments, argc, argv) : run_supervised(arguments);
 }
 
@@ -125,7 +124,8 @@ ExitCode run_command_line(int argc, char** argv) {
   add_scenario(run, typed);
   run.add_option("--out", typed.out, "new folder for the results (default: results/<scenario>-NNN here)");
   run.add_flag("--overwrite", typed.overwrite, "let --out replace the results of an earlier run");
-  run.add_flag("--profile", typed.profile, "also write profile.json: where the time of each step goes (Chrome trace)");
+  run.add_flag("--profile", typed.profile,
+               "also write profile.json: where the time of each step goes (Chrome trace)");
   CLI::App& validate =
       *app.add_subcommand("validate", "checks a scenario and says what a run of it will need");
   add_scenario(validate, typed);

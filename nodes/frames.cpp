@@ -7,7 +7,8 @@
 namespace furrow {
 namespace {
 
-std::filesystem::path frame_file(const std::filesystem::path& run, const std::string& what, std::int64_t index) {
+std::filesystem::path frame_file(const std::filesystem::path& run, const std::string& what,
+                                 std::int64_t index) {
   const auto folder = run / "frames";
   std::error_code ignored;  // if the folder cannot be made, creating the file says so
   std::filesystem::create_directories(folder, ignored);
@@ -30,7 +31,8 @@ void write_tire_frame(const std::filesystem::path& run, int tire, std::int64_t i
   std::vector<Vec3> dense(count, Vec3::Zero());
   for (std::size_t i = 0; i < forces.vertex.size(); ++i) dense[forces.vertex[i]] = forces.force[i];
   std::vector<std::int32_t> triangles;
-  for (const auto& triangle : mesh.triangles) triangles.insert(triangles.end(), triangle.begin(), triangle.end());
+  for (const auto& triangle : mesh.triangles)
+    triangles.insert(triangles.end(), triangle.begin(), triangle.end());
 
   Hdf5Writer file(frame_file(run, fmt::format("tire{}", tire), index));
   file.attribute("time_s", time);

@@ -68,16 +68,20 @@ void Hdf5Writer::write(const std::string& name, std::span<const T> values, const
   const Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
   const Handle groups(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(groups, 1);
-  const Handle set(H5Dcreate2(handle_, name.c_str(), type, space, groups, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+  const Handle set(H5Dcreate2(handle_, name.c_str(), type, space, groups, H5P_DEFAULT, H5P_DEFAULT),
+                   H5Dclose);
   check(set >= 0, "cannot create dataset '" + name + "'");
   if (values.empty()) return;
-  check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0, "cannot write dataset '" + name + "'");
+  check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0,
+        "cannot write dataset '" + name + "'");
 }
 
-void Hdf5Writer::put(const std::string& name, std::span<const double> values, const std::vector<hsize_t>& shape) {
+void Hdf5Writer::put(const std::string& name, std::span<const double> values,
+                     const std::vector<hsize_t>& shape) {
   write(name, values, shape, H5T_NATIVE_DOUBLE);
 }
-void Hdf5Writer::put(const std::string& name, std::span<const float> values, const std::vector<hsize_t>& shape) {
+void Hdf5Writer::put(const std::string& name, std::span<const float> values,
+                     const std::vector<hsize_t>& shape) {
   write(name, values, shape, H5T_NATIVE_FLOAT);
 }
 void Hdf5Writer::put(const std::string& name, std::span<const std::int32_t> values,
@@ -146,7 +150,9 @@ void Hdf5Reader::check(bool ok, const std::string& what) const {
   if (!ok) throw io_error(file_.string(), what);
 }
 
-bool Hdf5Reader::has(const std::string& name) const { return H5Lexists(handle_, name.c_str(), H5P_DEFAULT) > 0; }
+bool Hdf5Reader::has(const std::string& name) const {
+  return H5Lexists(handle_, name.c_str(), H5P_DEFAULT) > 0;
+}
 
 bool Hdf5Reader::has_attribute(const std::string& name) const { return H5Aexists(handle_, name.c_str()) > 0; }
 

@@ -39,7 +39,8 @@ class Hdf5Writer {
 
  private:
   template <class T>
-  void write(const std::string& name, std::span<const T> values, const std::vector<hsize_t>& shape, hid_t type);
+  void write(const std::string& name, std::span<const T> values, const std::vector<hsize_t>& shape,
+             hid_t type);
   void write_attribute(const std::string& name, hid_t type, const void* value);
   void check(bool ok, const std::string& what) const;
 

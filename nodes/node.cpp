@@ -27,9 +27,12 @@ std::int64_t steps_between(double interval, double step) {
 
 std::unique_ptr<Node> make_node(const Scenario& scenario, Address self, int threads) {
   switch (self.role) {
-    case Role::rig: return make_rig_node(scenario);
-    case Role::tire: return make_tire_node(scenario, self.index);
-    case Role::terrain: return make_terrain_node(scenario, threads);
+    case Role::rig:
+      return make_rig_node(scenario);
+    case Role::tire:
+      return make_tire_node(scenario, self.index);
+    case Role::terrain:
+      return make_terrain_node(scenario, threads);
   }
   throw Error(ExitCode::rank_lost, "unknown role");
 }

@@ -40,18 +40,24 @@ void write_profile(const std::filesystem::path& file, std::span<const FinalRepor
   const auto microseconds = [&](double time) { return std::round(1e7 * (time - origin)) / 10.0; };
   for (std::size_t rank = 0; rank < reports.size(); ++rank) {
     const FinalReport& report = reports[rank];
-    events.push_back({{"name", "process_name"}, {"ph", "M"}, {"pid", rank}, {"args", {{"name", to_string(report.self)}}}});
+    events.push_back(
+        {{"name", "process_name"}, {"ph", "M"}, {"pid", rank}, {"args", {{"name", to_string(report.self)}}}});
     for (std::size_t i = 0; i + kColumns <= report.profile.size(); i += kColumns) {
       const double* at = &report.profile[i];
       for (int part = 0; part < 2; ++part) {
         if (!(at[2 + part] > 0.0)) continue;  // the run ended before
-        events.push_back({{"name", part == 0 ? "synchronize" : "advance"}, {"ph", "X"}, {"pid", rank}, {"tid", 0},
-                          {"ts", microseconds(at[1 + part])}, {"dur", std::round(1e7 * (at[2 + part] - at[1 + part])) / 10.0},
+        events.push_back({{"name", part == 0 ? "synchronize" : "advance"},
+                          {"ph", "X"},
+                          {"pid", rank},
+                          {"tid", 0},
+                          {"ts", microseconds(at[1 + part])},
+                          {"dur", std::round(1e7 * (at[2 + part] - at[1 + part])) / 10.0},
                           {"args", {{"step", static_cast<std::int64_t>(at[0])}}}});
       }
     }
   }
-  write_whole_file(file, nlohmann::ordered_json{{"displayTimeUnit", "ms"}, {"traceEvents", events}}.dump() + "\n");
+  write_whole_file(file,
+                   nlohmann::ordered_json{{"displayTimeUnit", "ms"}, {"traceEvents", events}}.dump() + "\n");
 }
 
 }  // namespace furrow

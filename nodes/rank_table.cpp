@@ -9,8 +9,9 @@ namespace furrow {
 
 std::vector<RankEntry> rank_table(const Scenario& s) {
   std::vector<RankEntry> table;
-  table.push_back({0, "rig", fmt::format("{} drawbar rig{}, {}; writes the results; 1 thread", s.rigs.size(),
-                                         s.rigs.size() > 1 ? "s" : "", s.rigs.front().mode)});
+  table.push_back({0, "rig",
+                   fmt::format("{} drawbar rig{}, {}; writes the results; 1 thread", s.rigs.size(),
+                               s.rigs.size() > 1 ? "s" : "", s.rigs.front().mode)});
   for (std::size_t k = 0; k < s.tires.size(); ++k)
     table.push_back({static_cast<int>(k) + 1, fmt::format("tire {}", k),
                      fmt::format("{}, {}; 1 thread", s.tires[k].file.filename().string(),
@@ -38,8 +39,10 @@ std::string shell_quoted(const std::string& argument) {
   if (!argument.empty() && std::all_of(argument.begin(), argument.end(), plain)) return argument;
   std::string quoted(1, '\'');
   for (const char c : argument) {
-    if (c == '\'') quoted += "'\\''";
-    else quoted += c;
+    if (c == '\'')
+      quoted += "'\\''";
+    else
+      quoted += c;
   }
   quoted += '\'';
   return quoted;

@@ -61,8 +61,9 @@ void Results::finish(std::span<const FinalReport> reports, std::span<const Serie
   write_xdmf_index(directory_);
   if (stopped) return;
   for (std::size_t k = builders.size(); k-- > 0;) {
-    const SummaryInput input{scenario_, cards_, setup_, reports, rows_[k], builders[k], carried_mass[k], wall,
-                             static_cast<int>(k)};
+    const SummaryInput input{scenario_,       cards_,   setup_,
+                             reports,         rows_[k], builders[k],
+                             carried_mass[k], wall,     static_cast<int>(k)};
     write_whole_file(directory_ / numbered("summary", k, ".json"), summary_text(input));
   }
 }

@@ -16,13 +16,13 @@ namespace furrow {
 /// Everything the summary of one wheel is computed from.
 struct SummaryInput {
   const Scenario& scenario;
-  std::span<const NodeCard> cards;        // rig, tires, terrain
+  std::span<const NodeCard> cards;  // rig, tires, terrain
   const TerrainSetup& setup;
-  std::span<const FinalReport> reports;   // as cards
+  std::span<const FinalReport> reports;  // as cards
   std::span<const SeriesRow> rows;
-  const SeriesBuilder& builder;           // totals at the end
-  double carried_mass = 0.0;              // kg
-  double wall = 0.0;                      // s, without settling
+  const SeriesBuilder& builder;  // totals at the end
+  double carried_mass = 0.0;     // kg
+  double wall = 0.0;             // s, without settling
   int wheel = 0;
 };
 

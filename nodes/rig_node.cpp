@@ -36,7 +36,8 @@ class RigNode : public Node {
     for (int k = 0; k < wheels; ++k) send(transport, kTerrain, RimMotion{{kPlacement, 0.0}, rig_->rim(k)});
     setup_ = receive<TerrainSetup>(transport, kTerrain);
     std::vector<double> height(wheels);
-    for (int k = 0; k < wheels; ++k) height[k] = setup_.top_height[k] + cards[1 + k].tire_radius + kPlacementGap;
+    for (int k = 0; k < wheels; ++k)
+      height[k] = setup_.top_height[k] + cards[1 + k].tire_radius + kPlacementGap;
     rig_->place(height);
     for (int k = 0; k < wheels; ++k) {
       send(transport, Address{Role::tire, k}, RimMotion{{kPlacement, 0.0}, rig_->rim(k)});
@@ -44,7 +45,8 @@ class RigNode : public Node {
     }
     wrenches_.resize(wheels);
     series_steps_ = steps_between(scenario_.output.series_interval, scenario_.run.step);
-    if (!context.directory.empty()) results_ = std::make_unique<Results>(scenario_, cards_, setup_, context.directory);
+    if (!context.directory.empty())
+      results_ = std::make_unique<Results>(scenario_, cards_, setup_, context.directory);
     wall_start_ = machine_clock();
   }
 
@@ -61,14 +63,16 @@ class RigNode : public Node {
     }
     const auto terrain = receive_step<TerrainReport>(transport, kTerrain, header.step);
     for (int k = 0; k < wheels && header.step > 0; ++k)
-      builders_[k].add({header.time, rig_->report(k), rig_->rim(k), tires[k], terrain.contact[k], terrain.state,
-                        setup_.grains, rig_->travel_direction()});
+      builders_[k].add({header.time, rig_->report(k), rig_->rim(k), tires[k], terrain.contact[k],
+                        terrain.state, setup_.grains, rig_->travel_direction()});
     const bool line = header.step > 0 && series_steps_ > 0 && header.step % series_steps_ == 0;
     if (line) record();
     show_progress(header);
   }
 
-  void advance(const StepHeader&) override { rig_->advance(wrenches_, scenario_.run.step, scenario_.rig_substeps); }
+  void advance(const StepHeader&) override {
+    rig_->advance(wrenches_, scenario_.run.step, scenario_.rig_substeps);
+  }
 
   bool stopped() const override { return stopped_; }
 

@@ -27,8 +27,7 @@ bool is_result(const fs::path& entry) {
                                               "run.log",       "profile.json", "report.json"};
   return std::find(kNames.begin(), kNames.end(), name) != kNames.end() || name == "frames" ||
          name == "checkpoints" || (name.starts_with("timeseries") && entry.extension() == ".csv") ||
-         (name.starts_with("summary") && entry.extension() == ".json") ||
-         entry.extension() == ".png";
+         (name.starts_with("summary") && entry.extension() == ".json") || entry.extension() == ".png";
 }
 
 bool is_run(const fs::path& folder) {

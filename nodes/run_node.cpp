@@ -55,7 +55,8 @@ ExitCode run_node(const Scenario& scenario, Transport& transport, const RunConte
 
     const std::int64_t steps = scenario.run.steps();
     StepProfile profile(context.profile ? steps : 0);
-    const double wall_start = machine_clock(), cpu_start = cpu_s(), waited_start = transport.wait_clock().waited_s;
+    const double wall_start = machine_clock(), cpu_start = cpu_s(),
+                 waited_start = transport.wait_clock().waited_s;
     run_steps(*node, transport, scenario.run.step, 0, steps, &profile);
     if (!node->stopped()) {
       node->synchronize(transport, {steps, static_cast<double>(steps) * scenario.run.step});

@@ -11,11 +11,11 @@
 namespace furrow {
 
 struct RunContext {
-  std::filesystem::path directory;    // existing run directory; empty: write nothing (tests)
-  int threads = 1;                    // OpenMP threads of this node while stepping
-  bool profile = false;               // record the time of steps
+  std::filesystem::path directory;       // existing run directory; empty: write nothing (tests)
+  int threads = 1;                       // OpenMP threads of this node while stepping
+  bool profile = false;                  // record the time of steps
   std::function<bool()> stop_requested;  // a signal asked for a stop
-  ProgressSink progress;              // called by the rig's node
+  ProgressSink progress;                 // called by the rig's node
 };
 
 /// Runs this rank's node to the end. Result files are written by the rank that owns them; the rig's writes the series,

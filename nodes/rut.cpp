@@ -29,7 +29,8 @@ std::vector<double> transverse_profile(const HeightField& before, const HeightFi
 
 /// Where the profile falls below `level` for two cells or more, going from cell `from` in steps of `step`; linear
 /// between cells. Cells without grains are passed over; the bin's edge ends the search.
-double crossing(const std::vector<double>& y, const std::vector<double>& profile, int from, int step, double level) {
+double crossing(const std::vector<double>& y, const std::vector<double>& profile, int from, int step,
+                double level) {
   const int count = static_cast<int>(y.size());
   const auto inside = [count](int i) { return i >= 0 && i < count; };
   const auto below = [&](int i) { return !inside(i) || !(profile[i] >= level); };

@@ -18,8 +18,9 @@ struct RutOptions {
 struct Rut {
   bool measured = false;
   double depth = 0.0;  // mean depth over the middle half of the tread width, 0.3–0.55 m behind the axle, m
-  double width = 0.0;  // distance of the points where the mean transverse profile falls below half the depth for two
-                       // cells or more, m; NaN when the depth is not positive
+  double width =
+      0.0;  // distance of the points where the mean transverse profile falls below half the depth for two
+            // cells or more, m; NaN when the depth is not positive
   std::vector<double> y, profile;  // mean transverse profile of (before − after) in that window, m
 };
 

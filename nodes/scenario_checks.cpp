@@ -81,8 +81,8 @@ void Checks::rig() {
           fmt::format("is {}, expected below 1 in mode fixed_speed: a carriage that moves cannot slip fully",
                       number_text(s_.rigs[k].slip)));
   if (s_.tires.size() != s_.rigs.size())
-    throw wrong("tires", fmt::format("has {} entries, expected {}: one per wheel of rig.wheels", s_.tires.size(),
-                                     s_.rigs.size()));
+    throw wrong("tires", fmt::format("has {} entries, expected {}: one per wheel of rig.wheels",
+                                     s_.tires.size(), s_.rigs.size()));
 }
 
 void Checks::tires() {
@@ -129,17 +129,17 @@ void Checks::start(const std::vector<bool>& use_default) {
     if (!grains()) continue;
     const AxlePath path = axle_path(s_, k, radius);
     if (path.from - radius < 0.0 || path.from + radius > length)
-      throw wrong(
-          wheel_key(k, "start"),
-          fmt::format(
-              "is {} m, expected {:.3f} to {:.3f} m: the tire of radius {} m would stand in a wall of the bin",
-              number_text(path.from), radius, length - radius, number_text(radius)));
+      throw wrong(wheel_key(k, "start"),
+                  fmt::format("is {} m, expected {:.3f} to {:.3f} m: the tire of radius {} m would stand in "
+                              "a wall of the bin",
+                              number_text(path.from), radius, length - radius, number_text(radius)));
     if (path.to - radius < 0.0 || path.to + radius > length)
-      throw wrong("terrain.length",
-                  fmt::format("is {} m, but the axle travels from x = {:.3f} to {:.3f} m and the tire's radius "
-                              "is {} m: it would hit the end wall; expected at least {:.2f} m or a shorter run",
-                              number_text(length), path.from, path.to, number_text(radius),
-                              std::abs(path.to - path.from) + 2.0 * reach));
+      throw wrong(
+          "terrain.length",
+          fmt::format("is {} m, but the axle travels from x = {:.3f} to {:.3f} m and the tire's radius "
+                      "is {} m: it would hit the end wall; expected at least {:.2f} m or a shorter run",
+                      number_text(length), path.from, path.to, number_text(radius),
+                      std::abs(path.to - path.from) + 2.0 * reach));
   }
 }
 
@@ -147,15 +147,17 @@ void Checks::start(const std::vector<bool>& use_default) {
 void Checks::overlaps() {
   for (std::size_t k = 1; k < tires_.size(); ++k)
     for (std::size_t i = 0; i < k; ++i) {
-      const double along = tires_[i].radius + tires_[k].radius, across = 0.5 * (tires_[i].width + tires_[k].width);
+      const double along = tires_[i].radius + tires_[k].radius,
+                   across = 0.5 * (tires_[i].width + tires_[k].width);
       if (std::abs(s_.rigs[i].lateral - s_.rigs[k].lateral) >= across) continue;
       const double from = s_.rigs[k].start - s_.rigs[i].start;
       const double to = axle_path(s_, k, tires_[k].radius).to - axle_path(s_, i, tires_[i].radius).to;
       if (std::min(std::abs(from), std::abs(to)) >= along && from * to > 0.0) continue;
-      throw wrong(wheel_key(k, "start"),
-                  fmt::format("puts this wheel in the way of wheel {}, expected {:.2f} m between their axles or "
-                              "{:.2f} m between their mid-planes (lateral)",
-                              i, along, across));
+      throw wrong(
+          wheel_key(k, "start"),
+          fmt::format("puts this wheel in the way of wheel {}, expected {:.2f} m between their axles or "
+                      "{:.2f} m between their mid-planes (lateral)",
+                      i, along, across));
     }
 }
 

@@ -147,7 +147,8 @@ std::string Schema::expectation(const json& node) {
   std::vector<std::string> words;
   const std::string bounds = range(node);
   const bool whole = allows(node, "integer") && !allows(node, "number");
-  if (node.contains("minimum") && node.contains("maximum") && node["minimum"] == node["maximum"]) return bounds;
+  if (node.contains("minimum") && node.contains("maximum") && node["minimum"] == node["maximum"])
+    return bounds;
   if (whole || allows(node, "number"))
     words.push_back(
         with_unit((whole ? "a whole number" : "a number") + (bounds.empty() ? "" : ", " + bounds), node));

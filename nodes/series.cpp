@@ -79,7 +79,8 @@ SeriesWriter::SeriesWriter(const std::filesystem::path& file)
     : file_(file), stream_(std::fopen(file.c_str(), "wb")) {
   check(stream_ != nullptr);
   std::string header;
-  for (const SeriesColumn& column : kColumns) header += (header.empty() ? "" : ",") + std::string(column.name);
+  for (const SeriesColumn& column : kColumns)
+    header += (header.empty() ? "" : ",") + std::string(column.name);
   header += '\n';
   check(std::fwrite(header.data(), 1, header.size(), stream_) == header.size());
 }

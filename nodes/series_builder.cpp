@@ -16,9 +16,9 @@ namespace {
 /// Visits the fields that are means over the intervals of a line.
 template <class Visit>
 void for_each_mean(SeriesRow& row, Visit visit) {
-  for (double* mean : {&row.slip, &row.speed, &row.spin, &row.drawbar_pull, &row.drawbar_pull_raw,
-                       &row.normal_force_travel, &row.tractive_effort, &row.drive_torque, &row.lateral_force,
-                       &row.aligning_moment, &row.damper_force})
+  for (double* mean :
+       {&row.slip, &row.speed, &row.spin, &row.drawbar_pull, &row.drawbar_pull_raw, &row.normal_force_travel,
+        &row.tractive_effort, &row.drive_torque, &row.lateral_force, &row.aligning_moment, &row.damper_force})
     visit(*mean);
   for (Vec3* mean : {&row.force, &row.spindle_force, &row.spindle_moment})
     for (int i = 0; i < 3; ++i) visit((*mean)[i]);

@@ -48,18 +48,18 @@ class SeriesBuilder {
 
   /// Everything that is carried from one synchronization to the next; doubles only, saved as they stand.
   struct Memory {
-    SeriesRow row;                    // sums of interval means; instants; cumulative values
-    double count = 0.0;               // intervals in row
-    double started = 0.0;             // 1 once an interval was added
-    double last_terrain_work = 0.0;   // done by the terrain in the interval before, J
-    double last_tire_work = 0.0;      // cumulative until the interval before, J
-    double last_rim_work = 0.0;       // done on the tire in the interval before, J
-    Vec3 sent = Vec3::Zero();         // cumulative impulse, N s
-    Vec3 sent_arrived = Vec3::Zero(); // the same, without the interval in flight, N s
+    SeriesRow row;                                  // sums of interval means; instants; cumulative values
+    double count = 0.0;                             // intervals in row
+    double started = 0.0;                           // 1 once an interval was added
+    double last_terrain_work = 0.0;                 // done by the terrain in the interval before, J
+    double last_tire_work = 0.0;                    // cumulative until the interval before, J
+    double last_rim_work = 0.0;                     // done on the tire in the interval before, J
+    Vec3 sent = Vec3::Zero();                       // cumulative impulse, N s
+    Vec3 sent_arrived = Vec3::Zero();               // the same, without the interval in flight, N s
     double sent_abs = 0.0, sent_abs_arrived = 0.0;  // N s
     Wrench last_spindle;
-    Vec3 last_rim_position = Vec3::Zero();          // m
-    Vec3 last_angular_velocity = Vec3::Zero();      // rad/s
+    Vec3 last_rim_position = Vec3::Zero();      // m
+    Vec3 last_angular_velocity = Vec3::Zero();  // rad/s
   };
   static_assert(sizeof(Memory) % sizeof(double) == 0);
 

@@ -10,11 +10,11 @@
 namespace furrow {
 namespace {
 
-constexpr double kWindow = 5.0;        // lags summed, in integrated autocorrelation times
-constexpr double kSteadySem = 0.02;    // of the load: largest standard error of a steady pull
-constexpr double kBouncePeriod = 0.25; // s, of a loaded wheel (about 4 Hz)
-constexpr double kBounces = 3.0;       // the window must hold
-constexpr double kSteadyTravel = 2.0;  // undeformed radii the window must hold
+constexpr double kWindow = 5.0;         // lags summed, in integrated autocorrelation times
+constexpr double kSteadySem = 0.02;     // of the load: largest standard error of a steady pull
+constexpr double kBouncePeriod = 0.25;  // s, of a loaded wheel (about 4 Hz)
+constexpr double kBounces = 3.0;        // the window must hold
+constexpr double kSteadyTravel = 2.0;   // undeformed radii the window must hold
 
 double mean_of(std::span<const double> x) {
   return std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
@@ -71,11 +71,12 @@ std::vector<std::string> unsteady_because(const SeriesStatistics& pull, const St
     if (!ok) reasons.push_back(std::move(reason));
   };
   require(pull.halves_agree, "the halves of the averaging window differ by more than 2√2 standard errors");
-  require(pull.sem <= kSteadySem * window.load,
-          fmt::format("the standard error {:.3g} N is above {:.0f} % of the load", pull.sem, 100.0 * kSteadySem));
+  require(
+      pull.sem <= kSteadySem * window.load,
+      fmt::format("the standard error {:.3g} N is above {:.0f} % of the load", pull.sem, 100.0 * kSteadySem));
   require(window.duration >= kBounces * kBouncePeriod,
-          fmt::format("the window of {:.3g} s is shorter than {:.0f} bounce periods ({:.3g} s)", window.duration,
-                      kBounces, kBounces * kBouncePeriod));
+          fmt::format("the window of {:.3g} s is shorter than {:.0f} bounce periods ({:.3g} s)",
+                      window.duration, kBounces, kBounces * kBouncePeriod));
   require(window.travel >= kSteadyTravel * window.radius,
           fmt::format("the window holds {:.3g} m of rolling, less than {:.0f} tire radii", window.travel,
                       kSteadyTravel));

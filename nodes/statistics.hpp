@@ -9,10 +9,10 @@ namespace furrow {
 
 struct SeriesStatistics {
   double mean = 0.0;
-  double std = 0.0;        // of the samples
-  double sem = 0.0;        // standard error of the mean, std / √n_eff
-  double n_eff = 0.0;      // number of independent samples, n / τ_int
-  double drift = 0.0;      // slope of the least-squares line, per sample interval
+  double std = 0.0;           // of the samples
+  double sem = 0.0;           // standard error of the mean, std / √n_eff
+  double n_eff = 0.0;         // number of independent samples, n / τ_int
+  double drift = 0.0;         // slope of the least-squares line, per sample interval
   bool halves_agree = false;  // |mean of first half − of second| ≤ 2√2 · sem
 };
 
@@ -25,10 +25,10 @@ SeriesStatistics statistics(std::span<const double> samples);
 
 /// What a steady mean is judged by, besides its statistics.
 struct SteadyWindow {
-  double load = 0.0;      // weight on the wheel, N
-  double duration = 0.0;  // s
-  double travel = 0.0;    // of the axle or of the tread, whichever is longer, m
-  double radius = 0.0;    // undeformed tire radius, m
+  double load = 0.0;          // weight on the wheel, N
+  double duration = 0.0;      // s
+  double travel = 0.0;        // of the axle or of the tread, whichever is longer, m
+  double radius = 0.0;        // undeformed tire radius, m
   bool whole_facets = false;  // the window holds a whole number of tire facets, within one line of the series
 };
 

@@ -78,8 +78,12 @@ Json pull_statistics(const SummaryInput& in, const Window& w, double load) {
   const double radius = in.cards[1 + in.wheel].tire_radius;
   const auto reasons =
       unsteady_because(s, {load, w.duration(), std::max(travel, turned), radius, w.whole_facets});
-  return {{"mean", number(s.mean)}, {"std", number(s.std)}, {"sem", number(s.sem)}, {"n_eff", number(s.n_eff)},
-          {"drift_N_per_s", number(s.drift / interval)}, {"steady", reasons.empty()},
+  return {{"mean", number(s.mean)},
+          {"std", number(s.std)},
+          {"sem", number(s.sem)},
+          {"n_eff", number(s.n_eff)},
+          {"drift_N_per_s", number(s.drift / interval)},
+          {"steady", reasons.empty()},
           {"unsteady_because", reasons},
           {"from_s", number(w.rows.empty() ? NAN : w.before.time)},
           {"to_s", number(w.rows.empty() ? NAN : w.rows.back().time)}};
@@ -98,10 +102,14 @@ Json power_balance(const Window& w) {
   });
   const double interface = -w.rate([](const SeriesRow& r) { return r.energy_error + r.rim_energy_error; });
   const double residual = spindle - pull - soil - tire - damper - stored - interface;
-  return {{"spindle_power_W", number(spindle)}, {"pull_power_W", number(pull)},
-          {"soil_dissipation_W", number(soil)}, {"tire_dissipation_W", number(tire)},
-          {"damper_dissipation_W", number(damper)}, {"stored_rate_W", number(stored)},
-          {"interface_loss_W", number(interface)}, {"residual_W", number(residual)},
+  return {{"spindle_power_W", number(spindle)},
+          {"pull_power_W", number(pull)},
+          {"soil_dissipation_W", number(soil)},
+          {"tire_dissipation_W", number(tire)},
+          {"damper_dissipation_W", number(damper)},
+          {"stored_rate_W", number(stored)},
+          {"interface_loss_W", number(interface)},
+          {"residual_W", number(residual)},
           {"residual_share", number(residual / (spindle - pull))}};
 }
 
@@ -140,7 +148,8 @@ void add_mobility(const SummaryInput& in, const Window& w, Json& json) {
   json["bed_clearance_m"] = number(lowest - in.setup.floor_height);
   json["vertical_load_N"] = number(load);
   json["net_terrain_force_N"] = {number(mean([](const SeriesRow& r) { return r.force.x(); })),
-                                 number(mean([](const SeriesRow& r) { return r.force.y(); })), number(force_z)};
+                                 number(mean([](const SeriesRow& r) { return r.force.y(); })),
+                                 number(force_z)};
   const double momentum_rate = w.rate([](const SeriesRow& r) { return r.vertical_momentum; });
   json["vertical_balance_residual"] = number((force_z - load - momentum_rate) / load);
   json["terrain_resistance_N"] = number(-mean([](const SeriesRow& r) { return r.normal_force_travel; }));
@@ -156,8 +165,13 @@ Json rank_table(const SummaryInput& in) {
   Json ranks = Json::array();
   for (std::size_t i = 0; i < in.reports.size(); ++i) {
     const FinalReport& r = in.reports[i];
-    ranks.push_back({{"rank", i}, {"node", to_string(r.self)}, {"kind", in.cards[i].node_kind}, {"threads", r.threads},
-                     {"cpu_s", r.cpu_s}, {"compute_s", r.compute_s}, {"wait_s", r.wait_s},
+    ranks.push_back({{"rank", i},
+                     {"node", to_string(r.self)},
+                     {"kind", in.cards[i].node_kind},
+                     {"threads", r.threads},
+                     {"cpu_s", r.cpu_s},
+                     {"compute_s", r.compute_s},
+                     {"wait_s", r.wait_s},
                      {"busy_share", number(r.compute_s / (r.compute_s + r.wait_s))}});
   }
   return ranks;
@@ -185,8 +199,10 @@ void add_cost(const SummaryInput& in, Json& json) {
   json["settle_wall_s"] = in.setup.settle_wall_s;
   json["wall_s_per_simulated_s"] = number(in.wall / end.time);
   json["ranks"] = rank_table(in);
-  json["segments"] = Json::array({{{"from_step", 0}, {"to_step", static_cast<std::int64_t>(steps)},
-                                   {"wall_s", in.wall}, {"threads", in.reports.back().threads}}});
+  json["segments"] = Json::array({{{"from_step", 0},
+                                   {"to_step", static_cast<std::int64_t>(steps)},
+                                   {"wall_s", in.wall},
+                                   {"threads", in.reports.back().threads}}});
   json["grains"] = in.setup.grains;
   double contacts = 0.0, active = 0.0;
   for (const SeriesRow& row : in.rows) {

@@ -7,7 +7,8 @@
 namespace furrow {
 namespace {
 
-constexpr double kFootprintShare = 0.6;  // of the tire radius ahead and behind: where a grain can touch it at rest
+constexpr double kFootprintShare =
+    0.6;  // of the tire radius ahead and behind: where a grain can touch it at rest
 
 class TerrainNode : public Node {
  public:
@@ -29,7 +30,8 @@ class TerrainNode : public Node {
 
   void set_up(Transport& transport, std::span<const NodeCard> cards, const RunContext& context) override {
     directory_ = context.directory;
-    frame_steps_ = directory_.empty() ? 0 : steps_between(scenario_.output.frame_interval, scenario_.run.step);
+    frame_steps_ =
+        directory_.empty() ? 0 : steps_between(scenario_.output.frame_interval, scenario_.run.step);
     const int tires = static_cast<int>(scenario_.tires.size());
     std::vector<SurfaceSetup> surfaces;
     for (int k = 0; k < tires; ++k) surfaces.push_back(receive<SurfaceSetup>(transport, {Role::tire, k}));
@@ -51,8 +53,8 @@ class TerrainNode : public Node {
     for (int k = 0; k < tires; ++k) {
       const Vec3 at = receive_step<RimMotion>(transport, kRig, kPlacement).rim.position;
       const double reach = kFootprintShare * cards[1 + k].tire_radius, half = 0.5 * cards[1 + k].tire_width;
-      setup.top_height.push_back(terrain_->top_height(at.x() - reach, at.x() + reach, at.y() - 1.5 * half,
-                                                      at.y() + 1.5 * half));
+      setup.top_height.push_back(
+          terrain_->top_height(at.x() - reach, at.x() + reach, at.y() - 1.5 * half, at.y() + 1.5 * half));
       const double length = scenario_.terrain.length;
       setup.mean_height.push_back(
           terrain_->mean_height(0.1 * length, 0.9 * length, at.y() - half, at.y() + half));
@@ -106,13 +108,14 @@ class TerrainNode : public Node {
       const std::string name = "node/forces" + std::to_string(k);
       std::vector<double> flat;
       for (const Vec3& f : forces_[k].force) flat.insert(flat.end(), f.data(), f.data() + 3);
-      archive.put(name + "/vertex", std::vector<std::int32_t>(forces_[k].vertex.begin(), forces_[k].vertex.end()));
+      archive.put(name + "/vertex",
+                  std::vector<std::int32_t>(forces_[k].vertex.begin(), forces_[k].vertex.end()));
       archive.put(name + "/force", flat);
       const ContactSums& c = report_.contact[k];
       archive.put(name + "/sums",
-                  std::vector<double>{c.force.x(), c.force.y(), c.force.z(), c.normal.x(), c.normal.y(), c.normal.z(),
-                                      c.tangential.x(), c.tangential.y(), c.tangential.z(), c.moment.x(),
-                                      c.moment.y(), c.moment.z(), c.transfer_force_residual,
+                  std::vector<double>{c.force.x(), c.force.y(), c.force.z(), c.normal.x(), c.normal.y(),
+                                      c.normal.z(), c.tangential.x(), c.tangential.y(), c.tangential.z(),
+                                      c.moment.x(), c.moment.y(), c.moment.z(), c.transfer_force_residual,
                                       c.transfer_moment_residual, c.work, static_cast<double>(c.contacts)});
     }
   }
@@ -128,8 +131,14 @@ class TerrainNode : public Node {
       for (std::size_t i = 0; i < vertex.size(); ++i)
         forces_[k].force.emplace_back(flat[3 * i], flat[3 * i + 1], flat[3 * i + 2]);
       const auto& v = archive.get<double>(name + "/sums", 16);
-      report_.contact[k] = {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]}, {v[9], v[10], v[11]},
-                            v[12],              v[13],              v[14],              std::int64_t(v[15])};
+      report_.contact[k] = {{v[0], v[1], v[2]},
+                            {v[3], v[4], v[5]},
+                            {v[6], v[7], v[8]},
+                            {v[9], v[10], v[11]},
+                            v[12],
+                            v[13],
+                            v[14],
+                            std::int64_t(v[15])};
     }
     report_.state = terrain_->state();
   }

@@ -22,11 +22,11 @@
 namespace furrow {
 namespace {
 
-constexpr int kCoresToBind = 4;        // fewer: the system balances better than a binding
+constexpr int kCoresToBind = 4;  // fewer: the system balances better than a binding
 constexpr int kCoresForOwnRigCore = 8;
 
 struct Demand {
-  int rig_cores = 0;      // 0: the rig shares the tires' cores
+  int rig_cores = 0;  // 0: the rig shares the tires' cores
   int tires = 0;
   int terrain_ranks = 0;
   int terrain_threads = 1;  // per rank
@@ -68,9 +68,11 @@ std::string pinning_note(const HostView& host, std::size_t node, int wanted) {
   const std::vector<int>& cores = host.nodes[node].cores;
   const bool wants_more = wanted > 1 || host.nodes[node].node.role == Role::terrain;
   if (cores.size() > 1 || host.machine_cores < 2 || !wants_more) return {};
-  return fmt::format("{} is pinned to core {} of {}{}; start mpirun with --bind-to none, or srun with more "
-                     "--cpus-per-task", to_string(host.nodes[node].node), cores.front(), host.machine_cores,
-                     wanted > 1 ? fmt::format(" while {} threads are wanted", wanted) : std::string());
+  return fmt::format(
+      "{} is pinned to core {} of {}{}; start mpirun with --bind-to none, or srun with more "
+      "--cpus-per-task",
+      to_string(host.nodes[node].node), cores.front(), host.machine_cores,
+      wanted > 1 ? fmt::format(" while {} threads are wanted", wanted) : std::string());
 }
 
 /// The launcher gave each rank cores of its own, or overlapping ones: every node stays within what it got.
@@ -112,9 +114,11 @@ ThreadPlan plan_on_common_cores(const HostView& host, std::size_t node, int terr
 
 int machine_cores() {
   cpu_set_t before;
-  if (sched_getaffinity(0, sizeof before, &before) != 0) return static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN));
+  if (sched_getaffinity(0, sizeof before, &before) != 0)
+    return static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN));
   // Share of CPUs per core, as seen on the cores we may use, holds for the whole machine.
-  const double per_core = static_cast<double>(CPU_COUNT(&before)) / static_cast<double>(allowed_cores().size());
+  const double per_core =
+      static_cast<double>(CPU_COUNT(&before)) / static_cast<double>(allowed_cores().size());
   return std::max(1, static_cast<int>(std::lround(sysconf(_SC_NPROCESSORS_ONLN) / per_core)));
 }
 
@@ -123,7 +127,8 @@ double cpu_limit() {
   double quota = 0.0, period = 0.0;
   std::ifstream v2("/sys/fs/cgroup/cpu.max");
   if (v2 >> quota >> period && period > 0.0) return quota / period;  // "max 100000" fails to read a number
-  std::ifstream v1_quota("/sys/fs/cgroup/cpu/cpu.cfs_quota_us"), v1_period("/sys/fs/cgroup/cpu/cpu.cfs_period_us");
+  std::ifstream v1_quota("/sys/fs/cgroup/cpu/cpu.cfs_quota_us"),
+      v1_period("/sys/fs/cgroup/cpu/cpu.cfs_period_us");
   if (v1_quota >> quota && v1_period >> period && quota > 0.0 && period > 0.0) return quota / period;
   return 0.0;
 }
@@ -164,8 +169,8 @@ ThreadPlan plan_threads(const HostView& host, std::size_t node, int terrain_thre
   plan.note = pinning_note(host, node, terrain ? terrain_threads : 1);
   const int own = static_cast<int>(host.nodes[node].cores.size());
   if (plan.note.empty() && plan.threads > own)
-    plan.note = fmt::format("{} runs {} threads on {} cores; fewer are faster", to_string(host.nodes[node].node),
-                            plan.threads, own);
+    plan.note = fmt::format("{} runs {} threads on {} cores; fewer are faster",
+                            to_string(host.nodes[node].node), plan.threads, own);
   return plan;
 }
 
@@ -196,7 +201,9 @@ void apply(const ThreadPlan& plan) {
   }
 }
 
-std::vector<std::string> passive_environment() { return {"OMP_WAIT_POLICY=passive", "OPENBLAS_NUM_THREADS=1"}; }
+std::vector<std::string> passive_environment() {
+  return {"OMP_WAIT_POLICY=passive", "OPENBLAS_NUM_THREADS=1"};
+}
 
 void wait_passively(char** argv) {
   if (std::getenv("OMP_WAIT_POLICY")) return;

@@ -34,7 +34,8 @@ class TireNode : public Node {
 
   void set_up(Transport& transport, std::span<const NodeCard>, const RunContext& context) override {
     directory_ = context.directory;
-    frame_steps_ = directory_.empty() ? 0 : steps_between(scenario_.output.frame_interval, scenario_.run.step);
+    frame_steps_ =
+        directory_.empty() ? 0 : steps_between(scenario_.output.frame_interval, scenario_.run.step);
     send(transport, kTerrain, SurfaceSetup{tire_->mesh(), tire_->material()});
     const auto start = receive_step<RimMotion>(transport, kRig, kPlacement);
     trajectory_ = RimTrajectory(start.rim);
@@ -75,12 +76,12 @@ class TireNode : public Node {
     trajectory_.save(archive);
     const auto& r = report_;
     archive.put("node/report",
-                std::vector<double>{r.wrench.force.x(), r.wrench.force.y(), r.wrench.force.z(), r.wrench.moment.x(),
-                                    r.wrench.moment.y(), r.wrench.moment.z(), r.spindle.force.x(),
-                                    r.spindle.force.y(), r.spindle.force.z(), r.spindle.moment.x(),
-                                    r.spindle.moment.y(), r.spindle.moment.z(), r.impulse_received.x(),
-                                    r.impulse_received.y(), r.impulse_received.z(), r.impulse_received_abs,
-                                    r.terrain_work, r.rim_work});
+                std::vector<double>{r.wrench.force.x(), r.wrench.force.y(), r.wrench.force.z(),
+                                    r.wrench.moment.x(), r.wrench.moment.y(), r.wrench.moment.z(),
+                                    r.spindle.force.x(), r.spindle.force.y(), r.spindle.force.z(),
+                                    r.spindle.moment.x(), r.spindle.moment.y(), r.spindle.moment.z(),
+                                    r.impulse_received.x(), r.impulse_received.y(), r.impulse_received.z(),
+                                    r.impulse_received_abs, r.terrain_work, r.rim_work});
   }
 
   void restore(const Archive& archive) override {
@@ -136,15 +137,16 @@ class TireNode : public Node {
     report_.factorizations = d.factorizations;
     report_.residual = d.residual;
     report_.lowest_point = motion_.surface.position.front().z();
-    for (const Vec3& x : motion_.surface.position) report_.lowest_point = std::min(report_.lowest_point, x.z());
+    for (const Vec3& x : motion_.surface.position)
+      report_.lowest_point = std::min(report_.lowest_point, x.z());
     if (!std::isfinite(report_.lowest_point + report_.spindle.force.sum()))
       throw physics_error(to_string(Address{Role::tire, index_}) + ": the state is not finite");
   }
 
   void write_frame(const StepHeader& header) {
     if (frame_steps_ == 0 || header.step % frame_steps_ != 0) return;
-    write_tire_frame(directory_, index_, header.step / frame_steps_, header.time, tire_->mesh(), motion_.surface,
-                     forces_);
+    write_tire_frame(directory_, index_, header.step / frame_steps_, header.time, tire_->mesh(),
+                     motion_.surface, forces_);
   }
 
   Scenario scenario_;

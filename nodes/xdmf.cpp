@@ -38,8 +38,9 @@ bool read_frame(const std::filesystem::path& path, Frame& frame) {
 
 std::string data_item(const Frame& f, const char* name, hsize_t count, int width, const char* type) {
   const std::string shape = width > 1 ? fmt::format("{} {}", count, width) : fmt::format("{}", count);
-  return fmt::format("<DataItem Dimensions=\"{}\" NumberType=\"{}\" Precision=\"4\" Format=\"HDF\">{}:/{}</DataItem>",
-                     shape, type, f.file, name);
+  return fmt::format(
+      "<DataItem Dimensions=\"{}\" NumberType=\"{}\" Precision=\"4\" Format=\"HDF\">{}:/{}</DataItem>", shape,
+      type, f.file, name);
 }
 
 std::string attribute(const Frame& f, const char* name, int width) {
@@ -50,12 +51,13 @@ std::string attribute(const Frame& f, const char* name, int width) {
 std::string grid(const Frame& f, const std::string& name) {
   std::string text = fmt::format("<Grid Name=\"{}\" GridType=\"Uniform\">\n", name);
   if (f.triangles > 0)
-    text += fmt::format("<Topology TopologyType=\"Triangle\" NumberOfElements=\"{}\">{}</Topology>\n", f.triangles,
-                        data_item(f, "triangle", f.triangles, 3, "Int"));
+    text += fmt::format("<Topology TopologyType=\"Triangle\" NumberOfElements=\"{}\">{}</Topology>\n",
+                        f.triangles, data_item(f, "triangle", f.triangles, 3, "Int"));
   else
-    text += fmt::format("<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\" NodesPerElement=\"1\"/>\n",
-                        f.points);
-  text += fmt::format("<Geometry GeometryType=\"XYZ\">{}</Geometry>\n", data_item(f, "position", f.points, 3, "Float"));
+    text += fmt::format(
+        "<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\" NodesPerElement=\"1\"/>\n", f.points);
+  text += fmt::format("<Geometry GeometryType=\"XYZ\">{}</Geometry>\n",
+                      data_item(f, "position", f.points, 3, "Float"));
   text += f.triangles > 0 ? attribute(f, "velocity", 3) + attribute(f, "force", 3)
                           : attribute(f, "speed", 1) + attribute(f, "radius", 1);
   return text + "</Grid>\n";
@@ -71,7 +73,8 @@ void write_xdmf_index(const std::filesystem::path& run) {
     std::smatch match;
     const std::string name = entry.path().filename().string();
     Frame frame;
-    if (std::regex_match(name, match, pattern) && read_frame(entry.path(), frame)) series[match[2]][match[1]] = frame;
+    if (std::regex_match(name, match, pattern) && read_frame(entry.path(), frame))
+      series[match[2]][match[1]] = frame;
   }
   if (series.empty()) return;
   std::set<std::string> kinds;
@@ -82,8 +85,9 @@ void write_xdmf_index(const std::filesystem::path& run) {
       "<Grid Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
   for (const auto& [index, frames] : series) {
     if (frames.size() < kinds.size()) continue;
-    text += fmt::format("<Grid Name=\"{}\" GridType=\"Collection\" CollectionType=\"Spatial\"><Time Value=\"{:.9g}\"/>\n",
-                        index, frames.begin()->second.time);
+    text += fmt::format(
+        "<Grid Name=\"{}\" GridType=\"Collection\" CollectionType=\"Spatial\"><Time Value=\"{:.9g}\"/>\n",
+        index, frames.begin()->second.time);
     for (const auto& [kind, frame] : frames) text += grid(frame, kind);
     text += "</Grid>\n";
   }

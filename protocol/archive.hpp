@@ -57,8 +57,7 @@ class Archive {
     Scope(Archive& archive, const std::string& folder) : archive_(archive), before_(archive.prefix_) {
       archive_.prefix_ += folder;
     }
-    Scope(const Archive& archive, const std::string& folder)
-        : Scope(const_cast<Archive&>(archive), folder) {}
+    Scope(const Archive& archive, const std::string& folder) : Scope(const_cast<Archive&>(archive), folder) {}
     ~Scope() { archive_.prefix_ = before_; }
     Scope(const Scope&) = delete;
     Scope& operator=(const Scope&) = delete;

@@ -22,7 +22,7 @@ inline constexpr bool kIsPlain = std::is_arithmetic_v<T> || std::is_enum_v<T> ||
 class ByteWriter {
  public:
   template <class T>
-    requires kIsPlain<T>
+  requires kIsPlain<T>
   void operator()(const T& value) { append(&value, sizeof value); }
   void operator()(const Quat& q) { append(q.coeffs().data(), 4 * sizeof(double)); }
   void operator()(const std::string& text) {
@@ -54,7 +54,7 @@ class ByteReader {
   explicit ByteReader(const std::vector<std::byte>& bytes) : bytes_(bytes) {}
 
   template <class T>
-    requires kIsPlain<T>
+  requires kIsPlain<T>
   void operator()(T& value) { copy(&value, sizeof value); }
   void operator()(Quat& q) { copy(q.coeffs().data(), 4 * sizeof(double)); }
   void operator()(std::string& text) {
@@ -87,7 +87,9 @@ class ByteReader {
     if (count > 0) std::memcpy(to, bytes_.data() + at_, count);
     at_ += count;
   }
-  [[noreturn]] static void fail() { throw Error(ExitCode::rank_lost, "a message is shorter than its kind requires"); }
+  [[noreturn]] static void fail() {
+    throw Error(ExitCode::rank_lost, "a message is shorter than its kind requires");
+  }
 
   const std::vector<std::byte>& bytes_;
   std::size_t at_ = 0;

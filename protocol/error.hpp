@@ -9,11 +9,11 @@ namespace furrow {
 /// Exit codes that users script against.
 enum class ExitCode : int {
   done = 0,
-  bad_input = 2,    // scenario, tire file, command line
-  physics = 3,      // no convergence, NaN, a grain lost
-  rank_lost = 4,    // a rank died or stopped answering
-  io = 5,           // a file could not be read or written
-  stopped = 75,     // stopped by a signal
+  bad_input = 2,  // scenario, tire file, command line
+  physics = 3,    // no convergence, NaN, a grain lost
+  rank_lost = 4,  // a rank died or stopped answering
+  io = 5,         // a file could not be read or written
+  stopped = 75,   // stopped by a signal
 };
 
 /// Thrown by any room; caught only where a program or a rank begins.

@@ -15,8 +15,9 @@ std::vector<Address> all_nodes(int tire_count) {
 template <class T>
 void require_same(const NodeCard& first, const NodeCard& card, const char* what, const T& a, const T& b) {
   if (a == b) return;
-  throw Error(ExitCode::bad_input, fmt::format("handshake: {} of {} is {} but that of {} is {}; expected the same",
-                                               what, to_string(first.self), a, to_string(card.self), b));
+  throw Error(ExitCode::bad_input,
+              fmt::format("handshake: {} of {} is {} but that of {} is {}; expected the same", what,
+                          to_string(first.self), a, to_string(card.self), b));
 }
 
 void check(const std::vector<NodeCard>& cards, const std::vector<Address>& nodes) {
@@ -24,8 +25,8 @@ void check(const std::vector<NodeCard>& cards, const std::vector<Address>& nodes
   for (std::size_t i = 0; i < cards.size(); ++i) {
     const NodeCard& card = cards[i];
     if (card.self != nodes[i])
-      throw Error(ExitCode::bad_input, fmt::format("handshake: {} calls itself {}", to_string(nodes[i]),
-                                                   to_string(card.self)));
+      throw Error(ExitCode::bad_input,
+                  fmt::format("handshake: {} calls itself {}", to_string(nodes[i]), to_string(card.self)));
     require_same(rig, card, "protocol version", rig.protocol_version, card.protocol_version);
     require_same(rig, card, "scenario digest", rig.scenario_digest, card.scenario_digest);
     require_same(rig, card, "communication step", rig.step, card.step);
@@ -36,8 +37,9 @@ void check(const std::vector<NodeCard>& cards, const std::vector<Address>& nodes
   }
   const int tires = static_cast<int>(cards.size()) - 2;
   if (rig.wheel_count != tires)
-    throw Error(ExitCode::bad_input, fmt::format("handshake: the rig carries {} wheel(s) but the scenario has {} tire(s)",
-                                                 rig.wheel_count, tires));
+    throw Error(ExitCode::bad_input,
+                fmt::format("handshake: the rig carries {} wheel(s) but the scenario has {} tire(s)",
+                            rig.wheel_count, tires));
   for (const NodeCard* card : {&rig, &terrain})
     if (card->tire_count != tires)
       throw Error(ExitCode::bad_input, fmt::format("handshake: the {} expects {} tire(s) but there are {}",

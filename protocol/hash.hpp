@@ -16,7 +16,9 @@ class Hash {
   }
   void add(std::string_view text) { add(text.data(), text.size()); }
   template <class T>
-  void add(std::span<const T> values) { add(values.data(), values.size_bytes()); }
+  void add(std::span<const T> values) {
+    add(values.data(), values.size_bytes());
+  }
   std::uint64_t value() const { return value_; }
   std::string hex() const {
     static constexpr char kDigits[] = "0123456789abcdef";

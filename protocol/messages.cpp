@@ -4,9 +4,12 @@ namespace furrow {
 
 std::string to_string(Role role) {
   switch (role) {
-    case Role::rig: return "rig";
-    case Role::tire: return "tire";
-    case Role::terrain: return "terrain";
+    case Role::rig:
+      return "rig";
+    case Role::tire:
+      return "tire";
+    case Role::terrain:
+      return "terrain";
   }
   return "unknown";
 }
@@ -17,17 +20,28 @@ std::string to_string(const Address& address) {
 
 std::string to_string(MessageKind kind) {
   switch (kind) {
-    case MessageKind::node_card: return "node card";
-    case MessageKind::surface_setup: return "surface setup";
-    case MessageKind::terrain_setup: return "terrain setup";
-    case MessageKind::rim_motion: return "rim motion";
-    case MessageKind::spindle_report: return "spindle report";
-    case MessageKind::surface_motion: return "surface motion";
-    case MessageKind::terrain_forces: return "terrain forces";
-    case MessageKind::terrain_report: return "terrain report";
-    case MessageKind::final_report: return "final report";
-    case MessageKind::control: return "control";
-    case MessageKind::run_folder: return "run folder";
+    case MessageKind::node_card:
+      return "node card";
+    case MessageKind::surface_setup:
+      return "surface setup";
+    case MessageKind::terrain_setup:
+      return "terrain setup";
+    case MessageKind::rim_motion:
+      return "rim motion";
+    case MessageKind::spindle_report:
+      return "spindle report";
+    case MessageKind::surface_motion:
+      return "surface motion";
+    case MessageKind::terrain_forces:
+      return "terrain forces";
+    case MessageKind::terrain_report:
+      return "terrain report";
+    case MessageKind::final_report:
+      return "final report";
+    case MessageKind::control:
+      return "control";
+    case MessageKind::run_folder:
+      return "run folder";
   }
   return "unknown kind";
 }

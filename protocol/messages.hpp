@@ -52,20 +52,20 @@ struct NodeCard {
   static constexpr MessageKind kKind = MessageKind::node_card;
   std::int32_t protocol_version = kProtocolVersion;
   Address self;
-  std::string node_kind;          // "drawbar", "ancf", "rigid", "dem", …
-  std::string scenario_digest;    // hash of the completed scenario
-  double step = 0.0;              // communication step H, s
-  std::int64_t steps = 0;         // number of communication steps
+  std::string node_kind;        // "drawbar", "ancf", "rigid", "dem", …
+  std::string scenario_digest;  // hash of the completed scenario
+  double step = 0.0;            // communication step H, s
+  std::int64_t steps = 0;       // number of communication steps
   std::int32_t substeps = 1;
-  std::int32_t wheel_count = 0;   // rig: wheels it carries
-  std::int32_t tire_count = 0;    // rig, terrain: tires they expect
+  std::int32_t wheel_count = 0;  // rig: wheels it carries
+  std::int32_t tire_count = 0;   // rig, terrain: tires they expect
   std::int32_t threads = 1;
   std::int32_t pid = 0;
   std::string host;
-  MassProperties tire_mass;       // tire: rigid-body mass properties, added to the rim body by the rig
-  double tire_radius = 0.0;       // tire: undeformed radius of the contact surface, m
-  double tire_width = 0.0;        // tire: tread width, m
-  std::int64_t size = 0;          // grains or coordinates, for the reports
+  MassProperties tire_mass;  // tire: rigid-body mass properties, added to the rim body by the rig
+  double tire_radius = 0.0;  // tire: undeformed radius of the contact surface, m
+  double tire_width = 0.0;   // tire: tread width, m
+  std::int64_t size = 0;     // grains or coordinates, for the reports
 };
 
 /// tire k → terrain, once: connectivity and material of its contact surface.
@@ -78,9 +78,9 @@ struct SurfaceSetup {
 /// terrain → rig, once, after settling.
 struct TerrainSetup {
   static constexpr MessageKind kKind = MessageKind::terrain_setup;
-  std::vector<double> top_height;    // highest point of the terrain under each tire's box, m
-  std::vector<double> mean_height;   // mean undisturbed surface height h₀ there, m
-  double floor_height = 0.0;         // m
+  std::vector<double> top_height;   // highest point of the terrain under each tire's box, m
+  std::vector<double> mean_height;  // mean undisturbed surface height h₀ there, m
+  double floor_height = 0.0;        // m
   double settle_wall_s = 0.0;
   std::int64_t grains = 0;
 };
@@ -102,39 +102,40 @@ struct RimMotion {
 struct SpindleReport {
   static constexpr MessageKind kKind = MessageKind::spindle_report;
   StepHeader header;
-  Wrench wrench;                         // on the rim by the tire + m (a − g): what the rig, carrying the added mass, needs
-  Wrench spindle;                        // on the rim by the tire, complete
+  Wrench wrench;   // on the rim by the tire + m (a − g): what the rig, carrying the added mass, needs
+  Wrench spindle;  // on the rim by the tire, complete
   double lowest_point = 0.0;             // lowest contact-surface vertex z, m
   Vec3 momentum = Vec3::Zero();          // of the tire, kg m/s
   Vec3 impulse_received = Vec3::Zero();  // cumulative, N s
   double impulse_received_abs = 0.0;     // cumulative Σ|impulse per interval|, N s
   double terrain_work = 0.0;             // cumulative Σ f̄·Δx_tire at the vertices, J
-  double rim_work = 0.0;                 // cumulative work done by the rim on the tire, ∫ −(F·v + M·ω), J
-  double dissipation = 0.0;              // cumulative, structural damping, J
-  double kinetic_energy = 0.0;           // J
-  double strain_energy = 0.0;            // elastic + pressure potential, J
-  std::int64_t newton_iterations = 0;    // cumulative
-  std::int64_t factorizations = 0;       // cumulative
-  double residual = 0.0;                 // last converged free residual / reference
+  double rim_work = 0.0;        // cumulative work done by the rim on the tire, ∫ −(F·v + M·ω), J
+  double dissipation = 0.0;     // cumulative, structural damping, J
+  double kinetic_energy = 0.0;  // J
+  double strain_energy = 0.0;   // elastic + pressure potential, J
+  std::int64_t newton_iterations = 0;  // cumulative
+  std::int64_t factorizations = 0;     // cumulative
+  double residual = 0.0;               // last converged free residual / reference
 };
 
 struct SurfaceMotion {
   static constexpr MessageKind kKind = MessageKind::surface_motion;
   StepHeader header;
   SurfaceState surface;
-  bool stop_now = false;   // the run ends at this synchronization
+  bool stop_now = false;  // the run ends at this synchronization
 };
 
 /// Sums over the contacts of one tire, interval means; force = normal + tangential, on the tire by the terrain.
 struct ContactSums {
-  Vec3 force = Vec3::Zero();       // N
-  Vec3 normal = Vec3::Zero();      // N
-  Vec3 tangential = Vec3::Zero();  // N
-  Vec3 moment = Vec3::Zero();      // about the world origin, N m
-  double transfer_force_residual = 0.0;   // |Σ nodal − Σ contact| / Σ|f|, this interval's largest
-  double transfer_moment_residual = 0.0;  // |Σ x×nodal − Σ x×contact| / Σ|x×f|, taken about the surface's mean vertex
-  double work = 0.0;               // this interval: Σ_substeps f·Δx̃ of the vertices, J
-  std::int64_t contacts = 0;       // of the last substep
+  Vec3 force = Vec3::Zero();             // N
+  Vec3 normal = Vec3::Zero();            // N
+  Vec3 tangential = Vec3::Zero();        // N
+  Vec3 moment = Vec3::Zero();            // about the world origin, N m
+  double transfer_force_residual = 0.0;  // |Σ nodal − Σ contact| / Σ|f|, this interval's largest
+  double transfer_moment_residual =
+      0.0;            // |Σ x×nodal − Σ x×contact| / Σ|x×f|, taken about the surface's mean vertex
+  double work = 0.0;  // this interval: Σ_substeps f·Δx̃ of the vertices, J
+  std::int64_t contacts = 0;  // of the last substep
 };
 
 /// terrain → tire k.
@@ -146,17 +147,17 @@ struct TerrainForces {
 
 /// What the terrain measures of itself; cumulative since the run began unless stated.
 struct TerrainState {
-  double kinetic_energy = 0.0;     // J, now
-  double potential_energy = 0.0;   // of gravity, J, now
-  double elastic_energy = 0.0;     // of normal springs, J, now
-  double dissipation = 0.0;        // −∫ contact forces · relative velocity dt − Δ elastic energy, J
-  double energy_removed = 0.0;     // by the activity switch, J
-  Vec3 momentum = Vec3::Zero();    // kg m/s, now
-  Vec3 wall_impulse = Vec3::Zero();     // by walls and floor on the grains, N s
+  double kinetic_energy = 0.0;       // J, now
+  double potential_energy = 0.0;     // of gravity, J, now
+  double elastic_energy = 0.0;       // of normal springs, J, now
+  double dissipation = 0.0;          // −∫ contact forces · relative velocity dt − Δ elastic energy, J
+  double energy_removed = 0.0;       // by the activity switch, J
+  Vec3 momentum = Vec3::Zero();      // kg m/s, now
+  Vec3 wall_impulse = Vec3::Zero();  // by walls and floor on the grains, N s
   Vec3 surface_impulse = Vec3::Zero();  // by tires on the grains, N s
-  double floor_force = 0.0;        // vertical, N, last substep
-  std::int64_t contacts = 0;       // now
-  std::int64_t active = 0;         // grains awake
+  double floor_force = 0.0;             // vertical, N, last substep
+  std::int64_t contacts = 0;            // now
+  std::int64_t active = 0;              // grains awake
   std::int64_t list_rebuilds = 0;
 };
 
@@ -173,7 +174,7 @@ struct HeightField {
   double x0 = 0.0, y0 = 0.0;  // centre of the first cell, m
   double cell = 0.0;          // m
   std::int32_t nx = 0, ny = 0;
-  std::vector<double> height; // m, [ix * ny + iy]
+  std::vector<double> height;  // m, [ix * ny + iy]
 };
 
 /// rig → every node, before the handshake of a program's run: the folder that takes the results.
@@ -189,8 +190,8 @@ struct FinalReport {
   std::uint64_t state_hash = 0;
   double cpu_s = 0.0, compute_s = 0.0, wait_s = 0.0;  // of the stepping loop
   std::int32_t threads = 1;
-  std::vector<double> profile;                        // what StepProfile::times() holds; empty unless asked for
-  HeightField height_before, height_after;            // terrain
+  std::vector<double> profile;              // what StepProfile::times() holds; empty unless asked for
+  HeightField height_before, height_after;  // terrain
 };
 
 }  // namespace furrow

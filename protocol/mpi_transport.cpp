@@ -56,10 +56,11 @@ std::unique_ptr<Transport> make_mpi_transport(int* argc, char*** argv, int tire_
   static MpiSession session(argc, argv);
   const int needed = 1 + tire_count + terrain_ranks, given = world_size();
   if (given != needed)
-    throw Error(ExitCode::bad_input,
-                fmt::format("this scenario needs {} ranks ({} rig, {} tire(s), {} terrain), but mpirun started {}; "
-                            "start it with mpirun -n {}",
-                            needed, 1, tire_count, terrain_ranks, given, needed));
+    throw Error(
+        ExitCode::bad_input,
+        fmt::format("this scenario needs {} ranks ({} rig, {} tire(s), {} terrain), but mpirun started {}; "
+                    "start it with mpirun -n {}",
+                    needed, 1, tire_count, terrain_ranks, given, needed));
   const int role = static_cast<int>(address_of(world_rank(), tire_count).role);
   std::vector<HostNode> host = gather_host_nodes(tire_count);
   return std::make_unique<NodeTransport>(std::make_unique<MpiWire>(session, role), tire_count,

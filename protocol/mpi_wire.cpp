@@ -13,12 +13,12 @@
 namespace furrow {
 namespace {
 
-constexpr int kYields = 4;                 // polls before the first sleep
-constexpr double kFirstSleep = 20e-6;      // s
-constexpr double kSleepGrowth = 1.5;       // from one sleep to the next
-constexpr double kShortWaitSleep = 200e-6; // s; longest sleep while the wait is short
-constexpr double kShareOfWait = 1.0 / 40;  // of a long wait, may be lost by sleeping too long
-constexpr double kLongestSleep = 2e-3;     // s
+constexpr int kYields = 4;                  // polls before the first sleep
+constexpr double kFirstSleep = 20e-6;       // s
+constexpr double kSleepGrowth = 1.5;        // from one sleep to the next
+constexpr double kShortWaitSleep = 200e-6;  // s; longest sleep while the wait is short
+constexpr double kShareOfWait = 1.0 / 40;   // of a long wait, may be lost by sleeping too long
+constexpr double kLongestSleep = 2e-3;      // s
 
 bool receive_any(const Communicator& comm, int& from, int& tag, Bytes& payload) {
   int there = 0;
@@ -61,7 +61,9 @@ void MpiWire::send(int to, MessageKind kind, Bytes payload) {
   post(sends_, data_, to, static_cast<int>(kind), std::move(payload));
 }
 
-void MpiWire::send_control(int to, Bytes payload) { post(control_sends_, control_, to, 0, std::move(payload)); }
+void MpiWire::send_control(int to, Bytes payload) {
+  post(control_sends_, control_, to, 0, std::move(payload));
+}
 
 void MpiWire::post(std::deque<PendingSend>& sends, const Communicator& comm, int to, int tag, Bytes payload) {
   if (payload.size() > static_cast<std::size_t>(INT_MAX))
@@ -70,7 +72,8 @@ void MpiWire::post(std::deque<PendingSend>& sends, const Communicator& comm, int
   PendingSend& send = sends.emplace_back();
   send.to = to;
   send.payload = std::move(payload);
-  MPI_Isend(send.payload.data(), static_cast<int>(send.payload.size()), MPI_BYTE, to, tag, comm.get(), &send.request);
+  MPI_Isend(send.payload.data(), static_cast<int>(send.payload.size()), MPI_BYTE, to, tag, comm.get(),
+            &send.request);
 }
 
 void MpiWire::complete(std::deque<PendingSend>& sends) {
@@ -120,7 +123,9 @@ void MpiWire::idle(int polls, double waited) {
   sleep_for(std::min(kFirstSleep * std::pow(kSleepGrowth, std::min(polls - kYields, 20)), longest));
 }
 
-void MpiWire::expect_losses(double patience, int exit_code) noexcept { session_.expect_losses(patience, exit_code); }
+void MpiWire::expect_losses(double patience, int exit_code) noexcept {
+  session_.expect_losses(patience, exit_code);
+}
 
 /// Gives what is still under way a moment to leave, so that a failure notice is not lost.
 void MpiWire::drain(double longest) {

@@ -43,13 +43,16 @@ NodeTransport::NodeTransport(std::unique_ptr<Wire> wire, int tire_count, std::ve
 
 int NodeTransport::number(Address node) const {
   switch (node.role) {
-    case Role::rig: return 0;
+    case Role::rig:
+      return 0;
     case Role::tire:
       if (node.index < 0 || node.index >= tire_count_) break;
       return 1 + node.index;
-    case Role::terrain: return 1 + tire_count_;  // its leader
+    case Role::terrain:
+      return 1 + tire_count_;  // its leader
   }
-  throw Error(ExitCode::rank_lost, to_string(self()) + " addressed " + to_string(node) + ", which does not exist");
+  throw Error(ExitCode::rank_lost,
+              to_string(self()) + " addressed " + to_string(node) + ", which does not exist");
 }
 
 void NodeTransport::send(Address to, MessageKind kind, std::vector<std::byte> payload) {
@@ -93,7 +96,8 @@ std::vector<std::byte> NodeTransport::receive(Address from, MessageKind kind) {
 
 void NodeTransport::flush() {
   int to = -1;
-  wait_until([&] { return (to = wire_->unsent_to()) < 0; }, [&] { return to; }, "to take what was sent to it");
+  wait_until([&] { return (to = wire_->unsent_to()) < 0; }, [&] { return to; },
+             "to take what was sent to it");
 }
 
 void NodeTransport::heartbeat() {

@@ -16,48 +16,42 @@ void each(Stream& stream, Fields&... fields) {
 
 // M is the message type or its const; the stream decides the direction.
 template <class Stream, class M>
-  requires std::is_same_v<std::remove_const_t<M>, StepHeader>
+requires std::is_same_v<std::remove_const_t<M>, StepHeader>
+void visit_fields(Stream& s, M& m) { each(s, m.step, m.time); }
+template <class Stream, class M>
+requires std::is_same_v<std::remove_const_t<M>, Wrench>
+void visit_fields(Stream& s, M& m) { each(s, m.force, m.moment); }
+template <class Stream, class M>
+requires std::is_same_v<std::remove_const_t<M>, RimState>
+void visit_fields(Stream& s, M& m) { each(s, m.position, m.orientation, m.velocity, m.angular_velocity); }
+template <class Stream, class M>
+requires std::is_same_v<std::remove_const_t<M>, NodeCard>
 void visit_fields(Stream& s, M& m) {
-  each(s, m.step, m.time);
+  each(s, m.protocol_version, m.self.role, m.self.index, m.node_kind, m.scenario_digest, m.step, m.steps,
+       m.substeps, m.wheel_count, m.tire_count, m.threads, m.pid, m.host, m.tire_mass.mass,
+       m.tire_mass.inertia, m.tire_radius, m.tire_width, m.size);
 }
 template <class Stream, class M>
-  requires std::is_same_v<std::remove_const_t<M>, Wrench>
-void visit_fields(Stream& s, M& m) {
-  each(s, m.force, m.moment);
-}
-template <class Stream, class M>
-  requires std::is_same_v<std::remove_const_t<M>, RimState>
-void visit_fields(Stream& s, M& m) {
-  each(s, m.position, m.orientation, m.velocity, m.angular_velocity);
-}
-template <class Stream, class M>
-  requires std::is_same_v<std::remove_const_t<M>, NodeCard>
-void visit_fields(Stream& s, M& m) {
-  each(s, m.protocol_version, m.self.role, m.self.index, m.node_kind, m.scenario_digest, m.step, m.steps, m.substeps,
-       m.wheel_count, m.tire_count, m.threads, m.pid, m.host, m.tire_mass.mass, m.tire_mass.inertia, m.tire_radius,
-       m.tire_width, m.size);
-}
-template <class Stream, class M>
-  requires std::is_same_v<std::remove_const_t<M>, SurfaceSetup>
+requires std::is_same_v<std::remove_const_t<M>, SurfaceSetup>
 void visit_fields(Stream& s, M& m) {
   auto& c = m.material;
   each(s, m.mesh.vertex_count, m.mesh.triangles, c.young_modulus, c.poisson_ratio, c.friction, c.restitution,
        c.normal_stiffness, c.normal_damping, c.cohesion, c.area_density);
 }
 template <class Stream, class M>
-  requires std::is_same_v<std::remove_const_t<M>, TerrainSetup>
+requires std::is_same_v<std::remove_const_t<M>, TerrainSetup>
 void visit_fields(Stream& s, M& m) {
   each(s, m.top_height, m.mean_height, m.floor_height, m.settle_wall_s, m.grains);
 }
 template <class Stream, class M>
-  requires std::is_same_v<std::remove_const_t<M>, RimMotion>
+requires std::is_same_v<std::remove_const_t<M>, RimMotion>
 void visit_fields(Stream& s, M& m) {
   visit_fields(s, m.header);
   visit_fields(s, m.rim);
   s(m.stop_next);
 }
 template <class Stream, class M>
-  requires std::is_same_v<std::remove_const_t<M>, SpindleReport>
+requires std::is_same_v<std::remove_const_t<M>, SpindleReport>
 void visit_fields(Stream& s, M& m) {
   visit_fields(s, m.header);
   visit_fields(s, m.wrench);
@@ -66,25 +60,25 @@ void visit_fields(Stream& s, M& m) {
        m.dissipation, m.kinetic_energy, m.strain_energy, m.newton_iterations, m.factorizations, m.residual);
 }
 template <class Stream, class M>
-  requires std::is_same_v<std::remove_const_t<M>, SurfaceMotion>
+requires std::is_same_v<std::remove_const_t<M>, SurfaceMotion>
 void visit_fields(Stream& s, M& m) {
   visit_fields(s, m.header);
   each(s, m.surface.position, m.surface.velocity, m.stop_now);
 }
 template <class Stream, class M>
-  requires std::is_same_v<std::remove_const_t<M>, TerrainForces>
+requires std::is_same_v<std::remove_const_t<M>, TerrainForces>
 void visit_fields(Stream& s, M& m) {
   visit_fields(s, m.header);
   each(s, m.forces.vertex, m.forces.force);
 }
 template <class Stream, class M>
-  requires std::is_same_v<std::remove_const_t<M>, ContactSums>
+requires std::is_same_v<std::remove_const_t<M>, ContactSums>
 void visit_fields(Stream& s, M& m) {
-  each(s, m.force, m.normal, m.tangential, m.moment, m.transfer_force_residual, m.transfer_moment_residual, m.work,
-       m.contacts);
+  each(s, m.force, m.normal, m.tangential, m.moment, m.transfer_force_residual, m.transfer_moment_residual,
+       m.work, m.contacts);
 }
 template <class Stream, class M>
-  requires std::is_same_v<std::remove_const_t<M>, TerrainReport>
+requires std::is_same_v<std::remove_const_t<M>, TerrainReport>
 void visit_fields(Stream& s, M& m) {
   visit_fields(s, m.header);
   auto& t = m.state;
@@ -92,20 +86,15 @@ void visit_fields(Stream& s, M& m) {
        t.wall_impulse, t.surface_impulse, t.floor_force, t.contacts, t.active, t.list_rebuilds, m.contact);
 }
 template <class Stream, class M>
-  requires std::is_same_v<std::remove_const_t<M>, HeightField>
-void visit_fields(Stream& s, M& m) {
-  each(s, m.x0, m.y0, m.cell, m.nx, m.ny, m.height);
-}
+requires std::is_same_v<std::remove_const_t<M>, HeightField>
+void visit_fields(Stream& s, M& m) { each(s, m.x0, m.y0, m.cell, m.nx, m.ny, m.height); }
 template <class Stream, class M>
-  requires std::is_same_v<std::remove_const_t<M>, RunFolder>
-void visit_fields(Stream& s, M& m) {
-  s(m.path);
-}
+requires std::is_same_v<std::remove_const_t<M>, RunFolder>
+void visit_fields(Stream& s, M& m) { s(m.path); }
 template <class Stream, class M>
-  requires std::is_same_v<std::remove_const_t<M>, FinalReport>
+requires std::is_same_v<std::remove_const_t<M>, FinalReport>
 void visit_fields(Stream& s, M& m) {
-  each(s, m.self.role, m.self.index, m.state_hash, m.cpu_s, m.compute_s, m.wait_s, m.threads,
-       m.profile);
+  each(s, m.self.role, m.self.index, m.state_hash, m.cpu_s, m.compute_s, m.wait_s, m.threads, m.profile);
   visit_fields(s, m.height_before);
   visit_fields(s, m.height_after);
 }
@@ -126,8 +115,8 @@ M unpack(const std::vector<std::byte>& payload) {
   return message;
 }
 
-#define FURROW_MESSAGE(M)                                  \
-  template std::vector<std::byte> pack<M>(const M&);       \
+#define FURROW_MESSAGE(M)                            \
+  template std::vector<std::byte> pack<M>(const M&); \
   template M unpack<M>(const std::vector<std::byte>&);
 FURROW_MESSAGE(NodeCard)
 FURROW_MESSAGE(SurfaceSetup)

@@ -116,8 +116,9 @@ Error PeerWatch::lost(int from, const std::string& what, double timeout) const {
     text += fmt::format(", which waits for {}", to_string(address(silent)));
   }
   if (met[silent]) return Error(ExitCode::rank_lost, text + ": the nodes wait for one another");
-  return Error(ExitCode::rank_lost, text + fmt::format(": {} does not answer; raise run.peer_timeout if it is only slow",
-                                                       to_string(address(silent))));
+  return Error(ExitCode::rank_lost,
+               text + fmt::format(": {} does not answer; raise run.peer_timeout if it is only slow",
+                                  to_string(address(silent))));
 }
 
 void PeerWatch::to_all_others(const Bytes& payload) {

@@ -23,7 +23,7 @@ class PeerWatch {
   /// Reads all control messages that have arrived. @throws PeerFailure, again at every call once a node has failed
   void listen();
 
-  void heartbeat();                      // at most one a second goes out
+  void heartbeat();  // at most one a second goes out
   void announce_failure(ExitCode code, const std::string& text);
   bool failed() const { return announced_ || failure_.has_value(); }
 

@@ -10,10 +10,10 @@ namespace furrow {
 
 /// Motion of a rim. The rim's own y axis is the spin axis; forward rolling along +x has a positive spin about +y.
 struct RimState {
-  Vec3 position = Vec3::Zero();           // rim centre, m, W
-  Quat orientation = Quat::Identity();    // R_WR
-  Vec3 velocity = Vec3::Zero();           // of the rim centre, m/s, W
-  Vec3 angular_velocity = Vec3::Zero();   // rad/s, W
+  Vec3 position = Vec3::Zero();          // rim centre, m, W
+  Quat orientation = Quat::Identity();   // R_WR
+  Vec3 velocity = Vec3::Zero();          // of the rim centre, m/s, W
+  Vec3 angular_velocity = Vec3::Zero();  // rad/s, W
 };
 
 /// Force and moment about the rim centre, W.
@@ -48,20 +48,20 @@ struct NodalForces {
 
 /// Mass properties of the tire as a rigid body, centre of mass at the rim centre.
 struct MassProperties {
-  double mass = 0.0;               // kg
-  Mat3 inertia = Mat3::Zero();     // about the rim centre, rim axes, kg m²
+  double mass = 0.0;            // kg
+  Mat3 inertia = Mat3::Zero();  // about the rim centre, rim axes, kg m²
 };
 
 /// Elastic and frictional properties of a surface for contact with grains or ground.
 struct ContactMaterial {
-  double young_modulus = 0.0;      // Pa
-  double poisson_ratio = 0.0;      // -
-  double friction = 0.0;           // Coulomb coefficient, -
-  double restitution = 0.0;        // -, law mindlin
-  double normal_stiffness = 0.0;   // N/m^1.5, law coulomb
-  double normal_damping = 0.0;     // N s/m^1.5, law coulomb
-  double cohesion = 0.0;           // Pa; the tire's is zero
-  double area_density = 0.0;       // mass of the surface that a contact moves, kg/m²; 0: a rigid, heavy one
+  double young_modulus = 0.0;     // Pa
+  double poisson_ratio = 0.0;     // -
+  double friction = 0.0;          // Coulomb coefficient, -
+  double restitution = 0.0;       // -, law mindlin
+  double normal_stiffness = 0.0;  // N/m^1.5, law coulomb
+  double normal_damping = 0.0;    // N s/m^1.5, law coulomb
+  double cohesion = 0.0;          // Pa; the tire's is zero
+  double area_density = 0.0;      // mass of the surface that a contact moves, kg/m²; 0: a rigid, heavy one
 };
 
 }  // namespace furrow

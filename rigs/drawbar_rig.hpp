@@ -23,7 +23,7 @@ struct DrawbarRigOptions {
   double toe_angle = 0.0;              // rad, about +z
   double travel_sign = 1.0;            // +1 along +x, −1 along −x (mirrored travel)
   double start = 0.0;                  // x of the axle at t = 0, m; the scenario loader fills a default
-  double lateral = 0.0;            // y of the wheel's mid-plane, m
+  double lateral = 0.0;                // y of the wheel's mid-plane, m
   double carrier_mass = 450.0;         // wheel carrier with ballast, kg
   double chassis_mass = 1.0;           // kg, rides on the rail
   double set_toe_mass = 1.0;           // kg, rides on the rail

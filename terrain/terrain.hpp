@@ -44,7 +44,8 @@ class Terrain {
 
   /// Declares the surface of tire `k` (k = 0, 1, … in order) before the first advance.
   /// @throws Error(bad_input) when the surface starts inside the terrain's solid boundary.
-  virtual void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) = 0;
+  virtual void attach(const SurfaceMesh& mesh, const ContactMaterial& material,
+                      const SurfaceState& start) = 0;
 
   /// Advances by `duration` in `substeps` equal steps. Each vertex moves linearly from where the terrain last had it
   /// to x + v·duration of targets[k], and its contact velocity is that motion's.

@@ -11,38 +11,38 @@
 namespace furrow {
 
 struct TerrainOptions {
-  std::string engine = "dem";      // dem | rigid
-  std::string law = "mindlin";     // mindlin | coulomb
+  std::string engine = "dem";   // dem | rigid
+  std::string law = "mindlin";  // mindlin | coulomb
   // Bed.
-  double radius = 0.006;           // grain radius, m
-  double density = 2500.0;         // kg/m³
-  int layers = 15;                 // Poisson-disk layers dropped
-  double length = 10.0;            // bin, x from 0 to length, m
-  double width = 0.6;              // bin, y from −width/2 to width/2, m
-  std::uint64_t seed = 1;          // run.seed
-  std::string bed;                 // a saved bed to start from; empty: generate or take from the cache
-  bool cache = true;               // keep settled beds under the user's cache directory
+  double radius = 0.006;    // grain radius, m
+  double density = 2500.0;  // kg/m³
+  int layers = 15;          // Poisson-disk layers dropped
+  double length = 10.0;     // bin, x from 0 to length, m
+  double width = 0.6;       // bin, y from −width/2 to width/2, m
+  std::uint64_t seed = 1;   // run.seed
+  std::string bed;          // a saved bed to start from; empty: generate or take from the cache
+  bool cache = true;        // keep settled beds under the user's cache directory
   // Contact between grains and of grains with walls.
-  double young_modulus = 2.49e7;   // Pa, law mindlin
-  double poisson_ratio = 0.3;      // -
-  double restitution = 0.2;        // -, law mindlin
-  double friction = 0.9;           // -
-  double rolling_friction = 0.0;   // -, rolling resistance torque / (normal force × effective radius)
-  double cohesion = 0.0;           // c_t, Pa: F_c = π r² c_t
-  double normal_stiffness = 1e6;   // k_n, N/m^1.5, law coulomb
-  double normal_damping = 60.0;    // g_n, N s/m^1.5, law coulomb
+  double young_modulus = 2.49e7;         // Pa, law mindlin
+  double poisson_ratio = 0.3;            // -
+  double restitution = 0.2;              // -, law mindlin
+  double friction = 0.9;                 // -
+  double rolling_friction = 0.0;         // -, rolling resistance torque / (normal force × effective radius)
+  double cohesion = 0.0;                 // c_t, Pa: F_c = π r² c_t
+  double normal_stiffness = 1e6;         // k_n, N/m^1.5, law coulomb
+  double normal_damping = 60.0;          // g_n, N s/m^1.5, law coulomb
   double friction_velocity_scale = 5.0;  // c in F_t = μ F_e tanh(c |v_t|), s/m, law coulomb and rigid ground
   bool friction_impulse_limit = true;    // law coulomb: caps F_t at β m_t |v_t| / dt
-  bool activity = true;            // let resting grains sleep
+  bool activity = true;                  // let resting grains sleep
   // Rigid ground (engine rigid): a stiff elastic layer, pressure = stiffness × depth + damping × its rate.
-  double ground_stiffness = 4e8;   // N/m³: 0.6 mm under 240 kPa; 4e5 N/m on a vertex that carries 10 cm²
+  double ground_stiffness = 4e8;  // N/m³: 0.6 mm under 240 kPa; 4e5 N/m on a vertex that carries 10 cm²
   double ground_shear_stiffness = 1e8;  // N/m³: a tread of 1 MPa shear modulus, 10 mm thick
-  double ground_damping = 2.5e4;   // N s/m³: holds such a vertex of 2.8 g by itself up to H = 4e-5 s
+  double ground_damping = 2.5e4;        // N s/m³: holds such a vertex of 2.8 g by itself up to H = 4e-5 s
   // Stepping.
-  double step = 4e-5;              // run.step / terrain.substeps, s: the step the engine will be advanced with
+  double step = 4e-5;  // run.step / terrain.substeps, s: the step the engine will be advanced with
   bool allow_unstable_step = false;  // *_tr scenarios: warn instead of refusing
-  int threads = 1;                 // OpenMP threads while stepping
-  int settle_threads = 1;          // OpenMP threads while settling
+  int threads = 1;                   // OpenMP threads while stepping
+  int settle_threads = 1;            // OpenMP threads while settling
 };
 
 /// Makes the engine that `options.engine` names.
@@ -51,11 +51,11 @@ std::unique_ptr<Terrain> make_terrain(const TerrainOptions& options);
 
 /// What `furrow validate` says of a terrain before any grain exists.
 struct TerrainEstimate {
-  double stable_step = 0.0;        // s
-  std::string stable_reason;       // "stiffness", "damping", "friction viscosity"
+  double stable_step = 0.0;   // s
+  std::string stable_reason;  // "stiffness", "damping", "friction viscosity"
   std::int64_t grains = 0;
   double memory_bytes = 0.0;
-  double expected_height = 0.0;    // m
+  double expected_height = 0.0;  // m
 };
 TerrainEstimate estimate_terrain(const TerrainOptions& options);
 

@@ -83,11 +83,12 @@ bool write_array(hid_t file, const std::string& name, const Archive::Array& arra
         const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
         const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
         H5Pset_create_intermediate_group(links.get(), 1);
-        const Handle set(H5Dcreate2(file, name.c_str(), native_type<T>(), space.get(), links.get(), H5P_DEFAULT,
-                                    H5P_DEFAULT),
+        const Handle set(H5Dcreate2(file, name.c_str(), native_type<T>(), space.get(), links.get(),
+                                    H5P_DEFAULT, H5P_DEFAULT),
                          H5Dclose);
         if (!set.ok()) return false;
-        return size == 0 || H5Dwrite(set.get(), native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0;
+        return size == 0 ||
+               H5Dwrite(set.get(), native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0;
       },
       array);
 }
@@ -96,7 +97,8 @@ template <class T>
 bool read_as(hid_t set, hid_t type, hsize_t size, const std::string& name, Archive& archive) {
   if (H5Tequal(type, native_type<T>()) <= 0) return false;
   std::vector<T> values(size);
-  if (size > 0 && H5Dread(set, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) return false;
+  if (size > 0 && H5Dread(set, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+    return false;
   archive.put(name, values);
   return true;
 }
@@ -121,10 +123,21 @@ herr_t read_object(hid_t file, const char* name, const H5O_info_t* info, void* t
 std::string bed_digest(const TerrainOptions& o) {
   Hash hash;
   hash.add(o.law);
-  const std::array<double, 15> numbers{
-      static_cast<double>(kBedFormat), o.radius, o.density, static_cast<double>(o.layers), o.length, o.width,
-      o.young_modulus, o.poisson_ratio, o.restitution, o.friction, o.rolling_friction, o.cohesion, o.normal_stiffness,
-      o.normal_damping, o.friction_velocity_scale};
+  const std::array<double, 15> numbers{static_cast<double>(kBedFormat),
+                                       o.radius,
+                                       o.density,
+                                       static_cast<double>(o.layers),
+                                       o.length,
+                                       o.width,
+                                       o.young_modulus,
+                                       o.poisson_ratio,
+                                       o.restitution,
+                                       o.friction,
+                                       o.rolling_friction,
+                                       o.cohesion,
+                                       o.normal_stiffness,
+                                       o.normal_damping,
+                                       o.friction_velocity_scale};
   hash.add(std::span<const double>(numbers));
   const double step = settle_step(o);
   hash.add(&step, sizeof step);
@@ -179,7 +192,8 @@ Archive read_bed(const std::filesystem::path& file) {
   Archive all;
   if (H5Ovisit2(in.get(), H5_INDEX_NAME, H5_ITER_NATIVE, read_object, &all, H5O_INFO_BASIC) < 0)
     throw io_error(file.string(), "damaged");
-  if (!all.has("format_version") || !all.has("checksum")) throw io_error(file.string(), "not a bed of furrow");
+  if (!all.has("format_version") || !all.has("checksum"))
+    throw io_error(file.string(), "not a bed of furrow");
   if (all.get_int("format_version") > kBedFormat)
     throw io_error(file.string(), "format_version " + std::to_string(all.get_int("format_version")) +
                                       " is newer than this program's " + std::to_string(kBedFormat));

@@ -13,7 +13,8 @@ HeightField bed_height_field(const Grains& grains, const Bin& bin, double radius
   field.ny = std::max(1, static_cast<int>(bin.width / field.cell));
   field.x0 = 0.5 * field.cell;
   field.y0 = 0.5 * field.cell - 0.5 * bin.width;
-  field.height.assign(static_cast<std::size_t>(field.nx) * field.ny, std::numeric_limits<double>::quiet_NaN());
+  field.height.assign(static_cast<std::size_t>(field.nx) * field.ny,
+                      std::numeric_limits<double>::quiet_NaN());
   for (int g = 0; g < grains.count; ++g) {
     const Quad& p = grains.position[g];
     const int ix = std::clamp(static_cast<int>(p.x / field.cell), 0, field.nx - 1);
@@ -38,7 +39,8 @@ double mean_height(const HeightField& field, double x_min, double x_max, double 
   return cells > 0 ? sum / cells : 0.0;
 }
 
-double top_height(const Grains& grains, double radius, double x_min, double x_max, double y_min, double y_max) {
+double top_height(const Grains& grains, double radius, double x_min, double x_max, double y_min,
+                  double y_max) {
   double top = 0.0;
   for (int g = 0; g < grains.count; ++g) {
     const Quad& p = grains.position[g];

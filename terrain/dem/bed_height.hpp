@@ -14,6 +14,7 @@ HeightField bed_height_field(const Grains& grains, const Bin& bin, double radius
 double mean_height(const HeightField& field, double x_min, double x_max, double y_min, double y_max);
 
 /// Highest point of grains that reach into the rectangle; 0 when there are none, m.
-double top_height(const Grains& grains, double radius, double x_min, double x_max, double y_min, double y_max);
+double top_height(const Grains& grains, double radius, double x_min, double x_max, double y_min,
+                  double y_max);
 
 }  // namespace furrow::dem

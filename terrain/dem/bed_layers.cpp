@@ -8,8 +8,9 @@
 namespace furrow::dem {
 namespace {
 
-constexpr int kTries = 30;               // candidates around a sample before it is retired [Bridson 2007]
-constexpr double kDiskCoverage = 0.491;  // share of the area covered by discs of the spacing's diameter, measured
+constexpr int kTries = 30;  // candidates around a sample before it is retired [Bridson 2007]
+constexpr double kDiskCoverage =
+    0.491;  // share of the area covered by discs of the spacing's diameter, measured
 
 class Uniform {
  public:
@@ -78,7 +79,8 @@ std::vector<Quad> poisson_layer(const Bin& bin, double radius, std::uint64_t see
 std::vector<Quad> bed_layers(const Bin& bin, double radius, int layers, std::uint64_t seed) {
   std::vector<Quad> all;
   for (int layer = 0; layer < layers; ++layer) {
-    std::vector<Quad> samples = poisson_layer(bin, radius, seed * 1000003ULL + static_cast<std::uint64_t>(layer));
+    std::vector<Quad> samples =
+        poisson_layer(bin, radius, seed * 1000003ULL + static_cast<std::uint64_t>(layer));
     for (Quad& s : samples) s.z = (layer + 0.5) * kSpacing * radius;
     all.insert(all.end(), samples.begin(), samples.end());
   }

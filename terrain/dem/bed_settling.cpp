@@ -9,14 +9,14 @@
 namespace furrow::dem {
 namespace {
 
-constexpr double kStepShareMindlin = 0.8;   // of the stable step
-constexpr double kStepShareCoulomb = 0.7;   // grains that fall on each other overlap more without history
-constexpr int kCheckEvery = 40;             // steps
-constexpr double kMaxSettleTime = 4.0;      // s
-constexpr double kFallDrag = 4.0;           // 1/s, while the layers fall
-constexpr double kRestDrag = 20.0;          // 1/s, once they lie; grains on top must still roll to their places
-constexpr double kLyingSpeed = 0.03;        // rms, m/s: slower counts as lying
-constexpr double kRestSpeed = 0.002;        // rms, m/s: slower counts as at rest
+constexpr double kStepShareMindlin = 0.8;  // of the stable step
+constexpr double kStepShareCoulomb = 0.7;  // grains that fall on each other overlap more without history
+constexpr int kCheckEvery = 40;            // steps
+constexpr double kMaxSettleTime = 4.0;     // s
+constexpr double kFallDrag = 4.0;          // 1/s, while the layers fall
+constexpr double kRestDrag = 20.0;    // 1/s, once they lie; grains on top must still roll to their places
+constexpr double kLyingSpeed = 0.03;  // rms, m/s: slower counts as lying
+constexpr double kRestSpeed = 0.002;  // rms, m/s: slower counts as at rest
 
 }  // namespace
 
@@ -57,7 +57,8 @@ SettleResult settle(GrainSolver& solver, const TerrainOptions& options, const Pr
   while (result.steps < most && !result.settled) {
     const bool check = ++result.steps % kCheckEvery == 0;
     if (const int lost = solver.step(dt, check); lost >= 0)
-      throw physics_error("grain " + std::to_string(solver.grains().id[lost]) + " was lost while the bed settled");
+      throw physics_error("grain " + std::to_string(solver.grains().id[lost]) +
+                          " was lost while the bed settled");
     if (!check) continue;
     const Accounts& a = solver.accounts();
     result.force_ratio = a.contact_force > 0.0 ? a.net_force / a.contact_force : 1.0;
@@ -73,7 +74,8 @@ SettleResult settle(GrainSolver& solver, const TerrainOptions& options, const Pr
     best = std::min(best, std::max(result.force_ratio, result.floor_error));
     if (progress) {
       const double decades = std::log10(1.0 / std::max(best, kSettledForceRatio)) / 3.0;
-      progress("settling the bed", std::clamp(std::max(decades, dt * result.steps / kMaxSettleTime), 0.0, 1.0));
+      progress("settling the bed",
+               std::clamp(std::max(decades, dt * result.steps / kMaxSettleTime), 0.0, 1.0));
     }
   }
   solver.set_drag(0.0);

@@ -12,9 +12,9 @@ inline constexpr double kSettledFloorError = 1e-3;
 
 struct SettleResult {
   bool settled = false;
-  double force_ratio = 0.0;   // Σ|net force| / Σ|contact force|
-  double floor_error = 0.0;   // |floor force − weight| / weight
-  double time = 0.0;          // simulated, s
+  double force_ratio = 0.0;  // Σ|net force| / Σ|contact force|
+  double floor_error = 0.0;  // |floor force − weight| / weight
+  double time = 0.0;         // simulated, s
   std::int64_t steps = 0;
 };
 

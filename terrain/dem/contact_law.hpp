@@ -27,18 +27,18 @@ namespace furrow::dem {
 
 /// Coefficients of one kind of partner (grain, wall, tire), already mixed.
 struct ContactCoefficients {
-  double stiffness = 0.0;         // K or k_n, N/m^1.5
-  double damping = 0.0;           // mindlin: c_n, N s/m^1.25; coulomb: g_n, N s/m^1.5
-  double shear_stiffness = 0.0;   // 8 G* √R*, N/m^1.5
-  double shear_damping = 0.0;     // N s/m^1.25
-  double friction = 0.0;          // μ, -
-  double cohesion_force = 0.0;    // F_c, N
-  double velocity_scale = 0.0;    // c, s/m
-  double slip_limit = 0.0;        // β m_t / dt, N s/m; infinite: no limit
-  double rolling_arm = 0.0;       // μ_r R*, m
-  double rolling_radius = 0.0;    // R*, m
-  double rolling_damping = 0.0;   // N m s/m^0.25
-  double roll_limit = 0.0;        // β I / dt, N m s, law coulomb; infinite: no limit
+  double stiffness = 0.0;        // K or k_n, N/m^1.5
+  double damping = 0.0;          // mindlin: c_n, N s/m^1.25; coulomb: g_n, N s/m^1.5
+  double shear_stiffness = 0.0;  // 8 G* √R*, N/m^1.5
+  double shear_damping = 0.0;    // N s/m^1.25
+  double friction = 0.0;         // μ, -
+  double cohesion_force = 0.0;   // F_c, N
+  double velocity_scale = 0.0;   // c, s/m
+  double slip_limit = 0.0;       // β m_t / dt, N s/m; infinite: no limit
+  double rolling_arm = 0.0;      // μ_r R*, m
+  double rolling_radius = 0.0;   // R*, m
+  double rolling_damping = 0.0;  // N m s/m^0.25
+  double roll_limit = 0.0;       // β I / dt, N m s, law coulomb; infinite: no limit
 };
 
 /// Share of critical damping in the rolling spring [Ai et al. 2011, §4.2].
@@ -46,11 +46,11 @@ inline constexpr double kRollingDampingRatio = 0.3;
 
 template <class T>
 struct ContactMotion {
-  Triple<T> normal;     // n, unit, pushes grain i
-  T overlap;            // δ > 0, m
-  Triple<T> velocity;   // of i relative to its partner at the common point, m/s
-  T spin;               // mean spin of both about n, rad/s
-  Triple<T> roll;       // ω_i − ω_partner, rad/s; read only with rolling resistance
+  Triple<T> normal;    // n, unit, pushes grain i
+  T overlap;           // δ > 0, m
+  Triple<T> velocity;  // of i relative to its partner at the common point, m/s
+  T spin;              // mean spin of both about n, rad/s
+  Triple<T> roll;      // ω_i − ω_partner, rad/s; read only with rolling resistance
 };
 
 template <class T>
@@ -105,21 +105,21 @@ struct MindlinLaw {
     const T hertz = c.stiffness * s * at.overlap;
 
     ContactForce<T> f;
-    f.elastic = hertz - c.damping * q * v_n;                                                       // (2)
-    f.normal = f.elastic - c.cohesion_force;                                                       // (1)
+    f.elastic = hertz - c.damping * q * v_n;  // (2)
+    f.normal = f.elastic - c.cohesion_force;  // (1)
     f.energy = (0.4 * hertz - c.cohesion_force) * at.overlap;
     const T bearing = larger(f.elastic, zero);
 
     const T unloading = select(s < history.root_overlap, s / larger(history.root_overlap, s), one);
     const T angle = dt * at.spin;
     Triple<T> spring = unloading * turn_with_contact(history.tangential, at.normal, angle);
-    spring = spring - (c.shear_stiffness * dt * s) * v_t;                                          // (3)
+    spring = spring - (c.shear_stiffness * dt * s) * v_t;  // (3)
     const Triple<T> damper = (-c.shear_damping * q) * v_t;
     f.tangential = cut_at_limit(spring, damper, c.friction * bearing);
     history.tangential = spring;
     history.root_overlap = s;
 
-    if constexpr (kRolling) {                                                                      // (4)
+    if constexpr (kRolling) {  // (4)
       const Triple<T> w = at.roll - dot(at.roll, at.normal) * at.normal;
       const double r2 = c.rolling_radius * c.rolling_radius;
       Triple<T> torque = unloading * turn_with_contact(history.rolling, at.normal, angle);
@@ -146,18 +146,18 @@ struct CoulombLaw {
     const Triple<T> v_t = at.velocity - v_n * at.normal;
 
     ContactForce<T> f;
-    f.elastic = larger(s * (c.stiffness * at.overlap - c.damping * v_n), zero);                     // (5)
+    f.elastic = larger(s * (c.stiffness * at.overlap - c.damping * v_n), zero);  // (5)
     f.normal = f.elastic - c.cohesion_force;
     f.energy = (0.4 * c.stiffness * s * at.overlap - c.cohesion_force) * at.overlap;
     const T speed = larger(root(dot(v_t, v_t)), tiny);
     const T share = c.friction * f.elastic * tanh_of_positive(c.velocity_scale * speed) / speed;
-    f.tangential = -smaller(share, constant<T>(c.slip_limit)) * v_t;                               // (6)
+    f.tangential = -smaller(share, constant<T>(c.slip_limit)) * v_t;  // (6)
 
     if constexpr (kRolling) {
       const Triple<T> w = at.roll - dot(at.roll, at.normal) * at.normal;
       const T rate = larger(root(dot(w, w)), tiny);
-      const T brake = c.rolling_arm * f.elastic *
-                      tanh_of_positive(c.velocity_scale * c.rolling_radius * rate) / rate;
+      const T brake =
+          c.rolling_arm * f.elastic * tanh_of_positive(c.velocity_scale * c.rolling_radius * rate) / rate;
       f.rolling = -smaller(brake, constant<T>(c.roll_limit)) * w;
     } else {
       f.rolling = {zero, zero, zero};

@@ -49,7 +49,8 @@ GrainProperties grain_properties(double radius, double density) {
 }
 
 ContactMaterial grain_material(const TerrainOptions& o) {
-  return {o.young_modulus, o.poisson_ratio, o.friction, o.restitution, o.normal_stiffness, o.normal_damping, o.cohesion};
+  return {o.young_modulus,    o.poisson_ratio,  o.friction, o.restitution,
+          o.normal_stiffness, o.normal_damping, o.cohesion};
 }
 
 LawSettings law_settings(const TerrainOptions& o) {

@@ -27,14 +27,17 @@ ContactMaterial grain_material(const TerrainOptions& options);
 /// What a law needs beyond the two materials.
 struct LawSettings {
   LawKind kind = LawKind::mindlin;
-  double rolling_friction = 0.0;      // μ_r of the grains, against every partner, -
-  double velocity_scale = 5.0;        // c, s/m
+  double rolling_friction = 0.0;  // μ_r of the grains, against every partner, -
+  double velocity_scale = 5.0;    // c, s/m
   bool friction_impulse_limit = true;
-  double step = 0.0;                  // s, for the impulse limit
+  double step = 0.0;  // s, for the impulse limit
 };
 LawSettings law_settings(const TerrainOptions& options);
 
-enum class Partner { grain, surface };  // surface: wall or tire, flat; of infinite mass, or of its area density
+enum class Partner {
+  grain,
+  surface
+};  // surface: wall or tire, flat; of infinite mass, or of its area density
 
 /// Mixing: k_n, g_n arithmetic mean; μ, e, c_t minimum; 1/E* = Σ(1−ν²)/E, 1/G* = Σ 2(2−ν)(1+ν)/E; R* = r/2 or r;
 /// 1/m* = Σ 1/m, of a tire its area density × 2√3 r²: a damper made for the grain's mass alone would, felt one step

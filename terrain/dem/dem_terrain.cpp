@@ -20,12 +20,14 @@ namespace {
 
 using namespace dem;
 
-constexpr double kSkinShare = 0.3;          // of the radius
-constexpr double kLooseFraction = 0.50;     // solid fraction of a bed that settled with cohesion, estimate
-constexpr double kBytesPerGrain = 900.0;    // state, list with history, and what a rebuild holds twice
+constexpr double kSkinShare = 0.3;        // of the radius
+constexpr double kLooseFraction = 0.50;   // solid fraction of a bed that settled with cohesion, estimate
+constexpr double kBytesPerGrain = 900.0;  // state, list with history, and what a rebuild holds twice
 
 void require(bool ok, const char* key, double value, const char* expected) {
-  if (!ok) throw input_error("scenario", std::string("terrain.") + key, fmt::format("{} is out of range, expected {}", value, expected));
+  if (!ok)
+    throw input_error("scenario", std::string("terrain.") + key,
+                      fmt::format("{} is out of range, expected {}", value, expected));
 }
 
 void check(const TerrainOptions& o) {
@@ -33,7 +35,8 @@ void check(const TerrainOptions& o) {
   require(o.radius > 0.0 && o.radius < 1.0, "radius", o.radius, "0 < radius < 1 m");
   require(o.density > 0.0 && std::isfinite(o.density), "density", o.density, "a positive number, kg/m³");
   require(o.layers >= 1 && o.layers < 10000, "layers", o.layers, "1 to 9999");
-  require(o.length >= 4.0 * o.radius && std::isfinite(o.length), "length", o.length, "at least two grains, m");
+  require(o.length >= 4.0 * o.radius && std::isfinite(o.length), "length", o.length,
+          "at least two grains, m");
   require(o.width >= 4.0 * o.radius && std::isfinite(o.width), "width", o.width, "at least two grains, m");
   require(o.young_modulus > 0.0, "young_modulus", o.young_modulus, "a positive number, Pa");
   require(o.poisson_ratio > -1.0 && o.poisson_ratio <= 0.5, "poisson_ratio", o.poisson_ratio, "-1 < ν ≤ 0.5");
@@ -43,8 +46,11 @@ void check(const TerrainOptions& o) {
   require(o.cohesion >= 0.0, "cohesion", o.cohesion, "0 or more, Pa");
   require(o.normal_stiffness > 0.0, "normal_stiffness", o.normal_stiffness, "a positive number, N/m^1.5");
   require(o.normal_damping >= 0.0, "normal_damping", o.normal_damping, "0 or more, N s/m^1.5");
-  require(o.friction_velocity_scale > 0.0, "friction_velocity_scale", o.friction_velocity_scale, "a positive number, s/m");
-  if (!(o.step > 0.0)) throw input_error("scenario", "run.step", fmt::format("{} is out of range, expected a positive number, s", o.step));
+  require(o.friction_velocity_scale > 0.0, "friction_velocity_scale", o.friction_velocity_scale,
+          "a positive number, s/m");
+  if (!(o.step > 0.0))
+    throw input_error("scenario", "run.step",
+                      fmt::format("{} is out of range, expected a positive number, s", o.step));
 }
 
 SolverCoefficients run_coefficients(const TerrainOptions& options, double step) {
@@ -57,8 +63,8 @@ SolverCoefficients run_coefficients(const TerrainOptions& options, double step) 
 }
 
 StableStep stable_at(const TerrainOptions& options, double overlap) {
-  return stable_step(run_coefficients(options, options.step).pair, grain_properties(options.radius, options.density),
-                     law_settings(options), overlap);
+  return stable_step(run_coefficients(options, options.step).pair,
+                     grain_properties(options.radius, options.density), law_settings(options), overlap);
 }
 
 SolverParams solver_params(const TerrainOptions& o) {
@@ -86,7 +92,8 @@ class DemTerrain : public Terrain {
       bed = read_bed(options_.bed);
       check_bed(bed);
     } else {
-      const std::filesystem::path file = options_.cache ? bed_cache_file(bed_digest(options_)) : std::filesystem::path();
+      const std::filesystem::path file =
+          options_.cache ? bed_cache_file(bed_digest(options_)) : std::filesystem::path();
       if (!from_cache(file, bed)) bed = settled_bed(file, progress);
     }
     // A run from a cached bed and the run that settled it both start here, from the same archive.
@@ -111,10 +118,14 @@ class DemTerrain : public Terrain {
 
   void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) override {
     if (static_cast<int>(start.position.size()) != mesh.vertex_count)
-      throw Error(ExitCode::bad_input, "a tire's contact surface has another number of vertices than positions");
+      throw Error(ExitCode::bad_input,
+                  "a tire's contact surface has another number of vertices than positions");
     for (const Vec3& x : start.position)
       if (const char* wall = beyond(x, x))
-        throw input_error("scenario", "terrain", fmt::format("the tire starts beyond {}: it has a point at ({:.4g}, {:.4g}, {:.4g}) m; expected a larger bin or another start", wall, x.x(), x.y(), x.z()));
+        throw input_error("scenario", "terrain",
+                          fmt::format("the tire starts beyond {}: it has a point at ({:.4g}, {:.4g}, {:.4g}) "
+                                      "m; expected a larger bin or another start",
+                                      wall, x.x(), x.y(), x.z()));
     solver_.surfaces().attach(mesh, material, surface_coefficients(material), start);
   }
 
@@ -222,9 +233,11 @@ class DemTerrain : public Terrain {
   /// All grains now, with room for what they may move in one interval.
   SurfaceBox grain_box() const {
     double top = 0.0;
-    for (const Quad& p : std::span(solver_.grains().position).first(solver_.grains().count)) top = std::max(top, p.z);
+    for (const Quad& p : std::span(solver_.grains().position).first(solver_.grains().count))
+      top = std::max(top, p.z);
     const double room = 10.0 * options_.radius;
-    return {Vec3(-room, -0.5 * options_.width - room, -room), Vec3(options_.length + room, 0.5 * options_.width + room, top + room)};
+    return {Vec3(-room, -0.5 * options_.width - room, -room),
+            Vec3(options_.length + room, 0.5 * options_.width + room, top + room)};
   }
 
   bool from_cache(const std::filesystem::path& file, Archive& bed) const {
@@ -245,7 +258,8 @@ class DemTerrain : public Terrain {
     const SettleResult result = settle(solver, options_, progress);
     Archive bed;
     solver.save(bed);
-    bed.put("bed/settled", std::vector<double>{result.settled ? 1.0 : 0.0, result.force_ratio, result.floor_error, result.time});
+    bed.put("bed/settled", std::vector<double>{result.settled ? 1.0 : 0.0, result.force_ratio,
+                                               result.floor_error, result.time});
     bed.put("bed/geometry", geometry());
     bed.put("bed/law", std::vector<std::uint8_t>(options_.law.begin(), options_.law.end()));
     if (!file.empty()) {
@@ -258,7 +272,9 @@ class DemTerrain : public Terrain {
     return bed;
   }
 
-  std::vector<double> geometry() const { return {options_.radius, options_.density, options_.length, options_.width}; }
+  std::vector<double> geometry() const {
+    return {options_.radius, options_.density, options_.length, options_.width};
+  }
 
   void check_bed(const Archive& bed) const {
     const auto& made = bed.get<double>("bed/geometry", 4);
@@ -266,18 +282,27 @@ class DemTerrain : public Terrain {
     const std::vector<double> wanted = geometry();
     for (int k = 0; k < 4; ++k)
       if (made[k] != wanted[k])
-        throw input_error("scenario", std::string("terrain.") + kKey[k], fmt::format("is {} but the bed '{}' was made with {}", wanted[k], options_.bed, made[k]));
+        throw input_error(
+            "scenario", std::string("terrain.") + kKey[k],
+            fmt::format("is {} but the bed '{}' was made with {}", wanted[k], options_.bed, made[k]));
     const auto& law = bed.get<std::uint8_t>("bed/law");
     if (std::string(law.begin(), law.end()) != options_.law)
-      throw input_error("scenario", "terrain.law", fmt::format("is {} but the bed '{}' was settled with {}", options_.law, options_.bed, std::string(law.begin(), law.end())));
-    if ((options_.rolling_friction > 0.0) && bed.get<double>("pairs/rolling").empty() && bed.get_int("count") > 0 &&
-        options_.law == "mindlin")
-      throw input_error("scenario", "terrain.rolling_friction", fmt::format("is {} but the bed '{}' was settled without", options_.rolling_friction, options_.bed));
+      throw input_error("scenario", "terrain.law",
+                        fmt::format("is {} but the bed '{}' was settled with {}", options_.law, options_.bed,
+                                    std::string(law.begin(), law.end())));
+    if ((options_.rolling_friction > 0.0) && bed.get<double>("pairs/rolling").empty() &&
+        bed.get_int("count") > 0 && options_.law == "mindlin")
+      throw input_error(
+          "scenario", "terrain.rolling_friction",
+          fmt::format("is {} but the bed '{}' was settled without", options_.rolling_friction, options_.bed));
   }
 
   TerrainStatus lost_grain(int index) const {
     const Quad& x = solver_.grains().position[index];
-    return {false, fmt::format("grain {} left the bin or is not finite at t = {:.6g} s, x = ({:.6g}, {:.6g}, {:.6g}) m", solver_.grains().id[index], time_, x.x, x.y, x.z)};
+    return {
+        false,
+        fmt::format("grain {} left the bin or is not finite at t = {:.6g} s, x = ({:.6g}, {:.6g}, {:.6g}) m",
+                    solver_.grains().id[index], time_, x.x, x.y, x.z)};
   }
 
   /// Looks again at the stable step when a larger overlap than ever was met.
@@ -287,14 +312,16 @@ class DemTerrain : public Terrain {
     stable_overlap_ = overlap;
     const StableStep stable = stable_at(options_, overlap);
     if (dt_ <= stable.step || options_.allow_unstable_step) return {};
-    return {false, fmt::format("grains overlap by {:.3g} m ({:.1f} % of their diameter), where the stable step is {:.3g} s ({}) and the step is {:.3g} s", overlap, 50.0 * overlap / options_.radius, stable.step, stable.reason, dt_)};
+    return {false, fmt::format("grains overlap by {:.3g} m ({:.1f} % of their diameter), where the stable "
+                               "step is {:.3g} s ({}) and the step is {:.3g} s",
+                               overlap, 50.0 * overlap / options_.radius, stable.step, stable.reason, dt_)};
   }
 
   TerrainOptions options_;
   GrainSolver solver_;
-  double dt_;                   // s
-  double time_ = 0.0;           // advanced, s
-  double stable_overlap_ = 0.0; // largest overlap that the step was checked against, m
+  double dt_;                    // s
+  double time_ = 0.0;            // advanced, s
+  double stable_overlap_ = 0.0;  // largest overlap that the step was checked against, m
 };
 
 }  // namespace
@@ -303,7 +330,10 @@ std::unique_ptr<Terrain> make_dem_terrain(const TerrainOptions& options) {
   check(options);
   const StableStep stable = stable_at(options, kStatedOverlap * options.radius);
   if (options.step > stable.step && !options.allow_unstable_step)
-    throw input_error("scenario", "run.step", fmt::format("{} s is above the stable step {:.3g} s ({}); expected a smaller step, more terrain.substeps, or softer grains", options.step, stable.step, stable.reason));
+    throw input_error("scenario", "run.step",
+                      fmt::format("{} s is above the stable step {:.3g} s ({}); expected a smaller step, "
+                                  "more terrain.substeps, or softer grains",
+                                  options.step, stable.step, stable.reason));
   return std::make_unique<DemTerrain>(options);
 }
 
@@ -313,7 +343,8 @@ TerrainEstimate estimate_dem_terrain(const TerrainOptions& options) {
   const StableStep stable = stable_at(options, kStatedOverlap * options.radius);
   e.stable_step = stable.step;
   e.stable_reason = stable.reason;
-  const double grains = options.layers * expected_layer_count({options.length, options.width}, options.radius);
+  const double grains =
+      options.layers * expected_layer_count({options.length, options.width}, options.radius);
   e.grains = static_cast<std::int64_t>(std::llround(grains));
   e.memory_bytes = kBytesPerGrain * grains;
   const double volume = grains * 4.0 / 3.0 * std::numbers::pi * std::pow(options.radius, 3);

@@ -99,8 +99,9 @@ void GrainSolver::rebuild() {
 // The touching pairs of a block, four at a time. With d = x_i − x_j the arms r − δ/2 are ±d/2, so
 //   v = v_i − v_j − ½ (ω_i + ω_j) × d,   torque on i and on j: −½ d × F_t.
 template <class Law, bool kRolling>
-static void pair_forces(Grains& grains, PairBlock& block, const ContactCoefficients& c, double diameter, double dt,
-                        const std::int32_t* list, int count, bool inner, bool measure, LaneSums& sums) {
+static void pair_forces(Grains& grains, PairBlock& block, const ContactCoefficients& c, double diameter,
+                        double dt, const std::int32_t* list, int count, bool inner, bool measure,
+                        LaneSums& sums) {
   const Quad *x = grains.position.data(), *v = grains.velocity.data(), *w = grains.spin.data();
   const Lane zero{};
   for (int at = 0; at < count; at += kLanes) {
@@ -130,7 +131,8 @@ static void pair_forces(Grains& grains, PairBlock& block, const ContactCoefficie
     ContactHistory<Lane> history;
     if constexpr (Law::kHistory) {
       const Quad* h = block.tangential.data();
-      history.tangential = transpose(load(h[p[0]]), load(h[p[1]]), load(h[p[2]]), load(h[p[3]]), history.root_overlap);
+      history.tangential =
+          transpose(load(h[p[0]]), load(h[p[1]]), load(h[p[2]]), load(h[p[3]]), history.root_overlap);
       if constexpr (kRolling) {
         const Quad* q = block.rolling.data();
         history.rolling = transpose(load(q[p[0]]), load(q[p[1]]), load(q[p[2]]), load(q[p[3]]));
@@ -177,8 +179,8 @@ static void pair_forces(Grains& grains, PairBlock& block, const ContactCoefficie
 
 /// Grains against the bin: arm r − δ, the wall at rest.
 template <class Law, bool kRolling>
-static void wall_forces(Grains& grains, PairBlock& block, const SolverParams& params, const SolverCoefficients& all,
-                        double dt, bool measure) {
+static void wall_forces(Grains& grains, PairBlock& block, const SolverParams& params,
+                        const SolverCoefficients& all, double dt, bool measure) {
   for (WallContact& contact : block.walls) {
     const int g = contact.grain;
     const double distance = params.bin.distance(contact.wall, grains.position[g]);
@@ -196,8 +198,8 @@ static void wall_forces(Grains& grains, PairBlock& block, const SolverParams& pa
     motion.spin = 0.5 * dot(motion.roll, motion.normal);
     Quad &t = contact.tangential, &r = contact.rolling;
     ContactHistory<double> history{{t.x, t.y, t.z}, t.w, {r.x, r.y, r.z}};
-    const ContactForce<double> f = Law::template force<kRolling>(
-        contact.wall == kFloor ? all.floor : all.side, dt, motion, history);
+    const ContactForce<double> f =
+        Law::template force<kRolling>(contact.wall == kFloor ? all.floor : all.side, dt, motion, history);
     if constexpr (Law::kHistory) {
       t = {history.tangential.x, history.tangential.y, history.tangential.z, history.root_overlap};
       if constexpr (kRolling) r = {history.rolling.x, history.rolling.y, history.rolling.z, 0.0};
@@ -228,10 +230,12 @@ void GrainSolver::contacts_of_block(int b, double dt, bool measure) {
   const double diameter = 2.0 * params_.grain.radius;
   LaneSums sums;
   int count = filter(block, grains_, 0, block.inner, diameter, list);
-  pair_forces<Law, kRolling>(grains_, block, coefficients_.pair, diameter, dt, list, count, true, measure, sums);
+  pair_forces<Law, kRolling>(grains_, block, coefficients_.pair, diameter, dt, list, count, true, measure,
+                             sums);
   block.sums.contacts = count;
   count = filter(block, grains_, block.inner, block.pairs, diameter, list);
-  pair_forces<Law, kRolling>(grains_, block, coefficients_.pair, diameter, dt, list, count, false, measure, sums);
+  pair_forces<Law, kRolling>(grains_, block, coefficients_.pair, diameter, dt, list, count, false, measure,
+                             sums);
   block.sums.contacts += count;
   sums.add_to(block.sums);
   wall_forces<Law, kRolling>(grains_, block, params_, coefficients_, dt, measure);
@@ -273,7 +277,8 @@ void GrainSolver::integrate_block(PairBlock& block, double dt, bool measure) {
     work += f * a + t * alpha;
     momentum += v;
     height += x;
-    const bool inside = x[0] >= 0.0 && x[0] <= length && std::abs(x[1]) <= half_width && x[2] >= 0.0 && x[2] < 1e6;
+    const bool inside =
+        x[0] >= 0.0 && x[0] <= length && std::abs(x[1]) <= half_width && x[2] >= 0.0 && x[2] < 1e6;
     if (!inside && block.sums.lost < 0) block.sums.lost = g;
     if (measure) {
       const Lane n = f + mass * gravity, n2 = n * n;

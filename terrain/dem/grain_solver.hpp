@@ -18,11 +18,11 @@ inline constexpr double kGravity = 9.81;  // m/s², along −z
 
 struct SolverParams {
   LawKind law = LawKind::mindlin;
-  bool rolling = false;           // rolling resistance
+  bool rolling = false;  // rolling resistance
   GrainProperties grain;
   Bin bin;
-  double gravity = kGravity;      // m/s²
-  double skin = 0.0;              // neighbours are listed within 2 r + skin, m
+  double gravity = kGravity;  // m/s²
+  double skin = 0.0;          // neighbours are listed within 2 r + skin, m
   int threads = 1;
 };
 
@@ -33,19 +33,19 @@ struct SolverCoefficients {
 
 /// Cumulative since reset_accounts() unless stated.
 struct Accounts {
-  double contact_work = 0.0;      // ∫ contact forces · relative velocity, J
-  double elastic = 0.0;           // at the last force evaluation, J
-  double elastic_start = 0.0;     // J
+  double contact_work = 0.0;            // ∫ contact forces · relative velocity, J
+  double elastic = 0.0;                 // at the last force evaluation, J
+  double elastic_start = 0.0;           // J
   Vec3 wall_impulse = Vec3::Zero();     // N s
   Vec3 surface_impulse = Vec3::Zero();  // N s
-  double floor_force = 0.0;       // last step, N
-  double kinetic = 0.0;           // now, J
-  double height = 0.0;            // Σ z now, m
-  Vec3 velocity = Vec3::Zero();   // Σ v now, m/s
-  std::int64_t contacts = 0;      // last step
-  double max_overlap = 0.0;       // met since reset, m
-  double contact_force = 0.0;     // Σ |F|, N, last measured step
-  double net_force = 0.0;         // Σ |net force| of grains, N, last measured step
+  double floor_force = 0.0;             // last step, N
+  double kinetic = 0.0;                 // now, J
+  double height = 0.0;                  // Σ z now, m
+  Vec3 velocity = Vec3::Zero();         // Σ v now, m/s
+  std::int64_t contacts = 0;            // last step
+  double max_overlap = 0.0;             // met since reset, m
+  double contact_force = 0.0;           // Σ |F|, N, last measured step
+  double net_force = 0.0;               // Σ |net force| of grains, N, last measured step
 };
 
 class GrainSolver {

@@ -18,15 +18,24 @@ void get_quads(const Archive& archive, const std::string& name, Quad* quads, std
 }
 
 std::vector<double> flat(const Accounts& a) {
-  return {a.contact_work,        a.elastic,
-          a.elastic_start,       a.wall_impulse.x(),
-          a.wall_impulse.y(),    a.wall_impulse.z(),
-          a.surface_impulse.x(), a.surface_impulse.y(),
-          a.surface_impulse.z(), a.floor_force,
-          a.kinetic,             a.height,
-          a.velocity.x(),        a.velocity.y(),
-          a.velocity.z(),        static_cast<double>(a.contacts),
-          a.max_overlap,         a.contact_force,
+  return {a.contact_work,
+          a.elastic,
+          a.elastic_start,
+          a.wall_impulse.x(),
+          a.wall_impulse.y(),
+          a.wall_impulse.z(),
+          a.surface_impulse.x(),
+          a.surface_impulse.y(),
+          a.surface_impulse.z(),
+          a.floor_force,
+          a.kinetic,
+          a.height,
+          a.velocity.x(),
+          a.velocity.y(),
+          a.velocity.z(),
+          static_cast<double>(a.contacts),
+          a.max_overlap,
+          a.contact_force,
           a.net_force};
 }
 
@@ -59,7 +68,8 @@ void GrainSolver::save(Archive& archive) const {
   std::vector<std::uint8_t> touching;
   std::vector<Quad> tangential, rolling, wall_history;
   for (const PairBlock& block : pairs_.blocks()) {
-    sizes.insert(sizes.end(), {block.first, block.last, block.inner, block.pairs, std::int32_t(block.walls.size())});
+    sizes.insert(sizes.end(),
+                 {block.first, block.last, block.inner, block.pairs, std::int32_t(block.walls.size())});
     i.insert(i.end(), block.i.begin(), block.i.end());
     j.insert(j.end(), block.j.begin(), block.j.end());
     touching.insert(touching.end(), block.touching.begin(), block.touching.end());
@@ -128,7 +138,8 @@ void GrainSolver::restore(const Archive& archive) {
       if (!block.rolling.empty()) block.rolling[p] = quad(rolling, r++);
     }
     for (int k = 0; k < s[4]; ++k, ++w)
-      block.walls.push_back({wall_grain[w], wall[w], quad(wall_history, 2 * w), quad(wall_history, 2 * w + 1)});
+      block.walls.push_back(
+          {wall_grain[w], wall[w], quad(wall_history, 2 * w), quad(wall_history, 2 * w + 1)});
     pair += block.pairs;
   }
   pairs_.finish(grains_);

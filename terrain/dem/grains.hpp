@@ -12,17 +12,18 @@ namespace furrow::dem {
 /// partner of padding pairs, which never touches anything.
 struct Grains {
   int count = 0;
-  std::vector<Quad> position;   // m
-  std::vector<Quad> velocity;   // m/s
-  std::vector<Quad> spin;       // rad/s
-  std::vector<Quad> force;      // of contacts, N
-  std::vector<Quad> torque;     // of contacts, N m
-  std::vector<Quad> listed_at;  // position when its neighbours were listed, m
-  std::vector<std::int32_t> id; // 0 … count − 1 in order of generation
+  std::vector<Quad> position;    // m
+  std::vector<Quad> velocity;    // m/s
+  std::vector<Quad> spin;        // rad/s
+  std::vector<Quad> force;       // of contacts, N
+  std::vector<Quad> torque;      // of contacts, N m
+  std::vector<Quad> listed_at;   // position when its neighbours were listed, m
+  std::vector<std::int32_t> id;  // 0 … count − 1 in order of generation
 
   void resize(int n) {
     count = n;
-    for (auto* array : {&position, &velocity, &spin, &force, &torque, &listed_at}) array->assign(n + 1, Quad{});
+    for (auto* array : {&position, &velocity, &spin, &force, &torque, &listed_at})
+      array->assign(n + 1, Quad{});
     position[n] = {1e9, 1e9, 1e9, 0.0};
     id.resize(n);
     for (int i = 0; i < n; ++i) id[i] = i;

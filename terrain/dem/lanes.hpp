@@ -32,13 +32,21 @@ struct Triple {
   T x, y, z;
 };
 template <class T>
-inline Triple<T> operator+(const Triple<T>& a, const Triple<T>& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Triple<T> operator+(const Triple<T>& a, const Triple<T>& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
 template <class T>
-inline Triple<T> operator-(const Triple<T>& a, const Triple<T>& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Triple<T> operator-(const Triple<T>& a, const Triple<T>& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
 template <class T>
-inline Triple<T> operator*(const T& s, const Triple<T>& a) { return {s * a.x, s * a.y, s * a.z}; }
+inline Triple<T> operator*(const T& s, const Triple<T>& a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
 template <class T>
-inline T dot(const Triple<T>& a, const Triple<T>& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline T dot(const Triple<T>& a, const Triple<T>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 template <class T>
 inline Triple<T> cross(const Triple<T>& a, const Triple<T>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
@@ -47,9 +55,13 @@ inline Triple<T> cross(const Triple<T>& a, const Triple<T>& b) {
 template <class T>
 inline T constant(double a);
 template <>
-inline double constant<double>(double a) { return a; }
+inline double constant<double>(double a) {
+  return a;
+}
 template <>
-inline Lane constant<Lane>(double a) { return splat(a); }
+inline Lane constant<Lane>(double a) {
+  return splat(a);
+}
 
 inline double root(double a) { return std::sqrt(a); }
 inline Lane root(Lane a) {
@@ -64,9 +76,13 @@ inline double select(bool c, double a, double b) { return c ? a : b; }
 inline Lane select(LaneMask c, Lane a, Lane b) { return c ? a : b; }
 
 template <class T>
-inline T larger(T a, T b) { return select(a > b, a, b); }
+inline T larger(T a, T b) {
+  return select(a > b, a, b);
+}
 template <class T>
-inline T smaller(T a, T b) { return select(a < b, a, b); }
+inline T smaller(T a, T b) {
+  return select(a < b, a, b);
+}
 
 inline double sum_of(Lane a) { return (a[0] + a[1]) + (a[2] + a[3]); }
 
@@ -96,9 +112,9 @@ inline T tanh_of_positive(T x) {
   const T k = shifted - shift;
   const T r = (t - k * 0.693147180369123816490) - k * 1.90821492927058770002e-10;
   T p = constant<T>(1.0 / 6227020800.0);
-  constexpr double kInverseFactorial[] = {1.0 / 479001600.0, 1.0 / 39916800.0, 1.0 / 3628800.0, 1.0 / 362880.0,
-                                          1.0 / 40320.0,     1.0 / 5040.0,     1.0 / 720.0,     1.0 / 120.0,
-                                          1.0 / 24.0,        1.0 / 6.0,        0.5,             1.0};
+  constexpr double kInverseFactorial[] = {
+      1.0 / 479001600.0, 1.0 / 39916800.0, 1.0 / 3628800.0, 1.0 / 362880.0, 1.0 / 40320.0, 1.0 / 5040.0,
+      1.0 / 720.0,       1.0 / 120.0,      1.0 / 24.0,      1.0 / 6.0,      0.5,           1.0};
   for (const double c : kInverseFactorial) p = p * r + c;
   const T two_k = detail::power_of_two(shifted);
   const T e = two_k * (p * r) + (two_k - 1.0);
@@ -107,21 +123,27 @@ inline T tanh_of_positive(T x) {
 
 /// Rows (x y z w) of four grains → four x, four y, four z.
 inline Triple<Lane> transpose(Lane a, Lane b, Lane c, Lane d) {
-  const Lane ab_xz = __builtin_shufflevector(a, b, 0, 4, 2, 6), ab_yw = __builtin_shufflevector(a, b, 1, 5, 3, 7);
-  const Lane cd_xz = __builtin_shufflevector(c, d, 0, 4, 2, 6), cd_yw = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-  return {__builtin_shufflevector(ab_xz, cd_xz, 0, 1, 4, 5), __builtin_shufflevector(ab_yw, cd_yw, 0, 1, 4, 5),
+  const Lane ab_xz = __builtin_shufflevector(a, b, 0, 4, 2, 6),
+             ab_yw = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Lane cd_xz = __builtin_shufflevector(c, d, 0, 4, 2, 6),
+             cd_yw = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  return {__builtin_shufflevector(ab_xz, cd_xz, 0, 1, 4, 5),
+          __builtin_shufflevector(ab_yw, cd_yw, 0, 1, 4, 5),
           __builtin_shufflevector(ab_xz, cd_xz, 2, 3, 6, 7)};
 }
 /// The fourth components too.
 inline Triple<Lane> transpose(Lane a, Lane b, Lane c, Lane d, Lane& w) {
-  const Lane ab_yw = __builtin_shufflevector(a, b, 1, 5, 3, 7), cd_yw = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  const Lane ab_yw = __builtin_shufflevector(a, b, 1, 5, 3, 7),
+             cd_yw = __builtin_shufflevector(c, d, 1, 5, 3, 7);
   w = __builtin_shufflevector(ab_yw, cd_yw, 2, 3, 6, 7);
   return transpose(a, b, c, d);
 }
 /// Back: four x, y, z, w → rows.
 inline void transpose_back(const Triple<Lane>& t, Lane w, Lane row[kLanes]) {
-  const Lane xy_02 = __builtin_shufflevector(t.x, t.y, 0, 4, 2, 6), xy_13 = __builtin_shufflevector(t.x, t.y, 1, 5, 3, 7);
-  const Lane zw_02 = __builtin_shufflevector(t.z, w, 0, 4, 2, 6), zw_13 = __builtin_shufflevector(t.z, w, 1, 5, 3, 7);
+  const Lane xy_02 = __builtin_shufflevector(t.x, t.y, 0, 4, 2, 6),
+             xy_13 = __builtin_shufflevector(t.x, t.y, 1, 5, 3, 7);
+  const Lane zw_02 = __builtin_shufflevector(t.z, w, 0, 4, 2, 6),
+             zw_13 = __builtin_shufflevector(t.z, w, 1, 5, 3, 7);
   row[0] = __builtin_shufflevector(xy_02, zw_02, 0, 1, 4, 5);
   row[1] = __builtin_shufflevector(xy_13, zw_13, 0, 1, 4, 5);
   row[2] = __builtin_shufflevector(xy_02, zw_02, 2, 3, 6, 7);

@@ -25,7 +25,7 @@ struct OldRows {
   struct Entry {
     std::int32_t partner;  // old index
     std::int32_t block, pair;
-    bool reversed;         // this grain was the pair's j
+    bool reversed;  // this grain was the pair's j
   };
   std::vector<std::int32_t> start;
   std::vector<Entry> entries;
@@ -53,7 +53,8 @@ struct OldRows {
     for (int b = 0; b < static_cast<int>(blocks.size()); ++b)
       for (int group = 0; group < blocks[b].pairs / kLanes; ++group)
         for (int k = 0, mask = blocks[b].touching[group]; mask != 0; ++k, mask >>= 1)
-          if (mask & 1) f(b, group * kLanes + k, blocks[b].i[group * kLanes + k], blocks[b].j[group * kLanes + k]);
+          if (mask & 1)
+            f(b, group * kLanes + k, blocks[b].i[group * kLanes + k], blocks[b].j[group * kLanes + k]);
   }
 };
 
@@ -71,13 +72,16 @@ void PairList::sort_by_cell(Grains& grains, int threads, std::vector<std::int32_
   cells_.ny = std::max(1, static_cast<int>(std::ceil(options_.bin.width / size)));
   cells_.nz = std::clamp(static_cast<int>(top / size) + 1, 1, kMaxCellsZ);
 
-  const auto index = [&](double x, int count) { return std::clamp(static_cast<int>(x * cells_.inverse), 0, count - 1); };
+  const auto index = [&](double x, int count) {
+    return std::clamp(static_cast<int>(x * cells_.inverse), 0, count - 1);
+  };
   std::vector<std::int32_t> cell(n);
 #pragma omp parallel for num_threads(threads) schedule(static)
   for (int g = 0; g < n; ++g) {
     const Quad& p = grains.position[g];
-    cell[g] = (index(p.x - cells_.x0, cells_.nx) * cells_.ny + index(p.y - cells_.y0, cells_.ny)) * cells_.nz +
-              index(p.z, cells_.nz);
+    cell[g] =
+        (index(p.x - cells_.x0, cells_.nx) * cells_.ny + index(p.y - cells_.y0, cells_.ny)) * cells_.nz +
+        index(p.z, cells_.nz);
   }
   cells_.start.assign(static_cast<std::size_t>(cells_.nx) * cells_.ny * cells_.nz + 1, 0);
   for (int g = 0; g < n; ++g) ++cells_.start[cell[g] + 1];
@@ -185,7 +189,8 @@ void PairList::carry_history(const Grains& grains, const std::vector<PairBlock>&
       block.touching[p / kLanes] |= static_cast<std::uint8_t>(1 << p % kLanes);
       const PairBlock& from = old[found->block];
       if (options_.history)
-        block.tangential[p] = found->reversed ? negated(from.tangential[found->pair]) : from.tangential[found->pair];
+        block.tangential[p] =
+            found->reversed ? negated(from.tangential[found->pair]) : from.tangential[found->pair];
       if (options_.rolling)
         block.rolling[p] = found->reversed ? negated(from.rolling[found->pair]) : from.rolling[found->pair];
     }

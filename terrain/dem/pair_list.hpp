@@ -35,36 +35,36 @@ struct Incoming {
 
 /// Sums over a block's contacts and grains in one step.
 struct BlockSums {
-  double power = 0.0;            // Σ F·v_rel at the step's start, W
-  double elastic = 0.0;          // J
-  double contact_force = 0.0;    // Σ |F|, N, when measured
-  double net_force = 0.0;        // Σ |contact forces + weight| of grains, N, when measured
-  double max_overlap = 0.0;      // m
-  Quad wall_force;               // on the grains, N
-  double floor_force = 0.0;      // N
-  double surface_power = 0.0;    // Σ F·v_rel against tires, W
+  double power = 0.0;          // Σ F·v_rel at the step's start, W
+  double elastic = 0.0;        // J
+  double contact_force = 0.0;  // Σ |F|, N, when measured
+  double net_force = 0.0;      // Σ |contact forces + weight| of grains, N, when measured
+  double max_overlap = 0.0;    // m
+  Quad wall_force;             // on the grains, N
+  double floor_force = 0.0;    // N
+  double surface_power = 0.0;  // Σ F·v_rel against tires, W
   std::int64_t contacts = 0;
-  double kinetic = 0.0;          // after the step, J
-  double height = 0.0;           // Σ z after the step, m
-  Quad velocity;                 // Σ v after the step, m/s
-  double step_work = 0.0;        // Σ F·a + T·α: half of it times dt² belongs to the power at mid-step, N²/kg
-  double max_travel2 = 0.0;      // since listed, m²
-  std::int32_t lost = -1;        // index of a grain outside the bin or not finite
+  double kinetic = 0.0;    // after the step, J
+  double height = 0.0;     // Σ z after the step, m
+  Quad velocity;           // Σ v after the step, m/s
+  double step_work = 0.0;  // Σ F·a + T·α: half of it times dt² belongs to the power at mid-step, N²/kg
+  double max_travel2 = 0.0;  // since listed, m²
+  std::int32_t lost = -1;    // index of a grain outside the bin or not finite
 };
 
 struct PairBlock {
-  std::int32_t first = 0, last = 0;   // grains
+  std::int32_t first = 0, last = 0;  // grains
   // Pairs, inner ones first; both parts padded to a multiple of kLanes with (first, stranger).
   std::int32_t inner = 0, pairs = 0;  // padded counts
   std::vector<std::int32_t> i, j;
-  std::vector<std::uint8_t> touching; // bit k of entry p/4: pair p touched in the last step
-  std::vector<Quad> tangential;       // history per pair: spring force on i, N; w = √δ
-  std::vector<Quad> rolling;          // history per pair, N m; empty without rolling resistance
-  std::vector<Quad> slot_force;       // per outer pair: force on i, N
-  std::vector<Quad> slot_torque;      // per outer pair: torque on j, N m
+  std::vector<std::uint8_t> touching;  // bit k of entry p/4: pair p touched in the last step
+  std::vector<Quad> tangential;        // history per pair: spring force on i, N; w = √δ
+  std::vector<Quad> rolling;           // history per pair, N m; empty without rolling resistance
+  std::vector<Quad> slot_force;        // per outer pair: force on i, N
+  std::vector<Quad> slot_torque;       // per outer pair: torque on j, N m
   std::vector<Incoming> incoming;
   std::vector<WallContact> walls;
-  double x_min = 0.0, x_max = 0.0;    // of the centres when listed, m
+  double x_min = 0.0, x_max = 0.0;  // of the centres when listed, m
   BlockSums sums;
 };
 
@@ -77,11 +77,16 @@ struct Bin {
   /// Distance of a point from wall w: 0 x=0, 1 x=length, 2 y=−width/2, 3 y=width/2, 4 floor.
   double distance(int wall, const Quad& p) const {
     switch (wall) {
-      case 0: return p.x;
-      case 1: return length - p.x;
-      case 2: return p.y + 0.5 * width;
-      case 3: return 0.5 * width - p.y;
-      default: return p.z;
+      case 0:
+        return p.x;
+      case 1:
+        return length - p.x;
+      case 2:
+        return p.y + 0.5 * width;
+      case 3:
+        return 0.5 * width - p.y;
+      default:
+        return p.z;
     }
   }
   static Triple<double> normal(int wall) {
@@ -93,10 +98,10 @@ struct Bin {
 class PairList {
  public:
   struct Options {
-    double radius = 0.0;      // m
-    double skin = 0.0;        // pairs closer than 2 r + skin are listed, m
-    bool history = true;      // keep tangential history
-    bool rolling = false;     // keep rolling history
+    double radius = 0.0;   // m
+    double skin = 0.0;     // pairs closer than 2 r + skin are listed, m
+    bool history = true;   // keep tangential history
+    bool rolling = false;  // keep rolling history
     Bin bin;
   };
 
@@ -126,8 +131,8 @@ class PairList {
   void sort_by_cell(Grains& grains, int threads, std::vector<std::int32_t>& order);
   void list_block(const Grains& grains, PairBlock& block) const;
   void list_walls(const Grains& grains, PairBlock& block) const;
-  void carry_history(const Grains& grains, const std::vector<PairBlock>& old, const std::vector<std::int32_t>& order,
-                     int threads);
+  void carry_history(const Grains& grains, const std::vector<PairBlock>& old,
+                     const std::vector<std::int32_t>& order, int threads);
   void link_slots();
 
   Options options_;

@@ -14,10 +14,10 @@ namespace furrow {
 namespace {
 
 // All as shares of the sphere's radius.
-constexpr double kFadeFrom = 0.4;      // overlap where other candidates begin to fade
-constexpr double kFadeTo = 0.5;        // overlap from which the nearest point alone counts
-constexpr double kSamePoint = 1e-9;    // candidates nearer than this to each other are one
-constexpr double kSkinShare = 0.5;     // skin / reach
+constexpr double kFadeFrom = 0.4;    // overlap where other candidates begin to fade
+constexpr double kFadeTo = 0.5;      // overlap from which the nearest point alone counts
+constexpr double kSamePoint = 1e-9;  // candidates nearer than this to each other are one
+constexpr double kSkinShare = 0.5;   // skin / reach
 
 /// Plane n·x = offset of a triangle; n = 0 for one without area, which its neighbours' edges stand in for.
 struct TrianglePlane {
@@ -63,17 +63,17 @@ void write_hit(SurfaceHit& hit, const Candidate& from, double overlap, double sh
 
 struct SurfaceCollider::Data {
   SurfaceMesh mesh;
-  double reach = 0.0;      // m
-  double skin = 0.0;       // m
-  double duration = 1.0;   // s
+  double reach = 0.0;     // m
+  double skin = 0.0;      // m
+  double duration = 1.0;  // s
   std::vector<Vec3> start, end, position, velocity;
-  std::vector<Vec3> built_at;                         // positions the grid was built with
+  std::vector<Vec3> built_at;  // positions the grid was built with
   std::vector<TrianglePlane> plane;
   SurfaceTopology topology;
-  std::vector<int> listed;                            // triangles in the grid
+  std::vector<int> listed;  // triangles in the grid
   SurfaceBox limit{Vec3::Constant(-std::numeric_limits<double>::infinity()),
                    Vec3::Constant(std::numeric_limits<double>::infinity())};
-  SurfaceBox built_limit = limit;                     // that the grid was built with
+  SurfaceBox built_limit = limit;  // that the grid was built with
   bool beyond_built_limit = false;
   SurfaceGrid grid;
   std::int64_t rebuilds = 0;
@@ -91,7 +91,8 @@ struct SurfaceCollider::Data {
   bool behind(const Candidate& nearest, const Vec3& centre) const;
   bool behind_vertex(int vertex, const Vec3& offset) const;
   void consider(int t, const Vec3& centre, double radius, CandidateList& found) const;
-  int share_out(const CandidateList& found, const Vec3& centre, double radius, std::span<SurfaceHit> out) const;
+  int share_out(const CandidateList& found, const Vec3& centre, double radius,
+                std::span<SurfaceHit> out) const;
 };
 
 void SurfaceCollider::Data::update_planes() {
@@ -133,7 +134,8 @@ bool SurfaceCollider::Data::behind(const Candidate& nearest, const Vec3& centre)
   const int t = nearest.triangle;
   if (nearest.at.region == TriangleRegion::face) return plane[t].normal.dot(centre) < plane[t].offset;
   if (nearest.at.region <= TriangleRegion::edge_2) {
-    const int other = topology.neighbour[t][static_cast<int>(nearest.at.region) - static_cast<int>(TriangleRegion::edge_0)];
+    const int other =
+        topology.neighbour[t][static_cast<int>(nearest.at.region) - static_cast<int>(TriangleRegion::edge_0)];
     if (other < 0) return false;
     const Vec3 area = cross(other);
     return (plane[t].normal + area / std::max(area.norm(), 1e-300)).dot(offset) < 0.0;
@@ -152,7 +154,8 @@ bool SurfaceCollider::Data::behind_vertex(int vertex, const Vec3& offset) const 
   for (int t : topology.around(vertex)) {
     const auto& v = mesh.triangles[t];
     const int k = static_cast<int>(std::find(v.begin(), v.end(), vertex) - v.begin());
-    const Vec3 a = position[v[(k + 1) % 3]] - position[vertex], b = position[v[(k + 2) % 3]] - position[vertex];
+    const Vec3 a = position[v[(k + 1) % 3]] - position[vertex],
+               b = position[v[(k + 2) % 3]] - position[vertex];
     const Vec3 area = a.cross(b);
     const double length = area.norm();
     if (length > 1e-30) sum += std::atan2(length, a.dot(b)) * area.dot(offset) / length;
@@ -194,8 +197,8 @@ int SurfaceCollider::Data::share_out(const CandidateList& found, const Vec3& cen
     const Candidate& one = found.item[i];
     const double own_fade = i == 0 ? 1.0 : fade;
     // A face seen from behind while something nearer is seen from the front belongs to the far side of a wedge.
-    const bool far_side = i > 0 && one.at.region == TriangleRegion::face &&
-                          one.normal.dot(centre) < plane[one.triangle].offset;
+    const bool far_side =
+        i > 0 && one.at.region == TriangleRegion::face && one.normal.dot(centre) < plane[one.triangle].offset;
     if (far_side || !(own_fade > 0.0)) continue;
     normal[count] = one.normal;
     depth[count] = radius - one.distance;
@@ -216,7 +219,8 @@ int SurfaceCollider::Data::share_out(const CandidateList& found, const Vec3& cen
 
 SurfaceCollider::SurfaceCollider(const SurfaceMesh& mesh, double reach) : data_(std::make_unique<Data>()) {
   if (!(reach > 0.0) || !std::isfinite(reach))
-    throw input_error("contact surface", "", "reach " + std::to_string(reach) + " m, expected a positive length");
+    throw input_error("contact surface", "",
+                      "reach " + std::to_string(reach) + " m, expected a positive length");
   for (const auto& triangle : mesh.triangles)
     for (int v : triangle)
       if (v < 0 || v >= mesh.vertex_count)
@@ -256,7 +260,8 @@ void SurfaceCollider::move_to(double share) {
   if (share == 1.0)
     d.position = d.end;  // exactly, where the next interval begins
   else
-    for (std::size_t v = 0; v < d.start.size(); ++v) d.position[v] = d.start[v] + share * (d.end[v] - d.start[v]);
+    for (std::size_t v = 0; v < d.start.size(); ++v)
+      d.position[v] = d.start[v] + share * (d.end[v] - d.start[v]);
   if (d.grid_is_stale()) d.rebuild();
   d.update_planes();
 }
@@ -264,7 +269,8 @@ void SurfaceCollider::move_to(double share) {
 void SurfaceCollider::restrict_to(const SurfaceBox& box) {
   Data& d = *data_;
   const SurfaceBox& built = d.built_limit;
-  d.beyond_built_limit = (box.lo.array() < built.lo.array()).any() || (box.hi.array() > built.hi.array()).any();
+  d.beyond_built_limit =
+      (box.lo.array() < built.lo.array()).any() || (box.hi.array() > built.hi.array()).any();
   // Room for small changes, so that they do not cost a grid each.
   d.limit.lo = box.lo.array() - 2.0 * d.reach;
   d.limit.hi = box.hi.array() + 2.0 * d.reach;

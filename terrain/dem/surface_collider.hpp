@@ -31,10 +31,10 @@ namespace furrow {
 /// One touched point of the surface. Use: force on the grain = share · law(overlap, normal, relative velocity),
 /// torque on the grain = (point − centre) × force, and the opposite force on the triangle's vertices by `weight`.
 struct SurfaceHit {
-  Vec3 point = Vec3::Zero();     // on the surface, m, W
-  Vec3 normal = Vec3::Zero();    // unit, from the surface towards the outside (the grain), W
-  double overlap = 0.0;          // δ̂ > 0 of Eq. (2), m
-  double share = 1.0;            // s of Eq. (2), in (0, 1]
+  Vec3 point = Vec3::Zero();   // on the surface, m, W
+  Vec3 normal = Vec3::Zero();  // unit, from the surface towards the outside (the grain), W
+  double overlap = 0.0;        // δ̂ > 0 of Eq. (2), m
+  double share = 1.0;          // s of Eq. (2), in (0, 1]
   int triangle = -1;
   std::array<double, 3> weight{};  // barycentric: point = Σ weight · vertex, Σ weight = 1, each ≥ 0
 };

@@ -9,7 +9,8 @@
 namespace furrow::dem {
 namespace {
 
-constexpr double kSameNormal = 0.5;  // cosine: history passes between points whose normals differ by less than 60°
+constexpr double kSameNormal =
+    0.5;  // cosine: history passes between points whose normals differ by less than 60°
 
 Triple<double> triple(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 Triple<double> triple(const Quad& q) { return {q.x, q.y, q.z}; }
@@ -166,8 +167,8 @@ void SurfaceContacts::evaluate(Grains& grains, PairBlock& block, int b, double d
       for (int k = 0; k < count(); ++k) {
         const SurfaceBox& box = surfaces_[k].near;
         const Quad& p = grains.position[g];
-        if (p.z > box.lo.z() && p.x > box.lo.x() && p.x < box.hi.x() && p.y > box.lo.y() && p.y < box.hi.y() &&
-            p.z < box.hi.z())
+        if (p.z > box.lo.z() && p.x > box.lo.x() && p.x < box.hi.x() && p.y > box.lo.y() &&
+            p.y < box.hi.y() && p.z < box.hi.z())
           touch<Law>(grains, block, mine, k, g, dt);
       }
   mine.history.swap(mine.next);
@@ -204,16 +205,17 @@ void SurfaceContacts::save(Archive& archive) const {
     archive.put("triangles", triangles);
     archive.put("position", flat(s.end));
     const ContactMaterial& m = s.material;
-    archive.put("material", std::vector<double>{m.young_modulus, m.poisson_ratio, m.friction, m.restitution,
-                                                m.normal_stiffness, m.normal_damping, m.cohesion,
-                                                m.area_density});
+    archive.put("material",
+                std::vector<double>{m.young_modulus, m.poisson_ratio, m.friction, m.restitution,
+                                    m.normal_stiffness, m.normal_damping, m.cohesion, m.area_density});
   }
   std::vector<std::int32_t> keys;
   std::vector<double> values;
   for (const SurfaceBlock& block : blocks_)
     for (const SurfaceHistory& h : block.history) {
       keys.insert(keys.end(), {h.grain, h.surface});
-      for (const Quad* q : {&h.normal, &h.tangential, &h.rolling}) values.insert(values.end(), {q->x, q->y, q->z, q->w});
+      for (const Quad* q : {&h.normal, &h.tangential, &h.rolling})
+        values.insert(values.end(), {q->x, q->y, q->z, q->w});
     }
   archive.put("surfaces/keys", keys);
   archive.put("surfaces/history", values);
@@ -241,8 +243,11 @@ void SurfaceContacts::restore(const Archive& archive) {
   const auto& v = archive.get<double>("surfaces/history", 6 * keys.size());
   for (std::size_t h = 0; 2 * h < keys.size(); ++h) {
     const double* q = &v[12 * h];
-    blocks_[keys[2 * h] / kBlockGrains].history.push_back({keys[2 * h], keys[2 * h + 1], {q[0], q[1], q[2], q[3]},
-                                                           {q[4], q[5], q[6], q[7]}, {q[8], q[9], q[10], q[11]}});
+    blocks_[keys[2 * h] / kBlockGrains].history.push_back({keys[2 * h],
+                                                           keys[2 * h + 1],
+                                                           {q[0], q[1], q[2], q[3]},
+                                                           {q[4], q[5], q[6], q[7]},
+                                                           {q[8], q[9], q[10], q[11]}});
   }
 }
 

@@ -20,9 +20,9 @@ namespace furrow::dem {
 struct SurfaceHistory {
   std::int32_t grain = 0;
   std::int32_t surface = 0;
-  Quad normal;       // of the step before
-  Quad tangential;   // spring force on the grain, N; w = √δ
-  Quad rolling;      // N m
+  Quad normal;      // of the step before
+  Quad tangential;  // spring force on the grain, N; w = √δ
+  Quad rolling;     // N m
 };
 
 struct SurfaceTouch {
@@ -41,8 +41,8 @@ class SurfaceContacts {
   SurfaceContacts(const GrainProperties& grain, bool rolling) : grain_(grain), rolling_(rolling) {}
 
   /// @pre start has the mesh's vertex count.
-  void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const ContactCoefficients& coefficients,
-              const SurfaceState& start);
+  void attach(const SurfaceMesh& mesh, const ContactMaterial& material,
+              const ContactCoefficients& coefficients, const SurfaceState& start);
   int count() const { return static_cast<int>(surfaces_.size()); }
   bool any() const { return !surfaces_.empty(); }
   const ContactMaterial& material(int k) const { return surfaces_[k].material; }

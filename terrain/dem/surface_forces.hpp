@@ -17,10 +17,10 @@ namespace furrow {
 /// One contact's force on the surface (the tire) by the terrain; total force = normal + tangential.
 struct SurfaceContactForce {
   int triangle = -1;
-  std::array<double, 3> weight{};     // of the hit
-  Vec3 point = Vec3::Zero();          // of the hit, m, W
-  Vec3 normal = Vec3::Zero();         // N, W
-  Vec3 tangential = Vec3::Zero();     // N, W
+  std::array<double, 3> weight{};  // of the hit
+  Vec3 point = Vec3::Zero();       // of the hit, m, W
+  Vec3 normal = Vec3::Zero();      // N, W
+  Vec3 tangential = Vec3::Zero();  // N, W
 };
 
 /// A surface as it stands in one substep.
@@ -48,13 +48,13 @@ class NodalForceSum {
   Vec3 impulse() const;
 
  private:
-  std::vector<Vec3> impulse_;        // per vertex, N s
+  std::vector<Vec3> impulse_;  // per vertex, N s
   std::vector<std::uint8_t> touched_;
   std::vector<int> touched_list_;    // in order of first touch
   std::vector<Vec3> substep_force_;  // per vertex, this substep, N
   std::vector<std::uint8_t> substep_touched_;
   std::vector<int> substep_list_;
-  ContactSums sums_;                 // impulses (N s, N m s) until finish()
+  ContactSums sums_;  // impulses (N s, N m s) until finish()
 };
 
 }  // namespace furrow

@@ -7,7 +7,7 @@ namespace furrow {
 namespace {
 
 constexpr double kRegularisation = 1e-12;
-constexpr double kTolerance = 1e-11;     // of the deepest overlap
+constexpr double kTolerance = 1e-11;  // of the deepest overlap
 constexpr int kMaxActive = 6;
 
 TrianglePoint on_edge(const Vec3& from, const Vec3& to, double share, int edge) {
@@ -33,7 +33,9 @@ struct ActiveSet {
   std::array<double, kMaxActive> lambda{};
   int size = 0;
 
-  bool holds(int i) const { return std::find(index.begin(), index.begin() + size, i) != index.begin() + size; }
+  bool holds(int i) const {
+    return std::find(index.begin(), index.begin() + size, i) != index.begin() + size;
+  }
   void drop(int k) {
     for (int i = k; i + 1 < size; ++i) {
       index[i] = index[i + 1];
@@ -43,7 +45,9 @@ struct ActiveSet {
   }
 };
 
-double coupling(std::span<const Vec3> normal, int i, int j) { return std::max(0.0, normal[i].dot(normal[j])); }
+double coupling(std::span<const Vec3> normal, int i, int j) {
+  return std::max(0.0, normal[i].dot(normal[j]));
+}
 
 /// Solves G_AA x = δ_A by elimination; G_AA is small and regularised.
 std::array<double, kMaxActive> solve_active(const ActiveSet& active, std::span<const Vec3> normal,

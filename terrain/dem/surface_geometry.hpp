@@ -14,8 +14,8 @@ namespace furrow {
 enum class TriangleRegion : std::uint8_t { face, edge_0, edge_1, edge_2, vertex_0, vertex_1, vertex_2 };
 
 struct TrianglePoint {
-  Vec3 point = Vec3::Zero();           // m
-  std::array<double, 3> weight{};      // barycentric, each ≥ 0, sum 1
+  Vec3 point = Vec3::Zero();       // m
+  std::array<double, 3> weight{};  // barycentric, each ≥ 0, sum 1
   TriangleRegion region = TriangleRegion::face;
 };
 

@@ -36,10 +36,10 @@ class SurfaceGrid {
   template <class Visit>
   void visit_cells(const Vec3& a, const Vec3& b, const Vec3& c, double margin, Visit&& visit) const;
 
-  Vec3 origin_ = Vec3::Zero();   // m
-  double cell_ = 1.0;            // edge length, m
-  double inverse_cell_ = 1.0;    // 1/m
-  std::array<int, 3> cells_{};   // per axis
+  Vec3 origin_ = Vec3::Zero();       // m
+  double cell_ = 1.0;                // edge length, m
+  double inverse_cell_ = 1.0;        // 1/m
+  std::array<int, 3> cells_{};       // per axis
   std::vector<std::int32_t> first_;  // cell → its first entry
   std::vector<int> entry_;           // triangles, ascending within a cell
 };

@@ -6,7 +6,7 @@ namespace furrow {
 namespace {
 
 struct HalfEdge {
-  int low, high;        // its vertices
+  int low, high;  // its vertices
   int triangle, edge;
   std::array<int, 4> key() const { return {low, high, triangle, edge}; }
 };

@@ -18,11 +18,11 @@
 namespace furrow {
 
 struct GroundLaw {
-  double stiffness = 0.0;       // κ, N/m³
-  double damping = 0.0;         // d, N s/m³, in pressure and in shear
-  double shear_stiffness = 0.0; // κ_t, N/m³
-  double friction = 0.0;        // μ, -
-  double velocity_scale = 0.0;  // c, s/m
+  double stiffness = 0.0;        // κ, N/m³
+  double damping = 0.0;          // d, N s/m³, in pressure and in shear
+  double shear_stiffness = 0.0;  // κ_t, N/m³
+  double friction = 0.0;         // μ, -
+  double velocity_scale = 0.0;   // c, s/m
 };
 
 /// A part of a triangle below the plane: one integration point.

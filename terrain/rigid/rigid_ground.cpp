@@ -19,18 +19,19 @@ constexpr double kMostStartDepth = 5e-3;
 struct GroundSurface {
   SurfaceMesh mesh;
   ContactMaterial material;
-  double friction = 0.0;         // -, of the pair
-  std::vector<Vec3> last;        // where the ground last had the vertices, m
-  std::vector<Vec3> velocity;    // of the running interval, m/s
-  std::vector<Vec3> position;    // at the middle of the running substep, m
-  std::vector<Vec3> shear;       // of the layer under each vertex, m
+  double friction = 0.0;           // -, of the pair
+  std::vector<Vec3> last;          // where the ground last had the vertices, m
+  std::vector<Vec3> velocity;      // of the running interval, m/s
+  std::vector<Vec3> position;      // at the middle of the running substep, m
+  std::vector<Vec3> shear;         // of the layer under each vertex, m
   std::vector<double> load, area;  // of each vertex in the running substep, N, m²
   std::vector<SurfaceContactForce> contacts;
-  std::vector<std::pair<int, int>> corner;  // of each vertex: one of its triangles, and which corner it is there
+  std::vector<std::pair<int, int>>
+      corner;  // of each vertex: one of its triangles, and which corner it is there
   NodalForceSum sum;
   std::int64_t contact_count = 0;
-  double elastic_energy = 0.0;   // J
-  double floor_force = 0.0;      // N
+  double elastic_energy = 0.0;  // J
+  double floor_force = 0.0;     // N
 };
 
 std::vector<double> flatten(const std::vector<Vec3>& points) {
@@ -47,7 +48,8 @@ std::vector<Vec3> unflatten(const std::vector<double>& values) {
   return points;
 }
 
-Vec3 weighted(const std::array<double, 3>& weight, const std::vector<Vec3>& values, const std::array<int, 3>& at) {
+Vec3 weighted(const std::array<double, 3>& weight, const std::vector<Vec3>& values,
+              const std::array<int, 3>& at) {
   return weight[0] * values[at[0]] + weight[1] * values[at[1]] + weight[2] * values[at[2]];
 }
 
@@ -101,7 +103,8 @@ HeightField RigidGround::height_field() const {
   return field;
 }
 
-void RigidGround::add_surface(const SurfaceMesh& mesh, const ContactMaterial& material, std::vector<Vec3> last) {
+void RigidGround::add_surface(const SurfaceMesh& mesh, const ContactMaterial& material,
+                              std::vector<Vec3> last) {
   GroundSurface surface{.mesh = mesh,
                         .material = material,
                         .friction = std::min(options_.friction, material.friction),
@@ -121,28 +124,32 @@ void RigidGround::add_surface(const SurfaceMesh& mesh, const ContactMaterial& ma
   measure(surfaces_.back());
 }
 
-void RigidGround::attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) {
+void RigidGround::attach(const SurfaceMesh& mesh, const ContactMaterial& material,
+                         const SurfaceState& start) {
   const std::string who = "surface " + std::to_string(surfaces_.size());
   if (start.position.size() != static_cast<std::size_t>(mesh.vertex_count))
-    throw input_error(who, "", std::to_string(start.position.size()) + " positions, expected " +
-                                   std::to_string(mesh.vertex_count));
+    throw input_error(
+        who, "",
+        std::to_string(start.position.size()) + " positions, expected " + std::to_string(mesh.vertex_count));
   for (const auto& triangle : mesh.triangles)
     for (int v : triangle)
       if (v < 0 || v >= mesh.vertex_count)
-        throw input_error(who, "", "a triangle names vertex " + std::to_string(v) + ", expected 0 to " +
-                                       std::to_string(mesh.vertex_count - 1));
+        throw input_error(who, "",
+                          "a triangle names vertex " + std::to_string(v) + ", expected 0 to " +
+                              std::to_string(mesh.vertex_count - 1));
   double lowest = 0.0;
   for (const Vec3& x : start.position) lowest = std::min(lowest, x.z());
   if (lowest < -kMostStartDepth)
-    throw input_error(who, "", "starts " + std::to_string(-lowest) + " m below the ground, expected at most " +
-                                   std::to_string(kMostStartDepth) + " m");
+    throw input_error(who, "",
+                      "starts " + std::to_string(-lowest) + " m below the ground, expected at most " +
+                          std::to_string(kMostStartDepth) + " m");
   add_surface(mesh, material, start.position);
 }
 
 /// Contact forces with the surface at `position`, moving with `velocity` for dt.
 void RigidGround::press(GroundSurface& surface, double dt) const {
-  const GroundLaw law{options_.ground_stiffness, options_.ground_damping, options_.ground_shear_stiffness, surface.friction,
-                      options_.friction_velocity_scale};
+  const GroundLaw law{options_.ground_stiffness, options_.ground_damping, options_.ground_shear_stiffness,
+                      surface.friction, options_.friction_velocity_scale};
   surface.contacts.clear();
   std::fill(surface.load.begin(), surface.load.end(), 0.0);
   std::fill(surface.area.begin(), surface.area.end(), 0.0);
@@ -153,8 +160,9 @@ void RigidGround::press(GroundSurface& surface, double dt) const {
     if (x[v[0]].z() >= 0.0 && x[v[1]].z() >= 0.0 && x[v[2]].z() >= 0.0) continue;
     const int count = ground_points({x[v[0]], x[v[1]], x[v[2]]}, points);
     for (int i = 0; i < count; ++i) {
-      const double force = add_ground_force(law, t, points[i], weighted(points[i].weight, x, v),
-                                            weighted(points[i].weight, surface.velocity, v), surface.contacts);
+      const double force =
+          add_ground_force(law, t, points[i], weighted(points[i].weight, x, v),
+                           weighted(points[i].weight, surface.velocity, v), surface.contacts);
       for (int k = 0; k < 3 && force > 0.0; ++k) {
         surface.load[v[k]] += points[i].weight[k] * force;
         surface.area[v[k]] += points[i].weight[k] * points[i].area;
@@ -165,8 +173,8 @@ void RigidGround::press(GroundSurface& surface, double dt) const {
   surface.floor_force = 0.0;
   for (const auto& one : surface.contacts) surface.floor_force += one.normal.z();
   for (std::size_t vertex = 0; vertex < surface.shear.size(); ++vertex) {
-    const Vec3 force =
-        slide(law, surface.load[vertex], surface.area[vertex], surface.velocity[vertex], dt, surface.shear[vertex]);
+    const Vec3 force = slide(law, surface.load[vertex], surface.area[vertex], surface.velocity[vertex], dt,
+                             surface.shear[vertex]);
     if (force.isZero(0.0)) continue;
     SurfaceContactForce contact;
     const auto [triangle, corner] = surface.corner[vertex];
@@ -183,19 +191,22 @@ void RigidGround::measure(GroundSurface& surface) const {
   std::array<GroundPoint, kMaxGroundPoints> points;
   surface.elastic_energy = 0.0;
   for (std::size_t v = 0; v < surface.shear.size(); ++v)
-    surface.elastic_energy += 0.5 * options_.ground_shear_stiffness * surface.area[v] * surface.shear[v].squaredNorm();
+    surface.elastic_energy +=
+        0.5 * options_.ground_shear_stiffness * surface.area[v] * surface.shear[v].squaredNorm();
   const auto& x = surface.last;
   for (const auto& v : surface.mesh.triangles) {
     if (x[v[0]].z() >= 0.0 && x[v[1]].z() >= 0.0 && x[v[2]].z() >= 0.0) continue;
     const int count = ground_points({x[v[0]], x[v[1]], x[v[2]]}, points);
     for (int i = 0; i < count; ++i)
-      surface.elastic_energy += 0.5 * options_.ground_stiffness * points[i].depth * points[i].depth * points[i].area;
+      surface.elastic_energy +=
+          0.5 * options_.ground_stiffness * points[i].depth * points[i].depth * points[i].area;
   }
 }
 
 TerrainStatus RigidGround::advance(std::span<const SurfaceState> targets, double duration, int substeps,
                                    std::span<NodalForces> forces, std::span<ContactSums> contact) {
-  if (targets.size() != surfaces_.size() || forces.size() != surfaces_.size() || contact.size() != surfaces_.size())
+  if (targets.size() != surfaces_.size() || forces.size() != surfaces_.size() ||
+      contact.size() != surfaces_.size())
     return {false, "the ground carries " + std::to_string(surfaces_.size()) + " surfaces, but " +
                        std::to_string(targets.size()) + " were moved"};
   const double dt = duration / substeps;
@@ -217,7 +228,8 @@ TerrainStatus RigidGround::advance(std::span<const SurfaceState> targets, double
       for (std::size_t v = 0; v < count; ++v)
         surface.position[v] = surface.last[v] + share * (end[v] - surface.last[v]);
       press(surface, dt);
-      surface.sum.add_substep(surface.contacts, {surface.mesh.triangles, surface.position, surface.velocity}, dt);
+      surface.sum.add_substep(surface.contacts, {surface.mesh.triangles, surface.position, surface.velocity},
+                              dt);
     }
     surface_impulse_ -= surface.sum.impulse();
     surface.sum.finish(duration, forces[k], contact[k]);
@@ -243,8 +255,8 @@ TerrainState RigidGround::state() const {
 
 void RigidGround::save(Archive& archive) const {
   archive.put("ground/surfaces", static_cast<std::int64_t>(surfaces_.size()));
-  archive.put("ground/sums", std::vector<double>{surface_impulse_.x(), surface_impulse_.y(), surface_impulse_.z(),
-                                                 surface_work_});
+  archive.put("ground/sums", std::vector<double>{surface_impulse_.x(), surface_impulse_.y(),
+                                                 surface_impulse_.z(), surface_work_});
   for (std::size_t k = 0; k < surfaces_.size(); ++k) {
     const GroundSurface& surface = surfaces_[k];
     const Archive::Scope scope(archive, "ground/surface_" + std::to_string(k) + "/");
@@ -252,9 +264,9 @@ void RigidGround::save(Archive& archive) const {
     std::vector<std::int32_t> corners;
     for (const auto& t : surface.mesh.triangles) corners.insert(corners.end(), t.begin(), t.end());
     archive.put("triangles", corners);
-    archive.put("material", std::vector<double>{m.young_modulus, m.poisson_ratio, m.friction, m.restitution,
-                                                m.normal_stiffness, m.normal_damping, m.cohesion,
-                                                m.area_density});
+    archive.put("material",
+                std::vector<double>{m.young_modulus, m.poisson_ratio, m.friction, m.restitution,
+                                    m.normal_stiffness, m.normal_damping, m.cohesion, m.area_density});
     archive.put("last", flatten(surface.last));
     archive.put("shear", flatten(surface.shear));
     archive.put("area", surface.area);

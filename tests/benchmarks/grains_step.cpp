@@ -1,9 +1,9 @@
 // How many grains a second the engine steps: settles a bed of the reference material (or takes it from the cache) and
 // times steps on it. Prints one JSON object. Arguments: law radius length layers threads steps cohesion.
 #include <chrono>
-#include <ctime>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <string>
 
 #include "terrain/dem/bed_layers.hpp"
@@ -12,7 +12,9 @@
 int main(int argc, char** argv) {
   using namespace furrow;
   using namespace furrow::dem;
-  const auto argument = [&](int k, const char* otherwise) { return std::string(argc > k ? argv[k] : otherwise); };
+  const auto argument = [&](int k, const char* otherwise) {
+    return std::string(argc > k ? argv[k] : otherwise);
+  };
   TerrainOptions options;
   options.law = argument(1, "mindlin");
   options.radius = std::atof(argument(2, "0.01").c_str());
@@ -46,11 +48,14 @@ int main(int argc, char** argv) {
   double top = 0.0;
   for (int g = 0; g < n; ++g) top += solver.grains().position[g].z / n;
   std::printf(
-      "{\"grain_steps_per_s\": %.4g, \"grain_steps_per_cpu_s\": %.4g, \"ms_per_step\": %.4g, \"grains\": %d, \"contacts\": %lld, \"threads\": %d, "
-      "\"law\": \"%s\", \"list_rebuilds\": %lld, \"settled\": %s, \"settle_wall_s\": %.3g, \"settle_time_s\": %.3g, "
+      "{\"grain_steps_per_s\": %.4g, \"grain_steps_per_cpu_s\": %.4g, \"ms_per_step\": %.4g, \"grains\": %d, "
+      "\"contacts\": %lld, \"threads\": %d, "
+      "\"law\": \"%s\", \"list_rebuilds\": %lld, \"settled\": %s, \"settle_wall_s\": %.3g, "
+      "\"settle_time_s\": %.3g, "
       "\"settle_steps\": %lld, \"force_ratio\": %.3g, \"floor_error\": %.3g, \"mean_z_m\": %.5g}\n",
-      n * static_cast<double>(steps) / wall, n * static_cast<double>(steps) / cpu, 1e3 * wall / steps, n, static_cast<long long>(solver.accounts().contacts),
-      options.threads, options.law.c_str(), static_cast<long long>(solver.pairs().rebuilds() - rebuilds),
-      settled.settled ? "true" : "false", seconds(begin, middle), settled.time, static_cast<long long>(settled.steps),
-      settled.force_ratio, settled.floor_error, top);
+      n * static_cast<double>(steps) / wall, n * static_cast<double>(steps) / cpu, 1e3 * wall / steps, n,
+      static_cast<long long>(solver.accounts().contacts), options.threads, options.law.c_str(),
+      static_cast<long long>(solver.pairs().rebuilds() - rebuilds), settled.settled ? "true" : "false",
+      seconds(begin, middle), settled.time, static_cast<long long>(settled.steps), settled.force_ratio,
+      settled.floor_error, top);
 }

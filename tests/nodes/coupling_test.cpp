@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
-#include "tests/nodes/in_process_run.hpp"
 #include "nodes/series_builder.hpp"
+#include "tests/nodes/in_process_run.hpp"
 
 namespace furrow {
 namespace {
@@ -170,16 +170,19 @@ std::vector<double> vertical_impulses(const InProcessRun& run, std::size_t wheel
 }
 
 TEST(Coupling, each_of_four_wheels_on_one_bed_carries_its_own_weight) {
-  const Scenario scenario =
-      load_scenario(std::filesystem::path(FURROW_SOURCE_FOLDER) / "rigs" / "four_wheels.json",
-                    {{"terrain.radius", "0.03"}, {"terrain.layers", "3"}, {"terrain.cache", "false"}, {"run.step", "2e-4"}});
+  const Scenario scenario = load_scenario(
+      std::filesystem::path(FURROW_SOURCE_FOLDER) / "rigs" / "four_wheels.json", {{"terrain.radius", "0.03"},
+                                                                                  {"terrain.layers", "3"},
+                                                                                  {"terrain.cache", "false"},
+                                                                                  {"run.step", "2e-4"}});
   InProcessRun run(scenario);
   run.steps(0, 4500);
   const auto before = vertical_impulses(run, 4);
   run.steps(4500, 6000);
   const auto after = vertical_impulses(run, 4);
   for (std::size_t k = 0; k < 4; ++k) {
-    const double tire = 4.811, weight = kGravity * (scenario.rigs[k].carrier_mass + scenario.rigs[k].rim_mass + tire);
+    const double tire = 4.811,
+                 weight = kGravity * (scenario.rigs[k].carrier_mass + scenario.rigs[k].rim_mass + tire);
     EXPECT_NEAR((after[k] - before[k]) / 0.3, weight, 0.005 * weight) << "wheel " << k;
   }
 }

@@ -14,7 +14,8 @@ namespace furrow::testing {
 class InProcessRun {
  public:
   explicit InProcessRun(const Scenario& scenario, const RunContext& context = {})
-      : scenario_(scenario), transports_(make_in_process_transports(static_cast<int>(scenario.tires.size()))) {
+      : scenario_(scenario),
+        transports_(make_in_process_transports(static_cast<int>(scenario.tires.size()))) {
     nodes_.resize(transports_.size());
     on_all([&](std::size_t i) {
       nodes_[i] = make_node(scenario_, transports_[i]->self(), context.threads);

@@ -35,16 +35,18 @@ TEST(Series, columns_that_users_script_against_come_first) {
   const TemporaryFolder folder;
   SeriesWriter writer(folder.path() / "timeseries.csv");
   writer.flush();
-  EXPECT_EQ(lines_of(folder.path() / "timeseries.csv")
-                .at(0)
-                .substr(0, std::string("time_s,slip,drawbar_pull_N,sinkage_m,vertical_force_N,force_x_N,force_y_N,"
-                                       "force_z_N,spindle_torque_Nm,impulse_sent_Ns,impulse_received_Ns,"
-                                       "energy_error_J,")
-                               .size()),
-            "time_s,slip,drawbar_pull_N,sinkage_m,vertical_force_N,force_x_N,force_y_N,force_z_N,spindle_torque_Nm,"
-            "impulse_sent_Ns,impulse_received_Ns,energy_error_J,");
+  EXPECT_EQ(
+      lines_of(folder.path() / "timeseries.csv")
+          .at(0)
+          .substr(0, std::string("time_s,slip,drawbar_pull_N,sinkage_m,vertical_force_N,force_x_N,force_y_N,"
+                                 "force_z_N,spindle_torque_Nm,impulse_sent_Ns,impulse_received_Ns,"
+                                 "energy_error_J,")
+                         .size()),
+      "time_s,slip,drawbar_pull_N,sinkage_m,vertical_force_N,force_x_N,force_y_N,force_z_N,spindle_torque_Nm,"
+      "impulse_sent_Ns,impulse_received_Ns,energy_error_J,");
   std::set<std::string> names;
-  for (const SeriesColumn& column : series_columns()) EXPECT_TRUE(names.insert(column.name).second) << column.name;
+  for (const SeriesColumn& column : series_columns())
+    EXPECT_TRUE(names.insert(column.name).second) << column.name;
 }
 
 TEST(Series, numbers_come_back_bit_for_bit) {

@@ -39,7 +39,9 @@ HeightField pressed(HeightField field, double a, double b, double noise = 0.0) {
   return field;
 }
 
-RutOptions forward() { return {.axle = 2.0, .start = 0.5, .lateral = 0.0, .direction = 1.0, .tread_width = kTread}; }
+RutOptions forward() {
+  return {.axle = 2.0, .start = 0.5, .lateral = 0.0, .direction = 1.0, .tread_width = kTread};
+}
 
 TEST(Rut, depth_and_width_of_a_pressed_trapezoid) {
   for (const double cell : {0.012, 0.02}) {

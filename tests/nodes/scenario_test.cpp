@@ -157,7 +157,8 @@ TEST(Scenario, mistakes_are_named_with_what_is_expected) {
 
 TEST(Scenario, magnitudes_of_another_unit_are_warned_of) {
   const ScenarioFile file(kSmallest);
-  const auto warnings = file.load({{"tire.pressure", "2"}, {"terrain.density", "2.5"}, {"terrain.substeps", "100"}}).warnings;
+  const auto warnings =
+      file.load({{"tire.pressure", "2"}, {"terrain.density", "2.5"}, {"terrain.substeps", "100"}}).warnings;
   ASSERT_EQ(warnings.size(), 2U);
   EXPECT_NE(warnings[0].find("key 'terrain.density': 2.5 kg/m³ is unusually small"), std::string::npos)
       << warnings[0];

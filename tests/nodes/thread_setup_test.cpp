@@ -47,7 +47,8 @@ void expect_disjoint(const std::vector<ThreadPlan>& plans) {
   for (std::size_t i = 1; i < plans.size(); ++i) {
     EXPECT_TRUE(plans[i].disjoint);
     EXPECT_EQ(static_cast<int>(plans[i].cores.size()), plans[i].threads);
-    for (const int core : plans[i].cores) EXPECT_TRUE(used.insert(core).second) << "core " << core << " twice";
+    for (const int core : plans[i].cores)
+      EXPECT_TRUE(used.insert(core).second) << "core " << core << " twice";
   }
 }
 
@@ -90,7 +91,8 @@ TEST(ThreadPlan, what_the_user_wants_is_done_even_where_it_does_not_fit) {
   const auto plans = plan_all(machine(2), 6);
   EXPECT_EQ(plans.back().threads, 6);
   EXPECT_FALSE(plans.back().disjoint);
-  EXPECT_NE(plans.back().note.find("terrain runs 6 threads on 2 cores"), std::string::npos) << plans.back().note;
+  EXPECT_NE(plans.back().note.find("terrain runs 6 threads on 2 cores"), std::string::npos)
+      << plans.back().note;
 }
 
 TEST(ThreadPlan, a_busy_machine_or_a_limited_container_is_not_bound) {
@@ -121,7 +123,8 @@ TEST(ThreadPlan, a_terrain_pinned_to_one_core_is_warned_about) {
   for (int i = 0; i < 3; ++i) host.nodes[static_cast<std::size_t>(i)].cores = {i};
   const auto plans = plan_all(host, 4);
   EXPECT_EQ(plans[2].threads, 4);
-  EXPECT_NE(plans[2].note.find("terrain is pinned to core 2 of 8 while 4 threads are wanted"), std::string::npos)
+  EXPECT_NE(plans[2].note.find("terrain is pinned to core 2 of 8 while 4 threads are wanted"),
+            std::string::npos)
       << plans[2].note;
   EXPECT_NE(plans[2].note.find("--bind-to none"), std::string::npos);
   EXPECT_TRUE(plans[1].note.empty());
@@ -179,8 +182,8 @@ TEST(WaitPassively, DISABLED_child) {
 TEST(WaitPassively, starts_the_program_anew_once_with_the_same_arguments) {
   const auto said = [](const std::string& environment) {
     const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
-    const std::string command = "env " + environment + " '" + self +
-                                "' --gtest_filter=*child --gtest_also_run_disabled_tests 2>&1";
+    const std::string command =
+        "env " + environment + " '" + self + "' --gtest_filter=*child --gtest_also_run_disabled_tests 2>&1";
     FILE* pipe = popen(command.c_str(), "r");
     char text[4096] = {};
     const std::size_t length = fread(text, 1, sizeof text - 1, pipe);

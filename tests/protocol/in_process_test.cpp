@@ -28,8 +28,8 @@ std::vector<std::string> play(int tires, const std::function<void(Transport&)>& 
       try {
         work(*transports[i]);
       } catch (const PeerFailure& failure) {
-        ends[i] = "left " + std::to_string(static_cast<int>(failure.code())) + " for " + to_string(failure.who()) +
-                  ": " + failure.what();
+        ends[i] = "left " + std::to_string(static_cast<int>(failure.code())) + " for " +
+                  to_string(failure.who()) + ": " + failure.what();
       } catch (const Error& error) {
         ends[i] = std::to_string(static_cast<int>(error.code())) + ": " + error.what();
         transports[i]->announce_failure(error.code(), error.what());
@@ -64,7 +64,8 @@ TEST(InProcess, messages_keep_their_order_per_kind) {
       }
     } else if (t.self() == kTire) {
       for (int step = 0; step < 50; ++step) EXPECT_EQ(receive<TerrainSetup>(t, kRig).grains, step);
-      for (int step = 0; step < 50; ++step) EXPECT_EQ(receive_step<RimMotion>(t, kRig, step).header.step, step);
+      for (int step = 0; step < 50; ++step)
+        EXPECT_EQ(receive_step<RimMotion>(t, kRig, step).header.step, step);
     }
   });
   EXPECT_EQ(ends, std::vector<std::string>(4));
@@ -94,7 +95,7 @@ struct Mismatch {
   const char* name;
   std::function<void(NodeCard&)> spoil;  // the card of one node
   Address where;
-  const char* text;                      // part of the error
+  const char* text;  // part of the error
 };
 
 void PrintTo(const Mismatch& mismatch, std::ostream* out) { *out << mismatch.name; }
@@ -115,8 +116,12 @@ TEST_P(HandshakeMismatch, is_the_same_error_on_every_node) {
 INSTANTIATE_TEST_SUITE_P(
     Cards, HandshakeMismatch,
     ::testing::Values(
-        Mismatch{"version", [](NodeCard& c) { c.protocol_version = 99; }, kTerrain, "protocol version of rig is 1"},
-        Mismatch{"digest", [](NodeCard& c) { c.scenario_digest = "xyz"; }, {Role::tire, 1}, "scenario digest of rig"},
+        Mismatch{"version", [](NodeCard& c) { c.protocol_version = 99; }, kTerrain,
+                 "protocol version of rig is 1"},
+        Mismatch{"digest",
+                 [](NodeCard& c) { c.scenario_digest = "xyz"; },
+                 {Role::tire, 1},
+                 "scenario digest of rig"},
         Mismatch{"step", [](NodeCard& c) { c.step = 2e-4; }, kTire, "communication step of rig is 0.0001"},
         Mismatch{"steps", [](NodeCard& c) { c.steps = 3; }, kTerrain, "number of steps of rig is 100"},
         Mismatch{"substeps", [](NodeCard& c) { c.substeps = 0; }, kTire, "tire 0 takes 0 substeps"},
@@ -155,7 +160,8 @@ TEST(TimeOut, says_who_waited_for_whom) {
     if (t.self() == kTerrain) receive<SurfaceMotion>(t, kTire);
   });
   EXPECT_EQ(ends[2],
-            "4: terrain waited 0.3 s for tire 0 (surface motion): tire 0 does not answer; raise run.peer_timeout if it "
+            "4: terrain waited 0.3 s for tire 0 (surface motion): tire 0 does not answer; raise "
+            "run.peer_timeout if it "
             "is only slow");
   EXPECT_LT(wall_s() - start, 2.0);
 }
@@ -171,7 +177,8 @@ TEST(TimeOut, names_the_node_at_the_end_of_a_chain_of_waiting) {
     }
   });
   EXPECT_EQ(ends[0],
-            "4: rig waited 0.6 s for terrain (terrain report), which waits for tire 0: tire 0 does not answer; raise "
+            "4: rig waited 0.6 s for terrain (terrain report), which waits for tire 0: tire 0 does not "
+            "answer; raise "
             "run.peer_timeout if it is only slow");
 }
 
@@ -181,8 +188,9 @@ TEST(TimeOut, finds_nodes_that_wait_for_one_another) {
     if (t.self() == kRig) receive<SpindleReport>(t, kTire);
     if (t.self() == kTire) receive<RimMotion>(t, kRig);
   });
-  EXPECT_EQ(ends[0], "4: rig waited 0.8 s for tire 0 (spindle report), which waits for rig: the nodes wait for one "
-                     "another");
+  EXPECT_EQ(ends[0],
+            "4: rig waited 0.8 s for tire 0 (spindle report), which waits for rig: the nodes wait for one "
+            "another");
 }
 
 // While the terrain settles its bed, the rig waits for it and the tire for the rig.

@@ -69,7 +69,8 @@ void exchange(Transport& t, std::int64_t step, std::size_t vertices) {
     send(t, kTerrain, motion_of(step, vertices));
     receive_step<RimMotion>(t, kRig, step);
     const auto forces = receive_step<TerrainForces>(t, kTerrain, step).forces;
-    require(forces.vertex.size() == vertices / 4 && forces.vertex.back() == static_cast<int>(vertices / 4 - 1) &&
+    require(forces.vertex.size() == vertices / 4 &&
+                forces.vertex.back() == static_cast<int>(vertices / 4 - 1) &&
                 forces.force.back() == Vec3(1.0, static_cast<double>(step), 3.0),
             "nodal forces");
   } else {
@@ -112,7 +113,8 @@ void waiting(Transport& t, double step_length, int steps) {
   }
   const double length = wall_s() - wall;
   say("%s: wall %.4f cpu_share %.4f wait_share %.4f lost_share %.4f\n", to_string(t.self()).c_str(), length,
-      (cpu_s() - cpu) / length, (t.wait_clock().waited_s - waited) / length, length / (steps * step_length) - 1.0);
+      (cpu_s() - cpu) / length, (t.wait_clock().waited_s - waited) / length,
+      length / (steps * step_length) - 1.0);
 }
 
 /// The terrain takes 10 ms per step, the tire 6 ms: if the tire's message moved only while the tire is in MPI, the
@@ -127,7 +129,8 @@ void uneven(Transport& t) {
     if (step > 0) steps.push_back(wall_s() - start);
   }
   std::sort(steps.begin(), steps.end());
-  say("%s: quick_step_ms %.2f median_step_ms %.2f\n", to_string(t.self()).c_str(), 1e3 * steps[6], 1e3 * steps[30]);
+  say("%s: quick_step_ms %.2f median_step_ms %.2f\n", to_string(t.self()).c_str(), 1e3 * steps[6],
+      1e3 * steps[30]);
 }
 
 void one_fails(Transport& t) {

@@ -34,9 +34,10 @@ struct Outcome {
 };
 
 Outcome start(const std::string& scene, int ranks = 3, const std::string& environment = "") {
-  const std::string command = environment + " OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 timeout -k 5 50 " MPIRUN
-                              " -n " + std::to_string(ranks) + " --oversubscribe --bind-to none " RANKS " " + scene +
-                              " 2>&1 < /dev/null";
+  const std::string command =
+      environment +
+      " OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 timeout -k 5 50 " MPIRUN " -n " +
+      std::to_string(ranks) + " --oversubscribe --bind-to none " RANKS " " + scene + " 2>&1 < /dev/null";
   const auto begin = std::chrono::steady_clock::now();
   Outcome outcome;
   FILE* pipe = popen(command.c_str(), "r");
@@ -48,7 +49,8 @@ Outcome start(const std::string& scene, int ranks = 3, const std::string& enviro
   // fail returned: that is what is tested.
   const std::size_t crash = outcome.output.find("PMIx_server_finalize");
   const std::size_t told = outcome.output.find("Exit code:");
-  if (crash != std::string::npos && told < crash) outcome.exit_code = std::atoi(outcome.output.c_str() + told + 10);
+  if (crash != std::string::npos && told < crash)
+    outcome.exit_code = std::atoi(outcome.output.c_str() + told + 10);
   outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return outcome;
 }
@@ -74,8 +76,9 @@ TEST(Mpi, a_wrong_number_of_ranks_is_the_same_error_on_each) {
   for (const int ranks : {2, 4}) {
     const Outcome outcome = start("ping", ranks);
     EXPECT_EQ(outcome.exit_code, 2) << outcome.output;
-    EXPECT_EQ(outcome.count("error: this scenario needs 3 ranks (1 rig, 1 tire(s), 1 terrain), but mpirun started " +
-                            std::to_string(ranks)),
+    EXPECT_EQ(outcome.count(
+                  "error: this scenario needs 3 ranks (1 rig, 1 tire(s), 1 terrain), but mpirun started " +
+                  std::to_string(ranks)),
               ranks)
         << outcome.output;
   }
@@ -124,7 +127,8 @@ TEST(Mpi, a_waiting_rank_leaves_its_core_alone) {
 TEST(Mpi, long_waits_cost_next_to_nothing) {
   const Outcome outcome = start("waiting_long");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
-  for (const char* rank : {"rig", "tire 0"}) EXPECT_LE(outcome.value(rank, "cpu_share"), 0.10) << outcome.output;
+  for (const char* rank : {"rig", "tire 0"})
+    EXPECT_LE(outcome.value(rank, "cpu_share"), 0.10) << outcome.output;
 }
 
 // Where processes may not read each other's memory a message moves only while both ends are in MPI. Without flush the
@@ -133,7 +137,8 @@ TEST(Mpi, steps_overlap_even_where_senders_must_push) {
   const Outcome outcome = start("uneven", 3, "OMPI_MCA_btl_vader_single_copy_mechanism=none");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
   std::printf("%s", outcome.output.c_str());
-  EXPECT_LT(outcome.value("terrain", "quick_step_ms"), 15.0);  // the tenth part of the steps: the machine may be busy
+  EXPECT_LT(outcome.value("terrain", "quick_step_ms"),
+            15.0);  // the tenth part of the steps: the machine may be busy
 }
 
 }  // namespace

@@ -152,8 +152,8 @@ TEST(Pack, an_absurd_length_is_refused) {
 // The number of bytes is that of all fields of the struct, so a field forgotten in the list is noticed.
 TEST(Pack, every_field_is_there) {
   constexpr std::size_t kLength = 8, kHeader = 16, kVec = 24, kWrench = 48, kSums = 4 * kVec + 3 * 8 + 8;
-  EXPECT_EQ(pack(node_card()).size(), 4 + 8 + (kLength + 4) + (kLength + 16) + 8 + 8 + 5 * 4 + (kLength + 7) + 80 +
-                                          8 + 8 + 8);
+  EXPECT_EQ(pack(node_card()).size(),
+            4 + 8 + (kLength + 4) + (kLength + 16) + 8 + 8 + 5 * 4 + (kLength + 7) + 80 + 8 + 8 + 8);
   EXPECT_EQ(pack(surface_setup()).size(), 4 + kLength + 2 * 12 + 8 * 8);
   EXPECT_EQ(pack(terrain_setup()).size(), 2 * (kLength + 16) + 8 + 8 + 8);
   EXPECT_EQ(pack(rim_motion()).size(), kHeader + 3 * kVec + 32 + 1);
@@ -162,7 +162,8 @@ TEST(Pack, every_field_is_there) {
   EXPECT_EQ(pack(terrain_forces()).size(), kHeader + kLength + 3 * 4 + kLength + 3 * kVec);
   EXPECT_EQ(pack(terrain_report()).size(), kHeader + 9 * 8 + 3 * kVec + kLength + 2 * kSums);
   EXPECT_EQ(pack(run_folder()).size(), kLength + 22);
-  EXPECT_EQ(pack(final_report()).size(), 4 + 4 + 8 + 3 * 8 + 4 + (kLength + 16) + 2 * (3 * 8 + 2 * 4 + kLength) + 3 * 8);
+  EXPECT_EQ(pack(final_report()).size(),
+            4 + 4 + 8 + 3 * 8 + 4 + (kLength + 16) + 2 * (3 * 8 + 2 * 4 + kLength) + 3 * 8);
 }
 
 TEST(Pack, fields_arrive_where_they_belong) {

@@ -100,14 +100,16 @@ TEST_F(DemTerrain, bed_settles_and_stands_at_a_plausible_height) {
   const TerrainState s = terrain->state();
   const double mass = 2500 * 4.0 / 3.0 * M_PI * 1e-6 * static_cast<double>(terrain->size());
   EXPECT_NEAR(s.floor_force, mass * 9.81, 1e-3 * mass * 9.81);
-  const double height = terrain->mean_height(0.03, 0.27, -0.08, 0.08), top = terrain->top_height(0.03, 0.27, -0.08, 0.08);
+  const double height = terrain->mean_height(0.03, 0.27, -0.08, 0.08),
+               top = terrain->top_height(0.03, 0.27, -0.08, 0.08);
   const double solid = mass / 2500 / (0.3 * 0.2 * height);
   EXPECT_GT(solid, 0.35);
   EXPECT_LT(solid, 0.64);
   EXPECT_GT(top, height);
   EXPECT_LT(top, height + 0.03);
   const TerrainEstimate e = estimate_terrain(options_);
-  EXPECT_NEAR(static_cast<double>(e.grains), static_cast<double>(terrain->size()), 0.1 * static_cast<double>(e.grains));
+  EXPECT_NEAR(static_cast<double>(e.grains), static_cast<double>(terrain->size()),
+              0.1 * static_cast<double>(e.grains));
 }
 
 TEST_F(DemTerrain, run_from_cached_bed_equals_the_run_that_settled_it) {
@@ -149,7 +151,8 @@ TEST_F(DemTerrain, damaged_cache_is_made_anew) {
   EXPECT_TRUE(settled_again);
   EXPECT_EQ(hash_of(*first), hash_of(*second));
   EXPECT_NO_THROW(dem::read_bed(cached()));
-  for (const auto& entry : fs::directory_iterator(cached().parent_path())) EXPECT_EQ(entry.path().extension(), ".h5");
+  for (const auto& entry : fs::directory_iterator(cached().parent_path()))
+    EXPECT_EQ(entry.path().extension(), ".h5");
 }
 
 TEST_F(DemTerrain, digest_tells_beds_apart) {
@@ -196,8 +199,8 @@ TEST_F(DemTerrain, plate_books_force_momentum_and_energy) {
     EXPECT_LT(change.norm(), 1e-10 * mass * 9.81 * 1000 * dt) << law;
 
     // The plate's work on the grains is what they hold more and what they lost.
-    const double held = after.kinetic_energy + after.potential_energy + after.elastic_energy - before.kinetic_energy -
-                        before.potential_energy - before.elastic_energy;
+    const double held = after.kinetic_energy + after.potential_energy + after.elastic_energy -
+                        before.kinetic_energy - before.potential_energy - before.elastic_energy;
     EXPECT_GT(after.dissipation, 0.0);
     EXPECT_NEAR(-press.work, held + after.dissipation, 1e-3 * std::abs(press.work)) << law;
   }

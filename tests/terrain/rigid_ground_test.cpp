@@ -42,7 +42,8 @@ struct Push {
 /// One interval of a surface that moves with constant velocity and begins at `start`.
 Push push(Terrain& ground, const SurfaceState& start, double duration = 1e-6, int substeps = 1) {
   Push result;
-  const TerrainStatus status = ground.advance({&start, 1}, duration, substeps, {&result.forces, 1}, {&result.sums, 1});
+  const TerrainStatus status =
+      ground.advance({&start, 1}, duration, substeps, {&result.forces, 1}, {&result.sums, 1});
   EXPECT_TRUE(status.ok) << status.message;
   return result;
 }
@@ -81,7 +82,8 @@ TEST(RigidGround, presses_a_tilted_block_with_the_integral_of_its_depth) {
   ground->attach(block.mesh, rubber(), start);
   const Push one = push(*ground, start);
   const double expected = options.ground_stiffness * 0.1 * 0.5 * depth * length;
-  EXPECT_NEAR(one.sums.force.z() / expected, 1.0, 1e-3);  // the vertical back face adds what it covers: sin² tilt
+  EXPECT_NEAR(one.sums.force.z() / expected, 1.0,
+              1e-3);  // the vertical back face adds what it covers: sin² tilt
   EXPECT_NEAR(-one.sums.moment.y() / one.sums.force.z() / (length / 3.0), 1.0, 1e-3);
 }
 
@@ -114,7 +116,8 @@ TEST(RigidGround, follows_the_regularised_friction_law) {
       ground->attach(block.mesh, rubber(0.9), start);  // the smaller coefficient rules
       const Push one = slide_steadily(*ground, start);
       const Vec3 expected = -0.7 * one.sums.normal.z() * std::tanh(scale * speed) * direction;
-      EXPECT_LT((one.sums.tangential - expected).norm(), 1e-11 * one.sums.normal.norm()) << scale << ' ' << speed;
+      EXPECT_LT((one.sums.tangential - expected).norm(), 1e-11 * one.sums.normal.norm())
+          << scale << ' ' << speed;
       EXPECT_LE(one.sums.tangential.norm(), 0.7 * one.sums.normal.norm() * (1.0 + 1e-14));
       EXPECT_LT(one.sums.transfer_force_residual, 1e-12);
       EXPECT_LT(one.sums.transfer_moment_residual, 1e-12);
@@ -246,11 +249,11 @@ TEST(RigidGround, evens_out_the_facets_of_a_rolling_wheel) {
 /// acts on it during the next.
 struct Faller {
   Surface surface = box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
-  double mass = 50.0;                 // kg
-  double load = 0.0;                  // on top of its weight, N
-  Vec3 position{0.0, 0.0, 2e-3};      // m
-  Vec3 velocity = Vec3::Zero();       // m/s
-  Vec3 force = Vec3::Zero();          // N
+  double mass = 50.0;             // kg
+  double load = 0.0;              // on top of its weight, N
+  Vec3 position{0.0, 0.0, 2e-3};  // m
+  Vec3 velocity = Vec3::Zero();   // m/s
+  Vec3 force = Vec3::Zero();      // N
   SurfaceState state() const { return placed(surface, position, velocity); }
   void advance(Terrain& ground, double h) {
     const SurfaceState before = state();
@@ -281,7 +284,8 @@ TEST(RigidGround, brings_a_dropped_block_to_rest_with_its_weight_balanced) {
   const double received = -state.surface_impulse.z();
   EXPECT_NEAR(received / (weight * 20000 * h), 1.0, 1e-4);  // one interval of force is still in flight
   const double released = weight * (2e-3 - block.position.z());
-  EXPECT_NEAR((state.dissipation + state.elastic_energy) / released, 1.0, 0.02);  // coupling lag: k h²/m = 3e-4
+  EXPECT_NEAR((state.dissipation + state.elastic_energy) / released, 1.0,
+              0.02);  // coupling lag: k h²/m = 3e-4
   EXPECT_EQ(state.wall_impulse, -state.surface_impulse);
 }
 

@@ -28,7 +28,8 @@ struct PathCheck {
   int most_hits = 0;
 };
 
-PathCheck follow(const SurfaceCollider& surface, const Vec3& from, const Vec3& to, int samples, double overlap) {
+PathCheck follow(const SurfaceCollider& surface, const Vec3& from, const Vec3& to, int samples,
+                 double overlap) {
   PathCheck result;
   const double scale = std::pow(overlap, 1.5);
   std::array<SurfaceHit, kMaxSurfaceHits> hit;
@@ -51,7 +52,9 @@ void expect_continuous(const SurfaceCollider& surface, const Vec3& from, const V
                        const std::string& what) {
   constexpr int kSamples = 1000, kSuspects = 4;
   const double scale = std::pow(overlap, 1.5);
-  auto force = [&](double share) { return Vec3(hertz_force(surface, from + (to - from) * share, kRadius) / scale); };
+  auto force = [&](double share) {
+    return Vec3(hertz_force(surface, from + (to - from) * share, kRadius) / scale);
+  };
   std::vector<std::pair<double, int>> change;
   Vec3 before = force(0.0);
   for (int i = 0; i < kSamples; ++i) {
@@ -70,8 +73,8 @@ void expect_continuous(const SurfaceCollider& surface, const Vec3& from, const V
       (left ? hi : lo) = middle;
       (left ? f_hi : f_lo) = f_middle;
     }
-    EXPECT_LT((f_hi - f_lo).norm(), 5e-6)
-        << what << ": the force jumps by this share of the plane's at " << (from + (to - from) * lo).transpose();
+    EXPECT_LT((f_hi - f_lo).norm(), 5e-6) << what << ": the force jumps by this share of the plane's at "
+                                          << (from + (to - from) * lo).transpose();
   }
 }
 
@@ -108,7 +111,8 @@ TEST(SurfaceContact, slides_over_a_tilted_cut_plane_far_from_the_origin_as_over_
   for (int i = 0; i <= 5000; ++i) {
     const Vec3 centre = turn * Vec3(-0.02 + 8e-6 * i, 0.0017 + 1e-6 * i, kRadius - overlap) + shift;
     ASSERT_EQ(surface.hits(centre, kRadius, hit), 1);
-    ripple = std::max({ripple, std::abs(hit[0].overlap / overlap - 1.0), (hit[0].normal - turn * Vec3::UnitZ()).norm()});
+    ripple = std::max(
+        {ripple, std::abs(hit[0].overlap / overlap - 1.0), (hit[0].normal - turn * Vec3::UnitZ()).norm()});
   }
   EXPECT_LT(ripple, 1e-9);
 }
@@ -123,7 +127,8 @@ TEST(SurfaceContact, is_one_on_flat_fans_of_any_count) {
         const Vec3 centre(rho * std::cos(phi), rho * std::sin(phi), 0.97 * kRadius);
         ASSERT_EQ(surface.hits(centre, kRadius, hit), 1) << count << ' ' << phi << ' ' << rho;
         ASSERT_NEAR(hit[0].overlap / (0.03 * kRadius), 1.0, 1e-12);
-        ASSERT_LT((hit[0].normal - Vec3::UnitZ()).norm(), 1e-7);  // points 1e-8 r apart are equally near in doubles
+        ASSERT_LT((hit[0].normal - Vec3::UnitZ()).norm(),
+                  1e-7);  // points 1e-8 r apart are equally near in doubles
       }
   }
 }
@@ -140,7 +145,8 @@ TEST(SurfaceContact, changes_without_a_jump_across_creases_and_tends_to_the_plan
       expect_continuous(surface, from, to, overlap, what);
       if (std::abs(degrees) < 6.0) {
         // A level path over a slope changes depth; right above the crease the plane's law holds.
-        const double above = hertz_force(surface, {0.0, 1.7e-3, height}, kRadius).norm() / std::pow(overlap, 1.5);
+        const double above =
+            hertz_force(surface, {0.0, 1.7e-3, height}, kRadius).norm() / std::pow(overlap, 1.5);
         const double ridge = std::pow((kRadius - height) / overlap, 1.5);
         EXPECT_NEAR(above, degrees > 0.0 ? 1.0 / std::cos(half) : ridge, 1e-6) << what;
       }
@@ -170,7 +176,8 @@ TEST(SurfaceContact, counts_both_walls_of_a_right_angle) {
     EXPECT_NEAR(hit[i].overlap / overlap, 1.0, 1e-9);
     EXPECT_NEAR(std::abs(hit[i].normal.x()), std::sqrt(0.5), 1e-12);
   }
-  expect_continuous(surface, {-3e-3, 1e-3, height + 2.9e-3}, {3e-3, 1e-3, height + 2.9e-3}, overlap, "right angle");
+  expect_continuous(surface, {-3e-3, 1e-3, height + 2.9e-3}, {3e-3, 1e-3, height + 2.9e-3}, overlap,
+                    "right angle");
 }
 
 TEST(SurfaceContact, changes_without_a_jump_over_warped_quads_and_fans) {
@@ -197,7 +204,8 @@ TEST(SurfaceContact, changes_without_a_jump_over_warped_quads_and_fans) {
         const Surface around =
             fan(count, 0.03, [&](int k) { return 0.03 * slope * (kind == 0 ? 1.0 : (k % 2 ? 1.0 : -1.0)); });
         const SurfaceCollider surface = around.collider(kRadius);
-        const double height = (kRadius - overlap) * std::sqrt(1.0 + (kind == 0 && slope > 0 ? slope * slope : 0.0));
+        const double height =
+            (kRadius - overlap) * std::sqrt(1.0 + (kind == 0 && slope > 0 ? slope * slope : 0.0));
         for (double y : {0.0, 1e-5, 1.1e-4, 1.2e-3})
           expect_continuous(surface, {-3e-3, y, height}, {3.1e-3, -0.4 * y, height}, overlap,
                             "fan of " + std::to_string(count) + ", slope " + std::to_string(slope) +
@@ -325,8 +333,10 @@ TEST(SurfaceContact, finds_what_a_search_through_all_triangles_finds) {
       const int n = 12;
       for (int p = 0; p <= n; ++p)
         for (int q = 0; p + q <= n; ++q)
-          nearest = std::min(nearest, (centre - (round.vertex[t[0]] + (round.vertex[t[1]] - round.vertex[t[0]]) * p / n +
-                                                 (round.vertex[t[2]] - round.vertex[t[0]]) * q / n)).norm());
+          nearest = std::min(
+              nearest, (centre - (round.vertex[t[0]] + (round.vertex[t[1]] - round.vertex[t[0]]) * p / n +
+                                  (round.vertex[t[2]] - round.vertex[t[0]]) * q / n))
+                           .norm());
       if (nearest < 0.9 * kRadius) break;
     }
     const int count = surface.hits(centre, kRadius, hit);

@@ -39,12 +39,12 @@ ContactMaterial steel() {
 /// A block guided vertically, with a damper to the world while it finds its rest.
 struct Block {
   testing::Surface surface = testing::box({-0.06, -0.06, 0.0}, {0.06, 0.06, 0.1});
-  double mass = 20.0;                 // kg
-  double damper = 0.0;                // N s/m
-  Vec3 position = Vec3::Zero();       // m
-  Vec3 velocity = Vec3::Zero();       // m/s
-  Vec3 force = Vec3::Zero();          // by the grains, N
-  Vec3 impulse = Vec3::Zero();        // received, N s
+  double mass = 20.0;            // kg
+  double damper = 0.0;           // N s/m
+  Vec3 position = Vec3::Zero();  // m
+  Vec3 velocity = Vec3::Zero();  // m/s
+  Vec3 force = Vec3::Zero();     // by the grains, N
+  Vec3 impulse = Vec3::Zero();   // received, N s
 
   SurfaceState state() const {
     SurfaceState state;
@@ -123,8 +123,8 @@ TEST(SurfaceCoupling, four_blocks_on_one_bed_each_feel_their_own_weight) {
   const double grain_mass = 4.0 / 3.0 * M_PI * 1e-6 * 2500.0 * static_cast<double>(scene.terrain->size());
   const Vec3 gravity(0.0, 0.0, -kGravity * grain_mass * (kFall + kWindow) * kStep);
   const Vec3 change = after.momentum - before.momentum;
-  const Vec3 given = gravity + (after.wall_impulse - before.wall_impulse) +
-                     (after.surface_impulse - before.surface_impulse);
+  const Vec3 given =
+      gravity + (after.wall_impulse - before.wall_impulse) + (after.surface_impulse - before.surface_impulse);
   EXPECT_LT((change - given).norm() / scale, 1e-9);
   EXPECT_LT(scene.worst_force_residual, 1e-12);
   EXPECT_LT(scene.worst_moment_residual, 1e-12);
@@ -151,7 +151,8 @@ TEST(SurfaceCoupling, no_grain_passes_through_a_plate_that_is_rammed_into_the_be
   for (std::size_t g = 0; g < frame.radius.size(); ++g) {
     const Vec3 x(frame.position[3 * g], frame.position[3 * g + 1], frame.position[3 * g + 2]);
     const Vec3 local = x - block.position;
-    if (std::abs(local.x()) < 0.055 && std::abs(local.y()) < 0.055 && local.z() > 0.0 && local.z() < 0.1) ++inside;
+    if (std::abs(local.x()) < 0.055 && std::abs(local.y()) < 0.055 && local.z() > 0.0 && local.z() < 0.1)
+      ++inside;
   }
   EXPECT_EQ(inside, 0);
 }

@@ -45,8 +45,8 @@ class AncfTire final : public Tire {
   RimState rim_;    // now
   Wrench spindle_;  // of the last advance
   std::int64_t steps_ = 0;
-  Field force_;                 // of the running interval
-  Vec3 about_ = Vec3::Zero();   // where its moments are taken, m
+  Field force_;                // of the running interval
+  Vec3 about_ = Vec3::Zero();  // where its moments are taken, m
 };
 
 }  // namespace furrow

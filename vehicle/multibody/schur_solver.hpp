@@ -42,7 +42,7 @@ class SchurSolver {
   };
 
   std::vector<Entry> entries_;
-  std::vector<int> diagonal_;  // value index of S_ii
+  std::vector<int> diagonal_;      // value index of S_ii
   Eigen::SparseMatrix<double> S_;  // with εI, lower half
   double epsilon_ = 0.0;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> ldlt_;

@@ -54,7 +54,7 @@ def rigid_ground():
         axes.plot(*zip(*sorted(points)), marker="o" if tire == "flexible" else "s",
                   linestyle="-" if c == "50" else "--", label=f"{tire} tire, c = {c} s/m")
     axes.axhline(0.9, color="0.8", zorder=0)
-    axes.annotate("friction 0.9", (0.5, 0.9), ha="right", va="bottom", color="0.5")
+    axes.annotate("friction 0.9", (0.5, 0.9), (0, 4), textcoords="offset points", ha="right", va="bottom", color="0.5")
     axes.set(xlabel="slip", ylabel="drawbar pull / load", title="Hard ground, 4.6 kN, 200 kPa")
     axes.legend()
     save(figure, "rigid_ground")

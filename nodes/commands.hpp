@@ -28,6 +28,9 @@ ExitCode run_command_line(int argc, char** argv);
 ExitCode run_supervised(const RunArguments& arguments);
 ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv);
 
+/// mpirun ends all ranks as soon as one has failed, even the one that is about to say why: the others wait here.
+void let_first_rank_speak();
+
 /// `furrow report`: makes the plots of a run (commands_report.cpp). @throws Error
 std::vector<std::filesystem::path> make_report(const std::filesystem::path& run, bool quiet);
 

@@ -144,6 +144,8 @@ ExitCode run_this_node(Transport& transport, const Scenario& scenario, const Run
 
 }  // namespace
 
+void let_first_rank_speak() { std::this_thread::sleep_for(std::chrono::seconds(1)); }
+
 ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
   die_with_parent(SIGKILL, getppid());
   catch_stop_signals();
@@ -152,7 +154,10 @@ ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
   try {
     scenario = load_scenario(arguments.scenario, arguments.settings);
   } catch (const Error& error) {
-    if (first_on_machine()) voice.error(error);
+    if (first_on_machine())
+      voice.error(error);
+    else
+      let_first_rank_speak();
     return error.code();
   }
   if (!voice.supervised() && voice.rank() == 0)

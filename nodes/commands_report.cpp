@@ -75,8 +75,10 @@ std::vector<std::filesystem::path> make_report(const std::filesystem::path& run,
   const Finished finished = run_program({kPython, script.string(), run.string()}, quiet);
   const auto list = nlohmann::json::parse(finished.output, nullptr, false);
   if (!WIFEXITED(finished.status) || WEXITSTATUS(finished.status) != 0 || !list.is_array())
-    throw io_error(script.string(), fmt::format("made no plots of {}; 'furrow report {}' says why",
-                                                run.string(), run.string()));
+    throw io_error(run.string(), stop_signalled() ? "the plots were interrupted"
+                                 : quiet
+                                     ? fmt::format("made no plots; 'furrow report {}' says why", run.string())
+                                     : "made no plots, expected the results of a run");
   std::vector<std::filesystem::path> plots;
   for (const auto& name : list) plots.emplace_back(name.get<std::string>());
   return plots;

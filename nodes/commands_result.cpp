@@ -19,8 +19,7 @@ double number(const json& object, const char* key) {
                                                                                : NAN;
 }
 
-json read_summary(const std::filesystem::path& run) {
-  const std::filesystem::path file = run / "summary.json";
+json read_summary(const std::filesystem::path& file) {
   std::ifstream in(file);
   json summary = json::parse(in, nullptr, false);
   if (!summary.is_object()) throw io_error(file.string(), "cannot be read, expected the summary of the run");
@@ -30,6 +29,9 @@ json read_summary(const std::filesystem::path& run) {
 std::string pull_line(const json& summary, const Scenario& scenario) {
   const json pull = summary.value("drawbar_pull_N", json::object());
   const double mean = number(pull, "mean"), load = number(summary, "vertical_load_N");
+  const json force = summary.value("net_terrain_force_N", json::array());
+  if (force.size() == 3 && force[2].is_number() && force[2].get<double>() == 0.0)
+    return "furrow: the tire did not touch the terrain in the averaging window: nothing was measured\n";
   std::string text = fmt::format(
       "furrow: drawbar pull {:.0f} ± {:.0f} N, {:.1f} % of the load of {:.0f} N, mean over {:.3g} to {:.3g} "
       "s\n",
@@ -62,14 +64,20 @@ std::string ranks_line(const json& summary) {
 }  // namespace
 
 std::string result_text(const std::filesystem::path& run, const Scenario& scenario) {
-  const json summary = read_summary(run);
-  const auto millimetres = [&](const char* key) { return 1e3 * number(summary, key); };
-  std::string text = pull_line(summary, scenario);
-  text += fmt::format("furrow: sinkage {:.1f} mm", millimetres("sinkage_m"));
-  if (std::isfinite(millimetres("rut_depth_m")))
-    text += fmt::format(", rut {:.1f} mm deep, {:.0f} mm wide", millimetres("rut_depth_m"),
-                        millimetres("rut_width_m"));
-  text += fmt::format("\nfurrow: {:.1f} s for {:g} simulated s, {:.1f} s to prepare the bed{}\n",
+  const json summary = read_summary(run / "summary.json");
+  std::string text;
+  for (std::size_t k = 0; k < scenario.rigs.size(); ++k) {
+    const json wheel = k == 0 ? summary : read_summary(run / fmt::format("summary_wheel{}.json", k));
+    const auto millimetres = [&](const char* key) { return 1e3 * number(wheel, key); };
+    if (scenario.rigs.size() > 1) text += fmt::format("furrow: wheel {}\n", k);
+    text += pull_line(wheel, scenario);
+    text += fmt::format("furrow: sinkage {:.1f} mm", millimetres("sinkage_m"));
+    if (std::isfinite(millimetres("rut_width_m")))
+      text += fmt::format(", rut {:.1f} mm deep, {:.0f} mm wide", millimetres("rut_depth_m"),
+                          millimetres("rut_width_m"));
+    text += "\n";
+  }
+  text += fmt::format("furrow: {:.1f} s for {:g} simulated s, {:.1f} s to prepare the bed{}\n",
                       number(summary, "wall_s"), number(summary, "simulated_s"),
                       number(summary, "settle_wall_s"), ranks_line(summary));
   return text;

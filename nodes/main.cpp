@@ -1,5 +1,6 @@
 // furrow: the program. Every error ends here, as one message and the exit code that users script against.
 #include <exception>
+#include <iostream>
 #include <string>
 
 #include "nodes/commands.hpp"
@@ -11,8 +12,13 @@ int main(int argc, char** argv) {
   furrow::ExitCode code = furrow::ExitCode::done;
   try {
     code = furrow::run_command_line(argc, argv);
+    if (!std::cout.flush())
+      throw furrow::io_error("standard output", "cannot be written, expected room for the result");
   } catch (const furrow::Error& error) {
-    if (!furrow::launched_by_mpi() || furrow::launched_rank() == 0) furrow::print_error(error.what());
+    if (!furrow::launched_by_mpi() || furrow::launched_rank() == 0)
+      furrow::print_error(error.what());
+    else
+      furrow::let_first_rank_speak();
     code = error.code();
   } catch (const std::exception& error) {
     furrow::print_error(std::string("unexpected: ") + error.what());

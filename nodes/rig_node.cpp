@@ -124,7 +124,7 @@ class RigNode : public Node {
 
   void show_progress(const StepHeader& header) {
     const double now = machine_clock();
-    if (!context_.progress || header.step == 0 || now - shown_ < kProgressInterval) return;
+    if (!context_.progress || last_.time == 0.0 || now - shown_ < kProgressInterval) return;
     shown_ = now;
     Progress p;
     p.phase = "running";

@@ -1,5 +1,7 @@
 #include "nodes/run_directory.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -26,8 +28,17 @@ bool is_result(const fs::path& entry) {
   constexpr std::array<const char*, 6> kNames{"scenario.json", "results.h5",   "results.xdmf",
                                               "run.log",       "profile.json", "report.json"};
   return std::find(kNames.begin(), kNames.end(), name) != kNames.end() || name == "frames" ||
-         name == "checkpoints" || (name.starts_with("timeseries") && entry.extension() == ".csv") ||
+         name == ".before" || name == "checkpoints" ||
+         (name.starts_with("timeseries") && entry.extension() == ".csv") ||
          (name.starts_with("summary") && entry.extension() == ".json") || entry.extension() == ".png";
+}
+
+std::vector<fs::path> results_in(const fs::path& folder) {
+  std::vector<fs::path> found;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error))
+    if (is_result(entry.path())) found.push_back(entry.path());
+  return found;
 }
 
 bool is_run(const fs::path& folder) {
@@ -41,7 +52,10 @@ RunDirectory::RunDirectory(const std::string& scenario, const fs::path& out, boo
   if (!out.empty()) {
     path_ = out;
     std::error_code error;
-    if (!fs::exists(fs::symlink_status(out, error)) && make(out)) return;
+    if (!fs::exists(fs::symlink_status(out, error)) && make(out)) {
+      lock();
+      return;
+    }
     if (!fs::is_directory(out, error))
       throw input_error(out.string(), "--out", "exists and is no folder, expected a new folder");
     if (!overwrite)
@@ -53,7 +67,10 @@ RunDirectory::RunDirectory(const std::string& scenario, const fs::path& out, boo
     path_ = fs::path("results") / fmt::format("{}-{:03}", scenario, number);
     std::error_code error;
     if (fs::exists(fs::symlink_status(path_, error))) continue;
-    if (make(path_)) return;
+    if (make(path_)) {
+      lock();
+      return;
+    }
   }
   throw input_error("results", "", "holds too many runs of " + scenario + ", expected --out");
 }
@@ -87,14 +104,41 @@ void RunDirectory::take_over() {
                       "holds no run, expected a run's folder to overwrite, or a new one");
   if (access(path_.c_str(), W_OK | X_OK) != 0)
     throw input_error(path_.string(), "--out", "cannot be written, expected a place that can be written");
-  for (const auto& entry : fs::directory_iterator(path_, error))
-    if (is_result(entry.path())) fs::remove_all(entry.path(), error);
+  lock();
+  fs::remove_all(aside(), error);
+  const std::vector<fs::path> results = results_in(path_);
+  if (results.empty()) return;
+  set_aside_ = fs::create_directory(aside(), error);
+  for (const fs::path& result : results) fs::rename(result, aside() / result.filename(), error);
+  if (error)
+    throw input_error(path_.string(), "--out",
+                      "cannot be cleared (" + error.message() + "), expected a folder to write");
+}
+
+/// The lock ends with this process, however that ends.
+void RunDirectory::lock() {
+  folder_ = open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder_ >= 0 && flock(folder_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    throw input_error(path_.string(), "--out", "is taken by a run that is not over, expected another folder");
+}
+
+RunDirectory::~RunDirectory() {
+  std::error_code error;
+  if (set_aside_) fs::remove_all(aside(), error);
+  if (folder_ >= 0) close(folder_);
 }
 
 void RunDirectory::discard() {
   std::error_code error;
+  for (const fs::path& result : results_in(path_))
+    if (result != aside()) fs::remove_all(result, error);
+  if (set_aside_) {
+    for (const auto& entry : fs::directory_iterator(aside(), error))
+      fs::rename(entry.path(), path_ / entry.path().filename(), error);
+    fs::remove(aside(), error);
+    set_aside_ = false;
+  }
   if (made_.empty()) return;
-  for (const char* name : {"run.log", "scenario.json"}) fs::remove(path_ / name, error);
   // Upwards as long as nothing else stands there.
   for (fs::path at = path_.lexically_normal(); fs::remove(at, error) && at != made_.lexically_normal();)
     at = at.parent_path();

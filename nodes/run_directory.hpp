@@ -6,23 +6,34 @@
 
 namespace furrow {
 
-/// Makes the folder of a run and takes it away again if the run never came to be.
+/// Makes the folder of a run and takes it away again if the run never came to be. Results of an earlier run that
+/// are to be overwritten are set aside until it is known that the new one runs. One process at a time has the folder.
 class RunDirectory {
  public:
   /// @param out  the user's choice; empty: results/<scenario>-NNN, the first number that is free
   /// @throws Error(bad_input) when `out` exists and may not be overwritten, or cannot be made
   RunDirectory(const std::string& scenario, const std::filesystem::path& out, bool overwrite);
 
+  /// Gives the folder free and removes what was set aside.
+  ~RunDirectory();
+  RunDirectory(const RunDirectory&) = delete;
+  RunDirectory& operator=(const RunDirectory&) = delete;
+
   const std::filesystem::path& path() const { return path_; }
 
-  /// Removes what the constructor made, as long as no results stand in it.
+  /// The run never came to be: removes its results and the folders that the constructor made, puts back what was set
+  /// aside.
   void discard();
 
  private:
   /// @returns false when it exists by now
   bool make(const std::filesystem::path& folder);
   void take_over();
+  void lock();
+  std::filesystem::path aside() const { return path_ / ".before"; }
 
+  int folder_ = -1;  // open and locked as long as this lives
+  bool set_aside_ = false;
   std::filesystem::path path_;
   std::filesystem::path made_;  // the topmost folder that did not exist before; empty: none
 };

@@ -251,13 +251,20 @@ Scenario load_scenario(const std::filesystem::path& file, const Settings& settin
   }
   for (const Problem& problem : Schema::load().unusual(document))
     s.warnings.push_back(input_error(file.string(), problem.key, problem.what).what());
-  if (checkpoints)
-    s.warnings.push_back(
-        input_error(file.string(), "checkpoint", "this version writes no checkpoints").what());
   std::vector<bool> default_start(s.rigs.size(), document["rig"]["start"].is_null());
   for (std::size_t k = 0; k < document["rig"]["wheels"].size(); ++k)
     default_start[k] = default_start[k] && document["rig"]["wheels"][k]["start"].is_null();
-  check_scenario(s, default_start);
+  const std::vector<std::string> unusual = s.warnings;
+  try {
+    check_scenario(s, default_start);
+  } catch (const Error& error) {  // what looks wrong may be why it does not fit
+    std::string text = error.what();
+    for (const std::string& warning : unusual) text += "\n" + warning;
+    throw Error(error.code(), text);
+  }
+  if (checkpoints)
+    s.warnings.push_back(
+        input_error(file.string(), "checkpoint", "this version writes no checkpoints").what());
   document["rig"]["start"] = s.rigs.front().start;
   for (std::size_t k = 0; k < document["rig"]["wheels"].size(); ++k)
     document["rig"]["wheels"][k]["start"] = s.rigs[k].start;

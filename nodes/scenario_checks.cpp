@@ -37,6 +37,15 @@ class Checks {
   void machine();
 
  private:
+  /// Half of what a wheel, turned by its toe angle, takes of the bin along x and across, m.
+  struct Footprint {
+    double along = 0.0, across = 0.0;
+  };
+  Footprint footprint(std::size_t wheel) const {
+    const TireSize& tire = tires_[wheel];
+    const double c = std::cos(s_.rigs[wheel].toe_angle), s = std::abs(std::sin(s_.rigs[wheel].toe_angle));
+    return {tire.radius * c + 0.5 * tire.width * s, 0.5 * tire.width * c + tire.radius * s};
+  }
   bool grains() const { return s_.terrain.engine == "dem"; }
   /// The key of a wheel's value: the rig's own while there is no list of wheels.
   std::string wheel_key(std::size_t wheel, const std::string& name) const {
@@ -91,7 +100,8 @@ void Checks::tires() {
   for (std::size_t k = 0; k < tires_.size(); ++k) {
     const TireSize& tire = tires_[k];
     const double off = std::abs(s_.rigs[k].lateral);
-    const double width = tire.width + 2.0 * (off + kWallMargin), length = 2.0 * (tire.radius + kWallMargin);
+    const Footprint foot = footprint(k);
+    const double width = 2.0 * (foot.across + off + kWallMargin), length = 2.0 * (foot.along + kWallMargin);
     if (width > s_.terrain.width)
       throw wrong("terrain.width",
                   fmt::format("is {} m, expected at least {:.2f} m: the tire is {:.2f} m wide{}",
@@ -120,14 +130,14 @@ void Checks::bin() {
 void Checks::start(const std::vector<bool>& use_default) {
   for (std::size_t k = 0; k < tires_.size(); ++k) {
     DrawbarRigOptions& rig = s_.rigs[k];
-    const double length = s_.terrain.length, radius = tires_[k].radius, reach = radius + kWallMargin;
+    const double length = s_.terrain.length, radius = footprint(k).along, reach = radius + kWallMargin;
     if (use_default[k]) {
-      const AxlePath path = axle_path(s_, k, radius);
+      const AxlePath path = axle_path(s_, k, tires_[k].radius);
       const bool forward = path.to - rig.start >= 0.0;
       rig.start = !grains() ? 0.0 : forward ? reach : length - reach;
     }
     if (!grains()) continue;
-    const AxlePath path = axle_path(s_, k, radius);
+    const AxlePath path = axle_path(s_, k, tires_[k].radius);
     if (path.from - radius < 0.0 || path.from + radius > length)
       throw wrong(wheel_key(k, "start"),
                   fmt::format("is {} m, expected {:.3f} to {:.3f} m: the tire of radius {} m would stand in "

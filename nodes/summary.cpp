@@ -119,6 +119,7 @@ void add_rut(const SummaryInput& in, Json& json) {
   if (!in.rows.empty()) {
     RutOptions options;
     options.direction = in.scenario.rigs[in.wheel].travel_sign;
+    options.lateral = in.scenario.rigs[in.wheel].lateral;
     options.axle = options.direction * in.rows.back().position;
     options.start = options.direction * in.rows.front().position;
     options.tread_width = in.cards[1 + in.wheel].tire_width;
@@ -234,6 +235,8 @@ std::string summary_text(const SummaryInput& in) {
   json["law"] = in.scenario.terrain.law;
   json["slip"] = in.scenario.rigs[in.wheel].slip;
   json["travel_sign"] = in.scenario.rigs[in.wheel].travel_sign;
+  json["wheel"] = in.wheel;
+  json["lateral_m"] = in.scenario.rigs[in.wheel].lateral;
   json["tire_radius_m"] = in.cards[1 + in.wheel].tire_radius;
   json["tread_width_m"] = in.cards[1 + in.wheel].tire_width;
   json["surface_height_m"] = number(in.setup.mean_height.at(in.wheel));

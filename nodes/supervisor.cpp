@@ -298,7 +298,10 @@ LaunchResult Supervisor::outcome() const {
   const std::string how = exited ? fmt::format("mpirun ended with status {}", status)
                                  : "mpirun was " + signal_name(WTERMSIG(status_));
   const std::string words = launcher_.words();
-  return {ExitCode::rank_lost, words.empty() ? how + " and said nothing" : how + ": " + words};
+  const std::string text = words.empty() ? how + " and said nothing" : how + ": " + words;
+  if (!started_.empty()) return {ExitCode::rank_lost, text};
+  return {ExitCode::io,
+          "no rank could be started (are PATH and TMPDIR right, is FURROW_MPIRUN Open MPI's?): " + text};
 }
 
 std::optional<std::filesystem::path> on_path(const std::string& program) {

@@ -62,6 +62,9 @@ def main():
         except Missing as reason:
             print(f"report: no {name}.png: {reason}", file=sys.stderr)
             continue
+        except OSError as error:  # h5py's error for a damaged file
+            print(f"report: no {name}.png: a file in {arguments.directory} is damaged: {error}", file=sys.stderr)
+            continue
         try:
             figure.savefig(out / f"{name}.png", dpi=130)
         except OSError as error:

@@ -24,15 +24,15 @@ def rut(run):
         raise Missing("the height fields are empty")
     if not np.nanmax(np.abs(depth)) > 0.0:
         raise Missing("the ground has not changed its shape")
-    sign = run.travel_sign
+    sign, lateral = run.travel_sign, run.lateral
     start, end = (sign * run.column("position_m")[[0, -1]]).tolist()
     tread = run.number("tread_width_m")
     figure = plt.figure(figsize=(12, 7.6))
     grid = figure.add_gridspec(2, 2, height_ratios=[1, 1.15], width_ratios=[1, 1.5])
     figure.suptitle(run.title, fontsize=11.5, x=0.01, ha="left", fontweight="bold")
-    top_view(figure, figure.add_subplot(grid[0, :]), after, depth, start, end, sign, tread)
-    across(figure.add_subplot(grid[1, 0]), run, after, depth, end, sign, tread)
-    along(figure.add_subplot(grid[1, 1]), before, after, start, end, sign, tread)
+    top_view(figure, figure.add_subplot(grid[0, :]), after, depth, start, end, sign, tread, lateral)
+    across(figure.add_subplot(grid[1, 0]), run, after, depth, end, sign, tread, lateral)
+    along(figure.add_subplot(grid[1, 1]), before, after, start, end, sign, tread, lateral)
     return figure
 
 
@@ -46,27 +46,27 @@ def median3(values):
         return np.nanmedian(stack, axis=0)
 
 
-def top_view(figure, axis, field, depth, start, end, sign, tread):
+def top_view(figure, axis, field, depth, start, end, sign, tread, lateral):
     depth = median3(depth)
     limit = max(float(np.nanpercentile(np.abs(depth), 99.5)), 1.0)
     image = axis.pcolormesh(field.x, field.y, depth.T, cmap="RdBu_r", vmin=-limit, vmax=limit, shading="nearest")
     figure.colorbar(image, ax=axis, label="depth below the surface before, mm\n(red: rut, blue: heaped up)", pad=0.01, shrink=0.8)
     axis.set_aspect("equal")
     axis.grid(False)
-    axis.plot([start, end], [0.0, 0.0], color="black", ls=":", lw=1.0)
-    axis.plot(start, 0.0, "o", color="black", ms=5, label="axle at the start")
-    axis.plot(end, 0.0, ">" if sign > 0 else "<", color="black", ms=9, label="axle at the end, in direction of travel")
+    axis.plot([start, end], [lateral, lateral], color="black", ls=":", lw=1.0)
+    axis.plot(start, lateral, "o", color="black", ms=5, label="axle at the start")
+    axis.plot(end, lateral, ">" if sign > 0 else "<", color="black", ms=9, label="axle at the end, in direction of travel")
     if tread:
         window = sorted([end - sign * NEAREST, end - sign * FARTHEST])
-        axis.add_patch(plt.Rectangle((window[0], -0.5 * tread), window[1] - window[0], tread, fill=False, lw=1.4,
+        axis.add_patch(plt.Rectangle((window[0], lateral - 0.5 * tread), window[1] - window[0], tread, fill=False, lw=1.4,
                                      label="tread width, where the rut is measured"))
     axis.set_xlabel("x, m")
     axis.set_ylabel("y, m (left of +x)")
-    axis.set_title("Seen from above (medians over 3 × 3 cells)")
-    axis.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncol=3)
+    axis.set_title("Seen from above (medians over 3 × 3 cells)", pad=24)
+    axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncol=3, borderaxespad=0.2, fontsize=8)
 
 
-def across(axis, run, field, depth, end, sign, tread):
+def across(axis, run, field, depth, end, sign, tread, lateral):
     behind = sign * (end - field.x)
     chosen = (behind >= NEAREST) & (behind <= FARTHEST)
     axis.set_title(f"Across, mean over {NEAREST}–{FARTHEST} m behind the axle")
@@ -74,7 +74,7 @@ def across(axis, run, field, depth, end, sign, tread):
         axis.plot(1e3 * field.y, -row_mean(depth[chosen], 0), color=BLUE, lw=2.0)
     axis.axhline(0.0, color=GREY, lw=1.0)
     if tread:
-        axis.axvspan(-500.0 * tread, 500.0 * tread, color=ORANGE, alpha=0.12, lw=0,
+        axis.axvspan(1e3 * lateral - 500.0 * tread, 1e3 * lateral + 500.0 * tread, color=ORANGE, alpha=0.12, lw=0,
                      label=f"tread width {1e3 * tread:.0f} mm")
     measured, width = run.number("rut_depth_m"), run.number("rut_width_m")
     if measured is not None:
@@ -88,9 +88,9 @@ def across(axis, run, field, depth, end, sign, tread):
         axis.legend(loc="lower right", fontsize=8)
 
 
-def along(axis, before, after, start, end, sign, tread):
+def along(axis, before, after, start, end, sign, tread, lateral):
     half = 0.25 * (tread or 0.2)
-    middle = np.abs(after.y) <= half
+    middle = np.abs(after.y - lateral) <= half
     axis.plot(before.x, 1e3 * row_mean(before.z[:, middle], 1), color=GREY, label="before")
     axis.plot(after.x, 1e3 * row_mean(after.z[:, middle], 1), color=BLUE, lw=1.8, label="after")
     axis.axvline(end, color="black", lw=1.0)

@@ -33,7 +33,10 @@ class Run:
         path = self.directory / name
         if not path.exists():
             return {}
-        content = json.loads(path.read_text(encoding="utf-8"))
+        try:
+            content = json.loads(path.read_text(encoding="utf-8"))
+        except ValueError as error:
+            raise ValueError(f"{name} is no valid JSON: {error}") from error
         if not isinstance(content, dict):
             raise ValueError(f"{name} is not a JSON object")
         return content
@@ -48,7 +51,10 @@ class Run:
         rows = [line.split(",") for line in lines[1:] if line.count(",") == len(names) - 1]
         if not rows:
             return {}
-        return dict(zip(names, np.array(rows, dtype=float).T))
+        try:
+            return dict(zip(names, np.array(rows, dtype=float).T))
+        except ValueError as error:
+            raise ValueError(f"timeseries.csv holds something that is no number: {error}") from error
 
     def column(self, name):
         if name not in self.series:
@@ -85,6 +91,12 @@ class Run:
         return float(rig.get("travel_sign", self.number("travel_sign", 1.0)) or 1.0)
 
     @property
+    def lateral(self):
+        """y of wheel 0's mid-plane, m."""
+        wheels = self.scenario.get("rig", {}).get("wheels") or [{}]
+        return float(wheels[0].get("lateral") or 0.0)
+
+    @property
     def window(self):
         """(from, to) of the averaging window, s; None when nothing was averaged."""
         pull = self.summary.get("drawbar_pull_N") or {}
@@ -103,4 +115,9 @@ class Run:
             what.append(f"slip {self.number('slip'):g}")
         if self.number("vertical_load_N") is not None:
             what.append(f"load {self.number('vertical_load_N'):.0f} N")
+        wheels = len(self.scenario.get("rig", {}).get("wheels") or [])
+        if wheels > 1:
+            what.append(f"wheel 0 of {wheels}")
+        if self.scenario and not self.summary:
+            what.append("stopped before its end")
         return " · ".join(what)

@@ -76,9 +76,11 @@ std::vector<Quad> poisson_layer(const Bin& bin, double radius, std::uint64_t see
   return samples;
 }
 
-std::vector<Quad> bed_layers(const Bin& bin, double radius, int layers, std::uint64_t seed) {
+std::vector<Quad> bed_layers(const Bin& bin, double radius, int layers, std::uint64_t seed,
+                             const ProgressCall& progress) {
   std::vector<Quad> all;
   for (int layer = 0; layer < layers; ++layer) {
+    if (progress) progress("placing the grains", static_cast<double>(layer) / layers);
     std::vector<Quad> samples =
         poisson_layer(bin, radius, seed * 1000003ULL + static_cast<std::uint64_t>(layer));
     for (Quad& s : samples) s.z = (layer + 0.5) * kSpacing * radius;

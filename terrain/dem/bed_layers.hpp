@@ -6,6 +6,7 @@
 
 #include "terrain/dem/lanes.hpp"
 #include "terrain/dem/pair_list.hpp"
+#include "terrain/terrain.hpp"
 
 namespace furrow::dem {
 
@@ -16,8 +17,9 @@ inline constexpr double kSpacing = 2.02;
 /// [Bridson 2007, Fast Poisson disk sampling in arbitrary dimensions, doi:10.1145/1278780.1278807]. z = 0.
 std::vector<Quad> poisson_layer(const Bin& bin, double radius, std::uint64_t seed);
 
-/// All layers, the lowest one spacing half above the floor; each layer has its own samples.
-std::vector<Quad> bed_layers(const Bin& bin, double radius, int layers, std::uint64_t seed);
+/// All layers, the lowest one spacing half above the floor; each layer has its own samples. `progress` hears of each.
+std::vector<Quad> bed_layers(const Bin& bin, double radius, int layers, std::uint64_t seed,
+                             const ProgressCall& progress = {});
 
 /// Samples per layer to be expected, from the density that poisson_layer reaches.
 double expected_layer_count(const Bin& bin, double radius);

@@ -254,7 +254,7 @@ class DemTerrain : public Terrain {
   Archive settled_bed(const std::filesystem::path& file, const ProgressCall& progress) {
     GrainSolver solver(solver_params(options_));
     solver.set_threads(std::max(1, options_.settle_threads));
-    solver.place(bed_layers(solver.params().bin, options_.radius, options_.layers, options_.seed));
+    solver.place(bed_layers(solver.params().bin, options_.radius, options_.layers, options_.seed, progress));
     const SettleResult result = settle(solver, options_, progress);
     Archive bed;
     solver.save(bed);

@@ -14,7 +14,7 @@ TEST(CpuCheck, this_build_runs_here) { EXPECT_EQ(missing_instruction_set(), null
 
 // cpu_check_elsewhere is linked with the same check, made for a processor that has everything.
 TEST(CpuCheck, a_program_for_another_processor_says_what_it_lacks) {
-  FILE* pipe = popen(CPU_CHECK_ELSEWHERE " 2>&1", "r");
+  FILE* pipe = popen("'" CPU_CHECK_ELSEWHERE "' 2>&1", "r");
   char text[512] = {};
   const std::size_t length = fread(text, 1, sizeof text - 1, pipe);
   const int status = pclose(pipe);

@@ -37,7 +37,7 @@ Outcome start(const std::string& scene, int ranks = 3, const std::string& enviro
   const std::string command =
       environment +
       " OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 timeout -k 5 50 " MPIRUN " -n " +
-      std::to_string(ranks) + " --oversubscribe --bind-to none " RANKS " " + scene + " 2>&1 < /dev/null";
+      std::to_string(ranks) + " --oversubscribe --bind-to none '" RANKS "' " + scene + " 2>&1 < /dev/null";
   const auto begin = std::chrono::steady_clock::now();
   Outcome outcome;
   FILE* pipe = popen(command.c_str(), "r");

@@ -28,8 +28,7 @@ bool is_result(const fs::path& entry) {
   constexpr std::array<const char*, 6> kNames{"scenario.json", "results.h5",   "results.xdmf",
                                               "run.log",       "profile.json", "report.json"};
   return std::find(kNames.begin(), kNames.end(), name) != kNames.end() || name == "frames" ||
-         name == ".before" || name == "checkpoints" ||
-         (name.starts_with("timeseries") && entry.extension() == ".csv") ||
+         name == "checkpoints" || (name.starts_with("timeseries") && entry.extension() == ".csv") ||
          (name.starts_with("summary") && entry.extension() == ".json") || entry.extension() == ".png";
 }
 
@@ -109,7 +108,8 @@ void RunDirectory::take_over() {
   const std::vector<fs::path> results = results_in(path_);
   if (results.empty()) return;
   set_aside_ = fs::create_directory(aside(), error);
-  for (const fs::path& result : results) fs::rename(result, aside() / result.filename(), error);
+  for (std::size_t i = 0; i < results.size() && !error; ++i)
+    fs::rename(results[i], aside() / results[i].filename(), error);
   if (error)
     throw input_error(path_.string(), "--out",
                       "cannot be cleared (" + error.message() + "), expected a folder to write");
@@ -130,8 +130,7 @@ RunDirectory::~RunDirectory() {
 
 void RunDirectory::discard() {
   std::error_code error;
-  for (const fs::path& result : results_in(path_))
-    if (result != aside()) fs::remove_all(result, error);
+  for (const fs::path& result : results_in(path_)) fs::remove_all(result, error);
   if (set_aside_) {
     for (const auto& entry : fs::directory_iterator(aside(), error))
       fs::rename(entry.path(), path_ / entry.path().filename(), error);

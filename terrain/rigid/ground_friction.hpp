@@ -4,7 +4,8 @@
 //   F = −A (κ_t ξ + d (v − s)) = −μ N tanh(c |s|) s/|s|,   ξ̇ = v − s,
 //
 // v the vertex's velocity along the ground, s the part of it that slides, ξ the shear of the layer, N and A load and
-// area of the vertex. In steady sliding s = v: the law F = μ N tanh(c |v|) of Tasora et al. 2016 [SBEL TR-2016-06].
+// area of the vertex. In steady sliding s = v: the law F = μ N tanh(c |v|) of the report [Recuero et al. 2016, Wheeled
+// vehicle mobility studies in Chrono, SBEL technical report].
 // By itself that law is a dashpot c μ N; on a tread vertex of 2 g under 50 N one step of 4e-5 s would stop it four
 // times over, and forces that come one step late drive a chatter of ±1 m/s. Behind the shear the sliding is solved
 // within the step (as friction is in brush models of tires [Pacejka, Tire and Vehicle Dynamics, 2012, ch. 3]).

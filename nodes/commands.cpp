@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "nodes/bench.hpp"
 #include "nodes/explain.hpp"
 #include "nodes/rank_table.hpp"
 #include "nodes/scenario.hpp"
@@ -35,6 +36,22 @@ void add_scenario(CLI::App& command, Typed& typed) {
       ->take_all()
       ->allow_extra_args(false);
   command.add_option("--threads", typed.threads, "threads of the terrain: a number or auto (run.threads)");
+}
+
+void add_grain_bench(CLI::App& command, GrainBench& bench) {
+  command.add_option("--bed", bench.bed, "CSV of positions x_m,y_m,z_m, or default: the reference bed")
+      ->capture_default_str();
+  command.add_option("--law", bench.law, "mindlin or coulomb")->capture_default_str();
+  command.add_option("--precision", bench.precision, "of the law: mixed or double")->capture_default_str();
+  command.add_option("--cohesion", bench.cohesion, "cohesion, Pa")->capture_default_str();
+  command.add_option("--rolling-friction", bench.rolling_friction, "rolling resistance coefficient")
+      ->capture_default_str();
+  command.add_option("--threads", bench.threads, "threads")->capture_default_str();
+  command.add_option("--steps", bench.steps, "steps that are timed")->capture_default_str();
+  command.add_option("--warm", bench.warm, "steps before that")->capture_default_str();
+  command.add_option("--settle", bench.settle, "let the bed settle for that long at most first, s")
+      ->capture_default_str();
+  command.add_option("--step", bench.step, "time step, s")->capture_default_str();
 }
 
 Settings settings_of(const Typed& typed) {
@@ -138,6 +155,12 @@ ExitCode run_command_line(int argc, char** argv) {
   CLI::App& report = *app.add_subcommand("report", "plots of a finished run, as PNG files in its folder");
   report.add_option("DIR", typed.directory, "folder of the run")->required();
 
+  CLI::App& bench = *app.add_subcommand("bench", "how fast this machine is; prints JSON");
+  bench.require_subcommand(1);
+  GrainBench grains;
+  CLI::App& bench_of_grains = *bench.add_subcommand("grains", "steps a settled bed, every grain in every step");
+  add_grain_bench(bench_of_grains, grains);
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {  // --help, --version
@@ -150,6 +173,10 @@ ExitCode run_command_line(int argc, char** argv) {
   if (validate.parsed()) return validate_command(typed);
   if (ranks.parsed()) return ranks_command(typed, {argv, argv + argc});
   if (report.parsed()) return report_command(typed);
+  if (bench_of_grains.parsed()) {
+    std::cout << bench_grains(grains);
+    return ExitCode::done;
+  }
   std::cout << explain(typed.key);
   return ExitCode::done;
 }

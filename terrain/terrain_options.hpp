@@ -19,6 +19,8 @@ struct TerrainOptions {
   int layers = 15;          // Poisson-disk layers dropped
   double length = 10.0;     // bin, x from 0 to length, m
   double width = 0.6;       // bin, y from −width/2 to width/2, m
+  bool periodic_x = false;  // grains that leave at one end of the bin come back at the other; no end walls
+  bool periodic_y = false;  // the same across; no side walls
   std::uint64_t seed = 1;   // run.seed
   std::string bed;          // a saved bed to start from; empty: generate or take from the cache
   bool cache = true;        // keep settled beds under the user's cache directory
@@ -34,6 +36,7 @@ struct TerrainOptions {
   double friction_velocity_scale = 5.0;  // c in F_t = μ F_e tanh(c |v_t|), s/m, law coulomb and rigid ground
   bool friction_impulse_limit = true;    // law coulomb: caps F_t at β m_t |v_t| / dt
   bool activity = true;                  // let resting grains sleep
+  std::string precision = "mixed";  // of the contact law between grains: mixed (single, sums in double) | double
   // Rigid ground (engine rigid): a stiff elastic layer, pressure = stiffness × depth + damping × its rate.
   double ground_stiffness = 4e8;  // N/m³: 0.6 mm under 240 kPa; 4e5 N/m on a vertex that carries 10 cm²
   double ground_shear_stiffness = 1e8;  // N/m³: a tread of 1 MPa shear modulus, 10 mm thick

@@ -3,7 +3,7 @@
 
 #include "protocol/messages.hpp"
 #include "terrain/dem/grains.hpp"
-#include "terrain/dem/pair_list.hpp"
+#include "terrain/dem/bin.hpp"
 
 namespace furrow::dem {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "terrain/dem/lanes.hpp"
-#include "terrain/dem/pair_list.hpp"
+#include "terrain/dem/bin.hpp"
 #include "terrain/terrain.hpp"
 
 namespace furrow::dem {

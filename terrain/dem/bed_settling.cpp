@@ -12,7 +12,6 @@ namespace {
 constexpr double kStepShareMindlin = 0.8;  // of the stable step
 constexpr double kStepShareCoulomb = 0.7;  // grains that fall on each other overlap more without history
 constexpr int kCheckEvery = 40;            // steps
-constexpr double kMaxSettleTime = 4.0;     // s
 constexpr double kFallDrag = 4.0;          // 1/s, while the layers fall
 constexpr double kRestDrag = 20.0;    // 1/s, once they lie; grains on top must still roll to their places
 constexpr double kLyingSpeed = 0.03;  // rms, m/s: slower counts as lying
@@ -44,7 +43,8 @@ SolverCoefficients settle_coefficients(const TerrainOptions& options) {
   return c;
 }
 
-SettleResult settle(GrainSolver& solver, const TerrainOptions& options, const ProgressCall& progress) {
+SettleResult settle(GrainSolver& solver, const TerrainOptions& options, const ProgressCall& progress,
+                    double most_time) {
   SettleResult result;
   const double dt = settle_step(options);
   const GrainProperties& grain = solver.params().grain;
@@ -53,7 +53,7 @@ SettleResult settle(GrainSolver& solver, const TerrainOptions& options, const Pr
   solver.set_drag(kFallDrag);
   bool lying = false;
   double best = 1.0;
-  const auto most = static_cast<std::int64_t>(kMaxSettleTime / dt);
+  const auto most = static_cast<std::int64_t>(most_time / dt);
   while (result.steps < most && !result.settled) {
     const bool check = ++result.steps % kCheckEvery == 0;
     if (const int lost = solver.step(dt, check); lost >= 0)
@@ -75,7 +75,7 @@ SettleResult settle(GrainSolver& solver, const TerrainOptions& options, const Pr
     if (progress) {
       const double decades = std::log10(1.0 / std::max(best, kSettledForceRatio)) / 3.0;
       progress("settling the bed",
-               std::clamp(std::max(decades, dt * result.steps / kMaxSettleTime), 0.0, 1.0));
+               std::clamp(std::max(decades, dt * result.steps / most_time), 0.0, 1.0));
     }
   }
   solver.set_drag(0.0);

@@ -25,8 +25,11 @@ double settle_step(const TerrainOptions& options);
 /// impulse limit of law coulomb is on.
 SolverCoefficients settle_coefficients(const TerrainOptions& options);
 
-/// Runs the solver until the bed is settled or kMaxSettleTime has passed. May throw what `progress` throws.
+inline constexpr double kMaxSettleTime = 4.0;  // s
+
+/// Runs the solver until the bed is settled or `most` seconds have passed. May throw what `progress` throws.
 /// @throws Error(physics) when a grain is lost.
-SettleResult settle(GrainSolver& solver, const TerrainOptions& options, const ProgressCall& progress);
+SettleResult settle(GrainSolver& solver, const TerrainOptions& options, const ProgressCall& progress,
+                    double most = kMaxSettleTime);
 
 }  // namespace furrow::dem

@@ -26,20 +26,31 @@
 namespace furrow::dem {
 
 /// Coefficients of one kind of partner (grain, wall, tire), already mixed.
-struct ContactCoefficients {
-  double stiffness = 0.0;        // K or k_n, N/m^1.5
-  double damping = 0.0;          // mindlin: c_n, N s/m^1.25; coulomb: g_n, N s/m^1.5
-  double shear_stiffness = 0.0;  // 8 G* √R*, N/m^1.5
-  double shear_damping = 0.0;    // N s/m^1.25
-  double friction = 0.0;         // μ, -
-  double cohesion_force = 0.0;   // F_c, N
-  double velocity_scale = 0.0;   // c, s/m
-  double slip_limit = 0.0;       // β m_t / dt, N s/m; infinite: no limit
-  double rolling_arm = 0.0;      // μ_r R*, m
-  double rolling_radius = 0.0;   // R*, m
-  double rolling_damping = 0.0;  // N m s/m^0.25
-  double roll_limit = 0.0;       // β I / dt, N m s, law coulomb; infinite: no limit
+template <class S>
+struct Coefficients {
+  S stiffness{};        // K or k_n, N/m^1.5
+  S damping{};          // mindlin: c_n, N s/m^1.25; coulomb: g_n, N s/m^1.5
+  S shear_stiffness{};  // 8 G* √R*, N/m^1.5
+  S shear_damping{};    // N s/m^1.25
+  S friction{};         // μ, -
+  S cohesion_force{};   // F_c, N
+  S velocity_scale{};   // c, s/m
+  S slip_limit{};       // β m_t / dt, N s/m; infinite: no limit
+  S rolling_arm{};      // μ_r R*, m
+  S rolling_radius{};   // R*, m
+  S rolling_damping{};  // N m s/m^0.25
+  S roll_limit{};       // β I / dt, N m s, law coulomb; infinite: no limit
 };
+using ContactCoefficients = Coefficients<double>;
+
+/// The same coefficients as another scalar type.
+template <class S>
+Coefficients<S> rounded(const ContactCoefficients& c) {
+  const auto r = [](double a) { return static_cast<S>(a); };
+  return {r(c.stiffness),      r(c.damping),         r(c.shear_stiffness), r(c.shear_damping),
+          r(c.friction),       r(c.cohesion_force),  r(c.velocity_scale),  r(c.slip_limit),
+          r(c.rolling_arm),    r(c.rolling_radius),  r(c.rolling_damping), r(c.roll_limit)};
+}
 
 /// Share of critical damping in the rolling spring [Ai et al. 2011, §4.2].
 inline constexpr double kRollingDampingRatio = 0.3;
@@ -69,13 +80,16 @@ struct ContactForce {
   T energy;              // 2/5 K δ^{5/2} − F_c δ, J: what the normal spring and cohesion store
 };
 
+/// Squares below it count as zero; a float still holds it.
+inline constexpr double kTiny = 1e-35;
+
 /// Turns a vector held in the contact plane with the contact: spin about n, projection on the new plane, same length.
 template <class T>
 inline Triple<T> turn_with_contact(const Triple<T>& old, const Triple<T>& n, T spin_angle) {
   const Triple<T> spun = old + spin_angle * cross(n, old);
   const Triple<T> flat = spun - dot(spun, n) * n;
   const T before = dot(old, old), after = dot(flat, flat);
-  const T tiny = constant<T>(1e-60);
+  const T tiny = constant<T>(kTiny);
   return root(before / larger(after, tiny)) * flat;
 }
 
@@ -85,18 +99,18 @@ inline Triple<T> cut_at_limit(Triple<T>& spring, const Triple<T>& damper, T limi
   const Triple<T> sum = spring + damper;
   const T square = dot(sum, sum);
   const auto over = square > limit * limit;
-  const T factor = select(over, limit / root(larger(square, constant<T>(1e-60))), constant<T>(1.0));
+  const T factor = over ? limit / root(larger(square, constant<T>(kTiny))) : constant<T>(1.0);
   const Triple<T> cut = factor * sum;
-  spring = {select(over, cut.x - damper.x, spring.x), select(over, cut.y - damper.y, spring.y),
-            select(over, cut.z - damper.z, spring.z)};
+  spring = {over ? cut.x - damper.x : spring.x, over ? cut.y - damper.y : spring.y,
+            over ? cut.z - damper.z : spring.z};
   return cut;
 }
 
 struct MindlinLaw {
   static constexpr bool kHistory = true;
 
-  template <bool kRolling, class T>
-  static inline ContactForce<T> force(const ContactCoefficients& c, double dt, const ContactMotion<T>& at,
+  template <bool kRolling, class S, class T>
+  static inline ContactForce<T> force(const Coefficients<S>& c, S dt, const ContactMotion<T>& at,
                                       ContactHistory<T>& history) {
     const T zero = constant<T>(0.0), one = constant<T>(1.0);
     const T s = root(at.overlap), q = root(s);
@@ -107,10 +121,10 @@ struct MindlinLaw {
     ContactForce<T> f;
     f.elastic = hertz - c.damping * q * v_n;  // (2)
     f.normal = f.elastic - c.cohesion_force;  // (1)
-    f.energy = (0.4 * hertz - c.cohesion_force) * at.overlap;
+    f.energy = (constant<T>(0.4) * hertz - c.cohesion_force) * at.overlap;
     const T bearing = larger(f.elastic, zero);
 
-    const T unloading = select(s < history.root_overlap, s / larger(history.root_overlap, s), one);
+    const T unloading = s < history.root_overlap ? s / larger(history.root_overlap, s) : one;
     const T angle = dt * at.spin;
     Triple<T> spring = unloading * turn_with_contact(history.tangential, at.normal, angle);
     spring = spring - (c.shear_stiffness * dt * s) * v_t;  // (3)
@@ -121,7 +135,7 @@ struct MindlinLaw {
 
     if constexpr (kRolling) {  // (4)
       const Triple<T> w = at.roll - dot(at.roll, at.normal) * at.normal;
-      const double r2 = c.rolling_radius * c.rolling_radius;
+      const S r2 = c.rolling_radius * c.rolling_radius;
       Triple<T> torque = unloading * turn_with_contact(history.rolling, at.normal, angle);
       torque = torque - (c.shear_stiffness * r2 * dt * s) * w;
       const Triple<T> brake = (-c.rolling_damping * q) * w;
@@ -137,8 +151,8 @@ struct MindlinLaw {
 struct CoulombLaw {
   static constexpr bool kHistory = false;
 
-  template <bool kRolling, class T>
-  static inline ContactForce<T> force(const ContactCoefficients& c, double, const ContactMotion<T>& at,
+  template <bool kRolling, class S, class T>
+  static inline ContactForce<T> force(const Coefficients<S>& c, S, const ContactMotion<T>& at,
                                       ContactHistory<T>&) {
     const T zero = constant<T>(0.0), tiny = constant<T>(1e-30);
     const T s = root(at.overlap);
@@ -148,17 +162,17 @@ struct CoulombLaw {
     ContactForce<T> f;
     f.elastic = larger(s * (c.stiffness * at.overlap - c.damping * v_n), zero);  // (5)
     f.normal = f.elastic - c.cohesion_force;
-    f.energy = (0.4 * c.stiffness * s * at.overlap - c.cohesion_force) * at.overlap;
+    f.energy = (constant<T>(0.4) * c.stiffness * s * at.overlap - c.cohesion_force) * at.overlap;
     const T speed = larger(root(dot(v_t, v_t)), tiny);
     const T share = c.friction * f.elastic * tanh_of_positive(c.velocity_scale * speed) / speed;
-    f.tangential = -smaller(share, constant<T>(c.slip_limit)) * v_t;  // (6)
+    f.tangential = -smaller(share, zero + c.slip_limit) * v_t;  // (6)
 
     if constexpr (kRolling) {
       const Triple<T> w = at.roll - dot(at.roll, at.normal) * at.normal;
       const T rate = larger(root(dot(w, w)), tiny);
       const T brake =
           c.rolling_arm * f.elastic * tanh_of_positive(c.velocity_scale * c.rolling_radius * rate) / rate;
-      f.rolling = -smaller(brake, constant<T>(c.roll_limit)) * w;
+      f.rolling = -smaller(brake, zero + c.roll_limit) * w;
     } else {
       f.rolling = {zero, zero, zero};
     }

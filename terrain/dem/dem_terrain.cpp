@@ -13,14 +13,13 @@
 #include "terrain/dem/bed_height.hpp"
 #include "terrain/dem/bed_layers.hpp"
 #include "terrain/dem/bed_settling.hpp"
-#include "terrain/dem/grain_solver.hpp"
+#include "terrain/dem/solver_setup.hpp"
 
 namespace furrow {
 namespace {
 
 using namespace dem;
 
-constexpr double kSkinShare = 0.3;        // of the radius
 constexpr double kLooseFraction = 0.50;   // solid fraction of a bed that settled with cohesion, estimate
 constexpr double kBytesPerGrain = 900.0;  // state, list with history, and what a rebuild holds twice
 
@@ -32,6 +31,7 @@ void require(bool ok, const char* key, double value, const char* expected) {
 
 void check(const TerrainOptions& o) {
   law_from(o.law);
+  precision_from(o.precision);
   require(o.radius > 0.0 && o.radius < 1.0, "radius", o.radius, "0 < radius < 1 m");
   require(o.density > 0.0 && std::isfinite(o.density), "density", o.density, "a positive number, kg/m³");
   require(o.layers >= 1 && o.layers < 10000, "layers", o.layers, "1 to 9999");
@@ -53,29 +53,9 @@ void check(const TerrainOptions& o) {
                       fmt::format("{} is out of range, expected a positive number, s", o.step));
 }
 
-SolverCoefficients run_coefficients(const TerrainOptions& options, double step) {
-  LawSettings law = law_settings(options);
-  law.step = step;
-  const GrainProperties grain = grain_properties(options.radius, options.density);
-  const ContactMaterial material = grain_material(options);
-  const ContactCoefficients wall = mix(material, material, Partner::surface, grain, law);
-  return {mix(material, material, Partner::grain, grain, law), wall, wall};
-}
-
 StableStep stable_at(const TerrainOptions& options, double overlap) {
   return stable_step(run_coefficients(options, options.step).pair,
                      grain_properties(options.radius, options.density), law_settings(options), overlap);
-}
-
-SolverParams solver_params(const TerrainOptions& o) {
-  SolverParams p;
-  p.law = law_from(o.law);
-  p.rolling = o.rolling_friction > 0.0;
-  p.grain = grain_properties(o.radius, o.density);
-  p.bin = {o.length, o.width};
-  p.skin = kSkinShare * o.radius;
-  p.threads = std::max(1, o.threads);
-  return p;
 }
 
 class DemTerrain : public Terrain {
@@ -167,7 +147,7 @@ class DemTerrain : public Terrain {
     s.floor_force = a.floor_force;
     s.contacts = a.contacts;
     s.active = solver_.grains().count;
-    s.list_rebuilds = solver_.pairs().rebuilds();
+    s.list_rebuilds = std::llround(solver_.rebuilds());
     return s;
   }
 

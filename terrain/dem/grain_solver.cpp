@@ -8,54 +8,42 @@
 namespace furrow::dem {
 namespace {
 
-/// Lists the pairs p in [from, to) that touch, remembers which, and clears what a separated pair leaves behind.
-int filter(PairBlock& block, const Grains& grains, int from, int to, double diameter, std::int32_t* out) {
-  const Lane limit = splat(diameter * diameter);
-  const Quad* x = grains.position.data();
-  int count = 0;
-  for (int p = from; p < to; p += kLanes) {
-    const std::int32_t *i = &block.i[p], *j = &block.j[p];
-    const Triple<Lane> d = transpose(load(x[i[0]]) - load(x[j[0]]), load(x[i[1]]) - load(x[j[1]]),
-                                     load(x[i[2]]) - load(x[j[2]]), load(x[i[3]]) - load(x[j[3]]));
-    const LaneMask hit = dot(d, d) < limit;
-    const int now = static_cast<int>((hit[0] & 1) | (hit[1] & 2) | (hit[2] & 4) | (hit[3] & 8));
-    std::uint8_t& before = block.touching[p / kLanes];
-    if (const int ended = before & ~now; ended != 0)
-      for (int k = 0; k < kLanes; ++k)
-        if (ended >> k & 1) {
-          if (!block.tangential.empty()) block.tangential[p + k] = {};
-          if (!block.rolling.empty()) block.rolling[p + k] = {};
-          if (p < block.inner) continue;
-          block.slot_force[p + k - block.inner] = block.slot_torque[p + k - block.inner] = {};
-        }
-    before = static_cast<std::uint8_t>(now);
-    for (int k = 0; k < kLanes; ++k) {
-      out[count] = p + k;
-      count += now >> k & 1;
-    }
-  }
-  return count;
+constexpr int kMostChunks = 64;       // enough for any load balance
+constexpr int kMostStrips = 12;       // of a chunk: what its thread keeps in the cache
+constexpr int kFewestStrips = 3;      // of a chunk: its first is moved in the second pass
+
+Strips::Options strip_options(const SolverParams& p) {
+  Strips::Options o;
+  o.radius = p.grain.radius;
+  o.reach = 2.0 * p.grain.radius + p.skin;
+  o.skin = p.skin;
+  o.history = p.law == LawKind::mindlin;
+  o.rolling = p.rolling;
+  o.single = p.precision == Precision::mixed;
+  o.bin = p.bin;
+  return o;
 }
 
-/// Running sums over lanes.
-struct LaneSums {
-  Lane power{}, elastic{}, overlap{}, force{};
-  void add_to(BlockSums& sums) const {
-    sums.power += sum_of(power);
-    sums.elastic += sum_of(elastic);
-    sums.contact_force += sum_of(force);
-    for (int k = 0; k < kLanes; ++k) sums.max_overlap = std::max(sums.max_overlap, overlap[k]);
-  }
-};
-
-void add(Quad& q, Lane v) { store(q, load(q) + v); }
+template <class T>
+void grow(std::vector<T>& v, std::size_t n) {
+  if (v.size() < n) v.resize(n + n / 4);
+}
 
 }  // namespace
 
 GrainSolver::GrainSolver(const SolverParams& params)
-    : params_(params),
-      pairs_({params.grain.radius, params.skin, params.law == LawKind::mindlin, params.rolling, params.bin}),
-      surfaces_(params.grain, params.rolling) {}
+    : params_(params), strips_(strip_options(params)), surfaces_(params.grain, params.rolling) {
+  make_chunks();
+}
+
+void GrainSolver::make_chunks() {
+  const int n = strips_.count();
+  const int each = std::clamp((n + kMostChunks - 1) / kMostChunks, kFewestStrips, kMostStrips);
+  for (int from = 0; from < n; from += each) {
+    chunks_.emplace_back();
+    chunks_.back().from = from, chunks_.back().to = std::min(from + each, n);
+  }
+}
 
 void GrainSolver::place(const std::vector<Quad>& positions) {
   grains_.resize(static_cast<int>(positions.size()));
@@ -63,12 +51,17 @@ void GrainSolver::place(const std::vector<Quad>& positions) {
     grains_.position[i] = positions[i];
     grains_.position[i].w = 0.0;
   }
-  rebuild();
+  surfaces_.resize(strips_.count());
+  strips_.rebuild_all(grains_, params_.threads);
   reset_accounts();
 }
 
 int GrainSolver::index_of(int id) const {
   return static_cast<int>(std::find(grains_.id.begin(), grains_.id.end(), id) - grains_.id.begin());
+}
+
+double GrainSolver::rebuilds() const {
+  return static_cast<double>(strips_.resorted()) / std::max(1, grains_.count);
 }
 
 void GrainSolver::reset_accounts() {
@@ -86,211 +79,145 @@ void GrainSolver::reset_accounts() {
     accounts_.height += grains_.position[g].z;
     accounts_.velocity += Vec3(v.x, v.y, v.z);
   }
-  pairs_.set_rebuilds(0);
+  strips_.set_resorted(0);
 }
 
-void GrainSolver::rebuild() {
-  std::vector<std::int32_t> order;
-  pairs_.rebuild(grains_, params_.threads, order);
-  surfaces_.reorder(order);
-  surfaces_.resize(static_cast<int>(pairs_.blocks().size()));
+template <>
+GrainSolver::Scratch<float>& GrainSolver::scratch() {
+  return single_[omp_get_thread_num()];
+}
+template <>
+GrainSolver::Scratch<double>& GrainSolver::scratch() {
+  return full_[omp_get_thread_num()];
 }
 
-// The touching pairs of a block, four at a time. With d = x_i − x_j the arms r − δ/2 are ±d/2, so
-//   v = v_i − v_j − ½ (ω_i + ω_j) × d,   torque on i and on j: −½ d × F_t.
-template <class Law, bool kRolling>
-static void pair_forces(Grains& grains, PairBlock& block, const ContactCoefficients& c, double diameter,
-                        double dt, const std::int32_t* list, int count, bool inner, bool measure,
-                        LaneSums& sums) {
-  const Quad *x = grains.position.data(), *v = grains.velocity.data(), *w = grains.spin.data();
-  const Lane zero{};
-  for (int at = 0; at < count; at += kLanes) {
-    const int valid = std::min(kLanes, count - at);
-    std::int32_t p[kLanes], i[kLanes], j[kLanes];
-    for (int k = 0; k < kLanes; ++k) {
-      p[k] = list[at + std::min(k, valid - 1)];
-      i[k] = block.i[p[k]];
-      j[k] = block.j[p[k]];
-    }
-    const Triple<Lane> d = transpose(load(x[i[0]]) - load(x[j[0]]), load(x[i[1]]) - load(x[j[1]]),
-                                     load(x[i[2]]) - load(x[j[2]]), load(x[i[3]]) - load(x[j[3]]));
-    const Triple<Lane> dv = transpose(load(v[i[0]]) - load(v[j[0]]), load(v[i[1]]) - load(v[j[1]]),
-                                      load(v[i[2]]) - load(v[j[2]]), load(v[i[3]]) - load(v[j[3]]));
-    const Triple<Lane> turn = transpose(load(w[i[0]]) + load(w[j[0]]), load(w[i[1]]) + load(w[j[1]]),
-                                        load(w[i[2]]) + load(w[j[2]]), load(w[i[3]]) + load(w[j[3]]));
-    ContactMotion<Lane> motion;
-    const Lane distance = root(dot(d, d));
-    motion.normal = (1.0 / distance) * d;
-    motion.overlap = diameter - distance;
-    motion.velocity = dv - splat(0.5) * cross(turn, d);
-    motion.spin = 0.5 * dot(turn, motion.normal);
-    if constexpr (kRolling)
-      motion.roll = transpose(load(w[i[0]]) - load(w[j[0]]), load(w[i[1]]) - load(w[j[1]]),
-                              load(w[i[2]]) - load(w[j[2]]), load(w[i[3]]) - load(w[j[3]]));
+/// Brings the motion of a strip's grains to `offset` of the scratch memory and clears their loads.
+template <class Real>
+void GrainSolver::gather(Scratch<Real>& s, int strip, int offset) {
+  const Strip& at = strips_[strip];
+  const int n = at.grains();
+  for (int g = 0; g < n; ++g)
+    s.motion[offset + g] = motion_row<Real>(grains_.velocity[at.first + g], grains_.spin[at.first + g]);
+  std::fill_n(s.loads.begin() + offset, n, Load{});
+}
 
-    ContactHistory<Lane> history;
-    if constexpr (Law::kHistory) {
-      const Quad* h = block.tangential.data();
-      history.tangential =
-          transpose(load(h[p[0]]), load(h[p[1]]), load(h[p[2]]), load(h[p[3]]), history.root_overlap);
-      if constexpr (kRolling) {
-        const Quad* q = block.rolling.data();
-        history.rolling = transpose(load(q[p[0]]), load(q[p[1]]), load(q[p[2]]), load(q[p[3]]));
-      }
+template <class Real, class Law, bool kRolling>
+void GrainSolver::contacts_of_strip(Scratch<Real>& s, int k, int offset, double dt, bool measure) {
+  Strip& strip = strips_[k];
+  strip.sums = {};
+  const Quad* x = grains_.position.data() + strip.first;
+  if (const int after = strips_.next(k); after >= 0 && after < k) {
+    const Strip& other = strips_[after];
+    grow(s.shifted, strip.grains() + other.grains());
+    std::copy_n(x, strip.grains(), s.shifted.begin());
+    for (int g = 0; g < other.grains(); ++g) {
+      Quad p = grains_.position[other.first + g];
+      p.x += params_.bin.length;
+      s.shifted[strip.grains() + g] = p;
     }
-    const ContactForce<Lane> f = Law::template force<kRolling>(c, dt, motion, history);
-
-    Lane row[kLanes];
-    if constexpr (Law::kHistory) {
-      transpose_back(history.tangential, history.root_overlap, row);
-      for (int k = 0; k < kLanes; ++k) store(block.tangential[p[k]], row[k]);
-      if constexpr (kRolling) {
-        transpose_back(history.rolling, zero, row);
-        for (int k = 0; k < kLanes; ++k) store(block.rolling[p[k]], row[k]);
-      }
-    }
-    const Triple<Lane> force = f.normal * motion.normal + f.tangential;
-    const Triple<Lane> torque = splat(-0.5) * cross(d, f.tangential);
-    Lane force_row[kLanes], torque_row[kLanes], rolling_row[kLanes] = {};
-    transpose_back(force, zero, force_row);
-    transpose_back(torque, zero, torque_row);
-    if constexpr (kRolling) transpose_back(f.rolling, zero, rolling_row);
-    for (int k = 0; k < valid; ++k) {
-      add(grains.force[i[k]], force_row[k]);
-      add(grains.torque[i[k]], torque_row[k] + rolling_row[k]);
-      if (inner) {
-        add(grains.force[j[k]], -force_row[k]);
-        add(grains.torque[j[k]], torque_row[k] - rolling_row[k]);
-      } else {
-        const int slot = p[k] - block.inner;
-        store(block.slot_force[slot], force_row[k]);
-        store(block.slot_torque[slot], torque_row[k] - rolling_row[k]);
-      }
-    }
-    Lane power = power_of(f, motion);
-    if constexpr (kRolling) power += dot(f.rolling, motion.roll);
-    const LaneMask real = LaneMask{0, 1, 2, 3} < LaneMask{valid, valid, valid, valid};
-    sums.power += select(real, power, zero);
-    sums.elastic += select(real, f.energy, zero);
-    sums.overlap = larger(sums.overlap, motion.overlap);
-    if (measure) sums.force += select(real, root(dot(force, force)), zero);
+    x = s.shifted.data();
   }
-}
-
-/// Grains against the bin: arm r − δ, the wall at rest.
-template <class Law, bool kRolling>
-static void wall_forces(Grains& grains, PairBlock& block, const SolverParams& params,
-                        const SolverCoefficients& all, double dt, bool measure) {
-  for (WallContact& contact : block.walls) {
-    const int g = contact.grain;
-    const double distance = params.bin.distance(contact.wall, grains.position[g]);
-    ContactMotion<double> motion;
-    motion.overlap = params.grain.radius - distance;
-    if (!(motion.overlap > 0.0)) {
-      contact.tangential = contact.rolling = {};
-      continue;
-    }
-    const Quad &v = grains.velocity[g], &w = grains.spin[g];
-    motion.normal = Bin::normal(contact.wall);
-    motion.roll = {w.x, w.y, w.z};
-    const Triple<double> arm = -distance * motion.normal;
-    motion.velocity = Triple<double>{v.x, v.y, v.z} + cross(motion.roll, arm);
-    motion.spin = 0.5 * dot(motion.roll, motion.normal);
-    Quad &t = contact.tangential, &r = contact.rolling;
-    ContactHistory<double> history{{t.x, t.y, t.z}, t.w, {r.x, r.y, r.z}};
-    const ContactForce<double> f =
-        Law::template force<kRolling>(contact.wall == kFloor ? all.floor : all.side, dt, motion, history);
-    if constexpr (Law::kHistory) {
-      t = {history.tangential.x, history.tangential.y, history.tangential.z, history.root_overlap};
-      if constexpr (kRolling) r = {history.rolling.x, history.rolling.y, history.rolling.z, 0.0};
-    }
-    const Triple<double> force = f.normal * motion.normal + f.tangential;
-    const Triple<double> torque = cross(arm, f.tangential) + f.rolling;
-    const Lane force_lane{force.x, force.y, force.z, 0.0};
-    add(grains.force[g], force_lane);
-    add(grains.torque[g], Lane{torque.x, torque.y, torque.z, 0.0});
-
-    BlockSums& sums = block.sums;
-    sums.power += power_of(f, motion) + dot(f.rolling, motion.roll);
-    sums.elastic += f.energy;
-    sums.max_overlap = std::max(sums.max_overlap, motion.overlap);
-    add(sums.wall_force, force_lane);
-    if (contact.wall == kFloor) sums.floor_force += force.z;
-    if (measure) sums.contact_force += std::sqrt(dot(force, force));
-    ++sums.contacts;
-  }
-}
-
-template <class Law, bool kRolling>
-void GrainSolver::contacts_of_block(int b, double dt, bool measure) {
-  PairBlock& block = pairs_.blocks()[b];
-  block.sums = {};
-  for (int g = block.first; g < block.last; ++g) grains_.force[g] = grains_.torque[g] = {};
-  std::int32_t* list = touching_[omp_get_thread_num()].data();
   const double diameter = 2.0 * params_.grain.radius;
-  LaneSums sums;
-  int count = filter(block, grains_, 0, block.inner, diameter, list);
-  pair_forces<Law, kRolling>(grains_, block, coefficients_.pair, diameter, dt, list, count, true, measure,
-                             sums);
-  block.sums.contacts = count;
-  count = filter(block, grains_, block.inner, block.pairs, diameter, list);
-  pair_forces<Law, kRolling>(grains_, block, coefficients_.pair, diameter, dt, list, count, false, measure,
-                             sums);
-  block.sums.contacts += count;
-  sums.add_to(block.sums);
-  wall_forces<Law, kRolling>(grains_, block, params_, coefficients_, dt, measure);
-  if (surfaces_.any()) surfaces_.evaluate<Law>(grains_, block, b, dt);
+  find_touching(strip, x, diameter, params_.bin.periodic_y ? params_.bin.width : 0.0, s.touching);
+  PairLaw<Real> law;
+  law.coefficients = rounded<Real>(coefficients_.pair);
+  law.diameter = static_cast<Real>(diameter);
+  law.step = static_cast<Real>(dt);
+  law.measure = measure;
+  Load* const loads = s.loads.data() + offset;
+  pair_forces<Law, kRolling>(law, s.touching, s.motion.data() + offset, strip.history<Real>(), loads, strip.sums);
+  wall_forces<Law, kRolling>(grains_, strip, params_.bin, params_.grain.radius, coefficients_, dt, measure, loads);
+  if (surfaces_.any()) surfaces_.evaluate<Law>(grains_, strip, k, dt, loads);
 }
 
-template <class Law, bool kRolling>
-void GrainSolver::evaluate(double dt, bool measure) {
-  const int count = static_cast<int>(pairs_.blocks().size());
-#pragma omp parallel for num_threads(params_.threads) schedule(dynamic, 1)
-  for (int b = 0; b < count; ++b) contacts_of_block<Law, kRolling>(b, dt, measure);
-}
-
-void GrainSolver::integrate_block(PairBlock& block, double dt, bool measure) {
-  for (const Incoming& in : block.incoming) {
-    const PairBlock& from = pairs_.blocks()[in.block];
-    add(grains_.force[in.grain], -load(from.slot_force[in.slot]));
-    add(grains_.torque[in.grain], load(from.slot_torque[in.slot]));
+template <class Real, class Law, bool kRolling>
+void GrainSolver::run_chunk(Chunk& chunk, double dt, bool measure) {
+  Scratch<Real>& s = scratch<Real>();
+  const int first = strips_[chunk.from].first, last = strips_[chunk.to - 1].last;
+  const int beyond = strips_.next(chunk.to - 1);
+  const int ahead = beyond < 0 ? 0 : strips_[beyond].grains();
+  grow(s.motion, last - first + ahead);
+  grow(s.loads, last - first + ahead);
+  gather(s, chunk.from, 0);
+  for (int k = chunk.from; k < chunk.to; ++k) {
+    const int offset = strips_[k].first - first;
+    if (const int next = strips_.next(k); next >= 0) gather(s, next, strips_[k].last - first);
+    contacts_of_strip<Real, Law, kRolling>(s, k, offset, dt, measure);
+    const Load* const loads = s.loads.data() + offset;
+    if (k == chunk.from) {
+      chunk.own.assign(loads, loads + strips_[k].grains());
+    } else {
+      integrate(strips_[k], loads, dt, measure);
+    }
   }
+  const Load* const tail = s.loads.data() + (last - first);
+  chunk.ahead.assign(tail, tail + ahead);
+}
+
+void GrainSolver::finish_chunk(Chunk& chunk, const Chunk* before, double dt, bool measure) {
+  if (before)
+    for (std::size_t g = 0; g < chunk.own.size(); ++g) {
+      add(chunk.own[g].force, load(before->ahead[g].force));
+      add(chunk.own[g].torque, load(before->ahead[g].torque));
+    }
+  integrate(strips_[chunk.from], chunk.own.data(), dt, measure);
+}
+
+void GrainSolver::integrate(Strip& strip, const Load* loads, double dt, bool measure) {
   const double mass = params_.grain.mass, inertia = params_.grain.inertia;
+  const double per_mass = 1.0 / mass, per_inertia = 1.0 / inertia;
   const double keep = 1.0 / (1.0 + dt * drag_);
-  const Lane gravity{0.0, 0.0, -params_.gravity, 0.0};
-  const double length = params_.bin.length, half_width = 0.5 * params_.bin.width;
-  Lane kinetic{}, work{}, momentum{}, height{};
-  double travel2 = 0.0, net = 0.0;
-  for (int g = block.first; g < block.last; ++g) {
-    const Lane f = load(grains_.force[g]), t = load(grains_.torque[g]);
-    const Lane a = f / mass + gravity, alpha = t / inertia;
-    const Lane v = (load(grains_.velocity[g]) + dt * a) * keep;
-    const Lane w = (load(grains_.spin[g]) + dt * alpha) * keep;
-    const Lane x = load(grains_.position[g]) + dt * v;
+  const Wide gravity{0.0, 0.0, -params_.gravity, 0.0};
+  constexpr double kFar = 1e300;
+  Wide kinetic{}, spinning{}, work{}, momentum{}, height{}, fastest{};
+  Wide low{kFar, kFar, kFar, kFar}, high = -low;
+  double net = 0.0;
+  for (int g = strip.first; g < strip.last; ++g) {
+    const Wide f = load(loads[g - strip.first].force), t = load(loads[g - strip.first].torque);
+    const Wide a = f * per_mass + gravity, alpha = t * per_inertia;
+    const Wide v = (load(grains_.velocity[g]) + dt * a) * keep;
+    const Wide w = (load(grains_.spin[g]) + dt * alpha) * keep;
+    const Wide x = load(grains_.position[g]) + dt * v;
     store(grains_.velocity[g], v);
     store(grains_.spin[g], w);
     store(grains_.position[g], x);
-    const Lane d = x - load(grains_.listed_at[g]);
-    const Lane d2 = d * d;
-    travel2 = std::max(travel2, d2[0] + d2[1] + d2[2]);
-    kinetic += (0.5 * mass) * v * v + (0.5 * inertia) * w * w;
+    const Wide v2 = v * v;
+    kinetic += v2;
+    spinning += w * w;
     work += f * a + t * alpha;
     momentum += v;
     height += x;
-    const bool inside =
-        x[0] >= 0.0 && x[0] <= length && std::abs(x[1]) <= half_width && x[2] >= 0.0 && x[2] < 1e6;
-    if (!inside && block.sums.lost < 0) block.sums.lost = g;
+    fastest = v2 > fastest ? v2 : fastest;
+    low = x < low ? x : low;
+    high = x > high ? x : high;
     if (measure) {
-      const Lane n = f + mass * gravity, n2 = n * n;
+      const Wide n = f + mass * gravity, n2 = n * n;
       net += std::sqrt(n2[0] + n2[1] + n2[2]);
     }
   }
-  block.sums.kinetic = sum_of(kinetic);
-  block.sums.step_work = sum_of(work);
-  store(block.sums.velocity, momentum);
-  block.sums.height = height[2];
-  block.sums.max_travel2 = travel2;
-  block.sums.net_force = net;
+  const auto sum = [](Wide v) { return (v[0] + v[1]) + (v[2] + v[3]); };
+  StripSums& sums = strip.sums;
+  sums.kinetic = 0.5 * (mass * sum(kinetic) + inertia * sum(spinning));
+  sums.step_work = sum(work);
+  store(sums.velocity, momentum);
+  sums.height = height[2];
+  sums.max_speed = std::sqrt(sum(fastest));  // largest v_x, v_y, v_z, perhaps of different grains
+  sums.net_force = net;
+  strip.travel += dt * sums.max_speed;
+
+  // A grain beyond a wall shows in the extremes, one that is not a number in the sums.
+  const Bin& bin = params_.bin;
+  const double half_width = 0.5 * bin.width;
+  const auto inside = [&](const Wide& from, const Wide& to) {
+    return (bin.periodic_x || (from[0] >= 0.0 && to[0] <= bin.length)) &&
+           (bin.periodic_y || (from[1] >= -half_width && to[1] <= half_width)) && from[2] >= 0.0 && to[2] < 1e6;
+  };
+  const auto finite = [](const Wide& v) { return std::isfinite(v[0] + v[1] + v[2]); };
+  if (strip.grains() == 0 || (inside(low, high) && finite(height) && finite(spinning))) return;
+  for (int g = strip.last - 1; g >= strip.first; --g) {
+    const Wide x = load(grains_.position[g]);
+    if (!inside(x, x) || !finite(x) || !finite(load(grains_.spin[g]))) sums.lost = g;
+  }
 }
 
 void GrainSolver::reduce(double dt, bool measure) {
@@ -300,9 +227,9 @@ void GrainSolver::reduce(double dt, bool measure) {
   a.elastic = a.floor_force = a.kinetic = a.height = 0.0;
   a.velocity.setZero();
   a.contacts = 0;
-  for (const PairBlock& block : pairs_.blocks()) {
-    const BlockSums& s = block.sums;
-    power += s.power + s.surface_power;
+  for (int k = 0; k < strips_.count(); ++k) {
+    const StripSums& s = strips_[k].sums;
+    power += s.power;
     work += s.step_work;
     contact_force += s.contact_force;
     net_force += s.net_force;
@@ -324,32 +251,45 @@ void GrainSolver::reduce(double dt, bool measure) {
   }
 }
 
-int GrainSolver::step(double dt, bool measure) {
-  touching_.resize(std::max<std::size_t>(touching_.size(), params_.threads));
-  std::size_t most = kLanes;
-  for (const PairBlock& block : pairs_.blocks()) most = std::max<std::size_t>(most, block.pairs + kLanes);
-  for (auto& list : touching_)
-    if (list.size() < most) list.resize(most);
+template <class Real, class Law, bool kRolling>
+void GrainSolver::evaluate(double dt, bool measure) {
+  const int count = static_cast<int>(chunks_.size());
+#pragma omp parallel for num_threads(params_.threads) schedule(dynamic, 1)
+  for (int c = 0; c < count; ++c) run_chunk<Real, Law, kRolling>(chunks_[c], dt, measure);
+}
 
+template <class Real>
+void GrainSolver::evaluate(double dt, bool measure) {
   if (params_.law == LawKind::mindlin) {
-    params_.rolling ? evaluate<MindlinLaw, true>(dt, measure) : evaluate<MindlinLaw, false>(dt, measure);
+    params_.rolling ? evaluate<Real, MindlinLaw, true>(dt, measure)
+                    : evaluate<Real, MindlinLaw, false>(dt, measure);
   } else {
-    params_.rolling ? evaluate<CoulombLaw, true>(dt, measure) : evaluate<CoulombLaw, false>(dt, measure);
+    params_.rolling ? evaluate<Real, CoulombLaw, true>(dt, measure)
+                    : evaluate<Real, CoulombLaw, false>(dt, measure);
+  }
+}
+
+int GrainSolver::step(double dt, bool measure) {
+  const auto threads = static_cast<std::size_t>(std::max(1, params_.threads));
+  if (params_.precision == Precision::mixed) {
+    if (single_.size() < threads) single_.resize(threads);
+    evaluate<float>(dt, measure);
+  } else {
+    if (full_.size() < threads) full_.resize(threads);
+    evaluate<double>(dt, measure);
   }
   if (surfaces_.any()) accounts_.surface_impulse += surfaces_.hand_over(dt);
 
-  std::vector<PairBlock>& blocks = pairs_.blocks();
-  const int count = static_cast<int>(blocks.size());
+  const int count = static_cast<int>(chunks_.size());
 #pragma omp parallel for num_threads(params_.threads) schedule(dynamic, 1)
-  for (int b = 0; b < count; ++b) integrate_block(blocks[b], dt, measure);
-  reduce(dt, measure);
-
-  double travel2 = 0.0;
-  for (const PairBlock& block : blocks) {
-    if (block.sums.lost >= 0) return block.sums.lost;
-    travel2 = std::max(travel2, block.sums.max_travel2);
+  for (int c = 0; c < count; ++c) {
+    const Chunk* const before = c > 0 ? &chunks_[c - 1] : params_.bin.periodic_x ? &chunks_[count - 1] : nullptr;
+    finish_chunk(chunks_[c], before, dt, measure);
   }
-  if (travel2 > 0.25 * params_.skin * params_.skin) rebuild();
+  reduce(dt, measure);
+  for (int k = 0; k < strips_.count(); ++k)
+    if (strips_[k].sums.lost >= 0) return strips_[k].sums.lost;
+  for (const Resorted& range : strips_.rebuild_moved(grains_, dt, params_.threads)) surfaces_.reorder(range, strips_);
   return -1;
 }
 

@@ -1,5 +1,13 @@
 // Steps a bin of grains: contacts between grains, with walls and with tires, gravity, semi-implicit Euler
 //   v ← v + dt (F/m + g),   ω ← ω + dt T/I,   x ← x + dt v.
+//
+// Data flow of one step. Strips (strips.hpp) are grouped into chunks, one thread to a chunk. A chunk walks along its
+// strips; each strip filters its pairs by distance, evaluates the law on the touching ones, its walls and tires. Forces
+// stand in scratch memory of the thread that reaches one strip ahead: after strip k has been evaluated nothing is
+// missing for its grains, so they are moved at once, while they are still in the cache. Positions, velocities and
+// spins thus come from memory once per step, forces never. Only the first strip of a chunk waits for what the chunk
+// before pushes on it: those are moved in a second short pass. No thread writes another's grain and every sum has an
+// order fixed by the lists: the bits do not depend on the number of threads.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +17,17 @@
 #include "protocol/archive.hpp"
 #include "protocol/messages.hpp"
 #include "terrain/dem/contact_mixing.hpp"
-#include "terrain/dem/pair_list.hpp"
+#include "terrain/dem/pair_forces.hpp"
+#include "terrain/dem/strips.hpp"
 #include "terrain/dem/surface_contacts.hpp"
+#include "terrain/dem/wall_forces.hpp"
 
 namespace furrow::dem {
 
 inline constexpr double kGravity = 9.81;  // m/s², along −z
+
+/// Of the contact law between grains; positions, sums and integration are in double precision with both.
+enum class Precision { mixed, full };
 
 struct SolverParams {
   LawKind law = LawKind::mindlin;
@@ -24,11 +37,7 @@ struct SolverParams {
   double gravity = kGravity;  // m/s²
   double skin = 0.0;          // neighbours are listed within 2 r + skin, m
   int threads = 1;
-};
-
-/// Coefficients per partner; they hold the step of the impulse limit.
-struct SolverCoefficients {
-  ContactCoefficients pair, floor, side;
+  Precision precision = Precision::mixed;
 };
 
 /// Cumulative since reset_accounts() unless stated.
@@ -63,13 +72,17 @@ class GrainSolver {
   void place(const std::vector<Quad>& positions);
   Grains& grains() { return grains_; }
   const Grains& grains() const { return grains_; }
-  const PairList& pairs() const { return pairs_; }
+  const Strips& strips() const { return strips_; }
+  /// How often the neighbour list was made anew since reset_accounts(), by the share of grains in it.
+  double rebuilds() const;
   SurfaceContacts& surfaces() { return surfaces_; }
   const SurfaceContacts& surfaces() const { return surfaces_; }
   const Accounts& accounts() const { return accounts_; }
   void reset_accounts();
   /// Current index of the grain with this id.
   int index_of(int id) const;
+  /// What the engine holds in memory now.
+  std::size_t bytes() const;
 
   /// One step. With `measure`, the force sums of Accounts are taken too.
   /// Returns the index of a grain that left the bin or is not finite, or −1.
@@ -79,22 +92,47 @@ class GrainSolver {
   void restore(const Archive& archive);
 
  private:
-  template <class Law, bool kRolling>
-  void contacts_of_block(int b, double dt, bool measure);
-  template <class Law, bool kRolling>
+  /// Strips [from, to) that one thread steps.
+  struct Chunk {
+    int from = 0, to = 0;
+    std::vector<Load> own;    // on the grains of strip `from`, from this chunk
+    std::vector<Load> ahead;  // on the grains of the strip after the last, from this chunk
+  };
+  template <class Real>
+  struct Scratch {
+    std::vector<MotionRow<Real>> motion;
+    std::vector<Load> loads;
+    std::vector<Quad> shifted;  // positions seen across periodic ends
+    TouchingPairs<Real> touching;
+  };
+
+  void make_chunks();
+  template <class Real>
+  Scratch<Real>& scratch();
+  template <class Real>
+  void gather(Scratch<Real>& scratch, int strip, int offset);
+  template <class Real, class Law, bool kRolling>
+  void contacts_of_strip(Scratch<Real>& scratch, int strip, int offset, double dt, bool measure);
+  template <class Real, class Law, bool kRolling>
+  void run_chunk(Chunk& chunk, double dt, bool measure);
+  void finish_chunk(Chunk& chunk, const Chunk* before, double dt, bool measure);
+  template <class Real, class Law, bool kRolling>
   void evaluate(double dt, bool measure);
-  void integrate_block(PairBlock& block, double dt, bool measure);
+  template <class Real>
+  void evaluate(double dt, bool measure);
+  void integrate(Strip& strip, const Load* loads, double dt, bool measure);
   void reduce(double dt, bool measure);
-  void rebuild();
 
   SolverParams params_;
   SolverCoefficients coefficients_;
   double drag_ = 0.0;
   Grains grains_;
-  PairList pairs_;
+  Strips strips_;
   SurfaceContacts surfaces_;
   Accounts accounts_;
-  std::vector<std::vector<std::int32_t>> touching_;  // per thread: indices of the touching pairs of a block
+  std::vector<Chunk> chunks_;
+  std::vector<Scratch<float>> single_;  // per thread
+  std::vector<Scratch<double>> full_;
 };
 
 }  // namespace furrow::dem

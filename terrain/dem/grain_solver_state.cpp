@@ -1,6 +1,5 @@
-// Saved state of the solver: everything that decides the next bits — grains in their order, the pair lists as they
-// stand, histories of touching pairs, and the accounts. Slots of outer pairs are rewritten by every step before they
-// are read, so they are not kept.
+// Saved state of the solver: everything that decides the next bits — grains in their order, the strips with their pair
+// lists as they stand, histories of touching pairs, and the accounts.
 #include <algorithm>
 
 #include "terrain/dem/grain_solver.hpp"
@@ -51,6 +50,29 @@ Accounts accounts_from(const std::vector<double>& v) {
   return a;
 }
 
+/// Calls f(strip, p) for every pair that touches, in order.
+template <class StripT, class F>
+void each_touching(StripT& strip, F&& f) {
+  for (int p = 0; p < strip.pairs; ++p)
+    if (strip.touching[p / kLanes] >> p % kLanes & 1) f(p);
+}
+
+template <class Real>
+void put_rows(std::vector<double>& out, const Strip& strip, const std::vector<HistoryRow<Real>>& rows) {
+  if (rows.empty()) return;
+  each_touching(strip, [&](int p) { out.insert(out.end(), {rows[p].x, rows[p].y, rows[p].z, rows[p].w}); });
+}
+
+template <class Real>
+const double* get_rows(const double* from, const Strip& strip, std::vector<HistoryRow<Real>>& rows) {
+  if (rows.empty()) return from;
+  each_touching(strip, [&](int p) {
+    const auto next = [&] { return static_cast<Real>(*from++); };
+    rows[p].x = next(), rows[p].y = next(), rows[p].z = next(), rows[p].w = next();
+  });
+  return from;
+}
+
 }  // namespace
 
 void GrainSolver::save(Archive& archive) const {
@@ -59,38 +81,42 @@ void GrainSolver::save(Archive& archive) const {
   put_quads(archive, "position", grains_.position.data(), n);
   put_quads(archive, "velocity", grains_.velocity.data(), n);
   put_quads(archive, "spin", grains_.spin.data(), n);
-  put_quads(archive, "listed_at", grains_.listed_at.data(), n);
   archive.put("id", grains_.id);
   archive.put("accounts", flat(accounts_));
-  archive.put("rebuilds", pairs_.rebuilds());
+  archive.put("strips/resorted", strips_.resorted());
+  archive.put("strips/cells_z", static_cast<std::int64_t>(strips_.cells_z()));
 
-  std::vector<std::int32_t> sizes, i, j, wall_grain, wall;
+  std::vector<std::int32_t> sizes, cells, i, j, wall_grain, wall;
   std::vector<std::uint8_t> touching;
-  std::vector<Quad> tangential, rolling, wall_history;
-  for (const PairBlock& block : pairs_.blocks()) {
-    sizes.insert(sizes.end(),
-                 {block.first, block.last, block.inner, block.pairs, std::int32_t(block.walls.size())});
-    i.insert(i.end(), block.i.begin(), block.i.end());
-    j.insert(j.end(), block.j.begin(), block.j.end());
-    touching.insert(touching.end(), block.touching.begin(), block.touching.end());
-    for (int p = 0; p < block.pairs; ++p) {
-      if (!(block.touching[p / kLanes] >> p % kLanes & 1)) continue;
-      if (!block.tangential.empty()) tangential.push_back(block.tangential[p]);
-      if (!block.rolling.empty()) rolling.push_back(block.rolling[p]);
-    }
-    for (const WallContact& contact : block.walls) {
+  std::vector<double> places, tangential, rolling;
+  std::vector<Quad> wall_history;
+  for (int k = 0; k < strips_.count(); ++k) {
+    const Strip& strip = strips_[k];
+    sizes.insert(sizes.end(), {strip.first, strip.last, strip.pairs, std::int32_t(strip.walls.size())});
+    places.insert(places.end(), {strip.travel, strip.x_min, strip.x_max});
+    cells.insert(cells.end(), strip.cell_start.begin(), strip.cell_start.end());
+    i.insert(i.end(), strip.i.begin(), strip.i.begin() + strip.pairs);
+    j.insert(j.end(), strip.j.begin(), strip.j.begin() + strip.pairs);
+    touching.insert(touching.end(), strip.touching.begin(), strip.touching.end());
+    put_rows(tangential, strip, strip.single.tangential);
+    put_rows(tangential, strip, strip.full.tangential);
+    put_rows(rolling, strip, strip.single.rolling);
+    put_rows(rolling, strip, strip.full.rolling);
+    for (const WallContact& contact : strip.walls) {
       wall_grain.push_back(contact.grain);
       wall.push_back(contact.wall);
       wall_history.push_back(contact.tangential);
       wall_history.push_back(contact.rolling);
     }
   }
-  archive.put("pairs/sizes", sizes);
+  archive.put("strips/sizes", sizes);
+  archive.put("strips/places", places);
+  archive.put("strips/cells", cells);
   archive.put("pairs/i", i);
   archive.put("pairs/j", j);
   archive.put("pairs/touching", touching);
-  put_quads(archive, "pairs/tangential", tangential.data(), tangential.size());
-  put_quads(archive, "pairs/rolling", rolling.data(), rolling.size());
+  archive.put("pairs/tangential", tangential);
+  archive.put("pairs/rolling", rolling);
   archive.put("walls/grain", wall_grain);
   archive.put("walls/wall", wall);
   put_quads(archive, "walls/history", wall_history.data(), wall_history.size());
@@ -103,48 +129,65 @@ void GrainSolver::restore(const Archive& archive) {
   get_quads(archive, "position", grains_.position.data(), n);
   get_quads(archive, "velocity", grains_.velocity.data(), n);
   get_quads(archive, "spin", grains_.spin.data(), n);
-  get_quads(archive, "listed_at", grains_.listed_at.data(), n);
   grains_.id = archive.get<std::int32_t>("id", n);
   accounts_ = accounts_from(archive.get<double>("accounts", 19));
-  pairs_.set_rebuilds(archive.get_int("rebuilds"));
+  strips_.restore_shape(static_cast<int>(archive.get_int("strips/cells_z")), archive.get_int("strips/resorted"));
 
-  const auto& sizes = archive.get<std::int32_t>("pairs/sizes");
+  const std::size_t count = strips_.count();
+  const auto& sizes = archive.get<std::int32_t>("strips/sizes", 4 * count);
+  const auto& places = archive.get<double>("strips/places", 3 * count);
+  const auto& cells = archive.get<std::int32_t>("strips/cells");
   const auto& i = archive.get<std::int32_t>("pairs/i");
   const auto& j = archive.get<std::int32_t>("pairs/j", i.size());
-  const auto& touching = archive.get<std::uint8_t>("pairs/touching", i.size() / kLanes);
-  const auto& tangential = archive.get<double>("pairs/tangential");
-  const auto& rolling = archive.get<double>("pairs/rolling");
+  const auto& touching = archive.get<std::uint8_t>("pairs/touching");
   const auto& wall_grain = archive.get<std::int32_t>("walls/grain");
   const auto& wall = archive.get<std::int32_t>("walls/wall", wall_grain.size());
   const auto& wall_history = archive.get<double>("walls/history", 8 * wall_grain.size());
+  const double* tangential = archive.get<double>("pairs/tangential").data();
+  const double* rolling = archive.get<double>("pairs/rolling").data();
   const auto quad = [](const std::vector<double>& v, std::size_t k) {
     return Quad{v[4 * k], v[4 * k + 1], v[4 * k + 2], v[4 * k + 3]};
   };
 
-  std::vector<PairBlock>& blocks = pairs_.blocks();
-  blocks.assign(sizes.size() / 5, {});
-  std::size_t pair = 0, t = 0, r = 0, w = 0;
-  for (std::size_t b = 0; b < blocks.size(); ++b) {
-    PairBlock& block = blocks[b];
-    const std::int32_t* s = &sizes[5 * b];
-    block.first = s[0], block.last = s[1], block.inner = s[2], block.pairs = s[3];
-    pairs_.size_block(block);
-    std::copy_n(i.begin() + pair, block.pairs, block.i.begin());
-    std::copy_n(j.begin() + pair, block.pairs, block.j.begin());
-    std::copy_n(touching.begin() + pair / kLanes, block.pairs / kLanes, block.touching.begin());
-    for (int p = 0; p < block.pairs; ++p) {
-      if (!(block.touching[p / kLanes] >> p % kLanes & 1)) continue;
-      if (!block.tangential.empty()) block.tangential[p] = quad(tangential, t++);
-      if (!block.rolling.empty()) block.rolling[p] = quad(rolling, r++);
-    }
-    for (int k = 0; k < s[4]; ++k, ++w)
-      block.walls.push_back(
-          {wall_grain[w], wall[w], quad(wall_history, 2 * w), quad(wall_history, 2 * w + 1)});
-    pair += block.pairs;
+  std::size_t pair = 0, group = 0, w = 0;
+  const std::size_t per_strip = cells.size() / count;
+  for (std::size_t k = 0; k < count; ++k) {
+    Strip& strip = strips_[static_cast<int>(k)];
+    strip = {};
+    const std::int32_t* s = &sizes[4 * k];
+    strip.first = s[0], strip.last = s[1];
+    strip.travel = places[3 * k], strip.x_min = places[3 * k + 1], strip.x_max = places[3 * k + 2];
+    strip.cell_start.assign(cells.begin() + k * per_strip, cells.begin() + (k + 1) * per_strip);
+    strips_.size_lists(strip, s[2]);
+    std::copy_n(i.begin() + pair, strip.pairs, strip.i.begin());
+    std::copy_n(j.begin() + pair, strip.pairs, strip.j.begin());
+    std::copy_n(touching.begin() + group, strip.touching.size(), strip.touching.begin());
+    tangential = get_rows(tangential, strip, strip.single.tangential);
+    tangential = get_rows(tangential, strip, strip.full.tangential);
+    rolling = get_rows(rolling, strip, strip.single.rolling);
+    rolling = get_rows(rolling, strip, strip.full.rolling);
+    for (int m = 0; m < s[3]; ++m, ++w)
+      strip.walls.push_back({wall_grain[w], wall[w], quad(wall_history, 2 * w), quad(wall_history, 2 * w + 1)});
+    pair += strip.pairs;
+    group += strip.touching.size();
   }
-  pairs_.finish(grains_);
-  surfaces_.resize(static_cast<int>(blocks.size()));
-  surfaces_.restore(archive);
+  surfaces_.resize(static_cast<int>(count));
+  surfaces_.restore(archive, strips_);
+}
+
+std::size_t GrainSolver::bytes() const {
+  const auto of = [](const auto& v) { return v.capacity() * sizeof v[0]; };
+  std::size_t sum = of(grains_.position) + of(grains_.velocity) + of(grains_.spin) + of(grains_.id) + strips_.bytes();
+  for (const Chunk& chunk : chunks_) sum += of(chunk.own) + of(chunk.ahead);
+  const auto scratch = [&](const auto& all) {
+    for (const auto& s : all) {
+      const auto& t = s.touching;
+      sum += of(s.motion) + of(s.loads) + of(s.shifted) + 4 * of(t.dx) + 3 * of(t.i);
+    }
+  };
+  scratch(single_);
+  scratch(full_);
+  return sum;
 }
 
 }  // namespace furrow::dem

@@ -1,4 +1,4 @@
-// The state of all grains, one array per quantity, in the order of the broad-phase grid.
+// The state of all grains, one array per quantity, in the order of the strips that hold them.
 #pragma once
 
 #include <cstdint>
@@ -8,26 +8,26 @@
 
 namespace furrow::dem {
 
-/// Bytes per grain: 6 × 32 + 4. Each array has one entry more than there are grains: a stranger far away, the
-/// partner of padding pairs, which never touches anything.
+/// Bytes per grain: 3 × 32 + 4.
 struct Grains {
   int count = 0;
   std::vector<Quad> position;    // m
   std::vector<Quad> velocity;    // m/s
   std::vector<Quad> spin;        // rad/s
-  std::vector<Quad> force;       // of contacts, N
-  std::vector<Quad> torque;      // of contacts, N m
-  std::vector<Quad> listed_at;   // position when its neighbours were listed, m
   std::vector<std::int32_t> id;  // 0 … count − 1 in order of generation
 
   void resize(int n) {
     count = n;
-    for (auto* array : {&position, &velocity, &spin, &force, &torque, &listed_at})
-      array->assign(n + 1, Quad{});
-    position[n] = {1e9, 1e9, 1e9, 0.0};
+    for (auto* array : {&position, &velocity, &spin}) array->assign(n, Quad{});
     id.resize(n);
     for (int i = 0; i < n; ++i) id[i] = i;
   }
+};
+
+/// Contact forces and torques on one grain while a step is evaluated.
+struct alignas(64) Load {
+  Quad force;   // N
+  Quad torque;  // N m
 };
 
 }  // namespace furrow::dem

@@ -88,25 +88,31 @@ void SurfaceContacts::restrict_to(const SurfaceBox& grains) {
   for (Surface& s : surfaces_) s.collider->restrict_to(grains);
 }
 
-void SurfaceContacts::reorder(const std::vector<std::int32_t>& order) {
+void SurfaceContacts::reorder(const Resorted& range, const Strips& strips) {
   std::vector<SurfaceHistory> all;
-  for (SurfaceBlock& block : blocks_) {
-    all.insert(all.end(), block.history.begin(), block.history.end());
-    block.history.clear();
-    block.touches.clear();
+  for (int s = range.from; s < range.to; ++s) {
+    all.insert(all.end(), strips_[s].history.begin(), strips_[s].history.end());
+    strips_[s].history.clear();
+    strips_[s].touches.clear();
   }
   if (all.empty()) return;
-  std::vector<std::int32_t> new_of(order.size());
-  for (std::size_t g = 0; g < order.size(); ++g) new_of[order[g]] = static_cast<std::int32_t>(g);
-  for (SurfaceHistory& h : all) h.grain = new_of[h.grain];
+  std::vector<std::int32_t> new_of(range.order.size());
+  for (std::size_t g = 0; g < range.order.size(); ++g)
+    new_of[range.order[g] - range.first] = range.first + static_cast<std::int32_t>(g);
+  for (SurfaceHistory& h : all) h.grain = new_of[h.grain - range.first];
   std::stable_sort(all.begin(), all.end(), [](const SurfaceHistory& a, const SurfaceHistory& b) {
     return a.grain != b.grain ? a.grain < b.grain : a.surface < b.surface;
   });
-  for (const SurfaceHistory& h : all) blocks_[h.grain / kBlockGrains].history.push_back(h);
+  int s = range.from;
+  for (const SurfaceHistory& h : all) {
+    while (h.grain >= strips[s].last) ++s;
+    strips_[s].history.push_back(h);
+  }
 }
 
 template <class Law>
-void SurfaceContacts::touch(Grains& grains, PairBlock& block, SurfaceBlock& mine, int k, int g, double dt) {
+void SurfaceContacts::touch(const Grains& grains, Strip& strip, SurfaceStrip& mine, int k, int g, double dt,
+                            Load& load) {
   const Surface& surface = surfaces_[k];
   std::array<SurfaceHit, kMaxSurfaceHits> hits;
   const Quad& x = grains.position[g];
@@ -143,45 +149,45 @@ void SurfaceContacts::touch(Grains& grains, PairBlock& block, SurfaceBlock& mine
       mine.next.push_back({g, k, normal, {t.x, t.y, t.z, history.root_overlap}, {r.x, r.y, r.z, 0.0}});
 
     const Triple<double> push = (hit.share * f.normal) * motion.normal, drag = hit.share * f.tangential;
-    add(grains.force[g], push + drag);
-    add(grains.torque[g], cross(arm, push + drag) + hit.share * f.rolling);
+    add(load.force, push + drag);
+    add(load.torque, cross(arm, push + drag) + hit.share * f.rolling);
     mine.touches.push_back({k, {hit.triangle, hit.weight, hit.point, -vec(push), -vec(drag)}});
-    block.sums.surface_power += hit.share * (power_of(f, motion) + dot(f.rolling, motion.roll));
-    block.sums.elastic += hit.share * f.energy;
-    block.sums.max_overlap = std::max(block.sums.max_overlap, hit.overlap);
-    ++block.sums.contacts;
+    strip.sums.power += hit.share * (power_of(f, motion) + dot(f.rolling, motion.roll));
+    strip.sums.elastic += hit.share * f.energy;
+    strip.sums.max_overlap = std::max(strip.sums.max_overlap, hit.overlap);
+    ++strip.sums.contacts;
   }
 }
 
 template <class Law>
-void SurfaceContacts::evaluate(Grains& grains, PairBlock& block, int b, double dt) {
-  SurfaceBlock& mine = blocks_[b];
+void SurfaceContacts::evaluate(const Grains& grains, Strip& strip, int s, double dt, Load* loads) {
+  SurfaceStrip& mine = strips_[s];
   mine.next.clear();
   mine.touches.clear();
-  const double slack = 2.0 * grain_.radius;  // grains stray from where they were listed by less
+  const double slack = grain_.radius;  // grains stray from where they were sorted by less
   bool near = false;
-  for (const Surface& s : surfaces_)
-    near = near || (s.near.lo.x() < block.x_max + slack && s.near.hi.x() > block.x_min - slack);
+  for (const Surface& surface : surfaces_)
+    near = near || (surface.near.lo.x() < strip.x_max + slack && surface.near.hi.x() > strip.x_min - slack);
   if (near)
-    for (int g = block.first; g < block.last; ++g)
+    for (int g = strip.first; g < strip.last; ++g)
       for (int k = 0; k < count(); ++k) {
         const SurfaceBox& box = surfaces_[k].near;
         const Quad& p = grains.position[g];
         if (p.z > box.lo.z() && p.x > box.lo.x() && p.x < box.hi.x() && p.y > box.lo.y() &&
             p.y < box.hi.y() && p.z < box.hi.z())
-          touch<Law>(grains, block, mine, k, g, dt);
+          touch<Law>(grains, strip, mine, k, g, dt, loads[g - strip.first]);
       }
   mine.history.swap(mine.next);
 }
 
-template void SurfaceContacts::evaluate<MindlinLaw>(Grains&, PairBlock&, int, double);
-template void SurfaceContacts::evaluate<CoulombLaw>(Grains&, PairBlock&, int, double);
+template void SurfaceContacts::evaluate<MindlinLaw>(const Grains&, Strip&, int, double, Load*);
+template void SurfaceContacts::evaluate<CoulombLaw>(const Grains&, Strip&, int, double, Load*);
 
 Vec3 SurfaceContacts::hand_over(double dt) {
   Vec3 on_grains = Vec3::Zero();
   for (Surface& s : surfaces_) s.forces.clear();
-  for (const SurfaceBlock& block : blocks_)
-    for (const SurfaceTouch& touch : block.touches) {
+  for (const SurfaceStrip& strip : strips_)
+    for (const SurfaceTouch& touch : strip.touches) {
       surfaces_[touch.surface].forces.push_back(touch.force);
       on_grains -= dt * (touch.force.normal + touch.force.tangential);
     }
@@ -211,8 +217,8 @@ void SurfaceContacts::save(Archive& archive) const {
   }
   std::vector<std::int32_t> keys;
   std::vector<double> values;
-  for (const SurfaceBlock& block : blocks_)
-    for (const SurfaceHistory& h : block.history) {
+  for (const SurfaceStrip& strip : strips_)
+    for (const SurfaceHistory& h : strip.history) {
       keys.insert(keys.end(), {h.grain, h.surface});
       for (const Quad* q : {&h.normal, &h.tangential, &h.rolling})
         values.insert(values.end(), {q->x, q->y, q->z, q->w});
@@ -221,7 +227,7 @@ void SurfaceContacts::save(Archive& archive) const {
   archive.put("surfaces/history", values);
 }
 
-void SurfaceContacts::restore(const Archive& archive) {
+void SurfaceContacts::restore(const Archive& archive, const Strips& strips) {
   const auto count = archive.get_int("surfaces/count");
   surfaces_.clear();
   for (std::int64_t k = 0; k < count; ++k) {
@@ -238,16 +244,18 @@ void SurfaceContacts::restore(const Archive& archive) {
       start.position.emplace_back(position[a], position[a + 1], position[a + 2]);
     attach(mesh, {m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7]}, {}, start);
   }
-  for (SurfaceBlock& block : blocks_) block = {};
+  for (SurfaceStrip& strip : strips_) strip = {};
   const auto& keys = archive.get<std::int32_t>("surfaces/keys");
   const auto& v = archive.get<double>("surfaces/history", 6 * keys.size());
+  int s = 0;
   for (std::size_t h = 0; 2 * h < keys.size(); ++h) {
     const double* q = &v[12 * h];
-    blocks_[keys[2 * h] / kBlockGrains].history.push_back({keys[2 * h],
-                                                           keys[2 * h + 1],
-                                                           {q[0], q[1], q[2], q[3]},
-                                                           {q[4], q[5], q[6], q[7]},
-                                                           {q[8], q[9], q[10], q[11]}});
+    while (keys[2 * h] >= strips[s].last) ++s;
+    strips_[s].history.push_back({keys[2 * h],
+                                  keys[2 * h + 1],
+                                  {q[0], q[1], q[2], q[3]},
+                                  {q[4], q[5], q[6], q[7]},
+                                  {q[8], q[9], q[10], q[11]}});
   }
 }
 

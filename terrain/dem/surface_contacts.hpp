@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "terrain/dem/contact_mixing.hpp"
-#include "terrain/dem/pair_list.hpp"
+#include "terrain/dem/strips.hpp"
 #include "terrain/dem/surface_collider.hpp"
 #include "terrain/dem/surface_forces.hpp"
 
@@ -30,8 +30,8 @@ struct SurfaceTouch {
   SurfaceContactForce force;
 };
 
-/// What one block of grains has to do with surfaces; in ascending grain, surface.
-struct SurfaceBlock {
+/// What the grains of one strip have to do with surfaces; in ascending grain, surface.
+struct SurfaceStrip {
   std::vector<SurfaceHistory> history, next;
   std::vector<SurfaceTouch> touches;
 };
@@ -54,15 +54,16 @@ class SurfaceContacts {
   void move_to(double share);
   void restrict_to(const SurfaceBox& grains);
 
-  void resize(int blocks) { blocks_.resize(blocks); }
-  /// Renames grains after sorting: order[new] = old.
-  void reorder(const std::vector<std::int32_t>& order);
+  void resize(int strips) { strips_.resize(strips); }
+  /// Renames grains after a range of strips was sorted.
+  void reorder(const Resorted& range, const Strips& strips);
 
-  /// Evaluates the contacts of one block and adds to the forces of its grains. Called by one thread per block.
+  /// Evaluates the contacts of strip s and adds to the loads (of its grains, in order) and to its sums. Called by one
+  /// thread per strip.
   template <class Law>
-  void evaluate(Grains& grains, PairBlock& block, int b, double dt);
+  void evaluate(const Grains& grains, Strip& strip, int s, double dt, Load* loads);
 
-  /// Hands this substep's forces to the vertices, in the order of blocks and grains. Returns the impulse that the
+  /// Hands this substep's forces to the vertices, in the order of strips and grains. Returns the impulse that the
   /// grains received, N s.
   Vec3 hand_over(double dt);
   void finish(double duration, std::span<NodalForces> forces, std::span<ContactSums> sums);
@@ -72,8 +73,8 @@ class SurfaceContacts {
   SurfaceBox swept_bounds(int k) const { return surfaces_[k].collider->swept_bounds(); }
 
   void save(Archive& archive) const;
-  /// Into surfaces that were attached before, or that the archive brings along.
-  void restore(const Archive& archive);
+  /// Into surfaces that were attached before, or that the archive brings along. @pre `strips` are restored.
+  void restore(const Archive& archive, const Strips& strips);
 
  private:
   struct Surface {
@@ -86,12 +87,12 @@ class SurfaceContacts {
     std::vector<SurfaceContactForce> forces;
   };
   template <class Law>
-  void touch(Grains& grains, PairBlock& block, SurfaceBlock& mine, int k, int g, double dt);
+  void touch(const Grains& grains, Strip& strip, SurfaceStrip& mine, int k, int g, double dt, Load& load);
 
   GrainProperties grain_;
   bool rolling_;
   std::vector<Surface> surfaces_;
-  std::vector<SurfaceBlock> blocks_;
+  std::vector<SurfaceStrip> strips_;
 };
 
 }  // namespace furrow::dem

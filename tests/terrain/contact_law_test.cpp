@@ -18,7 +18,7 @@ ContactMotion<double> touching(double overlap, const Triple<double>& v = {0, 0, 
 TEST(Lanes, tanh_agrees_with_the_standard_library) {
   for (double x : {0.0, 1e-12, 1e-6, 1e-3, 0.1, 0.17, 0.18, 0.5, 1.0, 3.0, 7.0, 19.0, 100.0}) {
     EXPECT_NEAR(tanh_of_positive(x), std::tanh(x), 4e-16) << x;
-    EXPECT_EQ(tanh_of_positive(splat(x))[2], tanh_of_positive(x)) << x;
+    EXPECT_EQ(tanh_of_positive(constant<DoubleLanes>(x))[2], tanh_of_positive(x)) << x;
     const double scale = x > 0.0 ? 1.0 / std::tanh(x) : 0.0;
     EXPECT_NEAR(tanh_of_positive(x) * scale, std::tanh(x) * scale, 1e-14) << x;
   }

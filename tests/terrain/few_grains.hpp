@@ -10,6 +10,7 @@ namespace furrow::dem {
 struct FewGrains {
   TerrainOptions options;
   double gravity = 0.0;  // m/s²
+  Precision precision = Precision::full;
 
   FewGrains() {
     options.length = 0.6;
@@ -22,8 +23,10 @@ struct FewGrains {
     params.law = law_from(options.law);
     params.rolling = options.rolling_friction > 0.0;
     params.grain = grain_properties(options.radius, options.density);
-    params.bin = {options.length, options.width};
+    params.bin.length = options.length;
+    params.bin.width = options.width;
     params.gravity = gravity;
+    params.precision = precision;
     params.skin = 0.3 * options.radius;
     GrainSolver solver(params);
     solver.set_coefficients(coefficients());
@@ -44,7 +47,6 @@ inline Quad quad(const Vec3& v) { return {v.x(), v.y(), v.z(), 0.0}; }
 inline Vec3 position(const GrainSolver& s, int id) { return vec(s.grains().position[s.index_of(id)]); }
 inline Vec3 velocity(const GrainSolver& s, int id) { return vec(s.grains().velocity[s.index_of(id)]); }
 inline Vec3 spin(const GrainSolver& s, int id) { return vec(s.grains().spin[s.index_of(id)]); }
-inline Vec3 force(const GrainSolver& s, int id) { return vec(s.grains().force[s.index_of(id)]); }
 inline void set_velocity(GrainSolver& s, int id, const Vec3& v) {
   s.grains().velocity[s.index_of(id)] = quad(v);
 }

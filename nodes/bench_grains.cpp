@@ -1,0 +1,128 @@
+#include <chrono>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "nodes/bench.hpp"
+#include "protocol/error.hpp"
+#include "protocol/hash.hpp"
+#include "terrain/dem/bed_csv.hpp"
+#include "terrain/dem/bed_settling.hpp"
+#include "terrain/dem/dem_terrain.hpp"
+#include "terrain/dem/solver_setup.hpp"
+
+namespace furrow {
+namespace {
+
+using namespace dem;
+
+constexpr double kReferenceWidth = 0.6;  // m
+
+/// Positions of the bed, and how long it is.
+std::vector<Quad> bed_of(const GrainBench& bench, TerrainOptions& options) {
+  std::vector<Quad> grains;
+  options.width = kReferenceWidth;
+  if (bench.bed == "default") {
+    const auto terrain = make_dem_terrain(options);
+    terrain->prepare({});
+    Archive archive;
+    terrain->save(archive);
+    const auto& x = archive.get<double>("terrain/position");
+    for (std::size_t k = 0; k + 3 < x.size(); k += 4) grains.push_back({x[k], x[k + 1], x[k + 2], 0.0});
+    return grains;
+  }
+  grains = read_positions_csv(bench.bed);
+  double longest = 0.0;
+  for (Quad& p : grains) {
+    longest = std::max(longest, p.x);
+    p.y -= 0.5 * kReferenceWidth;
+  }
+  options.length = std::max(1.0, std::ceil(longest));
+  for (std::size_t k = 0; k < grains.size(); ++k)
+    if (grains[k].x < 0.0 || std::abs(grains[k].y) > 0.5 * kReferenceWidth || grains[k].z < 0.0)
+      throw input_error(bench.bed, "line " + std::to_string(k + 2),
+                        "the grain is outside the bin, expected x ≥ 0, 0 ≤ y ≤ 0.6, z ≥ 0");
+  return grains;
+}
+
+void check(const GrainBench& bench) {
+  const auto require = [](bool ok, const char* key, const char* expected) {
+    if (!ok) throw input_error("command line", key, std::string("expected ") + expected);
+  };
+  law_from(bench.law);
+  precision_from(bench.precision);
+  require(bench.threads >= 1 && bench.threads <= 1024, "--threads", "1 to 1024");
+  require(bench.steps >= 1, "--steps", "1 or more");
+  require(bench.warm >= 0, "--warm", "0 or more");
+  require(bench.cohesion >= 0.0, "--cohesion", "0 or more, Pa");
+  require(bench.rolling_friction >= 0.0, "--rolling-friction", "0 or more");
+  require(bench.step > 0.0 && bench.step < 1.0, "--step", "a positive number, s");
+  require(bench.settle >= 0.0, "--settle", "0 or more, s");
+}
+
+}  // namespace
+
+std::string bench_grains(const GrainBench& bench) {
+  check(bench);
+  TerrainOptions options;
+  options.law = bench.law;
+  options.cohesion = bench.cohesion;
+  options.rolling_friction = bench.rolling_friction;
+  options.step = bench.step;
+  options.threads = options.settle_threads = bench.threads;
+  options.precision = bench.precision;
+  const std::vector<Quad> bed = bed_of(bench, options);
+  options.periodic_x = true;
+
+  const SolverParams params = solver_params(options);
+  GrainSolver solver(params);
+  solver.place(bed);
+  SettleResult settled;
+  if (bench.settle > 0.0) settled = settle(solver, options, {}, bench.settle);
+  solver.set_coefficients(run_coefficients(options, bench.step));
+
+  const auto steps = [&](int count) {
+    for (int k = 0; k < count; ++k)
+      if (solver.step(bench.step, k + 1 == count) >= 0)
+        throw physics_error("a grain left the bin: the bed is not at rest with this law");
+  };
+  steps(bench.warm);
+  solver.reset_accounts();
+  const auto begin = std::chrono::steady_clock::now();
+  steps(bench.steps);
+  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+
+  const Accounts& a = solver.accounts();
+  const Grains& grains = solver.grains();
+  const double n = grains.count, contacts = static_cast<double>(a.contacts);
+  std::int64_t listed = 0;
+  for (int k = 0; k < solver.strips().count(); ++k) listed += solver.strips()[k].pairs;
+  Hash hash;
+  for (const auto* array : {&grains.position, &grains.velocity, &grains.spin})
+    hash.add(std::span<const Quad>(*array));
+  const nlohmann::ordered_json json = {
+      {"grain_steps_per_s", n * bench.steps / wall},
+      {"ms_per_step", 1e3 * wall / bench.steps},
+      {"ns_per_contact", 1e9 * wall / bench.steps / contacts},
+      {"grains", grains.count},
+      {"contacts", a.contacts},
+      {"coordination", 2.0 * contacts / n},
+      {"pairs_listed_per_grain", static_cast<double>(listed) / n},
+      {"floor_force_N", a.floor_force},
+      {"weight_N", n * params.grain.mass * params.gravity},
+      {"kinetic_energy_J", a.kinetic},
+      {"force_residual", a.contact_force > 0.0 ? a.net_force / a.contact_force : 0.0},
+      {"settled_s", settled.time},
+      {"list_rebuilds", solver.rebuilds()},
+      {"bytes_per_grain", static_cast<double>(solver.bytes()) / n},
+      {"steps", bench.steps},
+      {"threads", bench.threads},
+      {"law", bench.law},
+      {"precision", bench.precision},
+      {"cohesion_Pa", bench.cohesion},
+      {"rolling_friction", bench.rolling_friction},
+      {"state_hash", hash.hex()}};
+  return json.dump(2) + "\n";
+}
+
+}  // namespace furrow

@@ -1,0 +1,48 @@
+#include "terrain/dem/bed_csv.hpp"
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+
+#include "protocol/error.hpp"
+
+namespace furrow::dem {
+namespace {
+
+/// Reads one number and the character after it.
+bool number(const char*& at, char end, double& value) {
+  char* after = nullptr;
+  value = std::strtod(at, &after);
+  if (after == at || !std::isfinite(value)) return false;
+  while (*after == ' ' || *after == '\r') ++after;
+  if (*after != end) return false;
+  at = after + (end != '\0');
+  return true;
+}
+
+}  // namespace
+
+std::vector<Quad> read_positions_csv(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::string line;
+  if (!in || !std::getline(in, line)) throw io_error(file.string(), "the bed cannot be read");
+  while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
+  if (line != "x_m,y_m,z_m")
+    throw input_error(file.string(), "line 1", "'" + line.substr(0, 60) + "', expected the header x_m,y_m,z_m");
+  std::vector<Quad> positions;
+  for (std::size_t row = 2; std::getline(in, line); ++row) {
+    if (line.empty() || line == "\r") continue;
+    Quad p;
+    const char* at = line.c_str();
+    if (!number(at, ',', p.x) || !number(at, ',', p.y) || !number(at, '\0', p.z))
+      throw input_error(file.string(), "line " + std::to_string(row),
+                        "'" + line.substr(0, 60) + "', expected three finite numbers, m");
+    positions.push_back(p);
+  }
+  if (in.bad()) throw io_error(file.string(), "the bed cannot be read to its end");
+  if (positions.empty()) throw input_error(file.string(), "", "holds no grain");
+  return positions;
+}
+
+}  // namespace furrow::dem

@@ -1,0 +1,48 @@
+// The bin that holds the grains: a floor, and along x and y either rigid walls or periodic images.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "terrain/dem/lanes.hpp"
+
+namespace furrow::dem {
+
+/// The walls of the bin as n·x ≥ offset, n inward: 0 x=0, 1 x=length, 2 y=−width/2, 3 y=width/2, 4 floor z=0.
+inline constexpr int kWalls = 5;
+inline constexpr int kFloor = 4;
+
+struct Bin {
+  double length = 0.0;      // x from 0, m
+  double width = 0.0;       // y from −width/2, m
+  bool periodic_x = false;  // grains that leave at one end come back at the other
+  bool periodic_y = false;
+
+  bool has_wall(int wall) const { return wall == kFloor || !(wall < 2 ? periodic_x : periodic_y); }
+  /// Distance of a point from wall w, m.
+  double distance(int wall, const Quad& p) const {
+    switch (wall) {
+      case 0:
+        return p.x;
+      case 1:
+        return length - p.x;
+      case 2:
+        return p.y + 0.5 * width;
+      case 3:
+        return 0.5 * width - p.y;
+      default:
+        return p.z;
+    }
+  }
+  static Triple<double> normal(int wall) {
+    constexpr Triple<double> kNormal[kWalls] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}};
+    return kNormal[wall];
+  }
+  /// Brings a point back between the periodic sides.
+  void wrap(Quad& p) const {
+    if (periodic_x) p.x -= length * std::floor(p.x / length);
+    if (periodic_y) p.y -= width * std::floor(p.y / width + 0.5);
+  }
+};
+
+}  // namespace furrow::dem

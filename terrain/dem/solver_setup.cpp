@@ -1,0 +1,39 @@
+#include "terrain/dem/solver_setup.hpp"
+
+#include <algorithm>
+
+#include "protocol/error.hpp"
+
+namespace furrow::dem {
+
+Precision precision_from(const std::string& name) {
+  if (name == "mixed") return Precision::mixed;
+  if (name == "double") return Precision::full;
+  throw input_error("scenario", "terrain.precision", "'" + name + "' is unknown, expected mixed or double");
+}
+
+SolverParams solver_params(const TerrainOptions& o) {
+  SolverParams p;
+  p.law = law_from(o.law);
+  p.rolling = o.rolling_friction > 0.0;
+  p.precision = precision_from(o.precision);
+  p.grain = grain_properties(o.radius, o.density);
+  p.bin.length = o.length;
+  p.bin.width = o.width;
+  p.bin.periodic_x = o.periodic_x;
+  p.bin.periodic_y = o.periodic_y;
+  p.skin = kSkinShare * o.radius;
+  p.threads = std::max(1, o.threads);
+  return p;
+}
+
+SolverCoefficients run_coefficients(const TerrainOptions& options, double step) {
+  LawSettings law = law_settings(options);
+  law.step = step;
+  const GrainProperties grain = grain_properties(options.radius, options.density);
+  const ContactMaterial material = grain_material(options);
+  const ContactCoefficients wall = mix(material, material, Partner::surface, grain, law);
+  return {mix(material, material, Partner::grain, grain, law), wall, wall};
+}
+
+}  // namespace furrow::dem

@@ -1,0 +1,18 @@
+// From the options of a scenario to the parameters and coefficients of the grain solver.
+#pragma once
+
+#include "terrain/dem/grain_solver.hpp"
+#include "terrain/terrain_options.hpp"
+
+namespace furrow::dem {
+
+inline constexpr double kSkinShare = 0.2;  // skin of the neighbour list, of the radius
+
+/// @throws Error(bad_input) listing the valid names.
+Precision precision_from(const std::string& name);
+
+SolverParams solver_params(const TerrainOptions& options);
+/// Coefficients of a run with this step, s: walls are of the grains' material.
+SolverCoefficients run_coefficients(const TerrainOptions& options, double step);
+
+}  // namespace furrow::dem

@@ -1,0 +1,159 @@
+// Who may touch whom: the bin cut into strips across x, each with the list of its pairs.
+//
+// Grains are sorted by strip, within a strip by cell (y, then z). A strip is at least as wide as two grains may be
+// apart to be listed, so that a grain's partners stand in its own strip or in the two beside it. The pair (i, j) is
+// listed once, by the strip of the lower index: j is in the same strip or in the next.
+//
+// Lists are made anew only where grains moved. Every strip adds up how far its fastest grain went per step
+// (`travel`); when that exceeds half the skin since the strip was sorted, the strip and its two neighbours are sorted
+// again among themselves and the lists that name their grains are rebuilt. The rest of the bed keeps its lists.
+// Cells are a skin wider than the reach of a list, so that grains which drifted by half a skin still find each other
+// in neighbouring cells. Which strips are rebuilt, and the order of every list, does not depend on threads.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "terrain/dem/bin.hpp"
+#include "terrain/dem/grains.hpp"
+
+namespace furrow::dem {
+
+/// A grain near a wall of the bin.
+struct WallContact {
+  std::int32_t grain = 0;  // counted from the strip's first
+  std::int32_t wall = 0;
+  Quad tangential;  // history: spring force, N; w = √δ of the step before, 0 when apart
+  Quad rolling;     // history: rolling spring, N m
+};
+
+/// History of one pair: x y z of the spring on i; w = √δ of the step before (tangential only).
+template <class Real>
+struct alignas(4 * sizeof(Real)) HistoryRow {
+  Real x = 0, y = 0, z = 0, w = 0;
+};
+
+/// Per listed pair; all zero while the pair does not touch.
+template <class Real>
+struct PairHistory {
+  std::vector<HistoryRow<Real>> tangential;  // N
+  std::vector<HistoryRow<Real>> rolling;     // N m; empty without rolling resistance
+};
+
+/// Sums over a strip's contacts and grains in one step.
+struct StripSums {
+  double power = 0.0;          // Σ F·v_rel at the step's start, W
+  double elastic = 0.0;        // J
+  double contact_force = 0.0;  // Σ |F|, N, when measured
+  double net_force = 0.0;      // Σ |contact forces + weight| of grains, N, when measured
+  double max_overlap = 0.0;    // m
+  Quad wall_force;             // on the grains, N
+  double floor_force = 0.0;    // N
+  std::int64_t contacts = 0;
+  double kinetic = 0.0;      // after the step, J
+  double height = 0.0;       // Σ z after the step, m
+  Quad velocity;             // Σ v after the step, m/s
+  double step_work = 0.0;    // Σ F·a + T·α: half of it times dt² belongs to the power at mid-step, N²/kg
+  double max_speed = 0.0;    // a bound on the speed of every grain after the step, m/s
+  std::int32_t lost = -1;    // index of a grain outside the bin or not finite
+};
+
+struct Strip {
+  std::int32_t first = 0, last = 0;      // grains
+  std::vector<std::int32_t> cell_start;  // of each cell (y, z fastest), counted from `first`
+  std::int32_t pairs = 0;
+  std::vector<std::int32_t> i, j;      // per pair, counted from `first`; j runs on into the next strip
+  std::vector<std::uint8_t> touching;  // bit k of entry p/8: pair p touched in the last step
+  PairHistory<float> single;           // used with precision mixed
+  PairHistory<double> full;            // used with precision double
+  std::vector<WallContact> walls;
+  double travel = 0.0;     // bound on the way of any of its grains since it was sorted, m
+  double x_min = 0.0, x_max = 0.0;  // of the centres when sorted, m
+  StripSums sums;
+
+  int grains() const { return last - first; }
+  template <class Real>
+  PairHistory<Real>& history() {
+    if constexpr (std::is_same_v<Real, float>) {
+      return single;
+    } else {
+      return full;
+    }
+  }
+  template <class Real>
+  const PairHistory<Real>& history() const {
+    return const_cast<Strip*>(this)->history<Real>();
+  }
+};
+
+/// A range of strips that was sorted again: order[k] is the old index of grain first + k.
+struct Resorted {
+  int from = 0, to = 0;  // strips [from, to)
+  std::int32_t first = 0;
+  std::vector<std::int32_t> order;
+};
+
+class Strips {
+ public:
+  struct Options {
+    double reach = 0.0;    // pairs closer than that are listed, m: largest diameter + skin
+    double skin = 0.0;     // m
+    double radius = 0.0;   // largest, m
+    bool history = true;   // keep tangential history
+    bool rolling = false;  // keep rolling history
+    bool single = true;    // histories in single precision
+    Bin bin;
+  };
+
+  explicit Strips(const Options& options);
+
+  const Options& options() const { return options_; }
+  int count() const { return static_cast<int>(strips_.size()); }
+  Strip& operator[](int k) { return strips_[k]; }
+  const Strip& operator[](int k) const { return strips_[k]; }
+  /// The strip after k; with periodic ends the first follows the last, else −1 follows.
+  int next(int k) const { return k + 1 < count() ? k + 1 : options_.bin.periodic_x ? 0 : -1; }
+
+  /// Sorts all grains and makes all lists. Returns the order.
+  Resorted rebuild_all(Grains& grains, int threads);
+  /// Rebuilds where a grain may have moved too far before the end of another step of `dt`.
+  std::vector<Resorted> rebuild_moved(Grains& grains, double dt, int threads);
+
+  /// How often a grain was sorted, summed over grains: divided by their number, the rebuilds of the whole list.
+  std::int64_t resorted() const { return resorted_; }
+  void set_resorted(std::int64_t n) { resorted_ = n; }
+
+  /// What the lists hold in memory, with what a rebuild needs.
+  std::size_t bytes() const;
+
+  /// Gives a strip its arrays for `pairs` pairs.
+  void size_lists(Strip& strip, int pairs) const;
+  /// After strips were read from a saved state: cells along z, and what follows from the grains.
+  int cells_z() const { return nz_; }
+  void restore_shape(int cells_z, std::int64_t resorted);
+
+ private:
+  Resorted rebuild(Grains& grains, int from, int to, int threads);
+  void sort(Grains& grains, Resorted& range, int threads);
+  void list_pairs(const Grains& grains, int k);
+  void list_walls(const Grains& grains, Strip& strip) const;
+  template <class Real>
+  void carry_history(std::span<const Strip> old, int old_from, const Resorted& range, int threads);
+  void carry_walls(std::span<const Strip> old, int old_from, const Resorted& range);
+  int strip_at(double x) const;
+
+  Options options_;
+  int ny_ = 1, nz_ = 1;
+  double inverse_x_ = 0.0, inverse_y_ = 0.0, inverse_z_ = 0.0;  // cells per metre
+  std::vector<Strip> strips_;
+  std::int64_t resorted_ = 0;
+  // Memory that is kept from rebuild to rebuild.
+  std::vector<Strip> old_;
+  struct Scratch {
+    std::vector<std::int32_t> cell, start, ids;
+    std::vector<Quad> quads;
+  } scratch_;
+};
+
+}  // namespace furrow::dem

@@ -1,0 +1,59 @@
+// Grains against the bin: arm r − δ, the wall at rest.
+#pragma once
+
+#include "terrain/dem/contact_law.hpp"
+#include "terrain/dem/contact_mixing.hpp"
+#include "terrain/dem/strips.hpp"
+
+namespace furrow::dem {
+
+/// Coefficients per partner; they hold the step of the impulse limit.
+struct SolverCoefficients {
+  ContactCoefficients pair, floor, side;
+};
+
+/// Adds the wall forces on a strip's grains to `loads` (which starts at its first grain) and to its sums.
+template <class Law, bool kRolling>
+void wall_forces(const Grains& grains, Strip& strip, const Bin& bin, double radius,
+                 const SolverCoefficients& all, double dt, bool measure, Load* loads) {
+  StripSums& sums = strip.sums;
+  for (WallContact& contact : strip.walls) {
+    const int g = strip.first + contact.grain;
+    const double distance = bin.distance(contact.wall, grains.position[g]);
+    ContactMotion<double> motion;
+    motion.overlap = radius - distance;
+    if (!(motion.overlap > 0.0)) {
+      contact.tangential = contact.rolling = {};
+      continue;
+    }
+    const Quad &v = grains.velocity[g], &w = grains.spin[g];
+    motion.normal = Bin::normal(contact.wall);
+    motion.roll = {w.x, w.y, w.z};
+    const Triple<double> arm = -distance * motion.normal;
+    motion.velocity = Triple<double>{v.x, v.y, v.z} + cross(motion.roll, arm);
+    motion.spin = 0.5 * dot(motion.roll, motion.normal);
+    Quad &t = contact.tangential, &r = contact.rolling;
+    ContactHistory<double> history{{t.x, t.y, t.z}, t.w, {r.x, r.y, r.z}};
+    const ContactForce<double> f =
+        Law::template force<kRolling>(contact.wall == kFloor ? all.floor : all.side, dt, motion, history);
+    if constexpr (Law::kHistory) {
+      t = {history.tangential.x, history.tangential.y, history.tangential.z, history.root_overlap};
+      if constexpr (kRolling) r = {history.rolling.x, history.rolling.y, history.rolling.z, 0.0};
+    }
+    const Triple<double> force = f.normal * motion.normal + f.tangential;
+    const Triple<double> torque = cross(arm, f.tangential) + f.rolling;
+    const Wide push{force.x, force.y, force.z, 0.0};
+    add(loads[contact.grain].force, push);
+    add(loads[contact.grain].torque, Wide{torque.x, torque.y, torque.z, 0.0});
+
+    sums.power += power_of(f, motion) + dot(f.rolling, motion.roll);
+    sums.elastic += f.energy;
+    sums.max_overlap = std::max(sums.max_overlap, motion.overlap);
+    add(sums.wall_force, push);
+    if (contact.wall == kFloor) sums.floor_force += force.z;
+    if (measure) sums.contact_force += std::sqrt(dot(force, force));
+    ++sums.contacts;
+  }
+}
+
+}  // namespace furrow::dem

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kMostChunks = 64;       // enough for any load balance
 constexpr int kMostStrips = 12;       // of a chunk: what its thread keeps in the cache
-constexpr int kFewestStrips = 3;      // of a chunk: its first is moved in the second pass
+constexpr int kFewestStrips = 6;      // of a chunk: its first is moved in the second pass
 
 Strips::Options strip_options(const SolverParams& p) {
   Strips::Options o;
@@ -82,6 +82,11 @@ void GrainSolver::reset_accounts() {
   strips_.set_resorted(0);
 }
 
+void GrainSolver::LoadBuffer::assign(const Loads& from, int count) {
+  force.assign(from.force, from.force + count);
+  torque.assign(from.torque, from.torque + count);
+}
+
 template <>
 GrainSolver::Scratch<float>& GrainSolver::scratch() {
   return single_[omp_get_thread_num()];
@@ -94,11 +99,14 @@ GrainSolver::Scratch<double>& GrainSolver::scratch() {
 /// Brings the motion of a strip's grains to `offset` of the scratch memory and clears their loads.
 template <class Real>
 void GrainSolver::gather(Scratch<Real>& s, int strip, int offset) {
-  const Strip& at = strips_[strip];
-  const int n = at.grains();
-  for (int g = 0; g < n; ++g)
-    s.motion[offset + g] = motion_row<Real>(grains_.velocity[at.first + g], grains_.spin[at.first + g]);
-  std::fill_n(s.loads.begin() + offset, n, Load{});
+  const int first = strips_[strip].first, n = strips_[strip].grains();
+  s.motion.set(offset, &grains_.velocity[first], &grains_.spin[first], n);
+  double* const force = flat(s.loads.force.data() + offset);
+  double* const torque = flat(s.loads.torque.data() + offset);
+  for (int g = 0; g < kQuad * n; g += kQuad) {  // a call of memset would cost more than it saves
+    store_lanes(force + g, Wide{});
+    store_lanes(torque + g, Wide{});
+  }
 }
 
 template <class Real, class Law, bool kRolling>
@@ -124,8 +132,10 @@ void GrainSolver::contacts_of_strip(Scratch<Real>& s, int k, int offset, double 
   law.diameter = static_cast<Real>(diameter);
   law.step = static_cast<Real>(dt);
   law.measure = measure;
-  Load* const loads = s.loads.data() + offset;
-  pair_forces<Law, kRolling>(law, s.touching, s.motion.data() + offset, strip.history<Real>(), loads, strip.sums);
+  const Loads loads{s.loads.force.data() + offset, s.loads.torque.data() + offset};
+  const Motion motion{flat(s.motion.v.data()) + kQuad * offset,
+                      s.motion.w.empty() ? nullptr : flat(s.motion.w.data()) + kQuad * offset};
+  PairForces<Law, kRolling, Real>(law, s.touching, motion, strip.history<Real>(), loads).run(strip.sums);
   wall_forces<Law, kRolling>(grains_, strip, params_.bin, params_.grain.radius, coefficients_, dt, measure, loads);
   if (surfaces_.any()) surfaces_.evaluate<Law>(grains_, strip, k, dt, loads);
 }
@@ -136,51 +146,53 @@ void GrainSolver::run_chunk(Chunk& chunk, double dt, bool measure) {
   const int first = strips_[chunk.from].first, last = strips_[chunk.to - 1].last;
   const int beyond = strips_.next(chunk.to - 1);
   const int ahead = beyond < 0 ? 0 : strips_[beyond].grains();
-  grow(s.motion, last - first + ahead);
-  grow(s.loads, last - first + ahead);
+  s.motion.grow(last - first + ahead);
+  grow(s.loads.force, last - first + ahead);
+  grow(s.loads.torque, last - first + ahead);
+  const Loads all{s.loads.force.data(), s.loads.torque.data()};
   gather(s, chunk.from, 0);
   for (int k = chunk.from; k < chunk.to; ++k) {
     const int offset = strips_[k].first - first;
     if (const int next = strips_.next(k); next >= 0) gather(s, next, strips_[k].last - first);
     contacts_of_strip<Real, Law, kRolling>(s, k, offset, dt, measure);
-    const Load* const loads = s.loads.data() + offset;
     if (k == chunk.from) {
-      chunk.own.assign(loads, loads + strips_[k].grains());
+      chunk.own.assign(all.from(offset), strips_[k].grains());
     } else {
-      integrate(strips_[k], loads, dt, measure);
+      integrate(strips_[k], all.from(offset), dt, measure);
     }
   }
-  const Load* const tail = s.loads.data() + (last - first);
-  chunk.ahead.assign(tail, tail + ahead);
+  chunk.ahead.assign(all.from(last - first), ahead);
 }
 
 void GrainSolver::finish_chunk(Chunk& chunk, const Chunk* before, double dt, bool measure) {
   if (before)
-    for (std::size_t g = 0; g < chunk.own.size(); ++g) {
-      add(chunk.own[g].force, load(before->ahead[g].force));
-      add(chunk.own[g].torque, load(before->ahead[g].torque));
+    for (std::size_t g = 0; g < chunk.own.force.size(); ++g) {
+      add(chunk.own.force[g], load(before->ahead.force[g]));
+      add(chunk.own.torque[g], load(before->ahead.torque[g]));
     }
-  integrate(strips_[chunk.from], chunk.own.data(), dt, measure);
+  integrate(strips_[chunk.from], {chunk.own.force.data(), chunk.own.torque.data()}, dt, measure);
 }
 
-void GrainSolver::integrate(Strip& strip, const Load* loads, double dt, bool measure) {
+void GrainSolver::integrate(Strip& strip, const Loads& loads, double dt, bool measure) {
   const double mass = params_.grain.mass, inertia = params_.grain.inertia;
   const double per_mass = 1.0 / mass, per_inertia = 1.0 / inertia;
   const double keep = 1.0 / (1.0 + dt * drag_);
   const Wide gravity{0.0, 0.0, -params_.gravity, 0.0};
-  constexpr double kFar = 1e300;
-  Wide kinetic{}, spinning{}, work{}, momentum{}, height{}, fastest{};
-  Wide low{kFar, kFar, kFar, kFar}, high = -low;
-  double net = 0.0;
-  for (int g = strip.first; g < strip.last; ++g) {
-    const Wide f = load(loads[g - strip.first].force), t = load(loads[g - strip.first].torque);
+  const int n = strip.grains();
+  const double *const force = flat(loads.force), *const torque = flat(loads.torque);
+  double* const velocity = flat(grains_.velocity.data() + strip.first);
+  double* const spin = flat(grains_.spin.data() + strip.first);
+  double* const position = flat(grains_.position.data() + strip.first);
+  Wide kinetic{}, spinning{}, work{}, momentum{}, height{}, fastest{}, net{};
+  for (int g = 0; g < kQuad * n; g += kQuad) {
+    const Wide f = load_lanes<Wide>(force + g), t = load_lanes<Wide>(torque + g);
     const Wide a = f * per_mass + gravity, alpha = t * per_inertia;
-    const Wide v = (load(grains_.velocity[g]) + dt * a) * keep;
-    const Wide w = (load(grains_.spin[g]) + dt * alpha) * keep;
-    const Wide x = load(grains_.position[g]) + dt * v;
-    store(grains_.velocity[g], v);
-    store(grains_.spin[g], w);
-    store(grains_.position[g], x);
+    const Wide v = (load_lanes<Wide>(velocity + g) + dt * a) * keep;
+    const Wide w = (load_lanes<Wide>(spin + g) + dt * alpha) * keep;
+    const Wide x = load_lanes<Wide>(position + g) + dt * v;
+    store_lanes(velocity + g, v);
+    store_lanes(spin + g, w);
+    store_lanes(position + g, x);
     const Wide v2 = v * v;
     kinetic += v2;
     spinning += w * w;
@@ -188,36 +200,20 @@ void GrainSolver::integrate(Strip& strip, const Load* loads, double dt, bool mea
     momentum += v;
     height += x;
     fastest = v2 > fastest ? v2 : fastest;
-    low = x < low ? x : low;
-    high = x > high ? x : high;
     if (measure) {
-      const Wide n = f + mass * gravity, n2 = n * n;
-      net += std::sqrt(n2[0] + n2[1] + n2[2]);
+      const Wide left = f + mass * gravity;
+      net[0] += std::sqrt(sum_of(left * left));
     }
   }
-  const auto sum = [](Wide v) { return (v[0] + v[1]) + (v[2] + v[3]); };
   StripSums& sums = strip.sums;
-  sums.kinetic = 0.5 * (mass * sum(kinetic) + inertia * sum(spinning));
-  sums.step_work = sum(work);
+  sums.kinetic = 0.5 * (mass * sum_of(kinetic) + inertia * sum_of(spinning));
+  sums.step_work = sum_of(work);
   store(sums.velocity, momentum);
   sums.height = height[2];
-  sums.max_speed = std::sqrt(sum(fastest));  // largest v_x, v_y, v_z, perhaps of different grains
-  sums.net_force = net;
+  // Of the largest v_x, v_y, v_z, perhaps of different grains; not a number when one of the sums is not.
+  sums.max_speed = std::sqrt(sum_of(fastest)) + 0.0 * (sums.kinetic + sum_of(height));
+  sums.net_force = net[0];
   strip.travel += dt * sums.max_speed;
-
-  // A grain beyond a wall shows in the extremes, one that is not a number in the sums.
-  const Bin& bin = params_.bin;
-  const double half_width = 0.5 * bin.width;
-  const auto inside = [&](const Wide& from, const Wide& to) {
-    return (bin.periodic_x || (from[0] >= 0.0 && to[0] <= bin.length)) &&
-           (bin.periodic_y || (from[1] >= -half_width && to[1] <= half_width)) && from[2] >= 0.0 && to[2] < 1e6;
-  };
-  const auto finite = [](const Wide& v) { return std::isfinite(v[0] + v[1] + v[2]); };
-  if (strip.grains() == 0 || (inside(low, high) && finite(height) && finite(spinning))) return;
-  for (int g = strip.last - 1; g >= strip.first; --g) {
-    const Wide x = load(grains_.position[g]);
-    if (!inside(x, x) || !finite(x) || !finite(load(grains_.spin[g]))) sums.lost = g;
-  }
 }
 
 void GrainSolver::reduce(double dt, bool measure) {
@@ -287,9 +283,10 @@ int GrainSolver::step(double dt, bool measure) {
     finish_chunk(chunks_[c], before, dt, measure);
   }
   reduce(dt, measure);
-  for (int k = 0; k < strips_.count(); ++k)
-    if (strips_[k].sums.lost >= 0) return strips_[k].sums.lost;
+  // A grain that is not a number or went far is met when its strip is sorted, one that slips out when its wall pushes.
   for (const Resorted& range : strips_.rebuild_moved(grains_, dt, params_.threads)) surfaces_.reorder(range, strips_);
+  for (int k = 0; k < strips_.count(); ++k)
+    if (strips_[k].sums.lost >= 0) return strips_[k].first + strips_[k].sums.lost;
   return -1;
 }
 

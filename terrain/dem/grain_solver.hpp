@@ -92,16 +92,20 @@ class GrainSolver {
   void restore(const Archive& archive);
 
  private:
+  struct LoadBuffer {
+    std::vector<Quad> force, torque;
+    void assign(const Loads& from, int count);
+  };
   /// Strips [from, to) that one thread steps.
   struct Chunk {
     int from = 0, to = 0;
-    std::vector<Load> own;    // on the grains of strip `from`, from this chunk
-    std::vector<Load> ahead;  // on the grains of the strip after the last, from this chunk
+    LoadBuffer own;    // on the grains of strip `from`, from this chunk
+    LoadBuffer ahead;  // on the grains of the strip after the last, from this chunk
   };
   template <class Real>
   struct Scratch {
-    std::vector<MotionRow<Real>> motion;
-    std::vector<Load> loads;
+    MotionRows<Real> motion;
+    LoadBuffer loads;
     std::vector<Quad> shifted;  // positions seen across periodic ends
     TouchingPairs<Real> touching;
   };
@@ -120,7 +124,7 @@ class GrainSolver {
   void evaluate(double dt, bool measure);
   template <class Real>
   void evaluate(double dt, bool measure);
-  void integrate(Strip& strip, const Load* loads, double dt, bool measure);
+  void integrate(Strip& strip, const Loads& loads, double dt, bool measure);
   void reduce(double dt, bool measure);
 
   SolverParams params_;

@@ -86,7 +86,8 @@ void GrainSolver::save(Archive& archive) const {
   archive.put("strips/resorted", strips_.resorted());
   archive.put("strips/cells_z", static_cast<std::int64_t>(strips_.cells_z()));
 
-  std::vector<std::int32_t> sizes, cells, i, j, wall_grain, wall;
+  std::vector<std::int32_t> sizes, cells, wall_grain, wall;
+  std::vector<std::uint64_t> partners;
   std::vector<std::uint8_t> touching;
   std::vector<double> places, tangential, rolling;
   std::vector<Quad> wall_history;
@@ -95,8 +96,7 @@ void GrainSolver::save(Archive& archive) const {
     sizes.insert(sizes.end(), {strip.first, strip.last, strip.pairs, std::int32_t(strip.walls.size())});
     places.insert(places.end(), {strip.travel, strip.x_min, strip.x_max});
     cells.insert(cells.end(), strip.cell_start.begin(), strip.cell_start.end());
-    i.insert(i.end(), strip.i.begin(), strip.i.begin() + strip.pairs);
-    j.insert(j.end(), strip.j.begin(), strip.j.begin() + strip.pairs);
+    for (int p = 0; p < strip.pairs; ++p) partners.push_back(std::uint64_t{strip.i[p]} << 32 | strip.j[p]);
     touching.insert(touching.end(), strip.touching.begin(), strip.touching.end());
     put_rows(tangential, strip, strip.single.tangential);
     put_rows(tangential, strip, strip.full.tangential);
@@ -112,8 +112,7 @@ void GrainSolver::save(Archive& archive) const {
   archive.put("strips/sizes", sizes);
   archive.put("strips/places", places);
   archive.put("strips/cells", cells);
-  archive.put("pairs/i", i);
-  archive.put("pairs/j", j);
+  archive.put("pairs/partners", partners);
   archive.put("pairs/touching", touching);
   archive.put("pairs/tangential", tangential);
   archive.put("pairs/rolling", rolling);
@@ -137,8 +136,7 @@ void GrainSolver::restore(const Archive& archive) {
   const auto& sizes = archive.get<std::int32_t>("strips/sizes", 4 * count);
   const auto& places = archive.get<double>("strips/places", 3 * count);
   const auto& cells = archive.get<std::int32_t>("strips/cells");
-  const auto& i = archive.get<std::int32_t>("pairs/i");
-  const auto& j = archive.get<std::int32_t>("pairs/j", i.size());
+  const auto& partners = archive.get<std::uint64_t>("pairs/partners");
   const auto& touching = archive.get<std::uint8_t>("pairs/touching");
   const auto& wall_grain = archive.get<std::int32_t>("walls/grain");
   const auto& wall = archive.get<std::int32_t>("walls/wall", wall_grain.size());
@@ -159,8 +157,10 @@ void GrainSolver::restore(const Archive& archive) {
     strip.travel = places[3 * k], strip.x_min = places[3 * k + 1], strip.x_max = places[3 * k + 2];
     strip.cell_start.assign(cells.begin() + k * per_strip, cells.begin() + (k + 1) * per_strip);
     strips_.size_lists(strip, s[2]);
-    std::copy_n(i.begin() + pair, strip.pairs, strip.i.begin());
-    std::copy_n(j.begin() + pair, strip.pairs, strip.j.begin());
+    for (int p = 0; p < strip.pairs; ++p) {
+      strip.i[p] = static_cast<std::uint32_t>(partners[pair + p] >> 32);
+      strip.j[p] = static_cast<std::uint32_t>(partners[pair + p]);
+    }
     std::copy_n(touching.begin() + group, strip.touching.size(), strip.touching.begin());
     tangential = get_rows(tangential, strip, strip.single.tangential);
     tangential = get_rows(tangential, strip, strip.full.tangential);
@@ -178,11 +178,12 @@ void GrainSolver::restore(const Archive& archive) {
 std::size_t GrainSolver::bytes() const {
   const auto of = [](const auto& v) { return v.capacity() * sizeof v[0]; };
   std::size_t sum = of(grains_.position) + of(grains_.velocity) + of(grains_.spin) + of(grains_.id) + strips_.bytes();
-  for (const Chunk& chunk : chunks_) sum += of(chunk.own) + of(chunk.ahead);
+  for (const Chunk& chunk : chunks_)
+    for (const LoadBuffer* buffer : {&chunk.own, &chunk.ahead}) sum += of(buffer->force) + of(buffer->torque);
   const auto scratch = [&](const auto& all) {
     for (const auto& s : all) {
       const auto& t = s.touching;
-      sum += of(s.motion) + of(s.loads) + of(s.shifted) + 4 * of(t.dx) + 3 * of(t.i);
+      sum += of(s.motion.v) + of(s.motion.w) + of(s.loads.force) + of(s.loads.torque) + of(s.shifted) + 4 * of(t.dx) + 3 * of(t.i);
     }
   };
   scratch(single_);

@@ -24,10 +24,12 @@ struct Grains {
   }
 };
 
-/// Contact forces and torques on one grain while a step is evaluated.
-struct alignas(64) Load {
-  Quad force;   // N
-  Quad torque;  // N m
+/// Contact forces (N) and torques (N m) on consecutive grains while a step is evaluated.
+struct Loads {
+  Quad* force = nullptr;
+  Quad* torque = nullptr;
+
+  Loads from(int grain) const { return {force + grain, torque + grain}; }
 };
 
 }  // namespace furrow::dem

@@ -20,6 +20,9 @@ int cells_along(double length, double size, bool periodic, const char* side) {
   return n;
 }
 
+/// The cell that a point stands in, the first or last if it stands beyond or is not a number.
+int cell_at(double at, int count) { return at > 0.0 ? static_cast<int>(std::min(at, count - 0.5)) : 0; }
+
 /// values[first + k] = values[order[k]].
 template <class T>
 void permute(std::vector<T>& values, const Resorted& range, std::vector<T>& spare, int threads) {
@@ -58,9 +61,7 @@ std::size_t Strips::bytes() const {
   return sum;
 }
 
-int Strips::strip_at(double x) const {
-  return static_cast<int>(std::clamp(x * inverse_x_, 0.0, count() - 0.5));
-}
+int Strips::strip_at(double x) const { return cell_at(x * inverse_x_, count()); }
 
 void Strips::sort(Grains& grains, Resorted& range, int threads) {
   const int first = strips_[range.from].first, last = strips_[range.to - 1].last, n = last - first;
@@ -68,16 +69,13 @@ void Strips::sort(Grains& grains, Resorted& range, int threads) {
   const double y0 = -0.5 * options_.bin.width;
   std::vector<std::int32_t>&cell = scratch_.cell, &start = scratch_.start;
   cell.resize(std::max<std::size_t>(cell.size(), n));
-  const auto along = [](double at, int count) {
-    return static_cast<int>(std::clamp(at, 0.0, count - 0.5));
-  };
 #pragma omp parallel for num_threads(threads) schedule(static)
   for (int k = 0; k < n; ++k) {
     Quad& p = grains.position[first + k];
     options_.bin.wrap(p);
     const int strip = std::clamp(strip_at(p.x), range.from, range.to - 1);
-    cell[k] = ((strip - range.from) * ny_ + along((p.y - y0) * inverse_y_, ny_)) * nz_ +
-                 along(p.z * inverse_z_, nz_);
+    cell[k] = ((strip - range.from) * ny_ + cell_at((p.y - y0) * inverse_y_, ny_)) * nz_ +
+                 cell_at(p.z * inverse_z_, nz_);
   }
   start.assign(cells + 1, 0);
   for (int k = 0; k < n; ++k) ++start[cell[k] + 1];
@@ -133,8 +131,8 @@ void Strips::list_pairs(const Grains& grains, int k) {
       if (width > 0.0) d[1] -= width * std::round(d[1] / width);
       const Wide d2 = d * d;
       if (d2[0] + d2[1] + d2[2] >= reach2) continue;
-      strip.i.push_back(i);
-      strip.j.push_back(base + j);
+      strip.i.push_back(kQuad * i);
+      strip.j.push_back(kQuad * (base + j));
     }
   };
   for (int y = 0; y < ny_; ++y)
@@ -170,6 +168,8 @@ void Strips::list_walls(const Grains& grains, Strip& strip) const {
   const double reach = options_.radius + options_.skin;
   strip.walls.clear();
   strip.x_min = 1e300, strip.x_max = -1e300;
+  for (int g = strip.last - 1; g >= strip.first; --g)
+    if (!options_.bin.holds(grains.position[g])) strip.sums.lost = g - strip.first;
   for (int g = strip.first; g < strip.last; ++g) {
     strip.x_min = std::min(strip.x_min, grains.position[g].x);
     strip.x_max = std::max(strip.x_max, grains.position[g].x);
@@ -192,7 +192,7 @@ class OldPairs {
       const Strip& strip = old[s];
       int p = 0;
       for (int g = 0; g < strip.grains(); ++g) {
-        while (p < strip.pairs && strip.i[p] < g) ++p;
+        while (p < strip.pairs && strip.grain_i(p) < g) ++p;
         row_[strip.first - base_ + g] = p;
         strip_of_[strip.first - base_ + g] = s;
       }
@@ -220,8 +220,8 @@ class OldPairs {
     const Strip& strip = old_[strip_of_[owner - base_]];
     const int i = owner - strip.first;
     const int j = partner >= owner ? partner - strip.first : strip.grains() + partner - old_.front().first;
-    for (int p = row_[owner - base_]; p < strip.pairs && strip.i[p] == i; ++p)
-      if (strip.j[p] == j && (strip.touching[p / kLanes] >> p % kLanes & 1)) return {&strip, p, false};
+    for (int p = row_[owner - base_]; p < strip.pairs && strip.grain_i(p) == i; ++p)
+      if (strip.grain_j(p) == j && (strip.touching[p / kLanes] >> p % kLanes & 1)) return {&strip, p, false};
     return {};
   }
 
@@ -251,8 +251,8 @@ void Strips::carry_history(std::span<const Strip> old, int old_from, const Resor
     const int after = next(s), wrap = after >= 0 && after < s ? strips_[after].first : strip.last;
     PairHistory<Real>& now = strip.history<Real>();
     for (int p = 0; p < strip.pairs; ++p) {
-      const int i = strip.first + strip.i[p];
-      const int j = strip.j[p] < strip.grains() ? strip.first + strip.j[p] : wrap + strip.j[p] - strip.grains();
+      const int i = strip.first + strip.grain_i(p), partner = strip.grain_j(p);
+      const int j = partner < strip.grains() ? strip.first + partner : wrap + partner - strip.grains();
       const auto found = pairs.find(before(i), before(j));
       if (!found.strip) continue;
       strip.touching[p / kLanes] |= static_cast<std::uint8_t>(1 << p % kLanes);
@@ -333,7 +333,7 @@ Resorted Strips::rebuild_all(Grains& grains, int threads) {
 std::vector<Resorted> Strips::rebuild_moved(Grains& grains, double dt, int threads) {
   const int n = count();
   const auto moved = [&](int s) {
-    return s >= 0 && s < n && strips_[s].travel + dt * strips_[s].sums.max_speed > 0.5 * options_.skin;
+    return s >= 0 && s < n && !(strips_[s].travel + dt * strips_[s].sums.max_speed <= 0.5 * options_.skin);
   };
   const auto near_moved = [&](int s) { return moved(s - 1) || moved(s) || moved(s + 1); };
   std::vector<Resorted> ranges;

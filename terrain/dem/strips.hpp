@@ -56,14 +56,15 @@ struct StripSums {
   Quad velocity;             // Σ v after the step, m/s
   double step_work = 0.0;    // Σ F·a + T·α: half of it times dt² belongs to the power at mid-step, N²/kg
   double max_speed = 0.0;    // a bound on the speed of every grain after the step, m/s
-  std::int32_t lost = -1;    // index of a grain outside the bin or not finite
+  std::int32_t lost = -1;    // a grain outside the bin or not finite, counted from the strip's first
 };
 
 struct Strip {
   std::int32_t first = 0, last = 0;      // grains
   std::vector<std::int32_t> cell_start;  // of each cell (y, z fastest), counted from `first`
   std::int32_t pairs = 0;
-  std::vector<std::int32_t> i, j;      // per pair, counted from `first`; j runs on into the next strip
+  // Per pair, kQuad times the grain counted from `first`; j runs on into the next strip.
+  std::vector<std::uint32_t> i, j;
   std::vector<std::uint8_t> touching;  // bit k of entry p/8: pair p touched in the last step
   PairHistory<float> single;           // used with precision mixed
   PairHistory<double> full;            // used with precision double
@@ -73,6 +74,8 @@ struct Strip {
   StripSums sums;
 
   int grains() const { return last - first; }
+  int grain_i(int pair) const { return static_cast<int>(i[pair] / kQuad); }
+  int grain_j(int pair) const { return static_cast<int>(j[pair] / kQuad); }
   template <class Real>
   PairHistory<Real>& history() {
     if constexpr (std::is_same_v<Real, float>) {

@@ -61,7 +61,7 @@ class SurfaceContacts {
   /// Evaluates the contacts of strip s and adds to the loads (of its grains, in order) and to its sums. Called by one
   /// thread per strip.
   template <class Law>
-  void evaluate(const Grains& grains, Strip& strip, int s, double dt, Load* loads);
+  void evaluate(const Grains& grains, Strip& strip, int s, double dt, const Loads& loads);
 
   /// Hands this substep's forces to the vertices, in the order of strips and grains. Returns the impulse that the
   /// grains received, N s.
@@ -87,7 +87,7 @@ class SurfaceContacts {
     std::vector<SurfaceContactForce> forces;
   };
   template <class Law>
-  void touch(const Grains& grains, Strip& strip, SurfaceStrip& mine, int k, int g, double dt, Load& load);
+  void touch(const Grains& grains, Strip& strip, SurfaceStrip& mine, int k, int g, double dt, const Loads& load);
 
   GrainProperties grain_;
   bool rolling_;

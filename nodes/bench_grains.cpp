@@ -71,6 +71,7 @@ std::string bench_grains(const GrainBench& bench) {
   options.step = bench.step;
   options.threads = options.settle_threads = bench.threads;
   options.precision = bench.precision;
+  options.activity = false;
   const std::vector<Quad> bed = bed_of(bench, options);
   options.periodic_x = true;
 

@@ -16,7 +16,7 @@
 namespace furrow::dem {
 namespace {
 
-constexpr std::int64_t kBedFormat = 1;  // raise when the bits of a bed may change
+constexpr std::int64_t kBedFormat = 3;  // raise when the bits of a bed may change
 
 /// An HDF5 identifier that closes itself.
 class Handle {
@@ -123,12 +123,15 @@ herr_t read_object(hid_t file, const char* name, const H5O_info_t* info, void* t
 std::string bed_digest(const TerrainOptions& o) {
   Hash hash;
   hash.add(o.law);
-  const std::array<double, 15> numbers{static_cast<double>(kBedFormat),
+  hash.add(o.precision);
+  const std::array<double, 17> numbers{static_cast<double>(kBedFormat),
                                        o.radius,
                                        o.density,
                                        static_cast<double>(o.layers),
                                        o.length,
                                        o.width,
+                                       o.periodic_x ? 1.0 : 0.0,
+                                       o.periodic_y ? 1.0 : 0.0,
                                        o.young_modulus,
                                        o.poisson_ratio,
                                        o.restitution,

@@ -79,6 +79,8 @@ void GrainSolver::reset_accounts() {
     accounts_.height += grains_.position[g].z;
     accounts_.velocity += Vec3(v.x, v.y, v.z);
   }
+  for (int k = 0; k < strips_.count(); ++k)
+    if (!strips_[k].asleep) accounts_.active += strips_[k].grains();
   strips_.set_resorted(0);
 }
 
@@ -112,7 +114,7 @@ void GrainSolver::gather(Scratch<Real>& s, int strip, int offset) {
 template <class Real, class Law, bool kRolling>
 void GrainSolver::contacts_of_strip(Scratch<Real>& s, int k, int offset, double dt, bool measure) {
   Strip& strip = strips_[k];
-  strip.sums = {};
+  strip.contact = {};
   const Quad* x = grains_.position.data() + strip.first;
   if (const int after = strips_.next(k); after >= 0 && after < k) {
     const Strip& other = strips_[after];
@@ -135,7 +137,7 @@ void GrainSolver::contacts_of_strip(Scratch<Real>& s, int k, int offset, double 
   const Loads loads{s.loads.force.data() + offset, s.loads.torque.data() + offset};
   const Motion motion{flat(s.motion.v.data()) + kQuad * offset,
                       s.motion.w.empty() ? nullptr : flat(s.motion.w.data()) + kQuad * offset};
-  PairForces<Law, kRolling, Real>(law, s.touching, motion, strip.history<Real>(), loads).run(strip.sums);
+  PairForces<Law, kRolling, Real>(law, s.touching, motion, strip.history<Real>(), loads).run(strip.contact);
   wall_forces<Law, kRolling>(grains_, strip, params_.bin, params_.grain.radius, coefficients_, dt, measure, loads);
   if (surfaces_.any()) surfaces_.evaluate<Law>(grains_, strip, k, dt, loads);
 }
@@ -150,29 +152,62 @@ void GrainSolver::run_chunk(Chunk& chunk, double dt, bool measure) {
   grow(s.loads.force, last - first + ahead);
   grow(s.loads.torque, last - first + ahead);
   const Loads all{s.loads.force.data(), s.loads.torque.data()};
-  gather(s, chunk.from, 0);
+  bool gathered = false;  // of strip k, by the one before
   for (int k = chunk.from; k < chunk.to; ++k) {
-    const int offset = strips_[k].first - first;
-    if (const int next = strips_.next(k); next >= 0) gather(s, next, strips_[k].last - first);
-    contacts_of_strip<Real, Law, kRolling>(s, k, offset, dt, measure);
-    if (k == chunk.from) {
-      chunk.own.assign(all.from(offset), strips_[k].grains());
+    Strip& strip = strips_[k];
+    const int offset = strip.first - first;
+    const bool evaluated = activity_.evaluated(k);
+    if (!gathered && (evaluated || activity_.complete(k))) gather(s, k, offset);
+    gathered = false;
+    if (evaluated) {
+      if (const int next = strips_.next(k); next >= 0) gather(s, next, strip.last - first), gathered = true;
+      contacts_of_strip<Real, Law, kRolling>(s, k, offset, dt, measure);
     } else {
-      integrate(strips_[k], all.from(offset), dt, measure);
+      strip.contact.power = strip.motion.step_work = 0.0;
+    }
+    if (!activity_.complete(k)) continue;
+    if (k == chunk.from) {
+      chunk.own.assign(all.from(offset), strip.grains());
+    } else {
+      finish_strip(k, all.from(offset), dt, measure);
     }
   }
-  chunk.ahead.assign(all.from(last - first), ahead);
+  if (gathered && activity_.complete(beyond)) chunk.ahead.assign(all.from(last - first), ahead);
 }
 
 void GrainSolver::finish_chunk(Chunk& chunk, const Chunk* before, double dt, bool measure) {
+  if (!activity_.complete(chunk.from)) return;
   if (before)
     for (std::size_t g = 0; g < chunk.own.force.size(); ++g) {
       add(chunk.own.force[g], load(before->ahead.force[g]));
       add(chunk.own.torque[g], load(before->ahead.torque[g]));
     }
-  integrate(strips_[chunk.from], {chunk.own.force.data(), chunk.own.torque.data()}, dt, measure);
+  finish_strip(chunk.from, {chunk.own.force.data(), chunk.own.torque.data()}, dt, measure);
 }
 
+void GrainSolver::finish_strip(int k, const Loads& loads, double dt, bool measure) {
+  Strip& strip = strips_[k];
+  if (strip.asleep) {
+    feel(strip, loads);
+  } else if (params_.activity) {
+    integrate<true>(strip, loads, dt, measure);
+  } else {
+    integrate<false>(strip, loads, dt, measure);
+  }
+}
+
+void GrainSolver::feel(Strip& strip, const Loads& loads) const {
+  const Wide weight{0.0, 0.0, -params_.gravity * params_.grain.mass, 0.0};
+  const double* const force = flat(loads.force);
+  Wide largest{};
+  for (int g = 0; g < kQuad * strip.grains(); g += kQuad) {
+    const Wide f = load_lanes<Wide>(force + g) + weight;
+    largest = larger(largest, f * f);
+  }
+  strip.motion.max_net_force = std::sqrt(sum_of(largest));
+}
+
+template <bool kMaySleep>
 void GrainSolver::integrate(Strip& strip, const Loads& loads, double dt, bool measure) {
   const double mass = params_.grain.mass, inertia = params_.grain.inertia;
   const double per_mass = 1.0 / mass, per_inertia = 1.0 / inertia;
@@ -183,7 +218,8 @@ void GrainSolver::integrate(Strip& strip, const Loads& loads, double dt, bool me
   double* const velocity = flat(grains_.velocity.data() + strip.first);
   double* const spin = flat(grains_.spin.data() + strip.first);
   double* const position = flat(grains_.position.data() + strip.first);
-  Wide kinetic{}, spinning{}, work{}, momentum{}, height{}, fastest{}, net{};
+  Wide moving{}, spinning{}, work{}, momentum{}, height{}, fastest{}, net{};
+  Wide most_pushed{};  // largest squares of the acceleration
   for (int g = 0; g < kQuad * n; g += kQuad) {
     const Wide f = load_lanes<Wide>(force + g), t = load_lanes<Wide>(torque + g);
     const Wide a = f * per_mass + gravity, alpha = t * per_inertia;
@@ -194,26 +230,45 @@ void GrainSolver::integrate(Strip& strip, const Loads& loads, double dt, bool me
     store_lanes(spin + g, w);
     store_lanes(position + g, x);
     const Wide v2 = v * v;
-    kinetic += v2;
+    moving += v2;
     spinning += w * w;
     work += f * a + t * alpha;
     momentum += v;
     height += x;
-    fastest = v2 > fastest ? v2 : fastest;
-    if (measure) {
-      const Wide left = f + mass * gravity;
-      net[0] += std::sqrt(sum_of(left * left));
-    }
+    fastest = larger(fastest, v2);
+    if constexpr (kMaySleep) most_pushed = larger(most_pushed, a * a);
+    if (measure) net[0] += mass * std::sqrt(sum_of(a * a));
   }
-  StripSums& sums = strip.sums;
-  sums.kinetic = 0.5 * (mass * sum_of(kinetic) + inertia * sum_of(spinning));
+  MotionTotals& sums = strip.motion;
+  sums.speed2 = sum_of(moving);
+  sums.kinetic = 0.5 * (mass * sums.speed2 + inertia * sum_of(spinning));
   sums.step_work = sum_of(work);
   store(sums.velocity, momentum);
   sums.height = height[2];
-  // Of the largest v_x, v_y, v_z, perhaps of different grains; not a number when one of the sums is not.
+  // Not a number when one of the sums is not: the strip will be sorted, and the grain be found.
   sums.max_speed = std::sqrt(sum_of(fastest)) + 0.0 * (sums.kinetic + sum_of(height));
+  sums.max_net_force = mass * std::sqrt(sum_of(most_pushed));
   sums.net_force = net[0];
   strip.travel += dt * sums.max_speed;
+}
+
+void GrainSolver::change_activity() {
+  if (!params_.activity) return;
+  if (mean_contact_force_ == 0.0) mean_contact_force_ = accounts_.contact_force / std::max<std::int64_t>(1, accounts_.contacts);
+  const double speed = std::sqrt(params_.gravity * params_.grain.radius);
+  activity_.limit({kSleepMeanSpeed * speed, kSleepSpeed * speed, kSleepForce * mean_contact_force_,
+                   kWakeForce * mean_contact_force_});
+  const double margin = 2.0 * strips_.options().reach;
+  accounts_.slept += activity_.update(strips_, grains_, [&](const Strip& strip) {
+    return surfaces_.any() && surfaces_.low_between(strip.x_min - margin, strip.x_max + margin);
+  });
+}
+
+double GrainSolver::top() const {
+  double top = 0.0;
+  for (int k = 0; k < strips_.count(); ++k)
+    if (strips_[k].grains() > 0) top = std::max(top, strips_[k].z_max + strips_[k].travel);
+  return top + params_.grain.radius;
 }
 
 void GrainSolver::reduce(double dt, bool measure) {
@@ -222,21 +277,23 @@ void GrainSolver::reduce(double dt, bool measure) {
   Quad wall;
   a.elastic = a.floor_force = a.kinetic = a.height = 0.0;
   a.velocity.setZero();
-  a.contacts = 0;
+  a.contacts = a.active = 0;
   for (int k = 0; k < strips_.count(); ++k) {
-    const StripSums& s = strips_[k].sums;
-    power += s.power;
-    work += s.step_work;
-    contact_force += s.contact_force;
-    net_force += s.net_force;
-    add(wall, load(s.wall_force));
-    a.elastic += s.elastic;
-    a.floor_force += s.floor_force;
-    a.kinetic += s.kinetic;
-    a.height += s.height;
-    a.velocity += Vec3(s.velocity.x, s.velocity.y, s.velocity.z);
-    a.contacts += s.contacts;
-    a.max_overlap = std::max(a.max_overlap, s.max_overlap);
+    const ContactTotals& c = strips_[k].contact;
+    const MotionTotals& m = strips_[k].motion;
+    power += c.power;
+    work += m.step_work;
+    contact_force += c.contact_force;
+    net_force += m.net_force;
+    add(wall, load(c.wall_force));
+    a.elastic += c.elastic;
+    a.floor_force += c.floor_force;
+    a.kinetic += m.kinetic;
+    a.height += m.height;
+    a.velocity += Vec3(m.velocity.x, m.velocity.y, m.velocity.z);
+    a.contacts += c.contacts;
+    a.max_overlap = std::max(a.max_overlap, c.max_overlap);
+    if (!strips_[k].asleep) a.active += strips_[k].grains();
   }
   // Forces of the step act on velocities that change during it: Σ F·v at mid-step = Σ F·v + ½ dt Σ (F·a + T·α).
   a.contact_work += dt * (power + 0.5 * dt * work);
@@ -267,6 +324,8 @@ void GrainSolver::evaluate(double dt, bool measure) {
 
 int GrainSolver::step(double dt, bool measure) {
   const auto threads = static_cast<std::size_t>(std::max(1, params_.threads));
+  if (params_.activity && mean_contact_force_ == 0.0) measure = true;
+  activity_.plan(strips_);
   if (params_.precision == Precision::mixed) {
     if (single_.size() < threads) single_.resize(threads);
     evaluate<float>(dt, measure);
@@ -283,10 +342,14 @@ int GrainSolver::step(double dt, bool measure) {
     finish_chunk(chunks_[c], before, dt, measure);
   }
   reduce(dt, measure);
+  change_activity();
   // A grain that is not a number or went far is met when its strip is sorted, one that slips out when its wall pushes.
-  for (const Resorted& range : strips_.rebuild_moved(grains_, dt, params_.threads)) surfaces_.reorder(range, strips_);
+  for (const Resorted& range : strips_.rebuild_moved(grains_, dt, params_.threads)) {
+    surfaces_.reorder(range, strips_);
+    Activity::wake_moving(range, strips_, grains_);
+  }
   for (int k = 0; k < strips_.count(); ++k)
-    if (strips_[k].sums.lost >= 0) return strips_[k].first + strips_[k].sums.lost;
+    if (strips_[k].lost >= 0) return strips_[k].first + strips_[k].lost;
   return -1;
 }
 

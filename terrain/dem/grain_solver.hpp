@@ -16,6 +16,7 @@
 
 #include "protocol/archive.hpp"
 #include "protocol/messages.hpp"
+#include "terrain/dem/activity.hpp"
 #include "terrain/dem/contact_mixing.hpp"
 #include "terrain/dem/pair_forces.hpp"
 #include "terrain/dem/strips.hpp"
@@ -38,6 +39,7 @@ struct SolverParams {
   double skin = 0.0;          // neighbours are listed within 2 r + skin, m
   int threads = 1;
   Precision precision = Precision::mixed;
+  bool activity = false;  // let resting grains sleep
 };
 
 /// Cumulative since reset_accounts() unless stated.
@@ -55,6 +57,8 @@ struct Accounts {
   double max_overlap = 0.0;             // met since reset, m
   double contact_force = 0.0;           // Σ |F|, N, last measured step
   double net_force = 0.0;               // Σ |net force| of grains, N, last measured step
+  double slept = 0.0;                   // kinetic energy of grains when they fell asleep, J
+  std::int64_t active = 0;              // grains awake, last step
 };
 
 class GrainSolver {
@@ -81,6 +85,8 @@ class GrainSolver {
   void reset_accounts();
   /// Current index of the grain with this id.
   int index_of(int id) const;
+  /// No grain reaches higher, m.
+  double top() const;
   /// What the engine holds in memory now.
   std::size_t bytes() const;
 
@@ -124,7 +130,12 @@ class GrainSolver {
   void evaluate(double dt, bool measure);
   template <class Real>
   void evaluate(double dt, bool measure);
+  /// Moves the grains of strip k, or sees whether they are pushed awake.
+  void finish_strip(int k, const Loads& loads, double dt, bool measure);
+  template <bool kMaySleep>
   void integrate(Strip& strip, const Loads& loads, double dt, bool measure);
+  void feel(Strip& strip, const Loads& loads) const;
+  void change_activity();
   void reduce(double dt, bool measure);
 
   SolverParams params_;
@@ -133,6 +144,8 @@ class GrainSolver {
   Grains grains_;
   Strips strips_;
   SurfaceContacts surfaces_;
+  Activity activity_;
+  double mean_contact_force_ = 0.0;  // of the bed when grains were first allowed to sleep, N
   Accounts accounts_;
   std::vector<Chunk> chunks_;
   std::vector<Scratch<float>> single_;  // per thread

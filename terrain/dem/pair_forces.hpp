@@ -206,7 +206,7 @@ class PairForces {
       : law_(law), pairs_(pairs), motion_(motion), histories_(histories), loads_(loads) {}
 
   /// Adds the forces of all pairs to the loads and their sums to `sums`.
-  void run(StripSums& sums) {
+  void run(ContactTotals& sums) {
     for (int first = 0; first < pairs_.count; first += Tile::kPairs) {
       const int count = std::min(Tile::kPairs, pairs_.count - first);
       geometry(first, count);

@@ -167,12 +167,13 @@ void Strips::list_pairs(const Grains& grains, int k) {
 void Strips::list_walls(const Grains& grains, Strip& strip) const {
   const double reach = options_.radius + options_.skin;
   strip.walls.clear();
-  strip.x_min = 1e300, strip.x_max = -1e300;
+  strip.x_min = 1e300, strip.x_max = strip.z_max = -1e300;
   for (int g = strip.last - 1; g >= strip.first; --g)
-    if (!options_.bin.holds(grains.position[g])) strip.sums.lost = g - strip.first;
+    if (!options_.bin.holds(grains.position[g])) strip.lost = g - strip.first;
   for (int g = strip.first; g < strip.last; ++g) {
     strip.x_min = std::min(strip.x_min, grains.position[g].x);
     strip.x_max = std::max(strip.x_max, grains.position[g].x);
+    strip.z_max = std::max(strip.z_max, grains.position[g].z);
     for (int wall = 0; wall < kWalls; ++wall)
       if (options_.bin.has_wall(wall) && options_.bin.distance(wall, grains.position[g]) < reach)
         strip.walls.push_back({g - strip.first, wall, {}, {}});
@@ -293,9 +294,11 @@ Resorted Strips::rebuild(Grains& grains, int from, int to, int threads) {
     Strip &old = old_[k], &strip = strips_[lists_from + k];
     std::swap(old, strip);
     strip.first = old.first, strip.last = old.last;
-    strip.x_min = old.x_min, strip.x_max = old.x_max;
+    strip.x_min = old.x_min, strip.x_max = old.x_max, strip.z_max = old.z_max;
     strip.travel = old.travel;
-    strip.sums = old.sums;
+    strip.asleep = old.asleep, strip.calm = old.calm;
+    strip.lost = old.lost;
+    strip.contact = old.contact, strip.motion = old.motion;
     if (lists_from + k < from) strip.cell_start = old.cell_start, strip.walls = old.walls;
   }
   Resorted range;
@@ -333,7 +336,7 @@ Resorted Strips::rebuild_all(Grains& grains, int threads) {
 std::vector<Resorted> Strips::rebuild_moved(Grains& grains, double dt, int threads) {
   const int n = count();
   const auto moved = [&](int s) {
-    return s >= 0 && s < n && !(strips_[s].travel + dt * strips_[s].sums.max_speed <= 0.5 * options_.skin);
+    return s >= 0 && s < n && !(strips_[s].travel + dt * strips_[s].motion.max_speed <= 0.5 * options_.skin);
   };
   const auto near_moved = [&](int s) { return moved(s - 1) || moved(s) || moved(s + 1); };
   std::vector<Resorted> ranges;

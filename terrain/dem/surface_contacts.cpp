@@ -81,10 +81,22 @@ void SurfaceContacts::move_to(double share) {
     s.collider->move_to(share);
     s.near = s.collider->bounds();
     s.near.lo -= r, s.near.hi += r;
+    s.low_min = 1e300, s.low_max = -1e300;
+    for (const Vec3& x : s.collider->positions())
+      if (x.z() < top_) {
+        s.low_min = std::min(s.low_min, x.x());
+        s.low_max = std::max(s.low_max, x.x());
+      }
   }
 }
 
+bool SurfaceContacts::low_between(double x_min, double x_max) const {
+  return std::any_of(surfaces_.begin(), surfaces_.end(),
+                     [&](const Surface& s) { return s.low_min < x_max && s.low_max > x_min; });
+}
+
 void SurfaceContacts::restrict_to(const SurfaceBox& grains) {
+  top_ = grains.hi.z();
   for (Surface& s : surfaces_) s.collider->restrict_to(grains);
 }
 
@@ -153,10 +165,10 @@ void SurfaceContacts::touch(const Grains& grains, Strip& strip, SurfaceStrip& mi
     add(*load.force, push + drag);
     add(*load.torque, cross(arm, push + drag) + hit.share * f.rolling);
     mine.touches.push_back({k, {hit.triangle, hit.weight, hit.point, -vec(push), -vec(drag)}});
-    strip.sums.power += hit.share * (power_of(f, motion) + dot(f.rolling, motion.roll));
-    strip.sums.elastic += hit.share * f.energy;
-    strip.sums.max_overlap = std::max(strip.sums.max_overlap, hit.overlap);
-    ++strip.sums.contacts;
+    strip.contact.power += hit.share * (power_of(f, motion) + dot(f.rolling, motion.roll));
+    strip.contact.elastic += hit.share * f.energy;
+    strip.contact.max_overlap = std::max(strip.contact.max_overlap, hit.overlap);
+    ++strip.contact.contacts;
   }
 }
 

@@ -54,6 +54,9 @@ class SurfaceContacts {
   void move_to(double share);
   void restrict_to(const SurfaceBox& grains);
 
+  /// Whether a vertex low enough to reach grains stands between these x now, m.
+  bool low_between(double x_min, double x_max) const;
+
   void resize(int strips) { strips_.resize(strips); }
   /// Renames grains after a range of strips was sorted.
   void reorder(const Resorted& range, const Strips& strips);
@@ -84,6 +87,7 @@ class SurfaceContacts {
     ContactCoefficients coefficients;
     std::vector<Vec3> start, end;  // m
     SurfaceBox near;               // bounds now, grown by the grain radius
+    double low_min = -1e300, low_max = 1e300;  // x of the vertices that may reach grains, m
     std::vector<SurfaceContactForce> forces;
   };
   template <class Law>
@@ -91,6 +95,7 @@ class SurfaceContacts {
 
   GrainProperties grain_;
   bool rolling_;
+  double top_ = 1e300;  // no grain reaches higher, m
   std::vector<Surface> surfaces_;
   std::vector<SurfaceStrip> strips_;
 };

@@ -16,7 +16,7 @@ struct SolverCoefficients {
 template <class Law, bool kRolling>
 void wall_forces(const Grains& grains, Strip& strip, const Bin& bin, double radius,
                  const SolverCoefficients& all, double dt, bool measure, const Loads& loads) {
-  StripSums& sums = strip.sums;
+  ContactTotals& sums = strip.contact;
   for (WallContact& contact : strip.walls) {
     const int g = strip.first + contact.grain;
     const double distance = bin.distance(contact.wall, grains.position[g]);
@@ -26,7 +26,7 @@ void wall_forces(const Grains& grains, Strip& strip, const Bin& bin, double radi
       contact.tangential = contact.rolling = {};
       continue;
     }
-    if (distance < 0.0) sums.lost = contact.grain;
+    if (distance < 0.0) strip.lost = contact.grain;
     const Quad &v = grains.velocity[g], &w = grains.spin[g];
     motion.normal = Bin::normal(contact.wall);
     motion.roll = {w.x, w.y, w.z};

@@ -6,7 +6,8 @@
 namespace furrow {
 
 struct GrainBench {
-  std::string bed = "default";      // CSV of positions (x_m,y_m,z_m), or default: the reference bed, from the cache
+  std::string bed =
+      "default";  // CSV of positions (x_m,y_m,z_m), or default: the reference bed, from the cache
   std::string law = "mindlin";      // mindlin | coulomb
   std::string precision = "mixed";  // mixed | double
   double cohesion = 0.0;            // Pa

@@ -158,7 +158,8 @@ ExitCode run_command_line(int argc, char** argv) {
   CLI::App& bench = *app.add_subcommand("bench", "how fast this machine is; prints JSON");
   bench.require_subcommand(1);
   GrainBench grains;
-  CLI::App& bench_of_grains = *bench.add_subcommand("grains", "steps a settled bed, every grain in every step");
+  CLI::App& bench_of_grains =
+      *bench.add_subcommand("grains", "steps a settled bed, every grain in every step");
   add_grain_bench(bench_of_grains, grains);
 
   try {

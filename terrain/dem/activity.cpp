@@ -24,8 +24,8 @@ void Activity::plan(const Strips& strips) {
 
 bool Activity::calm(const Strip& strip) const {
   const MotionTotals& m = strip.motion;
-  return m.speed2 <= limits_.mean_speed * limits_.mean_speed * strip.grains() && m.max_speed < limits_.speed &&
-         m.max_net_force < limits_.sleep_force;
+  return m.speed2 <= limits_.mean_speed * limits_.mean_speed * strip.grains() &&
+         m.max_speed < limits_.speed && m.max_net_force < limits_.sleep_force;
 }
 
 double Activity::put_to_sleep(Strip& strip, Grains& grains) {
@@ -43,7 +43,8 @@ void Activity::wake_moving(const Resorted& range, Strips& strips, const Grains& 
   const auto moves = [](const Quad& v) { return v.x != 0.0 || v.y != 0.0 || v.z != 0.0; };
   for (int k = range.from; k < range.to; ++k) {
     Strip& strip = strips[k];
-    if (strip.asleep && std::any_of(grains.velocity.begin() + strip.first, grains.velocity.begin() + strip.last, moves))
+    if (strip.asleep &&
+        std::any_of(grains.velocity.begin() + strip.first, grains.velocity.begin() + strip.last, moves))
       strip.asleep = false, strip.calm = 0;
   }
 }

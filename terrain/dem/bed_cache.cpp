@@ -12,6 +12,7 @@
 
 #include "protocol/hash.hpp"
 #include "terrain/dem/bed_settling.hpp"
+#include "terrain/dem/solver_setup.hpp"
 
 namespace furrow::dem {
 namespace {
@@ -124,12 +125,13 @@ std::string bed_digest(const TerrainOptions& o) {
   Hash hash;
   hash.add(o.law);
   hash.add(o.precision);
-  const std::array<double, 17> numbers{static_cast<double>(kBedFormat),
+  const std::array<double, 18> numbers{static_cast<double>(kBedFormat),
                                        o.radius,
                                        o.density,
                                        static_cast<double>(o.layers),
                                        o.length,
                                        o.width,
+                                       kSkinShare,
                                        o.periodic_x ? 1.0 : 0.0,
                                        o.periodic_y ? 1.0 : 0.0,
                                        o.young_modulus,

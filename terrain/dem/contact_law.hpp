@@ -47,9 +47,9 @@ using ContactCoefficients = Coefficients<double>;
 template <class S>
 Coefficients<S> rounded(const ContactCoefficients& c) {
   const auto r = [](double a) { return static_cast<S>(a); };
-  return {r(c.stiffness),      r(c.damping),         r(c.shear_stiffness), r(c.shear_damping),
-          r(c.friction),       r(c.cohesion_force),  r(c.velocity_scale),  r(c.slip_limit),
-          r(c.rolling_arm),    r(c.rolling_radius),  r(c.rolling_damping), r(c.roll_limit)};
+  return {r(c.stiffness),   r(c.damping),        r(c.shear_stiffness), r(c.shear_damping),
+          r(c.friction),    r(c.cohesion_force), r(c.velocity_scale),  r(c.slip_limit),
+          r(c.rolling_arm), r(c.rolling_radius), r(c.rolling_damping), r(c.roll_limit)};
 }
 
 /// Share of critical damping in the rolling spring [Ai et al. 2011, §4.2].

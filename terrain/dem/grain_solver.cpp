@@ -8,9 +8,9 @@
 namespace furrow::dem {
 namespace {
 
-constexpr int kMostChunks = 64;       // enough for any load balance
-constexpr int kMostStrips = 12;       // of a chunk: what its thread keeps in the cache
-constexpr int kFewestStrips = 6;      // of a chunk: its first is moved in the second pass
+constexpr int kMostChunks = 64;   // enough for any load balance
+constexpr int kMostStrips = 12;   // of a chunk: what its thread keeps in the cache
+constexpr int kFewestStrips = 6;  // of a chunk: its first is moved in the second pass
 
 Strips::Options strip_options(const SolverParams& p) {
   Strips::Options o;
@@ -138,7 +138,8 @@ void GrainSolver::contacts_of_strip(Scratch<Real>& s, int k, int offset, double 
   const Motion motion{flat(s.motion.v.data()) + kQuad * offset,
                       s.motion.w.empty() ? nullptr : flat(s.motion.w.data()) + kQuad * offset};
   PairForces<Law, kRolling, Real>(law, s.touching, motion, strip.history<Real>(), loads).run(strip.contact);
-  wall_forces<Law, kRolling>(grains_, strip, params_.bin, params_.grain.radius, coefficients_, dt, measure, loads);
+  wall_forces<Law, kRolling>(grains_, strip, params_.bin, params_.grain.radius, coefficients_, dt, measure,
+                             loads);
   if (surfaces_.any()) surfaces_.evaluate<Law>(grains_, strip, k, dt, loads);
 }
 
@@ -254,7 +255,8 @@ void GrainSolver::integrate(Strip& strip, const Loads& loads, double dt, bool me
 
 void GrainSolver::change_activity() {
   if (!params_.activity) return;
-  if (mean_contact_force_ == 0.0) mean_contact_force_ = accounts_.contact_force / std::max<std::int64_t>(1, accounts_.contacts);
+  if (mean_contact_force_ == 0.0)
+    mean_contact_force_ = accounts_.contact_force / std::max<std::int64_t>(1, accounts_.contacts);
   const double speed = std::sqrt(params_.gravity * params_.grain.radius);
   activity_.limit({kSleepMeanSpeed * speed, kSleepSpeed * speed, kSleepForce * mean_contact_force_,
                    kWakeForce * mean_contact_force_});
@@ -338,7 +340,9 @@ int GrainSolver::step(double dt, bool measure) {
   const int count = static_cast<int>(chunks_.size());
 #pragma omp parallel for num_threads(params_.threads) schedule(dynamic, 1)
   for (int c = 0; c < count; ++c) {
-    const Chunk* const before = c > 0 ? &chunks_[c - 1] : params_.bin.periodic_x ? &chunks_[count - 1] : nullptr;
+    const Chunk* const before = c > 0                    ? &chunks_[c - 1]
+                                : params_.bin.periodic_x ? &chunks_[count - 1]
+                                                         : nullptr;
     finish_chunk(chunks_[c], before, dt, measure);
   }
   reduce(dt, measure);

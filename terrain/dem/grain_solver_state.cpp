@@ -103,9 +103,10 @@ void GrainSolver::save(Archive& archive) const {
     // Sums too: those of strips that sleep stay.
     const ContactTotals& c = strip.contact;
     const MotionTotals& m = strip.motion;
-    values.insert(values.end(), {strip.travel, strip.x_min, strip.x_max, strip.z_max, strip.asleep ? 1.0 : 0.0,
-                                 double(strip.calm), c.elastic, c.max_overlap, c.wall_force.x, c.wall_force.y,
-                                 c.wall_force.z, c.floor_force, double(c.contacts), m.height});
+    values.insert(values.end(),
+                  {strip.travel, strip.x_min, strip.x_max, strip.z_max, strip.asleep ? 1.0 : 0.0,
+                   double(strip.calm), c.elastic, c.max_overlap, c.wall_force.x, c.wall_force.y,
+                   c.wall_force.z, c.floor_force, double(c.contacts), m.height});
     cells.insert(cells.end(), strip.cell_start.begin(), strip.cell_start.end());
     for (int p = 0; p < strip.pairs; ++p) partners.push_back(std::uint64_t{strip.i[p]} << 32 | strip.j[p]);
     touching.insert(touching.end(), strip.touching.begin(), strip.touching.end());
@@ -142,7 +143,8 @@ void GrainSolver::restore(const Archive& archive) {
   grains_.id = archive.get<std::int32_t>("id", n);
   accounts_ = accounts_from(archive.get<double>("accounts", 21));
   mean_contact_force_ = archive.get_double("mean_contact_force");
-  strips_.restore_shape(static_cast<int>(archive.get_int("strips/cells_z")), archive.get_int("strips/resorted"));
+  strips_.restore_shape(static_cast<int>(archive.get_int("strips/cells_z")),
+                        archive.get_int("strips/resorted"));
 
   const std::size_t count = strips_.count();
   const auto& sizes = archive.get<std::int32_t>("strips/sizes", 4 * count);
@@ -185,7 +187,8 @@ void GrainSolver::restore(const Archive& archive) {
     rolling = get_rows(rolling, strip, strip.single.rolling);
     rolling = get_rows(rolling, strip, strip.full.rolling);
     for (int m = 0; m < s[3]; ++m, ++w)
-      strip.walls.push_back({wall_grain[w], wall[w], quad(wall_history, 2 * w), quad(wall_history, 2 * w + 1)});
+      strip.walls.push_back(
+          {wall_grain[w], wall[w], quad(wall_history, 2 * w), quad(wall_history, 2 * w + 1)});
     pair += strip.pairs;
     group += strip.touching.size();
   }
@@ -195,13 +198,15 @@ void GrainSolver::restore(const Archive& archive) {
 
 std::size_t GrainSolver::bytes() const {
   const auto of = [](const auto& v) { return v.capacity() * sizeof v[0]; };
-  std::size_t sum = of(grains_.position) + of(grains_.velocity) + of(grains_.spin) + of(grains_.id) + strips_.bytes();
+  std::size_t sum =
+      of(grains_.position) + of(grains_.velocity) + of(grains_.spin) + of(grains_.id) + strips_.bytes();
   for (const Chunk& chunk : chunks_)
     for (const LoadBuffer* buffer : {&chunk.own, &chunk.ahead}) sum += of(buffer->force) + of(buffer->torque);
   const auto scratch = [&](const auto& all) {
     for (const auto& s : all) {
       const auto& t = s.touching;
-      sum += of(s.motion.v) + of(s.motion.w) + of(s.loads.force) + of(s.loads.torque) + of(s.shifted) + 4 * of(t.dx) + 3 * of(t.i);
+      sum += of(s.motion.v) + of(s.motion.w) + of(s.loads.force) + of(s.loads.torque) + of(s.shifted) +
+             4 * of(t.dx) + 3 * of(t.i);
     }
   };
   scratch(single_);

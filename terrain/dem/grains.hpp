@@ -8,8 +8,9 @@
 
 namespace furrow::dem {
 
-/// Bytes per grain: 3 × 32 + 4.
+/// Bytes per grain: 3 × 32 + 4. `position` has kBeyond entries more, so that four can be read from any grain on.
 struct Grains {
+  static constexpr int kBeyond = 3;
   int count = 0;
   std::vector<Quad> position;    // m
   std::vector<Quad> velocity;    // m/s
@@ -18,7 +19,9 @@ struct Grains {
 
   void resize(int n) {
     count = n;
-    for (auto* array : {&position, &velocity, &spin}) array->assign(n, Quad{});
+    position.assign(n + kBeyond, Quad{});
+    velocity.assign(n, Quad{});
+    spin.assign(n, Quad{});
     id.resize(n);
     for (int i = 0; i < n; ++i) id[i] = i;
   }

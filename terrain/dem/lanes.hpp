@@ -148,6 +148,17 @@ inline Narrow narrowed(Wide v) {
 #endif
 }
 
+/// Bit k: lane k is positive.
+inline unsigned positive(Wide v) {
+#ifdef __AVX__
+  return static_cast<unsigned>(_mm256_movemask_pd(_mm256_cmp_pd(v, Wide{}, _CMP_GT_OQ)));
+#else
+  unsigned mask = 0;
+  for (int k = 0; k < 4; ++k) mask |= (v[k] > 0.0 ? 1u : 0u) << k;
+  return mask;
+#endif
+}
+
 /// The lanes added in pairs, in double precision.
 inline Wide folded(FloatLanes v) { return widened(low_half(v)) + widened(high_half(v)); }
 inline Wide folded(Wide v) { return v; }
@@ -197,9 +208,9 @@ inline T tanh_of_positive(T x) {
       p = p * r + constant<T>(c);
   } else {
     p = constant<T>(1.0 / 6227020800.0);
-    for (const double c : {1.0 / 479001600.0, 1.0 / 39916800.0, 1.0 / 3628800.0, 1.0 / 362880.0,
-                           1.0 / 40320.0, 1.0 / 5040.0, 1.0 / 720.0, 1.0 / 120.0, 1.0 / 24.0, 1.0 / 6.0,
-                           0.5, 1.0})
+    for (const double c :
+         {1.0 / 479001600.0, 1.0 / 39916800.0, 1.0 / 3628800.0, 1.0 / 362880.0, 1.0 / 40320.0, 1.0 / 5040.0,
+          1.0 / 720.0, 1.0 / 120.0, 1.0 / 24.0, 1.0 / 6.0, 0.5, 1.0})
       p = p * r + constant<T>(c);
   }
   const T two_k = detail::power_of_two(shifted);

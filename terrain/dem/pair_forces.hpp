@@ -28,7 +28,8 @@ struct MotionRows {
       double* const out = flat(v.data() + k);
       const double *const from_v = flat(velocity), *const from_w = flat(spin);
       for (int g = 0; g < kQuad * n; g += kQuad)
-        store_lanes(out + g, join(narrowed(load_lanes<Wide>(from_v + g)), narrowed(load_lanes<Wide>(from_w + g))));
+        store_lanes(out + g,
+                    join(narrowed(load_lanes<Wide>(from_v + g)), narrowed(load_lanes<Wide>(from_w + g))));
     } else {
       std::copy_n(velocity, n, v.begin() + k);
       std::copy_n(spin, n, w.begin() + k);
@@ -103,7 +104,8 @@ inline RelativeMotion<kRolling, Wide> relative_motion(const Motion& motion, cons
 
 /// Adds (f, t + q) to grain i and (−f, t − q) to grain j; q is the rolling couple.
 template <bool kRolling>
-inline void add_load(double* force, double* torque, std::uint32_t i, std::uint32_t j, Wide f, Wide t, Wide q) {
+inline void add_load(double* force, double* torque, std::uint32_t i, std::uint32_t j, Wide f, Wide t,
+                     Wide q) {
   const auto increase = [](double* at, Wide by) { store_lanes(at, load_lanes<Wide>(at) + by); };
   increase(force + i, f);
   increase(torque + i, kRolling ? t + q : t);
@@ -146,7 +148,8 @@ inline void add_loads(const Loads& loads, const std::uint32_t* i, const std::uin
 }
 
 /// x, y, z and w of the history of the pairs p[0], p[1], …
-inline void read_history(const HistoryRow<float>* h, const std::uint32_t* p, Triple<FloatLanes>& v, FloatLanes& w) {
+inline void read_history(const HistoryRow<float>* h, const std::uint32_t* p, Triple<FloatLanes>& v,
+                         FloatLanes& w) {
   const auto row = [&](int k) { return load_lanes<Narrow>(reinterpret_cast<const double*>(h) + p[k]); };
   FloatLanes r[4];
   for (int k = 0; k < 4; ++k) r[k] = join(row(k), row(k + 4));
@@ -162,7 +165,8 @@ inline void read_history(const HistoryRow<double>* h, const std::uint32_t* p, Tr
   w = r[3];
 }
 
-inline void write_history(HistoryRow<float>* h, const std::uint32_t* p, const Triple<FloatLanes>& v, FloatLanes w) {
+inline void write_history(HistoryRow<float>* h, const std::uint32_t* p, const Triple<FloatLanes>& v,
+                          FloatLanes w) {
   FloatLanes r[4] = {v.x, v.y, v.z, w};
   transpose_halves(r);
   for (int k = 0; k < 4; ++k) {
@@ -184,12 +188,12 @@ struct PairTile {
   struct alignas(64) Column {
     Real at[kPairs];
   };
-  Column nx, ny, nz;                 // normal
-  Column overlap, root_overlap;      // m, √m
-  Column vx, vy, vz, spin;           // relative velocity at the contact, m/s; mean spin about the normal, rad/s
-  Column rx, ry, rz;                 // relative spin, rad/s; only with rolling resistance
-  Column fx, fy, fz, tx, ty, tz;     // force on i, N; torque on both, N m
-  Column qx, qy, qz;                 // rolling couple on i, N m; only with rolling resistance
+  Column nx, ny, nz;              // normal
+  Column overlap, root_overlap;   // m, √m
+  Column vx, vy, vz, spin;        // relative velocity at the contact, m/s; mean spin about the normal, rad/s
+  Column rx, ry, rz;              // relative spin, rad/s; only with rolling resistance
+  Column fx, fy, fz, tx, ty, tz;  // force on i, N; torque on both, N m
+  Column qx, qy, qz;              // rolling couple on i, N m; only with rolling resistance
 };
 
 /// The contact law on the touching pairs of a strip, tile by tile, in four stages. Split that way the loops are short,

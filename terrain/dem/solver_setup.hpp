@@ -6,7 +6,7 @@
 
 namespace furrow::dem {
 
-inline constexpr double kSkinShare = 0.1;  // skin of the neighbour list, of the radius
+inline constexpr double kSkinShare = 0.2;  // skin of the neighbour list, of the radius
 
 /// @throws Error(bad_input) listing the valid names.
 Precision precision_from(const std::string& name);

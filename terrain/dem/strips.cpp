@@ -75,7 +75,7 @@ void Strips::sort(Grains& grains, Resorted& range, int threads) {
     options_.bin.wrap(p);
     const int strip = std::clamp(strip_at(p.x), range.from, range.to - 1);
     cell[k] = ((strip - range.from) * ny_ + cell_at((p.y - y0) * inverse_y_, ny_)) * nz_ +
-                 cell_at(p.z * inverse_z_, nz_);
+              cell_at(p.z * inverse_z_, nz_);
   }
   start.assign(cells + 1, 0);
   for (int k = 0; k < n; ++k) ++start[cell[k] + 1];
@@ -105,7 +105,8 @@ void Strips::size_lists(Strip& strip, int pairs) const {
   std::fill(strip.i.begin() + pairs, strip.i.end(), 0);
   std::fill(strip.j.begin() + pairs, strip.j.end(), 0);
   strip.touching.assign(room / kLanes, 0);
-  const int histories = options_.history ? room : 0, rolling = options_.history && options_.rolling ? room : 0;
+  const int histories = options_.history ? room : 0,
+            rolling = options_.history && options_.rolling ? room : 0;
   if (options_.single) {
     strip.single.tangential.assign(histories, {});
     strip.single.rolling.assign(rolling, {});
@@ -115,24 +116,53 @@ void Strips::size_lists(Strip& strip, int pairs) const {
   }
 }
 
+namespace {
+
+/// Pairs as they are found; memory is kept from call to call.
+struct FoundPairs {
+  std::vector<std::uint32_t> i, j;
+  std::size_t count = 0;
+
+  void make_room(std::size_t more) {
+    if (count + more <= i.size()) return;
+    i.resize(2 * (count + more));
+    j.resize(2 * (count + more));
+  }
+};
+
+/// Bits of the four grains at x, x + 1, … (the first `valid` of them) closer to `at` than √reach2.
+inline unsigned near_four(const Quad* x, int valid, Wide at, double reach2, double width) {
+  const auto d = [&](int k) { return load(x[k]) - at; };
+  Wide r[4] = {d(0), d(1), d(2), d(3)};
+  transpose(r);
+  if (width > 0.0)
+    for (int k = 0; k < 4; ++k) r[1][k] -= width * std::round(r[1][k] / width);
+  const Wide room = reach2 - (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
+  return positive(room) & ((1u << std::min(valid, 4)) - 1u);
+}
+
+}  // namespace
+
 void Strips::list_pairs(const Grains& grains, int k) {
   Strip& strip = strips_[k];
   const int after = next(k);
   const Strip* const beside = after < 0 ? nullptr : &strips_[after];
   const double reach2 = options_.reach * options_.reach;
   const double width = options_.bin.periodic_y ? options_.bin.width : 0.0;
-  const Quad* const x = grains.position.data();
-  strip.i.clear(), strip.j.clear();
+  static thread_local FoundPairs found;
+  found.count = 0;
 
-  // Lists (i, j) with j in cells (y, below … above) of `other`; `base` counts its grains in this strip's terms.
+  // Lists (i, j) for the grains j in [from, to) of `other`; `base` counts its grains in this strip's terms.
   const auto scan = [&](int i, Wide at, const Strip& other, int base, int from, int to) {
-    for (int j = from; j < to; ++j) {
-      Wide d = load(x[other.first + j]) - at;
-      if (width > 0.0) d[1] -= width * std::round(d[1] / width);
-      const Wide d2 = d * d;
-      if (d2[0] + d2[1] + d2[2] >= reach2) continue;
-      strip.i.push_back(kQuad * i);
-      strip.j.push_back(kQuad * (base + j));
+    found.make_room(to - from + 4);
+    const Quad* const x = grains.position.data() + other.first;
+    for (int j = from; j < to; j += 4) {
+      const unsigned hit = near_four(x + j, to - j, at, reach2, width);
+      for (int m = 0; m < 4; ++m) {  // without a branch: who is near cannot be foreseen
+        found.i[found.count] = kQuad * i;
+        found.j[found.count] = kQuad * (base + j + m);
+        found.count += hit >> m & 1;
+      }
     }
   };
   for (int y = 0; y < ny_; ++y)
@@ -140,7 +170,7 @@ void Strips::list_pairs(const Grains& grains, int k) {
       const int cell = y * nz_ + z;
       const int below = std::max(z - 1, 0), above = std::min(z + 1, nz_ - 1) + 1;
       for (int i = strip.cell_start[cell]; i < strip.cell_start[cell + 1]; ++i) {
-        const Wide at = load(x[strip.first + i]);
+        const Wide at = load(grains.position[strip.first + i]);
         const auto row = [&](const Strip& other, int base, Wide from, int wanted) {
           int other_y = wanted;
           if (width > 0.0) {
@@ -160,8 +190,10 @@ void Strips::list_pairs(const Grains& grains, int k) {
         for (int dy = -1; dy <= 1; ++dy) row(*beside, strip.grains(), seen, y + dy);
       }
     }
-  const int pairs = static_cast<int>(strip.i.size());
-  size_lists(strip, pairs);
+  const auto n = static_cast<std::ptrdiff_t>(found.count);
+  strip.i.assign(found.i.begin(), found.i.begin() + n);
+  strip.j.assign(found.j.begin(), found.j.begin() + n);
+  size_lists(strip, static_cast<int>(n));
 }
 
 void Strips::list_walls(const Grains& grains, Strip& strip) const {
@@ -272,7 +304,8 @@ void Strips::carry_walls(std::span<const Strip> old, int old_from, const Resorte
     std::size_t at = 0;
     for (int g = 0; g < strip.grains(); ++g) {
       start[strip.first + g - range.first] = static_cast<std::int32_t>(contacts.size());
-      for (; at < strip.walls.size() && strip.walls[at].grain == g; ++at) contacts.push_back(&strip.walls[at]);
+      for (; at < strip.walls.size() && strip.walls[at].grain == g; ++at)
+        contacts.push_back(&strip.walls[at]);
     }
   }
   start.back() = static_cast<std::int32_t>(contacts.size());
@@ -322,7 +355,7 @@ Resorted Strips::rebuild(Grains& grains, int from, int to, int threads) {
 
 Resorted Strips::rebuild_all(Grains& grains, int threads) {
   double top = 0.0;
-  for (const Quad& p : grains.position) top = std::max(top, p.z);
+  for (int g = 0; g < grains.count; ++g) top = std::max(top, grains.position[g].z);
   nz_ = static_cast<int>(std::clamp(top * inverse_z_, 0.0, kMaxCellsZ - 1.0)) + 1;
   if (strips_.back().last != grains.count) {  // grains were placed anew: all in the first strip
     for (Strip& strip : strips_) strip = {}, strip.first = strip.last = grains.count;

@@ -54,13 +54,13 @@ struct ContactTotals {
 
 /// Sums and extremes over a strip's grains after the last step; a speed or force is that of its largest components.
 struct MotionTotals {
-  double net_force = 0.0;      // Σ |contact forces + weight| of grains, N, when measured
-  double kinetic = 0.0;        // J
-  double height = 0.0;         // Σ z, m
-  Quad velocity;               // Σ v, m/s
-  double step_work = 0.0;      // Σ F·a + T·α: half of it times dt² belongs to the power at mid-step, N²/kg
-  double max_speed = 0.0;      // m/s
-  double speed2 = 0.0;         // Σ v², m²/s²
+  double net_force = 0.0;  // Σ |contact forces + weight| of grains, N, when measured
+  double kinetic = 0.0;    // J
+  double height = 0.0;     // Σ z, m
+  Quad velocity;           // Σ v, m/s
+  double step_work = 0.0;  // Σ F·a + T·α: half of it times dt² belongs to the power at mid-step, N²/kg
+  double max_speed = 0.0;  // m/s
+  double speed2 = 0.0;     // Σ v², m²/s²
   double max_net_force = 0.0;  // N, only when grains may sleep
 };
 
@@ -74,7 +74,7 @@ struct Strip {
   PairHistory<float> single;           // used with precision mixed
   PairHistory<double> full;            // used with precision double
   std::vector<WallContact> walls;
-  double travel = 0.0;                           // bound on the way of any of its grains since it was sorted, m
+  double travel = 0.0;  // bound on the way of any of its grains since it was sorted, m
   double x_min = 0.0, x_max = 0.0, z_max = 0.0;  // of the centres when sorted, m
   bool asleep = false;                           // its grains rest and are not stepped, activity.hpp
   int calm = 0;                                  // steps for which they could have slept

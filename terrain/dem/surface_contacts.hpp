@@ -85,13 +85,14 @@ class SurfaceContacts {
     std::unique_ptr<NodalForceSum> sum;
     ContactMaterial material;
     ContactCoefficients coefficients;
-    std::vector<Vec3> start, end;  // m
-    SurfaceBox near;               // bounds now, grown by the grain radius
+    std::vector<Vec3> start, end;              // m
+    SurfaceBox near;                           // bounds now, grown by the grain radius
     double low_min = -1e300, low_max = 1e300;  // x of the vertices that may reach grains, m
     std::vector<SurfaceContactForce> forces;
   };
   template <class Law>
-  void touch(const Grains& grains, Strip& strip, SurfaceStrip& mine, int k, int g, double dt, const Loads& load);
+  void touch(const Grains& grains, Strip& strip, SurfaceStrip& mine, int k, int g, double dt,
+             const Loads& load);
 
   GrainProperties grain_;
   bool rolling_;

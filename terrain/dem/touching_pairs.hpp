@@ -18,9 +18,9 @@ namespace furrow::dem {
 template <class Real>
 struct TouchingPairs {
   int count = 0;
-  std::vector<Real> dx, dy, dz, gap;        // m, m, m, m²
-  std::vector<std::uint32_t> i, j;          // kQuad times the grain counted from the strip's first
-  std::vector<std::uint32_t> pair;          // twice its index in the list
+  std::vector<Real> dx, dy, dz, gap;  // m, m, m, m²
+  std::vector<std::uint32_t> i, j;    // kQuad times the grain counted from the strip's first
+  std::vector<std::uint32_t> pair;    // twice its index in the list
 
   void reserve(int pairs) {
     const std::size_t room = pairs + 2 * kLanes;
@@ -73,16 +73,6 @@ inline void pack(Wide low, Wide high, unsigned mask, double* out) {
   for (int k = 0; k < 4; ++k) *out = high[k], out += mask >> (k + 4) & 1;
 }
 
-/// Bit k: lane k is positive.
-inline unsigned positive(Wide v) {
-#ifdef __AVX__
-  return static_cast<unsigned>(_mm256_movemask_pd(_mm256_cmp_pd(v, Wide{}, _CMP_GT_OQ)));
-#else
-  unsigned mask = 0;
-  for (int k = 0; k < 4; ++k) mask |= (v[k] > 0.0 ? 1u : 0u) << k;
-  return mask;
-#endif
-}
 }  // namespace detail
 
 /// Fills `out` with the touching pairs of `strip` and notes which they are; what pairs that parted left in their
@@ -97,7 +87,8 @@ void find_touching(Strip& strip, const Quad* x, double diameter, double width, T
   const double* const at = flat(x);
   const std::uint32_t *i = strip.i.data(), *j = strip.j.data();
   std::uint8_t* const touching = strip.touching.data();
-  Real *const dx = out.dx.data(), *const dy = out.dy.data(), *const dz = out.dz.data(), *const gap = out.gap.data();
+  Real *const dx = out.dx.data(), *const dy = out.dy.data(), *const dz = out.dz.data(),
+              *const gap = out.gap.data();
   std::uint32_t *const out_i = out.i.data(), *const out_j = out.j.data(), *const pair = out.pair.data();
   const auto parted = [&](int p, unsigned ended) {
     for (int k = 0; k < kLanes; ++k)
@@ -120,7 +111,7 @@ void find_touching(Strip& strip, const Quad* x, double diameter, double width, T
       }
     const Wide gap_a = diameter2 - (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
     const Wide gap_b = diameter2 - (b[0] * b[0] + b[1] * b[1] + b[2] * b[2]);
-    unsigned now = detail::positive(gap_a) | detail::positive(gap_b) << 4;
+    unsigned now = positive(gap_a) | positive(gap_b) << 4;
     if (p + kLanes > pairs) now &= (1u << (pairs - p)) - 1u;
     const unsigned before = touching[p / kLanes];
     if (const unsigned ended = before & ~now; ended != 0) [[unlikely]]

@@ -39,8 +39,8 @@ GrainSolver clump(FewGrains few, int count, double speed) {
 }
 
 struct Totals {
-  Vec3 momentum = Vec3::Zero(), orbital = Vec3::Zero(), spin = Vec3::Zero();
-  double momentum_scale = 0.0, angular_scale = 0.0;  // Σ of the magnitudes
+  Vec3 momentum = Vec3::Zero(), angular = Vec3::Zero();  // about the middle
+  double speed = 0.0;                                    // Σ m |v|, kg m/s
 };
 
 Totals totals(const GrainSolver& s) {
@@ -50,10 +50,8 @@ Totals totals(const GrainSolver& s) {
     const Vec3 v = vec(s.grains().velocity[k]), w = vec(s.grains().spin[k]);
     const Vec3 arm = vec(s.grains().position[k]) - Vec3(0.6, 0.0, 0.6);
     t.momentum += g.mass * v;
-    t.orbital += g.mass * arm.cross(v);
-    t.spin += g.inertia * w;
-    t.momentum_scale += g.mass * v.norm();
-    t.angular_scale += g.mass * arm.cross(v).norm() + g.inertia * w.norm();
+    t.angular += g.mass * arm.cross(v) + g.inertia * w;
+    t.speed += g.mass * v.norm();
   }
   return t;
 }
@@ -69,26 +67,21 @@ TEST(Conservation, crowd_keeps_momentum_and_angular_momentum_with_spin) {
         few.options.step = 1e-5;
         GrainSolver s = clump(few, count, 0.3);
         const Totals before = totals(s);
-        double exchanged = 0.0, spin_exchanged = 0.0;
-        for (int step = 0; step < 600; ++step) {
-          const Totals now = totals(s);
-          ASSERT_EQ(s.step(1e-5), -1);
-          if (count < 1500 && step % 10 == 0) {
-            const Totals next = totals(s);
-            exchanged += (next.orbital - now.orbital).norm();
-            spin_exchanged += (next.spin - now.spin).norm();
-          }
-        }
+        std::vector<Vec3> spin_before;
+        for (int id = 0; id < count; ++id) spin_before.push_back(spin(s, id));
+        for (int step = 0; step < 600; ++step) ASSERT_EQ(s.step(1e-5), -1);
         const Totals after = totals(s);
+        double exchanged = 0.0;
+        for (int id = 0; id < count; ++id)
+          exchanged += s.params().grain.inertia * (spin(s, id) - spin_before[id]).norm();
         const std::string name = std::string(law) + (rolling > 0.0 ? ", rolling resistance" : "") + ", " +
                                  std::to_string(count) + " grains";
-        EXPECT_GT(s.accounts().contacts, 0);
+        EXPECT_GT(exchanged, 1e-7 * count);
         EXPECT_EQ(s.accounts().wall_impulse.norm(), 0.0);
         verify(name, "momentum lost, of all", (after.momentum - before.momentum).norm(), 0.0, 1e-13,
-               "Newton's third law", before.momentum_scale);
-        verify(name, "angular momentum lost, of all",
-               (after.orbital + after.spin - before.orbital - before.spin).norm(), 0.0, 1e-7,
-               "one contact point for both arms", std::max(before.angular_scale, 1e-300));
+               "Newton's third law", before.speed);
+        verify(name, "angular momentum lost, of the spins' change", (after.angular - before.angular).norm(),
+               0.0, 1e-7, "one contact point for both arms", exchanged);
       }
 }
 
@@ -122,7 +115,7 @@ TEST(Conservation, elastic_collision_keeps_its_energy) {
 /// With friction but no damper a sticking contact gives its shear energy back, less what the unloading spring loses;
 /// energy is never created.
 TEST(Conservation, no_collision_creates_energy) {
-  Worst worst("mindlin, elastic, friction", "kinetic energy gained in a collision", 1e-6, "second law");
+  Worst worst("mindlin, elastic, friction", "kinetic energy gained in a collision", 1e-5, "second law");
   for (const double friction : {0.1, 0.5, 2.0, 1e3})
     for (const double offset : {0.0, 0.004, 0.008, 0.011})
       for (const double spin : {-150.0, 0.0, 150.0}) {

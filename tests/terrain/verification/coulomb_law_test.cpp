@@ -1,6 +1,7 @@
 // Law coulomb, F_e = max(0, √δ (k δ − g v_n)), F_t = μ F_e tanh(c v_s), against its own closed forms.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -79,8 +80,9 @@ TEST(CoulombLaw, restitution_falls_with_speed_as_the_integrated_equation_says) {
 // along the elastic path, twice g ∫ √δ δ̇ dδ, gives
 //   e = 1 − ζ + 3/5 ζ² + O(ζ³),    ζ = 4/5 B(3/5, 3/2) g δ_m^{3/2} / (m v),  δ_m^{5/2} = 5 m v²/(4 k):  ζ ∝ v^{1/5}.
 TEST(CoulombLaw, weak_damping_matches_kuwabara_kono_1987_and_ramirez_1999) {
-  Worst worst("coulomb, weak damping", "(1 - e)/v^(1/5) by zeta, 1 cm/s to 1 m/s", 1e-3,
-              "Kuwabara & Kono 1987, Ramirez et al. 1999 doi:10.1103/PhysRevE.60.4465");
+  Worst worst(
+      "coulomb, weak damping", "(1 - e)/v^(1/5) by zeta, 1 cm/s to 1 m/s", 1e-3,
+      "Kuwabara & Kono 1987 doi:10.1143/JJAP.26.1230, Ramirez et al. 1999 doi:10.1103/PhysRevE.60.4465");
   for (const double speed : {0.01, 0.1, 1.0}) {
     FewGrains few = coulomb();
     few.options.normal_damping = 3.0;

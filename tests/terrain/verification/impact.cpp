@@ -207,7 +207,7 @@ bool slides_throughout(const ImpactCase& impact, const Motion& before) {
 //   loading,   Ṫ = −8G*√R √δ v_s:                x(1−x) v″ + [3/5 − 11/10 x] v′ + 3/10 λ v = 0
 //   unloading, Ṫ = −8G*√R √δ v_s + T δ̇/(2δ):     x(1−x) v″ + [2/5 −  9/10 x] v′ + 3/10 λ v = 0
 // Both are Gauss' equation with c − a − b = ½. Loading starts with T = 0: v = v₀ ₂F₁(a, b; 3/5; x), of which λ = 1 is
-// the approach √(1−x) itself [the loading half: Jäger 1994, Appl. Mech. Rev. 47:35, doi:10.1115/1.3111070]. Unloading:
+// the approach √(1−x) itself [the loading half: Jäger 1994, Appl. Mech. Rev. 47:35]. Unloading:
 //   v = A ₂F₁(a, b; 2/5; x) + B x^{3/5} ₂F₁(a + 3/5, b + 3/5; 8/5; x),
 // matched at x = 1 in v and in v̇ ∝ ±√(1−x) v′. At the end x = 0 and v = A.
 double no_slip_restitution(const ImpactCase& impact) {

@@ -73,7 +73,7 @@ struct ShearModel {
 /// Runge–Kutta integration of the equations above with the law of Eqs. (2), (3) of contact_law.hpp, or a variant.
 Rebound integrated_impact(const ImpactCase& impact, const Motion& before, const ShearModel& shear = {});
 
-/// Frictionless elastic impact [Hertz 1882; Johnson 1985, Contact Mechanics, Eqs. (11.23)–(11.25)].
+/// Frictionless elastic impact [Hertz 1882; Johnson 1985, Contact Mechanics, § 11.4].
 Rebound hertz_impact(double stiffness, double mass, double speed);
 
 /// Rigid-body rebound of a sphere that slides throughout: v' = v − μ (1 + e) v_n, ω' = ω + 5/2 μ (1 + e) v_n / R for

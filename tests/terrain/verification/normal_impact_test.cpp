@@ -1,6 +1,7 @@
 // Normal impacts, law mindlin: tests 1–3 of Chung & Ooi (2011).
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -12,7 +13,7 @@
 namespace furrow::verification {
 namespace {
 
-const std::string kHertz = "Hertz 1882, Johnson 1985 Eqs. (11.23)-(11.25)";
+const std::string kHertz = "Hertz 1882, Johnson 1985 sec. 11.4";
 constexpr int kSteps = 10000;  // per contact
 
 struct Trace {

@@ -17,10 +17,8 @@ constexpr double kPi = std::numbers::pi;
 struct Law {
   double radius, mass, inertia;
   double stiffness, damping, shear_stiffness, shear_damping, friction;
-  ShearSpring spring;
 
-  explicit Law(const ImpactCase& c, const ShearModel& shear_model = {})
-      : radius(c.radius), mass(c.mass()), friction(c.friction), spring(shear_model.spring) {
+  explicit Law(const ImpactCase& c) : radius(c.radius), mass(c.mass()), friction(c.friction) {
     inertia = 0.4 * mass * radius * radius;
     const double compliance = (1.0 - c.sphere.poisson * c.sphere.poisson) / c.sphere.young +
                               (1.0 - c.partner.poisson * c.partner.poisson) / c.partner.young;
@@ -34,7 +32,7 @@ struct Law {
     stiffness = 4.0 / 3.0 * e_star * root_r;
     shear_stiffness = 8.0 * g_star * root_r;
     damping = factor * std::sqrt(2.0 * e_star * root_r * mass);
-    shear_damping = factor * std::sqrt(shear_stiffness * shear_model.damped_mass * mass);
+    shear_damping = factor * std::sqrt(shear_stiffness * 2.0 / 7.0 * mass);
   }
   double elastic(double overlap, double approach) const {
     return stiffness * std::pow(overlap, 1.5) + damping * std::pow(overlap, 0.25) * approach;
@@ -53,10 +51,9 @@ State rate(const Law& law, State s) {
   s[0] = std::max(s[0], 1e-300);
   const double arm = law.radius - s[0], sliding = s[2] - arm * s[3];
   const double shear = total_shear(law, s, sliding);
-  const bool rescaled =
-      law.spring == ShearSpring::secant || (law.spring == ShearSpring::unloads_with_contact && s[1] < 0.0);
+  const double unloading = s[1] < 0.0 ? 0.5 * s[4] * s[1] / s[0] : 0.0;
   return {s[1], -law.elastic(s[0], s[1]) / law.mass, shear / law.mass, -arm * shear / law.inertia,
-          -law.shear_stiffness * std::sqrt(s[0]) * sliding + (rescaled ? 0.5 * s[4] * s[1] / s[0] : 0.0)};
+          -law.shear_stiffness * std::sqrt(s[0]) * sliding + unloading};
 }
 
 State advanced(const State& s, const State& by, double h) {
@@ -171,9 +168,9 @@ Rebound solver_impact(const ImpactCase& impact, const Motion& before, Ground gro
   return out;
 }
 
-Rebound integrated_impact(const ImpactCase& impact, const Motion& before, const ShearModel& shear) {
+Rebound integrated_impact(const ImpactCase& impact, const Motion& before) {
   constexpr int kSteps = 30000;
-  const Law law(impact, shear);
+  const Law law(impact);
   const double h = hertz_impact(law.stiffness, law.mass, before.normal).duration / kSteps;
   State s{1e-9 * h * before.normal, before.normal, before.tangential, before.spin, 0.0};
   Rebound out;

@@ -59,19 +59,8 @@ using Watch = std::function<void(double, double, double)>;
 Rebound solver_impact(const ImpactCase& impact, const Motion& before, Ground ground, int steps,
                       const Watch& watch = {});
 
-/// What happens to the tangential spring when the contact radius changes.
-enum class ShearSpring {
-  unloads_with_contact,  // rescaled on unloading only: the engine's [Thornton et al. 2013]
-  incremental,           // never rescaled
-  secant,                // always rescaled: F = 8 G* √(R*δ) × displacement
-};
-struct ShearModel {
-  ShearSpring spring = ShearSpring::unloads_with_contact;
-  double damped_mass = 2.0 / 7.0;  // of m, for which the tangential damper is made
-};
-
-/// Runge–Kutta integration of the equations above with the law of Eqs. (2), (3) of contact_law.hpp, or a variant.
-Rebound integrated_impact(const ImpactCase& impact, const Motion& before, const ShearModel& shear = {});
+/// Runge–Kutta integration of the equations above with the law of Eqs. (2), (3) of contact_law.hpp.
+Rebound integrated_impact(const ImpactCase& impact, const Motion& before);
 
 /// Frictionless elastic impact [Hertz 1882; Johnson 1985, Contact Mechanics, § 11.4].
 Rebound hertz_impact(double stiffness, double mass, double speed);

@@ -7,14 +7,13 @@
 #include <cmath>
 #include <string>
 
-#include "tests/terrain/few_grains.hpp"
 #include "tests/terrain/surface_meshes.hpp"
+#include "tests/terrain/verification/engine_grains.hpp"
 #include "tests/terrain/verification/record.hpp"
 
 namespace furrow::verification {
 namespace {
 
-using dem::FewGrains;
 using dem::GrainSolver;
 
 constexpr double kRadius = 0.006;   // m
@@ -22,8 +21,8 @@ constexpr double kCohesion = 80e3;  // Pa
 constexpr double kStep = 1e-5;      // s
 constexpr const char* kLaws[] = {"mindlin", "coulomb"};
 
-FewGrains cohesive(const char* law) {
-  FewGrains few;
+EngineGrains cohesive(const char* law) {
+  EngineGrains few;
   few.options.law = law;
   few.options.cohesion = kCohesion;
   few.options.step = kStep;
@@ -32,8 +31,8 @@ FewGrains cohesive(const char* law) {
   return few;
 }
 
-FewGrains heavy(const char* law) {
-  FewGrains few = cohesive(law);
+EngineGrains heavy(const char* law) {
+  EngineGrains few = cohesive(law);
   few.options.density = 2.5e12;
   few.options.restitution = 1.0;
   few.options.normal_damping = 0.0;
@@ -53,13 +52,13 @@ Vec3 force_while_moving(GrainSolver& s, const Vec3& relative) {
   return s.params().grain.mass / kStep * (velocity(s, 1) - 0.5 * relative);
 }
 
-GrainSolver pair(const FewGrains& few, double overlap) {
+GrainSolver pair(const EngineGrains& few, double overlap) {
   return few.make({{0.3, 0, 0.3}, {0.3 + 2 * kRadius - overlap, 0, 0.3}});
 }
 
 TEST(Cohesion, pulling_a_pair_apart_takes_the_cohesion_force) {
   for (const char* law : kLaws) {
-    const FewGrains few = heavy(law);
+    const EngineGrains few = heavy(law);
     const double stiffness = few.coefficients().pair.stiffness, start = 1e-5;
     GrainSolver s = pair(few, start);
     Worst path(std::string(law) + ", pair", "force on the way to pull-off", 1e-5, "K delta^1.5 - F_c");
@@ -80,7 +79,7 @@ TEST(Cohesion, pulling_a_pair_apart_takes_the_cohesion_force) {
 TEST(Cohesion, grain_hangs_from_a_ceiling_if_cohesion_exceeds_its_weight) {
   for (const char* law : kLaws)
     for (const double share : {0.995, 1.005, 3.0}) {
-      FewGrains few = cohesive(law);
+      EngineGrains few = cohesive(law);
       few.gravity = dem::kGravity;
       const double weight = dem::grain_properties(kRadius, few.options.density).mass * few.gravity;
       few.options.cohesion = share * weight / (M_PI * kRadius * kRadius);
@@ -106,7 +105,7 @@ TEST(Cohesion, grain_hangs_from_a_ceiling_if_cohesion_exceeds_its_weight) {
 
 /// Two grains hold each other by cohesion alone and are moved sideways: Mindlin's spring up to μ F_e = μ F_c.
 TEST(Cohesion, pair_without_net_load_slips_at_friction_times_cohesion_force) {
-  FewGrains few = heavy("mindlin");
+  EngineGrains few = heavy("mindlin");
   few.options.friction = 0.05;  // a short way to slip, on which the line of centres hardly turns
   const dem::ContactCoefficients k = few.coefficients().pair;
   const double limit = few.options.friction * cohesion_force();
@@ -128,7 +127,7 @@ TEST(Cohesion, pair_without_net_load_slips_at_friction_times_cohesion_force) {
 
 /// Law coulomb slides at any load: F_t = μ F_c tanh(c v).
 TEST(Cohesion, coulomb_pair_without_net_load_resists_by_speed) {
-  const FewGrains few = heavy("coulomb");
+  const EngineGrains few = heavy("coulomb");
   const double limit = few.options.friction * cohesion_force();
   Worst worst("coulomb, pair, no net load", "friction by speed, of mu F_c", 1e-4, "mu F_c tanh(c v)");
   for (const double speed : {0.001, 0.01, 0.1, 1.0}) {

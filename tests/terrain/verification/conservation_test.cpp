@@ -5,20 +5,19 @@
 #include <random>
 #include <string>
 
-#include "tests/terrain/few_grains.hpp"
+#include "tests/terrain/verification/engine_grains.hpp"
 #include "tests/terrain/verification/record.hpp"
 
 namespace furrow::verification {
 namespace {
 
-using dem::FewGrains;
 using dem::GrainSolver;
 
 constexpr double kSpacing = 0.0124;  // m, of the grid that grains start from
 
 /// `count` grains in a ball-like clump in the middle of a bin too wide for them to meet its walls, all with random
 /// velocity and spin, drawn towards the middle.
-GrainSolver clump(FewGrains few, int count, double speed) {
+GrainSolver clump(EngineGrains few, int count, double speed) {
   few.options.length = few.options.width = 1.2;
   const int side = static_cast<int>(std::ceil(std::cbrt(count)));
   std::mt19937_64 bits(11);
@@ -60,7 +59,7 @@ TEST(Conservation, crowd_keeps_momentum_and_angular_momentum_with_spin) {
   for (const char* law : {"mindlin", "coulomb"})
     for (const double rolling : {0.0, 0.1})
       for (const int count : {2, 60, 1500}) {  // 1500: pairs within and between the solver's blocks
-        FewGrains few;
+        EngineGrains few;
         few.options.law = law;
         few.options.rolling_friction = rolling;
         few.options.cohesion = 20e3;
@@ -90,7 +89,7 @@ TEST(Conservation, elastic_collision_keeps_its_energy) {
   Worst worst("mindlin, elastic, frictionless", "kinetic energy after a pair's collision", 1e-5,
               "energy balance");
   for (const double offset : {0.0, 0.004, 0.008, 0.011}) {  // m, of the lines of flight
-    FewGrains few;
+    EngineGrains few;
     few.options.restitution = 1.0;
     few.options.friction = 0.0;
     const double gap = std::sqrt(0.012 * 0.012 - offset * offset) + 1e-6;
@@ -119,7 +118,7 @@ TEST(Conservation, no_collision_creates_energy) {
   for (const double friction : {0.1, 0.5, 2.0, 1e3})
     for (const double offset : {0.0, 0.004, 0.008, 0.011})
       for (const double spin : {-150.0, 0.0, 150.0}) {
-        FewGrains few;
+        EngineGrains few;
         few.options.restitution = 1.0;
         few.options.friction = friction;
         const double gap = std::sqrt(0.012 * 0.012 - offset * offset) + 1e-6;

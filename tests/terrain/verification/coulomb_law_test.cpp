@@ -5,31 +5,30 @@
 #include <cmath>
 #include <string>
 
-#include "tests/terrain/few_grains.hpp"
 #include "tests/terrain/surface_meshes.hpp"
+#include "tests/terrain/verification/engine_grains.hpp"
 #include "tests/terrain/verification/record.hpp"
 
 namespace furrow::verification {
 namespace {
 
-using dem::FewGrains;
 using dem::GrainSolver;
 
 constexpr double kRadius = 0.006;  // m
 
-FewGrains coulomb() {
-  FewGrains few;
+EngineGrains coulomb() {
+  EngineGrains few;
   few.options.law = "coulomb";
   few.options.friction_impulse_limit = false;
   return few;
 }
 
-double mass_of(const FewGrains& few) {
+double mass_of(const EngineGrains& few) {
   return dem::grain_properties(few.options.radius, few.options.density).mass;
 }
 
 /// Head-on collision of two grains; ratio of relative speeds after and before.
-double solver_restitution(const FewGrains& few, double speed, int steps) {
+double solver_restitution(const EngineGrains& few, double speed, int steps) {
   GrainSolver s = few.make({{0.3 - kRadius, 0, 0.3}, {0.3 + kRadius, 0, 0.3}});
   set_velocity(s, 0, {0.5 * speed, 0, 0});
   set_velocity(s, 1, {-0.5 * speed, 0, 0});
@@ -68,7 +67,7 @@ TEST(CoulombLaw, restitution_falls_with_speed_as_the_integrated_equation_says) {
               "Runge-Kutta integration of the same equation");
   double before = 1.0;
   for (const double speed : {0.001, 0.01, 0.1, 0.3, 1.0, 3.0}) {
-    const FewGrains few = coulomb();
+    const EngineGrains few = coulomb();
     const double truth = integrated_restitution(1e6, 60.0, 0.5 * mass_of(few), speed);
     worst.add(solver_restitution(few, speed, 10000), truth, 0.0, brief(speed) + " m/s");
     EXPECT_LT(truth, before);
@@ -84,7 +83,7 @@ TEST(CoulombLaw, weak_damping_matches_kuwabara_kono_1987_and_ramirez_1999) {
       "coulomb, weak damping", "(1 - e)/v^(1/5) by zeta, 1 cm/s to 1 m/s", 1e-3,
       "Kuwabara & Kono 1987 doi:10.1143/JJAP.26.1230, Ramirez et al. 1999 doi:10.1103/PhysRevE.60.4465");
   for (const double speed : {0.01, 0.1, 1.0}) {
-    FewGrains few = coulomb();
+    EngineGrains few = coulomb();
     few.options.normal_damping = 3.0;
     const double k = few.options.normal_stiffness, m = 0.5 * mass_of(few);
     const double depth = std::pow(5.0 * m * speed * speed / (4.0 * k), 0.6);  // δ_m^{3/2}
@@ -100,7 +99,7 @@ TEST(CoulombLaw, block_creeps_down_an_inclined_mesh_at_the_closed_form_rate) {
               "v = artanh(tan a/mu)/c");
   for (const double scale : {5.0, 50.0})
     for (const double degrees : {2.0, 10.0, 20.0, 35.0}) {
-      FewGrains few = coulomb();
+      EngineGrains few = coulomb();
       few.options.friction_velocity_scale = scale;
       few.gravity = dem::kGravity;
       const double angle = degrees * M_PI / 180.0;
@@ -134,7 +133,7 @@ TEST(CoulombLaw, block_creeps_down_an_inclined_mesh_at_the_closed_form_rate) {
 // A sphere put down sliding: I ω̇ = R F, m v̇ = −F, so v̇_s = −7/2 μ g tanh(c v_s) and
 //   sinh(c v_s) = sinh(c u₀) exp(−7/2 μ g c t),     v = (5 u₀ + 2 v_s)/7 → 5 u₀/7.
 TEST(CoulombLaw, sliding_sphere_follows_its_closed_form_to_five_sevenths) {
-  FewGrains few = coulomb();
+  EngineGrains few = coulomb();
   few.options.friction = 0.3;
   few.gravity = dem::kGravity;
   const double speed = 0.4, c = few.options.friction_velocity_scale;

@@ -119,7 +119,7 @@ Rebound solver_impact(const ImpactCase& impact, const Motion& before, Ground gro
   const double r = impact.radius;
   dem::SolverParams params;
   params.grain = dem::grain_properties(r, impact.density);
-  params.bin = {80.0 * r, 80.0 * r};
+  params.bin.length = params.bin.width = 80.0 * r;
   params.gravity = 0.0;
   params.skin = 0.3 * r;
   dem::GrainSolver solver(params);

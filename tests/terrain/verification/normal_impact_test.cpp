@@ -33,7 +33,7 @@ struct Trace {
 Rebound pair_impact(double radius, double density, const Elastic& material, double speed, Trace& trace) {
   dem::SolverParams params;
   params.grain = dem::grain_properties(radius, density);
-  params.bin = {80.0 * radius, 80.0 * radius};
+  params.bin.length = params.bin.width = 80.0 * radius;
   params.gravity = 0.0;
   params.skin = 0.3 * radius;
   dem::GrainSolver solver(params);

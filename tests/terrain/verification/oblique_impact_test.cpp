@@ -20,7 +20,7 @@ namespace {
 
 using chung_ooi::Point;
 
-constexpr int kSteps = 4000;  // per contact
+constexpr int kSteps = 3000;  // per contact
 constexpr double kDegree = M_PI / 180.0;
 const std::string kIntegrated = "Runge-Kutta integration of the same equations";
 const std::string kSliding = "rigid-body sliding rebound, Maw et al. 1976 doi:10.1016/0043-1648(76)90201-5";
@@ -202,7 +202,7 @@ Motion pair_impact(const ImpactCase& impact, double speed, double spin_1, double
   const double r = impact.radius;
   dem::SolverParams params;
   params.grain = dem::grain_properties(r, impact.density);
-  params.bin = {80.0 * r, 80.0 * r};
+  params.bin.length = params.bin.width = 80.0 * r;
   params.gravity = 0.0;
   params.skin = 0.3 * r;
   dem::GrainSolver solver(params);

@@ -4,14 +4,13 @@
 #include <cmath>
 #include <string>
 
-#include "tests/terrain/few_grains.hpp"
 #include "tests/terrain/surface_meshes.hpp"
+#include "tests/terrain/verification/engine_grains.hpp"
 #include "tests/terrain/verification/record.hpp"
 
 namespace furrow::verification {
 namespace {
 
-using dem::FewGrains;
 using dem::GrainSolver;
 
 constexpr double kRadius = 0.006;  // m
@@ -31,7 +30,7 @@ void attach(GrainSolver& s, const testing::Surface& surface, const dem::ContactC
 
 /// Nine grains moved as one rigid block: only its height is free, under its weight.
 TEST(SlidingBlock, feels_no_edge_in_half_a_metre) {
-  FewGrains few;
+  EngineGrains few;
   few.options.friction = 0.4;
   few.options.restitution = 0.3;
   few.options.length = 1.0;
@@ -70,7 +69,7 @@ TEST(SlidingBlock, feels_no_edge_in_half_a_metre) {
 
 /// Static friction of 2/7 of the downhill weight must act all the way; history lost at one edge would show.
 TEST(SlidingBlock, sphere_rolls_half_a_metre_down_a_mesh_at_five_sevenths_g) {
-  FewGrains few;
+  EngineGrains few;
   few.options.friction = 0.6;
   few.options.length = 1.0;
   few.gravity = dem::kGravity;
@@ -107,7 +106,7 @@ TEST(SlidingBlock, sphere_rolls_half_a_metre_down_a_mesh_at_five_sevenths_g) {
 /// A grain of 2000 t that keeps its velocity draws Mindlin's spring while its contact crosses edges and a vertex.
 TEST(SlidingBlock, sticking_contact_keeps_its_spring_across_edges_and_vertices) {
   for (const bool through_vertex : {false, true}) {
-    FewGrains few;
+    EngineGrains few;
     few.options.friction = 1e3;
     few.options.restitution = 1.0;
     few.options.density = 2.5e12;

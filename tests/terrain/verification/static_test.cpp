@@ -5,15 +5,14 @@
 #include <numeric>
 #include <string>
 
-#include "tests/terrain/few_grains.hpp"
 #include "tests/terrain/surface_meshes.hpp"
+#include "tests/terrain/verification/engine_grains.hpp"
 #include "tests/terrain/verification/impact.hpp"
 #include "tests/terrain/verification/record.hpp"
 
 namespace furrow::verification {
 namespace {
 
-using dem::FewGrains;
 using dem::GrainSolver;
 
 constexpr double kRadius = 0.006;  // m
@@ -33,7 +32,7 @@ TEST(Static, column_stands_on_its_exact_overlaps) {
   for (const char* law : {"mindlin", "coulomb"})
     for (const double cohesion : {0.0, 20e3})
       for (const Ground ground : {Ground::plane, Ground::mesh}) {
-        FewGrains few;
+        EngineGrains few;
         few.options.law = law;
         few.options.cohesion = cohesion;
         few.options.step = kStep;
@@ -85,7 +84,7 @@ TEST(Static, column_stands_on_its_exact_overlaps) {
 /// apart; friction holds them. By symmetry each lower grain carries a third of the upper one's weight, and its contact
 /// with the ground 4/3 of a weight.
 TEST(Static, tetrahedron_shares_its_weight_by_symmetry) {
-  FewGrains few;
+  EngineGrains few;
   few.options.friction = 0.9;
   few.options.step = kStep;
   few.gravity = dem::kGravity;

@@ -17,6 +17,7 @@ struct GrainBench {
   int steps = 1000;
   int warm = 100;       // steps before, not timed
   double settle = 0.0;  // first settled for that long at most, s
+  std::string save;     // CSV that receives the positions before the timed steps; empty: none
 };
 
 /// Every grain is integrated and every contact evaluated in every step. @throws Error

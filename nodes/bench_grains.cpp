@@ -88,6 +88,9 @@ std::string bench_grains(const GrainBench& bench) {
         throw physics_error("a grain left the bin: the bed is not at rest with this law");
   };
   steps(bench.warm);
+  if (!bench.save.empty())
+    write_positions_csv(bench.save, std::span(solver.grains().position).first(solver.grains().count),
+                        0.5 * kReferenceWidth);
   solver.reset_accounts();
   const auto begin = std::chrono::steady_clock::now();
   steps(bench.steps);

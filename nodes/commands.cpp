@@ -51,6 +51,7 @@ void add_grain_bench(CLI::App& command, GrainBench& bench) {
   command.add_option("--warm", bench.warm, "steps before that")->capture_default_str();
   command.add_option("--settle", bench.settle, "let the bed settle for that long at most first, s")
       ->capture_default_str();
+  command.add_option("--save-bed", bench.save, "write the positions before the timed steps to this CSV");
   command.add_option("--step", bench.step, "time step, s")->capture_default_str();
 }
 

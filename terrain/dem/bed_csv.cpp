@@ -46,4 +46,12 @@ std::vector<Quad> read_positions_csv(const std::filesystem::path& file) {
   return positions;
 }
 
+void write_positions_csv(const std::filesystem::path& file, std::span<const Quad> positions, double y) {
+  std::ofstream out(file);
+  out.precision(17);
+  out << "x_m,y_m,z_m\n";
+  for (const Quad& p : positions) out << p.x << ',' << p.y + y << ',' << p.z << '\n';
+  if (!out.flush()) throw io_error(file.string(), "the bed cannot be written");
+}
+
 }  // namespace furrow::dem

@@ -60,6 +60,11 @@ int GrainSolver::index_of(int id) const {
   return static_cast<int>(std::find(grains_.id.begin(), grains_.id.end(), id) - grains_.id.begin());
 }
 
+void GrainSolver::wake(int grain) {
+  for (int k = 0; k < strips_.count(); ++k)
+    if (grain >= strips_[k].first && grain < strips_[k].last) strips_[k].asleep = false, strips_[k].calm = 0;
+}
+
 double GrainSolver::rebuilds() const {
   return static_cast<double>(strips_.resorted()) / std::max(1, grains_.count);
 }

@@ -83,6 +83,8 @@ class GrainSolver {
   const SurfaceContacts& surfaces() const { return surfaces_; }
   const Accounts& accounts() const { return accounts_; }
   void reset_accounts();
+  /// Wakes the strip of a grain whose motion was set from outside.
+  void wake(int grain);
   /// Current index of the grain with this id.
   int index_of(int id) const;
   /// No grain reaches higher, m.

@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 #include <span>
 #include <variant>
 
@@ -118,6 +120,11 @@ herr_t read_object(hid_t file, const char* name, const H5O_info_t* info, void* t
   return good ? 0 : -1;
 }
 
+std::string file_bytes(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
 }  // namespace
 
 std::string bed_digest(const TerrainOptions& o) {
@@ -142,6 +149,12 @@ std::string bed_digest(const TerrainOptions& o) {
   const double step = settle_step(o);
   hash.add(&step, sizeof step);
   hash.add(&o.seed, sizeof o.seed);
+  // Options that came later count only where they are used, so that digests of older beds stay what they were.
+  if (o.bed_generator != "poisson") hash.add(o.bed_generator);
+  if (o.compaction_pressure > 0.0) hash.add(&o.compaction_pressure, sizeof o.compaction_pressure);
+  if (o.periodic_x || o.periodic_y) hash.add(o.periodic_x ? o.periodic_y ? "xy" : "x" : "y");
+  if (o.precision != "mixed") hash.add(o.precision);
+  if (!o.bed.empty()) hash.add(file_bytes(o.bed));
   return hash.hex();
 }
 

@@ -11,8 +11,10 @@
 #include "nodes/bench.hpp"
 #include "nodes/explain.hpp"
 #include "nodes/rank_table.hpp"
+#include "nodes/run_directory.hpp"
 #include "nodes/scenario.hpp"
 #include "nodes/schema.hpp"
+#include "nodes/soil_estimate.hpp"
 #include "nodes/validate.hpp"
 #include "protocol/mpi_transport.hpp"
 
@@ -21,7 +23,7 @@ namespace {
 
 /// What the user typed, as CLI11 fills it in.
 struct Typed {
-  std::string scenario, out, threads, key, directory;
+  std::string scenario, out, threads, key, directory, soil;
   std::vector<std::string> settings;
   bool overwrite = false, profile = false, json = false;
 };
@@ -53,6 +55,19 @@ void add_grain_bench(CLI::App& command, GrainBench& bench) {
       ->capture_default_str();
   command.add_option("--save-bed", bench.save, "write the positions before the timed steps to this CSV");
   command.add_option("--step", bench.step, "time step, s")->capture_default_str();
+}
+
+void add_soil_options(CLI::App& command, SoilArguments& soil) {
+  command.add_option("--out", soil.out,
+                     "new folder for the results (default: results/<scenario>-soil-NNN here)");
+  command.add_flag("--overwrite", soil.overwrite, "let --out replace the results of an earlier run");
+  command.add_option("--seeds", soil.seeds, "beds per test, from run.seed on")->capture_default_str();
+  command.add_option("--speed", soil.speed, "of plate, shear box and cone, m/s")->capture_default_str();
+  command.add_option("--only", soil.only, "this test only: plate, shear, cone or repose; may be repeated")
+      ->take_all()
+      ->allow_extra_args(false);
+  command.add_flag("--quick", soil.quick,
+                   "small boxes and one seed: a look within seconds, no result to quote");
 }
 
 Settings settings_of(const Typed& typed) {
@@ -88,6 +103,11 @@ ExitCode ranks_command(const Typed& typed, const std::vector<std::string>& comma
 }
 
 ExitCode report_command(const Typed& typed) {
+  require_run_directory(typed.directory);
+  if (!typed.soil.empty()) {
+    const std::string theory = write_soil_estimate(typed.directory, typed.soil);
+    std::cerr << "furrow: " << theory << "\n";
+  }
   for (const auto& plot : make_report(typed.directory, false)) std::cout << plot.string() << "\n";
   return ExitCode::done;
 }
@@ -153,8 +173,20 @@ ExitCode run_command_line(int argc, char** argv) {
   CLI::App& explained =
       *app.add_subcommand("explain", "what a scenario key means; without KEY lists all keys");
   explained.add_option("KEY", typed.key, "dotted path, for example terrain.cohesion");
+  CLI::App& bed = *app.add_subcommand(
+      "bed", "prepares and settles the bed of a scenario, keeps it for later runs; prints JSON");
+  add_scenario(bed, typed);
+  SoilArguments soil_arguments;
+  CLI::App& soil =
+      *app.add_subcommand("soil",
+                          "virtual soil tests on a scenario's grains: plate sinkage, direct shear, "
+                          "cone, angle of repose; prints JSON");
+  add_scenario(soil, typed);
+  add_soil_options(soil, soil_arguments);
   CLI::App& report = *app.add_subcommand("report", "plots of a finished run, as PNG files in its folder");
-  report.add_option("DIR", typed.directory, "folder of the run")->required();
+  report.add_option("DIR", typed.directory, "folder of the run, or of soil tests")->required();
+  report.add_option("--soil", typed.soil,
+                    "soil.json of 'furrow soil': puts what soil theory expects beside the run's result");
 
   CLI::App& bench = *app.add_subcommand("bench", "how fast this machine is; prints JSON");
   bench.require_subcommand(1);
@@ -174,6 +206,8 @@ ExitCode run_command_line(int argc, char** argv) {
   if (run.parsed()) return run_command(typed, argc, argv);
   if (validate.parsed()) return validate_command(typed);
   if (ranks.parsed()) return ranks_command(typed, {argv, argv + argc});
+  if (soil.parsed()) return soil_command(load(typed), soil_arguments);
+  if (bed.parsed()) return bed_command(load(typed));
   if (report.parsed()) return report_command(typed);
   if (bench_of_grains.parsed()) {
     std::cout << bench_grains(grains);

@@ -34,8 +34,26 @@ void let_first_rank_speak();
 /// `furrow report`: makes the plots of a run (commands_report.cpp). @throws Error
 std::vector<std::filesystem::path> make_report(const std::filesystem::path& run, bool quiet);
 
+struct SoilArguments {
+  std::filesystem::path out;  // empty: a fresh folder under results/
+  bool overwrite = false;
+  bool quick = false;
+  int seeds = 3;
+  double speed = 0.1;             // of the tools, m/s
+  std::vector<std::string> only;  // plate, shear, cone, repose; empty: all
+};
+
+/// `furrow soil` (commands_soil.cpp). @throws Error
+ExitCode soil_command(const struct Scenario& scenario, const SoilArguments& arguments);
+
+/// `furrow bed` (commands_bed.cpp). @throws Error
+ExitCode bed_command(const struct Scenario& scenario);
+
 /// What the end of a run tells people, from summary.json (commands_result.cpp).
 std::string result_text(const std::filesystem::path& run, const struct Scenario& scenario);
+
+/// @throws Error(bad_input) unless the terrain is made of grains; `what` says why it must be
+void require_grains(const struct Scenario& scenario, const std::string& what);
 
 /// "furrow: error: …", one line for every line of `text`.
 void print_error(const std::string& text);

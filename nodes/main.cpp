@@ -8,7 +8,9 @@
 #include "protocol/mpi_transport.hpp"
 
 int main(int argc, char** argv) {
-  if (furrow::launched_by_mpi()) furrow::wait_passively(argv);
+  // Threads that spin while they wait make a short bed slow as soon as the machine has something else to do.
+  const bool settles = argc > 1 && std::string(argv[1]) == "bed";
+  if (settles || furrow::launched_by_mpi()) furrow::wait_passively(argv);
   furrow::ExitCode code = furrow::ExitCode::done;
   try {
     code = furrow::run_command_line(argc, argv);

@@ -39,7 +39,10 @@ std::size_t terminal_width() {
 
 std::string progress_text(const Progress& p) {
   if (p.phase != "running") {
-    return p.share > 0.0 && p.share < 1.0 ? fmt::format("{} {:.0f} %", p.phase, 100.0 * p.share) : p.phase;
+    if (p.share <= 0.0 || p.share >= 1.0) return p.phase;
+    const std::string left =
+        p.eta >= 0.0 && p.share >= kShareForGuess ? fmt::format("   {} left", duration_text(p.eta)) : "";
+    return fmt::format("{} {:.0f} %{}", p.phase, 100.0 * p.share, left);
   }
   std::string text = fmt::format("t {:.3f} of {:g} s   pull {:.0f} N   sinkage {:.1f} mm   {:.2f} m/s",
                                  p.time, p.end, p.pull, 1e3 * p.sinkage, p.speed);

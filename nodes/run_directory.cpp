@@ -25,8 +25,9 @@ constexpr int kMostNumbers = 100000;
 /// What runs leave behind; nothing else is ever removed.
 bool is_result(const fs::path& entry) {
   const std::string name = entry.filename().string();
-  constexpr std::array<const char*, 6> kNames{"scenario.json", "results.h5",   "results.xdmf",
-                                              "run.log",       "profile.json", "report.json"};
+  constexpr std::array<const char*, 12> kNames{
+      "scenario.json", "results.h5", "results.xdmf", "run.log",  "profile.json", "report.json",
+      "soil.json",     "plate.csv",  "shear.csv",    "cone.csv", "repose.csv",   "soil_estimate.json"};
   return std::find(kNames.begin(), kNames.end(), name) != kNames.end() || name == "frames" ||
          name == "checkpoints" || (name.starts_with("timeseries") && entry.extension() == ".csv") ||
          (name.starts_with("summary") && entry.extension() == ".json") || entry.extension() == ".png";

@@ -184,6 +184,8 @@ void take_terrain(const json& j, Scenario& s) {
   o.width = j["width"];
   o.seed = s.run.seed;
   if (j["bed"].is_string()) o.bed = find_file(j["bed"], "terrain.bed", s.file).string();
+  o.bed_generator = j["bed_generator"];
+  o.compaction_pressure = j["compaction_pressure"];
   o.cache = j["cache"];
   o.young_modulus = j["young_modulus"];
   o.poisson_ratio = j["poisson_ratio"];
@@ -260,6 +262,7 @@ Scenario load_scenario(const std::filesystem::path& file, const Settings& settin
     check_scenario(s, default_start);
   } catch (const Error& error) {  // what looks wrong may be why it does not fit
     std::string text = error.what();
+    if (text.starts_with("scenario: ")) text.replace(0, 8, file.string());  // the terrain knows no file
     for (const std::string& warning : unusual) text += "\n" + warning;
     throw Error(error.code(), text);
   }

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Plots of a run: PNG files in the run directory, their names as a JSON list on stdout.
+"""Plots of a run or of soil tests: PNG files in the run directory, their names as a JSON list on stdout.
 
 usage: report.py DIR [--out FOLDER] [--only NAME]...
 
@@ -17,7 +17,7 @@ matplotlib.use("Agg")
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-from plot import charts, ground, scene  # noqa: E402
+from plot import charts, ground, scene, soil  # noqa: E402
 from plot.run_data import Missing, Run  # noqa: E402
 
 PLOTS = {
@@ -28,6 +28,7 @@ PLOTS = {
     "energy": charts.energy,
     "scene": scene.scene,
 }
+SOIL_PLOTS = {"plate": soil.plate, "shear": soil.shear, "cone": soil.cone, "repose": soil.repose}
 
 
 def words(run):
@@ -46,21 +47,26 @@ def main():
     parser = argparse.ArgumentParser(description="Plots of a run as PNG files.")
     parser.add_argument("directory", type=pathlib.Path)
     parser.add_argument("--out", type=pathlib.Path, help="folder for the plots (default: the run directory)")
-    parser.add_argument("--only", action="append", choices=PLOTS, help="this plot only; may be repeated")
+    parser.add_argument("--only", action="append", choices=PLOTS | SOIL_PLOTS, help="this plot only; may be repeated")
     arguments = parser.parse_args()
     out = arguments.out or arguments.directory
     try:
-        run = Run(arguments.directory)
+        of_soil = (arguments.directory / "soil.json").is_file()
+        run = soil.Soil(arguments.directory) if of_soil else Run(arguments.directory)
         out.mkdir(parents=True, exist_ok=True)
     except (OSError, ValueError) as error:
         print(f"furrow: error: {arguments.directory}: {error}", file=sys.stderr)
         return 5
     written = []
-    for name in arguments.only or PLOTS:
+    plots = SOIL_PLOTS if of_soil else PLOTS
+    for name in arguments.only or plots:
         try:
-            figure = PLOTS[name](run)
+            figure = plots[name](run)
         except Missing as reason:
             print(f"report: no {name}.png: {reason}", file=sys.stderr)
+            continue
+        except (KeyError, TypeError, ValueError) as error:
+            print(f"report: no {name}.png: {error!r}", file=sys.stderr)
             continue
         except OSError as error:  # h5py's error for a damaged file
             print(f"report: no {name}.png: a file in {arguments.directory} is damaged: {error}", file=sys.stderr)
@@ -72,7 +78,8 @@ def main():
             return 5
         matplotlib.pyplot.close(figure)
         written.append(str(out / f"{name}.png"))
-    words(run)
+    if not of_soil:
+        words(run)
     print(json.dumps(written))
     if not written:
         print(f"furrow: error: {arguments.directory}: holds nothing to plot", file=sys.stderr)

@@ -22,8 +22,10 @@ struct TerrainOptions {
   bool periodic_x = false;  // grains that leave at one end of the bin come back at the other; no end walls
   bool periodic_y = false;  // the same across; no side walls
   std::uint64_t seed = 1;   // run.seed
-  std::string bed;          // a saved bed to start from; empty: generate or take from the cache
-  bool cache = true;        // keep settled beds under the user's cache directory
+  std::string bed;  // file: a settled bed (HDF5), or positions to settle (CSV x_m,y_m,z_m); empty: generate
+  std::string bed_generator = "poisson";  // poisson | lattice: where the grains of a new bed start
+  double compaction_pressure = 0.0;       // a lid pressed on the settled bed and lifted again, Pa; 0: none
+  bool cache = true;                      // keep settled beds under the user's cache directory
   // Contact between grains and of grains with walls.
   double young_modulus = 2.49e7;         // Pa, law mindlin
   double poisson_ratio = 0.3;            // -

@@ -65,8 +65,13 @@ def pull_slip_sinkage(run):
             reasons = statistics.get("unsteady_because") or ["see summary.json"]
             top.text(0.99, 0.02, "NOT STEADY\n" + "\n".join(reasons), transform=top.transAxes, ha="right",
                      va="bottom", color=RED, fontsize=8.5)
+    theory = run.soil_estimate.get("drawbar_pull_N")
+    if theory is not None:
+        error = run.soil_estimate.get("drawbar_pull_standard_error_N") or 0.0
+        top.axhline(theory, color=ORANGE, ls="--", lw=1.5, label=f"soil theory for a rigid wheel, furrow soil's parameters: "
+                    f"{theory:.0f} ± {error:.0f} N")
     top.axhline(0.0, color="black", lw=0.8)
-    settled_limits(top, run, pull)
+    settled_limits(top, run, *([pull] if theory is None else [pull, np.full_like(pull, theory)]))
     top.set_ylabel("drawbar pull, N")
     top.set_title("Drawbar pull: positive when the tire pulls the rig along")
     top.legend(loc="upper right", ncol=1)

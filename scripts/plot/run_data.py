@@ -27,6 +27,7 @@ class Run:
         self.directory = directory
         self.summary = self._json("summary.json")
         self.scenario = self._json("scenario.json")
+        self.soil_estimate = self._json("soil_estimate.json")
         self.series = self._read_series()
 
     def _json(self, name):

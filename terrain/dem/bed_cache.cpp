@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 #include <span>
 #include <variant>
 
@@ -119,6 +121,11 @@ herr_t read_object(hid_t file, const char* name, const H5O_info_t* info, void* t
   return good ? 0 : -1;
 }
 
+std::string file_bytes(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
 }  // namespace
 
 std::string bed_digest(const TerrainOptions& o) {
@@ -147,6 +154,9 @@ std::string bed_digest(const TerrainOptions& o) {
   const double step = settle_step(o);
   hash.add(&step, sizeof step);
   hash.add(&o.seed, sizeof o.seed);
+  hash.add(o.bed_generator);
+  hash.add(&o.compaction_pressure, sizeof o.compaction_pressure);
+  if (!o.bed.empty()) hash.add(file_bytes(o.bed));
   return hash.hex();
 }
 

@@ -9,10 +9,9 @@
 #include <fmt/format.h>
 
 #include "protocol/error.hpp"
-#include "terrain/dem/bed_cache.hpp"
+#include "terrain/dem/bed_generators.hpp"
 #include "terrain/dem/bed_height.hpp"
-#include "terrain/dem/bed_layers.hpp"
-#include "terrain/dem/bed_settling.hpp"
+#include "terrain/dem/bed_preparation.hpp"
 #include "terrain/dem/solver_setup.hpp"
 
 namespace furrow {
@@ -48,6 +47,7 @@ void check(const TerrainOptions& o) {
   require(o.normal_damping >= 0.0, "normal_damping", o.normal_damping, "0 or more, N s/m^1.5");
   require(o.friction_velocity_scale > 0.0, "friction_velocity_scale", o.friction_velocity_scale,
           "a positive number, s/m");
+  check_bed_options(o);
   if (!(o.step > 0.0))
     throw input_error("scenario", "run.step",
                       fmt::format("{} is out of range, expected a positive number, s", o.step));
@@ -67,21 +67,13 @@ class DemTerrain : public Terrain {
 
   double prepare(const ProgressCall& progress) override {
     const auto begin = std::chrono::steady_clock::now();
-    Archive bed;
-    if (!options_.bed.empty()) {
-      bed = read_bed(options_.bed);
-      check_bed(bed);
-    } else {
-      const std::filesystem::path file =
-          options_.cache ? bed_cache_file(bed_digest(options_)) : std::filesystem::path();
-      if (!from_cache(file, bed)) bed = settled_bed(file, progress);
-    }
+    const PreparedBed prepared = prepare_bed(options_, progress);
     // A run from a cached bed and the run that settled it both start here, from the same archive.
-    solver_.restore(bed);
+    solver_.restore(prepared.bed);
     solver_.set_threads(std::max(1, options_.threads));
     solver_.set_coefficients(run_coefficients(options_, dt_));
     solver_.reset_accounts();
-    if (progress && bed.get<double>("bed/settled", 4)[0] == 0.0) progress("bed not settled", 1.0);
+    if (progress && !prepared.settled.settled) progress("bed not settled", 1.0);
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   }
 
@@ -201,12 +193,13 @@ class DemTerrain : public Terrain {
       solver_.surfaces().set_coefficients(k, surface_coefficients(solver_.surfaces().material(k)));
   }
 
-  /// The side of the bin that the box (lo, hi) crosses, or null.
+  /// The side of the bin that the box (lo, hi) crosses, or null. Surfaces may stand out of periodic sides; they have
+  /// no images, so one that acts there spans the whole side.
   const char* beyond(const Vec3& lo, const Vec3& hi) const {
-    if (!(lo.x() >= 0.0)) return "the wall x = 0";
-    if (!(hi.x() <= options_.length)) return "the wall x = length";
-    if (!(lo.y() >= -0.5 * options_.width)) return "the wall y = -width/2";
-    if (!(hi.y() <= 0.5 * options_.width)) return "the wall y = width/2";
+    if (!options_.periodic_x && !(lo.x() >= 0.0)) return "the wall x = 0";
+    if (!options_.periodic_x && !(hi.x() <= options_.length)) return "the wall x = length";
+    if (!options_.periodic_y && !(lo.y() >= -0.5 * options_.width)) return "the wall y = -width/2";
+    if (!options_.periodic_y && !(hi.y() <= 0.5 * options_.width)) return "the wall y = width/2";
     if (!(lo.z() >= 0.0)) return "the floor";
     return nullptr;
   }
@@ -216,65 +209,6 @@ class DemTerrain : public Terrain {
     const double room = 10.0 * options_.radius;
     return {Vec3(-room, -0.5 * options_.width - room, -room),
             Vec3(options_.length + room, 0.5 * options_.width + room, solver_.top() + room)};
-  }
-
-  bool from_cache(const std::filesystem::path& file, Archive& bed) const {
-    if (file.empty()) return false;
-    try {
-      bed = read_bed(file);
-      check_bed(bed);
-      return true;
-    } catch (const Error&) {
-      return false;  // absent or damaged: made anew
-    }
-  }
-
-  Archive settled_bed(const std::filesystem::path& file, const ProgressCall& progress) {
-    SolverParams params = solver_params(options_);
-    params.threads = std::max(1, options_.settle_threads);
-    params.activity = false;
-    GrainSolver solver(params);
-    solver.place(bed_layers(solver.params().bin, options_.radius, options_.layers, options_.seed, progress));
-    const SettleResult result = settle(solver, options_, progress);
-    Archive bed;
-    solver.save(bed);
-    bed.put("bed/settled", std::vector<double>{result.settled ? 1.0 : 0.0, result.force_ratio,
-                                               result.floor_error, result.time});
-    bed.put("bed/geometry", geometry());
-    bed.put("bed/law", std::vector<std::uint8_t>(options_.law.begin(), options_.law.end()));
-    if (!file.empty()) {
-      try {
-        write_bed(file, bed);
-      } catch (const Error& error) {
-        if (progress) progress(std::string("bed not cached: ") + error.what(), 1.0);
-      }
-    }
-    return bed;
-  }
-
-  std::vector<double> geometry() const {
-    return {options_.radius, options_.density, options_.length, options_.width};
-  }
-
-  void check_bed(const Archive& bed) const {
-    const auto& made = bed.get<double>("bed/geometry", 4);
-    constexpr const char* kKey[] = {"radius", "density", "length", "width"};
-    const std::vector<double> wanted = geometry();
-    for (int k = 0; k < 4; ++k)
-      if (made[k] != wanted[k])
-        throw input_error(
-            "scenario", std::string("terrain.") + kKey[k],
-            fmt::format("is {} but the bed '{}' was made with {}", wanted[k], options_.bed, made[k]));
-    const auto& law = bed.get<std::uint8_t>("bed/law");
-    if (std::string(law.begin(), law.end()) != options_.law)
-      throw input_error("scenario", "terrain.law",
-                        fmt::format("is {} but the bed '{}' was settled with {}", options_.law, options_.bed,
-                                    std::string(law.begin(), law.end())));
-    if ((options_.rolling_friction > 0.0) && bed.get<double>("pairs/rolling").empty() &&
-        bed.get_int("count") > 0 && options_.law == "mindlin")
-      throw input_error(
-          "scenario", "terrain.rolling_friction",
-          fmt::format("is {} but the bed '{}' was settled without", options_.rolling_friction, options_.bed));
   }
 
   TerrainStatus lost_grain(int index) const {
@@ -323,8 +257,7 @@ TerrainEstimate estimate_dem_terrain(const TerrainOptions& options) {
   const StableStep stable = stable_at(options, kStatedOverlap * options.radius);
   e.stable_step = stable.step;
   e.stable_reason = stable.reason;
-  const double grains =
-      options.layers * expected_layer_count({options.length, options.width}, options.radius);
+  const double grains = expected_grains(options);
   e.grains = static_cast<std::int64_t>(std::llround(grains));
   e.memory_bytes = kBytesPerGrain * grains;
   const double volume = grains * 4.0 / 3.0 * std::numbers::pi * std::pow(options.radius, 3);

@@ -29,6 +29,13 @@ SolverParams solver_params(const TerrainOptions& o) {
   return p;
 }
 
+SolverParams settling_params(const TerrainOptions& options) {
+  SolverParams p = solver_params(options);
+  p.threads = std::max(1, options.settle_threads);
+  p.activity = false;
+  return p;
+}
+
 SolverCoefficients run_coefficients(const TerrainOptions& options, double step) {
   LawSettings law = law_settings(options);
   law.step = step;

@@ -12,6 +12,8 @@ inline constexpr double kSkinShare = 0.2;  // skin of the neighbour list, of the
 Precision precision_from(const std::string& name);
 
 SolverParams solver_params(const TerrainOptions& options);
+/// The same for making a bed: with its own number of threads, and no grain sleeps.
+SolverParams settling_params(const TerrainOptions& options);
 /// Coefficients of a run with this step, s: walls are of the grains' material.
 SolverCoefficients run_coefficients(const TerrainOptions& options, double step);
 

@@ -58,6 +58,8 @@ SCENARIOS = [
     ("starts_in_the_wall", text(rig={"start": 0.1}), [], "key 'rig.start': is 0.1 m, expected 0.467 to"),
     ("window_after_the_end", text(run={"average_from": 0.05}), [], "key 'run.average_from': is 0.05 s, expected"),
     ("bad_threads", text(run={"threads": "many"}), [], "key 'run.threads': is 'many', expected a whole number, 1 to 1024 or 'auto'"),
+    ("unknown_generator", text(terrain={"bed_generator": "hex"}), [], "key 'terrain.bed_generator': is 'hex', expected 'poisson' or 'lattice'"),
+    ("negative_compaction", text(terrain={"compaction_pressure": -5}), [], "key 'terrain.compaction_pressure': is -5 Pa, expected a number, 0 to"),
     ("missing_bed", text(terrain={"bed": "bed.h5"}), [], "key 'terrain.bed': 'bed.h5' does not exist"),
     ("not_a_number", json.dumps(SMALL).replace("0.3", "NaN", 1), [], "is not valid JSON"),
     ("overflow", json.dumps(SMALL).replace("0.3", "1e400", 1), [], "key 'rig.slip': is a number too large for a double"),
@@ -106,6 +108,38 @@ def add_test(name, content, flags, expected):
 
 for row in SCENARIOS:
     add_test(*row)
+
+
+# (name, rows of the bed's CSV after its header, what the error line must hold)
+BEDS = [
+    ("nan", "0.1,0,0.1\n0.3,0,nan", "bed.csv: key 'line 3': '0.3,0,nan', expected three finite numbers, m"),
+    ("infinite", "0.1,0,1e999", "bed.csv: key 'line 2': '0.1,0,1e999', expected three finite numbers, m"),
+    ("two_columns", "0.1,0", "bed.csv: key 'line 2': '0.1,0', expected three finite numbers, m"),
+    ("words", "here,there,0.1", "key 'line 2': 'here,there,0.1', expected three finite numbers, m"),
+    ("outside", "0.1,0,0.1\n1.5,0,0.1", "bed.csv: key 'line 3': the grain stands at (1.5, 0, 0.1) m, expected a centre inside the bin"),
+    ("in_each_other", "0.1,0,0.1\n0.11,0,0.1", "key 'line 3': the grain at (0.11, 0, 0.1) m is 0.01 m from that of line 2, expected at least 0.054 m"),
+    ("no_grain", "", "bed.csv: holds no grain"),
+]
+
+
+class BadBed(SystemTest):
+    """One test per row of BEDS, for `run`, `bed` and `soil` alike."""
+
+    def check(self, rows, expected):
+        (self.folder / "bed.csv").write_text("x_m,y_m,z_m\n" + rows + "\n")
+        path = write_scenario(self.folder, changed(terrain={"bed": "bed.csv"}))
+        for command in ("run", "validate", "bed", "soil"):
+            done = furrow(command, path, cwd=self.folder)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertEqual(done.stdout, "")
+            self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+            self.assertTrue(done.stderr.startswith("furrow: error: "), done.stderr)
+            self.assertIn(expected, done.stderr)
+        self.assertEqual(self.names(), ["bed.csv", "small.json"])
+
+
+for row in BEDS:
+    setattr(BadBed, "test_" + row[0], lambda self, row=row: self.check(*row[1:]))
 
 
 class BadFile(SystemTest):
@@ -189,6 +223,48 @@ class BadFile(SystemTest):
     def test_report_of_nothing(self):
         self.assertIn("does not exist", self.error_of("report", "nowhere"))
         self.assertIn("holds no run", self.error_of("report", self.folder))
+
+    def test_header_of_a_bed(self):
+        (self.folder / "bed.csv").write_text("x,y,z\n0.1,0,0.1\n")
+        path = write_scenario(self.folder, changed(terrain={"bed": "bed.csv"}))
+        self.assertIn("bed.csv: key 'line 1': 'x,y,z', expected the header x_m,y_m,z_m", self.error_of("bed", path))
+
+    def test_damaged_bed(self):
+        (self.folder / "bed.h5").write_bytes(b"\x89HDF\r\n\x1a\n" + bytes(100))
+        path = write_scenario(self.folder, changed(terrain={"bed": "bed.h5"}))
+        self.assertIn("bed.h5: not an HDF5 file, or damaged", self.error_of("bed", path, code=5))
+
+    def test_compaction_of_a_settled_bed(self):
+        (self.folder / "bed.h5").write_bytes(b"\x89HDF\r\n\x1a\n" + bytes(100))
+        path = write_scenario(self.folder, changed(terrain={"bed": "bed.h5", "compaction_pressure": 1e4}))
+        self.assertIn("small.json: key 'terrain.compaction_pressure': is 10000 Pa but the bed", self.error_of("validate", path))
+
+    def test_beds_and_soil_tests_need_grains(self):
+        path = write_scenario(self.folder, changed(terrain={"engine": "rigid"}))
+        for command in ("bed", "soil"):
+            self.assertIn("small.json: key 'terrain.engine': is 'rigid', expected 'dem'", self.error_of(command, path))
+
+    def test_soil_options(self):
+        path = write_scenario(self.folder)
+        self.assertIn("key '--only': is 'ring', expected plate, shear, cone or repose", self.error_of("soil", path, "--only", "ring"))
+        self.assertIn("key '--seeds': is 0, expected 1 to 100", self.error_of("soil", path, "--seeds", "0"))
+        self.assertIn("key '--speed'", self.error_of("soil", path, "--speed", "nan"))
+        (self.folder / "out").mkdir()
+        self.assertIn("exists already", self.error_of("soil", path, "--out", "out"))
+        self.assertEqual(self.names(), ["out", "small.json"])
+
+    def test_report_with_soil_that_is_none(self):
+        run = self.folder / "run"
+        run.mkdir()
+        (run / "scenario.json").write_text("{}")
+        self.assertIn("run/summary.json: does not exist, expected", self.error_of("report", "run", "--soil", "soil.json"))
+        summary = {"format_version": 1, "tire_radius_m": 0.47, "tread_width_m": 0.25, "vertical_load_N": 4600, "slip": 0.3}
+        (run / "summary.json").write_text(json.dumps(summary))
+        self.assertIn("soil.json: does not exist, expected", self.error_of("report", "run", "--soil", "soil.json"))
+        (self.folder / "soil.json").write_text('{"format_version": 1, "k_c": null}')
+        self.assertIn("soil.json: key 'k_c': is null, expected a number", self.error_of("report", "run", "--soil", "soil.json"))
+        (self.folder / "soil.json").write_text('{"format_version": 2}')
+        self.assertIn("soil.json: key 'format_version': is 2: the file is newer", self.error_of("report", "run", "--soil", "soil.json"))
 
     def test_no_launcher(self):
         path = write_scenario(self.folder)

@@ -20,9 +20,9 @@ class Commands(SystemTest):
 
     def test_help_names_every_command(self):
         text = self.output("--help")
-        for command in ("run", "validate", "ranks", "explain", "report"):
+        for command in ("run", "validate", "ranks", "explain", "report", "bed", "soil"):
             self.assertIn(command, text)
-            self.assertIn("SCENARIO" if command in ("run", "validate", "ranks") else "KEY" if command == "explain" else "DIR",
+            self.assertIn("SCENARIO" if command in ("run", "validate", "ranks", "bed", "soil") else "KEY" if command == "explain" else "DIR",
                           self.output(command, "--help"))
 
     def test_shipped_scenarios_are_valid(self):

@@ -1,0 +1,88 @@
+// `furrow bed`: prepares the bed of a scenario, keeps it in the cache and says what it is like.
+#include <chrono>
+#include <cmath>
+#include <iostream>
+
+#include <nlohmann/json.hpp>
+
+#include "nodes/commands.hpp"
+#include "nodes/progress.hpp"
+#include "nodes/scenario.hpp"
+#include "nodes/signals.hpp"
+#include "terrain/dem/bed_compaction.hpp"
+#include "terrain/dem/bed_preparation.hpp"
+#include "terrain/dem/bed_statistics.hpp"
+#include "terrain/dem/solver_setup.hpp"
+
+namespace furrow {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+json bed_json(const Scenario& s, const dem::PreparedBed& prepared, const dem::BedStatistics& bed,
+              double wall_s) {
+  const TerrainOptions& o = s.terrain;
+  const double mass = dem::grain_properties(o.radius, o.density).mass;
+  const auto text_or_null = [](const std::string& text) { return text.empty() ? json(nullptr) : json(text); };
+  json j;
+  j["format_version"] = 1;
+  j["version"] = FURROW_VERSION;
+  j["scenario"] = s.name;
+  j["bed"] = text_or_null(o.bed);
+  j["bed_generator"] = o.bed.empty() ? json(o.bed_generator) : json(nullptr);
+  j["compaction_pressure_Pa"] = o.compaction_pressure;
+  j["grains"] = bed.grains;
+  j["depth_m"] = bed.depth;
+  j["top_m"] = bed.top;
+  j["solid_fraction"] = bed.solid_fraction;
+  j["solid_fraction_bulk"] = bed.solid_fraction_bulk;
+  j["bulk_density_kg_m3"] = static_cast<double>(bed.grains) * mass / (o.length * o.width * bed.depth);
+  j["coordination_number"] = bed.coordination;
+  j["contacts"] = bed.pairs;
+  j["wall_contacts"] = bed.wall_contacts;
+  j["max_overlap_m"] = bed.max_overlap;
+  j["settled"] = prepared.settled.settled;
+  j["force_residual"] = prepared.settled.force_ratio;
+  j["weight_N"] = static_cast<double>(bed.grains) * mass * dem::kGravity;
+  j["floor_force_error"] = prepared.settled.floor_error;
+  j["settling_time_s"] = prepared.settled.time;
+  j["settling_step_s"] = dem::settle_step(o);
+  j["wall_s"] = wall_s;
+  j["threads"] = o.settle_threads;
+  j["from_cache"] = prepared.from_cache;
+  j["cache_file"] = text_or_null(dem::bed_is_settled_anew(o) ? prepared.file.string() : "");
+  return j;
+}
+
+}  // namespace
+
+void require_grains(const Scenario& scenario, const std::string& what) {
+  if (scenario.terrain.engine != "dem")
+    throw input_error(scenario.file.string(), "terrain.engine",
+                      "is '" + scenario.terrain.engine + "', expected 'dem': " + what);
+}
+
+ExitCode bed_command(const Scenario& scenario) {
+  require_grains(scenario, "only grains make a bed");
+  catch_stop_signals();
+  ProgressDisplay display;
+  const auto begin = std::chrono::steady_clock::now();
+  const dem::PreparedBed prepared =
+      dem::prepare_bed(scenario.terrain, [&](const std::string& what, double share) {
+        if (stop_signalled())
+          throw Error(ExitCode::stopped, "stopped by a signal while the bed was being prepared");
+        display.show({.phase = what, .share = share});
+      });
+  dem::GrainSolver solver(dem::solver_params(scenario.terrain));
+  solver.restore(prepared.bed);
+  const dem::BedStatistics statistics =
+      dem::bed_statistics(dem::positions_by_id(solver), solver.params().bin, scenario.terrain.radius);
+  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  display.clear();
+  if (!prepared.settled.settled)
+    print_warning(scenario.file.string() + ": the bed did not come to rest and is used as it is");
+  std::cout << bed_json(scenario, prepared, statistics, wall).dump(2) << "\n";
+  return ExitCode::done;
+}
+
+}  // namespace furrow

@@ -1,0 +1,161 @@
+"""Virtual soil tests: what `furrow soil` leaves in its directory."""
+import json
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from .run_data import Missing
+from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED
+
+COLOURS = [BLUE, ORANGE, GREEN, RED, PURPLE]
+
+
+class Soil:
+    """soil.json and the tables beside it."""
+
+    def __init__(self, directory):
+        self.directory = directory
+        try:
+            self.values = json.loads((directory / "soil.json").read_text(encoding="utf-8"))
+        except ValueError as error:
+            raise ValueError(f"soil.json is no valid JSON: {error}") from error
+        if not isinstance(self.values, dict):
+            raise ValueError("soil.json is not a JSON object")
+
+    def table(self, name):
+        """The columns of a CSV file as arrays."""
+        path = self.directory / name
+        if not path.exists():
+            raise Missing(f"this test was not run: there is no {name}")
+        lines = path.read_text(encoding="utf-8").splitlines()
+        try:
+            rows = np.array([line.split(",") for line in lines[1:]], dtype=float)
+            return dict(zip(lines[0].split(","), rows.T))
+        except (IndexError, ValueError) as error:
+            raise ValueError(f"{name} holds something that is no number: {error}") from error
+
+    def text(self, name, factor=1.0, form=".3g"):
+        """value ± standard error."""
+        value, error = self.values.get(name), (self.values.get("standard_error") or {}).get(name)
+        if value is None:
+            return "?"
+        return f"{factor * value:{form}}" + (f" ± {factor * error:.2g}" if error is not None else "")
+
+    def figure(self, what, columns=1, height=4.6):
+        figure, axes = plt.subplots(1, columns, figsize=(6.4 * columns if columns > 1 else 8.4, height), squeeze=False)
+        grains = self.values.get("grains") or {}
+        note = ", quick look: no result to quote" if self.values.get("quick") else ""
+        figure.suptitle(f"{self.values.get('scenario', self.directory.name)} · {what} · grains of "
+                        f"{1e3 * grains.get('radius_m', np.nan):g} mm, cohesion {1e-3 * grains.get('cohesion_Pa', np.nan):g} kPa{note}",
+                        fontsize=11, x=0.01, ha="left", fontweight="bold")
+        return figure, axes[0]
+
+
+def runs(table, *keys):
+    """(key values, rows) of each run in a table, in order of first appearance."""
+    marks = np.stack([table[key] for key in keys], axis=1)
+    for mark in dict.fromkeys(map(tuple, marks)):
+        yield mark, np.all(marks == mark, axis=1)
+
+
+def plate(soil):
+    table = soil.table("plate.csv")
+    figure, (axis,) = soil.figure("plate sinkage")
+    widths = list(dict.fromkeys(table["width_m"]))
+    for (_, width), rows in runs(table, "seed", "width_m"):
+        axis.plot(1e3 * table["sinkage_m"][rows], 1e-3 * table["pressure_Pa"][rows], lw=0.8, alpha=0.55,
+                  color=COLOURS[widths.index(width) % len(COLOURS)])
+    n, k_c, k_phi = (soil.values.get(name) for name in ("n", "k_c", "k_phi"))
+    z = np.linspace(0.0, table["sinkage_m"].max(), 200)[1:]
+    for i, width in enumerate(widths):
+        if n is not None:
+            axis.plot(1e3 * z, 1e-3 * (k_c / width + k_phi) * z**n, color=COLOURS[i % len(COLOURS)], lw=2.2,
+                      label=f"strip {1e3 * width:g} mm wide")
+    axis.set_xlim(0.0)
+    axis.set_ylim(0.0)
+    axis.set_xlabel("sinkage below the mean surface, mm")
+    axis.set_ylabel("pressure, kPa")
+    axis.set_title("Thin: each bed. Thick: p = (k_c/b + k_φ) zⁿ, "
+                   f"n {soil.text('n')}, k_c {soil.text('k_c', 1e-3)} kN/mⁿ⁺¹, k_φ {soil.text('k_phi', 1e-3)} kN/mⁿ⁺²", fontsize=9)
+    axis.legend(loc="upper left")
+    return figure
+
+
+def shear(soil):
+    table = soil.table("shear.csv")
+    figure, (left, right) = soil.figure("direct shear", columns=2)
+    loads = list(dict.fromkeys(table["nominal_normal_stress_Pa"]))
+    for (_, load), rows in runs(table, "seed", "nominal_normal_stress_Pa"):
+        left.plot(1e3 * table["travel_m"][rows], 1e-3 * table["shear_stress_Pa"][rows], lw=0.8, alpha=0.5,
+                  color=COLOURS[loads.index(load) % len(COLOURS)])
+    tests = (soil.values.get("shear") or {}).get("tests") or []
+    j = np.linspace(0.0, table["travel_m"].max(), 200)
+    for i, load in enumerate(loads):
+        near = [t for t in tests if abs(t["normal_stress_Pa"] - load) < 0.2 * load]
+        if not near:
+            continue
+        tau, travel = (np.mean([t[name] for t in near]) for name in ("tau_max_Pa", "janosi_K_m"))
+        left.plot(1e3 * j, 1e-3 * tau * -np.expm1(-j / travel), color=COLOURS[i % len(COLOURS)], lw=2.2,
+                  label=f"normal stress {1e-3 * load:g} kPa")
+    left.set_xlim(0.0)
+    left.set_ylim(0.0)
+    left.set_xlabel("travel of the upper plate, mm")
+    left.set_ylabel("shear stress, kPa")
+    left.set_title(f"Thin: each bed. Thick: τ_max (1 − exp(−j/K)), K {soil.text('janosi_K_m', 1e3)} mm")
+    left.legend(loc="upper left")
+    sigma = 1e-3 * np.array([t["normal_stress_Pa"] for t in tests])
+    right.plot(sigma, [1e-3 * t["tau_max_Pa"] for t in tests], "o", color=BLUE, label="fitted τ_max")
+    right.plot(sigma, [1e-3 * t["final_shear_stress_Pa"] for t in tests], "x", color=GREY, label="at the end of the travel")
+    c, phi = soil.values.get("cohesion_Pa"), soil.values.get("friction_angle_deg")
+    if c is not None and len(sigma):
+        x = np.linspace(0.0, 1.05 * sigma.max(), 2)
+        right.plot(x, 1e-3 * c + x * np.tan(np.radians(phi)), color=BLUE, label="c + σ tan φ")
+    right.set_xlim(0.0)
+    right.set_ylim(0.0)
+    right.set_xlabel("normal stress, kPa")
+    right.set_title(f"c {soil.text('cohesion_Pa', 1e-3)} kPa, φ {soil.text('friction_angle_deg')}°")
+    right.legend(loc="upper left")
+    return figure
+
+
+def cone(soil):
+    table = soil.table("cone.csv")
+    figure, (axis,) = soil.figure("cone penetration")
+    for _, rows in runs(table, "seed"):
+        axis.plot(1e-3 * table["pressure_Pa"][rows], 1e3 * table["depth_m"][rows], lw=1.0, color=BLUE, alpha=0.6)
+    about = soil.values.get("cone") or {}
+    if about.get("index_depth_m"):
+        axis.axhspan(*(1e3 * depth for depth in about["index_depth_m"]), color=BLUE, alpha=0.08, lw=0,
+                     label="cone index: mean over this depth")
+        axis.legend(loc="lower right")
+    axis.invert_yaxis()
+    axis.set_xlim(0.0)
+    axis.set_xlabel("force over base area, kPa")
+    axis.set_ylabel("depth of the cone's base, mm")
+    axis.set_title(f"30° cone, base {1e3 * about.get('base_diameter_m', np.nan):g} mm "
+                   f"({about.get('base_diameter_grains', np.nan):g} grains): cone index {soil.text('cone_index_Pa', 1e-3)} kPa")
+    return figure
+
+
+def repose(soil):
+    table = soil.table("repose.csv")
+    figure, (axis,) = soil.figure("angle of repose", height=3.9)
+    cohesions = list(dict.fromkeys(table["cohesion_Pa"]))
+    names = ["repose_angle_deg", "repose_angle_without_cohesion_deg"]
+    labelled = set()
+    for (_, cohesion), rows in runs(table, "seed", "cohesion_Pa"):
+        i = cohesions.index(cohesion)
+        label = f"cohesion {1e-3 * cohesion:g} kPa: {soil.text(names[min(i, 1)])}°"
+        axis.plot(table["x_m"][rows], table["height_after_m"][rows], lw=1.0, alpha=0.7, color=COLOURS[i % len(COLOURS)],
+                  label=None if label in labelled else label)
+        labelled.add(label)
+    _, first = next(runs(table, "seed", "cohesion_Pa"))
+    axis.plot(table["x_m"][first], table["height_before_m"][first], color=GREY, lw=1.0, ls="--", label="before")
+    axis.set_aspect("equal")
+    axis.set_xlim(0.0)
+    axis.set_ylim(0.0)
+    axis.set_xlabel("x, m")
+    axis.set_ylabel("height, m")
+    axis.set_title("Surface after half of the bed was taken away")
+    axis.legend(loc="upper right")
+    return figure

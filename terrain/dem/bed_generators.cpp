@@ -1,0 +1,151 @@
+#include "terrain/dem/bed_generators.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <random>
+
+#include <fmt/format.h>
+
+#include "protocol/error.hpp"
+#include "terrain/dem/bed_csv.hpp"
+#include "terrain/dem/bed_layers.hpp"
+#include "terrain/dem/close_pairs.hpp"
+
+namespace furrow::dem {
+namespace {
+
+constexpr double kLeastDistance =
+    1.8;                            // radii between centres in a user's bed: overlaps of 10 % of the diameter
+constexpr double kLeastWall = 0.8;  // radii between a centre and a wall
+
+Bin bin_of(const TerrainOptions& o) { return {o.length, o.width, o.periodic_x, o.periodic_y}; }
+
+struct Lattice {
+  int nx = 0, ny = 0;
+  double dx = 0.0, dy = 0.0;  // m
+};
+
+/// Fills the bin evenly, leaving room for jitter at the walls and for the shift of every other layer.
+Lattice lattice_of(const Bin& bin, double radius) {
+  const auto along = [&](double size, int& n, double& spacing) {
+    const double room = size - 2.0 * (1.0 + kLatticeJitter) * radius, least = kLatticeSpacing * radius;
+    n = std::max(1, static_cast<int>(std::floor(room / least + 0.5)));
+    spacing = n > 1 ? room / (n - 0.5) : 0.0;
+  };
+  Lattice lattice;
+  along(bin.length, lattice.nx, lattice.dx);
+  along(bin.width, lattice.ny, lattice.dy);
+  return lattice;
+}
+
+std::vector<Quad> lattice_layers(const TerrainOptions& o, const ProgressCall& progress) {
+  std::vector<Quad> all;
+  for (int layer = 0; layer < o.layers; ++layer) {
+    if (progress) progress("placing the grains", static_cast<double>(layer) / o.layers);
+    const auto seed = o.seed * 1000003ULL + static_cast<std::uint64_t>(layer);
+    for (Quad p : lattice_layer(bin_of(o), o.radius, seed, layer % 2 == 1)) {
+      p.z = (layer + 0.5) * kSpacing * o.radius;
+      all.push_back(p);
+    }
+  }
+  return all;
+}
+
+std::vector<Quad> poisson_layers(const TerrainOptions& o, const ProgressCall& progress) {
+  return bed_layers(bin_of(o), o.radius, o.layers, o.seed, progress);
+}
+
+double lattice_count(const TerrainOptions& o) {
+  const Lattice lattice = lattice_of(bin_of(o), o.radius);
+  return static_cast<double>(o.layers) * lattice.nx * lattice.ny;
+}
+
+double poisson_count(const TerrainOptions& o) { return o.layers * expected_layer_count(bin_of(o), o.radius); }
+
+struct Generator {
+  const char* name;
+  std::vector<Quad> (*make)(const TerrainOptions&, const ProgressCall&);
+  double (*count)(const TerrainOptions&);
+};
+constexpr std::array<Generator, 2> kGenerators{
+    {{"poisson", poisson_layers, poisson_count}, {"lattice", lattice_layers, lattice_count}}};
+
+const Generator& generator_of(const TerrainOptions& o) {
+  std::string names;
+  for (const Generator& g : kGenerators) {
+    if (o.bed_generator == g.name) return g;
+    names += (names.empty() ? "" : " or ") + std::string(g.name);
+  }
+  throw input_error("scenario", "terrain.bed_generator",
+                    "'" + o.bed_generator + "' is unknown, expected " + names);
+}
+
+std::string place_text(const Quad& p) { return fmt::format("({:g}, {:g}, {:g}) m", p.x, p.y, p.z); }
+
+/// The user's grains must stand in the bin and not in each other. Lines are counted as if none were blank.
+std::vector<Quad> positions_of(const TerrainOptions& o) {
+  const std::vector<Quad> grains = read_positions_csv(o.bed);
+  const Bin bin = bin_of(o);
+  const double least = kLeastWall * o.radius * (1.0 - 1e-9);
+  const auto wrong = [&](std::size_t g, const std::string& what) {
+    return input_error(o.bed, fmt::format("line {}", g + 2), what);
+  };
+  for (std::size_t g = 0; g < grains.size(); ++g)
+    for (int wall = 0; wall < kWalls; ++wall)
+      if (bin.has_wall(wall) && !(bin.distance(wall, grains[g]) >= least))
+        throw wrong(
+            g, fmt::format(
+                   "the grain stands at {}, expected a centre inside the bin, x {:g} to {:g} m, y {:g} to "
+                   "{:g} m, z from {:g} m",
+                   place_text(grains[g]), least, o.length - least, least - 0.5 * o.width,
+                   0.5 * o.width - least, least));
+  for_close_pairs(grains, bin, kLeastDistance * o.radius, [&](std::size_t a, std::size_t b, double distance) {
+    throw wrong(std::max(a, b), fmt::format("the grain at {} is {:.3g} m from that of line {}, expected at "
+                                            "least {:g} m for grains of radius {:g} m",
+                                            place_text(grains[std::max(a, b)]), distance, std::min(a, b) + 2,
+                                            kLeastDistance * o.radius, o.radius));
+  });
+  return grains;
+}
+
+}  // namespace
+
+std::vector<Quad> lattice_layer(const Bin& bin, double radius, std::uint64_t seed, bool shifted) {
+  const Lattice lattice = lattice_of(bin, radius);
+  std::mt19937_64 bits(seed);
+  const auto jitter = [&] {
+    return kLatticeJitter * radius * (2.0 * static_cast<double>(bits() >> 11) * 0x1p-53 - 1.0);
+  };
+  const double edge = (1.0 + kLatticeJitter) * radius, shift = shifted ? 0.5 : 0.0;
+  std::vector<Quad> grains;
+  for (int ix = 0; ix < lattice.nx; ++ix)
+    for (int iy = 0; iy < lattice.ny; ++iy) {
+      const double x = edge + (ix + shift) * lattice.dx + jitter();
+      const double y = edge + (iy + shift) * lattice.dy + jitter();
+      grains.push_back({x, y - 0.5 * bin.width, 0.0, 0.0});
+    }
+  return grains;
+}
+
+bool is_positions_file(const std::filesystem::path& bed) {
+  constexpr std::array<char, 8> kHdf5{'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
+  std::array<char, 8> start{};
+  std::ifstream in(bed, std::ios::binary);
+  in.read(start.data(), start.size());
+  return bed.extension() != ".h5" && start != kHdf5;
+}
+
+std::vector<Quad> starting_positions(const TerrainOptions& options, const ProgressCall& progress) {
+  if (!options.bed.empty()) return positions_of(options);
+  return generator_of(options).make(options, progress);
+}
+
+double expected_grains(const TerrainOptions& options) {
+  if (!options.bed.empty() && is_positions_file(options.bed))
+    return static_cast<double>(positions_of(options).size());
+  return generator_of(options).count(options);
+}
+
+}  // namespace furrow::dem

@@ -1,0 +1,33 @@
+// What can be said of a bed at rest from the positions of its grains.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "terrain/dem/bin.hpp"
+#include "terrain/dem/lanes.hpp"
+
+namespace furrow::dem {
+
+struct BedStatistics {
+  std::int64_t grains = 0;
+  std::int64_t pairs = 0;          // of grains that touch
+  std::int64_t wall_contacts = 0;  // with walls and floor
+  double coordination = 0.0;       // 2 pairs / grains: touching neighbours of a grain
+  double depth = 0.0;              // mean surface height: mean over cells of 2 r of the highest grain top, m
+  double top = 0.0;                // highest grain top, m
+  double solid_fraction = 0.0;     // of the box up to `depth`, doubly covered volume counted once
+  double solid_fraction_bulk = 0.0;  // of its middle half, depth/4 to 3 depth/4, the same way
+  double max_overlap = 0.0;          // of two grains, m
+};
+
+BedStatistics bed_statistics(const std::vector<Quad>& positions, const Bin& bin, double radius);
+
+/// Volume that two spheres of `radius` share at this distance of their centres, m³:
+/// π (4 r + d) (2 r − d)² / 12.
+double lens_volume(double radius, double distance);
+
+/// Volume of a sphere at height z below `height`, m³.
+double volume_below(double radius, double z, double height);
+
+}  // namespace furrow::dem

@@ -1,0 +1,45 @@
+#include "terrain/soil/cone.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "protocol/error.hpp"
+#include "terrain/soil/tools.hpp"
+
+namespace furrow::soil {
+
+ConeResult cone_penetration(const Specimen& specimen, const ConeTest& test, const WorkCall& work) {
+  const double r = specimen.options().radius, diameter = test.diameter * r;
+  const double middle = 0.5 * specimen.length(), reach = 0.5 * diameter;
+  const auto terrain = specimen.terrain();
+  const double top = terrain->top_height(middle - reach, middle + reach, -reach, reach);
+  const double cone = cone_height(diameter, kConeAngle), surface = specimen.height();
+  const double path = top - surface + cone + test.depth * r;
+  Tool tool =
+      cone_on_shaft(Vec3(middle, 0.0, top), diameter, kConeAngle, kConeShaft, test.depth * r + 4.0 * r);
+  terrain->attach(tool.mesh(), smooth_material(specimen.options()), tool.state());
+  tool.set_velocity(Vec3(0.0, 0.0, -test.speed));
+
+  const double interval = path / test.speed / test.samples, area = cone_base_area(diameter);
+  const int steps = std::max(1, static_cast<int>(std::ceil(interval / specimen.step())));
+  std::vector<NodalForces> forces(1);
+  std::vector<ContactSums> sums(1);
+  ConeResult result;
+  int counted = 0;
+  for (int k = 0; k < test.samples; ++k) {
+    const TerrainStatus status = terrain->advance({&tool.state(), 1}, interval, steps, forces, sums);
+    if (!status.ok) throw physics_error("cone penetration test: " + status.message);
+    tool.moved(interval);
+    work(static_cast<double>(k + 1) / test.samples);
+    const double depth = (k + 0.5) * interval * test.speed - (top - surface) - cone;
+    result.depth.push_back(depth);
+    result.pressure.push_back(sums[0].force.z() / area);
+    if (depth < test.index_from * r || depth > test.index_to * r) continue;
+    result.index += result.pressure.back();
+    ++counted;
+  }
+  result.index /= std::max(counted, 1);
+  return result;
+}
+
+}  // namespace furrow::soil

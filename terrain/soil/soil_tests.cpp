@@ -1,0 +1,299 @@
+#include "terrain/soil/soil_tests.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <thread>
+
+#include "terrain/dem/loaded_lid.hpp"
+
+namespace furrow::soil {
+namespace {
+
+constexpr double kSettleSteps = 12e3;  // that a bed takes to settle, about
+constexpr double kReposeSteps = 30e3;
+constexpr auto kTick = std::chrono::milliseconds(100);  // between looks at what is done
+constexpr double kReferenceStep = 6e-3;                 // s per m of grain radius, for estimates of the work
+
+/// One bed and what is done on it.
+struct Job {
+  std::string name;
+  double settling = 0.0, testing = 0.0;  // estimated work, grain-steps
+  std::function<void(const Job&, const WorkCall&)> run;
+  double work() const { return settling + testing; }
+  /// Progress of the part [from, to] of the tests that follow settling.
+  WorkCall settle_call(const WorkCall& call) const {
+    const double share = settling / work();
+    return [=](double done) { call(share * done); };
+  }
+  WorkCall test_call(const WorkCall& call, double from, double to) const {
+    const double share = settling / work();
+    return [=](double done) { call(share + (1.0 - share) * (from + (to - from) * done)); };
+  }
+};
+
+/// Runs jobs on a few threads; the calling one reports.
+class Crew {
+ public:
+  Crew(const std::vector<Job>& jobs, int threads, const ProgressCall& progress)
+      : jobs_(jobs), done_(jobs.size()), progress_(progress) {
+    for (auto& d : done_) d = 0.0;
+    for (const Job& job : jobs) total_ += job.work();
+    threads_ = std::clamp(threads, 1, static_cast<int>(jobs.size()));
+  }
+
+  void run() {
+    std::vector<std::thread> crew;
+    for (int t = 0; t < threads_; ++t) crew.emplace_back([this] { take_jobs(); });
+    while (working_ < threads_) {
+      std::this_thread::sleep_for(kTick);
+      try {
+        report();
+      } catch (...) {
+        fail(std::current_exception());
+      }
+    }
+    for (std::thread& thread : crew) thread.join();
+    if (error_) std::rethrow_exception(error_);
+  }
+
+ private:
+  struct Stop {};
+
+  void take_jobs() {
+    for (std::size_t k; (k = next_++) < jobs_.size() && !stop_;) {
+      try {
+        jobs_[k].run(jobs_[k], [&, k](double share) {
+          if (stop_) throw Stop{};
+          done_[k] = share;
+        });
+        done_[k] = 1.0;
+      } catch (const Stop&) {
+      } catch (...) {
+        fail(std::current_exception());
+      }
+    }
+    ++working_;
+  }
+  void fail(std::exception_ptr error) {
+    const std::lock_guard lock(mutex_);
+    if (!error_) error_ = error;
+    stop_ = true;
+  }
+  void report() {
+    if (!progress_ || stop_) return;
+    double sum = 0.0;
+    for (std::size_t k = 0; k < jobs_.size(); ++k) sum += jobs_[k].work() * done_[k];
+    progress_("soil tests", sum / total_);
+  }
+
+  const std::vector<Job>& jobs_;
+  std::vector<std::atomic<double>> done_;
+  const ProgressCall& progress_;
+  double total_ = 0.0;
+  int threads_ = 1;
+  std::atomic<std::size_t> next_{0};
+  std::atomic<int> working_{0};  // threads that have ended
+  std::atomic<bool> stop_{false};
+  std::mutex mutex_;
+  std::exception_ptr error_;
+};
+
+SpecimenFacts facts(const Specimen& s) {
+  return {s.options().seed, s.grains(), s.length(), s.width(), s.height(), s.step(), s.settled()};
+}
+
+double grains_in(const Box& box) { return 0.12 * box.length * box.width * box.depth; }
+
+/// Makes the list of jobs; each writes to places of its own.
+class Planner {
+ public:
+  Planner(const SoilOptions& options, const SoilPlan& plan, SoilResults& results)
+      : o_(options), plan_(plan), out_(results) {
+    const bool cohesive = o_.material.cohesion > 0.0;
+    const auto n = static_cast<std::size_t>(o_.seeds);
+    if (o_.plate) out_.plate.resize(n * plan_.plates.size());
+    if (o_.shear) out_.shear.resize(n * plan_.shears.size());
+    if (o_.cone) out_.cone.resize(n);
+    if (o_.repose) out_.repose.resize(n);
+    if (o_.repose && cohesive) out_.dry.resize(n);
+    for (int s = 0; s < o_.seeds; ++s) {
+      if (o_.cone) add_cone(s);
+      if (o_.plate) add_plates(s);
+      if (o_.shear) add_shear(s);
+      if (o_.repose) add_repose(s, o_.material, out_.repose);
+      if (o_.repose && cohesive) {
+        TerrainOptions dry = o_.material;
+        dry.cohesion = 0.0;
+        add_repose(s, dry, out_.dry);
+      }
+    }
+    // The longest first, so that no thread is left with one at the end.
+    std::stable_sort(jobs.begin(), jobs.end(),
+                     [](const Job& a, const Job& b) { return a.work() > b.work(); });
+  }
+
+  std::vector<Job> jobs;
+
+ private:
+  /// Steps for a way of `radii` at the test's speed.
+  double steps_for(double radii) const { return radii / o_.speed / kReferenceStep; }
+  std::uint64_t seed(int s) const { return o_.material.seed + static_cast<std::uint64_t>(s); }
+  Job& add(const Box& box, double test_steps) {
+    Job job;
+    job.settling = kSettleSteps * grains_in(box);
+    job.testing = test_steps * grains_in(box);
+    jobs.push_back(std::move(job));
+    return jobs.back();
+  }
+
+  void add_plates(int s) {
+    double way = 0.0;
+    for (const PlateTest& test : plan_.plates) way += test.sinkage + 1.0;
+    add(plan_.plate_box, steps_for(way)).run = [this, s](const Job& job, const WorkCall& call) {
+      const Specimen specimen(o_.material, plan_.plate_box, seed(s), job.settle_call(call));
+      const auto count = static_cast<double>(plan_.plates.size());
+      for (std::size_t k = 0; k < plan_.plates.size(); ++k) {
+        const WorkCall mine = job.test_call(call, static_cast<double>(k) / count, (k + 1.0) / count);
+        out_.plate[s * plan_.plates.size() + k] = {facts(specimen),
+                                                   plate_sinkage(specimen, plan_.plates[k], mine)};
+      }
+    };
+  }
+  void add_shear(int s) {
+    double way = 0.0;
+    for (const ShearTest& test : plan_.shears) way += 1.6 * test.travel;
+    add(plan_.shear_box, steps_for(way)).run = [this, s](const Job& job, const WorkCall& call) {
+      const Specimen specimen(o_.material, plan_.shear_box, seed(s), job.settle_call(call));
+      const auto count = static_cast<double>(plan_.shears.size());
+      for (std::size_t k = 0; k < plan_.shears.size(); ++k) {
+        const WorkCall mine = job.test_call(call, static_cast<double>(k) / count, (k + 1.0) / count);
+        out_.shear[s * plan_.shears.size() + k] = {facts(specimen),
+                                                   direct_shear(specimen, plan_.shears[k], mine)};
+      }
+    };
+  }
+  void add_cone(int s) {
+    add(plan_.cone_box, steps_for(1.9 * plan_.cone.diameter + plan_.cone.depth + 2.0))
+        .run = [this, s](const Job& job, const WorkCall& call) {
+      const Specimen specimen(o_.material, plan_.cone_box, seed(s), job.settle_call(call));
+      out_.cone[s] = {facts(specimen), cone_penetration(specimen, plan_.cone, job.test_call(call, 0.0, 1.0))};
+    };
+  }
+  void add_repose(int s, const TerrainOptions& material, std::vector<Tested<ReposeResult>>& to) {
+    add(plan_.repose_box, kReposeSteps).run = [this, s, material, &to](const Job& job, const WorkCall& call) {
+      const Specimen specimen(material, plan_.repose_box, seed(s), job.settle_call(call));
+      to[s] = {facts(specimen), angle_of_repose(specimen, plan_.repose, job.test_call(call, 0.0, 1.0))};
+    };
+  }
+
+  const SoilOptions& o_;
+  const SoilPlan& plan_;
+  SoilResults& out_;
+};
+
+/// The part of a curve that is fitted.
+PlateCurve from_sinkage(const PlateCurve& curve, double least) {
+  PlateCurve part;
+  part.width = curve.width;
+  for (std::size_t k = 0; k < curve.sinkage.size(); ++k) {
+    if (curve.sinkage[k] < least) continue;
+    part.sinkage.push_back(curve.sinkage[k]);
+    part.pressure.push_back(curve.pressure[k]);
+  }
+  return part;
+}
+
+void plate_parameters(const SoilResults& results, const SoilPlan& plan, double radius, SoilParameters& p) {
+  std::vector<PlateCurve> all;
+  for (const auto& tested : results.plate)
+    all.push_back(from_sinkage(tested.result.curve, plan.plate_from * radius));
+  if (all.empty()) return;
+  std::vector<double> k_c, k_phi, n;
+  const std::size_t each = plan.plates.size();
+  for (std::size_t from = 0; from + each <= all.size(); from += each) {
+    const BekkerFit fit = fit_bekker(std::span(all).subspan(from, each));
+    k_c.push_back(fit.k_c), k_phi.push_back(fit.k_phi), n.push_back(fit.n);
+  }
+  const BekkerFit fit = fit_bekker(all);
+  p.k_c = mean_of(k_c), p.k_phi = mean_of(k_phi), p.n = mean_of(n);
+  // k and n go together: the values are those of one fit to all curves, the errors those between seeds.
+  p.k_c.value = fit.k_c, p.k_phi.value = fit.k_phi, p.n.value = fit.n;
+  p.bekker_goodness = fit.goodness;
+}
+
+void shear_parameters(const SoilResults& results, SoilParameters& p) {
+  if (results.shear.empty()) return;
+  std::vector<double> normal, most, final, K;
+  for (const auto& tested : results.shear) {
+    const ShearResult& r = tested.result;
+    normal.push_back(r.normal_mean);
+    most.push_back(r.janosi.tau_max);
+    final.push_back(r.final_shear);
+    K.push_back(r.janosi.K);
+  }
+  const CoulombFit fit = fit_coulomb(normal, most), late = fit_coulomb(normal, final);
+  p.cohesion = fit.cohesion, p.phi = fit.phi, p.coulomb_goodness = fit.goodness;
+  p.final_cohesion = late.cohesion, p.final_phi = late.phi;
+  p.K = mean_of(K);
+}
+
+}  // namespace
+
+SoilPlan soil_plan(const SoilOptions& o) {
+  SoilPlan plan;
+  if (o.quick) {
+    plan.plate_box = {40.0, 8.0, 16.0};
+    plan.shear_box = {18.0, 8.0, 10.0};
+    plan.cone_box = {20.0, 20.0, 18.0};
+    plan.repose_box = {60.0, 8.0, 16.0, false, true};
+    plan.cone.diameter = 4.0, plan.cone.depth = 4.0;
+    plan.cone.index_from = 2.0, plan.cone.index_to = 4.0;
+    plan.repose.cut = 20.0;
+  }
+  for (const double width : o.quick ? std::vector{5.0, 10.0} : std::vector{10.0, 20.0}) {
+    PlateTest test;
+    test.width = width;
+    test.speed = o.speed;
+    if (o.quick) test.sinkage = 4.0, test.samples = 50;
+    plan.plates.push_back(test);
+  }
+  const double hardest = std::min(100e3, dem::grain_modulus(o.material) / 200.0);
+  for (const double share : {0.2, 0.5, 1.0}) {
+    ShearTest test;
+    test.normal_stress = share * hardest;
+    test.speed = o.speed;
+    if (o.quick) test.travel = 4.0, test.samples = 50;
+    plan.shears.push_back(test);
+  }
+  plan.cone.speed = o.speed;
+  if (o.quick) plan.cone.samples = 50;
+  return plan;
+}
+
+SoilResults run_soil_tests(const SoilOptions& options, const SoilPlan& plan, const ProgressCall& progress) {
+  SoilResults results;
+  const Planner planner(options, plan, results);
+  if (!planner.jobs.empty()) Crew(planner.jobs, options.threads, progress).run();
+  return results;
+}
+
+SoilParameters soil_parameters(const SoilResults& results, const SoilPlan& plan, double radius) {
+  SoilParameters p;
+  plate_parameters(results, plan, radius, p);
+  shear_parameters(results, p);
+  const auto mean_over = [](const auto& tests, const auto& value) {
+    std::vector<double> values;
+    for (const auto& tested : tests) values.push_back(value(tested.result));
+    return values.empty() ? Measured{} : mean_of(values);
+  };
+  p.cone_index = mean_over(results.cone, [](const ConeResult& r) { return r.index; });
+  p.repose = mean_over(results.repose, [](const ReposeResult& r) { return r.angle; });
+  p.repose_dry = mean_over(results.dry, [](const ReposeResult& r) { return r.angle; });
+  return p;
+}
+
+}  // namespace furrow::soil

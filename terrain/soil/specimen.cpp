@@ -1,0 +1,59 @@
+#include "terrain/soil/specimen.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+namespace furrow::soil {
+namespace {
+
+constexpr double kStepShare = 0.5;    // of the stable step: teeth press single grains harder than a bed does
+constexpr double kLayerHeight = 1.2;  // radii of settled bed per layer dropped
+constexpr double kGravity = 9.81;     // m/s²
+
+}  // namespace
+
+double test_step(const TerrainOptions& material) {
+  return material.allow_unstable_step ? material.step : kStepShare * estimate_terrain(material).stable_step;
+}
+
+Specimen::Specimen(const TerrainOptions& material, const Box& box, std::uint64_t seed, const WorkCall& work)
+    : options_(material) {
+  const double r = material.radius;
+  options_.bed.clear();
+  options_.cache = false;
+  options_.seed = seed;
+  options_.length = box.length * r;
+  options_.width = box.width * r;
+  options_.layers = static_cast<int>(std::ceil(box.depth / kLayerHeight));
+  options_.periodic_x = box.periodic_x;
+  options_.periodic_y = box.periodic_y;
+  options_.threads = options_.settle_threads = 1;
+  options_.activity = false;  // small beds, sheared throughout
+  options_.step = test_step(options_);
+  const auto made = make_terrain(options_);
+  made->prepare([&](const std::string& what, double share) {
+    if (what == "bed not settled") settled_ = false;
+    work(what == "settling the bed" ? share : 0.0);
+  });
+  made->save(bed_);
+  const auto& x = bed_.get<double>("terrain/position");
+  for (std::size_t k = 0; k + 3 < x.size(); k += 4) positions_.emplace_back(x[k], x[k + 1], x[k + 2]);
+  grains_ = made->size();
+  const double half = 0.5 * options_.width;
+  height_ = made->mean_height(0.0, options_.length, -half, half);
+  top_ = made->top_height(0.0, options_.length, -half, half);
+}
+
+std::unique_ptr<Terrain> Specimen::terrain() const {
+  auto copy = make_terrain(options_);
+  copy->restore(bed_);
+  return copy;
+}
+
+double Specimen::weight() const {
+  const double volume = 4.0 / 3.0 * std::numbers::pi * std::pow(options_.radius, 3);
+  return static_cast<double>(grains_) * options_.density * volume * kGravity;
+}
+
+}  // namespace furrow::soil

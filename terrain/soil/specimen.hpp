@@ -1,0 +1,55 @@
+// A small bed of a scenario's grains to test: a box sized in grain radii, settled like the scenario's own bed.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "protocol/archive.hpp"
+#include "terrain/terrain_options.hpp"
+
+namespace furrow::soil {
+
+/// Called now and then with the share done, 0…1, of the work at hand; may throw to stop it.
+using WorkCall = std::function<void(double share)>;
+
+struct Box {
+  double length = 0.0, width = 0.0, depth = 0.0;  // wanted, in grain radii
+  bool periodic_x = true, periodic_y = true;
+};
+
+/// The step that tests of these grains take: a fixed share of the stable one, s; the scenario's own where unstable
+/// steps are allowed.
+double test_step(const TerrainOptions& material);
+
+class Specimen {
+ public:
+  /// Fills the box and lets it settle, with the generator and the compaction of `material`; never from a file.
+  Specimen(const TerrainOptions& material, const Box& box, std::uint64_t seed, const WorkCall& work);
+
+  /// The settled bed, ready for tools. Each call gives a new one in the same state.
+  std::unique_ptr<Terrain> terrain() const;
+
+  const TerrainOptions& options() const { return options_; }
+  double length() const { return options_.length; }  // m
+  double width() const { return options_.width; }    // m
+  double height() const { return height_; }          // mean surface height, m
+  double top() const { return top_; }                // highest grain top, m
+  double step() const { return options_.step; }      // s
+  std::int64_t grains() const { return grains_; }
+  double weight() const;  // N
+  bool settled() const { return settled_; }
+  /// Positions x y z of all grains, m.
+  const std::vector<Vec3>& positions() const { return positions_; }
+
+ private:
+  TerrainOptions options_;
+  Archive bed_;
+  std::vector<Vec3> positions_;
+  double height_ = 0.0, top_ = 0.0;
+  std::int64_t grains_ = 0;
+  bool settled_ = true;
+};
+
+}  // namespace furrow::soil

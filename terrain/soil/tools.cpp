@@ -1,0 +1,104 @@
+#include "terrain/soil/tools.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "terrain/dem/contact_mixing.hpp"
+
+namespace furrow::soil {
+namespace {
+
+constexpr int kFacets = 24;             // around the cone
+constexpr double kSteelFriction = 0.3;  // of the cone
+
+void quad(SurfaceMesh& mesh, int a, int b, int c, int d) {
+  mesh.triangles.push_back({a, b, c});
+  mesh.triangles.push_back({a, c, d});
+}
+
+}  // namespace
+
+Tool strip_plate(double centre, double width, double half, double z, double height) {
+  SurfaceMesh mesh;
+  std::vector<Vec3> x;
+  const double left = centre - 0.5 * width, right = centre + 0.5 * width;
+  for (const double y : {-half, half})
+    for (const auto& [px, pz] : {std::pair{left, z + height}, {left, z}, {right, z}, {right, z + height}})
+      x.emplace_back(px, y, pz);
+  // 0…3 at −half: top left, bottom left, bottom right, top right; 4…7 at +half. Outside: left, down, right.
+  for (int k = 0; k < 3; ++k) quad(mesh, k, k + 4, k + 5, k + 1);
+  return {std::move(mesh), std::move(x)};
+}
+
+Tool toothed_sheet(double from, double to, double half, double z, double pitch, double tooth, int sign) {
+  SurfaceMesh mesh;
+  std::vector<Vec3> x;
+  const auto add = [&](double px, double height) {
+    for (const double y : {-half, half}) x.emplace_back(px, y, z + sign * height);
+    const int n = static_cast<int>(x.size());
+    if (n < 4) return;
+    // Previous column n−4 (−half), n−3 (+half); this one n−2, n−1.
+    if (sign > 0)
+      quad(mesh, n - 4, n - 2, n - 1, n - 3);
+    else
+      quad(mesh, n - 4, n - 3, n - 1, n - 2);
+  };
+  add(from, 0.0);
+  for (double at = (std::floor(from / pitch) + 0.5) * pitch; at + tooth < to; at += pitch) {
+    if (at - tooth <= from) continue;
+    add(at - tooth, 0.0);
+    add(at, tooth);
+    add(at + tooth, 0.0);
+  }
+  add(to, 0.0);
+  return {std::move(mesh), std::move(x)};
+}
+
+double cone_height(double diameter, double angle) { return 0.5 * diameter / std::tan(0.5 * angle); }
+
+double cone_base_area(double diameter) {
+  const double turn = 2.0 * std::numbers::pi / kFacets;
+  return 0.125 * kFacets * diameter * diameter * std::sin(turn);
+}
+
+Tool cone_on_shaft(const Vec3& point, double diameter, double angle, double shaft, double shaft_length) {
+  SurfaceMesh mesh;
+  std::vector<Vec3> x{point};
+  const double base = cone_height(diameter, angle);
+  const auto ring = [&](double radius, double z) {
+    for (int k = 0; k < kFacets; ++k) {
+      const double phi = 2.0 * std::numbers::pi * k / kFacets;
+      x.push_back(point + Vec3(radius * std::cos(phi), radius * std::sin(phi), z));
+    }
+  };
+  ring(0.5 * diameter, base);
+  ring(0.5 * shaft * diameter, base);
+  ring(0.5 * shaft * diameter, base + shaft_length);
+  x.push_back(point + Vec3(0.0, 0.0, base + shaft_length));
+  const int top = static_cast<int>(x.size()) - 1;
+  for (int k = 0; k < kFacets; ++k) {
+    const int a = 1 + k, b = 1 + (k + 1) % kFacets;
+    mesh.triangles.push_back({0, b, a});
+    for (int level = 0; level < 2; ++level) {
+      const int low = level * kFacets, high = low + kFacets;
+      quad(mesh, a + low, b + low, b + high, a + high);
+    }
+    mesh.triangles.push_back({a + 2 * kFacets, b + 2 * kFacets, top});
+  }
+  return {std::move(mesh), std::move(x)};
+}
+
+ContactMaterial rough_material(const TerrainOptions& grains) {
+  ContactMaterial m = dem::grain_material(grains);
+  m.cohesion = 0.0;
+  return m;
+}
+
+ContactMaterial smooth_material(const TerrainOptions& grains) {
+  ContactMaterial m = rough_material(grains);
+  m.friction = std::min(m.friction, kSteelFriction);
+  return m;
+}
+
+}  // namespace furrow::soil

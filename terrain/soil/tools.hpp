@@ -1,0 +1,54 @@
+// The tools of soil tests: rigid triangulated surfaces, moved as a whole.
+#pragma once
+
+#include "protocol/surface.hpp"
+#include "terrain/terrain.hpp"
+#include "terrain/terrain_options.hpp"
+
+namespace furrow::soil {
+
+class Tool {
+ public:
+  Tool(SurfaceMesh mesh, std::vector<Vec3> vertices) : mesh_(std::move(mesh)) {
+    state_.position = std::move(vertices);
+    state_.velocity.assign(state_.position.size(), Vec3::Zero());
+    mesh_.vertex_count = static_cast<int>(state_.position.size());
+  }
+
+  const SurfaceMesh& mesh() const { return mesh_; }
+  const SurfaceState& state() const { return state_; }  // what Terrain::advance takes
+
+  /// Sets the velocity of the coming interval.
+  void set_velocity(const Vec3& v) { state_.velocity.assign(state_.velocity.size(), v); }
+  void set_velocity(std::size_t vertex, const Vec3& v) { state_.velocity[vertex] = v; }
+  /// The interval is over.
+  void moved(double duration) {
+    for (std::size_t a = 0; a < state_.position.size(); ++a)
+      state_.position[a] += duration * state_.velocity[a];
+  }
+
+ private:
+  SurfaceMesh mesh_;
+  SurfaceState state_;
+};
+
+/// A plate b wide along x about x = centre, from y = −half to half, its lower face at z, with sides `height` high.
+Tool strip_plate(double centre, double width, double half, double z, double height);
+
+/// A sheet from x = from to `to` and y = −half to half with ridges across x, one every `pitch`, of a triangular
+/// section 2·`tooth` wide and `tooth` high; flats at z. Outside is up (sign 1) or down (sign −1); teeth point there.
+Tool toothed_sheet(double from, double to, double half, double z, double pitch, double tooth, int sign);
+
+/// A cone of this base diameter and total angle (rad), point down at (x, y, z), with a shaft of `shaft` × its diameter.
+Tool cone_on_shaft(const Vec3& point, double diameter, double angle, double shaft, double shaft_length);
+/// Height of such a cone, m.
+double cone_height(double diameter, double angle);
+/// Area of the cone's base as meshed, m².
+double cone_base_area(double diameter);
+
+/// As rough as the grains, without cohesion.
+ContactMaterial rough_material(const TerrainOptions& grains);
+/// Polished steel: friction as the grains', at most 0.3.
+ContactMaterial smooth_material(const TerrainOptions& grains);
+
+}  // namespace furrow::soil

@@ -1,0 +1,154 @@
+#!/usr/bin/python3
+"""`furrow bed` and `furrow soil` on a few large grains: what they print, leave behind, and how they stop."""
+import json
+import math
+import os
+import pathlib
+import signal
+import time
+import unittest
+
+from program import SystemTest, changed, furrow, main, start, wait_for, write_scenario
+
+PLOTS = os.access("/usr/bin/python3", os.X_OK)
+
+
+class WithCache(SystemTest):
+    """The cache of these tests is their own."""
+
+    def setUp(self):
+        super().setUp()
+        self.work = self.folder / "work"
+        self.work.mkdir()
+        self.env = {"XDG_CACHE_HOME": str(self.folder / "cache")}
+
+    def run_json(self, *arguments):
+        done = furrow(*arguments, cwd=self.work, env=self.env)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads(done.stdout), done.stderr
+
+
+class Bed(WithCache):
+    def test_statistics_and_cache(self):
+        path = write_scenario(self.work)
+        first, told = self.run_json("bed", path)
+        self.assertIn("settling the bed", told)
+        self.assertTrue(first["settled"])
+        self.assertFalse(first["from_cache"])
+        self.assertLess(first["force_residual"], 1e-3)
+        self.assertLess(first["floor_force_error"], 1e-3)
+        self.assertTrue(0.4 < first["solid_fraction"] < 0.64, first)
+        self.assertTrue(2.0 < first["coordination_number"] < 8.0, first)
+        self.assertTrue(0.05 < first["depth_m"] < first["top_m"], first)
+        mass = 2500 * 4 / 3 * math.pi * 0.03**3
+        self.assertAlmostEqual(first["weight_N"], first["grains"] * mass * 9.81, delta=1e-6 * first["weight_N"])
+        cached = pathlib.Path(first["cache_file"])
+        self.assertTrue(cached.is_file() and cached.is_relative_to(self.folder / "cache"))
+        again, _ = self.run_json("bed", path)
+        self.assertTrue(again["from_cache"])
+        for key in first:
+            if key not in ("from_cache", "wall_s"):
+                self.assertEqual(first[key], again[key], key)
+        self.assertEqual([p.name for p in self.work.iterdir()], ["small.json"])
+        # The cached file can be named as a bed of its own, and a run takes it.
+        named, _ = self.run_json("bed", path, "--set", f"terrain.bed={cached}")
+        self.assertEqual(named["depth_m"], first["depth_m"])
+        self.assertIsNone(named["cache_file"])
+
+    def test_positions_of_the_users_own(self):
+        rows = ["x_m,y_m,z_m"] + [f"{0.05 + 0.065 * i},{-0.15 + 0.065 * j},{0.04 + 0.062 * k}"
+                                  for i in range(20) for j in range(5) for k in range(2)]
+        (self.work / "mine.csv").write_text("\n".join(rows))
+        path = write_scenario(self.work, changed(terrain={"bed": "mine.csv"}))
+        bed, _ = self.run_json("bed", path)
+        self.assertEqual(bed["grains"], 200)
+        self.assertEqual(bed["bed"], str(self.work / "mine.csv"))
+        self.assertIsNone(bed["bed_generator"])
+        self.assertIsNotNone(bed["cache_file"])
+        self.assertTrue(self.run_json("bed", path)[0]["from_cache"])
+
+    def test_generator_and_compaction(self):
+        path = write_scenario(self.work)
+        plain, _ = self.run_json("bed", path)
+        lattice, _ = self.run_json("bed", path, "--set", "terrain.bed_generator=lattice")
+        pressed, _ = self.run_json("bed", path, "--set", "terrain.compaction_pressure=100e3")
+        self.assertNotEqual(lattice["grains"], plain["grains"])
+        self.assertEqual(pressed["grains"], plain["grains"])
+        self.assertLess(pressed["depth_m"], plain["depth_m"])
+        self.assertGreater(pressed["solid_fraction"], plain["solid_fraction"])
+        self.assertEqual(len({b["cache_file"] for b in (plain, lattice, pressed)}), 3)
+
+
+class Soil(WithCache):
+    def test_all_tests_quickly(self):
+        path = write_scenario(self.work)
+        begin = time.monotonic()
+        soil, told = self.run_json("soil", path, "--quick", "--speed", "0.3", "--out", "out")
+        self.assertLess(time.monotonic() - begin, 60.0)
+        self.assertEqual(soil, json.loads((self.work / "out" / "soil.json").read_text()))
+        names = {"soil.json", "scenario.json", "plate.csv", "shear.csv", "cone.csv", "repose.csv"}
+        if "no plots" not in told:
+            names |= {"plate.png", "shear.png", "cone.png", "repose.png"}
+        self.assertEqual({p.name for p in (self.work / "out").iterdir()}, names)
+        self.assertEqual(soil["format_version"], 1)
+        self.assertTrue(soil["quick"])
+        for key in ("k_c", "k_phi", "n", "cohesion_Pa", "friction_angle_deg", "janosi_K_m", "cone_index_Pa", "repose_angle_deg"):
+            self.assertTrue(math.isfinite(soil[key]), key)
+            self.assertIn(key, soil["standard_error"])
+            self.assertIn(key, soil["interval_95"])
+        self.assertTrue(0 < soil["friction_angle_deg"] < 60, soil)
+        self.assertGreater(soil["janosi_K_m"], 0)
+        for test in ("plate", "shear", "cone"):
+            self.assertEqual(soil[test]["speed_m_s"], 0.3)
+            self.assertGreater(soil[test]["box"]["grains"], 50)
+        self.assertLess(soil["shear"]["floor_force_error"], 0.05)
+        for name, header in (("plate", "seed,width_m,sinkage_m,pressure_Pa"), ("cone", "seed,depth_m,pressure_Pa"),
+                             ("shear", "seed,nominal_normal_stress_Pa,travel_m,shear_stress_Pa,normal_stress_Pa,rise_m"),
+                             ("repose", "seed,cohesion_Pa,x_m,height_before_m,height_after_m")):
+            lines = (self.work / "out" / f"{name}.csv").read_text().splitlines()
+            self.assertEqual(lines[0], header)
+            self.assertTrue(all(math.isfinite(float(value)) for line in lines[1:] for value in line.split(",")), name)
+
+    def test_one_test_alone_twice_the_same(self):
+        path = write_scenario(self.work)
+        flags = ["--quick", "--speed", "0.3", "--only", "shear"]
+        one, _ = self.run_json("soil", path, *flags, "--threads", "1")
+        two, _ = self.run_json("soil", path, *flags, "--threads", "2")
+        self.assertEqual(one["cohesion_Pa"], two["cohesion_Pa"])
+        self.assertEqual(one["shear"], two["shear"])
+        self.assertIsNone(one["k_phi"])
+        self.assertNotIn("plate", one)
+        self.assertEqual(sorted(p.name for p in (self.work / "results").iterdir()), ["small-soil-001", "small-soil-002"])
+        self.assertEqual(sorted(p.name for p in (self.work / "results" / "small-soil-001").glob("*.csv")), ["shear.csv"])
+
+    def test_signal_stops_it_and_leaves_nothing(self):
+        path = write_scenario(self.work)
+        process = start("soil", path, "--out", "out", cwd=self.work, env=self.env)
+        wait_for(lambda: (self.work / "out").exists(), 20, "the folder")
+        time.sleep(1.0)
+        process.send_signal(signal.SIGTERM)
+        out, err = process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 75, err)
+        self.assertIn("stopped by a signal", err)
+        self.assertEqual(out, "")
+        self.assertEqual([p.name for p in self.work.iterdir()], ["small.json"])
+
+    def test_theory_beside_a_run(self):
+        run = self.work / "run"
+        run.mkdir()
+        (run / "scenario.json").write_text("{}")
+        (run / "summary.json").write_text(json.dumps({"format_version": 1, "tire_radius_m": 0.4673, "tread_width_m": 0.25,
+                                                      "vertical_load_N": 4609, "slip": 0.3}))
+        (self.work / "soil.json").write_text(json.dumps({
+            "format_version": 1, "k_c": 15.6e3, "k_phi": 245e3, "n": 0.395, "cohesion_Pa": 6.9e3, "friction_angle_deg": 26.8,
+            "janosi_K_m": 0.0209, "standard_error": {"cohesion_Pa": 1.4e3}}))
+        done = furrow("report", "run", "--soil", "soil.json", cwd=self.work)
+        self.assertRegex(done.stderr, r"furrow: soil theory \(rigid wheel\): drawbar pull 9\d\d ± \d+ N, sinkage \d+.\d mm")
+        estimate = json.loads((run / "soil_estimate.json").read_text())
+        self.assertAlmostEqual(estimate["thrust_N"] - estimate["compaction_resistance_N"], estimate["drawbar_pull_N"], places=6)
+        pulls = [point["drawbar_pull_N"] for point in estimate["curve"]]
+        self.assertEqual(pulls, sorted(pulls))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,199 @@
+// Beds by generator, from a user's positions, compacted; and what is said of them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+
+#include "terrain/dem/bed_cache.hpp"
+#include "terrain/dem/bed_compaction.hpp"
+#include "terrain/dem/bed_generators.hpp"
+#include "terrain/dem/bed_preparation.hpp"
+#include "terrain/dem/bed_statistics.hpp"
+#include "terrain/dem/close_pairs.hpp"
+#include "terrain/dem/solver_setup.hpp"
+
+namespace furrow::dem {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Beds : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("furrow_beds_test_" + std::to_string(::getpid()));
+    fs::create_directories(folder_);
+    setenv("XDG_CACHE_HOME", folder_.c_str(), 1);
+    options_.radius = 0.01;
+    options_.layers = 5;
+    options_.length = 0.3;
+    options_.width = 0.2;
+    options_.cohesion = 40e3;
+    options_.step = 6e-5;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name) << text;
+    return (folder_ / name).string();
+  }
+  BedStatistics statistics_of(const PreparedBed& bed) const {
+    GrainSolver solver(solver_params(options_));
+    solver.restore(bed.bed);
+    return bed_statistics(positions_by_id(solver), solver.params().bin, options_.radius);
+  }
+  std::string refusal() const {
+    try {
+      prepare_bed(options_, {});
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::bad_input);
+      return error.what();
+    }
+    return "not refused";
+  }
+
+  fs::path folder_;
+  TerrainOptions options_;
+};
+
+TEST(BedStatistics, two_touching_spheres_by_hand) {
+  const double r = 0.01, d = 0.018;
+  const Bin bin{0.2, 0.1, false, false};
+  const std::vector<Quad> two{{0.05, 0.0, 0.0098}, {0.05 + d, 0.0, 0.05}, {0.05, 0.0, 0.0098 + d}};
+  const BedStatistics s = bed_statistics(two, bin, r);
+  EXPECT_EQ(s.pairs, 1);
+  EXPECT_EQ(s.wall_contacts, 1);
+  EXPECT_NEAR(s.coordination, 2.0 / 3.0, 1e-15);
+  EXPECT_NEAR(s.max_overlap, 0.002, 1e-15);
+  EXPECT_NEAR(s.top, 0.06, 1e-15);
+  const double sphere = 4.0 / 3.0 * std::numbers::pi * r * r * r;
+  EXPECT_NEAR(s.solid_fraction * 0.2 * 0.1 * s.depth, 3.0 * sphere - lens_volume(r, d), 1e-12);
+}
+
+TEST(BedStatistics, lens_and_cap_tend_to_the_sphere) {
+  const double r = 0.5, sphere = std::numbers::pi / 6.0;
+  EXPECT_NEAR(lens_volume(r, 0.0), sphere, 1e-15);
+  EXPECT_EQ(lens_volume(r, 1.0), 0.0);
+  EXPECT_NEAR(volume_below(r, 0.0, 0.5), sphere, 1e-15);
+  EXPECT_NEAR(volume_below(r, 0.0, 0.0), 0.5 * sphere, 1e-15);
+  EXPECT_EQ(volume_below(r, 2.0, 1.0), 0.0);
+}
+
+TEST(ClosePairs, agree_with_all_pairs_also_across_periodic_sides) {
+  for (const bool periodic : {false, true}) {
+    const Bin bin{0.21, 0.13, periodic, periodic};
+    std::vector<Quad> points;
+    for (int k = 0; k < 300; ++k)
+      points.push_back({0.21 * std::fmod(0.618034 * k, 1.0), 0.13 * (std::fmod(0.754878 * k, 1.0) - 0.5),
+                        0.1 * std::fmod(0.569840 * k, 1.0)});
+    std::vector<std::pair<std::size_t, std::size_t>> found, all;
+    for_close_pairs(points, bin, 0.02,
+                    [&](std::size_t a, std::size_t b, double) { found.emplace_back(a, b); });
+    for (std::size_t a = 0; a < points.size(); ++a)
+      for (std::size_t b = a + 1; b < points.size(); ++b) {
+        const Quad d = shortest(bin, points[a], points[b]);
+        if (d.x * d.x + d.y * d.y + d.z * d.z < 0.02 * 0.02) all.emplace_back(a, b);
+      }
+    EXPECT_GT(all.size(), 100u);
+    EXPECT_EQ(found, all);
+  }
+}
+
+TEST_F(Beds, lattice_fills_the_bin_without_touching_and_counts_as_expected) {
+  options_.bed_generator = "lattice";
+  const std::vector<Quad> grains = starting_positions(options_, {});
+  EXPECT_EQ(static_cast<double>(grains.size()), expected_grains(options_));
+  const Bin bin{options_.length, options_.width};
+  for (const Quad& p : grains)
+    for (int wall = 0; wall < kWalls; ++wall)
+      EXPECT_GE(bin.distance(wall, p), options_.radius * (1.0 - 1e-12));
+  int touching = 0;
+  for_close_pairs(grains, bin, 2.0 * options_.radius, [&](std::size_t, std::size_t, double) { ++touching; });
+  EXPECT_EQ(touching, 0);
+  options_.seed = 2;
+  EXPECT_NE(starting_positions(options_, {})[3].x, grains[3].x);
+  EXPECT_TRUE(prepare_bed(options_, {}).settled.settled);
+}
+
+TEST_F(Beds, unknown_generator_is_refused_with_the_known_ones) {
+  options_.bed_generator = "hex";
+  EXPECT_NE(refusal().find("'hex' is unknown, expected poisson or lattice"), std::string::npos) << refusal();
+}
+
+TEST_F(Beds, positions_of_a_file_are_settled_and_kept) {
+  std::string text = "x_m,y_m,z_m\n";
+  for (int layer = 0; layer < 4; ++layer)
+    for (int i = 0; i < 13; ++i)
+      for (int j = 0; j < 8; ++j)
+        text += std::to_string(0.012 + 0.0215 * i + 0.005 * (layer % 2)) + "," +
+                std::to_string(-0.088 + 0.0215 * j + 0.005 * (layer % 2)) + "," +
+                std::to_string(0.01 + 0.021 * layer) + "\n";
+  options_.bed = write("mine.csv", text);
+  const PreparedBed first = prepare_bed(options_, {}), second = prepare_bed(options_, {});
+  EXPECT_FALSE(first.from_cache);
+  EXPECT_TRUE(second.from_cache);
+  EXPECT_EQ(first.bed.arrays(), second.bed.arrays());
+  EXPECT_TRUE(first.settled.settled);
+  EXPECT_EQ(statistics_of(first).grains, 4 * 13 * 8);
+  EXPECT_EQ(estimate_terrain(options_).grains, 4 * 13 * 8);
+  // Another file of that name is another bed.
+  const std::string digest = bed_digest(options_);
+  write("mine.csv", text + "0.15,0,0.12\n");
+  EXPECT_NE(bed_digest(options_), digest);
+}
+
+TEST_F(Beds, bad_positions_are_refused_by_line) {
+  for (const auto& [row, what] : std::initializer_list<std::pair<const char*, const char*>>{
+           {"0.1,0,nan", "line 3': '0.1,0,nan', expected three finite numbers"},
+           {"0.1,0", "line 3': '0.1,0', expected three finite numbers"},
+           {"0.1,0,1e400", "expected three finite numbers"},
+           {"0.4,0,0.05", "line 3': the grain stands at (0.4, 0, 0.05) m, expected a centre inside the bin"},
+           {"0.1,0,-0.05", "inside the bin"},
+           {"0.101,0,0.05", "line 3': the grain at (0.101, 0, 0.05) m is 0.001 m from that of line 2"}}) {
+    options_.bed = write("bad.csv", std::string("x_m,y_m,z_m\n0.1,0,0.05\n") + row + "\n");
+    EXPECT_NE(refusal().find(what), std::string::npos) << refusal();
+  }
+  options_.bed = write("bad.csv", "x,y,z\n0.1,0,0.05\n");
+  EXPECT_NE(refusal().find("expected the header x_m,y_m,z_m"), std::string::npos);
+}
+
+TEST_F(Beds, compaction_makes_the_bed_denser_and_leaves_it_at_rest) {
+  options_.cohesion = 80e3;
+  const PreparedBed loose = prepare_bed(options_, {});
+  options_.compaction_pressure = 100e3;
+  const PreparedBed dense = prepare_bed(options_, {});
+  EXPECT_NE(loose.file, dense.file);
+  const BedStatistics before = statistics_of(loose), after = statistics_of(dense);
+  EXPECT_EQ(before.grains, after.grains);
+  EXPECT_TRUE(dense.settled.settled);
+  EXPECT_LT(dense.settled.floor_error, 1e-3);
+  EXPECT_LT(after.depth, 0.97 * before.depth);
+  EXPECT_GT(after.solid_fraction, 1.02 * before.solid_fraction);
+  EXPECT_GT(after.coordination, before.coordination);
+}
+
+TEST_F(Beds, compaction_of_a_settled_file_is_refused) {
+  const PreparedBed made = prepare_bed(options_, {});
+  options_.bed = made.file.string();
+  EXPECT_EQ(prepare_bed(options_, {}).bed.arrays(), made.bed.arrays());
+  options_.compaction_pressure = 1e4;
+  EXPECT_NE(refusal().find("terrain.compaction_pressure"), std::string::npos);
+}
+
+TEST_F(Beds, digest_knows_every_way_to_make_a_bed) {
+  const std::string plain = bed_digest(options_);
+  TerrainOptions other = options_;
+  other.bed_generator = "lattice";
+  EXPECT_NE(bed_digest(other), plain);
+  other = options_, other.compaction_pressure = 1e4;
+  EXPECT_NE(bed_digest(other), plain);
+  other = options_, other.periodic_x = true;
+  EXPECT_NE(bed_digest(other), plain);
+  other = options_, other.threads = 7;
+  EXPECT_EQ(bed_digest(other), plain);
+}
+
+}  // namespace
+}  // namespace furrow::dem

@@ -1,0 +1,190 @@
+// The soil tests themselves on small boxes: balances that must hold, limits that are known.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "terrain/soil/cone.hpp"
+#include "terrain/soil/direct_shear.hpp"
+#include "terrain/soil/plate_sinkage.hpp"
+#include "terrain/soil/repose.hpp"
+#include "terrain/soil/soil_tests.hpp"
+#include "terrain/soil/tools.hpp"
+
+namespace furrow::soil {
+namespace {
+
+constexpr Box kShearBox{24.0, 10.0, 12.0};
+
+TerrainOptions coarse(double cohesion = 80e3) {
+  TerrainOptions o;
+  o.radius = 0.01;
+  o.cohesion = cohesion;
+  return o;
+}
+
+void ignore(double) {}
+
+ShearResult sheared(const TerrainOptions& material, double normal_stress, double travel = 6.0) {
+  ShearTest test;
+  test.normal_stress = normal_stress;
+  test.travel = travel;
+  test.samples = 60;
+  return direct_shear(Specimen(material, kShearBox, 1, ignore), test, ignore);
+}
+
+/// Signed volume of a closed mesh, or the flux of x through an open one: tells which way the triangles face.
+Vec3 area_vector(const Tool& tool) {
+  Vec3 sum = Vec3::Zero();
+  for (const auto& t : tool.mesh().triangles) {
+    const auto& x = tool.state().position;
+    sum += 0.5 * (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]);
+  }
+  return sum;
+}
+
+TEST(SoilTools, faces_look_outwards) {
+  EXPECT_NEAR((area_vector(strip_plate(0.5, 0.2, 0.1, 0.3, 0.1)) - Vec3(0.0, 0.0, -0.04)).norm(), 0.0, 1e-15);
+  EXPECT_NEAR((area_vector(toothed_sheet(0.0, 1.2, 0.1, 0.0, 0.06, 0.015, 1)) - Vec3(0, 0, 0.24)).norm(), 0.0,
+              1e-15);
+  EXPECT_NEAR((area_vector(toothed_sheet(0.0, 1.2, 0.1, 0.0, 0.06, 0.015, -1)) + Vec3(0, 0, 0.24)).norm(),
+              0.0, 1e-15);
+  const Tool cone = cone_on_shaft(Vec3(0.0, 0.0, 0.0), 0.06, kConeAngle, kConeShaft, 0.1);
+  EXPECT_LT(area_vector(cone).norm(), 1e-15);  // closed
+  double volume = 0.0;
+  for (const auto& t : cone.mesh().triangles) {
+    const auto& x = cone.state().position;
+    volume += x[t[0]].dot(x[t[1]].cross(x[t[2]])) / 6.0;
+  }
+  const double expected =
+      cone_base_area(0.06) * (cone_height(0.06, kConeAngle) / 3.0 + 0.1 * kConeShaft * kConeShaft);
+  EXPECT_NEAR(volume, expected, 1e-9 * expected);
+  EXPECT_NEAR(cone_base_area(0.06), std::numbers::pi * 0.0009, 0.02 * std::numbers::pi * 0.0009);
+}
+
+TEST(SoilTools, teeth_repeat_with_the_cell) {
+  // A sheet that reaches beyond the cell on both sides has its teeth one period apart.
+  const Tool sheet = toothed_sheet(-0.03, 0.27, 0.1, 0.0, 0.06, 0.015, 1);
+  std::vector<double> tips;
+  for (const Vec3& x : sheet.state().position)
+    if (x.z() > 0.0 && x.y() > 0.0) tips.push_back(x.x());
+  ASSERT_GE(tips.size(), 4u);
+  for (std::size_t k = 1; k < tips.size(); ++k) EXPECT_NEAR(tips[k] - tips[k - 1], 0.06, 1e-12);
+  EXPECT_NEAR(std::remainder(tips.front() - 0.03, 0.06), 0.0, 1e-12);
+}
+
+TEST(DirectShear, lid_bears_its_load_and_the_floor_bears_lid_and_soil) {
+  const ShearResult r = sheared(coarse(), 50e3);
+  EXPECT_NEAR(r.normal_mean, 50e3, 0.03 * 50e3);
+  EXPECT_LT(r.floor_error, 0.01);  // floor force = weight + load
+  EXPECT_LT(r.shear_error, 0.03);  // what pulls on the lid holds the lower plate
+  EXPECT_GT(r.final_shear, 0.0);
+  EXPECT_GT(r.janosi.K, 0.001);
+  EXPECT_LT(r.janosi.K, 0.1);
+}
+
+TEST(DirectShear, strength_vanishes_for_frictionless_grains_without_cohesion) {
+  // What is left is the geometric resistance of frictionless spheres, tan φ = 0.1 [Peyneau & Roux 2008, φ = 5.76°,
+  // doi:10.1103/PhysRevE.78.011307].
+  TerrainOptions smooth = coarse(0.0);
+  smooth.friction = 0.0;
+  const ShearResult r = sheared(smooth, 50e3);
+  EXPECT_LT(std::abs(r.final_shear) / r.normal_mean, 0.2);
+  EXPECT_LT(r.final_shear / r.normal_mean, 0.5 * sheared(coarse(0.0), 50e3).final_shear / 50e3);
+}
+
+TEST(DirectShear, higher_cohesion_gives_higher_strength_at_low_load) {
+  const double none = sheared(coarse(0.0), 20e3).final_shear, much = sheared(coarse(160e3), 20e3).final_shear;
+  EXPECT_GT(much, none + 5e3);
+}
+
+TEST(PlateSinkage, floor_bears_plate_and_soil_and_pressure_grows) {
+  const Specimen specimen(coarse(), {40.0, 8.0, 16.0}, 1, ignore);
+  PlateTest test;
+  test.width = 8.0;
+  test.sinkage = 3.0;
+  test.samples = 30;
+  const PlateResult r = plate_sinkage(specimen, test, ignore);
+  EXPECT_LT(r.balance_error, 0.05);
+  ASSERT_EQ(r.curve.sinkage.size(), 30u);
+  EXPECT_NEAR(r.curve.sinkage.back(), 0.03, 1e-3);
+  EXPECT_GT(r.curve.pressure.back(), r.curve.pressure[5]);
+  EXPECT_NEAR(r.curve.width, 0.08, 1e-15);
+}
+
+TEST(ConePenetration, pressure_grows_from_nothing) {
+  const Specimen specimen(coarse(), {20.0, 20.0, 18.0}, 1, ignore);
+  ConeTest test;
+  test.diameter = 4.0, test.depth = 2.0, test.index_from = 1.0, test.index_to = 2.0;
+  test.samples = 40;
+  const ConeResult r = cone_penetration(specimen, test, ignore);
+  EXPECT_LT(std::abs(r.pressure.front()), 0.2 * r.index);
+  EXPECT_GT(r.index, 10e3);
+  EXPECT_NEAR(r.depth.back(), 0.02, 2e-3);  // the last interval's middle
+}
+
+TEST(Repose, slope_of_a_plane_comes_back_and_a_cut_is_steep) {
+  std::vector<double> x, slope, cut;
+  for (int k = 0; k < 60; ++k) {
+    x.push_back(0.02 * (k + 0.5));
+    slope.push_back(std::max(0.04, std::min(0.30, 0.50 - std::tan(0.4) * x.back())));
+    cut.push_back(k < 30 ? 0.30 : 0.04);
+  }
+  EXPECT_NEAR(flank_angle(x, slope, 0.04), 0.4, 1e-9);
+  EXPECT_GT(flank_angle(x, cut, 0.04), 80.0 / 180.0 * std::numbers::pi);
+}
+
+TEST(Repose, cohesive_cut_stands_and_dry_one_slumps) {
+  ReposeTest test;
+  test.cut = 20.0;
+  const Box box{60.0, 8.0, 14.0, false, true};
+  const ReposeResult stands = angle_of_repose(Specimen(coarse(), box, 1, ignore), test, ignore);
+  const ReposeResult slumps = angle_of_repose(Specimen(coarse(0.0), box, 1, ignore), test, ignore);
+  EXPECT_FALSE(stands.slumped);
+  EXPECT_TRUE(slumps.slumped);
+  EXPECT_GT(stands.angle, 1.0);
+  EXPECT_GT(slumps.angle, 0.2);
+  EXPECT_LT(slumps.angle, 0.7);
+}
+
+SoilOptions quick(int threads) {
+  SoilOptions o;
+  o.material = coarse(0.0);
+  o.quick = true;
+  o.seeds = 1;
+  o.speed = 0.3;
+  o.threads = threads;
+  o.plate = o.cone = false;
+  return o;
+}
+
+TEST(SoilTests, results_do_not_depend_on_threads) {
+  const SoilPlan plan = soil_plan(quick(1));
+  const SoilResults one = run_soil_tests(quick(1), plan, {}), two = run_soil_tests(quick(2), plan, {});
+  ASSERT_EQ(one.shear.size(), 3u);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(one.shear[k].result.shear, two.shear[k].result.shear);
+  EXPECT_EQ(one.repose[0].result.after, two.repose[0].result.after);
+  EXPECT_TRUE(one.dry.empty());  // the grains have no cohesion to do without
+  const SoilParameters p = soil_parameters(one, plan, 0.01);
+  EXPECT_EQ(p.cohesion.samples, 3);
+  EXPECT_EQ(p.n.samples, 0);
+}
+
+TEST(SoilTests, progress_may_stop_them) {
+  int calls = 0;
+  const auto stop = [&](const std::string&, double) {
+    if (++calls == 2) throw Error(ExitCode::stopped, "enough");
+  };
+  EXPECT_THROW(run_soil_tests(quick(2), soil_plan(quick(2)), stop), Error);
+}
+
+TEST(SoilTests, loads_suit_soft_grains) {
+  SoilOptions o = quick(1);
+  EXPECT_EQ(soil_plan(o).shears.back().normal_stress, 100e3);
+  o.material.young_modulus = 1e6;
+  EXPECT_EQ(soil_plan(o).shears.back().normal_stress, 5e3);
+}
+
+}  // namespace
+}  // namespace furrow::soil

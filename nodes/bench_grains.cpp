@@ -71,6 +71,7 @@ std::string bench_grains(const GrainBench& bench) {
   options.step = bench.step;
   options.threads = options.settle_threads = bench.threads;
   options.precision = bench.precision;
+  options.activity = false;
   const std::vector<Quad> bed = bed_of(bench, options);
   options.periodic_x = true;
 
@@ -87,6 +88,9 @@ std::string bench_grains(const GrainBench& bench) {
         throw physics_error("a grain left the bin: the bed is not at rest with this law");
   };
   steps(bench.warm);
+  if (!bench.save.empty())
+    write_positions_csv(bench.save, std::span(solver.grains().position).first(solver.grains().count),
+                        0.5 * kReferenceWidth);
   solver.reset_accounts();
   const auto begin = std::chrono::steady_clock::now();
   steps(bench.steps);
@@ -99,7 +103,7 @@ std::string bench_grains(const GrainBench& bench) {
   for (int k = 0; k < solver.strips().count(); ++k) listed += solver.strips()[k].pairs;
   Hash hash;
   for (const auto* array : {&grains.position, &grains.velocity, &grains.spin})
-    hash.add(std::span<const Quad>(*array));
+    hash.add(std::span<const Quad>(*array).first(grains.count));
   const nlohmann::ordered_json json = {
       {"grain_steps_per_s", n * bench.steps / wall},
       {"ms_per_step", 1e3 * wall / bench.steps},

@@ -53,6 +53,7 @@ void add_grain_bench(CLI::App& command, GrainBench& bench) {
   command.add_option("--warm", bench.warm, "steps before that")->capture_default_str();
   command.add_option("--settle", bench.settle, "let the bed settle for that long at most first, s")
       ->capture_default_str();
+  command.add_option("--save-bed", bench.save, "write the positions before the timed steps to this CSV");
   command.add_option("--step", bench.step, "time step, s")->capture_default_str();
 }
 
@@ -190,7 +191,8 @@ ExitCode run_command_line(int argc, char** argv) {
   CLI::App& bench = *app.add_subcommand("bench", "how fast this machine is; prints JSON");
   bench.require_subcommand(1);
   GrainBench grains;
-  CLI::App& bench_of_grains = *bench.add_subcommand("grains", "steps a settled bed, every grain in every step");
+  CLI::App& bench_of_grains =
+      *bench.add_subcommand("grains", "steps a settled bed, every grain in every step");
   add_grain_bench(bench_of_grains, grains);
 
   try {

@@ -198,6 +198,7 @@ void take_terrain(const json& j, Scenario& s) {
   o.friction_velocity_scale = j["friction_velocity_scale"];
   o.friction_impulse_limit = j["friction_impulse_limit"];
   o.activity = j["activity"];
+  o.precision = j["precision"];
   o.ground_stiffness = j["ground_stiffness"];
   o.ground_damping = j["ground_damping"];
   o.ground_shear_stiffness = j["ground_shear_stiffness"];

@@ -38,7 +38,8 @@ struct TerrainOptions {
   double friction_velocity_scale = 5.0;  // c in F_t = μ F_e tanh(c |v_t|), s/m, law coulomb and rigid ground
   bool friction_impulse_limit = true;    // law coulomb: caps F_t at β m_t |v_t| / dt
   bool activity = true;                  // let resting grains sleep
-  std::string precision = "mixed";  // of the contact law between grains: mixed (single, sums in double) | double
+  std::string precision =
+      "mixed";  // of the contact law between grains: mixed (single, sums in double) | double
   // Rigid ground (engine rigid): a stiff elastic layer, pressure = stiffness × depth + damping × its rate.
   double ground_stiffness = 4e8;  // N/m³: 0.6 mm under 240 kPa; 4e5 N/m on a vertex that carries 10 cm²
   double ground_shear_stiffness = 1e8;  // N/m³: a tread of 1 MPa shear modulus, 10 mm thick

@@ -14,11 +14,12 @@
 
 #include "protocol/hash.hpp"
 #include "terrain/dem/bed_settling.hpp"
+#include "terrain/dem/solver_setup.hpp"
 
 namespace furrow::dem {
 namespace {
 
-constexpr std::int64_t kBedFormat = 1;  // raise when the bits of a bed may change
+constexpr std::int64_t kBedFormat = 3;  // raise when the bits of a bed may change
 
 /// An HDF5 identifier that closes itself.
 class Handle {
@@ -130,12 +131,16 @@ std::string file_bytes(const std::filesystem::path& file) {
 std::string bed_digest(const TerrainOptions& o) {
   Hash hash;
   hash.add(o.law);
-  const std::array<double, 15> numbers{static_cast<double>(kBedFormat),
+  hash.add(o.precision);
+  const std::array<double, 18> numbers{static_cast<double>(kBedFormat),
                                        o.radius,
                                        o.density,
                                        static_cast<double>(o.layers),
                                        o.length,
                                        o.width,
+                                       kSkinShare,
+                                       o.periodic_x ? 1.0 : 0.0,
+                                       o.periodic_y ? 1.0 : 0.0,
                                        o.young_modulus,
                                        o.poisson_ratio,
                                        o.restitution,
@@ -152,8 +157,6 @@ std::string bed_digest(const TerrainOptions& o) {
   // Options that came later count only where they are used, so that digests of older beds stay what they were.
   if (o.bed_generator != "poisson") hash.add(o.bed_generator);
   if (o.compaction_pressure > 0.0) hash.add(&o.compaction_pressure, sizeof o.compaction_pressure);
-  if (o.periodic_x || o.periodic_y) hash.add(o.periodic_x ? o.periodic_y ? "xy" : "x" : "y");
-  if (o.precision != "mixed") hash.add(o.precision);
   if (!o.bed.empty()) hash.add(file_bytes(o.bed));
   return hash.hex();
 }

@@ -29,7 +29,8 @@ std::vector<Quad> read_positions_csv(const std::filesystem::path& file) {
   if (!in || !std::getline(in, line)) throw io_error(file.string(), "the bed cannot be read");
   while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
   if (line != "x_m,y_m,z_m")
-    throw input_error(file.string(), "line 1", "'" + line.substr(0, 60) + "', expected the header x_m,y_m,z_m");
+    throw input_error(file.string(), "line 1",
+                      "'" + line.substr(0, 60) + "', expected the header x_m,y_m,z_m");
   std::vector<Quad> positions;
   for (std::size_t row = 2; std::getline(in, line); ++row) {
     if (line.empty() || line == "\r") continue;
@@ -43,6 +44,14 @@ std::vector<Quad> read_positions_csv(const std::filesystem::path& file) {
   if (in.bad()) throw io_error(file.string(), "the bed cannot be read to its end");
   if (positions.empty()) throw input_error(file.string(), "", "holds no grain");
   return positions;
+}
+
+void write_positions_csv(const std::filesystem::path& file, std::span<const Quad> positions, double y) {
+  std::ofstream out(file);
+  out.precision(17);
+  out << "x_m,y_m,z_m\n";
+  for (const Quad& p : positions) out << p.x << ',' << p.y + y << ',' << p.z << '\n';
+  if (!out.flush()) throw io_error(file.string(), "the bed cannot be written");
 }
 
 }  // namespace furrow::dem

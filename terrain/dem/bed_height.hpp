@@ -2,8 +2,8 @@
 #pragma once
 
 #include "protocol/messages.hpp"
-#include "terrain/dem/grains.hpp"
 #include "terrain/dem/bin.hpp"
+#include "terrain/dem/grains.hpp"
 
 namespace furrow::dem {
 

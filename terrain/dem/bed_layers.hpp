@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "terrain/dem/lanes.hpp"
 #include "terrain/dem/bin.hpp"
+#include "terrain/dem/lanes.hpp"
 #include "terrain/terrain.hpp"
 
 namespace furrow::dem {

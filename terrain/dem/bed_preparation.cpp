@@ -48,18 +48,24 @@ bool from_cache(const std::filesystem::path& file, const TerrainOptions& options
   }
 }
 
+/// For making a bed: no grain sleeps before it has come to rest.
+SolverParams settling_params(const TerrainOptions& options) {
+  SolverParams params = solver_params(options);
+  params.threads = std::max(1, options.settle_threads);
+  params.activity = false;
+  return params;
+}
+
 /// Presses the bed and lets it settle again, grains placed at rest where the lid left them.
 SettleResult compact(GrainSolver& solver, const TerrainOptions& options, const ProgressCall& progress) {
   const std::vector<Quad> positions = compacted_positions(solver, options, progress);
-  solver = GrainSolver(solver_params(options));
-  solver.set_threads(std::max(1, options.settle_threads));
+  solver = GrainSolver(settling_params(options));
   solver.place(positions);
   return settle(solver, options, progress);
 }
 
 Archive made_bed(const TerrainOptions& options, const ProgressCall& progress, SettleResult& result) {
-  GrainSolver solver(solver_params(options));
-  solver.set_threads(std::max(1, options.settle_threads));
+  GrainSolver solver(settling_params(options));
   solver.place(starting_positions(options, progress));
   result = settle(solver, options, progress);
   if (options.compaction_pressure > 0.0) {

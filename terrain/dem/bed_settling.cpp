@@ -74,8 +74,7 @@ SettleResult settle(GrainSolver& solver, const TerrainOptions& options, const Pr
     best = std::min(best, std::max(result.force_ratio, result.floor_error));
     if (progress) {
       const double decades = std::log10(1.0 / std::max(best, kSettledForceRatio)) / 3.0;
-      progress("settling the bed",
-               std::clamp(std::max(decades, dt * result.steps / most_time), 0.0, 1.0));
+      progress("settling the bed", std::clamp(std::max(decades, dt * result.steps / most_time), 0.0, 1.0));
     }
   }
   solver.set_drag(0.0);

@@ -38,6 +38,12 @@ struct Bin {
     constexpr Triple<double> kNormal[kWalls] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}};
     return kNormal[wall];
   }
+  /// Whether a centre is within the walls, and a number.
+  bool holds(const Quad& p) const {
+    constexpr double kHigh = 1e6;  // m
+    return (periodic_x ? std::isfinite(p.x) : p.x >= 0.0 && p.x <= length) &&
+           (periodic_y ? std::isfinite(p.y) : std::abs(p.y) <= 0.5 * width) && p.z >= 0.0 && p.z < kHigh;
+  }
   /// Brings a point back between the periodic sides.
   void wrap(Quad& p) const {
     if (periodic_x) p.x -= length * std::floor(p.x / length);

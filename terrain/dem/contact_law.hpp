@@ -47,9 +47,9 @@ using ContactCoefficients = Coefficients<double>;
 template <class S>
 Coefficients<S> rounded(const ContactCoefficients& c) {
   const auto r = [](double a) { return static_cast<S>(a); };
-  return {r(c.stiffness),      r(c.damping),         r(c.shear_stiffness), r(c.shear_damping),
-          r(c.friction),       r(c.cohesion_force),  r(c.velocity_scale),  r(c.slip_limit),
-          r(c.rolling_arm),    r(c.rolling_radius),  r(c.rolling_damping), r(c.roll_limit)};
+  return {r(c.stiffness),   r(c.damping),        r(c.shear_stiffness), r(c.shear_damping),
+          r(c.friction),    r(c.cohesion_force), r(c.velocity_scale),  r(c.slip_limit),
+          r(c.rolling_arm), r(c.rolling_radius), r(c.rolling_damping), r(c.roll_limit)};
 }
 
 /// Share of critical damping in the rolling spring [Ai et al. 2011, §4.2].
@@ -59,6 +59,7 @@ template <class T>
 struct ContactMotion {
   Triple<T> normal;    // n, unit, pushes grain i
   T overlap;           // δ > 0, m
+  T root_overlap;      // √δ, √m
   Triple<T> velocity;  // of i relative to its partner at the common point, m/s
   T spin;              // mean spin of both about n, rad/s
   Triple<T> roll;      // ω_i − ω_partner, rad/s; read only with rolling resistance
@@ -83,14 +84,15 @@ struct ContactForce {
 /// Squares below it count as zero; a float still holds it.
 inline constexpr double kTiny = 1e-35;
 
-/// Turns a vector held in the contact plane with the contact: spin about n, projection on the new plane, same length.
+/// Turns a vector held in the contact plane with the contact — spin about n, projection on the new plane, same length —
+/// and scales it.
 template <class T>
-inline Triple<T> turn_with_contact(const Triple<T>& old, const Triple<T>& n, T spin_angle) {
+inline Triple<T> turn_with_contact(const Triple<T>& old, const Triple<T>& n, T spin_angle, T scale) {
   const Triple<T> spun = old + spin_angle * cross(n, old);
   const Triple<T> flat = spun - dot(spun, n) * n;
   const T before = dot(old, old), after = dot(flat, flat);
   const T tiny = constant<T>(kTiny);
-  return root(before / larger(after, tiny)) * flat;
+  return (scale * root(before / larger(after, tiny))) * flat;
 }
 
 /// Cuts spring + damper at `limit`; the spring keeps limit − damper. Returns the sum.
@@ -112,8 +114,8 @@ struct MindlinLaw {
   template <bool kRolling, class S, class T>
   static inline ContactForce<T> force(const Coefficients<S>& c, S dt, const ContactMotion<T>& at,
                                       ContactHistory<T>& history) {
-    const T zero = constant<T>(0.0), one = constant<T>(1.0);
-    const T s = root(at.overlap), q = root(s);
+    const T zero = constant<T>(0.0);
+    const T s = at.root_overlap, q = root(s);
     const T v_n = dot(at.velocity, at.normal);
     const Triple<T> v_t = at.velocity - v_n * at.normal;
     const T hertz = c.stiffness * s * at.overlap;
@@ -124,9 +126,9 @@ struct MindlinLaw {
     f.energy = (constant<T>(0.4) * hertz - c.cohesion_force) * at.overlap;
     const T bearing = larger(f.elastic, zero);
 
-    const T unloading = s < history.root_overlap ? s / larger(history.root_overlap, s) : one;
+    const T unloading = s / larger(history.root_overlap, s);
     const T angle = dt * at.spin;
-    Triple<T> spring = unloading * turn_with_contact(history.tangential, at.normal, angle);
+    Triple<T> spring = turn_with_contact(history.tangential, at.normal, angle, unloading);
     spring = spring - (c.shear_stiffness * dt * s) * v_t;  // (3)
     const Triple<T> damper = (-c.shear_damping * q) * v_t;
     f.tangential = cut_at_limit(spring, damper, c.friction * bearing);
@@ -136,7 +138,7 @@ struct MindlinLaw {
     if constexpr (kRolling) {  // (4)
       const Triple<T> w = at.roll - dot(at.roll, at.normal) * at.normal;
       const S r2 = c.rolling_radius * c.rolling_radius;
-      Triple<T> torque = unloading * turn_with_contact(history.rolling, at.normal, angle);
+      Triple<T> torque = turn_with_contact(history.rolling, at.normal, angle, unloading);
       torque = torque - (c.shear_stiffness * r2 * dt * s) * w;
       const Triple<T> brake = (-c.rolling_damping * q) * w;
       f.rolling = cut_at_limit(torque, brake, c.rolling_arm * bearing);
@@ -155,7 +157,7 @@ struct CoulombLaw {
   static inline ContactForce<T> force(const Coefficients<S>& c, S, const ContactMotion<T>& at,
                                       ContactHistory<T>&) {
     const T zero = constant<T>(0.0), tiny = constant<T>(1e-30);
-    const T s = root(at.overlap);
+    const T s = at.root_overlap;
     const T v_n = dot(at.velocity, at.normal);
     const Triple<T> v_t = at.velocity - v_n * at.normal;
 

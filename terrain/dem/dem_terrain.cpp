@@ -132,13 +132,14 @@ class DemTerrain : public Terrain {
     s.kinetic_energy = a.kinetic;
     s.potential_energy = mass * kGravity * a.height;
     s.elastic_energy = a.elastic;
-    s.dissipation = -a.contact_work - (a.elastic - a.elastic_start);
+    s.dissipation = -a.contact_work - (a.elastic - a.elastic_start) + a.slept;
+    s.energy_removed = a.slept;
     s.momentum = mass * a.velocity;
     s.wall_impulse = a.wall_impulse;
     s.surface_impulse = a.surface_impulse;
     s.floor_force = a.floor_force;
     s.contacts = a.contacts;
-    s.active = solver_.grains().count;
+    s.active = a.active;
     s.list_rebuilds = std::llround(solver_.rebuilds());
     return s;
   }
@@ -205,12 +206,9 @@ class DemTerrain : public Terrain {
 
   /// All grains now, with room for what they may move in one interval.
   SurfaceBox grain_box() const {
-    double top = 0.0;
-    for (const Quad& p : std::span(solver_.grains().position).first(solver_.grains().count))
-      top = std::max(top, p.z);
     const double room = 10.0 * options_.radius;
     return {Vec3(-room, -0.5 * options_.width - room, -room),
-            Vec3(options_.length + room, 0.5 * options_.width + room, top + room)};
+            Vec3(options_.length + room, 0.5 * options_.width + room, solver_.top() + room)};
   }
 
   TerrainStatus lost_grain(int index) const {

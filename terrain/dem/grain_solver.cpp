@@ -8,9 +8,9 @@
 namespace furrow::dem {
 namespace {
 
-constexpr int kMostChunks = 64;       // enough for any load balance
-constexpr int kMostStrips = 12;       // of a chunk: what its thread keeps in the cache
-constexpr int kFewestStrips = 3;      // of a chunk: its first is moved in the second pass
+constexpr int kMostChunks = 64;   // enough for any load balance
+constexpr int kMostStrips = 12;   // of a chunk: what its thread keeps in the cache
+constexpr int kFewestStrips = 6;  // of a chunk: its first is moved in the second pass
 
 Strips::Options strip_options(const SolverParams& p) {
   Strips::Options o;
@@ -60,6 +60,11 @@ int GrainSolver::index_of(int id) const {
   return static_cast<int>(std::find(grains_.id.begin(), grains_.id.end(), id) - grains_.id.begin());
 }
 
+void GrainSolver::wake(int grain) {
+  for (int k = 0; k < strips_.count(); ++k)
+    if (grain >= strips_[k].first && grain < strips_[k].last) strips_[k].asleep = false, strips_[k].calm = 0;
+}
+
 double GrainSolver::rebuilds() const {
   return static_cast<double>(strips_.resorted()) / std::max(1, grains_.count);
 }
@@ -79,7 +84,14 @@ void GrainSolver::reset_accounts() {
     accounts_.height += grains_.position[g].z;
     accounts_.velocity += Vec3(v.x, v.y, v.z);
   }
+  for (int k = 0; k < strips_.count(); ++k)
+    if (!strips_[k].asleep) accounts_.active += strips_[k].grains();
   strips_.set_resorted(0);
+}
+
+void GrainSolver::LoadBuffer::assign(const Loads& from, int count) {
+  force.assign(from.force, from.force + count);
+  torque.assign(from.torque, from.torque + count);
 }
 
 template <>
@@ -94,17 +106,20 @@ GrainSolver::Scratch<double>& GrainSolver::scratch() {
 /// Brings the motion of a strip's grains to `offset` of the scratch memory and clears their loads.
 template <class Real>
 void GrainSolver::gather(Scratch<Real>& s, int strip, int offset) {
-  const Strip& at = strips_[strip];
-  const int n = at.grains();
-  for (int g = 0; g < n; ++g)
-    s.motion[offset + g] = motion_row<Real>(grains_.velocity[at.first + g], grains_.spin[at.first + g]);
-  std::fill_n(s.loads.begin() + offset, n, Load{});
+  const int first = strips_[strip].first, n = strips_[strip].grains();
+  s.motion.set(offset, &grains_.velocity[first], &grains_.spin[first], n);
+  double* const force = flat(s.loads.force.data() + offset);
+  double* const torque = flat(s.loads.torque.data() + offset);
+  for (int g = 0; g < kQuad * n; g += kQuad) {  // a call of memset would cost more than it saves
+    store_lanes(force + g, Wide{});
+    store_lanes(torque + g, Wide{});
+  }
 }
 
 template <class Real, class Law, bool kRolling>
 void GrainSolver::contacts_of_strip(Scratch<Real>& s, int k, int offset, double dt, bool measure) {
   Strip& strip = strips_[k];
-  strip.sums = {};
+  strip.contact = {};
   const Quad* x = grains_.position.data() + strip.first;
   if (const int after = strips_.next(k); after >= 0 && after < k) {
     const Strip& other = strips_[after];
@@ -124,9 +139,12 @@ void GrainSolver::contacts_of_strip(Scratch<Real>& s, int k, int offset, double 
   law.diameter = static_cast<Real>(diameter);
   law.step = static_cast<Real>(dt);
   law.measure = measure;
-  Load* const loads = s.loads.data() + offset;
-  pair_forces<Law, kRolling>(law, s.touching, s.motion.data() + offset, strip.history<Real>(), loads, strip.sums);
-  wall_forces<Law, kRolling>(grains_, strip, params_.bin, params_.grain.radius, coefficients_, dt, measure, loads);
+  const Loads loads{s.loads.force.data() + offset, s.loads.torque.data() + offset};
+  const Motion motion{flat(s.motion.v.data()) + kQuad * offset,
+                      s.motion.w.empty() ? nullptr : flat(s.motion.w.data()) + kQuad * offset};
+  PairForces<Law, kRolling, Real>(law, s.touching, motion, strip.history<Real>(), loads).run(strip.contact);
+  wall_forces<Law, kRolling>(grains_, strip, params_.bin, params_.grain.radius, coefficients_, dt, measure,
+                             loads);
   if (surfaces_.any()) surfaces_.evaluate<Law>(grains_, strip, k, dt, loads);
 }
 
@@ -136,88 +154,128 @@ void GrainSolver::run_chunk(Chunk& chunk, double dt, bool measure) {
   const int first = strips_[chunk.from].first, last = strips_[chunk.to - 1].last;
   const int beyond = strips_.next(chunk.to - 1);
   const int ahead = beyond < 0 ? 0 : strips_[beyond].grains();
-  grow(s.motion, last - first + ahead);
-  grow(s.loads, last - first + ahead);
-  gather(s, chunk.from, 0);
+  s.motion.grow(last - first + ahead);
+  grow(s.loads.force, last - first + ahead);
+  grow(s.loads.torque, last - first + ahead);
+  const Loads all{s.loads.force.data(), s.loads.torque.data()};
+  bool gathered = false;  // of strip k, by the one before
   for (int k = chunk.from; k < chunk.to; ++k) {
-    const int offset = strips_[k].first - first;
-    if (const int next = strips_.next(k); next >= 0) gather(s, next, strips_[k].last - first);
-    contacts_of_strip<Real, Law, kRolling>(s, k, offset, dt, measure);
-    const Load* const loads = s.loads.data() + offset;
-    if (k == chunk.from) {
-      chunk.own.assign(loads, loads + strips_[k].grains());
+    Strip& strip = strips_[k];
+    const int offset = strip.first - first;
+    const bool evaluated = activity_.evaluated(k);
+    if (!gathered && (evaluated || activity_.complete(k))) gather(s, k, offset);
+    gathered = false;
+    if (evaluated) {
+      if (const int next = strips_.next(k); next >= 0) gather(s, next, strip.last - first), gathered = true;
+      contacts_of_strip<Real, Law, kRolling>(s, k, offset, dt, measure);
     } else {
-      integrate(strips_[k], loads, dt, measure);
+      strip.contact.power = strip.motion.step_work = 0.0;
+    }
+    if (!activity_.complete(k)) continue;
+    if (k == chunk.from) {
+      chunk.own.assign(all.from(offset), strip.grains());
+    } else {
+      finish_strip(k, all.from(offset), dt, measure);
     }
   }
-  const Load* const tail = s.loads.data() + (last - first);
-  chunk.ahead.assign(tail, tail + ahead);
+  if (gathered && activity_.complete(beyond)) chunk.ahead.assign(all.from(last - first), ahead);
 }
 
 void GrainSolver::finish_chunk(Chunk& chunk, const Chunk* before, double dt, bool measure) {
+  if (!activity_.complete(chunk.from)) return;
   if (before)
-    for (std::size_t g = 0; g < chunk.own.size(); ++g) {
-      add(chunk.own[g].force, load(before->ahead[g].force));
-      add(chunk.own[g].torque, load(before->ahead[g].torque));
+    for (std::size_t g = 0; g < chunk.own.force.size(); ++g) {
+      add(chunk.own.force[g], load(before->ahead.force[g]));
+      add(chunk.own.torque[g], load(before->ahead.torque[g]));
     }
-  integrate(strips_[chunk.from], chunk.own.data(), dt, measure);
+  finish_strip(chunk.from, {chunk.own.force.data(), chunk.own.torque.data()}, dt, measure);
 }
 
-void GrainSolver::integrate(Strip& strip, const Load* loads, double dt, bool measure) {
+void GrainSolver::finish_strip(int k, const Loads& loads, double dt, bool measure) {
+  Strip& strip = strips_[k];
+  if (strip.asleep) {
+    feel(strip, loads);
+  } else if (params_.activity) {
+    integrate<true>(strip, loads, dt, measure);
+  } else {
+    integrate<false>(strip, loads, dt, measure);
+  }
+}
+
+void GrainSolver::feel(Strip& strip, const Loads& loads) const {
+  const Wide weight{0.0, 0.0, -params_.gravity * params_.grain.mass, 0.0};
+  const double* const force = flat(loads.force);
+  Wide largest{};
+  for (int g = 0; g < kQuad * strip.grains(); g += kQuad) {
+    const Wide f = load_lanes<Wide>(force + g) + weight;
+    largest = larger(largest, f * f);
+  }
+  strip.motion.max_net_force = std::sqrt(sum_of(largest));
+}
+
+template <bool kMaySleep>
+void GrainSolver::integrate(Strip& strip, const Loads& loads, double dt, bool measure) {
   const double mass = params_.grain.mass, inertia = params_.grain.inertia;
   const double per_mass = 1.0 / mass, per_inertia = 1.0 / inertia;
   const double keep = 1.0 / (1.0 + dt * drag_);
   const Wide gravity{0.0, 0.0, -params_.gravity, 0.0};
-  constexpr double kFar = 1e300;
-  Wide kinetic{}, spinning{}, work{}, momentum{}, height{}, fastest{};
-  Wide low{kFar, kFar, kFar, kFar}, high = -low;
-  double net = 0.0;
-  for (int g = strip.first; g < strip.last; ++g) {
-    const Wide f = load(loads[g - strip.first].force), t = load(loads[g - strip.first].torque);
+  const int n = strip.grains();
+  const double *const force = flat(loads.force), *const torque = flat(loads.torque);
+  double* const velocity = flat(grains_.velocity.data() + strip.first);
+  double* const spin = flat(grains_.spin.data() + strip.first);
+  double* const position = flat(grains_.position.data() + strip.first);
+  Wide moving{}, spinning{}, work{}, momentum{}, height{}, fastest{}, net{};
+  Wide most_pushed{};  // largest squares of the acceleration
+  for (int g = 0; g < kQuad * n; g += kQuad) {
+    const Wide f = load_lanes<Wide>(force + g), t = load_lanes<Wide>(torque + g);
     const Wide a = f * per_mass + gravity, alpha = t * per_inertia;
-    const Wide v = (load(grains_.velocity[g]) + dt * a) * keep;
-    const Wide w = (load(grains_.spin[g]) + dt * alpha) * keep;
-    const Wide x = load(grains_.position[g]) + dt * v;
-    store(grains_.velocity[g], v);
-    store(grains_.spin[g], w);
-    store(grains_.position[g], x);
+    const Wide v = (load_lanes<Wide>(velocity + g) + dt * a) * keep;
+    const Wide w = (load_lanes<Wide>(spin + g) + dt * alpha) * keep;
+    const Wide x = load_lanes<Wide>(position + g) + dt * v;
+    store_lanes(velocity + g, v);
+    store_lanes(spin + g, w);
+    store_lanes(position + g, x);
     const Wide v2 = v * v;
-    kinetic += v2;
+    moving += v2;
     spinning += w * w;
     work += f * a + t * alpha;
     momentum += v;
     height += x;
-    fastest = v2 > fastest ? v2 : fastest;
-    low = x < low ? x : low;
-    high = x > high ? x : high;
-    if (measure) {
-      const Wide n = f + mass * gravity, n2 = n * n;
-      net += std::sqrt(n2[0] + n2[1] + n2[2]);
-    }
+    fastest = larger(fastest, v2);
+    if constexpr (kMaySleep) most_pushed = larger(most_pushed, a * a);
+    if (measure) net[0] += mass * std::sqrt(sum_of(a * a));
   }
-  const auto sum = [](Wide v) { return (v[0] + v[1]) + (v[2] + v[3]); };
-  StripSums& sums = strip.sums;
-  sums.kinetic = 0.5 * (mass * sum(kinetic) + inertia * sum(spinning));
-  sums.step_work = sum(work);
+  MotionTotals& sums = strip.motion;
+  sums.speed2 = sum_of(moving);
+  sums.kinetic = 0.5 * (mass * sums.speed2 + inertia * sum_of(spinning));
+  sums.step_work = sum_of(work);
   store(sums.velocity, momentum);
   sums.height = height[2];
-  sums.max_speed = std::sqrt(sum(fastest));  // largest v_x, v_y, v_z, perhaps of different grains
-  sums.net_force = net;
+  // Not a number when one of the sums is not: the strip will be sorted, and the grain be found.
+  sums.max_speed = std::sqrt(sum_of(fastest)) + 0.0 * (sums.kinetic + sum_of(height));
+  sums.max_net_force = mass * std::sqrt(sum_of(most_pushed));
+  sums.net_force = net[0];
   strip.travel += dt * sums.max_speed;
+}
 
-  // A grain beyond a wall shows in the extremes, one that is not a number in the sums.
-  const Bin& bin = params_.bin;
-  const double half_width = 0.5 * bin.width;
-  const auto inside = [&](const Wide& from, const Wide& to) {
-    return (bin.periodic_x || (from[0] >= 0.0 && to[0] <= bin.length)) &&
-           (bin.periodic_y || (from[1] >= -half_width && to[1] <= half_width)) && from[2] >= 0.0 && to[2] < 1e6;
-  };
-  const auto finite = [](const Wide& v) { return std::isfinite(v[0] + v[1] + v[2]); };
-  if (strip.grains() == 0 || (inside(low, high) && finite(height) && finite(spinning))) return;
-  for (int g = strip.last - 1; g >= strip.first; --g) {
-    const Wide x = load(grains_.position[g]);
-    if (!inside(x, x) || !finite(x) || !finite(load(grains_.spin[g]))) sums.lost = g;
-  }
+void GrainSolver::change_activity() {
+  if (!params_.activity) return;
+  if (mean_contact_force_ == 0.0)
+    mean_contact_force_ = accounts_.contact_force / std::max<std::int64_t>(1, accounts_.contacts);
+  const double speed = std::sqrt(params_.gravity * params_.grain.radius);
+  activity_.limit({kSleepMeanSpeed * speed, kSleepSpeed * speed, kSleepForce * mean_contact_force_,
+                   kWakeForce * mean_contact_force_});
+  const double margin = 2.0 * strips_.options().reach;
+  accounts_.slept += activity_.update(strips_, grains_, [&](const Strip& strip) {
+    return surfaces_.any() && surfaces_.low_between(strip.x_min - margin, strip.x_max + margin);
+  });
+}
+
+double GrainSolver::top() const {
+  double top = 0.0;
+  for (int k = 0; k < strips_.count(); ++k)
+    if (strips_[k].grains() > 0) top = std::max(top, strips_[k].z_max + strips_[k].travel);
+  return top + params_.grain.radius;
 }
 
 void GrainSolver::reduce(double dt, bool measure) {
@@ -226,21 +284,23 @@ void GrainSolver::reduce(double dt, bool measure) {
   Quad wall;
   a.elastic = a.floor_force = a.kinetic = a.height = 0.0;
   a.velocity.setZero();
-  a.contacts = 0;
+  a.contacts = a.active = 0;
   for (int k = 0; k < strips_.count(); ++k) {
-    const StripSums& s = strips_[k].sums;
-    power += s.power;
-    work += s.step_work;
-    contact_force += s.contact_force;
-    net_force += s.net_force;
-    add(wall, load(s.wall_force));
-    a.elastic += s.elastic;
-    a.floor_force += s.floor_force;
-    a.kinetic += s.kinetic;
-    a.height += s.height;
-    a.velocity += Vec3(s.velocity.x, s.velocity.y, s.velocity.z);
-    a.contacts += s.contacts;
-    a.max_overlap = std::max(a.max_overlap, s.max_overlap);
+    const ContactTotals& c = strips_[k].contact;
+    const MotionTotals& m = strips_[k].motion;
+    power += c.power;
+    work += m.step_work;
+    contact_force += c.contact_force;
+    net_force += m.net_force;
+    add(wall, load(c.wall_force));
+    a.elastic += c.elastic;
+    a.floor_force += c.floor_force;
+    a.kinetic += m.kinetic;
+    a.height += m.height;
+    a.velocity += Vec3(m.velocity.x, m.velocity.y, m.velocity.z);
+    a.contacts += c.contacts;
+    a.max_overlap = std::max(a.max_overlap, c.max_overlap);
+    if (!strips_[k].asleep) a.active += strips_[k].grains();
   }
   // Forces of the step act on velocities that change during it: Σ F·v at mid-step = Σ F·v + ½ dt Σ (F·a + T·α).
   a.contact_work += dt * (power + 0.5 * dt * work);
@@ -271,6 +331,8 @@ void GrainSolver::evaluate(double dt, bool measure) {
 
 int GrainSolver::step(double dt, bool measure) {
   const auto threads = static_cast<std::size_t>(std::max(1, params_.threads));
+  if (params_.activity && mean_contact_force_ == 0.0) measure = true;
+  activity_.plan(strips_);
   if (params_.precision == Precision::mixed) {
     if (single_.size() < threads) single_.resize(threads);
     evaluate<float>(dt, measure);
@@ -283,13 +345,20 @@ int GrainSolver::step(double dt, bool measure) {
   const int count = static_cast<int>(chunks_.size());
 #pragma omp parallel for num_threads(params_.threads) schedule(dynamic, 1)
   for (int c = 0; c < count; ++c) {
-    const Chunk* const before = c > 0 ? &chunks_[c - 1] : params_.bin.periodic_x ? &chunks_[count - 1] : nullptr;
+    const Chunk* const before = c > 0                    ? &chunks_[c - 1]
+                                : params_.bin.periodic_x ? &chunks_[count - 1]
+                                                         : nullptr;
     finish_chunk(chunks_[c], before, dt, measure);
   }
   reduce(dt, measure);
+  change_activity();
+  // A grain that is not a number or went far is met when its strip is sorted, one that slips out when its wall pushes.
+  for (const Resorted& range : strips_.rebuild_moved(grains_, dt, params_.threads)) {
+    surfaces_.reorder(range, strips_);
+    Activity::wake_moving(range, strips_, grains_);
+  }
   for (int k = 0; k < strips_.count(); ++k)
-    if (strips_[k].sums.lost >= 0) return strips_[k].sums.lost;
-  for (const Resorted& range : strips_.rebuild_moved(grains_, dt, params_.threads)) surfaces_.reorder(range, strips_);
+    if (strips_[k].lost >= 0) return strips_[k].first + strips_[k].lost;
   return -1;
 }
 

@@ -16,6 +16,7 @@
 
 #include "protocol/archive.hpp"
 #include "protocol/messages.hpp"
+#include "terrain/dem/activity.hpp"
 #include "terrain/dem/contact_mixing.hpp"
 #include "terrain/dem/pair_forces.hpp"
 #include "terrain/dem/strips.hpp"
@@ -38,6 +39,7 @@ struct SolverParams {
   double skin = 0.0;          // neighbours are listed within 2 r + skin, m
   int threads = 1;
   Precision precision = Precision::mixed;
+  bool activity = false;  // let resting grains sleep
 };
 
 /// Cumulative since reset_accounts() unless stated.
@@ -55,6 +57,8 @@ struct Accounts {
   double max_overlap = 0.0;             // met since reset, m
   double contact_force = 0.0;           // Σ |F|, N, last measured step
   double net_force = 0.0;               // Σ |net force| of grains, N, last measured step
+  double slept = 0.0;                   // kinetic energy of grains when they fell asleep, J
+  std::int64_t active = 0;              // grains awake, last step
 };
 
 class GrainSolver {
@@ -79,8 +83,12 @@ class GrainSolver {
   const SurfaceContacts& surfaces() const { return surfaces_; }
   const Accounts& accounts() const { return accounts_; }
   void reset_accounts();
+  /// Wakes the strip of a grain whose motion was set from outside.
+  void wake(int grain);
   /// Current index of the grain with this id.
   int index_of(int id) const;
+  /// No grain reaches higher, m.
+  double top() const;
   /// What the engine holds in memory now.
   std::size_t bytes() const;
 
@@ -92,16 +100,20 @@ class GrainSolver {
   void restore(const Archive& archive);
 
  private:
+  struct LoadBuffer {
+    std::vector<Quad> force, torque;
+    void assign(const Loads& from, int count);
+  };
   /// Strips [from, to) that one thread steps.
   struct Chunk {
     int from = 0, to = 0;
-    std::vector<Load> own;    // on the grains of strip `from`, from this chunk
-    std::vector<Load> ahead;  // on the grains of the strip after the last, from this chunk
+    LoadBuffer own;    // on the grains of strip `from`, from this chunk
+    LoadBuffer ahead;  // on the grains of the strip after the last, from this chunk
   };
   template <class Real>
   struct Scratch {
-    std::vector<MotionRow<Real>> motion;
-    std::vector<Load> loads;
+    MotionRows<Real> motion;
+    LoadBuffer loads;
     std::vector<Quad> shifted;  // positions seen across periodic ends
     TouchingPairs<Real> touching;
   };
@@ -120,7 +132,12 @@ class GrainSolver {
   void evaluate(double dt, bool measure);
   template <class Real>
   void evaluate(double dt, bool measure);
-  void integrate(Strip& strip, const Load* loads, double dt, bool measure);
+  /// Moves the grains of strip k, or sees whether they are pushed awake.
+  void finish_strip(int k, const Loads& loads, double dt, bool measure);
+  template <bool kMaySleep>
+  void integrate(Strip& strip, const Loads& loads, double dt, bool measure);
+  void feel(Strip& strip, const Loads& loads) const;
+  void change_activity();
   void reduce(double dt, bool measure);
 
   SolverParams params_;
@@ -129,6 +146,8 @@ class GrainSolver {
   Grains grains_;
   Strips strips_;
   SurfaceContacts surfaces_;
+  Activity activity_;
+  double mean_contact_force_ = 0.0;  // of the bed when grains were first allowed to sleep, N
   Accounts accounts_;
   std::vector<Chunk> chunks_;
   std::vector<Scratch<float>> single_;  // per thread

@@ -7,6 +7,8 @@
 namespace furrow::dem {
 namespace {
 
+constexpr std::size_t kStripValues = 14;
+
 void put_quads(Archive& archive, const std::string& name, const Quad* quads, std::size_t count) {
   archive.put(name, std::span<const double>(reinterpret_cast<const double*>(quads), 4 * count));
 }
@@ -35,7 +37,9 @@ std::vector<double> flat(const Accounts& a) {
           static_cast<double>(a.contacts),
           a.max_overlap,
           a.contact_force,
-          a.net_force};
+          a.net_force,
+          a.slept,
+          static_cast<double>(a.active)};
 }
 
 Accounts accounts_from(const std::vector<double>& v) {
@@ -47,6 +51,7 @@ Accounts accounts_from(const std::vector<double>& v) {
   a.velocity = {v[12], v[13], v[14]};
   a.contacts = static_cast<std::int64_t>(v[15]);
   a.max_overlap = v[16], a.contact_force = v[17], a.net_force = v[18];
+  a.slept = v[19], a.active = static_cast<std::int64_t>(v[20]);
   return a;
 }
 
@@ -83,20 +88,27 @@ void GrainSolver::save(Archive& archive) const {
   put_quads(archive, "spin", grains_.spin.data(), n);
   archive.put("id", grains_.id);
   archive.put("accounts", flat(accounts_));
+  archive.put("mean_contact_force", mean_contact_force_);
   archive.put("strips/resorted", strips_.resorted());
   archive.put("strips/cells_z", static_cast<std::int64_t>(strips_.cells_z()));
 
-  std::vector<std::int32_t> sizes, cells, i, j, wall_grain, wall;
+  std::vector<std::int32_t> sizes, cells, wall_grain, wall;
+  std::vector<std::uint64_t> partners;
   std::vector<std::uint8_t> touching;
-  std::vector<double> places, tangential, rolling;
+  std::vector<double> values, tangential, rolling;
   std::vector<Quad> wall_history;
   for (int k = 0; k < strips_.count(); ++k) {
     const Strip& strip = strips_[k];
     sizes.insert(sizes.end(), {strip.first, strip.last, strip.pairs, std::int32_t(strip.walls.size())});
-    places.insert(places.end(), {strip.travel, strip.x_min, strip.x_max});
+    // Sums too: those of strips that sleep stay.
+    const ContactTotals& c = strip.contact;
+    const MotionTotals& m = strip.motion;
+    values.insert(values.end(),
+                  {strip.travel, strip.x_min, strip.x_max, strip.z_max, strip.asleep ? 1.0 : 0.0,
+                   double(strip.calm), c.elastic, c.max_overlap, c.wall_force.x, c.wall_force.y,
+                   c.wall_force.z, c.floor_force, double(c.contacts), m.height});
     cells.insert(cells.end(), strip.cell_start.begin(), strip.cell_start.end());
-    i.insert(i.end(), strip.i.begin(), strip.i.begin() + strip.pairs);
-    j.insert(j.end(), strip.j.begin(), strip.j.begin() + strip.pairs);
+    for (int p = 0; p < strip.pairs; ++p) partners.push_back(std::uint64_t{strip.i[p]} << 32 | strip.j[p]);
     touching.insert(touching.end(), strip.touching.begin(), strip.touching.end());
     put_rows(tangential, strip, strip.single.tangential);
     put_rows(tangential, strip, strip.full.tangential);
@@ -110,10 +122,9 @@ void GrainSolver::save(Archive& archive) const {
     }
   }
   archive.put("strips/sizes", sizes);
-  archive.put("strips/places", places);
+  archive.put("strips/values", values);
   archive.put("strips/cells", cells);
-  archive.put("pairs/i", i);
-  archive.put("pairs/j", j);
+  archive.put("pairs/partners", partners);
   archive.put("pairs/touching", touching);
   archive.put("pairs/tangential", tangential);
   archive.put("pairs/rolling", rolling);
@@ -130,15 +141,16 @@ void GrainSolver::restore(const Archive& archive) {
   get_quads(archive, "velocity", grains_.velocity.data(), n);
   get_quads(archive, "spin", grains_.spin.data(), n);
   grains_.id = archive.get<std::int32_t>("id", n);
-  accounts_ = accounts_from(archive.get<double>("accounts", 19));
-  strips_.restore_shape(static_cast<int>(archive.get_int("strips/cells_z")), archive.get_int("strips/resorted"));
+  accounts_ = accounts_from(archive.get<double>("accounts", 21));
+  mean_contact_force_ = archive.get_double("mean_contact_force");
+  strips_.restore_shape(static_cast<int>(archive.get_int("strips/cells_z")),
+                        archive.get_int("strips/resorted"));
 
   const std::size_t count = strips_.count();
   const auto& sizes = archive.get<std::int32_t>("strips/sizes", 4 * count);
-  const auto& places = archive.get<double>("strips/places", 3 * count);
+  const auto& values = archive.get<double>("strips/values", kStripValues * count);
   const auto& cells = archive.get<std::int32_t>("strips/cells");
-  const auto& i = archive.get<std::int32_t>("pairs/i");
-  const auto& j = archive.get<std::int32_t>("pairs/j", i.size());
+  const auto& partners = archive.get<std::uint64_t>("pairs/partners");
   const auto& touching = archive.get<std::uint8_t>("pairs/touching");
   const auto& wall_grain = archive.get<std::int32_t>("walls/grain");
   const auto& wall = archive.get<std::int32_t>("walls/wall", wall_grain.size());
@@ -156,18 +168,27 @@ void GrainSolver::restore(const Archive& archive) {
     strip = {};
     const std::int32_t* s = &sizes[4 * k];
     strip.first = s[0], strip.last = s[1];
-    strip.travel = places[3 * k], strip.x_min = places[3 * k + 1], strip.x_max = places[3 * k + 2];
+    const double* v = &values[kStripValues * k];
+    strip.travel = v[0], strip.x_min = v[1], strip.x_max = v[2], strip.z_max = v[3];
+    strip.asleep = v[4] != 0.0, strip.calm = static_cast<int>(v[5]);
+    strip.contact.elastic = v[6], strip.contact.max_overlap = v[7];
+    strip.contact.wall_force = {v[8], v[9], v[10], 0.0}, strip.contact.floor_force = v[11];
+    strip.contact.contacts = static_cast<std::int64_t>(v[12]);
+    strip.motion.height = v[13];
     strip.cell_start.assign(cells.begin() + k * per_strip, cells.begin() + (k + 1) * per_strip);
     strips_.size_lists(strip, s[2]);
-    std::copy_n(i.begin() + pair, strip.pairs, strip.i.begin());
-    std::copy_n(j.begin() + pair, strip.pairs, strip.j.begin());
+    for (int p = 0; p < strip.pairs; ++p) {
+      strip.i[p] = static_cast<std::uint32_t>(partners[pair + p] >> 32);
+      strip.j[p] = static_cast<std::uint32_t>(partners[pair + p]);
+    }
     std::copy_n(touching.begin() + group, strip.touching.size(), strip.touching.begin());
     tangential = get_rows(tangential, strip, strip.single.tangential);
     tangential = get_rows(tangential, strip, strip.full.tangential);
     rolling = get_rows(rolling, strip, strip.single.rolling);
     rolling = get_rows(rolling, strip, strip.full.rolling);
     for (int m = 0; m < s[3]; ++m, ++w)
-      strip.walls.push_back({wall_grain[w], wall[w], quad(wall_history, 2 * w), quad(wall_history, 2 * w + 1)});
+      strip.walls.push_back(
+          {wall_grain[w], wall[w], quad(wall_history, 2 * w), quad(wall_history, 2 * w + 1)});
     pair += strip.pairs;
     group += strip.touching.size();
   }
@@ -177,12 +198,15 @@ void GrainSolver::restore(const Archive& archive) {
 
 std::size_t GrainSolver::bytes() const {
   const auto of = [](const auto& v) { return v.capacity() * sizeof v[0]; };
-  std::size_t sum = of(grains_.position) + of(grains_.velocity) + of(grains_.spin) + of(grains_.id) + strips_.bytes();
-  for (const Chunk& chunk : chunks_) sum += of(chunk.own) + of(chunk.ahead);
+  std::size_t sum =
+      of(grains_.position) + of(grains_.velocity) + of(grains_.spin) + of(grains_.id) + strips_.bytes();
+  for (const Chunk& chunk : chunks_)
+    for (const LoadBuffer* buffer : {&chunk.own, &chunk.ahead}) sum += of(buffer->force) + of(buffer->torque);
   const auto scratch = [&](const auto& all) {
     for (const auto& s : all) {
       const auto& t = s.touching;
-      sum += of(s.motion) + of(s.loads) + of(s.shifted) + 4 * of(t.dx) + 3 * of(t.i);
+      sum += of(s.motion.v) + of(s.motion.w) + of(s.loads.force) + of(s.loads.torque) + of(s.shifted) +
+             4 * of(t.dx) + 3 * of(t.i);
     }
   };
   scratch(single_);

@@ -8,8 +8,9 @@
 
 namespace furrow::dem {
 
-/// Bytes per grain: 3 × 32 + 4.
+/// Bytes per grain: 3 × 32 + 4. `position` has kBeyond entries more, so that four can be read from any grain on.
 struct Grains {
+  static constexpr int kBeyond = 3;
   int count = 0;
   std::vector<Quad> position;    // m
   std::vector<Quad> velocity;    // m/s
@@ -18,16 +19,20 @@ struct Grains {
 
   void resize(int n) {
     count = n;
-    for (auto* array : {&position, &velocity, &spin}) array->assign(n, Quad{});
+    position.assign(n + kBeyond, Quad{});
+    velocity.assign(n, Quad{});
+    spin.assign(n, Quad{});
     id.resize(n);
     for (int i = 0; i < n; ++i) id[i] = i;
   }
 };
 
-/// Contact forces and torques on one grain while a step is evaluated.
-struct alignas(64) Load {
-  Quad force;   // N
-  Quad torque;  // N m
+/// Contact forces (N) and torques (N m) on consecutive grains while a step is evaluated.
+struct Loads {
+  Quad* force = nullptr;
+  Quad* torque = nullptr;
+
+  Loads from(int grain) const { return {force + grain, torque + grain}; }
 };
 
 }  // namespace furrow::dem

@@ -1,6 +1,6 @@
-// Eight numbers at once. The contact law is written once for a type T that is `double` (walls, tires) or lanes of
-// float or double (pairs of grains); these are the few operations it needs beyond + − × ÷ and comparison. Lanes are
-// as wide as eight doubles or floats on every machine; the compiler splits them into the registers that exist.
+// Several numbers at once. The contact law is written once for a type T that is `double` (walls, tires), eight floats or
+// four doubles (pairs of grains); these are the few operations it needs beyond + − × ÷ and comparison. Lanes are as
+// wide on every machine; where there are no registers of 32 bytes the compiler splits them.
 #pragma once
 
 #include <cmath>
@@ -13,16 +13,18 @@
 
 namespace furrow::dem {
 
-inline constexpr int kLanes = 8;
-typedef float FloatLanes __attribute__((vector_size(4 * kLanes)));
-typedef double DoubleLanes __attribute__((vector_size(8 * kLanes)));
-typedef std::int32_t IntLanes __attribute__((vector_size(4 * kLanes)));
+typedef float FloatLanes __attribute__((vector_size(32)));
+typedef double Wide __attribute__((vector_size(32)));  // four lanes, or x, y, z and w of one grain
+typedef float Narrow __attribute__((vector_size(16)));
+typedef std::int32_t IntLanes __attribute__((vector_size(32)));
 
 template <class Real>
-using LanesOf = std::conditional_t<std::is_same_v<Real, float>, FloatLanes, DoubleLanes>;
+using LanesOf = std::conditional_t<std::is_same_v<Real, float>, FloatLanes, Wide>;
+template <class Real>
+inline constexpr int kLanesOf = static_cast<int>(sizeof(LanesOf<Real>) / sizeof(Real));
 
-/// x, y, z and w of one grain.
-typedef double Wide __attribute__((vector_size(32)));
+/// Pairs that the filter takes at a time.
+inline constexpr int kLanes = 8;
 
 /// One grain's vector quantity: w is free for the owner.
 struct alignas(32) Quad {
@@ -36,6 +38,11 @@ inline Wide load(const Quad& q) {
 }
 inline void store(Quad& q, Wide v) { std::memcpy(static_cast<void*>(&q), &v, sizeof v); }
 inline void add(Quad& q, Wide v) { store(q, load(q) + v); }
+
+/// Quads are reached by four times their number: a double's address takes that without a shift.
+inline constexpr int kQuad = 4;
+inline const double* flat(const Quad* quads) { return &quads->x; }
+inline double* flat(Quad* quads) { return &quads->x; }
 
 template <class Lanes, class Real>
 inline Lanes load_lanes(const Real* p) {
@@ -83,7 +90,7 @@ struct RealOf<FloatLanes> {
   using type = float;
 };
 template <>
-struct RealOf<DoubleLanes> {
+struct RealOf<Wide> {
   using type = double;
 };
 
@@ -98,19 +105,15 @@ inline FloatLanes root(FloatLanes a) {
 #ifdef __AVX__
   return _mm256_sqrt_ps(a);
 #else
-  for (int k = 0; k < kLanes; ++k) a[k] = std::sqrt(a[k]);
+  for (int k = 0; k < 8; ++k) a[k] = std::sqrt(a[k]);
   return a;
 #endif
 }
-inline DoubleLanes root(DoubleLanes a) {
-#ifdef __AVX512F__
-  return _mm512_sqrt_pd(a);
-#elif defined(__AVX__)
-  const Wide low = _mm256_sqrt_pd(__builtin_shufflevector(a, a, 0, 1, 2, 3));
-  const Wide high = _mm256_sqrt_pd(__builtin_shufflevector(a, a, 4, 5, 6, 7));
-  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+inline Wide root(Wide a) {
+#ifdef __AVX__
+  return _mm256_sqrt_pd(a);
 #else
-  for (int k = 0; k < kLanes; ++k) a[k] = std::sqrt(a[k]);
+  for (int k = 0; k < 4; ++k) a[k] = std::sqrt(a[k]);
   return a;
 #endif
 }
@@ -124,16 +127,46 @@ inline T smaller(T a, T b) {
   return a < b ? a : b;
 }
 
-template <class Lanes>
-inline double sum_of(Lanes v) {
-  double sum = 0.0;
-  for (int k = 0; k < kLanes; ++k) sum += v[k];
-  return sum;
+inline Narrow low_half(FloatLanes v) { return __builtin_shufflevector(v, v, 0, 1, 2, 3); }
+inline Narrow high_half(FloatLanes v) { return __builtin_shufflevector(v, v, 4, 5, 6, 7); }
+inline FloatLanes join(Narrow low, Narrow high) {
+  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
 }
+// GCC 12 makes four moves through memory of the plain conversions.
+inline Wide widened(Narrow v) {
+#ifdef __AVX__
+  return _mm256_cvtps_pd(v);
+#else
+  return __builtin_convertvector(v, Wide);
+#endif
+}
+inline Narrow narrowed(Wide v) {
+#ifdef __AVX__
+  return _mm256_cvtpd_ps(v);
+#else
+  return __builtin_convertvector(v, Narrow);
+#endif
+}
+
+/// Bit k: lane k is positive.
+inline unsigned positive(Wide v) {
+#ifdef __AVX__
+  return static_cast<unsigned>(_mm256_movemask_pd(_mm256_cmp_pd(v, Wide{}, _CMP_GT_OQ)));
+#else
+  unsigned mask = 0;
+  for (int k = 0; k < 4; ++k) mask |= (v[k] > 0.0 ? 1u : 0u) << k;
+  return mask;
+#endif
+}
+
+/// The lanes added in pairs, in double precision.
+inline Wide folded(FloatLanes v) { return widened(low_half(v)) + widened(high_half(v)); }
+inline Wide folded(Wide v) { return v; }
+inline double sum_of(Wide v) { return (v[0] + v[1]) + (v[2] + v[3]); }
 template <class Lanes>
 inline double largest_of(Lanes v) {
   double most = v[0];
-  for (int k = 1; k < kLanes; ++k) most = v[k] > most ? v[k] : most;
+  for (int k = 1; k < static_cast<int>(sizeof v / sizeof v[0]); ++k) most = v[k] > most ? v[k] : most;
   return most;
 }
 
@@ -146,12 +179,12 @@ inline double power_of_two(double shifted) {
   std::memcpy(&shifted, &bits, sizeof bits);
   return shifted;
 }
-inline DoubleLanes power_of_two(DoubleLanes shifted) {
-  typedef std::uint64_t Bits __attribute__((vector_size(8 * kLanes)));
-  return (DoubleLanes)(((Bits)shifted + 1023) << 52);
+inline Wide power_of_two(Wide shifted) {
+  typedef std::uint64_t Bits __attribute__((vector_size(32)));
+  return (Wide)(((Bits)shifted + 1023) << 52);
 }
 inline FloatLanes power_of_two(FloatLanes shifted) {
-  typedef std::uint32_t Bits __attribute__((vector_size(4 * kLanes)));
+  typedef std::uint32_t Bits __attribute__((vector_size(32)));
   return (FloatLanes)(((Bits)shifted + 127) << 23);
 }
 }  // namespace detail
@@ -175,9 +208,9 @@ inline T tanh_of_positive(T x) {
       p = p * r + constant<T>(c);
   } else {
     p = constant<T>(1.0 / 6227020800.0);
-    for (const double c : {1.0 / 479001600.0, 1.0 / 39916800.0, 1.0 / 3628800.0, 1.0 / 362880.0,
-                           1.0 / 40320.0, 1.0 / 5040.0, 1.0 / 720.0, 1.0 / 120.0, 1.0 / 24.0, 1.0 / 6.0,
-                           0.5, 1.0})
+    for (const double c :
+         {1.0 / 479001600.0, 1.0 / 39916800.0, 1.0 / 3628800.0, 1.0 / 362880.0, 1.0 / 40320.0, 1.0 / 5040.0,
+          1.0 / 720.0, 1.0 / 120.0, 1.0 / 24.0, 1.0 / 6.0, 0.5, 1.0})
       p = p * r + constant<T>(c);
   }
   const T two_k = detail::power_of_two(shifted);
@@ -185,35 +218,38 @@ inline T tanh_of_positive(T x) {
   return e / (e + constant<T>(2.0));
 }
 
-/// Rows (x y z w) of four grains → four x, four y, four z.
-inline Triple<Wide> transpose(Wide a, Wide b, Wide c, Wide d) {
-  const Wide ab_xz = __builtin_shufflevector(a, b, 0, 4, 2, 6),
-             ab_yw = __builtin_shufflevector(a, b, 1, 5, 3, 7);
-  const Wide cd_xz = __builtin_shufflevector(c, d, 0, 4, 2, 6),
-             cd_yw = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-  return {__builtin_shufflevector(ab_xz, cd_xz, 0, 1, 4, 5),
-          __builtin_shufflevector(ab_yw, cd_yw, 0, 1, 4, 5),
-          __builtin_shufflevector(ab_xz, cd_xz, 2, 3, 6, 7)};
+/// Four rows of four → four columns.
+inline void transpose(Wide (&r)[4]) {
+  const Wide ab_xz = __builtin_shufflevector(r[0], r[1], 0, 4, 2, 6);
+  const Wide ab_yw = __builtin_shufflevector(r[0], r[1], 1, 5, 3, 7);
+  const Wide cd_xz = __builtin_shufflevector(r[2], r[3], 0, 4, 2, 6);
+  const Wide cd_yw = __builtin_shufflevector(r[2], r[3], 1, 5, 3, 7);
+  r[0] = __builtin_shufflevector(ab_xz, cd_xz, 0, 1, 4, 5);
+  r[1] = __builtin_shufflevector(ab_yw, cd_yw, 0, 1, 4, 5);
+  r[2] = __builtin_shufflevector(ab_xz, cd_xz, 2, 3, 6, 7);
+  r[3] = __builtin_shufflevector(ab_yw, cd_yw, 2, 3, 6, 7);
 }
 
-/// Eight rows of eight → eight columns of eight, in place.
-template <class Lanes>
-inline void transpose(Lanes (&r)[kLanes]) {
-  Lanes half[2][4];  // components 0|4, 1|5, 2|6, 3|7 of rows 0…3 and 4…7
-  for (int h = 0; h < 2; ++h) {
-    const Lanes &a = r[4 * h], &b = r[4 * h + 1], &c = r[4 * h + 2], &d = r[4 * h + 3];
-    const Lanes ab_low = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
-    const Lanes ab_high = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
-    const Lanes cd_low = __builtin_shufflevector(c, d, 0, 8, 1, 9, 4, 12, 5, 13);
-    const Lanes cd_high = __builtin_shufflevector(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
-    half[h][0] = __builtin_shufflevector(ab_low, cd_low, 0, 1, 8, 9, 4, 5, 12, 13);
-    half[h][1] = __builtin_shufflevector(ab_low, cd_low, 2, 3, 10, 11, 6, 7, 14, 15);
-    half[h][2] = __builtin_shufflevector(ab_high, cd_high, 0, 1, 8, 9, 4, 5, 12, 13);
-    half[h][3] = __builtin_shufflevector(ab_high, cd_high, 2, 3, 10, 11, 6, 7, 14, 15);
-  }
+/// The same in both halves of the registers: rows k and k + 4 of eight rows of four share r[k].
+inline void transpose_halves(FloatLanes (&r)[4]) {
+  const FloatLanes ab_low = __builtin_shufflevector(r[0], r[1], 0, 8, 1, 9, 4, 12, 5, 13);
+  const FloatLanes ab_high = __builtin_shufflevector(r[0], r[1], 2, 10, 3, 11, 6, 14, 7, 15);
+  const FloatLanes cd_low = __builtin_shufflevector(r[2], r[3], 0, 8, 1, 9, 4, 12, 5, 13);
+  const FloatLanes cd_high = __builtin_shufflevector(r[2], r[3], 2, 10, 3, 11, 6, 14, 7, 15);
+  r[0] = __builtin_shufflevector(ab_low, cd_low, 0, 1, 8, 9, 4, 5, 12, 13);
+  r[1] = __builtin_shufflevector(ab_low, cd_low, 2, 3, 10, 11, 6, 7, 14, 15);
+  r[2] = __builtin_shufflevector(ab_high, cd_high, 0, 1, 8, 9, 4, 5, 12, 13);
+  r[3] = __builtin_shufflevector(ab_high, cd_high, 2, 3, 10, 11, 6, 7, 14, 15);
+}
+
+/// Eight rows of eight → eight columns.
+inline void transpose(FloatLanes (&r)[8]) {
+  FloatLanes a[4] = {r[0], r[1], r[2], r[3]}, b[4] = {r[4], r[5], r[6], r[7]};
+  transpose_halves(a);
+  transpose_halves(b);
   for (int k = 0; k < 4; ++k) {
-    r[k] = __builtin_shufflevector(half[0][k], half[1][k], 0, 1, 2, 3, 8, 9, 10, 11);
-    r[k + 4] = __builtin_shufflevector(half[0][k], half[1][k], 4, 5, 6, 7, 12, 13, 14, 15);
+    r[k] = __builtin_shufflevector(a[k], b[k], 0, 1, 2, 3, 8, 9, 10, 11);
+    r[k + 4] = __builtin_shufflevector(a[k], b[k], 4, 5, 6, 7, 12, 13, 14, 15);
   }
 }
 

@@ -1,12 +1,11 @@
-// The contact law on the touching pairs of a strip, eight at a time.
+// The contact law on the touching pairs of a strip, a register full at a time: eight in single, four in double precision.
 //
 // With d = x_i − x_j the arms r − δ/2 are ±d/2, so v = v_i − v_j − ½ (ω_i + ω_j) × d, and the torque on i and on j is
-// −½ d × F_t. Velocity and spin of a grain are one row of eight numbers: a pair costs two loads and the subtraction of
-// rows, and one transposition turns eight pairs into lanes. Forces are added up in double precision, the same number
-// to i and with the other sign to j: momentum is conserved to round-off of double whatever the law's precision.
+// −½ d × F_t. Velocity and spin of a grain are one row: a pair costs two loads and one subtraction of rows, and one
+// transposition turns the rows of eight pairs into lanes. Forces are added up in double precision, the same number to i
+// and with the other sign to j: momentum is conserved to round-off of double whatever the law's precision.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "terrain/dem/contact_law.hpp"
@@ -14,19 +13,34 @@
 
 namespace furrow::dem {
 
-/// Velocity (m/s) and spin (rad/s) of a grain, each padded.
+/// Velocity (m/s) and spin (rad/s) of consecutive grains: as floats in one row of 32 bytes, or as doubles in two.
 template <class Real>
-struct alignas(8 * sizeof(Real)) MotionRow {
-  Real v[4], w[4];
-};
+struct MotionRows {
+  std::vector<Quad> v, w;  // single: v holds both, w is empty
 
-template <class Real>
-inline MotionRow<Real> motion_row(const Quad& v, const Quad& w) {
-  const auto lanes = detail::narrowed<Real>(detail::join(load(v), load(w)));
-  MotionRow<Real> row;
-  std::memcpy(static_cast<void*>(&row), &lanes, sizeof row);
-  return row;
-}
+  void grow(std::size_t n) {
+    if (v.size() < n) v.resize(n);
+    if (std::is_same_v<Real, double> && w.size() < n) w.resize(n);
+  }
+  /// Fills rows [k, k + n).
+  void set(int k, const Quad* velocity, const Quad* spin, int n) {
+    if constexpr (std::is_same_v<Real, float>) {
+      double* const out = flat(v.data() + k);
+      const double *const from_v = flat(velocity), *const from_w = flat(spin);
+      for (int g = 0; g < kQuad * n; g += kQuad)
+        store_lanes(out + g,
+                    join(narrowed(load_lanes<Wide>(from_v + g)), narrowed(load_lanes<Wide>(from_w + g))));
+    } else {
+      std::copy_n(velocity, n, v.begin() + k);
+      std::copy_n(spin, n, w.begin() + k);
+    }
+  }
+};
+/// Where the rows of a strip's grains start.
+struct Motion {
+  const double* v = nullptr;
+  const double* w = nullptr;
+};
 
 /// What the law needs besides the pairs.
 template <class Real>
@@ -37,147 +51,282 @@ struct PairLaw {
   bool measure = false;  // sum |F| too
 };
 
+/// Relative motion of pairs: dv = v_i − v_j, turn = ω_i + ω_j and, with rolling resistance, roll = ω_i − ω_j.
+template <bool kRolling, class L>
+struct RelativeMotion {
+  Triple<L> dv, turn, roll;
+};
+
 namespace detail {
-template <class Real>
-inline void add_row(Load& load, const LanesOf<Real>& row) {
-  const DoubleLanes v = __builtin_convertvector(row, DoubleLanes);
-  add(load.force, __builtin_shufflevector(v, v, 0, 1, 2, 3));
-  add(load.torque, __builtin_shufflevector(v, v, 4, 5, 6, 7));
-}
-
-template <class Real>
-inline LanesOf<Real> rows_of(const HistoryRow<Real>& a, const HistoryRow<Real>& b) {
-  typedef Real Row __attribute__((vector_size(4 * sizeof(Real))));
-  Row low, high;
-  std::memcpy(&low, static_cast<const void*>(&a), sizeof low);
-  std::memcpy(&high, static_cast<const void*>(&b), sizeof high);
-  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
-}
-
-/// x, y, z and w of eight history rows. Rows k and k + 4 share a register, so that a transposition of two 4 × 4 does.
-template <class Real>
-inline void read_history(const HistoryRow<Real>* h, const std::int32_t* p, Triple<LanesOf<Real>>& v,
-                         LanesOf<Real>& w) {
-  using L = LanesOf<Real>;
-  const L a = rows_of(h[p[0]], h[p[4]]), b = rows_of(h[p[1]], h[p[5]]);
-  const L c = rows_of(h[p[2]], h[p[6]]), d = rows_of(h[p[3]], h[p[7]]);
-  const L ab_low = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
-  const L ab_high = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
-  const L cd_low = __builtin_shufflevector(c, d, 0, 8, 1, 9, 4, 12, 5, 13);
-  const L cd_high = __builtin_shufflevector(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
-  v.x = __builtin_shufflevector(ab_low, cd_low, 0, 1, 8, 9, 4, 5, 12, 13);
-  v.y = __builtin_shufflevector(ab_low, cd_low, 2, 3, 10, 11, 6, 7, 14, 15);
-  v.z = __builtin_shufflevector(ab_high, cd_high, 0, 1, 8, 9, 4, 5, 12, 13);
-  w = __builtin_shufflevector(ab_high, cd_high, 2, 3, 10, 11, 6, 7, 14, 15);
-}
-
-template <class Real>
-inline void write_history(HistoryRow<Real>* h, const std::int32_t* p, const Triple<LanesOf<Real>>& v,
-                          const LanesOf<Real>& w) {
-  using L = LanesOf<Real>;
-  const L xy_low = __builtin_shufflevector(v.x, v.y, 0, 8, 1, 9, 4, 12, 5, 13);
-  const L xy_high = __builtin_shufflevector(v.x, v.y, 2, 10, 3, 11, 6, 14, 7, 15);
-  const L zw_low = __builtin_shufflevector(v.z, w, 0, 8, 1, 9, 4, 12, 5, 13);
-  const L zw_high = __builtin_shufflevector(v.z, w, 2, 10, 3, 11, 6, 14, 7, 15);
-  const L rows[4] = {__builtin_shufflevector(xy_low, zw_low, 0, 1, 8, 9, 4, 5, 12, 13),
-                     __builtin_shufflevector(xy_low, zw_low, 2, 3, 10, 11, 6, 7, 14, 15),
-                     __builtin_shufflevector(xy_high, zw_high, 0, 1, 8, 9, 4, 5, 12, 13),
-                     __builtin_shufflevector(xy_high, zw_high, 2, 3, 10, 11, 6, 7, 14, 15)};
-  constexpr std::size_t kRow = sizeof(HistoryRow<Real>);
-  for (int k = 0; k < 4; ++k) {
-    typedef Real Row __attribute__((vector_size(4 * sizeof(Real))));
-    const Row low = __builtin_shufflevector(rows[k], rows[k], 0, 1, 2, 3);
-    const Row high = __builtin_shufflevector(rows[k], rows[k], 4, 5, 6, 7);
-    std::memcpy(static_cast<void*>(&h[p[k]]), &low, kRow);
-    std::memcpy(static_cast<void*>(&h[p[k + 4]]), &high, kRow);
+template <bool kRolling>
+inline RelativeMotion<kRolling, FloatLanes> relative_motion(const Motion& motion, const std::uint32_t* i,
+                                                            const std::uint32_t* j, FloatLanes) {
+  const FloatLanes sign{-1, -1, -1, -1, 1, 1, 1, 1};
+  const auto row = [&](std::uint32_t g) { return load_lanes<FloatLanes>(motion.v + g); };
+  RelativeMotion<kRolling, FloatLanes> m;
+  FloatLanes r[8];
+  for (int k = 0; k < 8; ++k) r[k] = sign * row(j[k]) + row(i[k]);
+  transpose(r);
+  m.dv = {r[0], r[1], r[2]};
+  m.turn = {r[4], r[5], r[6]};
+  if constexpr (kRolling) {
+    const auto spin_of = [&](std::uint32_t g) { return load_lanes<Narrow>(motion.v + g + 2); };
+    const auto spin = [&](int k) { return spin_of(i[k]) - spin_of(j[k]); };
+    FloatLanes q[4];
+    for (int k = 0; k < 4; ++k) q[k] = join(spin(k), spin(k + 4));
+    transpose_halves(q);
+    m.roll = {q[0], q[1], q[2]};
   }
+  return m;
+}
+
+template <bool kRolling>
+inline RelativeMotion<kRolling, Wide> relative_motion(const Motion& motion, const std::uint32_t* i,
+                                                      const std::uint32_t* j, Wide) {
+  RelativeMotion<kRolling, Wide> m;
+  Wide v[4], w[4], q[4];
+  for (int k = 0; k < 4; ++k) {
+    const Wide w_i = load_lanes<Wide>(motion.w + i[k]), w_j = load_lanes<Wide>(motion.w + j[k]);
+    v[k] = load_lanes<Wide>(motion.v + i[k]) - load_lanes<Wide>(motion.v + j[k]);
+    w[k] = w_i + w_j;
+    q[k] = w_i - w_j;
+  }
+  transpose(v);
+  transpose(w);
+  m.dv = {v[0], v[1], v[2]};
+  m.turn = {w[0], w[1], w[2]};
+  if constexpr (kRolling) {
+    transpose(q);
+    m.roll = {q[0], q[1], q[2]};
+  }
+  return m;
+}
+
+/// Adds (f, t + q) to grain i and (−f, t − q) to grain j; q is the rolling couple.
+template <bool kRolling>
+inline void add_load(double* force, double* torque, std::uint32_t i, std::uint32_t j, Wide f, Wide t,
+                     Wide q) {
+  const auto increase = [](double* at, Wide by) { store_lanes(at, load_lanes<Wide>(at) + by); };
+  increase(force + i, f);
+  increase(torque + i, kRolling ? t + q : t);
+  increase(force + j, -f);
+  increase(torque + j, kRolling ? t - q : t);
+}
+
+/// Adds the loads of the first `valid` lanes.
+template <bool kRolling>
+inline void add_loads(const Loads& loads, const std::uint32_t* i, const std::uint32_t* j, int valid,
+                      const Triple<FloatLanes>& force, const Triple<FloatLanes>& torque,
+                      const Triple<FloatLanes>& couple) {
+  FloatLanes r[8] = {force.x, force.y, force.z, {}, torque.x, torque.y, torque.z, {}};
+  transpose(r);
+  FloatLanes c[4] = {couple.x, couple.y, couple.z, {}};
+  if constexpr (kRolling) transpose_halves(c);
+  const auto lane = [&](int k) {
+    const Narrow q = k < 4 ? low_half(c[k & 3]) : high_half(c[k & 3]);
+    add_load<kRolling>(flat(loads.force), flat(loads.torque), i[k], j[k], widened(low_half(r[k])),
+                       widened(high_half(r[k])), widened(q));
+  };
+  if (valid == 8) {
+#pragma GCC unroll 8
+    for (int k = 0; k < 8; ++k) lane(k);
+  } else {
+    for (int k = 0; k < valid; ++k) lane(k);
+  }
+}
+
+template <bool kRolling>
+inline void add_loads(const Loads& loads, const std::uint32_t* i, const std::uint32_t* j, int valid,
+                      const Triple<Wide>& force, const Triple<Wide>& torque, const Triple<Wide>& couple) {
+  Wide f[4] = {force.x, force.y, force.z, {}}, t[4] = {torque.x, torque.y, torque.z, {}};
+  Wide q[4] = {couple.x, couple.y, couple.z, {}};
+  transpose(f);
+  transpose(t);
+  transpose(q);
+  for (int k = 0; k < valid; ++k)
+    add_load<kRolling>(flat(loads.force), flat(loads.torque), i[k], j[k], f[k], t[k], q[k]);
+}
+
+/// x, y, z and w of the history of the pairs p[0], p[1], …
+inline void read_history(const HistoryRow<float>* h, const std::uint32_t* p, Triple<FloatLanes>& v,
+                         FloatLanes& w) {
+  const auto row = [&](int k) { return load_lanes<Narrow>(reinterpret_cast<const double*>(h) + p[k]); };
+  FloatLanes r[4];
+  for (int k = 0; k < 4; ++k) r[k] = join(row(k), row(k + 4));
+  transpose_halves(r);
+  v = {r[0], r[1], r[2]};
+  w = r[3];
+}
+inline void read_history(const HistoryRow<double>* h, const std::uint32_t* p, Triple<Wide>& v, Wide& w) {
+  Wide r[4];
+  for (int k = 0; k < 4; ++k) r[k] = load_lanes<Wide>(&h->x + 2 * p[k]);
+  transpose(r);
+  v = {r[0], r[1], r[2]};
+  w = r[3];
+}
+
+inline void write_history(HistoryRow<float>* h, const std::uint32_t* p, const Triple<FloatLanes>& v,
+                          FloatLanes w) {
+  FloatLanes r[4] = {v.x, v.y, v.z, w};
+  transpose_halves(r);
+  for (int k = 0; k < 4; ++k) {
+    store_lanes(reinterpret_cast<double*>(h) + p[k], low_half(r[k]));
+    store_lanes(reinterpret_cast<double*>(h) + p[k + 4], high_half(r[k]));
+  }
+}
+inline void write_history(HistoryRow<double>* h, const std::uint32_t* p, const Triple<Wide>& v, Wide w) {
+  Wide r[4] = {v.x, v.y, v.z, w};
+  transpose(r);
+  for (int k = 0; k < 4; ++k) store_lanes(&h->x + 2 * p[k], r[k]);
 }
 }  // namespace detail
 
-/// Adds the forces of all pairs to `load` and their sums to `sums`; `motion` and `load` start at the strip's first
-/// grain, those of the next strip follow.
+/// What the stages hand on for a tile of pairs, one array per quantity, all in the first-level cache.
+template <class Real>
+struct PairTile {
+  static constexpr int kPairs = 128;
+  struct alignas(64) Column {
+    Real at[kPairs];
+  };
+  Column nx, ny, nz;              // normal
+  Column overlap, root_overlap;   // m, √m
+  Column vx, vy, vz, spin;        // relative velocity at the contact, m/s; mean spin about the normal, rad/s
+  Column rx, ry, rz;              // relative spin, rad/s; only with rolling resistance
+  Column fx, fy, fz, tx, ty, tz;  // force on i, N; torque on both, N m
+  Column qx, qy, qz;              // rolling couple on i, N m; only with rolling resistance
+};
+
+/// The contact law on the touching pairs of a strip, tile by tile, in four stages. Split that way the loops are short,
+/// so that the processor works on several turns at once while roots and divisions of one are under way.
 template <class Law, bool kRolling, class Real>
-void pair_forces(const PairLaw<Real>& law, const TouchingPairs<Real>& pairs, const MotionRow<Real>* motion,
-                 PairHistory<Real>& histories, Load* loads, StripSums& sums) {
+class PairForces {
+ public:
   using L = LanesOf<Real>;
-  const Coefficients<Real> c = law.coefficients;
-  const L zero{}, half = constant<L>(0.5), diameter = constant<L>(law.diameter);
-  // Signs with which the row of j joins that of i: velocities are subtracted, spins added.
-  const L relative{-1, -1, -1, -1, 1, 1, 1, 1}, reaction{-1, -1, -1, -1, 1, 1, 1, 1};
-  const auto row = [&](int g) { return load_lanes<L>(motion[g].v); };
-  DoubleLanes power{}, elastic{};
-  L overlap{};
-  double force_sum = 0.0;
+  static constexpr int kAtOnce = kLanesOf<Real>;
 
-  for (int at = 0; at < pairs.count; at += kLanes) {
-    const std::int32_t *i = &pairs.i[at], *j = &pairs.j[at], *p = &pairs.pair[at];
-    const int valid = std::min(kLanes, pairs.count - at);
-    L r[kLanes];
-    for (int k = 0; k < kLanes; ++k) r[k] = row(i[k]) + relative * row(j[k]);
-    transpose(r);
+  /// `motion` and `loads` start at the strip's first grain, those of the next strip follow.
+  PairForces(const PairLaw<Real>& law, const TouchingPairs<Real>& pairs, const Motion& motion,
+             PairHistory<Real>& histories, const Loads& loads)
+      : law_(law), pairs_(pairs), motion_(motion), histories_(histories), loads_(loads) {}
 
-    const Triple<L> d{load_lanes<L>(&pairs.dx[at]), load_lanes<L>(&pairs.dy[at]),
-                      load_lanes<L>(&pairs.dz[at])};
-    const L gap = load_lanes<L>(&pairs.gap[at]);
-    const L distance = root(dot(d, d));
-    ContactMotion<L> m;
-    m.overlap = gap / (diameter + distance);
-    m.normal = (constant<L>(1.0) / distance) * d;
-    const Triple<L> dv{r[0], r[1], r[2]}, turn{r[4], r[5], r[6]};
-    m.velocity = dv - half * cross(turn, d);
-    m.spin = half * dot(turn, m.normal);
-    if constexpr (kRolling) {
-      L s[kLanes];
-      for (int k = 0; k < kLanes; ++k) s[k] = row(i[k]) - row(j[k]);
-      transpose(s);
-      m.roll = {s[4], s[5], s[6]};
+  /// Adds the forces of all pairs to the loads and their sums to `sums`.
+  void run(ContactTotals& sums) {
+    for (int first = 0; first < pairs_.count; first += Tile::kPairs) {
+      const int count = std::min(Tile::kPairs, pairs_.count - first);
+      geometry(first, count);
+      motion(first, count);
+      law(first, count);
+      scatter(first, count);
     }
-
-    ContactHistory<L> history;
-    L unused = zero;
-    if constexpr (Law::kHistory) {
-      detail::read_history(histories.tangential.data(), p, history.tangential, history.root_overlap);
-      if constexpr (kRolling) detail::read_history(histories.rolling.data(), p, history.rolling, unused);
-    }
-    const ContactForce<L> f = Law::template force<kRolling>(c, law.step, m, history);
-    if constexpr (Law::kHistory) {
-      // Lanes beyond the last pair repeat it, so that writing them again does no harm.
-      detail::write_history(histories.tangential.data(), p, history.tangential, history.root_overlap);
-      if constexpr (kRolling) detail::write_history(histories.rolling.data(), p, history.rolling, zero);
-    }
-
-    const Triple<L> force = f.normal * m.normal + f.tangential;
-    const Triple<L> torque = -half * cross(d, f.tangential);
-    L out[kLanes] = {force.x, force.y, force.z, zero, torque.x, torque.y, torque.z, zero};
-    transpose(out);
-    if constexpr (kRolling) {
-      L couple[kLanes] = {zero, zero, zero, zero, f.rolling.x, f.rolling.y, f.rolling.z, zero};
-      transpose(couple);
-      for (int k = 0; k < valid; ++k) {
-        detail::add_row<Real>(loads[i[k]], out[k] + couple[k]);
-        detail::add_row<Real>(loads[j[k]], reaction * out[k] - couple[k]);
-      }
-    } else {
-      for (int k = 0; k < valid; ++k) {
-        detail::add_row<Real>(loads[i[k]], out[k]);
-        detail::add_row<Real>(loads[j[k]], reaction * out[k]);
-      }
-    }
-
-    L work = power_of(f, m);
-    if constexpr (kRolling) work += dot(f.rolling, m.roll);
-    const IntLanes lane{0, 1, 2, 3, 4, 5, 6, 7};
-    const auto real = __builtin_convertvector(lane, L) < constant<L>(valid);
-    power += __builtin_convertvector(real ? work : zero, DoubleLanes);
-    elastic += __builtin_convertvector(real ? f.energy : zero, DoubleLanes);
-    overlap = larger(overlap, m.overlap);
-    if (law.measure) force_sum += sum_of(real ? root(dot(force, force)) : zero);
+    sums.power += sum_of(power_);
+    sums.elastic += sum_of(elastic_);
+    sums.contact_force += sum_of(force_sum_);
+    sums.max_overlap = std::max(sums.max_overlap, largest_of(overlap_));
+    sums.contacts += pairs_.count;
   }
-  sums.power += sum_of(power);
-  sums.elastic += sum_of(elastic);
-  sums.contact_force += force_sum;
-  sums.max_overlap = std::max(sums.max_overlap, largest_of(overlap));
-  sums.contacts += pairs.count;
-}
+
+ private:
+  using Tile = PairTile<Real>;
+  using Column = typename Tile::Column;
+  static L get(const Column& c, int at) { return load_lanes<L>(c.at + at); }
+  static void put(Column& c, int at, L v) { store_lanes(c.at + at, v); }
+  static Triple<L> get(const Column& x, const Column& y, const Column& z, int at) {
+    return {get(x, at), get(y, at), get(z, at)};
+  }
+  static void put(Column& x, Column& y, Column& z, int at, const Triple<L>& v) {
+    put(x, at, v.x), put(y, at, v.y), put(z, at, v.z);
+  }
+  Triple<L> difference(int p) const {
+    return {load_lanes<L>(&pairs_.dx[p]), load_lanes<L>(&pairs_.dy[p]), load_lanes<L>(&pairs_.dz[p])};
+  }
+
+  void geometry(int first, int count) {
+    const L diameter = constant<L>(law_.diameter), one = constant<L>(1.0);
+    for (int at = 0; at < count; at += kAtOnce) {
+      const Triple<L> d = difference(first + at);
+      const L distance = root(dot(d, d));
+      const L overlap = load_lanes<L>(&pairs_.gap[first + at]) / (diameter + distance);
+      put(t_.nx, t_.ny, t_.nz, at, (one / distance) * d);
+      put(t_.overlap, at, overlap);
+      put(t_.root_overlap, at, root(overlap));
+    }
+  }
+
+  void motion(int first, int count) {
+    const L half = constant<L>(0.5);
+    for (int at = 0; at < count; at += kAtOnce) {
+      const int p = first + at;
+      const auto relative = detail::relative_motion<kRolling>(motion_, &pairs_.i[p], &pairs_.j[p], L{});
+      put(t_.vx, t_.vy, t_.vz, at, relative.dv - half * cross(relative.turn, difference(p)));
+      put(t_.spin, at, half * dot(relative.turn, get(t_.nx, t_.ny, t_.nz, at)));
+      if constexpr (kRolling) put(t_.rx, t_.ry, t_.rz, at, relative.roll);
+    }
+  }
+
+  void law(int first, int count) {
+    const Coefficients<Real> c = law_.coefficients;
+    const L zero{}, half = constant<L>(0.5);
+    L order{};
+    for (int k = 0; k < kAtOnce; ++k) order[k] = static_cast<Real>(k);
+    L power{}, elastic{}, force_sum{}, largest{};
+    for (int at = 0; at < count; at += kAtOnce) {
+      const std::uint32_t* p = &pairs_.pair[first + at];
+      ContactMotion<L> m;
+      m.normal = get(t_.nx, t_.ny, t_.nz, at);
+      m.overlap = get(t_.overlap, at);
+      m.root_overlap = get(t_.root_overlap, at);
+      m.velocity = get(t_.vx, t_.vy, t_.vz, at);
+      m.spin = get(t_.spin, at);
+      if constexpr (kRolling) m.roll = get(t_.rx, t_.ry, t_.rz, at);
+      ContactHistory<L> history;
+      if constexpr (Law::kHistory) {
+        L unused;
+        detail::read_history(histories_.tangential.data(), p, history.tangential, history.root_overlap);
+        if constexpr (kRolling) detail::read_history(histories_.rolling.data(), p, history.rolling, unused);
+      }
+      const ContactForce<L> f = Law::template force<kRolling>(c, law_.step, m, history);
+      if constexpr (Law::kHistory) {
+        // Lanes beyond the last pair repeat it: they write the same again.
+        detail::write_history(histories_.tangential.data(), p, history.tangential, history.root_overlap);
+        if constexpr (kRolling) detail::write_history(histories_.rolling.data(), p, history.rolling, zero);
+      }
+      const Triple<L> force = f.normal * m.normal + f.tangential;
+      put(t_.fx, t_.fy, t_.fz, at, force);
+      put(t_.tx, t_.ty, t_.tz, at, -half * cross(difference(first + at), f.tangential));
+      if constexpr (kRolling) put(t_.qx, t_.qy, t_.qz, at, f.rolling);
+
+      L work = power_of(f, m);
+      if constexpr (kRolling) work += dot(f.rolling, m.roll);
+      const auto real = order < constant<L>(count - at);
+      power += real ? work : zero;
+      elastic += real ? f.energy : zero;
+      largest = larger(largest, m.overlap);
+      if (law_.measure) force_sum += real ? root(dot(force, force)) : zero;
+    }
+    power_ += folded(power);
+    elastic_ += folded(elastic);
+    force_sum_ += folded(force_sum);
+    overlap_ = larger(overlap_, largest);
+  }
+
+  void scatter(int first, int count) {
+    for (int at = 0; at < count; at += kAtOnce) {
+      Triple<L> couple{};
+      if constexpr (kRolling) couple = get(t_.qx, t_.qy, t_.qz, at);
+      detail::add_loads<kRolling>(loads_, &pairs_.i[first + at], &pairs_.j[first + at],
+                                  std::min(kAtOnce, count - at), get(t_.fx, t_.fy, t_.fz, at),
+                                  get(t_.tx, t_.ty, t_.tz, at), couple);
+    }
+  }
+
+  const PairLaw<Real>& law_;
+  const TouchingPairs<Real>& pairs_;
+  Motion motion_;
+  PairHistory<Real>& histories_;
+  Loads loads_;
+  Tile t_;
+  Wide power_{}, elastic_{}, force_sum_{};  // W, J, N
+  L overlap_{};                             // largest, m
+};
 
 }  // namespace furrow::dem

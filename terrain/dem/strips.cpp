@@ -20,6 +20,9 @@ int cells_along(double length, double size, bool periodic, const char* side) {
   return n;
 }
 
+/// The cell that a point stands in, the first or last if it stands beyond or is not a number.
+int cell_at(double at, int count) { return at > 0.0 ? static_cast<int>(std::min(at, count - 0.5)) : 0; }
+
 /// values[first + k] = values[order[k]].
 template <class T>
 void permute(std::vector<T>& values, const Resorted& range, std::vector<T>& spare, int threads) {
@@ -58,9 +61,7 @@ std::size_t Strips::bytes() const {
   return sum;
 }
 
-int Strips::strip_at(double x) const {
-  return static_cast<int>(std::clamp(x * inverse_x_, 0.0, count() - 0.5));
-}
+int Strips::strip_at(double x) const { return cell_at(x * inverse_x_, count()); }
 
 void Strips::sort(Grains& grains, Resorted& range, int threads) {
   const int first = strips_[range.from].first, last = strips_[range.to - 1].last, n = last - first;
@@ -68,16 +69,13 @@ void Strips::sort(Grains& grains, Resorted& range, int threads) {
   const double y0 = -0.5 * options_.bin.width;
   std::vector<std::int32_t>&cell = scratch_.cell, &start = scratch_.start;
   cell.resize(std::max<std::size_t>(cell.size(), n));
-  const auto along = [](double at, int count) {
-    return static_cast<int>(std::clamp(at, 0.0, count - 0.5));
-  };
 #pragma omp parallel for num_threads(threads) schedule(static)
   for (int k = 0; k < n; ++k) {
     Quad& p = grains.position[first + k];
     options_.bin.wrap(p);
     const int strip = std::clamp(strip_at(p.x), range.from, range.to - 1);
-    cell[k] = ((strip - range.from) * ny_ + along((p.y - y0) * inverse_y_, ny_)) * nz_ +
-                 along(p.z * inverse_z_, nz_);
+    cell[k] = ((strip - range.from) * ny_ + cell_at((p.y - y0) * inverse_y_, ny_)) * nz_ +
+              cell_at(p.z * inverse_z_, nz_);
   }
   start.assign(cells + 1, 0);
   for (int k = 0; k < n; ++k) ++start[cell[k] + 1];
@@ -107,7 +105,8 @@ void Strips::size_lists(Strip& strip, int pairs) const {
   std::fill(strip.i.begin() + pairs, strip.i.end(), 0);
   std::fill(strip.j.begin() + pairs, strip.j.end(), 0);
   strip.touching.assign(room / kLanes, 0);
-  const int histories = options_.history ? room : 0, rolling = options_.history && options_.rolling ? room : 0;
+  const int histories = options_.history ? room : 0,
+            rolling = options_.history && options_.rolling ? room : 0;
   if (options_.single) {
     strip.single.tangential.assign(histories, {});
     strip.single.rolling.assign(rolling, {});
@@ -117,24 +116,53 @@ void Strips::size_lists(Strip& strip, int pairs) const {
   }
 }
 
+namespace {
+
+/// Pairs as they are found; memory is kept from call to call.
+struct FoundPairs {
+  std::vector<std::uint32_t> i, j;
+  std::size_t count = 0;
+
+  void make_room(std::size_t more) {
+    if (count + more <= i.size()) return;
+    i.resize(2 * (count + more));
+    j.resize(2 * (count + more));
+  }
+};
+
+/// Bits of the four grains at x, x + 1, … (the first `valid` of them) closer to `at` than √reach2.
+inline unsigned near_four(const Quad* x, int valid, Wide at, double reach2, double width) {
+  const auto d = [&](int k) { return load(x[k]) - at; };
+  Wide r[4] = {d(0), d(1), d(2), d(3)};
+  transpose(r);
+  if (width > 0.0)
+    for (int k = 0; k < 4; ++k) r[1][k] -= width * std::round(r[1][k] / width);
+  const Wide room = reach2 - (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
+  return positive(room) & ((1u << std::min(valid, 4)) - 1u);
+}
+
+}  // namespace
+
 void Strips::list_pairs(const Grains& grains, int k) {
   Strip& strip = strips_[k];
   const int after = next(k);
   const Strip* const beside = after < 0 ? nullptr : &strips_[after];
   const double reach2 = options_.reach * options_.reach;
   const double width = options_.bin.periodic_y ? options_.bin.width : 0.0;
-  const Quad* const x = grains.position.data();
-  strip.i.clear(), strip.j.clear();
+  static thread_local FoundPairs found;
+  found.count = 0;
 
-  // Lists (i, j) with j in cells (y, below … above) of `other`; `base` counts its grains in this strip's terms.
+  // Lists (i, j) for the grains j in [from, to) of `other`; `base` counts its grains in this strip's terms.
   const auto scan = [&](int i, Wide at, const Strip& other, int base, int from, int to) {
-    for (int j = from; j < to; ++j) {
-      Wide d = load(x[other.first + j]) - at;
-      if (width > 0.0) d[1] -= width * std::round(d[1] / width);
-      const Wide d2 = d * d;
-      if (d2[0] + d2[1] + d2[2] >= reach2) continue;
-      strip.i.push_back(i);
-      strip.j.push_back(base + j);
+    found.make_room(to - from + 4);
+    const Quad* const x = grains.position.data() + other.first;
+    for (int j = from; j < to; j += 4) {
+      const unsigned hit = near_four(x + j, to - j, at, reach2, width);
+      for (int m = 0; m < 4; ++m) {  // without a branch: who is near cannot be foreseen
+        found.i[found.count] = kQuad * i;
+        found.j[found.count] = kQuad * (base + j + m);
+        found.count += hit >> m & 1;
+      }
     }
   };
   for (int y = 0; y < ny_; ++y)
@@ -142,7 +170,7 @@ void Strips::list_pairs(const Grains& grains, int k) {
       const int cell = y * nz_ + z;
       const int below = std::max(z - 1, 0), above = std::min(z + 1, nz_ - 1) + 1;
       for (int i = strip.cell_start[cell]; i < strip.cell_start[cell + 1]; ++i) {
-        const Wide at = load(x[strip.first + i]);
+        const Wide at = load(grains.position[strip.first + i]);
         const auto row = [&](const Strip& other, int base, Wide from, int wanted) {
           int other_y = wanted;
           if (width > 0.0) {
@@ -162,17 +190,22 @@ void Strips::list_pairs(const Grains& grains, int k) {
         for (int dy = -1; dy <= 1; ++dy) row(*beside, strip.grains(), seen, y + dy);
       }
     }
-  const int pairs = static_cast<int>(strip.i.size());
-  size_lists(strip, pairs);
+  const auto n = static_cast<std::ptrdiff_t>(found.count);
+  strip.i.assign(found.i.begin(), found.i.begin() + n);
+  strip.j.assign(found.j.begin(), found.j.begin() + n);
+  size_lists(strip, static_cast<int>(n));
 }
 
 void Strips::list_walls(const Grains& grains, Strip& strip) const {
   const double reach = options_.radius + options_.skin;
   strip.walls.clear();
-  strip.x_min = 1e300, strip.x_max = -1e300;
+  strip.x_min = 1e300, strip.x_max = strip.z_max = -1e300;
+  for (int g = strip.last - 1; g >= strip.first; --g)
+    if (!options_.bin.holds(grains.position[g])) strip.lost = g - strip.first;
   for (int g = strip.first; g < strip.last; ++g) {
     strip.x_min = std::min(strip.x_min, grains.position[g].x);
     strip.x_max = std::max(strip.x_max, grains.position[g].x);
+    strip.z_max = std::max(strip.z_max, grains.position[g].z);
     for (int wall = 0; wall < kWalls; ++wall)
       if (options_.bin.has_wall(wall) && options_.bin.distance(wall, grains.position[g]) < reach)
         strip.walls.push_back({g - strip.first, wall, {}, {}});
@@ -192,7 +225,7 @@ class OldPairs {
       const Strip& strip = old[s];
       int p = 0;
       for (int g = 0; g < strip.grains(); ++g) {
-        while (p < strip.pairs && strip.i[p] < g) ++p;
+        while (p < strip.pairs && strip.grain_i(p) < g) ++p;
         row_[strip.first - base_ + g] = p;
         strip_of_[strip.first - base_ + g] = s;
       }
@@ -220,8 +253,8 @@ class OldPairs {
     const Strip& strip = old_[strip_of_[owner - base_]];
     const int i = owner - strip.first;
     const int j = partner >= owner ? partner - strip.first : strip.grains() + partner - old_.front().first;
-    for (int p = row_[owner - base_]; p < strip.pairs && strip.i[p] == i; ++p)
-      if (strip.j[p] == j && (strip.touching[p / kLanes] >> p % kLanes & 1)) return {&strip, p, false};
+    for (int p = row_[owner - base_]; p < strip.pairs && strip.grain_i(p) == i; ++p)
+      if (strip.grain_j(p) == j && (strip.touching[p / kLanes] >> p % kLanes & 1)) return {&strip, p, false};
     return {};
   }
 
@@ -251,8 +284,8 @@ void Strips::carry_history(std::span<const Strip> old, int old_from, const Resor
     const int after = next(s), wrap = after >= 0 && after < s ? strips_[after].first : strip.last;
     PairHistory<Real>& now = strip.history<Real>();
     for (int p = 0; p < strip.pairs; ++p) {
-      const int i = strip.first + strip.i[p];
-      const int j = strip.j[p] < strip.grains() ? strip.first + strip.j[p] : wrap + strip.j[p] - strip.grains();
+      const int i = strip.first + strip.grain_i(p), partner = strip.grain_j(p);
+      const int j = partner < strip.grains() ? strip.first + partner : wrap + partner - strip.grains();
       const auto found = pairs.find(before(i), before(j));
       if (!found.strip) continue;
       strip.touching[p / kLanes] |= static_cast<std::uint8_t>(1 << p % kLanes);
@@ -271,7 +304,8 @@ void Strips::carry_walls(std::span<const Strip> old, int old_from, const Resorte
     std::size_t at = 0;
     for (int g = 0; g < strip.grains(); ++g) {
       start[strip.first + g - range.first] = static_cast<std::int32_t>(contacts.size());
-      for (; at < strip.walls.size() && strip.walls[at].grain == g; ++at) contacts.push_back(&strip.walls[at]);
+      for (; at < strip.walls.size() && strip.walls[at].grain == g; ++at)
+        contacts.push_back(&strip.walls[at]);
     }
   }
   start.back() = static_cast<std::int32_t>(contacts.size());
@@ -293,9 +327,11 @@ Resorted Strips::rebuild(Grains& grains, int from, int to, int threads) {
     Strip &old = old_[k], &strip = strips_[lists_from + k];
     std::swap(old, strip);
     strip.first = old.first, strip.last = old.last;
-    strip.x_min = old.x_min, strip.x_max = old.x_max;
+    strip.x_min = old.x_min, strip.x_max = old.x_max, strip.z_max = old.z_max;
     strip.travel = old.travel;
-    strip.sums = old.sums;
+    strip.asleep = old.asleep, strip.calm = old.calm;
+    strip.lost = old.lost;
+    strip.contact = old.contact, strip.motion = old.motion;
     if (lists_from + k < from) strip.cell_start = old.cell_start, strip.walls = old.walls;
   }
   Resorted range;
@@ -319,7 +355,7 @@ Resorted Strips::rebuild(Grains& grains, int from, int to, int threads) {
 
 Resorted Strips::rebuild_all(Grains& grains, int threads) {
   double top = 0.0;
-  for (const Quad& p : grains.position) top = std::max(top, p.z);
+  for (int g = 0; g < grains.count; ++g) top = std::max(top, grains.position[g].z);
   nz_ = static_cast<int>(std::clamp(top * inverse_z_, 0.0, kMaxCellsZ - 1.0)) + 1;
   if (strips_.back().last != grains.count) {  // grains were placed anew: all in the first strip
     for (Strip& strip : strips_) strip = {}, strip.first = strip.last = grains.count;
@@ -333,7 +369,7 @@ Resorted Strips::rebuild_all(Grains& grains, int threads) {
 std::vector<Resorted> Strips::rebuild_moved(Grains& grains, double dt, int threads) {
   const int n = count();
   const auto moved = [&](int s) {
-    return s >= 0 && s < n && strips_[s].travel + dt * strips_[s].sums.max_speed > 0.5 * options_.skin;
+    return s >= 0 && s < n && !(strips_[s].travel + dt * strips_[s].motion.max_speed <= 0.5 * options_.skin);
   };
   const auto near_moved = [&](int s) { return moved(s - 1) || moved(s) || moved(s + 1); };
   std::vector<Resorted> ranges;

@@ -41,38 +41,50 @@ struct PairHistory {
   std::vector<HistoryRow<Real>> rolling;     // N m; empty without rolling resistance
 };
 
-/// Sums over a strip's contacts and grains in one step.
-struct StripSums {
+/// Sums over the contacts that a strip lists, in the last step that evaluated them.
+struct ContactTotals {
   double power = 0.0;          // Σ F·v_rel at the step's start, W
   double elastic = 0.0;        // J
   double contact_force = 0.0;  // Σ |F|, N, when measured
-  double net_force = 0.0;      // Σ |contact forces + weight| of grains, N, when measured
   double max_overlap = 0.0;    // m
   Quad wall_force;             // on the grains, N
   double floor_force = 0.0;    // N
   std::int64_t contacts = 0;
-  double kinetic = 0.0;      // after the step, J
-  double height = 0.0;       // Σ z after the step, m
-  Quad velocity;             // Σ v after the step, m/s
-  double step_work = 0.0;    // Σ F·a + T·α: half of it times dt² belongs to the power at mid-step, N²/kg
-  double max_speed = 0.0;    // a bound on the speed of every grain after the step, m/s
-  std::int32_t lost = -1;    // index of a grain outside the bin or not finite
+};
+
+/// Sums and extremes over a strip's grains after the last step; a speed or force is that of its largest components.
+struct MotionTotals {
+  double net_force = 0.0;  // Σ |contact forces + weight| of grains, N, when measured
+  double kinetic = 0.0;    // J
+  double height = 0.0;     // Σ z, m
+  Quad velocity;           // Σ v, m/s
+  double step_work = 0.0;  // Σ F·a + T·α: half of it times dt² belongs to the power at mid-step, N²/kg
+  double max_speed = 0.0;  // m/s
+  double speed2 = 0.0;     // Σ v², m²/s²
+  double max_net_force = 0.0;  // N, only when grains may sleep
 };
 
 struct Strip {
   std::int32_t first = 0, last = 0;      // grains
   std::vector<std::int32_t> cell_start;  // of each cell (y, z fastest), counted from `first`
   std::int32_t pairs = 0;
-  std::vector<std::int32_t> i, j;      // per pair, counted from `first`; j runs on into the next strip
+  // Per pair, kQuad times the grain counted from `first`; j runs on into the next strip.
+  std::vector<std::uint32_t> i, j;
   std::vector<std::uint8_t> touching;  // bit k of entry p/8: pair p touched in the last step
   PairHistory<float> single;           // used with precision mixed
   PairHistory<double> full;            // used with precision double
   std::vector<WallContact> walls;
-  double travel = 0.0;     // bound on the way of any of its grains since it was sorted, m
-  double x_min = 0.0, x_max = 0.0;  // of the centres when sorted, m
-  StripSums sums;
+  double travel = 0.0;  // bound on the way of any of its grains since it was sorted, m
+  double x_min = 0.0, x_max = 0.0, z_max = 0.0;  // of the centres when sorted, m
+  bool asleep = false;                           // its grains rest and are not stepped, activity.hpp
+  int calm = 0;                                  // steps for which they could have slept
+  std::int32_t lost = -1;  // a grain outside the bin or not finite, counted from `first`
+  ContactTotals contact;
+  MotionTotals motion;
 
   int grains() const { return last - first; }
+  int grain_i(int pair) const { return static_cast<int>(i[pair] / kQuad); }
+  int grain_j(int pair) const { return static_cast<int>(j[pair] / kQuad); }
   template <class Real>
   PairHistory<Real>& history() {
     if constexpr (std::is_same_v<Real, float>) {

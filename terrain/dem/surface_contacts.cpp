@@ -81,10 +81,22 @@ void SurfaceContacts::move_to(double share) {
     s.collider->move_to(share);
     s.near = s.collider->bounds();
     s.near.lo -= r, s.near.hi += r;
+    s.low_min = 1e300, s.low_max = -1e300;
+    for (const Vec3& x : s.collider->positions())
+      if (x.z() < top_) {
+        s.low_min = std::min(s.low_min, x.x());
+        s.low_max = std::max(s.low_max, x.x());
+      }
   }
 }
 
+bool SurfaceContacts::low_between(double x_min, double x_max) const {
+  return std::any_of(surfaces_.begin(), surfaces_.end(),
+                     [&](const Surface& s) { return s.low_min < x_max && s.low_max > x_min; });
+}
+
 void SurfaceContacts::restrict_to(const SurfaceBox& grains) {
+  top_ = grains.hi.z();
   for (Surface& s : surfaces_) s.collider->restrict_to(grains);
 }
 
@@ -112,7 +124,7 @@ void SurfaceContacts::reorder(const Resorted& range, const Strips& strips) {
 
 template <class Law>
 void SurfaceContacts::touch(const Grains& grains, Strip& strip, SurfaceStrip& mine, int k, int g, double dt,
-                            Load& load) {
+                            const Loads& load) {
   const Surface& surface = surfaces_[k];
   std::array<SurfaceHit, kMaxSurfaceHits> hits;
   const Quad& x = grains.position[g];
@@ -133,6 +145,7 @@ void SurfaceContacts::touch(const Grains& grains, Strip& strip, SurfaceStrip& mi
     ContactMotion<double> motion;
     motion.normal = triple(hit.normal);
     motion.overlap = hit.overlap;
+    motion.root_overlap = std::sqrt(hit.overlap);
     motion.velocity = v + cross(w, arm) - triple(surface.collider->velocity_at(hit));
     motion.spin = 0.5 * (dot(w, motion.normal) + spin_about(*surface.collider, hit.triangle, hit.normal));
     motion.roll = w;
@@ -149,18 +162,18 @@ void SurfaceContacts::touch(const Grains& grains, Strip& strip, SurfaceStrip& mi
       mine.next.push_back({g, k, normal, {t.x, t.y, t.z, history.root_overlap}, {r.x, r.y, r.z, 0.0}});
 
     const Triple<double> push = (hit.share * f.normal) * motion.normal, drag = hit.share * f.tangential;
-    add(load.force, push + drag);
-    add(load.torque, cross(arm, push + drag) + hit.share * f.rolling);
+    add(*load.force, push + drag);
+    add(*load.torque, cross(arm, push + drag) + hit.share * f.rolling);
     mine.touches.push_back({k, {hit.triangle, hit.weight, hit.point, -vec(push), -vec(drag)}});
-    strip.sums.power += hit.share * (power_of(f, motion) + dot(f.rolling, motion.roll));
-    strip.sums.elastic += hit.share * f.energy;
-    strip.sums.max_overlap = std::max(strip.sums.max_overlap, hit.overlap);
-    ++strip.sums.contacts;
+    strip.contact.power += hit.share * (power_of(f, motion) + dot(f.rolling, motion.roll));
+    strip.contact.elastic += hit.share * f.energy;
+    strip.contact.max_overlap = std::max(strip.contact.max_overlap, hit.overlap);
+    ++strip.contact.contacts;
   }
 }
 
 template <class Law>
-void SurfaceContacts::evaluate(const Grains& grains, Strip& strip, int s, double dt, Load* loads) {
+void SurfaceContacts::evaluate(const Grains& grains, Strip& strip, int s, double dt, const Loads& loads) {
   SurfaceStrip& mine = strips_[s];
   mine.next.clear();
   mine.touches.clear();
@@ -175,13 +188,13 @@ void SurfaceContacts::evaluate(const Grains& grains, Strip& strip, int s, double
         const Quad& p = grains.position[g];
         if (p.z > box.lo.z() && p.x > box.lo.x() && p.x < box.hi.x() && p.y > box.lo.y() &&
             p.y < box.hi.y() && p.z < box.hi.z())
-          touch<Law>(grains, strip, mine, k, g, dt, loads[g - strip.first]);
+          touch<Law>(grains, strip, mine, k, g, dt, loads.from(g - strip.first));
       }
   mine.history.swap(mine.next);
 }
 
-template void SurfaceContacts::evaluate<MindlinLaw>(const Grains&, Strip&, int, double, Load*);
-template void SurfaceContacts::evaluate<CoulombLaw>(const Grains&, Strip&, int, double, Load*);
+template void SurfaceContacts::evaluate<MindlinLaw>(const Grains&, Strip&, int, double, const Loads&);
+template void SurfaceContacts::evaluate<CoulombLaw>(const Grains&, Strip&, int, double, const Loads&);
 
 Vec3 SurfaceContacts::hand_over(double dt) {
   Vec3 on_grains = Vec3::Zero();

@@ -54,6 +54,9 @@ class SurfaceContacts {
   void move_to(double share);
   void restrict_to(const SurfaceBox& grains);
 
+  /// Whether a vertex low enough to reach grains stands between these x now, m.
+  bool low_between(double x_min, double x_max) const;
+
   void resize(int strips) { strips_.resize(strips); }
   /// Renames grains after a range of strips was sorted.
   void reorder(const Resorted& range, const Strips& strips);
@@ -61,7 +64,7 @@ class SurfaceContacts {
   /// Evaluates the contacts of strip s and adds to the loads (of its grains, in order) and to its sums. Called by one
   /// thread per strip.
   template <class Law>
-  void evaluate(const Grains& grains, Strip& strip, int s, double dt, Load* loads);
+  void evaluate(const Grains& grains, Strip& strip, int s, double dt, const Loads& loads);
 
   /// Hands this substep's forces to the vertices, in the order of strips and grains. Returns the impulse that the
   /// grains received, N s.
@@ -82,15 +85,18 @@ class SurfaceContacts {
     std::unique_ptr<NodalForceSum> sum;
     ContactMaterial material;
     ContactCoefficients coefficients;
-    std::vector<Vec3> start, end;  // m
-    SurfaceBox near;               // bounds now, grown by the grain radius
+    std::vector<Vec3> start, end;              // m
+    SurfaceBox near;                           // bounds now, grown by the grain radius
+    double low_min = -1e300, low_max = 1e300;  // x of the vertices that may reach grains, m
     std::vector<SurfaceContactForce> forces;
   };
   template <class Law>
-  void touch(const Grains& grains, Strip& strip, SurfaceStrip& mine, int k, int g, double dt, Load& load);
+  void touch(const Grains& grains, Strip& strip, SurfaceStrip& mine, int k, int g, double dt,
+             const Loads& load);
 
   GrainProperties grain_;
   bool rolling_;
+  double top_ = 1e300;  // no grain reaches higher, m
   std::vector<Surface> surfaces_;
   std::vector<SurfaceStrip> strips_;
 };

@@ -18,8 +18,9 @@ namespace furrow::dem {
 template <class Real>
 struct TouchingPairs {
   int count = 0;
-  std::vector<Real> dx, dy, dz, gap;        // m, m, m, m²
-  std::vector<std::int32_t> i, j, pair;     // grains counted from the strip's first; index in its list
+  std::vector<Real> dx, dy, dz, gap;  // m, m, m, m²
+  std::vector<std::uint32_t> i, j;    // kQuad times the grain counted from the strip's first
+  std::vector<std::uint32_t> pair;    // twice its index in the list
 
   void reserve(int pairs) {
     const std::size_t room = pairs + 2 * kLanes;
@@ -56,7 +57,7 @@ inline void pack(FloatLanes v, unsigned mask, float* out) {
   for (int k = 0; k < kLanes; ++k) *out = v[k], out += mask >> k & 1;
 #endif
 }
-inline void pack(IntLanes v, unsigned mask, std::int32_t* out) {
+inline void pack(IntLanes v, unsigned mask, std::uint32_t* out) {
 #ifdef __AVX2__
   const __m256i order = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(kPacking[mask].data()));
   _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), _mm256_permutevar8x32_epi32((__m256i)v, order));
@@ -64,40 +65,14 @@ inline void pack(IntLanes v, unsigned mask, std::int32_t* out) {
   for (int k = 0; k < kLanes; ++k) *out = v[k], out += mask >> k & 1;
 #endif
 }
-inline void pack(DoubleLanes v, unsigned mask, double* out) {
-#ifdef __AVX512F__
-  _mm512_storeu_pd(out, _mm512_maskz_compress_pd(static_cast<__mmask8>(mask), v));
-#else
-  for (int k = 0; k < kLanes; ++k) *out = v[k], out += mask >> k & 1;
-#endif
+inline void pack(Wide low, Wide high, unsigned mask, float* out) {
+  pack(join(narrowed(low), narrowed(high)), mask, out);
+}
+inline void pack(Wide low, Wide high, unsigned mask, double* out) {
+  for (int k = 0; k < 4; ++k) *out = low[k], out += mask >> k & 1;
+  for (int k = 0; k < 4; ++k) *out = high[k], out += mask >> (k + 4) & 1;
 }
 
-/// Bit k: lane k is positive.
-inline unsigned positive(DoubleLanes v) {
-#ifdef __AVX512F__
-  return _mm512_cmp_pd_mask(v, _mm512_setzero_pd(), _CMP_GT_OQ);
-#elif defined(__AVX__)
-  const Wide zero{};
-  const auto bits = [&](Wide a) { return _mm256_movemask_pd(_mm256_cmp_pd(a, zero, _CMP_GT_OQ)); };
-  return bits(__builtin_shufflevector(v, v, 0, 1, 2, 3)) | bits(__builtin_shufflevector(v, v, 4, 5, 6, 7)) << 4;
-#else
-  unsigned mask = 0;
-  for (int k = 0; k < kLanes; ++k) mask |= (v[k] > 0.0 ? 1u : 0u) << k;
-  return mask;
-#endif
-}
-
-inline DoubleLanes join(Wide low, Wide high) {
-  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
-}
-template <class Real>
-inline LanesOf<Real> narrowed(DoubleLanes v) {
-  if constexpr (std::is_same_v<Real, float>) {
-    return __builtin_convertvector(v, FloatLanes);
-  } else {
-    return v;
-  }
-}
 }  // namespace detail
 
 /// Fills `out` with the touching pairs of `strip` and notes which they are; what pairs that parted left in their
@@ -107,35 +82,48 @@ template <class Real>
 void find_touching(Strip& strip, const Quad* x, double diameter, double width, TouchingPairs<Real>& out) {
   out.reserve(strip.pairs);
   const double diameter2 = diameter * diameter;
-  const IntLanes steps{0, 1, 2, 3, 4, 5, 6, 7};
+  const IntLanes steps{0, 2, 4, 6, 8, 10, 12, 14};
   PairHistory<Real>& history = strip.history<Real>();
-  const bool keeps = !history.tangential.empty(), keeps_rolling = !history.rolling.empty();
+  const double* const at = flat(x);
+  const std::uint32_t *i = strip.i.data(), *j = strip.j.data();
+  std::uint8_t* const touching = strip.touching.data();
+  Real *const dx = out.dx.data(), *const dy = out.dy.data(), *const dz = out.dz.data(),
+              *const gap = out.gap.data();
+  std::uint32_t *const out_i = out.i.data(), *const out_j = out.j.data(), *const pair = out.pair.data();
+  const auto parted = [&](int p, unsigned ended) {
+    for (int k = 0; k < kLanes; ++k)
+      if (ended >> k & 1) {
+        if (!history.tangential.empty()) history.tangential[p + k] = {};
+        if (!history.rolling.empty()) history.rolling[p + k] = {};
+      }
+  };
+  const int pairs = strip.pairs;
   int count = 0;
-  for (int p = 0; p < strip.pairs; p += kLanes) {
-    const std::int32_t *i = &strip.i[p], *j = &strip.j[p];
-    const auto d = [&](int k) { return load(x[i[k]]) - load(x[j[k]]); };
-    Triple<Wide> low = transpose(d(0), d(1), d(2), d(3)), high = transpose(d(4), d(5), d(6), d(7));
+  for (int p = 0; p < pairs; p += kLanes, i += kLanes, j += kLanes) {
+    const auto d = [&](int k) { return load_lanes<Wide>(at + i[k]) - load_lanes<Wide>(at + j[k]); };
+    Wide a[4] = {d(0), d(1), d(2), d(3)}, b[4] = {d(4), d(5), d(6), d(7)};
+    transpose(a);
+    transpose(b);
     if (width > 0.0)
-      for (Triple<Wide>* part : {&low, &high})
-        for (int k = 0; k < 4; ++k) part->y[k] -= width * std::round(part->y[k] / width);
-    const DoubleLanes gap = detail::join(diameter2 - dot(low, low), diameter2 - dot(high, high));
-    unsigned now = detail::positive(gap);
-    if (p + kLanes > strip.pairs) now &= (1u << (strip.pairs - p)) - 1u;
-    std::uint8_t& before = strip.touching[p / kLanes];
-    if (const unsigned ended = before & ~now; ended != 0)
-      for (int k = 0; k < kLanes; ++k)
-        if (ended >> k & 1) {
-          if (keeps) history.tangential[p + k] = {};
-          if (keeps_rolling) history.rolling[p + k] = {};
-        }
-    before = static_cast<std::uint8_t>(now);
-    detail::pack(detail::narrowed<Real>(detail::join(low.x, high.x)), now, &out.dx[count]);
-    detail::pack(detail::narrowed<Real>(detail::join(low.y, high.y)), now, &out.dy[count]);
-    detail::pack(detail::narrowed<Real>(detail::join(low.z, high.z)), now, &out.dz[count]);
-    detail::pack(detail::narrowed<Real>(gap), now, &out.gap[count]);
-    detail::pack(load_lanes<IntLanes>(i), now, &out.i[count]);
-    detail::pack(load_lanes<IntLanes>(j), now, &out.j[count]);
-    detail::pack(steps + p, now, &out.pair[count]);
+      for (int k = 0; k < 4; ++k) {
+        a[1][k] -= width * std::round(a[1][k] / width);
+        b[1][k] -= width * std::round(b[1][k] / width);
+      }
+    const Wide gap_a = diameter2 - (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+    const Wide gap_b = diameter2 - (b[0] * b[0] + b[1] * b[1] + b[2] * b[2]);
+    unsigned now = positive(gap_a) | positive(gap_b) << 4;
+    if (p + kLanes > pairs) now &= (1u << (pairs - p)) - 1u;
+    const unsigned before = touching[p / kLanes];
+    if (const unsigned ended = before & ~now; ended != 0) [[unlikely]]
+      parted(p, ended);
+    touching[p / kLanes] = static_cast<std::uint8_t>(now);
+    detail::pack(a[0], b[0], now, dx + count);
+    detail::pack(a[1], b[1], now, dy + count);
+    detail::pack(a[2], b[2], now, dz + count);
+    detail::pack(gap_a, gap_b, now, gap + count);
+    detail::pack(load_lanes<IntLanes>(i), now, out_i + count);
+    detail::pack(load_lanes<IntLanes>(j), now, out_j + count);
+    detail::pack(steps + 2 * p, now, pair + count);
     count += std::popcount(now);
   }
   out.count = count;

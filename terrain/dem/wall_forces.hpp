@@ -15,8 +15,8 @@ struct SolverCoefficients {
 /// Adds the wall forces on a strip's grains to `loads` (which starts at its first grain) and to its sums.
 template <class Law, bool kRolling>
 void wall_forces(const Grains& grains, Strip& strip, const Bin& bin, double radius,
-                 const SolverCoefficients& all, double dt, bool measure, Load* loads) {
-  StripSums& sums = strip.sums;
+                 const SolverCoefficients& all, double dt, bool measure, const Loads& loads) {
+  ContactTotals& sums = strip.contact;
   for (WallContact& contact : strip.walls) {
     const int g = strip.first + contact.grain;
     const double distance = bin.distance(contact.wall, grains.position[g]);
@@ -26,10 +26,12 @@ void wall_forces(const Grains& grains, Strip& strip, const Bin& bin, double radi
       contact.tangential = contact.rolling = {};
       continue;
     }
+    if (distance < 0.0) strip.lost = contact.grain;
     const Quad &v = grains.velocity[g], &w = grains.spin[g];
     motion.normal = Bin::normal(contact.wall);
     motion.roll = {w.x, w.y, w.z};
     const Triple<double> arm = -distance * motion.normal;
+    motion.root_overlap = std::sqrt(motion.overlap);
     motion.velocity = Triple<double>{v.x, v.y, v.z} + cross(motion.roll, arm);
     motion.spin = 0.5 * dot(motion.roll, motion.normal);
     Quad &t = contact.tangential, &r = contact.rolling;
@@ -43,8 +45,8 @@ void wall_forces(const Grains& grains, Strip& strip, const Bin& bin, double radi
     const Triple<double> force = f.normal * motion.normal + f.tangential;
     const Triple<double> torque = cross(arm, f.tangential) + f.rolling;
     const Wide push{force.x, force.y, force.z, 0.0};
-    add(loads[contact.grain].force, push);
-    add(loads[contact.grain].torque, Wide{torque.x, torque.y, torque.z, 0.0});
+    add(loads.force[contact.grain], push);
+    add(loads.torque[contact.grain], Wide{torque.x, torque.y, torque.z, 0.0});
 
     sums.power += power_of(f, motion) + dot(f.rolling, motion.roll);
     sums.elastic += f.energy;

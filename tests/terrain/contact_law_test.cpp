@@ -12,13 +12,13 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 
 ContactMotion<double> touching(double overlap, const Triple<double>& v = {0, 0, 0}) {
-  return {{1, 0, 0}, overlap, v, 0.0, {0, 0, 0}};
+  return {{1, 0, 0}, overlap, std::sqrt(overlap), v, 0.0, {0, 0, 0}};
 }
 
 TEST(Lanes, tanh_agrees_with_the_standard_library) {
   for (double x : {0.0, 1e-12, 1e-6, 1e-3, 0.1, 0.17, 0.18, 0.5, 1.0, 3.0, 7.0, 19.0, 100.0}) {
     EXPECT_NEAR(tanh_of_positive(x), std::tanh(x), 4e-16) << x;
-    EXPECT_EQ(tanh_of_positive(constant<DoubleLanes>(x))[2], tanh_of_positive(x)) << x;
+    EXPECT_EQ(tanh_of_positive(constant<Wide>(x))[2], tanh_of_positive(x)) << x;
     const double scale = x > 0.0 ? 1.0 / std::tanh(x) : 0.0;
     EXPECT_NEAR(tanh_of_positive(x) * scale, std::tanh(x) * scale, 1e-14) << x;
   }
@@ -79,11 +79,11 @@ TEST(MindlinLaw, history_turns_with_normal_and_spin) {
   ContactHistory<double> history{{0, 1.0, 0}, 0.02, {0, 0, 0}};
   const double a = 1e-3;
   const Triple<double> n{std::cos(a), std::sin(a), 0.0};
-  const auto turned = turn_with_contact(history.tangential, n, 0.0);
+  const auto turned = turn_with_contact(history.tangential, n, 0.0, 1.0);
   EXPECT_NEAR(turned.x, -std::sin(a), 1e-15);
   EXPECT_NEAR(turned.y, std::cos(a), 1e-15);
   Triple<double> t{0, 1, 0};
-  for (int k = 0; k < 1000; ++k) t = turn_with_contact(t, {1, 0, 0}, 0.5 * kPi / 1000);
+  for (int k = 0; k < 1000; ++k) t = turn_with_contact(t, {1, 0, 0}, 0.5 * kPi / 1000, 1.0);
   EXPECT_NEAR(t.z, 1.0, 1e-6);  // a quarter turn about x takes y to z
   EXPECT_NEAR(std::hypot(t.y, t.z), 1.0, 1e-12);
 }

@@ -169,6 +169,8 @@ TEST_F(DemTerrain, digest_tells_beds_apart) {
 }
 
 TEST_F(DemTerrain, plate_books_force_momentum_and_energy) {
+  options_.activity =
+      false;  // what is taken from grains that fall asleep is booked as energy, not as impulse
   for (const char* law : {"mindlin", "coulomb"}) {
     options_.law = law;
     const auto terrain = make_terrain(options_);

@@ -1,0 +1,177 @@
+// Grains that sleep: nothing wakes late, and what wakes moves as if it had never slept.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "protocol/hash.hpp"
+#include "terrain/dem/bed_layers.hpp"
+#include "terrain/dem/bed_settling.hpp"
+#include "terrain/dem/solver_setup.hpp"
+
+namespace furrow::dem {
+namespace {
+
+TerrainOptions bed_options(double cohesion) {
+  TerrainOptions options;
+  options.radius = 0.01;
+  options.layers = 4;
+  options.length = 1.2;
+  options.width = 0.12;
+  options.cohesion = cohesion;
+  options.step = 6e-5;
+  return options;
+}
+
+/// A settled bed, without activity so far.
+Archive settled(const TerrainOptions& options) {
+  SolverParams params = solver_params(options);
+  params.activity = false;
+  GrainSolver solver(params);
+  solver.place(bed_layers(params.bin, options.radius, options.layers, 1));
+  settle(solver, options, {});
+  Archive archive;
+  solver.save(archive);
+  return archive;
+}
+
+GrainSolver bed(const TerrainOptions& options, const Archive& archive, bool activity) {
+  SolverParams params = solver_params(options);
+  params.activity = activity;
+  GrainSolver solver(params);
+  solver.restore(archive);
+  solver.set_coefficients(run_coefficients(options, options.step));
+  solver.reset_accounts();
+  return solver;
+}
+
+/// A plate that spans the bin's middle, 0.1 m long, facing down.
+struct Plate {
+  SurfaceMesh mesh;
+  SurfaceState state;
+  Vec3 velocity = Vec3::Zero();
+
+  explicit Plate(double z) {
+    mesh.vertex_count = 4;
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    state.position = {{0.55, -0.04, z}, {0.55, 0.04, z}, {0.65, 0.04, z}, {0.65, -0.04, z}};
+    state.velocity.assign(4, Vec3::Zero());
+  }
+};
+
+/// Mean vertical force on the plate over each interval of `every` steps while it goes down from z = `from`, N.
+std::vector<double> press(GrainSolver& solver, const TerrainOptions& options, double from, double speed, int intervals,
+                          int every) {
+  Plate plate(from);
+  const ContactMaterial rubber{2e7, 0.4, 0.9, 0.2, 2e6, 13.0, 0.0};
+  solver.surfaces().attach(
+      plate.mesh, rubber,
+      mix(grain_material(options), rubber, Partner::surface, solver.params().grain, law_settings(options)),
+      plate.state);
+  solver.surfaces().restrict_to({Vec3(-1, -1, -1), Vec3(2, 1, solver.top() + 0.1)});
+  const double dt = options.step;
+  std::vector<double> force;
+  std::vector<NodalForces> nodal(1);
+  std::vector<ContactSums> sums(1);
+  for (int n = 0; n < intervals; ++n) {
+    double mean = 0.0;
+    for (int k = 0; k < every; ++k) {
+      for (Vec3& v : plate.state.velocity) v = Vec3(0, 0, -speed);
+      solver.surfaces().set_targets({&plate.state, 1}, dt);
+      solver.surfaces().move_to(0.0);
+      EXPECT_EQ(solver.step(dt), -1);
+      solver.surfaces().move_to(1.0);
+      solver.surfaces().finish(dt, nodal, sums);
+      for (Vec3& x : plate.state.position) x += dt * Vec3(0, 0, -speed);
+      mean += sums[0].force.z() / every;
+    }
+    force.push_back(mean);
+  }
+  return force;
+}
+
+std::uint64_t hash_of(const GrainSolver& s) {
+  Hash hash;
+  for (const auto* a : {&s.grains().position, &s.grains().velocity, &s.grains().spin})
+    hash.add(std::span(*a).first(s.grains().count));
+  return hash.value();
+}
+
+TEST(Activity, bed_at_rest_falls_asleep_and_stays_where_it_is) {
+  const TerrainOptions options = bed_options(20e3);
+  GrainSolver solver = bed(options, settled(options), true);
+  const double height = solver.accounts().height / solver.grains().count;
+  for (int k = 0; k < 4000; ++k) ASSERT_EQ(solver.step(options.step), -1);
+  EXPECT_EQ(solver.accounts().active, 0);
+  EXPECT_EQ(solver.accounts().kinetic, 0.0);
+  EXPECT_NEAR(solver.accounts().height / solver.grains().count, height, 0.01 * options.radius);
+  const double weight = solver.params().grain.mass * kGravity * solver.grains().count;
+  EXPECT_NEAR(solver.accounts().floor_force, weight, 0.02 * weight);
+}
+
+TEST(Activity, pressed_sleeping_bed_pushes_back_like_one_that_is_all_awake) {
+  for (double cohesion : {0.0, 40e3}) {
+    const TerrainOptions options = bed_options(cohesion);
+    const Archive archive = settled(options);
+    GrainSolver asleep = bed(options, archive, true), awake = bed(options, archive, false);
+    for (int k = 0; k < 4000; ++k) asleep.step(options.step), awake.step(options.step);
+    ASSERT_LT(asleep.accounts().active, asleep.grains().count / 10) << cohesion;
+    const double from = awake.top();
+    const auto some = press(asleep, options, from, 0.1, 20, 100), all = press(awake, options, from, 0.1, 20, 100);
+    double most = 0.0, error = 0.0;
+    for (std::size_t n = 0; n < all.size(); ++n) {
+      most = std::max(most, all[n]);
+      error = std::max(error, std::abs(some[n] - all[n]));
+    }
+    EXPECT_GT(most, 10.0);
+    std::string curve;
+    for (std::size_t n = 0; n < all.size(); ++n) curve += std::to_string(all[n]) + " " + std::to_string(some[n]) + "\n";
+    EXPECT_LT(error, 0.05 * most) << "cohesion " << cohesion << ", awake and asleep, N:\n" << curve;
+    EXPECT_LT(asleep.accounts().active, asleep.grains().count);
+  }
+}
+
+TEST(Activity, falling_grain_wakes_what_it_hits) {
+  const TerrainOptions options = bed_options(5e3);
+  GrainSolver solver = bed(options, settled(options), true);
+  for (int k = 0; k < 4000; ++k) solver.step(options.step);
+  ASSERT_EQ(solver.accounts().active, 0);
+  // A grain of the top layer is thrown along the bed and comes down elsewhere.
+  Grains& grains = solver.grains();
+  int thrown = 0;
+  for (int g = 0; g < grains.count; ++g)
+    if (grains.position[g].x < 0.2 && grains.position[g].z > grains.position[thrown].z) thrown = g;
+  const int id = grains.id[thrown];
+  const double start = grains.position[thrown].x;
+  grains.velocity[thrown] = {1.5, 0.0, 2.5, 0.0};
+  solver.wake(thrown);
+  std::int64_t most = 0;
+  for (int k = 0; k < 12000; ++k) {
+    ASSERT_EQ(solver.step(options.step), -1);
+    most = std::max(most, solver.accounts().active);
+  }
+  const Quad& end = grains.position[solver.index_of(id)];
+  EXPECT_GT(end.x, start + 0.15);
+  EXPECT_GT(most, 0);
+  EXPECT_EQ(solver.accounts().active, 0);
+}
+
+TEST(Activity, same_bits_for_one_and_two_threads_and_after_a_restart) {
+  const TerrainOptions options = bed_options(0.0);
+  const Archive archive = settled(options);
+  GrainSolver one = bed(options, archive, true), two = bed(options, archive, true);
+  two.set_threads(2);
+  for (int k = 0; k < 300; ++k) one.step(options.step), two.step(options.step);
+  ASSERT_GT(one.accounts().active, 0);
+  ASSERT_LT(one.accounts().active, one.grains().count);
+  EXPECT_EQ(hash_of(one), hash_of(two));
+  Archive middle;
+  one.save(middle);
+  GrainSolver again = bed(options, middle, true);
+  for (int k = 0; k < 500; ++k) one.step(options.step), again.step(options.step);
+  EXPECT_EQ(hash_of(one), hash_of(again));
+  EXPECT_EQ(one.accounts().floor_force, again.accounts().floor_force);
+}
+
+}  // namespace
+}  // namespace furrow::dem

@@ -48,6 +48,14 @@ bool from_cache(const std::filesystem::path& file, const TerrainOptions& options
   }
 }
 
+/// For making a bed: no grain sleeps before it has come to rest.
+SolverParams settling_params(const TerrainOptions& options) {
+  SolverParams params = solver_params(options);
+  params.threads = std::max(1, options.settle_threads);
+  params.activity = false;
+  return params;
+}
+
 /// Presses the bed and lets it settle again, grains placed at rest where the lid left them.
 SettleResult compact(GrainSolver& solver, const TerrainOptions& options, const ProgressCall& progress) {
   const std::vector<Quad> positions = compacted_positions(solver, options, progress);

@@ -22,6 +22,7 @@ Specimen::Specimen(const TerrainOptions& material, const Box& box, std::uint64_t
   const double r = material.radius;
   options_.bed.clear();
   options_.cache = false;
+  options_.activity = false;  // tools move slowly: what they shear must not fall asleep
   options_.seed = seed;
   options_.length = box.length * r;
   options_.width = box.width * r;

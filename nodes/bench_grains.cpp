@@ -28,7 +28,7 @@ std::vector<Quad> bed_of(const GrainBench& bench, TerrainOptions& options) {
     Archive archive;
     terrain->save(archive);
     const auto& x = archive.get<double>("terrain/position");
-    for (std::size_t k = 0; k + 3 < x.size(); k += 4) grains.push_back({x[k], x[k + 1], x[k + 2], 0.0});
+    for (std::size_t k = 0; k + 3 < x.size(); k += 4) grains.push_back({x[k], x[k + 1], x[k + 2], x[k + 3]});
     return grains;
   }
   grains = read_positions_csv(bench.bed);
@@ -113,7 +113,7 @@ std::string bench_grains(const GrainBench& bench) {
       {"coordination", 2.0 * contacts / n},
       {"pairs_listed_per_grain", static_cast<double>(listed) / n},
       {"floor_force_N", a.floor_force},
-      {"weight_N", n * params.grain.mass * params.gravity},
+      {"weight_N", solver.relative_mass() * params.grain.mass * params.gravity},
       {"kinetic_energy_J", a.kinetic},
       {"force_residual", a.contact_force > 0.0 ? a.net_force / a.contact_force : 0.0},
       {"settled_s", settled.time},

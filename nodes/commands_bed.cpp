@@ -22,7 +22,7 @@ using json = nlohmann::ordered_json;
 json bed_json(const Scenario& s, const dem::PreparedBed& prepared, const dem::BedStatistics& bed,
               double wall_s) {
   const TerrainOptions& o = s.terrain;
-  const double mass = dem::grain_properties(o.radius, o.density).mass;
+  const double mass = o.density * bed.grain_volume;
   const auto text_or_null = [](const std::string& text) { return text.empty() ? json(nullptr) : json(text); };
   json j;
   j["format_version"] = 1;
@@ -30,20 +30,22 @@ json bed_json(const Scenario& s, const dem::PreparedBed& prepared, const dem::Be
   j["scenario"] = s.name;
   j["bed"] = text_or_null(o.bed);
   j["bed_generator"] = o.bed.empty() ? json(o.bed_generator) : json(nullptr);
+  j["size_distribution"] = o.size_spread > 0.0 ? json(o.size_distribution) : json(nullptr);
+  j["size_spread"] = o.size_spread;
   j["compaction_pressure_Pa"] = o.compaction_pressure;
   j["grains"] = bed.grains;
   j["depth_m"] = bed.depth;
   j["top_m"] = bed.top;
   j["solid_fraction"] = bed.solid_fraction;
   j["solid_fraction_bulk"] = bed.solid_fraction_bulk;
-  j["bulk_density_kg_m3"] = static_cast<double>(bed.grains) * mass / (o.length * o.width * bed.depth);
+  j["bulk_density_kg_m3"] = mass / (o.length * o.width * bed.depth);
   j["coordination_number"] = bed.coordination;
   j["contacts"] = bed.pairs;
   j["wall_contacts"] = bed.wall_contacts;
   j["max_overlap_m"] = bed.max_overlap;
   j["settled"] = prepared.settled.settled;
   j["force_residual"] = prepared.settled.force_ratio;
-  j["weight_N"] = static_cast<double>(bed.grains) * mass * dem::kGravity;
+  j["weight_N"] = mass * dem::kGravity;
   j["floor_force_error"] = prepared.settled.floor_error;
   j["settling_time_s"] = prepared.settled.time;
   j["settling_step_s"] = dem::settle_step(o);

@@ -178,6 +178,8 @@ void take_terrain(const json& j, Scenario& s) {
   o.engine = j["engine"];
   o.law = j["law"];
   o.radius = j["radius"];
+  o.size_distribution = j["size_distribution"];
+  o.size_spread = j["size_spread"];
   o.density = j["density"];
   o.layers = j["layers"];
   o.length = j["length"];

@@ -183,6 +183,8 @@ json soil_json(const SoilRun& run) {
                  {"density_kg_m3", o.density},
                  {"friction", o.friction},
                  {"rolling_friction", o.rolling_friction},
+                 {"size_distribution", o.size_distribution},
+                 {"size_spread", o.size_spread},
                  {"cohesion_Pa", o.cohesion},
                  {"young_modulus_Pa", o.young_modulus},
                  {"bed_generator", o.bed_generator},

@@ -15,7 +15,9 @@ struct TerrainOptions {
   std::string law = "mindlin";  // mindlin | coulomb
   // Bed.
   double radius = 0.006;    // grain radius, m
-  double density = 2500.0;  // kg/m³
+  std::string size_distribution = "uniform";  // uniform | normal, by number of grains
+  double size_spread = 0.0;  // radii are drawn between radius (1 ± spread), -; 0: all alike
+  double density = 2500.0;   // kg/m³
   int layers = 15;          // Poisson-disk layers dropped
   double length = 10.0;     // bin, x from 0 to length, m
   double width = 0.6;       // bin, y from −width/2 to width/2, m

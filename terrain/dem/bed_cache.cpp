@@ -19,7 +19,7 @@
 namespace furrow::dem {
 namespace {
 
-constexpr std::int64_t kBedFormat = 3;  // raise when the bits of a bed may change
+constexpr std::int64_t kBedFormat = 4;  // raise when the bits of a bed may change
 
 /// An HDF5 identifier that closes itself.
 class Handle {
@@ -132,8 +132,9 @@ std::string bed_digest(const TerrainOptions& o) {
   Hash hash;
   hash.add(o.law);
   hash.add(o.precision);
-  const std::array<double, 18> numbers{static_cast<double>(kBedFormat),
+  const std::array<double, 19> numbers{static_cast<double>(kBedFormat),
                                        o.radius,
+                                       o.size_spread,
                                        o.density,
                                        static_cast<double>(o.layers),
                                        o.length,
@@ -154,6 +155,7 @@ std::string bed_digest(const TerrainOptions& o) {
   const double step = settle_step(o);
   hash.add(&step, sizeof step);
   hash.add(&o.seed, sizeof o.seed);
+  hash.add(o.size_distribution);
   hash.add(o.bed_generator);
   hash.add(&o.compaction_pressure, sizeof o.compaction_pressure);
   if (!o.bed.empty()) hash.add(file_bytes(o.bed));

@@ -35,8 +35,9 @@ Lid lid_at(const Bin& bin, double z) {
 
 double top_of(const GrainSolver& solver) {
   double top = 0.0;
-  for (int g = 0; g < solver.grains().count; ++g) top = std::max(top, solver.grains().position[g].z);
-  return top + solver.params().grain.radius;
+  for (int g = 0; g < solver.grains().count; ++g)
+    top = std::max(top, solver.grains().position[g].z + solver.grains().position[g].w);
+  return top;
 }
 
 }  // namespace

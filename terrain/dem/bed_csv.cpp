@@ -1,5 +1,6 @@
 #include "terrain/dem/bed_csv.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -28,17 +29,21 @@ std::vector<Quad> read_positions_csv(const std::filesystem::path& file) {
   std::string line;
   if (!in || !std::getline(in, line)) throw io_error(file.string(), "the bed cannot be read");
   while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
-  if (line != "x_m,y_m,z_m")
-    throw input_error(file.string(), "line 1",
-                      "'" + line.substr(0, 60) + "', expected the header x_m,y_m,z_m");
+  const bool radii = line == "x_m,y_m,z_m,radius_m";
+  if (line != "x_m,y_m,z_m" && !radii)
+    throw input_error(
+        file.string(), "line 1",
+        "'" + line.substr(0, 60) + "', expected the header x_m,y_m,z_m or x_m,y_m,z_m,radius_m");
   std::vector<Quad> positions;
   for (std::size_t row = 2; std::getline(in, line); ++row) {
     if (line.empty() || line == "\r") continue;
     Quad p;
     const char* at = line.c_str();
-    if (!number(at, ',', p.x) || !number(at, ',', p.y) || !number(at, '\0', p.z))
-      throw input_error(file.string(), "line " + std::to_string(row),
-                        "'" + line.substr(0, 60) + "', expected three finite numbers, m");
+    const bool three = number(at, ',', p.x) && number(at, ',', p.y) && number(at, radii ? ',' : '\0', p.z);
+    if (!three || (radii && !number(at, '\0', p.w)))
+      throw input_error(
+          file.string(), "line " + std::to_string(row),
+          "'" + line.substr(0, 60) + "', expected " + (radii ? "four" : "three") + " finite numbers, m");
     positions.push_back(p);
   }
   if (in.bad()) throw io_error(file.string(), "the bed cannot be read to its end");
@@ -49,8 +54,14 @@ std::vector<Quad> read_positions_csv(const std::filesystem::path& file) {
 void write_positions_csv(const std::filesystem::path& file, std::span<const Quad> positions, double y) {
   std::ofstream out(file);
   out.precision(17);
-  out << "x_m,y_m,z_m\n";
-  for (const Quad& p : positions) out << p.x << ',' << p.y + y << ',' << p.z << '\n';
+  const bool radii = std::any_of(positions.begin(), positions.end(),
+                                 [&](const Quad& p) { return p.w != positions.front().w; });
+  out << "x_m,y_m,z_m" << (radii ? ",radius_m\n" : "\n");
+  for (const Quad& p : positions) {
+    out << p.x << ',' << p.y + y << ',' << p.z;
+    if (radii) out << ',' << p.w;
+    out << '\n';
+  }
   if (!out.flush()) throw io_error(file.string(), "the bed cannot be written");
 }
 

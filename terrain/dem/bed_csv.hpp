@@ -9,11 +9,11 @@
 
 namespace furrow::dem {
 
-/// Reads rows `x_m,y_m,z_m` (header line first), m.
-/// @throws Error(io) when the file cannot be read, Error(bad_input) naming the line that is not three finite numbers.
+/// Reads rows `x_m,y_m,z_m` or `x_m,y_m,z_m,radius_m` (header line first), m; w: radius, 0 where the file has none.
+/// @throws Error(io) when the file cannot be read, Error(bad_input) naming the line that is not as many finite numbers.
 std::vector<Quad> read_positions_csv(const std::filesystem::path& file);
 
-/// Writes such a file, shifted by (0, y, 0), 17 digits. @throws Error(io)
+/// Writes such a file, shifted by (0, y, 0), 17 digits, with radii where they differ. @throws Error(io)
 void write_positions_csv(const std::filesystem::path& file, std::span<const Quad> positions, double y = 0.0);
 
 }  // namespace furrow::dem

@@ -12,12 +12,13 @@
 #include "terrain/dem/bed_csv.hpp"
 #include "terrain/dem/bed_layers.hpp"
 #include "terrain/dem/close_pairs.hpp"
+#include "terrain/dem/grain_sizes.hpp"
 
 namespace furrow::dem {
 namespace {
 
 constexpr double kLeastDistance =
-    1.8;                            // radii between centres in a user's bed: overlaps of 10 % of the diameter
+    1.8;  // mean radii between centres in a user's bed: overlaps of 10 % of the diameter
 constexpr double kLeastWall = 0.8;  // radii between a centre and a wall
 
 Bin bin_of(const TerrainOptions& o) { return {o.length, o.width, o.periodic_x, o.periodic_y}; }
@@ -45,8 +46,8 @@ std::vector<Quad> lattice_layers(const TerrainOptions& o, const ProgressCall& pr
   for (int layer = 0; layer < o.layers; ++layer) {
     if (progress) progress("placing the grains", static_cast<double>(layer) / o.layers);
     const auto seed = o.seed * 1000003ULL + static_cast<std::uint64_t>(layer);
-    for (Quad p : lattice_layer(bin_of(o), o.radius, seed, layer % 2 == 1)) {
-      p.z = (layer + 0.5) * kSpacing * o.radius;
+    for (Quad p : lattice_layer(bin_of(o), largest_radius(o), seed, layer % 2 == 1)) {
+      p.z = (layer + 0.5) * kSpacing * largest_radius(o);
       all.push_back(p);
     }
   }
@@ -54,15 +55,17 @@ std::vector<Quad> lattice_layers(const TerrainOptions& o, const ProgressCall& pr
 }
 
 std::vector<Quad> poisson_layers(const TerrainOptions& o, const ProgressCall& progress) {
-  return bed_layers(bin_of(o), o.radius, o.layers, o.seed, progress);
+  return bed_layers(bin_of(o), largest_radius(o), o.layers, o.seed, progress);
 }
 
 double lattice_count(const TerrainOptions& o) {
-  const Lattice lattice = lattice_of(bin_of(o), o.radius);
+  const Lattice lattice = lattice_of(bin_of(o), largest_radius(o));
   return static_cast<double>(o.layers) * lattice.nx * lattice.ny;
 }
 
-double poisson_count(const TerrainOptions& o) { return o.layers * expected_layer_count(bin_of(o), o.radius); }
+double poisson_count(const TerrainOptions& o) {
+  return o.layers * expected_layer_count(bin_of(o), largest_radius(o));
+}
 
 struct Generator {
   const char* name;
@@ -86,13 +89,19 @@ std::string place_text(const Quad& p) { return fmt::format("({:g}, {:g}, {:g}) m
 
 /// The user's grains must stand in the bin and not in each other. Lines are counted as if none were blank.
 std::vector<Quad> positions_of(const TerrainOptions& o) {
-  const std::vector<Quad> grains = read_positions_csv(o.bed);
+  std::vector<Quad> grains = read_positions_csv(o.bed);
   const Bin bin = bin_of(o);
-  const double least = kLeastWall * o.radius * (1.0 - 1e-9);
   const auto wrong = [&](std::size_t g, const std::string& what) {
     return input_error(o.bed, fmt::format("line {}", g + 2), what);
   };
-  for (std::size_t g = 0; g < grains.size(); ++g)
+  for (std::size_t g = 0; g < grains.size(); ++g) {
+    double& radius = grains[g].w;
+    if (radius == 0.0) radius = o.radius;
+    if (!(radius >= smallest_radius(o) && radius <= largest_radius(o)))
+      throw wrong(g, fmt::format("the grain's radius is {:g} m, expected {:g} to {:g} m: terrain.radius and "
+                                 "terrain.size_spread of the scenario",
+                                 radius, smallest_radius(o), largest_radius(o)));
+    const double least = kLeastWall * radius * (1.0 - 1e-9);
     for (int wall = 0; wall < kWalls; ++wall)
       if (bin.has_wall(wall) && !(bin.distance(wall, grains[g]) >= least))
         throw wrong(
@@ -101,11 +110,15 @@ std::vector<Quad> positions_of(const TerrainOptions& o) {
                    "{:g} m, z from {:g} m",
                    place_text(grains[g]), least, o.length - least, least - 0.5 * o.width,
                    0.5 * o.width - least, least));
-  for_close_pairs(grains, bin, kLeastDistance * o.radius, [&](std::size_t a, std::size_t b, double distance) {
-    throw wrong(std::max(a, b), fmt::format("the grain at {} is {:.3g} m from that of line {}, expected at "
-                                            "least {:g} m for grains of radius {:g} m",
-                                            place_text(grains[std::max(a, b)]), distance, std::min(a, b) + 2,
-                                            kLeastDistance * o.radius, o.radius));
+  }
+  const double reach = kLeastDistance * largest_radius(o);
+  for_close_pairs(grains, bin, reach, [&](std::size_t a, std::size_t b, double distance) {
+    const double mean = 0.5 * (grains[a].w + grains[b].w), least = kLeastDistance * mean;
+    if (distance >= least) return;
+    throw wrong(std::max(a, b),
+                fmt::format("the grain at {} is {:.3g} m from that of line {}, expected at "
+                            "least {:g} m for grains of radius {:g} m",
+                            place_text(grains[std::max(a, b)]), distance, std::min(a, b) + 2, least, mean));
   });
   return grains;
 }
@@ -139,7 +152,9 @@ bool is_positions_file(const std::filesystem::path& bed) {
 
 std::vector<Quad> starting_positions(const TerrainOptions& options, const ProgressCall& progress) {
   if (!options.bed.empty()) return positions_of(options);
-  return generator_of(options).make(options, progress);
+  std::vector<Quad> grains = generator_of(options).make(options, progress);
+  draw_radii(options, grains);
+  return grains;
 }
 
 double expected_grains(const TerrainOptions& options) {

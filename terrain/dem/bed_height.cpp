@@ -6,9 +6,9 @@
 
 namespace furrow::dem {
 
-HeightField bed_height_field(const Grains& grains, const Bin& bin, double radius) {
+HeightField bed_height_field(const Grains& grains, const Bin& bin, double cell) {
   HeightField field;
-  field.cell = 2.0 * radius;
+  field.cell = cell;
   field.nx = std::max(1, static_cast<int>(bin.length / field.cell));
   field.ny = std::max(1, static_cast<int>(bin.width / field.cell));
   field.x0 = 0.5 * field.cell;
@@ -19,8 +19,8 @@ HeightField bed_height_field(const Grains& grains, const Bin& bin, double radius
     const Quad& p = grains.position[g];
     const int ix = std::clamp(static_cast<int>(p.x / field.cell), 0, field.nx - 1);
     const int iy = std::clamp(static_cast<int>((p.y + 0.5 * bin.width) / field.cell), 0, field.ny - 1);
-    double& cell = field.height[static_cast<std::size_t>(ix) * field.ny + iy];
-    if (!(cell >= p.z + radius)) cell = p.z + radius;
+    double& height = field.height[static_cast<std::size_t>(ix) * field.ny + iy];
+    if (!(height >= p.z + p.w)) height = p.z + p.w;
   }
   return field;
 }
@@ -39,13 +39,12 @@ double mean_height(const HeightField& field, double x_min, double x_max, double 
   return cells > 0 ? sum / cells : 0.0;
 }
 
-double top_height(const Grains& grains, double radius, double x_min, double x_max, double y_min,
-                  double y_max) {
+double top_height(const Grains& grains, double x_min, double x_max, double y_min, double y_max) {
   double top = 0.0;
   for (int g = 0; g < grains.count; ++g) {
     const Quad& p = grains.position[g];
-    if (p.x > x_min - radius && p.x < x_max + radius && p.y > y_min - radius && p.y < y_max + radius)
-      top = std::max(top, p.z + radius);
+    if (p.x > x_min - p.w && p.x < x_max + p.w && p.y > y_min - p.w && p.y < y_max + p.w)
+      top = std::max(top, p.z + p.w);
   }
   return top;
 }

@@ -26,6 +26,10 @@ void check_bed(const Archive& bed, const TerrainOptions& o) {
     if (made[k] != wanted[k])
       throw input_error("scenario", std::string("terrain.") + kKey[k],
                         fmt::format("is {} but the bed '{}' was made with {}", wanted[k], o.bed, made[k]));
+  const double spread = bed.has("bed/size_spread") ? bed.get_double("bed/size_spread") : 0.0;
+  if (spread != o.size_spread)
+    throw input_error("scenario", "terrain.size_spread",
+                      fmt::format("is {} but the bed '{}' was made with {}", o.size_spread, o.bed, spread));
   const auto& law = bed.get<std::uint8_t>("bed/law");
   if (std::string(law.begin(), law.end()) != o.law)
     throw input_error("scenario", "terrain.law",
@@ -46,14 +50,6 @@ bool from_cache(const std::filesystem::path& file, const TerrainOptions& options
   } catch (const Error&) {
     return false;  // absent or damaged: made anew
   }
-}
-
-/// For making a bed: no grain sleeps before it has come to rest.
-SolverParams settling_params(const TerrainOptions& options) {
-  SolverParams params = solver_params(options);
-  params.threads = std::max(1, options.settle_threads);
-  params.activity = false;
-  return params;
 }
 
 /// Presses the bed and lets it settle again, grains placed at rest where the lid left them.
@@ -79,6 +75,7 @@ Archive made_bed(const TerrainOptions& options, const ProgressCall& progress, Se
   bed.put("bed/settled", std::vector<double>{result.settled ? 1.0 : 0.0, result.force_ratio,
                                              result.floor_error, result.time});
   bed.put("bed/geometry", geometry(options));
+  bed.put("bed/size_spread", options.size_spread);
   bed.put("bed/law", std::vector<std::uint8_t>(options.law.begin(), options.law.end()));
   return bed;
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "protocol/error.hpp"
+#include "terrain/dem/grain_sizes.hpp"
 
 namespace furrow::dem {
 namespace {
@@ -23,11 +24,12 @@ double settle_step(const TerrainOptions& options) {
   LawSettings law = law_settings(options);
   law.friction_impulse_limit = true;
   law.step = options.step;
-  const GrainProperties grain = grain_properties(options.radius, options.density);
+  const double radius = smallest_radius(options);
+  const GrainProperties grain = grain_properties(radius, options.density);
   const ContactMaterial material = grain_material(options);
   const ContactCoefficients pair = mix(material, material, Partner::grain, grain, law);
   const double share = law.kind == LawKind::mindlin ? kStepShareMindlin : kStepShareCoulomb;
-  return share * stable_step(pair, grain, law, kStatedOverlap * options.radius).step;
+  return share * stable_step(pair, grain, law, kStatedOverlap * radius).step;
 }
 
 SolverCoefficients settle_coefficients(const TerrainOptions& options) {
@@ -48,7 +50,7 @@ SettleResult settle(GrainSolver& solver, const TerrainOptions& options, const Pr
   SettleResult result;
   const double dt = settle_step(options);
   const GrainProperties& grain = solver.params().grain;
-  const double mass = grain.mass * solver.grains().count, weight = mass * solver.params().gravity;
+  const double mass = grain.mass * solver.relative_mass(), weight = mass * solver.params().gravity;
   solver.set_coefficients(settle_coefficients(options));
   solver.set_drag(kFallDrag);
   bool lying = false;

@@ -18,14 +18,16 @@ struct BedStatistics {
   double top = 0.0;                // highest grain top, m
   double solid_fraction = 0.0;     // of the box up to `depth`, doubly covered volume counted once
   double solid_fraction_bulk = 0.0;  // of its middle half, depth/4 to 3 depth/4, the same way
+  double grain_volume = 0.0;         // of all grains, m³
   double max_overlap = 0.0;          // of two grains, m
 };
 
-BedStatistics bed_statistics(const std::vector<Quad>& positions, const Bin& bin, double radius);
+/// Of grains that stand at x y z with radius w, m. `radius`: r of the cells, m.
+BedStatistics bed_statistics(const std::vector<Quad>& grains, const Bin& bin, double radius);
 
-/// Volume that two spheres of `radius` share at this distance of their centres, m³:
-/// π (4 r + d) (2 r − d)² / 12.
-double lens_volume(double radius, double distance);
+/// Volume that spheres of radii a and b share at this distance of their centres, m³:
+/// π (a + b − d)² (d² + 2 d (a + b) − 3 (a − b)²) / (12 d).
+double lens_volume(double a, double b, double distance);
 
 /// Volume of a sphere at height z below `height`, m³.
 double volume_below(double radius, double z, double height);

@@ -111,8 +111,9 @@ inline Triple<T> cut_at_limit(Triple<T>& spring, const Triple<T>& damper, T limi
 struct MindlinLaw {
   static constexpr bool kHistory = true;
 
-  template <bool kRolling, class S, class T>
-  static inline ContactForce<T> force(const Coefficients<S>& c, S dt, const ContactMotion<T>& at,
+  /// C: scalar, or lanes of one coefficient per contact.
+  template <bool kRolling, class C, class S, class T>
+  static inline ContactForce<T> force(const Coefficients<C>& c, S dt, const ContactMotion<T>& at,
                                       ContactHistory<T>& history) {
     const T zero = constant<T>(0.0);
     const T s = at.root_overlap, q = root(s);
@@ -137,7 +138,7 @@ struct MindlinLaw {
 
     if constexpr (kRolling) {  // (4)
       const Triple<T> w = at.roll - dot(at.roll, at.normal) * at.normal;
-      const S r2 = c.rolling_radius * c.rolling_radius;
+      const C r2 = c.rolling_radius * c.rolling_radius;
       Triple<T> torque = turn_with_contact(history.rolling, at.normal, angle, unloading);
       torque = torque - (c.shear_stiffness * r2 * dt * s) * w;
       const Triple<T> brake = (-c.rolling_damping * q) * w;
@@ -153,8 +154,8 @@ struct MindlinLaw {
 struct CoulombLaw {
   static constexpr bool kHistory = false;
 
-  template <bool kRolling, class S, class T>
-  static inline ContactForce<T> force(const Coefficients<S>& c, S, const ContactMotion<T>& at,
+  template <bool kRolling, class C, class S, class T>
+  static inline ContactForce<T> force(const Coefficients<C>& c, S, const ContactMotion<T>& at,
                                       ContactHistory<T>&) {
     const T zero = constant<T>(0.0), tiny = constant<T>(1e-30);
     const T s = at.root_overlap;

@@ -95,6 +95,10 @@ ContactCoefficients mix(const ContactMaterial& grain, const ContactMaterial& oth
   return c;
 }
 
+double mass_share(const GrainProperties& grain, const ContactMaterial& surface) {
+  return grain.mass / surface_mass(surface, grain.radius);
+}
+
 // A bed of z = 6 contacts per grain in random directions, stiffness k_n = 3/2 K √δ and k_t. With Σ n nᵀ = z/3 I and
 // neighbours in antiphase the stiffest modes of translation and of rotation (I = 2/5 m r²) are
 //   ω² = 2 z/3 (k_n + 2 k_t)/m   and   ω² = 2 z (2/3) (5/2) k_t/m,     likewise γ with the dashpots;

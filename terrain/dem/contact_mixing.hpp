@@ -13,7 +13,7 @@ enum class LawKind { mindlin, coulomb };
 /// @throws Error(bad_input) listing the valid names.
 LawKind law_from(const std::string& name);
 
-/// Grains of one size.
+/// A grain.
 struct GrainProperties {
   double radius = 0.0;   // m
   double mass = 0.0;     // kg
@@ -41,9 +41,12 @@ enum class Partner {
 
 /// Mixing: k_n, g_n arithmetic mean; μ, e, c_t minimum; 1/E* = Σ(1−ν²)/E, 1/G* = Σ 2(2−ν)(1+ν)/E; R* = r/2 or r;
 /// 1/m* = Σ 1/m, of a tire its area density × 2√3 r²: a damper made for the grain's mass alone would, felt one step
-/// late, throw the lighter tire back and forth. Cohesion area π r² of the grain.
+/// late, throw the lighter tire back and forth. Cohesion area π r² of the grain. For other sizes see size_scale.hpp.
 ContactCoefficients mix(const ContactMaterial& grain, const ContactMaterial& other, Partner partner,
                         const GrainProperties& properties, const LawSettings& law);
+
+/// Mass of the grain over that of the piece of surface its contact moves, -; 0 for a wall.
+double mass_share(const GrainProperties& grain, const ContactMaterial& surface);
 
 /// Largest stable step of semi-implicit Euler and what limits it.
 struct StableStep {

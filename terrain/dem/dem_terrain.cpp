@@ -12,6 +12,7 @@
 #include "terrain/dem/bed_generators.hpp"
 #include "terrain/dem/bed_height.hpp"
 #include "terrain/dem/bed_preparation.hpp"
+#include "terrain/dem/grain_sizes.hpp"
 #include "terrain/dem/solver_setup.hpp"
 
 namespace furrow {
@@ -47,16 +48,21 @@ void check(const TerrainOptions& o) {
   require(o.normal_damping >= 0.0, "normal_damping", o.normal_damping, "0 or more, N s/m^1.5");
   require(o.friction_velocity_scale > 0.0, "friction_velocity_scale", o.friction_velocity_scale,
           "a positive number, s/m");
+  check_sizes(o);
   check_bed_options(o);
   if (!(o.step > 0.0))
     throw input_error("scenario", "run.step",
                       fmt::format("{} is out of range, expected a positive number, s", o.step));
 }
 
+/// The smallest grains are the least stable: K ∝ r^½ against m ∝ r³, and their neighbours are no stiffer than theirs.
 StableStep stable_at(const TerrainOptions& options, double overlap) {
-  return stable_step(run_coefficients(options, options.step).pair,
-                     grain_properties(options.radius, options.density), law_settings(options), overlap);
+  const double radius = smallest_radius(options);
+  return stable_step(run_coefficients(of_one_size(options, radius), options.step).pair,
+                     grain_properties(radius, options.density), law_settings(options), overlap);
 }
+
+double stated_overlap(const TerrainOptions& options) { return kStatedOverlap * smallest_radius(options); }
 
 class DemTerrain : public Terrain {
  public:
@@ -78,14 +84,14 @@ class DemTerrain : public Terrain {
   }
 
   double top_height(double x_min, double x_max, double y_min, double y_max) const override {
-    return dem::top_height(solver_.grains(), options_.radius, x_min, x_max, y_min, y_max);
+    return dem::top_height(solver_.grains(), x_min, x_max, y_min, y_max);
   }
   double mean_height(double x_min, double x_max, double y_min, double y_max) const override {
     return dem::mean_height(height_field(), x_min, x_max, y_min, y_max);
   }
   double floor_height() const override { return 0.0; }
   HeightField height_field() const override {
-    return bed_height_field(solver_.grains(), solver_.params().bin, options_.radius);
+    return bed_height_field(solver_.grains(), solver_.params().bin, 2.0 * options_.radius);
   }
 
   void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) override {
@@ -151,13 +157,14 @@ class DemTerrain : public Terrain {
     const std::size_t n = grains.count;
     out.position.resize(3 * n);
     out.speed.resize(n);
-    out.radius.assign(n, static_cast<float>(options_.radius));
+    out.radius.resize(n);
     for (std::size_t g = 0; g < n; ++g) {
       const std::size_t id = grains.id[g];
       const Quad &x = grains.position[g], &v = grains.velocity[g];
       out.position[3 * id] = static_cast<float>(x.x);
       out.position[3 * id + 1] = static_cast<float>(x.y);
       out.position[3 * id + 2] = static_cast<float>(x.z);
+      out.radius[id] = static_cast<float>(x.w);
       out.speed[id] = static_cast<float>(std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z));
     }
   }
@@ -206,7 +213,7 @@ class DemTerrain : public Terrain {
 
   /// All grains now, with room for what they may move in one interval.
   SurfaceBox grain_box() const {
-    const double room = 10.0 * options_.radius;
+    const double room = 10.0 * largest_radius(options_);
     return {Vec3(-room, -0.5 * options_.width - room, -room),
             Vec3(options_.length + room, 0.5 * options_.width + room, solver_.top() + room)};
   }
@@ -222,7 +229,7 @@ class DemTerrain : public Terrain {
   /// Looks again at the stable step when a larger overlap than ever was met.
   TerrainStatus still_stable() {
     const double overlap = solver_.accounts().max_overlap;
-    if (overlap <= std::max(stable_overlap_, kStatedOverlap * options_.radius)) return {};
+    if (overlap <= std::max(stable_overlap_, stated_overlap(options_))) return {};
     stable_overlap_ = overlap;
     const StableStep stable = stable_at(options_, overlap);
     if (dt_ <= stable.step || options_.allow_unstable_step) return {};
@@ -242,7 +249,7 @@ class DemTerrain : public Terrain {
 
 std::unique_ptr<Terrain> make_dem_terrain(const TerrainOptions& options) {
   check(options);
-  const StableStep stable = stable_at(options, kStatedOverlap * options.radius);
+  const StableStep stable = stable_at(options, stated_overlap(options));
   if (options.step > stable.step && !options.allow_unstable_step)
     throw input_error("scenario", "run.step",
                       fmt::format("{} s is above the stable step {:.3g} s ({}); expected a smaller step, "
@@ -254,13 +261,14 @@ std::unique_ptr<Terrain> make_dem_terrain(const TerrainOptions& options) {
 TerrainEstimate estimate_dem_terrain(const TerrainOptions& options) {
   check(options);
   TerrainEstimate e;
-  const StableStep stable = stable_at(options, kStatedOverlap * options.radius);
+  const StableStep stable = stable_at(options, stated_overlap(options));
   e.stable_step = stable.step;
   e.stable_reason = stable.reason;
   const double grains = expected_grains(options);
   e.grains = static_cast<std::int64_t>(std::llround(grains));
   e.memory_bytes = kBytesPerGrain * grains;
-  const double volume = grains * 4.0 / 3.0 * std::numbers::pi * std::pow(options.radius, 3);
+  const double volume =
+      grains * 4.0 / 3.0 * std::numbers::pi * std::pow(options.radius, 3) * mean_volume_ratio(options);
   e.expected_height = volume / (kLooseFraction * options.length * options.width);
   return e;
 }

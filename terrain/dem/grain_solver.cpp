@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
 #include <omp.h>
+
+#include "protocol/error.hpp"
 
 namespace furrow::dem {
 namespace {
@@ -14,8 +17,7 @@ constexpr int kFewestStrips = 6;  // of a chunk: its first is moved in the secon
 
 Strips::Options strip_options(const SolverParams& p) {
   Strips::Options o;
-  o.radius = p.grain.radius;
-  o.reach = 2.0 * p.grain.radius + p.skin;
+  o.reach = 2.0 * p.largest_radius() + p.skin;
   o.skin = p.skin;
   o.history = p.law == LawKind::mindlin;
   o.rolling = p.rolling;
@@ -23,6 +25,8 @@ Strips::Options strip_options(const SolverParams& p) {
   o.bin = p.bin;
   return o;
 }
+
+double cube(double a) { return a * a * a; }
 
 template <class T>
 void grow(std::vector<T>& v, std::size_t n) {
@@ -32,7 +36,9 @@ void grow(std::vector<T>& v, std::size_t n) {
 }  // namespace
 
 GrainSolver::GrainSolver(const SolverParams& params)
-    : params_(params), strips_(strip_options(params)), surfaces_(params.grain, params.rolling) {
+    : params_(params),
+      strips_(strip_options(params)),
+      surfaces_(params.grain, params.largest_radius(), params.rolling) {
   make_chunks();
 }
 
@@ -48,8 +54,15 @@ void GrainSolver::make_chunks() {
 void GrainSolver::place(const std::vector<Quad>& positions) {
   grains_.resize(static_cast<int>(positions.size()));
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    grains_.position[i] = positions[i];
-    grains_.position[i].w = 0.0;
+    Quad& p = grains_.position[i] = positions[i];
+    if (p.w == 0.0) p.w = params_.grain.radius;
+    const bool fits =
+        params_.sizes() ? p.w >= params_.smallest && p.w <= params_.largest : p.w == params_.grain.radius;
+    if (!fits)
+      throw Error(
+          ExitCode::bad_input,
+          fmt::format("grain {} has radius {:g} m, expected {:g} to {:g} m", i, p.w,
+                      params_.sizes() ? params_.smallest : params_.grain.radius, params_.largest_radius()));
   }
   surfaces_.resize(strips_.count());
   strips_.rebuild_all(grains_, params_.threads);
@@ -63,6 +76,12 @@ int GrainSolver::index_of(int id) const {
 void GrainSolver::wake(int grain) {
   for (int k = 0; k < strips_.count(); ++k)
     if (grain >= strips_[k].first && grain < strips_[k].last) strips_[k].asleep = false, strips_[k].calm = 0;
+}
+
+double GrainSolver::relative_mass() const {
+  double sum = 0.0;
+  for (int g = 0; g < grains_.count; ++g) sum += cube(grains_.position[g].w / params_.grain.radius);
+  return sum;
 }
 
 double GrainSolver::rebuilds() const {
@@ -79,10 +98,12 @@ void GrainSolver::reset_accounts() {
   accounts_.net_force = old.net_force;
   for (int g = 0; g < grains_.count; ++g) {
     const Quad &v = grains_.velocity[g], &w = grains_.spin[g];
-    accounts_.kinetic += 0.5 * params_.grain.mass * (v.x * v.x + v.y * v.y + v.z * v.z) +
-                         0.5 * params_.grain.inertia * (w.x * w.x + w.y * w.y + w.z * w.z);
-    accounts_.height += grains_.position[g].z;
-    accounts_.velocity += Vec3(v.x, v.y, v.z);
+    const double size = grains_.position[g].w / params_.grain.radius, mass = cube(size);
+    accounts_.kinetic +=
+        mass * (0.5 * params_.grain.mass * (v.x * v.x + v.y * v.y + v.z * v.z) +
+                0.5 * params_.grain.inertia * size * size * (w.x * w.x + w.y * w.y + w.z * w.z));
+    accounts_.height += mass * grains_.position[g].z;
+    accounts_.velocity += mass * Vec3(v.x, v.y, v.z);
   }
   for (int k = 0; k < strips_.count(); ++k)
     if (!strips_[k].asleep) accounts_.active += strips_[k].grains();
@@ -104,10 +125,11 @@ GrainSolver::Scratch<double>& GrainSolver::scratch() {
 }
 
 /// Brings the motion of a strip's grains to `offset` of the scratch memory and clears their loads.
-template <class Real>
+template <class Real, bool kSizes>
 void GrainSolver::gather(Scratch<Real>& s, int strip, int offset) {
   const int first = strips_[strip].first, n = strips_[strip].grains();
-  s.motion.set(offset, &grains_.velocity[first], &grains_.spin[first], n);
+  s.motion.template set<kSizes>(offset, &grains_.position[first], &grains_.velocity[first],
+                                &grains_.spin[first], n);
   double* const force = flat(s.loads.force.data() + offset);
   double* const torque = flat(s.loads.torque.data() + offset);
   for (int g = 0; g < kQuad * n; g += kQuad) {  // a call of memset would cost more than it saves
@@ -116,7 +138,7 @@ void GrainSolver::gather(Scratch<Real>& s, int strip, int offset) {
   }
 }
 
-template <class Real, class Law, bool kRolling>
+template <class Real, class Law, bool kRolling, bool kSizes>
 void GrainSolver::contacts_of_strip(Scratch<Real>& s, int k, int offset, double dt, bool measure) {
   Strip& strip = strips_[k];
   strip.contact = {};
@@ -133,22 +155,24 @@ void GrainSolver::contacts_of_strip(Scratch<Real>& s, int k, int offset, double 
     x = s.shifted.data();
   }
   const double diameter = 2.0 * params_.grain.radius;
-  find_touching(strip, x, diameter, params_.bin.periodic_y ? params_.bin.width : 0.0, s.touching);
+  find_touching<kSizes>(strip, x, diameter, params_.bin.periodic_y ? params_.bin.width : 0.0, s.touching);
   PairLaw<Real> law;
   law.coefficients = rounded<Real>(coefficients_.pair);
   law.diameter = static_cast<Real>(diameter);
+  law.per_radius = static_cast<Real>(1.0 / params_.grain.radius);
   law.step = static_cast<Real>(dt);
   law.measure = measure;
   const Loads loads{s.loads.force.data() + offset, s.loads.torque.data() + offset};
   const Motion motion{flat(s.motion.v.data()) + kQuad * offset,
                       s.motion.w.empty() ? nullptr : flat(s.motion.w.data()) + kQuad * offset};
-  PairForces<Law, kRolling, Real>(law, s.touching, motion, strip.history<Real>(), loads).run(strip.contact);
-  wall_forces<Law, kRolling>(grains_, strip, params_.bin, params_.grain.radius, coefficients_, dt, measure,
-                             loads);
+  PairForces<Law, kRolling, kSizes, Real>(law, s.touching, motion, strip.history<Real>(), loads)
+      .run(strip.contact);
+  wall_forces<Law, kRolling, kSizes>(grains_, strip, params_.bin, params_.grain.radius, coefficients_, dt,
+                                     measure, loads);
   if (surfaces_.any()) surfaces_.evaluate<Law>(grains_, strip, k, dt, loads);
 }
 
-template <class Real, class Law, bool kRolling>
+template <class Real, class Law, bool kRolling, bool kSizes>
 void GrainSolver::run_chunk(Chunk& chunk, double dt, bool measure) {
   Scratch<Real>& s = scratch<Real>();
   const int first = strips_[chunk.from].first, last = strips_[chunk.to - 1].last;
@@ -163,11 +187,12 @@ void GrainSolver::run_chunk(Chunk& chunk, double dt, bool measure) {
     Strip& strip = strips_[k];
     const int offset = strip.first - first;
     const bool evaluated = activity_.evaluated(k);
-    if (!gathered && (evaluated || activity_.complete(k))) gather(s, k, offset);
+    if (!gathered && (evaluated || activity_.complete(k))) gather<Real, kSizes>(s, k, offset);
     gathered = false;
     if (evaluated) {
-      if (const int next = strips_.next(k); next >= 0) gather(s, next, strip.last - first), gathered = true;
-      contacts_of_strip<Real, Law, kRolling>(s, k, offset, dt, measure);
+      if (const int next = strips_.next(k); next >= 0)
+        gather<Real, kSizes>(s, next, strip.last - first), gathered = true;
+      contacts_of_strip<Real, Law, kRolling, kSizes>(s, k, offset, dt, measure);
     } else {
       strip.contact.power = strip.motion.step_work = 0.0;
     }
@@ -195,28 +220,34 @@ void GrainSolver::finish_strip(int k, const Loads& loads, double dt, bool measur
   Strip& strip = strips_[k];
   if (strip.asleep) {
     feel(strip, loads);
-  } else if (params_.activity) {
-    integrate<true>(strip, loads, dt, measure);
+  } else if (params_.sizes()) {
+    params_.activity ? integrate<true, true>(strip, loads, dt, measure)
+                     : integrate<false, true>(strip, loads, dt, measure);
   } else {
-    integrate<false>(strip, loads, dt, measure);
+    params_.activity ? integrate<true, false>(strip, loads, dt, measure)
+                     : integrate<false, false>(strip, loads, dt, measure);
   }
 }
 
 void GrainSolver::feel(Strip& strip, const Loads& loads) const {
   const Wide weight{0.0, 0.0, -params_.gravity * params_.grain.mass, 0.0};
   const double* const force = flat(loads.force);
+  const double* const position = flat(grains_.position.data() + strip.first);
+  const double per_radius = 1.0 / params_.grain.radius;
   Wide largest{};
   for (int g = 0; g < kQuad * strip.grains(); g += kQuad) {
-    const Wide f = load_lanes<Wide>(force + g) + weight;
+    const Wide f = load_lanes<Wide>(force + g) + cube(position[g + 3] * per_radius) * weight;
     largest = larger(largest, f * f);
   }
   strip.motion.max_net_force = std::sqrt(sum_of(largest));
 }
 
-template <bool kMaySleep>
+template <bool kMaySleep, bool kSizes>
 void GrainSolver::integrate(Strip& strip, const Loads& loads, double dt, bool measure) {
   const double mass = params_.grain.mass, inertia = params_.grain.inertia;
-  const double per_mass = 1.0 / mass, per_inertia = 1.0 / inertia;
+  const double radius = params_.grain.radius;
+  double per_mass = 1.0 / mass, per_inertia = 1.0 / inertia;
+  double m = 1.0, i = 1.0;  // of a grain, in those of the reference radius
   const double keep = 1.0 / (1.0 + dt * drag_);
   const Wide gravity{0.0, 0.0, -params_.gravity, 0.0};
   const int n = strip.grains();
@@ -228,6 +259,11 @@ void GrainSolver::integrate(Strip& strip, const Loads& loads, double dt, bool me
   Wide most_pushed{};  // largest squares of the acceleration
   for (int g = 0; g < kQuad * n; g += kQuad) {
     const Wide f = load_lanes<Wide>(force + g), t = load_lanes<Wide>(torque + g);
+    if constexpr (kSizes) {
+      const double size = position[g + 3] / radius;
+      m = cube(size), i = m * size * size;
+      per_mass = 1.0 / (mass * m), per_inertia = 1.0 / (inertia * i);
+    }
     const Wide a = f * per_mass + gravity, alpha = t * per_inertia;
     const Wide v = (load_lanes<Wide>(velocity + g) + dt * a) * keep;
     const Wide w = (load_lanes<Wide>(spin + g) + dt * alpha) * keep;
@@ -236,14 +272,15 @@ void GrainSolver::integrate(Strip& strip, const Loads& loads, double dt, bool me
     store_lanes(spin + g, w);
     store_lanes(position + g, x);
     const Wide v2 = v * v;
-    moving += v2;
-    spinning += w * w;
+    const auto weighed = [](Wide one, double by) { return kSizes ? by * one : one; };
+    moving += weighed(v2, m);
+    spinning += weighed(w * w, i);
     work += f * a + t * alpha;
-    momentum += v;
-    height += x;
+    momentum += weighed(v, m);
+    height += weighed(x, m);
     fastest = larger(fastest, v2);
-    if constexpr (kMaySleep) most_pushed = larger(most_pushed, a * a);
-    if (measure) net[0] += mass * std::sqrt(sum_of(a * a));
+    if constexpr (kMaySleep) most_pushed = larger(most_pushed, weighed(a * a, m * m));
+    if (measure) net[0] += mass * m * std::sqrt(sum_of(a * a));
   }
   MotionTotals& sums = strip.motion;
   sums.speed2 = sum_of(moving);
@@ -275,7 +312,7 @@ double GrainSolver::top() const {
   double top = 0.0;
   for (int k = 0; k < strips_.count(); ++k)
     if (strips_[k].grains() > 0) top = std::max(top, strips_[k].z_max + strips_[k].travel);
-  return top + params_.grain.radius;
+  return top + params_.largest_radius();
 }
 
 void GrainSolver::reduce(double dt, bool measure) {
@@ -311,21 +348,24 @@ void GrainSolver::reduce(double dt, bool measure) {
   }
 }
 
-template <class Real, class Law, bool kRolling>
+template <class Real, class Law, bool kRolling, bool kSizes>
 void GrainSolver::evaluate(double dt, bool measure) {
   const int count = static_cast<int>(chunks_.size());
 #pragma omp parallel for num_threads(params_.threads) schedule(dynamic, 1)
-  for (int c = 0; c < count; ++c) run_chunk<Real, Law, kRolling>(chunks_[c], dt, measure);
+  for (int c = 0; c < count; ++c) run_chunk<Real, Law, kRolling, kSizes>(chunks_[c], dt, measure);
 }
 
 template <class Real>
 void GrainSolver::evaluate(double dt, bool measure) {
-  if (params_.law == LawKind::mindlin) {
-    params_.rolling ? evaluate<Real, MindlinLaw, true>(dt, measure)
-                    : evaluate<Real, MindlinLaw, false>(dt, measure);
+  if (params_.law == LawKind::coulomb) {
+    params_.rolling ? evaluate<Real, CoulombLaw, true, false>(dt, measure)
+                    : evaluate<Real, CoulombLaw, false, false>(dt, measure);
+  } else if (params_.sizes()) {
+    params_.rolling ? evaluate<Real, MindlinLaw, true, true>(dt, measure)
+                    : evaluate<Real, MindlinLaw, false, true>(dt, measure);
   } else {
-    params_.rolling ? evaluate<Real, CoulombLaw, true>(dt, measure)
-                    : evaluate<Real, CoulombLaw, false>(dt, measure);
+    params_.rolling ? evaluate<Real, MindlinLaw, true, false>(dt, measure)
+                    : evaluate<Real, MindlinLaw, false, false>(dt, measure);
   }
 }
 

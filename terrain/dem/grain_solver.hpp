@@ -32,14 +32,20 @@ enum class Precision { mixed, full };
 
 struct SolverParams {
   LawKind law = LawKind::mindlin;
-  bool rolling = false;  // rolling resistance
-  GrainProperties grain;
+  bool rolling = false;   // rolling resistance
+  GrainProperties grain;  // of the reference radius, for which the coefficients are
+  double smallest = 0.0;  // radius of any grain, m; 0: all have the reference radius
+  double largest = 0.0;   // m; 0: as above
   Bin bin;
   double gravity = kGravity;  // m/s²
-  double skin = 0.0;          // neighbours are listed within 2 r + skin, m
+  double skin = 0.0;          // neighbours are listed within the sum of their radii + skin, m
   int threads = 1;
   Precision precision = Precision::mixed;
   bool activity = false;  // let resting grains sleep
+
+  /// Grains of several sizes: law mindlin only.
+  bool sizes() const { return largest > smallest; }
+  double largest_radius() const { return sizes() ? largest : grain.radius; }
 };
 
 /// Cumulative since reset_accounts() unless stated.
@@ -51,8 +57,8 @@ struct Accounts {
   Vec3 surface_impulse = Vec3::Zero();  // N s
   double floor_force = 0.0;             // last step, N
   double kinetic = 0.0;                 // now, J
-  double height = 0.0;                  // Σ z now, m
-  Vec3 velocity = Vec3::Zero();         // Σ v now, m/s
+  double height = 0.0;                  // Σ m z / m₀ now, m
+  Vec3 velocity = Vec3::Zero();         // Σ m v / m₀ now, m/s
   std::int64_t contacts = 0;            // last step
   double max_overlap = 0.0;             // met since reset, m
   double contact_force = 0.0;           // Σ |F|, N, last measured step
@@ -72,7 +78,8 @@ class GrainSolver {
   /// Extra damping of all motion while settling: dv/dt = −drag v, 1/s.
   void set_drag(double drag) { drag_ = drag; }
 
-  /// Puts grains at rest with ids 0, 1, …; w of each position is ignored.
+  /// Puts grains at rest with ids 0, 1, …; w of each position: its radius, m, 0: the reference radius.
+  /// @throws Error(bad_input) when a radius is outside the limits of the parameters.
   void place(const std::vector<Quad>& positions);
   Grains& grains() { return grains_; }
   const Grains& grains() const { return grains_; }
@@ -85,6 +92,8 @@ class GrainSolver {
   void reset_accounts();
   /// Wakes the strip of a grain whose motion was set from outside.
   void wake(int grain);
+  /// Σ m / m₀ of all grains.
+  double relative_mass() const;
   /// Current index of the grain with this id.
   int index_of(int id) const;
   /// No grain reaches higher, m.
@@ -121,20 +130,20 @@ class GrainSolver {
   void make_chunks();
   template <class Real>
   Scratch<Real>& scratch();
-  template <class Real>
+  template <class Real, bool kSizes>
   void gather(Scratch<Real>& scratch, int strip, int offset);
-  template <class Real, class Law, bool kRolling>
+  template <class Real, class Law, bool kRolling, bool kSizes>
   void contacts_of_strip(Scratch<Real>& scratch, int strip, int offset, double dt, bool measure);
-  template <class Real, class Law, bool kRolling>
+  template <class Real, class Law, bool kRolling, bool kSizes>
   void run_chunk(Chunk& chunk, double dt, bool measure);
   void finish_chunk(Chunk& chunk, const Chunk* before, double dt, bool measure);
-  template <class Real, class Law, bool kRolling>
+  template <class Real, class Law, bool kRolling, bool kSizes>
   void evaluate(double dt, bool measure);
   template <class Real>
   void evaluate(double dt, bool measure);
   /// Moves the grains of strip k, or sees whether they are pushed awake.
   void finish_strip(int k, const Loads& loads, double dt, bool measure);
-  template <bool kMaySleep>
+  template <bool kMaySleep, bool kSizes>
   void integrate(Strip& strip, const Loads& loads, double dt, bool measure);
   void feel(Strip& strip, const Loads& loads) const;
   void change_activity();

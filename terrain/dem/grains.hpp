@@ -12,7 +12,7 @@ namespace furrow::dem {
 struct Grains {
   static constexpr int kBeyond = 3;
   int count = 0;
-  std::vector<Quad> position;    // m
+  std::vector<Quad> position;    // m; w: radius, m
   std::vector<Quad> velocity;    // m/s
   std::vector<Quad> spin;        // rad/s
   std::vector<std::int32_t> id;  // 0 … count − 1 in order of generation

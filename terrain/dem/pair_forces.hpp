@@ -1,7 +1,8 @@
 // The contact law on the touching pairs of a strip, a register full at a time: eight in single, four in double precision.
 //
 // With d = x_i − x_j the arms r − δ/2 are ±d/2, so v = v_i − v_j − ½ (ω_i + ω_j) × d, and the torque on i and on j is
-// −½ d × F_t. Velocity and spin of a grain are one row: a pair costs two loads and one subtraction of rows, and one
+// −½ d × F_t. Grains of other sizes have the arms r_i − δ/2 = ½ (|d| + Δ) and ½ (|d| − Δ), Δ = r_i − r_j: then v gains
+// −½ Δ (ω_i − ω_j) × n, and the couple ∓½ Δ n × F_t stands beside that of rolling resistance. Velocity and spin of a grain are one row: a pair costs two loads and one subtraction of rows, and one
 // transposition turns the rows of eight pairs into lanes. Forces are added up in double precision, the same number to i
 // and with the other sign to j: momentum is conserved to round-off of double whatever the law's precision.
 #pragma once
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "terrain/dem/contact_law.hpp"
+#include "terrain/dem/size_scale.hpp"
 #include "terrain/dem/touching_pairs.hpp"
 
 namespace furrow::dem {
@@ -22,18 +24,24 @@ struct MotionRows {
     if (v.size() < n) v.resize(n);
     if (std::is_same_v<Real, double> && w.size() < n) w.resize(n);
   }
-  /// Fills rows [k, k + n).
-  void set(int k, const Quad* velocity, const Quad* spin, int n) {
-    if constexpr (std::is_same_v<Real, float>) {
-      double* const out = flat(v.data() + k);
-      const double *const from_v = flat(velocity), *const from_w = flat(spin);
-      for (int g = 0; g < kQuad * n; g += kQuad)
-        store_lanes(out + g,
-                    join(narrowed(load_lanes<Wide>(from_v + g)), narrowed(load_lanes<Wide>(from_w + g))));
-    } else {
-      std::copy_n(velocity, n, v.begin() + k);
-      std::copy_n(spin, n, w.begin() + k);
+  /// Fills rows [k, k + n); with kSizes the w of a velocity is the radius, m.
+  template <bool kSizes>
+  void set(int k, const Quad* position, const Quad* velocity, const Quad* spin, int n) {
+    const double *const x = flat(position), *const from_v = flat(velocity), *const from_w = flat(spin);
+    double* const out = flat(v.data() + k);
+    const auto velocity_of = [&](int g) {
+      Wide row = load_lanes<Wide>(from_v + g);
+      if constexpr (kSizes) row = __builtin_shufflevector(row, load_lanes<Wide>(x + g), 0, 1, 2, 7);
+      return row;
+    };
+    for (int g = 0; g < kQuad * n; g += kQuad) {
+      if constexpr (std::is_same_v<Real, float>) {
+        store_lanes(out + g, join(narrowed(velocity_of(g)), narrowed(load_lanes<Wide>(from_w + g))));
+      } else {
+        store_lanes(out + g, velocity_of(g));
+      }
     }
+    if constexpr (std::is_same_v<Real, double>) std::copy_n(spin, n, w.begin() + k);
   }
 };
 /// Where the rows of a strip's grains start.
@@ -46,30 +54,33 @@ struct Motion {
 template <class Real>
 struct PairLaw {
   Coefficients<Real> coefficients;
-  Real diameter = 0;     // m
+  Real diameter = 0;     // m; grains of several sizes have their own
+  Real per_radius = 0;   // 1 / radius that the coefficients are for, 1/m
   Real step = 0;         // s
   bool measure = false;  // sum |F| too
 };
 
-/// Relative motion of pairs: dv = v_i − v_j, turn = ω_i + ω_j and, with rolling resistance, roll = ω_i − ω_j.
-template <bool kRolling, class L>
+/// Relative motion of pairs: dv = v_i − v_j, turn = ω_i + ω_j and, where wanted, roll = ω_i − ω_j and delta = r_i − r_j.
+template <bool kRoll, class L>
 struct RelativeMotion {
   Triple<L> dv, turn, roll;
+  L delta;
 };
 
 namespace detail {
-template <bool kRolling>
-inline RelativeMotion<kRolling, FloatLanes> relative_motion(const Motion& motion, const std::uint32_t* i,
-                                                            const std::uint32_t* j, FloatLanes) {
+template <bool kRoll>
+inline RelativeMotion<kRoll, FloatLanes> relative_motion(const Motion& motion, const std::uint32_t* i,
+                                                         const std::uint32_t* j, FloatLanes) {
   const FloatLanes sign{-1, -1, -1, -1, 1, 1, 1, 1};
   const auto row = [&](std::uint32_t g) { return load_lanes<FloatLanes>(motion.v + g); };
-  RelativeMotion<kRolling, FloatLanes> m;
+  RelativeMotion<kRoll, FloatLanes> m;
   FloatLanes r[8];
   for (int k = 0; k < 8; ++k) r[k] = sign * row(j[k]) + row(i[k]);
   transpose(r);
   m.dv = {r[0], r[1], r[2]};
+  m.delta = r[3];
   m.turn = {r[4], r[5], r[6]};
-  if constexpr (kRolling) {
+  if constexpr (kRoll) {
     const auto spin_of = [&](std::uint32_t g) { return load_lanes<Narrow>(motion.v + g + 2); };
     const auto spin = [&](int k) { return spin_of(i[k]) - spin_of(j[k]); };
     FloatLanes q[4];
@@ -80,10 +91,10 @@ inline RelativeMotion<kRolling, FloatLanes> relative_motion(const Motion& motion
   return m;
 }
 
-template <bool kRolling>
-inline RelativeMotion<kRolling, Wide> relative_motion(const Motion& motion, const std::uint32_t* i,
-                                                      const std::uint32_t* j, Wide) {
-  RelativeMotion<kRolling, Wide> m;
+template <bool kRoll>
+inline RelativeMotion<kRoll, Wide> relative_motion(const Motion& motion, const std::uint32_t* i,
+                                                   const std::uint32_t* j, Wide) {
+  RelativeMotion<kRoll, Wide> m;
   Wide v[4], w[4], q[4];
   for (int k = 0; k < 4; ++k) {
     const Wide w_i = load_lanes<Wide>(motion.w + i[k]), w_j = load_lanes<Wide>(motion.w + j[k]);
@@ -94,38 +105,39 @@ inline RelativeMotion<kRolling, Wide> relative_motion(const Motion& motion, cons
   transpose(v);
   transpose(w);
   m.dv = {v[0], v[1], v[2]};
+  m.delta = v[3];
   m.turn = {w[0], w[1], w[2]};
-  if constexpr (kRolling) {
+  if constexpr (kRoll) {
     transpose(q);
     m.roll = {q[0], q[1], q[2]};
   }
   return m;
 }
 
-/// Adds (f, t + q) to grain i and (−f, t − q) to grain j; q is the rolling couple.
-template <bool kRolling>
+/// Adds (f, t + q) to grain i and (−f, t − q) to grain j; q is the couple.
+template <bool kCouple>
 inline void add_load(double* force, double* torque, std::uint32_t i, std::uint32_t j, Wide f, Wide t,
                      Wide q) {
   const auto increase = [](double* at, Wide by) { store_lanes(at, load_lanes<Wide>(at) + by); };
   increase(force + i, f);
-  increase(torque + i, kRolling ? t + q : t);
+  increase(torque + i, kCouple ? t + q : t);
   increase(force + j, -f);
-  increase(torque + j, kRolling ? t - q : t);
+  increase(torque + j, kCouple ? t - q : t);
 }
 
 /// Adds the loads of the first `valid` lanes.
-template <bool kRolling>
+template <bool kCouple>
 inline void add_loads(const Loads& loads, const std::uint32_t* i, const std::uint32_t* j, int valid,
                       const Triple<FloatLanes>& force, const Triple<FloatLanes>& torque,
                       const Triple<FloatLanes>& couple) {
   FloatLanes r[8] = {force.x, force.y, force.z, {}, torque.x, torque.y, torque.z, {}};
   transpose(r);
   FloatLanes c[4] = {couple.x, couple.y, couple.z, {}};
-  if constexpr (kRolling) transpose_halves(c);
+  if constexpr (kCouple) transpose_halves(c);
   const auto lane = [&](int k) {
     const Narrow q = k < 4 ? low_half(c[k & 3]) : high_half(c[k & 3]);
-    add_load<kRolling>(flat(loads.force), flat(loads.torque), i[k], j[k], widened(low_half(r[k])),
-                       widened(high_half(r[k])), widened(q));
+    add_load<kCouple>(flat(loads.force), flat(loads.torque), i[k], j[k], widened(low_half(r[k])),
+                      widened(high_half(r[k])), widened(q));
   };
   if (valid == 8) {
 #pragma GCC unroll 8
@@ -135,7 +147,7 @@ inline void add_loads(const Loads& loads, const std::uint32_t* i, const std::uin
   }
 }
 
-template <bool kRolling>
+template <bool kCouple>
 inline void add_loads(const Loads& loads, const std::uint32_t* i, const std::uint32_t* j, int valid,
                       const Triple<Wide>& force, const Triple<Wide>& torque, const Triple<Wide>& couple) {
   Wide f[4] = {force.x, force.y, force.z, {}}, t[4] = {torque.x, torque.y, torque.z, {}};
@@ -144,7 +156,7 @@ inline void add_loads(const Loads& loads, const std::uint32_t* i, const std::uin
   transpose(t);
   transpose(q);
   for (int k = 0; k < valid; ++k)
-    add_load<kRolling>(flat(loads.force), flat(loads.torque), i[k], j[k], f[k], t[k], q[k]);
+    add_load<kCouple>(flat(loads.force), flat(loads.torque), i[k], j[k], f[k], t[k], q[k]);
 }
 
 /// x, y, z and w of the history of the pairs p[0], p[1], …
@@ -191,15 +203,18 @@ struct PairTile {
   Column nx, ny, nz;              // normal
   Column overlap, root_overlap;   // m, √m
   Column vx, vy, vz, spin;        // relative velocity at the contact, m/s; mean spin about the normal, rad/s
-  Column rx, ry, rz;              // relative spin, rad/s; only with rolling resistance
+  Column rx, ry, rz;              // relative spin, rad/s; only with rolling resistance or sizes
+  Column delta;                   // r_i − r_j, m; only with sizes
   Column fx, fy, fz, tx, ty, tz;  // force on i, N; torque on both, N m
-  Column qx, qy, qz;              // rolling couple on i, N m; only with rolling resistance
+  Column qx, qy, qz;              // couple on i, N m; only with rolling resistance or sizes
 };
 
 /// The contact law on the touching pairs of a strip, tile by tile, in four stages. Split that way the loops are short,
 /// so that the processor works on several turns at once while roots and divisions of one are under way.
-template <class Law, bool kRolling, class Real>
+template <class Law, bool kRolling, bool kSizes, class Real>
 class PairForces {
+  static constexpr bool kCouple = kRolling || kSizes;  // what i and j feel is not the same torque
+
  public:
   using L = LanesOf<Real>;
   static constexpr int kAtOnce = kLanesOf<Real>;
@@ -241,8 +256,10 @@ class PairForces {
   }
 
   void geometry(int first, int count) {
-    const L diameter = constant<L>(law_.diameter), one = constant<L>(1.0);
+    L diameter = constant<L>(law_.diameter);
+    const L one = constant<L>(1.0);
     for (int at = 0; at < count; at += kAtOnce) {
+      if constexpr (kSizes) diameter = load_lanes<L>(&pairs_.sum[first + at]);
       const Triple<L> d = difference(first + at);
       const L distance = root(dot(d, d));
       const L overlap = load_lanes<L>(&pairs_.gap[first + at]) / (diameter + distance);
@@ -256,15 +273,31 @@ class PairForces {
     const L half = constant<L>(0.5);
     for (int at = 0; at < count; at += kAtOnce) {
       const int p = first + at;
-      const auto relative = detail::relative_motion<kRolling>(motion_, &pairs_.i[p], &pairs_.j[p], L{});
-      put(t_.vx, t_.vy, t_.vz, at, relative.dv - half * cross(relative.turn, difference(p)));
-      put(t_.spin, at, half * dot(relative.turn, get(t_.nx, t_.ny, t_.nz, at)));
-      if constexpr (kRolling) put(t_.rx, t_.ry, t_.rz, at, relative.roll);
+      const auto relative = detail::relative_motion<kCouple>(motion_, &pairs_.i[p], &pairs_.j[p], L{});
+      const Triple<L> normal = get(t_.nx, t_.ny, t_.nz, at);
+      Triple<L> velocity = relative.dv - half * cross(relative.turn, difference(p));
+      if constexpr (kSizes) {
+        velocity = velocity - (half * relative.delta) * cross(relative.roll, normal);
+        put(t_.delta, at, relative.delta);
+      }
+      put(t_.vx, t_.vy, t_.vz, at, velocity);
+      put(t_.spin, at, half * dot(relative.turn, normal));
+      if constexpr (kCouple) put(t_.rx, t_.ry, t_.rz, at, relative.roll);
+    }
+  }
+
+  /// Of the pairs from p on, which stand at `at` of the tile.
+  auto coefficients(int p, int at) const {
+    if constexpr (kSizes) {
+      const L sum = load_lanes<L>(&pairs_.sum[p]), delta = get(t_.delta, at);
+      const Real half = Real(0.5) * law_.per_radius;
+      return scaled(law_.coefficients, pair_scale<L>(half * (sum + delta), half * (sum - delta)));
+    } else {
+      return law_.coefficients;
     }
   }
 
   void law(int first, int count) {
-    const Coefficients<Real> c = law_.coefficients;
     const L zero{}, half = constant<L>(0.5);
     L order{};
     for (int k = 0; k < kAtOnce; ++k) order[k] = static_cast<Real>(k);
@@ -277,14 +310,15 @@ class PairForces {
       m.root_overlap = get(t_.root_overlap, at);
       m.velocity = get(t_.vx, t_.vy, t_.vz, at);
       m.spin = get(t_.spin, at);
-      if constexpr (kRolling) m.roll = get(t_.rx, t_.ry, t_.rz, at);
+      if constexpr (kCouple) m.roll = get(t_.rx, t_.ry, t_.rz, at);
       ContactHistory<L> history;
       if constexpr (Law::kHistory) {
         L unused;
         detail::read_history(histories_.tangential.data(), p, history.tangential, history.root_overlap);
         if constexpr (kRolling) detail::read_history(histories_.rolling.data(), p, history.rolling, unused);
       }
-      const ContactForce<L> f = Law::template force<kRolling>(c, law_.step, m, history);
+      const ContactForce<L> f =
+          Law::template force<kRolling>(coefficients(first + at, at), law_.step, m, history);
       if constexpr (Law::kHistory) {
         // Lanes beyond the last pair repeat it: they write the same again.
         detail::write_history(histories_.tangential.data(), p, history.tangential, history.root_overlap);
@@ -293,7 +327,11 @@ class PairForces {
       const Triple<L> force = f.normal * m.normal + f.tangential;
       put(t_.fx, t_.fy, t_.fz, at, force);
       put(t_.tx, t_.ty, t_.tz, at, -half * cross(difference(first + at), f.tangential));
-      if constexpr (kRolling) put(t_.qx, t_.qy, t_.qz, at, f.rolling);
+      if constexpr (kCouple) {
+        Triple<L> couple = f.rolling;
+        if constexpr (kSizes) couple = couple - (half * get(t_.delta, at)) * cross(m.normal, f.tangential);
+        put(t_.qx, t_.qy, t_.qz, at, couple);
+      }
 
       L work = power_of(f, m);
       if constexpr (kRolling) work += dot(f.rolling, m.roll);
@@ -312,10 +350,10 @@ class PairForces {
   void scatter(int first, int count) {
     for (int at = 0; at < count; at += kAtOnce) {
       Triple<L> couple{};
-      if constexpr (kRolling) couple = get(t_.qx, t_.qy, t_.qz, at);
-      detail::add_loads<kRolling>(loads_, &pairs_.i[first + at], &pairs_.j[first + at],
-                                  std::min(kAtOnce, count - at), get(t_.fx, t_.fy, t_.fz, at),
-                                  get(t_.tx, t_.ty, t_.tz, at), couple);
+      if constexpr (kCouple) couple = get(t_.qx, t_.qy, t_.qz, at);
+      detail::add_loads<kCouple>(loads_, &pairs_.i[first + at], &pairs_.j[first + at],
+                                 std::min(kAtOnce, count - at), get(t_.fx, t_.fy, t_.fz, at),
+                                 get(t_.tx, t_.ty, t_.tz, at), couple);
     }
   }
 

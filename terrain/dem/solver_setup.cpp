@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "protocol/error.hpp"
+#include "terrain/dem/grain_sizes.hpp"
 
 namespace furrow::dem {
 
@@ -18,6 +19,7 @@ SolverParams solver_params(const TerrainOptions& o) {
   p.rolling = o.rolling_friction > 0.0;
   p.precision = precision_from(o.precision);
   p.grain = grain_properties(o.radius, o.density);
+  p.smallest = smallest_radius(o), p.largest = largest_radius(o);
   p.bin.length = o.length;
   p.bin.width = o.width;
   p.bin.periodic_x = o.periodic_x;

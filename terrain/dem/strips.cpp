@@ -130,14 +130,16 @@ struct FoundPairs {
   }
 };
 
-/// Bits of the four grains at x, x + 1, … (the first `valid` of them) closer to `at` than √reach2.
-inline unsigned near_four(const Quad* x, int valid, Wide at, double reach2, double width) {
+/// Bits of the four grains at x, x + 1, … (the first `valid` of them) whose surface is closer to that of the grain at
+/// `at` than `skin`.
+inline unsigned near_four(const Quad* x, int valid, Wide at, double skin, double width) {
   const auto d = [&](int k) { return load(x[k]) - at; };
   Wide r[4] = {d(0), d(1), d(2), d(3)};
   transpose(r);
   if (width > 0.0)
     for (int k = 0; k < 4; ++k) r[1][k] -= width * std::round(r[1][k] / width);
-  const Wide room = reach2 - (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
+  const Wide reach = r[3] + (2.0 * at[3] + skin);
+  const Wide room = reach * reach - (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
   return positive(room) & ((1u << std::min(valid, 4)) - 1u);
 }
 
@@ -147,7 +149,6 @@ void Strips::list_pairs(const Grains& grains, int k) {
   Strip& strip = strips_[k];
   const int after = next(k);
   const Strip* const beside = after < 0 ? nullptr : &strips_[after];
-  const double reach2 = options_.reach * options_.reach;
   const double width = options_.bin.periodic_y ? options_.bin.width : 0.0;
   static thread_local FoundPairs found;
   found.count = 0;
@@ -157,7 +158,7 @@ void Strips::list_pairs(const Grains& grains, int k) {
     found.make_room(to - from + 4);
     const Quad* const x = grains.position.data() + other.first;
     for (int j = from; j < to; j += 4) {
-      const unsigned hit = near_four(x + j, to - j, at, reach2, width);
+      const unsigned hit = near_four(x + j, to - j, at, options_.skin, width);
       for (int m = 0; m < 4; ++m) {  // without a branch: who is near cannot be foreseen
         found.i[found.count] = kQuad * i;
         found.j[found.count] = kQuad * (base + j + m);
@@ -197,7 +198,6 @@ void Strips::list_pairs(const Grains& grains, int k) {
 }
 
 void Strips::list_walls(const Grains& grains, Strip& strip) const {
-  const double reach = options_.radius + options_.skin;
   strip.walls.clear();
   strip.x_min = 1e300, strip.x_max = strip.z_max = -1e300;
   for (int g = strip.last - 1; g >= strip.first; --g)
@@ -207,7 +207,8 @@ void Strips::list_walls(const Grains& grains, Strip& strip) const {
     strip.x_max = std::max(strip.x_max, grains.position[g].x);
     strip.z_max = std::max(strip.z_max, grains.position[g].z);
     for (int wall = 0; wall < kWalls; ++wall)
-      if (options_.bin.has_wall(wall) && options_.bin.distance(wall, grains.position[g]) < reach)
+      if (options_.bin.has_wall(wall) &&
+          options_.bin.distance(wall, grains.position[g]) < grains.position[g].w + options_.skin)
         strip.walls.push_back({g - strip.first, wall, {}, {}});
   }
 }

@@ -111,7 +111,6 @@ class Strips {
   struct Options {
     double reach = 0.0;    // pairs closer than that are listed, m: largest diameter + skin
     double skin = 0.0;     // m
-    double radius = 0.0;   // largest, m
     bool history = true;   // keep tangential history
     bool rolling = false;  // keep rolling history
     bool single = true;    // histories in single precision

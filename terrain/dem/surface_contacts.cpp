@@ -5,6 +5,7 @@
 #include <string>
 
 #include "protocol/error.hpp"
+#include "terrain/dem/size_scale.hpp"
 
 namespace furrow::dem {
 namespace {
@@ -56,10 +57,11 @@ std::vector<double> flat(const std::vector<Vec3>& points) {
 void SurfaceContacts::attach(const SurfaceMesh& mesh, const ContactMaterial& material,
                              const ContactCoefficients& coefficients, const SurfaceState& start) {
   Surface s;
-  s.collider = std::make_unique<SurfaceCollider>(mesh, grain_.radius);
+  s.collider = std::make_unique<SurfaceCollider>(mesh, largest_);
   s.sum = std::make_unique<NodalForceSum>(mesh.vertex_count);
   s.material = material;
   s.coefficients = coefficients;
+  s.mass_share = mass_share(grain_, material);
   s.start = s.end = start.position;
   s.collider->set_motion(s.start, s.end, 1.0);
   surfaces_.push_back(std::move(s));
@@ -76,7 +78,7 @@ void SurfaceContacts::set_targets(std::span<const SurfaceState> targets, double 
 }
 
 void SurfaceContacts::move_to(double share) {
-  const Vec3 r = Vec3::Constant(grain_.radius);
+  const Vec3 r = Vec3::Constant(largest_);
   for (Surface& s : surfaces_) {
     s.collider->move_to(share);
     s.near = s.collider->bounds();
@@ -129,8 +131,10 @@ void SurfaceContacts::touch(const Grains& grains, Strip& strip, SurfaceStrip& mi
   std::array<SurfaceHit, kMaxSurfaceHits> hits;
   const Quad& x = grains.position[g];
   const Vec3 centre(x.x, x.y, x.z);
-  const int count = surface.collider->hits(centre, grain_.radius, hits);
+  const int count = surface.collider->hits(centre, x.w, hits);
   if (count == 0) return;
+  ContactCoefficients c = surface.coefficients;
+  if (x.w != grain_.radius) c = scaled(c, surface_scale(x.w / grain_.radius, surface.mass_share));
   const auto before = [](const SurfaceHistory& h, const std::pair<int, int>& key) {
     return std::pair<int, int>(h.grain, h.surface) < key;
   };
@@ -152,9 +156,8 @@ void SurfaceContacts::touch(const Grains& grains, Strip& strip, SurfaceStrip& mi
     ContactHistory<double> history{{0, 0, 0}, 0.0, {0, 0, 0}};
     if (const SurfaceHistory* past = nearest(old, from - old.begin(), to - old.begin(), hit.normal))
       history = {triple(past->tangential), past->tangential.w, triple(past->rolling)};
-    const ContactForce<double> f =
-        rolling_ ? Law::template force<true>(surface.coefficients, dt, motion, history)
-                 : Law::template force<false>(surface.coefficients, dt, motion, history);
+    const ContactForce<double> f = rolling_ ? Law::template force<true>(c, dt, motion, history)
+                                            : Law::template force<false>(c, dt, motion, history);
     const auto& t = history.tangential;
     const auto& r = history.rolling;
     const Quad normal{motion.normal.x, motion.normal.y, motion.normal.z, 0.0};
@@ -177,7 +180,7 @@ void SurfaceContacts::evaluate(const Grains& grains, Strip& strip, int s, double
   SurfaceStrip& mine = strips_[s];
   mine.next.clear();
   mine.touches.clear();
-  const double slack = grain_.radius;  // grains stray from where they were sorted by less
+  const double slack = largest_;  // grains stray from where they were sorted by less
   bool near = false;
   for (const Surface& surface : surfaces_)
     near = near || (surface.near.lo.x() < strip.x_max + slack && surface.near.hi.x() > strip.x_min - slack);

@@ -38,7 +38,9 @@ struct SurfaceStrip {
 
 class SurfaceContacts {
  public:
-  SurfaceContacts(const GrainProperties& grain, bool rolling) : grain_(grain), rolling_(rolling) {}
+  /// grain: for which the coefficients are; largest: radius of any grain, m.
+  SurfaceContacts(const GrainProperties& grain, double largest, bool rolling)
+      : grain_(grain), largest_(largest), rolling_(rolling) {}
 
   /// @pre start has the mesh's vertex count.
   void attach(const SurfaceMesh& mesh, const ContactMaterial& material,
@@ -85,8 +87,9 @@ class SurfaceContacts {
     std::unique_ptr<NodalForceSum> sum;
     ContactMaterial material;
     ContactCoefficients coefficients;
+    double mass_share = 0.0;                   // of surface_scale
     std::vector<Vec3> start, end;              // m
-    SurfaceBox near;                           // bounds now, grown by the grain radius
+    SurfaceBox near;                           // bounds now, grown by the largest radius
     double low_min = -1e300, low_max = 1e300;  // x of the vertices that may reach grains, m
     std::vector<SurfaceContactForce> forces;
   };
@@ -95,6 +98,7 @@ class SurfaceContacts {
              const Loads& load);
 
   GrainProperties grain_;
+  double largest_;  // m
   bool rolling_;
   double top_ = 1e300;  // no grain reaches higher, m
   std::vector<Surface> surfaces_;

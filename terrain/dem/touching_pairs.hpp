@@ -1,7 +1,8 @@
 // The filter: which listed pairs of a strip touch, packed without gaps for the contact law.
 //
 // Distances are taken in double precision. What is handed on is d = x_i − x_j and gap = D² − d², from which the overlap
-// is δ = gap / (D + |d|): rounded to float it keeps seven digits however small it is, which D − |d| would not.
+// is δ = gap / (D + |d|): rounded to float it keeps seven digits however small it is, which D − |d| would not. D is the
+// sum of both radii, the same number for all pairs unless grains differ in size.
 #pragma once
 
 #include <algorithm>
@@ -19,18 +20,19 @@ template <class Real>
 struct TouchingPairs {
   int count = 0;
   std::vector<Real> dx, dy, dz, gap;  // m, m, m, m²
+  std::vector<Real> sum;              // D of grains of several sizes, m
   std::vector<std::uint32_t> i, j;    // kQuad times the grain counted from the strip's first
   std::vector<std::uint32_t> pair;    // twice its index in the list
 
   void reserve(int pairs) {
     const std::size_t room = pairs + 2 * kLanes;
     if (i.size() >= room) return;
-    for (auto* array : {&dx, &dy, &dz, &gap}) array->resize(room);
+    for (auto* array : {&dx, &dy, &dz, &gap, &sum}) array->resize(room);
     for (auto* array : {&i, &j, &pair}) array->resize(room);
   }
   void pad() {
     if (count == 0) return;
-    for (auto* array : {&dx, &dy, &dz, &gap})
+    for (auto* array : {&dx, &dy, &dz, &gap, &sum})
       std::fill_n(array->begin() + count, kLanes, (*array)[count - 1]);
     for (auto* array : {&i, &j, &pair}) std::fill_n(array->begin() + count, kLanes, (*array)[count - 1]);
   }
@@ -77,18 +79,19 @@ inline void pack(Wide low, Wide high, unsigned mask, double* out) {
 
 /// Fills `out` with the touching pairs of `strip` and notes which they are; what pairs that parted left in their
 /// history is cleared. `x` points to the position of the strip's first grain; those of the next strip follow.
-/// width: of a bin with periodic sides, else 0, m.
-template <class Real>
+/// diameter: of all grains, m, unless kSizes; width: of a bin with periodic sides, else 0, m.
+template <bool kSizes, class Real>
 void find_touching(Strip& strip, const Quad* x, double diameter, double width, TouchingPairs<Real>& out) {
   out.reserve(strip.pairs);
   const double diameter2 = diameter * diameter;
+  const Wide partner = {-1.0, -1.0, -1.0, kSizes ? 1.0 : -1.0};  // w: the sum of both radii
   const IntLanes steps{0, 2, 4, 6, 8, 10, 12, 14};
   PairHistory<Real>& history = strip.history<Real>();
   const double* const at = flat(x);
   const std::uint32_t *i = strip.i.data(), *j = strip.j.data();
   std::uint8_t* const touching = strip.touching.data();
   Real *const dx = out.dx.data(), *const dy = out.dy.data(), *const dz = out.dz.data(),
-              *const gap = out.gap.data();
+              *const gap = out.gap.data(), *const sum = out.sum.data();
   std::uint32_t *const out_i = out.i.data(), *const out_j = out.j.data(), *const pair = out.pair.data();
   const auto parted = [&](int p, unsigned ended) {
     for (int k = 0; k < kLanes; ++k)
@@ -100,7 +103,7 @@ void find_touching(Strip& strip, const Quad* x, double diameter, double width, T
   const int pairs = strip.pairs;
   int count = 0;
   for (int p = 0; p < pairs; p += kLanes, i += kLanes, j += kLanes) {
-    const auto d = [&](int k) { return load_lanes<Wide>(at + i[k]) - load_lanes<Wide>(at + j[k]); };
+    const auto d = [&](int k) { return load_lanes<Wide>(at + i[k]) + partner * load_lanes<Wide>(at + j[k]); };
     Wide a[4] = {d(0), d(1), d(2), d(3)}, b[4] = {d(4), d(5), d(6), d(7)};
     transpose(a);
     transpose(b);
@@ -109,8 +112,9 @@ void find_touching(Strip& strip, const Quad* x, double diameter, double width, T
         a[1][k] -= width * std::round(a[1][k] / width);
         b[1][k] -= width * std::round(b[1][k] / width);
       }
-    const Wide gap_a = diameter2 - (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
-    const Wide gap_b = diameter2 - (b[0] * b[0] + b[1] * b[1] + b[2] * b[2]);
+    const auto reach2 = [&](const Wide& radii) { return kSizes ? radii * radii : Wide{} + diameter2; };
+    const Wide gap_a = reach2(a[3]) - (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+    const Wide gap_b = reach2(b[3]) - (b[0] * b[0] + b[1] * b[1] + b[2] * b[2]);
     unsigned now = positive(gap_a) | positive(gap_b) << 4;
     if (p + kLanes > pairs) now &= (1u << (pairs - p)) - 1u;
     const unsigned before = touching[p / kLanes];
@@ -121,6 +125,7 @@ void find_touching(Strip& strip, const Quad* x, double diameter, double width, T
     detail::pack(a[1], b[1], now, dy + count);
     detail::pack(a[2], b[2], now, dz + count);
     detail::pack(gap_a, gap_b, now, gap + count);
+    if constexpr (kSizes) detail::pack(a[3], b[3], now, sum + count);
     detail::pack(load_lanes<IntLanes>(i), now, out_i + count);
     detail::pack(load_lanes<IntLanes>(j), now, out_j + count);
     detail::pack(steps + 2 * p, now, pair + count);

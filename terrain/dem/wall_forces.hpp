@@ -3,17 +3,19 @@
 
 #include "terrain/dem/contact_law.hpp"
 #include "terrain/dem/contact_mixing.hpp"
+#include "terrain/dem/size_scale.hpp"
 #include "terrain/dem/strips.hpp"
 
 namespace furrow::dem {
 
-/// Coefficients per partner; they hold the step of the impulse limit.
+/// Coefficients per partner, for grains of the reference radius; they hold the step of the impulse limit.
 struct SolverCoefficients {
   ContactCoefficients pair, floor, side;
 };
 
 /// Adds the wall forces on a strip's grains to `loads` (which starts at its first grain) and to its sums.
-template <class Law, bool kRolling>
+/// radius: that the coefficients are for; without kSizes that of all grains, m.
+template <class Law, bool kRolling, bool kSizes>
 void wall_forces(const Grains& grains, Strip& strip, const Bin& bin, double radius,
                  const SolverCoefficients& all, double dt, bool measure, const Loads& loads) {
   ContactTotals& sums = strip.contact;
@@ -21,7 +23,7 @@ void wall_forces(const Grains& grains, Strip& strip, const Bin& bin, double radi
     const int g = strip.first + contact.grain;
     const double distance = bin.distance(contact.wall, grains.position[g]);
     ContactMotion<double> motion;
-    motion.overlap = radius - distance;
+    motion.overlap = (kSizes ? grains.position[g].w : radius) - distance;
     if (!(motion.overlap > 0.0)) {
       contact.tangential = contact.rolling = {};
       continue;
@@ -36,8 +38,9 @@ void wall_forces(const Grains& grains, Strip& strip, const Bin& bin, double radi
     motion.spin = 0.5 * dot(motion.roll, motion.normal);
     Quad &t = contact.tangential, &r = contact.rolling;
     ContactHistory<double> history{{t.x, t.y, t.z}, t.w, {r.x, r.y, r.z}};
-    const ContactForce<double> f =
-        Law::template force<kRolling>(contact.wall == kFloor ? all.floor : all.side, dt, motion, history);
+    ContactCoefficients c = contact.wall == kFloor ? all.floor : all.side;
+    if constexpr (kSizes) c = scaled(c, surface_scale(grains.position[g].w / radius, 0.0));
+    const ContactForce<double> f = Law::template force<kRolling>(c, dt, motion, history);
     if constexpr (Law::kHistory) {
       t = {history.tangential.x, history.tangential.y, history.tangential.z, history.root_overlap};
       if constexpr (kRolling) r = {history.rolling.x, history.rolling.y, history.rolling.z, 0.0};

@@ -26,7 +26,7 @@ std::vector<double> profile(const dem::Grains& grains, const Specimen& s, std::v
     const int ix = std::clamp(static_cast<int>(p.x / cell), 0, nx - 1);
     const int iy = std::clamp(static_cast<int>((p.y + 0.5 * s.width()) / cell), 0, ny - 1);
     double& t = top[static_cast<std::size_t>(ix) * ny + iy];
-    t = std::max(t, p.z + r);
+    t = std::max(t, p.z + p.w);
   }
   x.resize(nx);
   for (int ix = 0; ix < nx; ++ix) {
@@ -60,8 +60,8 @@ ReposeResult angle_of_repose(const Specimen& specimen, const ReposeTest& test, c
   const TerrainOptions& o = specimen.options();
   const double r = o.radius, dt = o.step, cut = test.cut * r, base = test.base * r;
   std::vector<dem::Quad> kept;
-  for (const Vec3& p : specimen.positions())
-    if (p.x() < cut || p.z() < base - r) kept.push_back({p.x(), p.y(), p.z(), 0.0});
+  for (const dem::Quad& p : specimen.positions())
+    if (p.x < cut || p.z < base - r) kept.push_back(p);
   dem::GrainSolver solver(dem::solver_params(o));
   solver.set_coefficients(dem::run_coefficients(o, dt));
   solver.place(kept);
@@ -72,7 +72,7 @@ ReposeResult angle_of_repose(const Specimen& specimen, const ReposeTest& test, c
   const double time = std::sqrt(result.height / dem::kGravity);
   const auto most = static_cast<std::int64_t>(test.longest * time / dt),
              least = static_cast<std::int64_t>(test.shortest * time / dt);
-  const double mass = solver.params().grain.mass * static_cast<double>(kept.size());
+  const double mass = solver.params().grain.mass * solver.relative_mass();
   std::int64_t steps = 0;
   result.at_rest = false;
   while (steps < most && !result.at_rest) {

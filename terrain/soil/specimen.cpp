@@ -4,6 +4,8 @@
 #include <numbers>
 #include <string>
 
+#include "terrain/dem/grain_sizes.hpp"
+
 namespace furrow::soil {
 namespace {
 
@@ -26,7 +28,9 @@ Specimen::Specimen(const TerrainOptions& material, const Box& box, std::uint64_t
   options_.seed = seed;
   options_.length = box.length * r;
   options_.width = box.width * r;
-  options_.layers = static_cast<int>(std::ceil(box.depth / kLayerHeight));
+  const double widest = dem::largest_radius(material) / r;  // grains of a layer keep its distance
+  const double layer = kLayerHeight * dem::mean_volume_ratio(material) / (widest * widest);
+  options_.layers = static_cast<int>(std::ceil(box.depth / layer));
   options_.periodic_x = box.periodic_x;
   options_.periodic_y = box.periodic_y;
   options_.threads = options_.settle_threads = 1;
@@ -39,7 +43,8 @@ Specimen::Specimen(const TerrainOptions& material, const Box& box, std::uint64_t
   });
   made->save(bed_);
   const auto& x = bed_.get<double>("terrain/position");
-  for (std::size_t k = 0; k + 3 < x.size(); k += 4) positions_.emplace_back(x[k], x[k + 1], x[k + 2]);
+  for (std::size_t k = 0; k + 3 < x.size(); k += 4)
+    positions_.push_back({x[k], x[k + 1], x[k + 2], x[k + 3]});
   grains_ = made->size();
   const double half = 0.5 * options_.width;
   height_ = made->mean_height(0.0, options_.length, -half, half);
@@ -53,8 +58,9 @@ std::unique_ptr<Terrain> Specimen::terrain() const {
 }
 
 double Specimen::weight() const {
-  const double volume = 4.0 / 3.0 * std::numbers::pi * std::pow(options_.radius, 3);
-  return static_cast<double>(grains_) * options_.density * volume * kGravity;
+  double cubes = 0.0;  // m³
+  for (const dem::Quad& p : positions_) cubes += p.w * p.w * p.w;
+  return options_.density * 4.0 / 3.0 * std::numbers::pi * cubes * kGravity;
 }
 
 }  // namespace furrow::soil

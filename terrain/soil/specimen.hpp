@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "protocol/archive.hpp"
+#include "terrain/dem/lanes.hpp"
 #include "terrain/terrain_options.hpp"
 
 namespace furrow::soil {
@@ -40,13 +41,13 @@ class Specimen {
   std::int64_t grains() const { return grains_; }
   double weight() const;  // N
   bool settled() const { return settled_; }
-  /// Positions x y z of all grains, m.
-  const std::vector<Vec3>& positions() const { return positions_; }
+  /// Positions x y z and radii w of all grains, m.
+  const std::vector<dem::Quad>& positions() const { return positions_; }
 
  private:
   TerrainOptions options_;
   Archive bed_;
-  std::vector<Vec3> positions_;
+  std::vector<dem::Quad> positions_;
   double height_ = 0.0, top_ = 0.0;
   std::int64_t grains_ = 0;
   bool settled_ = true;

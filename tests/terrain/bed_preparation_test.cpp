@@ -61,7 +61,7 @@ class Beds : public testing::Test {
 TEST(BedStatistics, two_touching_spheres_by_hand) {
   const double r = 0.01, d = 0.018;
   const Bin bin{0.2, 0.1, false, false};
-  const std::vector<Quad> two{{0.05, 0.0, 0.0098}, {0.05 + d, 0.0, 0.05}, {0.05, 0.0, 0.0098 + d}};
+  const std::vector<Quad> two{{0.05, 0.0, 0.0098, r}, {0.05 + d, 0.0, 0.05, r}, {0.05, 0.0, 0.0098 + d, r}};
   const BedStatistics s = bed_statistics(two, bin, r);
   EXPECT_EQ(s.pairs, 1);
   EXPECT_EQ(s.wall_contacts, 1);
@@ -69,13 +69,20 @@ TEST(BedStatistics, two_touching_spheres_by_hand) {
   EXPECT_NEAR(s.max_overlap, 0.002, 1e-15);
   EXPECT_NEAR(s.top, 0.06, 1e-15);
   const double sphere = 4.0 / 3.0 * std::numbers::pi * r * r * r;
-  EXPECT_NEAR(s.solid_fraction * 0.2 * 0.1 * s.depth, 3.0 * sphere - lens_volume(r, d), 1e-12);
+  EXPECT_NEAR(s.solid_fraction * 0.2 * 0.1 * s.depth, 3.0 * sphere - lens_volume(r, r, d), 1e-12);
+}
+
+/// Radii 3 and 4 at distance 5 meet in a circle of radius 12/5, at 9/5 and 16/5 from the centres: two caps by hand.
+TEST(BedStatistics, lens_of_unequal_spheres_is_two_caps) {
+  const auto cap = [](double r, double h) { return std::numbers::pi * h * h * (3.0 * r - h) / 3.0; };
+  EXPECT_NEAR(lens_volume(3.0, 4.0, 5.0), cap(3.0, 3.0 - 1.8) + cap(4.0, 4.0 - 3.2), 1e-13);
+  EXPECT_EQ(lens_volume(3.0, 4.0, 5.0), lens_volume(4.0, 3.0, 5.0));
 }
 
 TEST(BedStatistics, lens_and_cap_tend_to_the_sphere) {
   const double r = 0.5, sphere = std::numbers::pi / 6.0;
-  EXPECT_NEAR(lens_volume(r, 0.0), sphere, 1e-15);
-  EXPECT_EQ(lens_volume(r, 1.0), 0.0);
+  EXPECT_NEAR(lens_volume(r, r, 0.0), sphere, 1e-15);
+  EXPECT_EQ(lens_volume(r, r, 1.0), 0.0);
   EXPECT_NEAR(volume_below(r, 0.0, 0.5), sphere, 1e-15);
   EXPECT_NEAR(volume_below(r, 0.0, 0.0), 0.5 * sphere, 1e-15);
   EXPECT_EQ(volume_below(r, 2.0, 1.0), 0.0);

@@ -11,6 +11,7 @@ struct FewGrains {
   TerrainOptions options;
   double gravity = 0.0;  // m/s²
   Precision precision = Precision::full;
+  double smallest = 0.0, largest = 0.0;  // m; 0: all have options.radius
 
   FewGrains() {
     options.length = 0.6;
@@ -27,6 +28,7 @@ struct FewGrains {
     params.bin.width = options.width;
     params.gravity = gravity;
     params.precision = precision;
+    params.smallest = smallest, params.largest = largest;
     params.skin = 0.3 * options.radius;
     GrainSolver solver(params);
     solver.set_coefficients(coefficients());

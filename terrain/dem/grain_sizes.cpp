@@ -1,0 +1,76 @@
+#include "terrain/dem/grain_sizes.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <fmt/format.h>
+
+#include "protocol/error.hpp"
+
+namespace furrow::dem {
+namespace {
+
+constexpr double kCut = 2.0;  // normal: the spread is so many standard deviations, beyond it nothing is drawn
+
+/// Variance of the radius over that of the whole spread squared.
+double relative_variance(const TerrainOptions& o) {
+  if (o.size_distribution == "uniform") return 1.0 / 3.0;
+  // A normal distribution cut at ± kCut [Johnson, Kotz & Balakrishnan 1994, Continuous univariate distributions 1, §10.1].
+  const double density = std::exp(-0.5 * kCut * kCut) / std::sqrt(2.0 * std::numbers::pi);
+  return (1.0 - 2.0 * kCut * density / std::erf(kCut / std::numbers::sqrt2)) / (kCut * kCut);
+}
+
+class Draw {
+ public:
+  Draw(const TerrainOptions& o, std::uint64_t seed) : bits_(seed), normal_(o.size_distribution == "normal") {}
+  /// In [−1, 1).
+  double operator()() {
+    for (;;) {
+      const double x = 2.0 * uniform() - 1.0;
+      if (!normal_ || uniform() < std::exp(-0.5 * kCut * kCut * x * x)) return x;
+    }
+  }
+
+ private:
+  double uniform() { return static_cast<double>(bits_() >> 11) * 0x1p-53; }
+  std::mt19937_64 bits_;
+  bool normal_;
+};
+
+}  // namespace
+
+void check_sizes(const TerrainOptions& o) {
+  if (o.size_distribution != "uniform" && o.size_distribution != "normal")
+    throw input_error("scenario", "terrain.size_distribution",
+                      "'" + o.size_distribution + "' is unknown, expected uniform or normal");
+  if (!(o.size_spread >= 0.0 && o.size_spread <= kWidestSpread))
+    throw input_error("scenario", "terrain.size_spread",
+                      fmt::format("{} is out of range, expected 0 to {}", o.size_spread, kWidestSpread));
+  if (o.size_spread > 0.0 && o.law != "mindlin")
+    throw input_error("scenario", "terrain.size_spread",
+                      fmt::format("is {} with law '{}', whose stiffness is stated for one size, expected law "
+                                  "'mindlin' or 0",
+                                  o.size_spread, o.law));
+}
+
+double smallest_radius(const TerrainOptions& o) { return o.radius * (1.0 - o.size_spread); }
+double largest_radius(const TerrainOptions& o) { return o.radius * (1.0 + o.size_spread); }
+
+TerrainOptions of_one_size(TerrainOptions options, double radius) {
+  options.radius = radius;
+  options.size_spread = 0.0;
+  return options;
+}
+
+// Both distributions are symmetric: the mean of (1 + s x)³ is 1 + 3 s² var(x).
+double mean_volume_ratio(const TerrainOptions& o) {
+  return 1.0 + 3.0 * o.size_spread * o.size_spread * relative_variance(o);
+}
+
+void draw_radii(const TerrainOptions& o, std::vector<Quad>& grains) {
+  Draw draw(o, o.seed * 1000003ULL + 0x9e3779b9ULL);
+  for (Quad& p : grains) p.w = o.size_spread > 0.0 ? o.radius * (1.0 + o.size_spread * draw()) : o.radius;
+}
+
+}  // namespace furrow::dem

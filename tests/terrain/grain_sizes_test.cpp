@@ -1,0 +1,348 @@
+// Grains of several sizes: scaled coefficients, pairs against closed forms, conservation, beds.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+
+#include "protocol/error.hpp"
+#include "protocol/hash.hpp"
+#include "terrain/dem/bed_preparation.hpp"
+#include "terrain/dem/bed_statistics.hpp"
+#include "terrain/dem/grain_sizes.hpp"
+#include "terrain/dem/size_scale.hpp"
+#include "terrain/dem/solver_setup.hpp"
+#include "tests/terrain/few_grains.hpp"
+
+namespace furrow::dem {
+namespace {
+
+std::array<double, 7> sized_part(const ContactCoefficients& c) {
+  return {c.stiffness,      c.damping,     c.shear_stiffness, c.shear_damping,
+          c.cohesion_force, c.rolling_arm, c.rolling_damping};
+}
+
+void expect_same(const ContactCoefficients& a, const ContactCoefficients& b) {
+  const auto x = sized_part(a), y = sized_part(b);
+  for (std::size_t k = 0; k < x.size(); ++k) EXPECT_NEAR(x[k] / y[k], 1.0, 1e-14) << k;
+  EXPECT_EQ(a.friction, b.friction);
+}
+
+TEST(GrainSizes, scaled_coefficients_are_those_mixed_for_that_size) {
+  TerrainOptions o;
+  o.cohesion = 50e3;
+  o.rolling_friction = 0.1;
+  const ContactMaterial material = grain_material(o);
+  ContactMaterial tread = material;
+  tread.young_modulus *= 0.3, tread.area_density = 12.0;
+  const GrainProperties reference = grain_properties(o.radius, o.density);
+  const LawSettings law = law_settings(o);
+  for (const double size : {0.4, 0.9, 1.0, 1.7}) {
+    const GrainProperties other = grain_properties(size * o.radius, o.density);
+    expect_same(
+        scaled(mix(material, material, Partner::grain, reference, law), pair_scale<double>(size, size)),
+        mix(material, material, Partner::grain, other, law));
+    for (const ContactMaterial& surface : {material, tread})
+      expect_same(scaled(mix(material, surface, Partner::surface, reference, law),
+                         surface_scale(size, mass_share(reference, surface))),
+                  mix(material, surface, Partner::surface, other, law));
+  }
+}
+
+/// A large partner is a wall: R* → r, m* → m.
+TEST(GrainSizes, against_a_giant_the_pair_is_a_contact_with_a_wall) {
+  TerrainOptions o;
+  o.cohesion = 50e3;
+  o.rolling_friction = 0.1;
+  const ContactMaterial material = grain_material(o);
+  const GrainProperties reference = grain_properties(o.radius, o.density);
+  const auto pair = mix(material, material, Partner::grain, reference, law_settings(o));
+  const auto wall = mix(material, material, Partner::surface, reference, law_settings(o));
+  const auto giant = sized_part(scaled(pair, pair_scale<double>(1.0, 1e9))), flat = sized_part(wall);
+  for (std::size_t k = 0; k < flat.size(); ++k) EXPECT_NEAR(giant[k] / flat[k], 1.0, 1e-8) << k;
+}
+
+/// A sphere of radius 9 mm and one of 4 mm, with coefficients stated for 6 mm.
+struct Unequal {
+  FewGrains few;
+  double a = 0.009, b = 0.004;  // m
+  Unequal() {
+    few.smallest = b, few.largest = a;
+    few.options.step = 2e-7;
+  }
+  double mass(double r) const { return grain_properties(r, few.options.density).mass; }
+  double inertia(double r) const { return grain_properties(r, few.options.density).inertia; }
+  double reduced_mass() const { return 1.0 / (1.0 / mass(a) + 1.0 / mass(b)); }
+  double reduced_radius() const { return a * b / (a + b); }
+  GrainSolver make() const {
+    return few.make({{0.3, 0.0, 0.3, a}, {0.3 + (a + b) * (1.0 + 1e-6), 0.0, 0.3, b}});
+  }
+};
+
+struct Meeting {
+  double duration = 0.0, overlap = 0.0;  // s, m
+};
+
+/// Steps until the two have touched and parted.
+Meeting meet(GrainSolver& s, double dt) {
+  Meeting m;
+  for (int k = 0; k < 400000; ++k) {
+    s.step(dt);
+    if (s.accounts().contacts > 0) m.duration += dt;
+    if (m.duration > 0.0 && s.accounts().contacts == 0) break;
+  }
+  m.overlap = s.accounts().max_overlap;
+  return m;
+}
+
+/// [Hertz 1882; Johnson 1985, Contact Mechanics, § 11.4] with R* and m* of both.
+TEST(GrainSizes, elastic_impact_of_unequal_spheres_is_hertzs) {
+  for (const Precision precision : {Precision::full, Precision::mixed}) {
+    Unequal u;
+    u.few.precision = precision;
+    u.few.options.restitution = 1.0;
+    GrainSolver s = u.make();
+    const double speed = 0.7;
+    set_velocity(s, 1, {-speed, 0, 0});
+    const Meeting m = meet(s, u.few.options.step);
+    const double e_star =
+        0.5 * u.few.options.young_modulus / (1.0 - std::pow(u.few.options.poisson_ratio, 2));
+    const double stiffness = 4.0 / 3.0 * e_star * std::sqrt(u.reduced_radius());
+    const double deepest = std::pow(1.25 * u.reduced_mass() * speed * speed / stiffness, 0.4);
+    EXPECT_NEAR(m.overlap / deepest, 1.0, 2e-4);
+    EXPECT_NEAR(m.duration / (2.9432 * deepest / speed), 1.0, 2e-3);
+    const double ratio = u.mass(u.b) / u.mass(u.a);
+    EXPECT_NEAR(velocity(s, 0).x(), -2.0 * speed * ratio / (1.0 + ratio), 2e-4 * speed);
+  }
+}
+
+TEST(GrainSizes, restitution_of_unequal_spheres_is_the_one_asked_for) {
+  for (const double e : {0.2, 0.6, 0.9}) {
+    Unequal u;
+    u.few.options.restitution = e;
+    GrainSolver s = u.make();
+    set_velocity(s, 1, {-0.5, 0, 0});
+    meet(s, u.few.options.step);
+    EXPECT_NEAR((velocity(s, 1) - velocity(s, 0)).x(), 0.5 * e, 1e-3) << e;
+  }
+}
+
+/// Rigid bodies that slide throughout: friction impulse P = μ (1 + e) m* u, spins 5/2 P/(m r). Stiff, so that the line of
+/// centres hardly turns meanwhile.
+TEST(GrainSizes, sliding_impact_of_unequal_spheres_gives_both_their_spin) {
+  Unequal u;
+  u.few.options.young_modulus = 2.5e12;
+  u.few.options.restitution = 1.0;
+  u.few.options.friction = 0.1;
+  u.few.options.step = 2e-9;
+  GrainSolver s = u.make();
+  const double speed = 0.3;
+  set_velocity(s, 1, {-speed, 0, 2.0 * speed});
+  meet(s, u.few.options.step);
+  const double impulse = 2.0 * u.reduced_mass() * speed * u.few.options.friction;
+  const auto spin_after = [&](double r) { return 2.5 * impulse / (u.mass(r) * r); };
+  EXPECT_NEAR(velocity(s, 0).z() / (impulse / u.mass(u.a)), 1.0, 5e-3);
+  EXPECT_NEAR(spin(s, 0).y() / spin_after(u.a), -1.0, 2e-3);
+  EXPECT_NEAR(spin(s, 1).y() / spin_after(u.b), -1.0, 2e-3);
+}
+
+TEST(GrainSizes, oblique_impact_keeps_momentum_and_angular_momentum) {
+  for (const double rolling : {0.0, 0.2}) {
+    Unequal u;
+    u.few.options.rolling_friction = rolling;
+    GrainSolver s = u.few.make({{0.3, 0.0, 0.3, u.a}, {0.3 + 0.0112, 0.0062, 0.302, u.b}});
+    set_velocity(s, 0, {1.0, 0.3, 0.1});
+    set_spin(s, 0, {30, -200, 100});
+    set_spin(s, 1, {-70, 20, 150});
+    const auto totals = [&] {
+      Vec3 p = Vec3::Zero(), l = Vec3::Zero();
+      for (const auto& [id, r] : {std::pair{0, u.a}, {1, u.b}}) {
+        p += u.mass(r) * velocity(s, id);
+        l += u.mass(r) * (position(s, id) - Vec3(0.3, 0, 0.3)).cross(velocity(s, id)) +
+             u.inertia(r) * spin(s, id);
+      }
+      return std::pair(p, l);
+    };
+    const auto before = totals();
+    for (int k = 0; k < 20000; ++k) s.step(1e-6);
+    EXPECT_GT((spin(s, 0) - Vec3(30, -200, 100)).norm(), 1.0);
+    const auto after = totals();
+    EXPECT_LT((after.first - before.first).norm(), 3e-15);
+    EXPECT_LT((after.second - before.second).norm(), 5e-15) << rolling;
+    EXPECT_GT(before.second.norm(), 1e-5);
+  }
+}
+
+/// Two that touch hold together up to F_c = π min(r)² c_t.
+TEST(GrainSizes, pull_off_is_that_of_the_smaller) {
+  Unequal u;
+  u.few.options.cohesion = 80e3;
+  u.few.options.restitution = 0.0;
+  GrainSolver s = u.few.make({{0.3, 0.0, 0.3, u.a}, {0.3 + (u.a + u.b) * 0.9999, 0.0, 0.3, u.b}});
+  s.set_drag(2000.0);
+  for (int k = 0; k < 100000; ++k) s.step(1e-6);
+  const double pull_off = std::numbers::pi * u.b * u.b * u.few.options.cohesion;
+  const double e_star = 0.5 * u.few.options.young_modulus / (1.0 - std::pow(u.few.options.poisson_ratio, 2));
+  const double overlap = std::pow(pull_off / (4.0 / 3.0 * e_star * std::sqrt(u.reduced_radius())), 2.0 / 3.0);
+  const double distance = (position(s, 1) - position(s, 0)).norm();
+  EXPECT_NEAR((u.a + u.b - distance) / overlap, 1.0, 1e-6);
+}
+
+FewGrains of_many_sizes() {
+  FewGrains few;
+  few.smallest = 0.0036, few.largest = 0.0084;
+  few.options.size_spread = 0.4;
+  few.options.length = 0.3, few.options.width = 0.24;
+  return few;
+}
+
+GrainSolver crowd(const FewGrains& few, int n, double speed) {
+  std::mt19937_64 bits(3);
+  const auto uniform = [&] { return static_cast<double>(bits() >> 11) * 0x1p-52 - 1.0; };
+  std::vector<Quad> out;
+  for (int k = 0; k < n; ++k)
+    out.push_back({0.02 + 0.0172 * (k % 16), -0.1 + 0.0172 * (k / 16 % 12), 0.0085 + 0.0172 * (k / 192),
+                   0.006 * (1.0 + 0.4 * uniform())});
+  GrainSolver s = few.make(out);
+  for (int id = 0; id < n; ++id) set_velocity(s, id, speed * Vec3(uniform(), uniform(), uniform()));
+  s.reset_accounts();
+  return s;
+}
+
+std::uint64_t hash_of(const GrainSolver& s) {
+  Hash hash;
+  for (const auto* a : {&s.grains().position, &s.grains().velocity, &s.grains().spin})
+    hash.add(std::span(*a).first(s.grains().count));
+  return hash.value();
+}
+
+TEST(GrainSizes, crowd_keeps_momentum_and_books_its_energy) {
+  FewGrains few = of_many_sizes();
+  few.options.cohesion = 20e3;
+  few.options.rolling_friction = 0.1;
+  GrainSolver s = crowd(few, 1200, 0.6);
+  const Vec3 p0 = s.accounts().velocity;
+  const double k0 = s.accounts().kinetic, m = s.params().grain.mass;
+  for (int k = 0; k < 3000; ++k) ASSERT_EQ(s.step(5e-6), -1);
+  const Accounts& a = s.accounts();
+  EXPECT_GT(a.contacts, 300);
+  EXPECT_LT((m * (a.velocity - p0) - a.wall_impulse).norm(), 1e-12 * m * 1200);
+  const double dissipation = -a.contact_work - (a.elastic - a.elastic_start);
+  EXPECT_NEAR(a.kinetic + a.elastic - a.elastic_start + dissipation, k0, 1e-9 * k0);
+  EXPECT_GT(dissipation, 0.05 * k0);
+  for (int g = 0; g < s.grains().count; ++g) ASSERT_GE(s.grains().position[g].w, few.smallest);
+}
+
+TEST(GrainSizes, frictionless_elastic_crowd_keeps_its_energy) {
+  FewGrains few = of_many_sizes();
+  few.options.restitution = 1.0;
+  few.options.friction = 0.0;
+  GrainSolver s = crowd(few, 700, 0.5);
+  const double k0 = s.accounts().kinetic;
+  for (int k = 0; k < 6000; ++k) s.step(3e-6);
+  EXPECT_NEAR(s.accounts().kinetic + s.accounts().elastic, k0, 2e-4 * k0);
+}
+
+TEST(GrainSizes, list_misses_no_contact) {
+  FewGrains few = of_many_sizes();
+  few.gravity = kGravity;
+  GrainSolver s = crowd(few, 1200, 0.8);
+  for (int round = 0; round < 10; ++round) {
+    for (int k = 0; k < 60; ++k) s.step(1.5e-5);
+    const auto& x = s.grains().position;
+    std::int64_t contacts = 0;
+    for (int i = 0; i < s.grains().count; ++i) {
+      for (int j = i + 1; j < s.grains().count; ++j)
+        contacts += (vec(x[i]) - vec(x[j])).norm() < x[i].w + x[j].w;
+      for (int w = 0; w < kWalls; ++w) contacts += s.params().bin.distance(w, x[i]) < x[i].w;
+    }
+    s.step(1.5e-5);
+    EXPECT_EQ(s.accounts().contacts, contacts);
+  }
+}
+
+TEST(GrainSizes, same_bits_for_any_threads_and_after_a_restart) {
+  for (const Precision precision : {Precision::full, Precision::mixed}) {
+    FewGrains few = of_many_sizes();
+    few.precision = precision;
+    few.options.rolling_friction = 0.1;
+    few.gravity = kGravity;
+    GrainSolver one = crowd(few, 1200, 0.5), two = crowd(few, 1200, 0.5);
+    two.set_threads(2);
+    for (int k = 0; k < 500; ++k) one.step(1.5e-5);
+    for (int k = 0; k < 500; ++k) two.step(1.5e-5);
+    EXPECT_EQ(hash_of(one), hash_of(two));
+    Archive archive;
+    one.save(archive);
+    GrainSolver again(one.params());
+    again.set_coefficients(few.coefficients());
+    again.restore(archive);
+    for (int k = 0; k < 500; ++k) one.step(1.5e-5), again.step(1.5e-5);
+    EXPECT_EQ(hash_of(one), hash_of(again));
+  }
+}
+
+/// The spread's mean volume, 1 + s² for uniform radii; and that the draw stays within the limits.
+TEST(GrainSizes, drawn_radii_have_the_stated_mean_volume) {
+  for (const char* distribution : {"uniform", "normal"}) {
+    TerrainOptions o;
+    o.size_spread = 0.5;
+    o.size_distribution = distribution;
+    std::vector<Quad> grains(200000);
+    draw_radii(o, grains);
+    double volume = 0.0;
+    for (const Quad& p : grains) {
+      ASSERT_GE(p.w, smallest_radius(o));
+      ASSERT_LE(p.w, largest_radius(o));
+      volume += std::pow(p.w / o.radius, 3) / static_cast<double>(grains.size());
+    }
+    EXPECT_NEAR(volume, mean_volume_ratio(o), 0.006) << distribution;
+  }
+  TerrainOptions uniform;
+  uniform.size_spread = 0.5;
+  EXPECT_NEAR(mean_volume_ratio(uniform), 1.25, 1e-15);
+}
+
+TEST(GrainSizes, sizes_that_cannot_be_are_refused_with_their_key) {
+  const auto refusal = [](const std::function<void(TerrainOptions&)>& change) -> std::string {
+    TerrainOptions o;
+    change(o);
+    try {
+      make_terrain(o);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "not refused";
+  };
+  EXPECT_NE(refusal([](auto& o) { o.size_spread = 0.7; }).find("size_spread': 0.7 is out of range"),
+            std::string::npos);
+  EXPECT_NE(refusal([](auto& o) { o.size_spread = 0.3, o.law = "coulomb"; }).find("expected law 'mindlin'"),
+            std::string::npos);
+  EXPECT_NE(refusal([](auto& o) { o.size_distribution = "gamma"; }).find("expected uniform or normal"),
+            std::string::npos);
+}
+
+/// The floor carries the weight, which follows from the volumes; solid fraction is that of a random packing.
+TEST(GrainSizes, bed_of_many_sizes_settles) {
+  TerrainOptions o;
+  o.size_spread = 0.4;
+  o.length = 0.2, o.width = 0.15, o.layers = 8;
+  o.cache = false;
+  o.step = 1e-5;
+  const PreparedBed prepared = prepare_bed(o, {});
+  EXPECT_TRUE(prepared.settled.settled);
+  GrainSolver s(solver_params(o));
+  s.restore(prepared.bed);
+  const std::vector<Quad> grains(s.grains().position.begin(), s.grains().position.begin() + s.grains().count);
+  const BedStatistics b = bed_statistics(grains, s.params().bin, o.radius);
+  EXPECT_NEAR(b.grain_volume * o.density, s.params().grain.mass * s.relative_mass(), 1e-12);
+  const double weight = b.grain_volume * o.density * kGravity;
+  EXPECT_NEAR(s.accounts().floor_force, weight, kSettledFloorError * weight);
+  EXPECT_GT(b.solid_fraction_bulk, 0.53);
+  EXPECT_LT(b.solid_fraction_bulk, 0.66);
+}
+
+}  // namespace
+}  // namespace furrow::dem

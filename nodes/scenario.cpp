@@ -12,6 +12,7 @@
 #include "nodes/json_text.hpp"
 #include "nodes/scenario_checks.hpp"
 #include "nodes/schema.hpp"
+#include "nodes/soil_material.hpp"
 #include "protocol/error.hpp"
 #include "protocol/hash.hpp"
 #include "protocol/host.hpp"
@@ -73,7 +74,14 @@ json read_document(const std::string& file, const Settings& settings) {
   json document = parse_json(read_text_file(file, "a scenario in JSON"), file);
   if (!document.is_object())
     throw input_error(file, "", "is " + value_text(document) + ", expected an object { }");
-  for (const auto& [key, text] : settings) set_value(document, key, text, file);
+  // What is said later wins: a soil of the command line replaces what the file says of its soil.
+  const std::string soil = "terrain.material";
+  if (std::none_of(settings.begin(), settings.end(), [&](const auto& one) { return one.first == soil; }))
+    apply_soil_material(document, file);
+  for (const auto& [key, text] : settings) {
+    set_value(document, key, text, file);
+    if (key == soil) override_soil_material(document, file);
+  }
   if (document.contains("format_version") && document["format_version"].is_number_integer() &&
       document["format_version"] > kFormatVersion)
     throw input_error(file, "format_version",

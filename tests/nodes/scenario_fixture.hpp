@@ -23,12 +23,13 @@ class ScenarioFile {
   Scenario load(const std::vector<std::pair<std::string, std::string>>& settings = {}) const {
     return load_scenario(path_, settings);
   }
-  /// What load() complains of, without the file's name; empty when it does not.
-  std::string complaint(const std::vector<std::pair<std::string, std::string>>& settings = {}) const {
+  /// What load() complains of, without the name of the file complained of (this one); empty when it does not.
+  std::string complaint(const std::vector<std::pair<std::string, std::string>>& settings = {},
+                        const std::filesystem::path& file = {}) const {
     try {
       load(settings);
     } catch (const Error& error) {
-      const std::string text = error.what(), name = path_.string();
+      const std::string text = error.what(), name = file.empty() ? path_.string() : file.string();
       return text.starts_with(name) ? text.substr(name.size()) : text;
     }
     return {};

@@ -140,6 +140,38 @@ TEST(Scenario, expected_result_is_void_once_the_physics_is_changed) {
   EXPECT_FALSE(file.load({{"rig.slip", "0.2"}}).expected.given);
 }
 
+TEST(Scenario, soil_file_gives_values_that_the_scenario_may_replace) {
+  const ScenarioFile soil(R"({"format_version": 1, "terrain": {"friction": 0.4, "size_spread": 0.2}})");
+  const std::string name = soil.path().string();
+  const ScenarioFile file(R"({"tire": {"file": "hmmwv_layered.json"},
+                              "terrain": {"material": ")" +
+                          name + R"(", "friction": 0.7}})");
+  const Scenario s = file.load();
+  EXPECT_EQ(s.terrain.friction, 0.7);
+  EXPECT_EQ(s.terrain.size_spread, 0.2);
+  EXPECT_EQ(ScenarioFile(s.completed).load().digest, s.digest);
+  // On the command line what comes later wins.
+  const std::string quoted = '"' + name + '"';
+  const ScenarioFile own(R"({"tire": {"file": "hmmwv_layered.json"}, "terrain": {"friction": 0.7}})");
+  EXPECT_EQ(own.load({{"terrain.material", quoted}}).terrain.friction, 0.4);
+  EXPECT_EQ(own.load({{"terrain.material", quoted}, {"terrain.friction", "0.6"}}).terrain.friction, 0.6);
+  EXPECT_EQ(file.load({{"terrain.material", "null"}}).terrain.size_spread, 0.0);
+}
+
+TEST(Scenario, mistakes_in_a_soil_file_are_named_with_that_file) {
+  const auto complaint = [](const std::string& text) {
+    const ScenarioFile soil(text), own(kSmallest);
+    return own.complaint({{"terrain.material", '"' + soil.path().string() + '"'}}, soil.path());
+  };
+  EXPECT_EQ(complaint(R"({"format_version": 1, "terrain": {"friction": -1}})"),
+            ": key 'terrain.friction': is -1, expected a number, 0 to 10");
+  EXPECT_EQ(complaint(R"({"format_version": 1, "terrain": {"radius": 0.01}})").substr(0, 62),
+            ": key 'terrain.radius': is not a property of soil, expected on");
+  EXPECT_EQ(complaint(R"({"format_version": 2, "terrain": {}})"), ": key 'format_version': is 2, expected 1");
+  EXPECT_EQ(complaint(R"({"format_version": 1})"),
+            ": key 'terrain': is missing, expected an object { } with the soil's values");
+}
+
 TEST(Scenario, mistakes_are_named_with_what_is_expected) {
   const ScenarioFile file(kSmallest);
   EXPECT_EQ(file.complaint({{"rig.slipp", "1"}}), ": key 'rig.slipp': is unknown, expected 'rig.slip'?");

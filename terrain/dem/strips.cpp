@@ -253,7 +253,9 @@ class OldPairs {
     if (owner < base_ || owner - base_ >= static_cast<int>(strip_of_.size())) return {};
     const Strip& strip = old_[strip_of_[owner - base_]];
     const int i = owner - strip.first;
-    const int j = partner >= owner ? partner - strip.first : strip.grains() + partner - old_.front().first;
+    // Across periodic sides the owner may come after its partner, in one strip (y) or from the last to the first (x).
+    const int j =
+        partner >= strip.first ? partner - strip.first : strip.grains() + partner - old_.front().first;
     for (int p = row_[owner - base_]; p < strip.pairs && strip.grain_i(p) == i; ++p)
       if (strip.grain_j(p) == j && (strip.touching[p / kLanes] >> p % kLanes & 1)) return {&strip, p, false};
     return {};
@@ -274,7 +276,7 @@ HistoryRow<Real> turned(const HistoryRow<Real>& h, bool reversed) {
 
 template <class Real>
 void Strips::carry_history(std::span<const Strip> old, int old_from, const Resorted& range, int threads) {
-  const OldPairs pairs(old, options_.bin.periodic_x);
+  const OldPairs pairs(old, options_.bin.periodic_x || options_.bin.periodic_y);
   const auto before = [&](int g) {
     const int k = g - range.first;
     return k >= 0 && k < static_cast<int>(range.order.size()) ? range.order[k] : g;

@@ -26,6 +26,8 @@ struct FewGrains {
     params.grain = grain_properties(options.radius, options.density);
     params.bin.length = options.length;
     params.bin.width = options.width;
+    params.bin.periodic_x = options.periodic_x;
+    params.bin.periodic_y = options.periodic_y;
     params.gravity = gravity;
     params.precision = precision;
     params.smallest = smallest, params.largest = largest;

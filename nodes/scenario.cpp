@@ -196,6 +196,7 @@ void take_terrain(const json& j, Scenario& s) {
   if (j["bed"].is_string()) o.bed = find_file(j["bed"], "terrain.bed", s.file).string();
   o.bed_generator = j["bed_generator"];
   o.compaction_pressure = j["compaction_pressure"];
+  o.settling_friction = number_or(j["settling_friction"], -1.0);
   o.cache = j["cache"];
   o.young_modulus = j["young_modulus"];
   o.poisson_ratio = j["poisson_ratio"];

@@ -17,10 +17,19 @@ using nlohmann::json;
 
 constexpr int kFormatVersion = 1;
 /// What a soil may say of a terrain; the bin and the size of its grains are the scenario's.
-constexpr std::array<const char*, 12> kKeys{"law",           "density",           "young_modulus",
-                                            "poisson_ratio", "restitution",       "friction",
-                                            "cohesion",      "size_distribution", "size_spread",
-                                            "bed_generator", "rolling_friction",  "compaction_pressure"};
+constexpr std::array<const char*, 13> kKeys{"law",
+                                            "density",
+                                            "young_modulus",
+                                            "poisson_ratio",
+                                            "restitution",
+                                            "friction",
+                                            "cohesion",
+                                            "size_distribution",
+                                            "size_spread",
+                                            "bed_generator",
+                                            "rolling_friction",
+                                            "settling_friction",
+                                            "compaction_pressure"};
 
 /// The soil named in the scenario; null when it names none.
 json named_material(const json& document, const std::filesystem::path& scenario) {

@@ -185,6 +185,7 @@ json soil_json(const SoilRun& run) {
                  {"rolling_friction", o.rolling_friction},
                  {"size_distribution", o.size_distribution},
                  {"size_spread", o.size_spread},
+                 {"settling_friction", o.settling_friction < 0.0 ? json(nullptr) : json(o.settling_friction)},
                  {"cohesion_Pa", o.cohesion},
                  {"young_modulus_Pa", o.young_modulus},
                  {"bed_generator", o.bed_generator},

@@ -26,6 +26,7 @@ struct TerrainOptions {
   std::uint64_t seed = 1;   // run.seed
   std::string bed;  // file: a settled bed (HDF5), or positions to settle (CSV x_m,y_m,z_m); empty: generate
   std::string bed_generator = "poisson";  // poisson | lattice: where the grains of a new bed start
+  double settling_friction = -1.0;        // friction while a new bed falls and is pressed, -; negative: friction
   double compaction_pressure = 0.0;       // a lid pressed on the settled bed and lifted again, Pa; 0: none
   bool cache = true;                      // keep settled beds under the user's cache directory
   // Contact between grains and of grains with walls.

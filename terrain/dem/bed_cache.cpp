@@ -158,6 +158,7 @@ std::string bed_digest(const TerrainOptions& o) {
   hash.add(o.size_distribution);
   hash.add(o.bed_generator);
   hash.add(&o.compaction_pressure, sizeof o.compaction_pressure);
+  hash.add(&o.settling_friction, sizeof o.settling_friction);
   if (!o.bed.empty()) hash.add(file_bytes(o.bed));
   return hash.hex();
 }

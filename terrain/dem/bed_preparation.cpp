@@ -52,21 +52,27 @@ bool from_cache(const std::filesystem::path& file, const TerrainOptions& options
   }
 }
 
-/// Presses the bed and lets it settle again, grains placed at rest where the lid left them.
-SettleResult compact(GrainSolver& solver, const TerrainOptions& options, const ProgressCall& progress) {
-  const std::vector<Quad> positions = compacted_positions(solver, options, progress);
-  solver = GrainSolver(settling_params(options));
-  solver.place(positions);
-  return settle(solver, options, progress);
+/// Smoother grains come to rest more closely packed [Agnolin & Roux 2007, doi:10.1103/PhysRevE.76.061302].
+TerrainOptions smoothed(TerrainOptions o) {
+  if (o.settling_friction < 0.0 || o.settling_friction >= o.friction) return o;
+  o.rolling_friction *= o.settling_friction / o.friction;
+  o.friction = o.settling_friction;
+  return o;
 }
 
 Archive made_bed(const TerrainOptions& options, const ProgressCall& progress, SettleResult& result) {
+  const TerrainOptions smooth = smoothed(options);
   GrainSolver solver(settling_params(options));
   solver.place(starting_positions(options, progress));
-  result = settle(solver, options, progress);
-  if (options.compaction_pressure > 0.0) {
+  result = settle(solver, smooth, progress);
+  if (options.compaction_pressure > 0.0 || smooth.friction != options.friction) {
+    const std::vector<Quad> positions = options.compaction_pressure > 0.0
+                                            ? compacted_positions(solver, smooth, progress)
+                                            : positions_by_id(solver);
     const SettleResult before = result;
-    result = compact(solver, options, progress);
+    solver = GrainSolver(settling_params(options));
+    solver.place(positions);
+    result = settle(solver, options, progress);
     result.time += before.time;
     result.steps += before.steps;
   }

@@ -182,7 +182,7 @@ TEST(ObliqueImpact, chung_ooi_2011_test_6_constant_normal_speed_and_varied_spin)
   }
 }
 
-// The solver's grains are of one size. The large sphere, 125,000 times heavier, stays at rest; what is left of it is
+// The solver's grains are of one material. The large sphere, 125,000 times heavier, stays at rest; what is left of it is
 // its curvature, R* = 5/6 R, which the contact coefficients are given by hand.
 TEST(ObliqueImpact, chung_ooi_2011_test_8_on_a_sphere_five_times_larger) {
   const Material alloy{"aluminium alloy", chung_ooi::kAluminium, 2700.0};

@@ -124,6 +124,31 @@ TEST_F(Beds, lattice_fills_the_bin_without_touching_and_counts_as_expected) {
   EXPECT_TRUE(prepare_bed(options_, {}).settled.settled);
 }
 
+/// Random close packing of smooth spheres is 0.64 [Scott & Kilgour 1969, J. Phys. D 2, 863]; walls and depth take some.
+TEST_F(Beds, smooth_grains_pack_denser_and_are_rough_afterwards) {
+  options_.cache = false;
+  const BedStatistics rough = statistics_of(prepare_bed(options_, {}));
+  options_.settling_friction = 0.0;
+  const PreparedBed prepared = prepare_bed(options_, {});
+  const BedStatistics smooth = statistics_of(prepared);
+  EXPECT_TRUE(prepared.settled.settled);
+  EXPECT_GT(smooth.solid_fraction_bulk, rough.solid_fraction_bulk + 0.03);
+  EXPECT_LT(smooth.solid_fraction_bulk, 0.66);
+  options_.settling_friction = 2.0;  // above the grains' own: no effect
+  EXPECT_EQ(statistics_of(prepare_bed(options_, {})).depth, rough.depth);
+}
+
+TEST_F(Beds, radii_of_a_file_are_kept_and_checked) {
+  options_.size_spread = 0.3;
+  options_.bed = write("sizes.csv", "x_m,y_m,z_m,radius_m\n0.05,0,0.02,0.012\n0.1,0,0.02,0.008\n");
+  EXPECT_NEAR(statistics_of(prepare_bed(options_, {})).grain_volume,
+              4.0 / 3.0 * std::numbers::pi * (std::pow(0.012, 3) + std::pow(0.008, 3)), 1e-15);
+  options_.bed = write("large.csv", "x_m,y_m,z_m,radius_m\n0.05,0,0.02,0.014\n");
+  EXPECT_NE(refusal().find("line 2': the grain's radius is 0.014 m, expected 0.007 to 0.013 m"),
+            std::string::npos)
+      << refusal();
+}
+
 TEST_F(Beds, unknown_generator_is_refused_with_the_known_ones) {
   options_.bed_generator = "hex";
   EXPECT_NE(refusal().find("'hex' is unknown, expected poisson or lattice"), std::string::npos) << refusal();

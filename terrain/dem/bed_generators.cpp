@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <random>
 
 #include <fmt/format.h>
@@ -11,6 +10,7 @@
 #include "protocol/error.hpp"
 #include "terrain/dem/bed_csv.hpp"
 #include "terrain/dem/bed_layers.hpp"
+#include "terrain/dem/bed_positions_h5.hpp"
 #include "terrain/dem/close_pairs.hpp"
 #include "terrain/dem/grain_sizes.hpp"
 
@@ -19,6 +19,7 @@ namespace {
 
 constexpr double kLeastDistance =
     1.8;  // mean radii between centres in a user's bed: overlaps of 10 % of the diameter
+constexpr double kSingle = 1e-7;    // relative round-off of a float
 constexpr double kLeastWall = 0.8;  // radii between a centre and a wall
 
 Bin bin_of(const TerrainOptions& o) { return {o.length, o.width, o.periodic_x, o.periodic_y}; }
@@ -89,14 +90,18 @@ std::string place_text(const Quad& p) { return fmt::format("({:g}, {:g}, {:g}) m
 
 /// The user's grains must stand in the bin and not in each other. Lines are counted as if none were blank.
 std::vector<Quad> positions_of(const TerrainOptions& o) {
-  std::vector<Quad> grains = read_positions_csv(o.bed);
+  const bool hdf5 = is_hdf5(o.bed);
+  std::vector<Quad> grains = hdf5 ? read_positions_h5(o.bed) : read_positions_csv(o.bed);
   const Bin bin = bin_of(o);
   const auto wrong = [&](std::size_t g, const std::string& what) {
-    return input_error(o.bed, fmt::format("line {}", g + 2), what);
+    return input_error(o.bed, hdf5 ? fmt::format("grain {}", g) : fmt::format("line {}", g + 2), what);
   };
   for (std::size_t g = 0; g < grains.size(); ++g) {
     double& radius = grains[g].w;
     if (radius == 0.0) radius = o.radius;
+    // Frames keep radii in single precision.
+    for (const double limit : {smallest_radius(o), largest_radius(o)})
+      if (std::abs(radius - limit) < kSingle * limit) radius = limit;
     if (!(radius >= smallest_radius(o) && radius <= largest_radius(o)))
       throw wrong(g, fmt::format("the grain's radius is {:g} m, expected {:g} to {:g} m: terrain.radius and "
                                  "terrain.size_spread of the scenario",
@@ -116,9 +121,10 @@ std::vector<Quad> positions_of(const TerrainOptions& o) {
     const double mean = 0.5 * (grains[a].w + grains[b].w), least = kLeastDistance * mean;
     if (distance >= least) return;
     throw wrong(std::max(a, b),
-                fmt::format("the grain at {} is {:.3g} m from that of line {}, expected at "
+                fmt::format("the grain at {} is {:.3g} m from that {} {}, expected at "
                             "least {:g} m for grains of radius {:g} m",
-                            place_text(grains[std::max(a, b)]), distance, std::min(a, b) + 2, least, mean));
+                            place_text(grains[std::max(a, b)]), distance, hdf5 ? "of number" : "of line",
+                            std::min(a, b) + (hdf5 ? 0 : 2), least, mean));
   });
   return grains;
 }
@@ -143,11 +149,7 @@ std::vector<Quad> lattice_layer(const Bin& bin, double radius, std::uint64_t see
 }
 
 bool is_positions_file(const std::filesystem::path& bed) {
-  constexpr std::array<char, 8> kHdf5{'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
-  std::array<char, 8> start{};
-  std::ifstream in(bed, std::ios::binary);
-  in.read(start.data(), start.size());
-  return bed.extension() != ".h5" && start != kHdf5;
+  return is_hdf5(bed) ? !is_settled_bed(bed) : bed.extension() != ".h5";
 }
 
 std::vector<Quad> starting_positions(const TerrainOptions& options, const ProgressCall& progress) {

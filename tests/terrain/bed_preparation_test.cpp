@@ -13,6 +13,7 @@
 #include "terrain/dem/bed_preparation.hpp"
 #include "terrain/dem/bed_statistics.hpp"
 #include "terrain/dem/close_pairs.hpp"
+#include "terrain/dem/hdf5_handle.hpp"
 #include "terrain/dem/solver_setup.hpp"
 
 namespace furrow::dem {
@@ -147,6 +148,34 @@ TEST_F(Beds, radii_of_a_file_are_kept_and_checked) {
   EXPECT_NE(refusal().find("line 2': the grain's radius is 0.014 m, expected 0.007 to 0.013 m"),
             std::string::npos)
       << refusal();
+}
+
+/// A frame of grains: positions and radii in single precision.
+TEST_F(Beds, hdf5_of_positions_is_settled_like_csv) {
+  const std::string file = (folder_ / "frame.h5").string();
+  const std::vector<float> x{0.05F, 0.0F, 0.02F, 0.1F, 0.0F, 0.02F}, r{0.01F, 0.01F};
+  const auto put = [](hid_t out, const char* name, const std::vector<float>& values,
+                      std::vector<hsize_t> size) {
+    const Handle space(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
+    const Handle set(
+        H5Dcreate2(out, name, H5T_NATIVE_FLOAT, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+        H5Dclose);
+    H5Dwrite(set.get(), H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+  };
+  {
+    const Handle out(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+    put(out.get(), "position", x, {2, 3});
+    put(out.get(), "radius", r, {2});
+  }
+  options_.bed = file;
+  const PreparedBed prepared = prepare_bed(options_, {});
+  EXPECT_EQ(prepared.bed.get_int("count"), 2);
+  EXPECT_EQ(prepared.bed.get<double>("position")[3], 0.01);
+  {
+    const Handle out(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+    put(out.get(), "position", x, {3, 2});
+  }
+  EXPECT_NE(refusal().find("dataset 'position'': expected N × 3 numbers, m"), std::string::npos) << refusal();
 }
 
 TEST_F(Beds, unknown_generator_is_refused_with_the_known_ones) {

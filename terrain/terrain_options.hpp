@@ -24,8 +24,10 @@ struct TerrainOptions {
   std::uint64_t seed = 1;   // run.seed
   std::string bed;  // file: a settled bed (HDF5), or positions to settle (CSV x_m,y_m,z_m); empty: generate
   std::string bed_generator = "poisson";  // poisson | lattice: where the grains of a new bed start
-  double compaction_pressure = 0.0;       // a lid pressed on the settled bed and lifted again, Pa; 0: none
-  bool cache = true;                      // keep settled beds under the user's cache directory
+  double undisturbed_height =
+      -1.0;  // of the surface that sinkage counts from, m; negative: the bed's own mean
+  double compaction_pressure = 0.0;  // a lid pressed on the settled bed and lifted again, Pa; 0: none
+  bool cache = true;                 // keep settled beds under the user's cache directory
   // Contact between grains and of grains with walls.
   double young_modulus = 2.49e7;         // Pa, law mindlin
   double poisson_ratio = 0.3;            // -

@@ -27,7 +27,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr int kPoll = 100000;  // µs
+constexpr int kPoll = 100000;     // µs
+constexpr double kDeepRut = 0.4;  // of the bed's depth: a tire this deep feels the floor
 
 Json read_summary(const fs::path& run) {
   std::ifstream in(run / "summary.json");
@@ -224,6 +225,13 @@ void Sweep::look_at(Run& run) {
     };
     tell(run, fmt::format("is done: pull {:.0f} ± {:.0f} N", number("drawbar_pull_N.mean"),
                           number("drawbar_pull_N.sem")));
+    if (const double deep = number("sinkage_m") / number("surface_height_m");
+        study_.passes && deep > kDeepRut)
+      tell(run,
+           fmt::format(
+               "stands {:.0f} % of the bed's depth in it: the floor carries it too; a deeper bed is needed "
+               "for soil without a floor (more terrain.layers)",
+               100.0 * deep));
   } else {
     run.state = State::failed;
     run.problem = last_error(log_of(run));

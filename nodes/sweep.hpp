@@ -35,8 +35,9 @@ class Sweep {
  private:
   enum class State { waiting, running, done, failed, stopped };
   struct Run {
-    nlohmann::ordered_json keys,
-        passes_on;  // what the user varies, and what a pass takes from the one before
+    nlohmann::ordered_json keys = nlohmann::ordered_json::object();  // what the user varies
+    nlohmann::ordered_json passes_on =
+        nlohmann::ordered_json::object();  // what a pass takes from those before
     State state = State::waiting;
     bool loaded = false;
     std::string digest, problem;

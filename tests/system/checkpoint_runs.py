@@ -1,4 +1,5 @@
 """What the tests of checkpoints share: a run of a second, the same run made to fail at a named point, and comparisons."""
+import csv
 import json
 import os
 import pathlib
@@ -25,6 +26,12 @@ def steps(run):
 
 def summary(run):
     return json.loads((pathlib.Path(run) / "summary.json").read_text())
+
+
+def table(run):
+    """The lines of the series."""
+    with open(pathlib.Path(run) / "timeseries.csv", newline="") as file:
+        return list(csv.DictReader(file))
 
 
 class CheckpointTest(SystemTest):

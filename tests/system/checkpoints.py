@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """Checkpoints and `furrow resume`: the run that goes on is bit for bit the one that was not interrupted."""
-import csv
 import json
 import pathlib
 import shutil
@@ -8,7 +7,7 @@ import signal
 import subprocess
 import unittest
 
-from checkpoint_runs import FAULTY, FLEXIBLE, INTERVAL, STEPS, CheckpointTest, steps, summary
+from checkpoint_runs import FAULTY, FLEXIBLE, INTERVAL, STEPS, CheckpointTest, steps, summary, table
 from program import PROGRAM, furrow, main
 
 
@@ -72,7 +71,7 @@ class Resume(CheckpointTest):
         frames = sorted(path.name for path in (self.run_folder / "frames").glob("tire0_*"))
         # every 50 steps before step 200, every 100 from there to 500
         self.assertEqual(frames, [f"tire0_{i:06}.h5" for i in range(4 + 4)])
-        rows = list(csv.DictReader((self.run_folder / "timeseries.csv").open()))
+        rows = table(self.run_folder)
         times = [round(float(row["time_s"]) * 1e3) for row in rows]
         self.assertEqual(times, [*range(1, 20), *range(20, 51, 2)])
 
@@ -85,7 +84,7 @@ class Resume(CheckpointTest):
 
     def test_changed_physics_is_refused_by_its_key(self):
         run = self.copy_of_whole()
-        for setting, key, was in (("rig.slip=0.5", "rig.slip", "0.3"), ("terrain.cohesion=1e3", "terrain.cohesion", "80000"),
+        for setting, key, was in (("rig.slip=0.5", "rig.slip", "0.3"), ("terrain.cohesion=1e3", "terrain.cohesion", "80e3"),
                                   ("run.step=5e-5", "run.step", "1e-04"), ("run.seed=2", "run.seed", "1")):
             done = self.resume("--set", setting, code=2)
             self.assertIn(f"key '{key}': is ", done.stderr)
@@ -127,7 +126,7 @@ class FlexibleTire(CheckpointTest):
     SCENARIO = FLEXIBLE
 
     def test_in_the_middle_of_a_factors_life(self):
-        rows = list(csv.DictReader((self.whole / "timeseries.csv").open()))
+        rows = table(self.whole)
         made = [int(float(row["factorizations"])) for row in rows]
         alive = [s for s in (200, 300, 400) if made[s // 10 - 2] == made[s // 10 + 1] > 0]
         self.assertTrue(alive, f"no factor lives through a checkpoint: {made}")

@@ -16,23 +16,6 @@ std::string swapped(std::string name, char from, char to) {
   return name;
 }
 
-std::string checksum(const Archive& archive) {
-  Hash hash;
-  for (const auto& [name, array] : archive.arrays()) {
-    const std::size_t type = array.index();
-    hash.add(name);
-    hash.add(&type, sizeof type);
-    std::visit(
-        [&hash](const auto& values) {
-          const std::size_t size = values.size();
-          hash.add(&size, sizeof size);
-          hash.add(std::span(values));
-        },
-        array);
-  }
-  return hash.hex();
-}
-
 Archive::Array read_array(const Hdf5Reader& file, const std::string& name) {
   switch (file.type(name)) {
     case Hdf5Type::float64:
@@ -50,11 +33,29 @@ Archive::Array read_array(const Hdf5Reader& file, const std::string& name) {
 
 }  // namespace
 
-void write_archive(const std::filesystem::path& path, const Archive& archive) {
+std::string archive_checksum(const Archive& archive) {
+  Hash hash;
+  for (const auto& [name, array] : archive.arrays()) {
+    const std::size_t type = array.index();
+    hash.add(name);
+    hash.add(&type, sizeof type);
+    std::visit(
+        [&hash](const auto& values) {
+          const std::size_t size = values.size();
+          hash.add(&size, sizeof size);
+          hash.add(std::span(values));
+        },
+        array);
+  }
+  return hash.hex();
+}
+
+std::string write_archive(const std::filesystem::path& path, const Archive& archive) {
+  const std::string checksum = archive_checksum(archive);
   Hdf5Writer file(path);
   file.attribute("kind", std::string(kKind));
   file.attribute("arrays", static_cast<std::int64_t>(archive.arrays().size()));
-  file.attribute("checksum", checksum(archive));
+  file.attribute("checksum", checksum);
   for (const auto& [name, array] : archive.arrays()) {
     if (name.find(':') != std::string::npos)
       throw io_error(path.string(), "array name '" + name + "' holds a ':'");
@@ -62,6 +63,7 @@ void write_archive(const std::filesystem::path& path, const Archive& archive) {
     std::visit([&](const auto& values) { file.put(stored, std::span(values), {values.size()}); }, array);
   }
   file.finish();
+  return checksum;
 }
 
 Archive read_archive(const std::filesystem::path& path) {
@@ -72,7 +74,7 @@ Archive read_archive(const std::filesystem::path& path) {
   if (file.integer("arrays") > 0)
     for (const std::string& stored : file.list(kGroup))
       archive.put_array(swapped(stored, ':', '/'), read_array(file, std::string(kGroup) + "/" + stored));
-  if (checksum(archive) != file.text("checksum"))
+  if (archive_checksum(archive) != file.text("checksum"))
     throw io_error(path.string(), "the checksum does not fit the contents: the file is damaged");
   return archive;
 }

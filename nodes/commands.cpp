@@ -23,21 +23,25 @@ namespace {
 
 /// What the user typed, as CLI11 fills it in.
 struct Typed {
-  std::string scenario, out, threads, key, directory, soil;
+  std::string scenario, out, threads, key, directory, soil, until;
   std::vector<std::string> settings;
-  bool overwrite = false, profile = false, json = false;
+  bool overwrite = false, profile = false, json = false, no_plots = false;
 };
 
 Error usage_error(const std::string& what) { return input_error("command line", "", what); }
 
-void add_scenario(CLI::App& command, Typed& typed) {
-  command.add_option("SCENARIO", typed.scenario, "scenario file (JSON)")->required();
+void add_settings(CLI::App& command, Typed& typed) {
   command
       .add_option("--set", typed.settings,
                   "key=value: sets a scenario key by its dotted path; may be repeated")
       ->take_all()
       ->allow_extra_args(false);
   command.add_option("--threads", typed.threads, "threads of the terrain: a number or auto (run.threads)");
+}
+
+void add_scenario(CLI::App& command, Typed& typed) {
+  command.add_option("SCENARIO", typed.scenario, "scenario file (JSON)")->required();
+  add_settings(command, typed);
 }
 
 void add_grain_bench(CLI::App& command, GrainBench& bench) {
@@ -79,6 +83,7 @@ Settings settings_of(const Typed& typed) {
     settings.emplace_back(text.substr(0, equals), text.substr(equals + 1));
   }
   if (!typed.threads.empty()) settings.emplace_back("run.threads", typed.threads);
+  if (!typed.until.empty()) settings.emplace_back("run.end", typed.until);
   return settings;
 }
 
@@ -113,8 +118,15 @@ ExitCode report_command(const Typed& typed) {
 }
 
 ExitCode run_command(const Typed& typed, int argc, char** argv) {
-  const RunArguments arguments{typed.scenario, settings_of(typed), typed.out, typed.overwrite, typed.profile};
+  const RunArguments arguments{typed.scenario, settings_of(typed), typed.out, typed.overwrite,
+                               typed.profile,  !typed.no_plots,    false};
   return launched_by_mpi() ? run_as_rank(arguments, argc, argv) : run_supervised(arguments);
+}
+
+ExitCode resume_command(const Typed& typed, int argc, char** argv) {
+  RunArguments arguments{{},  settings_of(typed), typed.directory, false, typed.profile, !typed.no_plots,
+                         true};
+  return launched_by_mpi() ? run_as_rank(arguments, argc, argv) : resume_supervised(arguments);
 }
 
 /// CLI11's words, with a guess at what was meant.
@@ -164,6 +176,14 @@ ExitCode run_command_line(int argc, char** argv) {
   run.add_flag("--overwrite", typed.overwrite, "let --out replace the results of an earlier run");
   run.add_flag("--profile", typed.profile,
                "also write profile.json: where the time of each step goes (Chrome trace)");
+  run.add_flag("--no-plots", typed.no_plots, "leave the plots to 'furrow report'");
+  CLI::App& resume = *app.add_subcommand(
+      "resume", "goes on with a run from its last checkpoint, bit for bit as if it had not been interrupted");
+  resume.add_option("DIR", typed.directory, "folder of the run")->required();
+  resume.add_option("--until", typed.until, "another end of the run, s (run.end)");
+  add_settings(resume, typed);
+  resume.add_flag("--profile", typed.profile, "also write profile.json, of the steps from here on");
+  resume.add_flag("--no-plots", typed.no_plots, "leave the plots to 'furrow report'");
   CLI::App& validate =
       *app.add_subcommand("validate", "checks a scenario and says what a run of it will need");
   add_scenario(validate, typed);
@@ -183,6 +203,13 @@ ExitCode run_command_line(int argc, char** argv) {
                           "cone, angle of repose; prints JSON");
   add_scenario(soil, typed);
   add_soil_options(soil, soil_arguments);
+  SweepArguments sweep_arguments;
+  CLI::App& sweep = *app.add_subcommand(
+      "sweep", "a table of runs that differ in some keys; goes on where it was interrupted");
+  sweep.add_option("STUDY", sweep_arguments.study, "study file (JSON)")->required();
+  sweep.add_option("--out", sweep_arguments.out, "folder of the study (default: results/<study> here)");
+  sweep.add_option("--jobs", sweep_arguments.jobs, "runs at once, each with its share of the cores")
+      ->capture_default_str();
   CLI::App& report = *app.add_subcommand("report", "plots of a finished run, as PNG files in its folder");
   report.add_option("DIR", typed.directory, "folder of the run, or of soil tests")->required();
   report.add_option("--soil", typed.soil,
@@ -204,10 +231,12 @@ ExitCode run_command_line(int argc, char** argv) {
     throw usage_error(parse_problem(app, error, argc, argv));
   }
   if (run.parsed()) return run_command(typed, argc, argv);
+  if (resume.parsed()) return resume_command(typed, argc, argv);
   if (validate.parsed()) return validate_command(typed);
   if (ranks.parsed()) return ranks_command(typed, {argv, argv + argc});
   if (soil.parsed()) return soil_command(load(typed), soil_arguments);
   if (bed.parsed()) return bed_command(load(typed));
+  if (sweep.parsed()) return sweep_command(sweep_arguments);
   if (report.parsed()) return report_command(typed);
   if (bench_of_grains.parsed()) {
     std::cout << bench_grains(grains);

@@ -19,6 +19,8 @@ struct RunArguments {
   std::filesystem::path out;  // empty: a fresh folder under results/
   bool overwrite = false;
   bool profile = false;
+  bool plots = true;    // at the end
+  bool resume = false;  // goes on with the run in `out`; `scenario` is not used
 };
 
 /// Everything that `furrow` does. @throws Error
@@ -26,6 +28,8 @@ ExitCode run_command_line(int argc, char** argv);
 
 /// `furrow run` outside MPI (commands_run.cpp) and as one of its ranks (commands_rank.cpp).
 ExitCode run_supervised(const RunArguments& arguments);
+/// `furrow resume` outside MPI.
+ExitCode resume_supervised(const RunArguments& arguments);
 ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv);
 
 /// mpirun ends all ranks as soon as one has failed, even the one that is about to say why: the others wait here.
@@ -33,6 +37,15 @@ void let_first_rank_speak();
 
 /// `furrow report`: makes the plots of a run (commands_report.cpp). @throws Error
 std::vector<std::filesystem::path> make_report(const std::filesystem::path& run, bool quiet);
+
+struct SweepArguments {
+  std::filesystem::path study;
+  std::filesystem::path out;  // empty: results/<study>
+  int jobs = 1;
+};
+
+/// `furrow sweep` (commands_sweep.cpp). @throws Error
+ExitCode sweep_command(const SweepArguments& arguments);
 
 struct SoilArguments {
   std::filesystem::path out;  // empty: a fresh folder under results/

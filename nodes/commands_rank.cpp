@@ -1,4 +1,4 @@
-// One rank of `furrow run`, started by a supervisor or by the user's own mpirun or srun.
+// One rank of `furrow run` or `furrow resume`, started by a supervisor or by the user's own mpirun or srun.
 #include <unistd.h>
 #include <csignal>
 #include <cstdlib>
@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "nodes/commands.hpp"
+#include "nodes/resume.hpp"
 #include "nodes/run_directory.hpp"
 #include "nodes/run_node.hpp"
 #include "nodes/signals.hpp"
@@ -95,15 +96,18 @@ std::filesystem::path agree_on_directory(Transport& transport, const Scenario& s
   if (voice.supervised()) return arguments.out;
   const Address rig{Role::rig, 0};
   if (transport.self() != rig) return receive<RunFolder>(transport, rig).path;
-  made.emplace(scenario.name, arguments.out, arguments.overwrite);
+  if (arguments.resume)
+    made.emplace(arguments.out);
+  else
+    made.emplace(scenario.name, arguments.out, arguments.overwrite);
   const RunFolder folder{std::filesystem::absolute(made->path()).string()};
   for (int k = 0; k < transport.tire_count(); ++k) send(transport, Address{Role::tire, k}, folder);
   send(transport, Address{Role::terrain, 0}, folder);
   return made->path();
 }
 
-ExitCode run_this_node(Transport& transport, const Scenario& scenario, const RunArguments& arguments,
-                       Voice& voice) {
+ExitCode run_this_node(Transport& transport, const Scenario& scenario, const ResumePoint* resume,
+                       const RunArguments& arguments, Voice& voice) {
   std::optional<RunDirectory> made;
   try {
     RunContext context;
@@ -122,6 +126,8 @@ ExitCode run_this_node(Transport& transport, const Scenario& scenario, const Run
     context.threads = plan.threads;
     context.profile = arguments.profile;
     context.stop_requested = [] { return stop_signalled(); };
+    context.note = [&](const std::string& text) { voice.note(text); };
+    context.resume = resume;
     context.progress = [&](const Progress& progress) { voice.show(progress); };
     const ExitCode code = run_node(scenario, transport, context);
     voice.clear();
@@ -151,8 +157,11 @@ ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
   catch_stop_signals();
   Voice voice;
   std::optional<Scenario> scenario;
+  ResumePlan plan;
   try {
-    scenario = load_scenario(arguments.scenario, arguments.settings);
+    if (arguments.resume) plan = plan_resume(arguments.out, arguments.settings);
+    if (plan.finished) return ExitCode::done;
+    scenario = arguments.resume ? plan.scenario : load_scenario(arguments.scenario, arguments.settings);
   } catch (const Error& error) {
     if (first_on_machine())
       voice.error(error);
@@ -161,7 +170,8 @@ ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
     return error.code();
   }
   if (!voice.supervised() && voice.rank() == 0)
-    for (const std::string& warning : scenario->warnings) print_warning(warning);
+    for (const auto* warnings : {&scenario->warnings, &plan.warnings})
+      for (const std::string& warning : *warnings) print_warning(warning);
   std::unique_ptr<Transport> transport;
   try {
     transport =
@@ -171,7 +181,7 @@ ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
     return error.code();
   }
   voice.started();
-  return run_this_node(*transport, *scenario, arguments, voice);
+  return run_this_node(*transport, *scenario, arguments.resume ? &plan.point : nullptr, arguments, voice);
 }
 
 }  // namespace furrow

@@ -1,10 +1,12 @@
-// `furrow run` outside MPI: checks first, then has the ranks started and watched, then tells the result.
+// `furrow run` and `furrow resume` outside MPI: check first, then have the ranks started and watched, then tell the result.
 #include <cstdio>
 #include <iostream>
 
 #include <fmt/format.h>
 
+#include "nodes/checkpoint.hpp"
 #include "nodes/commands.hpp"
+#include "nodes/resume.hpp"
 #include "nodes/run_directory.hpp"
 #include "nodes/scenario.hpp"
 #include "nodes/signals.hpp"
@@ -16,6 +18,7 @@ namespace {
 std::vector<std::string> rank_arguments(const RunArguments& arguments,
                                         const std::filesystem::path& directory) {
   std::vector<std::string> list{"run", arguments.scenario.string(), "--out", directory.string()};
+  if (arguments.resume) list = {"resume", directory.string()};
   for (const auto& [key, value] : arguments.settings) {
     list.push_back("--set");
     list.push_back(key + "=" + value);
@@ -24,27 +27,27 @@ std::vector<std::string> rank_arguments(const RunArguments& arguments,
   return list;
 }
 
-void tell_result(const Scenario& scenario, const std::filesystem::path& directory) {
+void tell_result(const Scenario& scenario, const std::filesystem::path& directory, bool plots) {
   std::fputs(result_text(directory, scenario).c_str(), stderr);
+  if (!plots) return;
   try {
-    const auto plots = make_report(directory, true);
-    if (!plots.empty())
-      std::fprintf(stderr, "furrow: plots: %s and %zu more\n", plots.front().c_str(), plots.size() - 1);
+    const auto made = make_report(directory, true);
+    if (!made.empty())
+      std::fprintf(stderr, "furrow: plots: %s and %zu more\n", made.front().c_str(), made.size() - 1);
   } catch (const Error& error) {
     print_warning(std::string("no plots: ") + error.what());
   }
 }
 
-}  // namespace
+/// What can be done with a run that did not come to its end.
+void tell_how_to_go_on(const std::filesystem::path& directory) {
+  if (list_checkpoints(directory).empty())
+    std::fprintf(stderr, "furrow: there is no checkpoint yet; start again with furrow run\n");
+  else
+    std::fprintf(stderr, "furrow: to go on from the last checkpoint: furrow resume %s\n", directory.c_str());
+}
 
-ExitCode run_supervised(const RunArguments& arguments) {
-  const Scenario scenario = load_scenario(arguments.scenario, arguments.settings);
-  for (const std::string& warning : scenario.warnings) print_warning(warning);
-  find_mpirun();
-  RunDirectory directory(scenario.name, arguments.out, arguments.overwrite);
-  catch_stop_signals();
-  std::fprintf(stderr, "furrow: %s, results in %s\n", scenario.name.c_str(), directory.path().c_str());
-
+ExitCode have_it_run(const Scenario& scenario, RunDirectory& directory, const RunArguments& arguments) {
   LaunchResult result;
   {
     ProgressDisplay display;
@@ -56,17 +59,50 @@ ExitCode run_supervised(const RunArguments& arguments) {
   if (result.code == ExitCode::stopped) {
     std::fprintf(stderr, "furrow: %s; what there is of the results stands in %s\n", result.error.c_str(),
                  directory.path().c_str());
+    tell_how_to_go_on(directory.path());
   } else if (result.code != ExitCode::done) {
     print_error(result.error);
-    if (result.code != ExitCode::bad_input)
+    if (result.code != ExitCode::bad_input) {
       std::fprintf(stderr, "furrow: what the ranks said stands in %s\n",
                    (directory.path() / "run.log").c_str());
+      tell_how_to_go_on(directory.path());
+    }
     return result.code;
   } else {
-    tell_result(scenario, directory.path());
+    tell_result(scenario, directory.path(), arguments.plots);
   }
   std::cout << directory.path().string() << "\n";
   return result.code;
+}
+
+}  // namespace
+
+ExitCode run_supervised(const RunArguments& arguments) {
+  const Scenario scenario = load_scenario(arguments.scenario, arguments.settings);
+  for (const std::string& warning : scenario.warnings) print_warning(warning);
+  find_mpirun();
+  RunDirectory directory(scenario.name, arguments.out, arguments.overwrite);
+  catch_stop_signals();
+  std::fprintf(stderr, "furrow: %s, results in %s\n", scenario.name.c_str(), directory.path().c_str());
+  return have_it_run(scenario, directory, arguments);
+}
+
+ExitCode resume_supervised(const RunArguments& arguments) {
+  RunDirectory directory(arguments.out);
+  const ResumePlan plan = plan_resume(directory.path(), arguments.settings);
+  for (const auto* warnings : {&plan.scenario.warnings, &plan.warnings})
+    for (const std::string& warning : *warnings) print_warning(warning);
+  if (plan.finished) {
+    std::fprintf(stderr, "furrow: %s has come to its end at %g s, there is nothing to do\n",
+                 directory.path().c_str(), plan.scenario.run.end);
+    std::cout << directory.path().string() << "\n";
+    return ExitCode::done;
+  }
+  find_mpirun();
+  catch_stop_signals();
+  std::fprintf(stderr, "furrow: %s goes on from t = %g s, results in %s\n", plan.scenario.name.c_str(),
+               plan.point.manifest.time, directory.path().c_str());
+  return have_it_run(plan.scenario, directory, arguments);
 }
 
 }  // namespace furrow

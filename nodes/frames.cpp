@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "nodes/fault_point.hpp"
 #include "nodes/hdf5_file.hpp"
 
 namespace furrow {
@@ -37,6 +38,7 @@ void write_tire_frame(const std::filesystem::path& run, int tire, std::int64_t i
   Hdf5Writer file(frame_file(run, fmt::format("tire{}", tire), index));
   file.attribute("time_s", time);
   file.put("position", flatten(surface.position), {count, 3});
+  fault_point("frame");
   file.put("velocity", flatten(surface.velocity), {count, 3});
   file.put("force", flatten(dense), {count, 3});
   file.put("triangle", triangles, {mesh.triangles.size(), 3});
@@ -50,9 +52,23 @@ void write_terrain_frame(const std::filesystem::path& run, std::int64_t index, d
   Hdf5Writer file(frame_file(run, "terrain", index));
   file.attribute("time_s", time);
   file.put("position", frame.position, {count, 3});
+  fault_point("frame");
   file.put("speed", frame.speed, {count});
   file.put("radius", frame.radius, {count});
   file.finish();
+}
+
+void remove_frames_from(const std::filesystem::path& run, std::int64_t index) {
+  std::vector<std::filesystem::path> doomed;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(run / "frames", error)) {
+    const std::string name = entry.path().stem().string();
+    const std::size_t digits = name.rfind('_') + 1;  // 0 where there is none
+    const bool numbered = digits > 0 && name.find_first_not_of("0123456789", digits) == std::string::npos;
+    if (entry.path().extension() == ".part" || (numbered && std::stoll(name.substr(digits)) >= index))
+      doomed.push_back(entry.path());
+  }
+  for (const auto& file : doomed) std::filesystem::remove(file, error);
 }
 
 }  // namespace furrow

@@ -4,6 +4,7 @@
 // Attribute `time_s` on the file.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 
 #include "protocol/surface.hpp"
@@ -18,5 +19,8 @@ void write_tire_frame(const std::filesystem::path& run, int tire, std::int64_t i
 /// Nothing is written for a terrain without grains. @throws Error(io)
 void write_terrain_frame(const std::filesystem::path& run, std::int64_t index, double time,
                          const TerrainFrame& frame);
+
+/// Removes the frames whose number is `index` or more, and what was never finished. Errors are ignored.
+void remove_frames_from(const std::filesystem::path& run, std::int64_t index);
 
 }  // namespace furrow

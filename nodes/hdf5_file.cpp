@@ -68,8 +68,9 @@ void Hdf5Writer::write(const std::string& name, std::span<const T> values, const
   const Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
   const Handle groups(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(groups, 1);
-  const Handle set(H5Dcreate2(handle_, name.c_str(), type, space, groups, H5P_DEFAULT, H5P_DEFAULT),
-                   H5Dclose);
+  const Handle timeless(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_obj_track_times(timeless, false);  // equal contents make equal files
+  const Handle set(H5Dcreate2(handle_, name.c_str(), type, space, groups, timeless, H5P_DEFAULT), H5Dclose);
   check(set >= 0, "cannot create dataset '" + name + "'");
   if (values.empty()) return;
   check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0,

@@ -25,6 +25,13 @@ std::int64_t steps_between(double interval, double step) {
   return std::max<std::int64_t>(1, std::llround(interval / step));
 }
 
+FrameClock frame_clock(const Scenario& scenario, const RunContext& context) {
+  const std::int64_t every =
+      context.directory.empty() ? 0 : steps_between(scenario.output.frame_interval, scenario.run.step);
+  if (!context.resume) return {every, 0, 0};
+  return context.resume->manifest.frames.continued(context.resume->manifest.step, every);
+}
+
 std::unique_ptr<Node> make_node(const Scenario& scenario, Address self, int threads) {
   switch (self.role) {
     case Role::rig:

@@ -2,13 +2,17 @@
 //
 //   set_up;  for n = 0 … N:  synchronize(n);  if n < N: advance
 //
-// synchronize sends everything before it receives anything, so that no order of ranks can deadlock.
+// synchronize sends everything before it receives anything, so that no order of ranks can deadlock. The rig orders
+// checkpoints and stops: at t_n it tells the tires, at t_{n+1} they tell the terrain, and all save at t_{n+2}, before they
+// synchronize there. Between the steps nothing is in flight, so that the nodes' states are all there is.
 #pragma once
 
 #include <memory>
 #include <span>
 
+#include "nodes/frame_clock.hpp"
 #include "nodes/run_node.hpp"
+#include "nodes/series.hpp"
 #include "protocol/archive.hpp"
 #include "protocol/transport.hpp"
 
@@ -20,7 +24,8 @@ class Node {
 
   virtual NodeCard card() const = 0;
 
-  /// Exchanges what is said once; `cards` in the order rig, tires, terrain.
+  /// Exchanges what is said once; `cards` in the order rig, tires, terrain. A run that is continued comes out of it in the
+  /// state of context.saved.
   virtual void set_up(Transport& transport, std::span<const NodeCard> cards, const RunContext& context) = 0;
 
   virtual void synchronize(Transport& transport, const StepHeader& header) = 0;
@@ -28,14 +33,19 @@ class Node {
   /// Advances this node by one communication step, from t_n.
   virtual void advance(const StepHeader& header) = 0;
 
-  /// True when the run ends at the synchronization just done, before its planned end.
-  virtual bool stopped() const = 0;
+  /// What falls due once the interval after the synchronization just done has been advanced.
+  virtual Order due() const = 0;
 
-  /// Sends (tire, terrain) or gathers and writes (rig) the results.
-  virtual void finish(Transport& transport, FinalReport own) = 0;
+  /// Sends (tire, terrain) or gathers and writes (rig) the results. `stopped`: before the planned end.
+  virtual void finish(Transport& transport, FinalReport own, bool stopped) = 0;
 
   virtual void save(Archive& archive) const = 0;
   virtual void restore(const Archive& archive) = 0;
+
+  /// What is no state but must be known to go on: kept in checkpoints beside save().
+  virtual void save_setup(Archive&) const {}
+  /// The rig's: flushes the series to the disk and says where they stand.
+  virtual std::vector<SeriesMark> mark_series() { return {}; }
 };
 
 std::unique_ptr<Node> make_rig_node(const Scenario& scenario);
@@ -45,16 +55,20 @@ std::unique_ptr<Node> make_terrain_node(const Scenario& scenario, int threads);
 /// The node that `self` is in this scenario.
 std::unique_ptr<Node> make_node(const Scenario& scenario, Address self, int threads);
 
-/// Synchronizes and advances for n = from … to − 1. Stops early, after a synchronization, when the node says so.
-/// @returns the step it stands at; not yet synchronized there unless it stopped early
+/// Synchronizes and advances for n = from … to − 1; calls `checkpoint(n)` when one falls due. Ends early when ordered to.
+/// @returns the step it stands at, not yet synchronized there
 std::int64_t run_steps(Node& node, Transport& transport, double step, std::int64_t from, std::int64_t to,
-                       class StepProfile* profile = nullptr);
+                       class StepProfile* profile = nullptr,
+                       const std::function<void(std::int64_t)>& checkpoint = {});
 
 /// Hash of everything that save() holds.
 std::uint64_t state_hash(const Node& node);
 
 /// What all cards of a run share.
 NodeCard common_card(const Scenario& scenario, Address self);
+
+/// Frames of the segment that begins now.
+FrameClock frame_clock(const Scenario& scenario, const RunContext& context);
 
 /// Number of communication steps between two outputs that are `interval` seconds apart; 0: never.
 std::int64_t steps_between(double interval, double step);

@@ -1,7 +1,11 @@
 #include "nodes/results.hpp"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
+#include "nodes/checkpoint_writer.hpp"
+#include "nodes/frames.hpp"
 #include "nodes/hdf5_file.hpp"
 #include "nodes/text_file.hpp"
 #include "nodes/xdmf.hpp"
@@ -22,13 +26,38 @@ void put_heights(Hdf5Writer& file, const std::string& name, const HeightField& f
 }  // namespace
 
 Results::Results(const Scenario& scenario, std::vector<NodeCard> cards, const TerrainSetup& setup,
-                 const std::filesystem::path& directory)
-    : scenario_(scenario), cards_(std::move(cards)), setup_(setup), directory_(directory) {
-  write_whole_file(directory_ / "scenario.json", scenario_.completed + "\n");
+                 const std::filesystem::path& directory, const ResumePoint* resume)
+    : scenario_(scenario), cards_(std::move(cards)), setup_(setup), directory_(directory), resume_(resume) {
   const std::size_t wheels = scenario_.tires.size();
   rows_.resize(wheels);
+  if (resume) {
+    continue_from(*resume);
+    return;
+  }
+  write_whole_file(directory_ / "scenario.json", scenario_.completed + "\n");
   for (std::size_t k = 0; k < wheels; ++k)
     writers_.push_back(std::make_unique<SeriesWriter>(directory_ / numbered("timeseries", k, ".csv")));
+}
+
+void Results::continue_from(const ResumePoint& resume) {
+  const CheckpointManifest& manifest = resume.manifest;
+  for (std::size_t k = 0; k < rows_.size(); ++k)
+    writers_.push_back(std::make_unique<SeriesWriter>(directory_ / numbered("timeseries", k, ".csv"),
+                                                      manifest.series.at(k), rows_[k]));
+  std::error_code ignored;
+  for (std::size_t k = 0; k < rows_.size(); ++k)
+    std::filesystem::remove(directory_ / numbered("summary", k, ".json"), ignored);
+  std::filesystem::remove(directory_ / "results.h5", ignored);
+  remove_frames_from(directory_, manifest.frames.index(manifest.step));
+  remove_checkpoints_after(directory_, manifest.step);
+  write_xdmf_index(directory_);
+  write_whole_file(directory_ / "scenario.json", scenario_.completed + "\n");
+}
+
+std::vector<SeriesMark> Results::mark_series() {
+  std::vector<SeriesMark> marks;
+  for (auto& writer : writers_) marks.push_back(writer->mark());
+  return marks;
 }
 
 void Results::add(int wheel, const SeriesRow& row) {
@@ -60,10 +89,13 @@ void Results::finish(std::span<const FinalReport> reports, std::span<const Serie
   write_hdf5(reports);
   write_xdmf_index(directory_);
   if (stopped) return;
+  const auto steps =
+      static_cast<std::int64_t>(std::llround(builders.front().now().time / scenario_.run.step));
+  const std::vector<Segment> segments = segments_until(steps, wall, reports.back().threads, resume_);
   for (std::size_t k = builders.size(); k-- > 0;) {
     const SummaryInput input{scenario_,       cards_,   setup_,
                              reports,         rows_[k], builders[k],
-                             carried_mass[k], wall,     static_cast<int>(k)};
+                             carried_mass[k], segments, static_cast<int>(k)};
     write_whole_file(directory_ / numbered("summary", k, ".json"), summary_text(input));
   }
 }

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "nodes/checkpoint.hpp"
 #include "nodes/scenario.hpp"
 #include "nodes/series.hpp"
 #include "nodes/series_builder.hpp"
@@ -22,7 +23,7 @@ struct SummaryInput {
   std::span<const SeriesRow> rows;
   const SeriesBuilder& builder;  // totals at the end
   double carried_mass = 0.0;     // kg
-  double wall = 0.0;             // s, without settling
+  std::vector<Segment> segments;
   int wheel = 0;
 };
 
@@ -31,23 +32,29 @@ std::string summary_text(const SummaryInput& input);
 
 class Results {
  public:
-  /// Opens the series files of all wheels in the existing run directory; writes scenario.json. @throws Error(io)
+  /// Opens the series files of all wheels in the existing run directory; writes scenario.json. Where a run goes on, what
+  /// was written after its checkpoint is removed, and the index made anew.
+  /// @param resume null: the run begins
+  /// @throws Error(io)
   Results(const Scenario& scenario, std::vector<NodeCard> cards, const TerrainSetup& setup,
-          const std::filesystem::path& directory);
+          const std::filesystem::path& directory, const ResumePoint* resume = nullptr);
 
   void add(int wheel, const SeriesRow& row);
+  std::vector<SeriesMark> mark_series();
 
   /// Writes results.h5, results.xdmf and, unless the run was stopped early, summary.json. @throws Error(io)
   void finish(std::span<const FinalReport> reports, std::span<const SeriesBuilder> builders,
               std::span<const double> carried_mass, double wall, bool stopped);
 
  private:
+  void continue_from(const ResumePoint& resume);
   void write_hdf5(std::span<const FinalReport> reports) const;
 
   Scenario scenario_;
   std::vector<NodeCard> cards_;
   TerrainSetup setup_;
   std::filesystem::path directory_;
+  const ResumePoint* resume_;
   std::vector<std::unique_ptr<SeriesWriter>> writers_;
   std::vector<std::vector<SeriesRow>> rows_;  // per wheel
 };

@@ -39,23 +39,26 @@ class RigNode : public Node {
     for (int k = 0; k < wheels; ++k)
       height[k] = setup_.top_height[k] + cards[1 + k].tire_radius + kPlacementGap;
     rig_->place(height);
+    // First of all, as the others begin to write frames once they are placed.
+    if (!context.directory.empty())
+      results_ = std::make_unique<Results>(scenario_, cards_, setup_, context.directory, context.resume);
     for (int k = 0; k < wheels; ++k) {
       send(transport, Address{Role::tire, k}, RimMotion{{kPlacement, 0.0}, rig_->rim(k)});
       builders_.emplace_back(cards[1 + k].tire_radius, setup_.mean_height[k], scenario_.run.step);
     }
     wrenches_.resize(wheels);
     series_steps_ = steps_between(scenario_.output.series_interval, scenario_.run.step);
-    if (!context.directory.empty())
-      results_ = std::make_unique<Results>(scenario_, cards_, setup_, context.directory);
-    wall_start_ = machine_clock();
+    if (context.saved) restore(*context.saved);
+    wall_start_ = last_checkpoint_ = machine_clock();
+    if (context.resume) time_start_ = context.resume->manifest.time;
   }
 
   void synchronize(Transport& transport, const StepHeader& header) override {
-    stopped_ = stop_sent_;
-    stop_sent_ = context_.stop_requested && context_.stop_requested();
+    due_ = next_;
+    next_ = order(header.step + 2);
     const int wheels = rig_->wheel_count();
     for (int k = 0; k < wheels; ++k)
-      send(transport, Address{Role::tire, k}, RimMotion{header, rig_->rim(k), stop_sent_});
+      send(transport, Address{Role::tire, k}, RimMotion{header, rig_->rim(k), next_});
     std::vector<SpindleReport> tires(wheels);
     for (int k = 0; k < wheels; ++k) {
       tires[k] = receive_step<SpindleReport>(transport, {Role::tire, k}, header.step);
@@ -74,9 +77,13 @@ class RigNode : public Node {
     rig_->advance(wrenches_, scenario_.run.step, scenario_.rig_substeps);
   }
 
-  bool stopped() const override { return stopped_; }
+  Order due() const override { return due_; }
 
-  void finish(Transport& transport, FinalReport own) override {
+  std::vector<SeriesMark> mark_series() override {
+    return results_ ? results_->mark_series() : std::vector<SeriesMark>();
+  }
+
+  void finish(Transport& transport, FinalReport own, bool stopped) override {
     std::vector<FinalReport> reports{own};
     for (std::size_t i = 1; i < cards_.size(); ++i)
       reports.push_back(receive<FinalReport>(transport, cards_[i].self));
@@ -84,7 +91,7 @@ class RigNode : public Node {
     if (context_.profile) write_profile(context_.directory / "profile.json", reports);
     std::vector<double> carried_mass;
     for (int k = 0; k < rig_->wheel_count(); ++k) carried_mass.push_back(rig_->report(k).carried_mass);
-    results_->finish(reports, builders_, carried_mass, machine_clock() - wall_start_, stopped_);
+    results_->finish(reports, builders_, carried_mass, machine_clock() - wall_start_, stopped);
   }
 
   void save(Archive& archive) const override {
@@ -114,6 +121,18 @@ class RigNode : public Node {
     return make_rig_row(std::move(rigs));
   }
 
+  /// What shall be done when all stand at `step`.
+  Order order(std::int64_t step) {
+    if (next_ == Order::stop) return Order::stop;
+    if (context_.stop_requested && context_.stop_requested()) return Order::stop;
+    const CheckpointOptions& o = scenario_.checkpoint;
+    const std::int64_t every = steps_between(o.interval, scenario_.run.step);
+    const bool by_wall = o.wall_interval > 0.0 && machine_clock() - last_checkpoint_ >= o.wall_interval;
+    if (!by_wall && (every == 0 || step % every != 0)) return Order::go_on;
+    last_checkpoint_ = machine_clock();
+    return Order::checkpoint;
+  }
+
   void record() {
     for (std::size_t k = 0; k < builders_.size(); ++k) {
       const SeriesRow row = builders_[k].take();
@@ -134,7 +153,7 @@ class RigNode : public Node {
     p.pull = last_.drawbar_pull;
     p.sinkage = last_.sinkage;
     p.speed = last_.speed;
-    p.eta = (now - wall_start_) * (1.0 - p.share) / p.share;
+    p.eta = (now - wall_start_) * (p.end - p.time) / (p.time - time_start_);
     context_.progress(p);
   }
 
@@ -148,8 +167,9 @@ class RigNode : public Node {
   std::unique_ptr<Results> results_;
   SeriesRow last_;
   std::int64_t series_steps_ = 0;
-  double wall_start_ = 0.0, shown_ = 0.0;
-  bool stop_sent_ = false, stopped_ = false;
+  double wall_start_ = 0.0, shown_ = 0.0, last_checkpoint_ = 0.0;  // wall time, s
+  double time_start_ = 0.0;                                        // simulated, when this segment began, s
+  Order next_ = Order::go_on, due_ = Order::go_on;
 };
 
 }  // namespace

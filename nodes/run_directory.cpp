@@ -43,7 +43,8 @@ std::vector<fs::path> results_in(const fs::path& folder) {
 
 bool is_run(const fs::path& folder) {
   std::error_code error;
-  return fs::exists(folder / "run.log", error) || fs::exists(folder / "scenario.json", error);
+  return fs::exists(folder / "run.log", error) || fs::exists(folder / "scenario.json", error) ||
+         fs::exists(folder / "sweep.json", error);
 }
 
 }  // namespace
@@ -75,6 +76,17 @@ RunDirectory::RunDirectory(const std::string& scenario, const fs::path& out, boo
   throw input_error("results", "", "holds too many runs of " + scenario + ", expected --out");
 }
 
+RunDirectory::RunDirectory(const fs::path& existing) : existing_(true), path_(existing) {
+  require_run_directory(existing);
+  require_writable("");
+  lock("");
+}
+
+void RunDirectory::require_writable(const std::string& key) const {
+  if (access(path_.c_str(), W_OK | X_OK) != 0)
+    throw input_error(path_.string(), key, "cannot be written, expected a place that can be written");
+}
+
 bool RunDirectory::make(const fs::path& folder) {
   std::vector<fs::path> missing;
   std::error_code error;
@@ -102,8 +114,7 @@ void RunDirectory::take_over() {
   if (!fs::is_empty(path_, error) && !is_run(path_))
     throw input_error(path_.string(), "--out",
                       "holds no run, expected a run's folder to overwrite, or a new one");
-  if (access(path_.c_str(), W_OK | X_OK) != 0)
-    throw input_error(path_.string(), "--out", "cannot be written, expected a place that can be written");
+  require_writable("--out");
   lock();
   fs::remove_all(aside(), error);
   const std::vector<fs::path> results = results_in(path_);
@@ -116,12 +127,7 @@ void RunDirectory::take_over() {
                       "cannot be cleared (" + error.message() + "), expected a folder to write");
 }
 
-/// The lock ends with this process, however that ends.
-void RunDirectory::lock() {
-  folder_ = open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (folder_ >= 0 && flock(folder_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-    throw input_error(path_.string(), "--out", "is taken by a run that is not over, expected another folder");
-}
+void RunDirectory::lock(const std::string& key) { folder_ = lock_folder(path_, key); }
 
 RunDirectory::~RunDirectory() {
   std::error_code error;
@@ -130,6 +136,7 @@ RunDirectory::~RunDirectory() {
 }
 
 void RunDirectory::discard() {
+  if (existing_) return;
   std::error_code error;
   for (const fs::path& result : results_in(path_)) fs::remove_all(result, error);
   if (set_aside_) {
@@ -143,6 +150,15 @@ void RunDirectory::discard() {
   for (fs::path at = path_.lexically_normal(); fs::remove(at, error) && at != made_.lexically_normal();)
     at = at.parent_path();
   made_.clear();
+}
+
+int lock_folder(const fs::path& folder, const std::string& key) {
+  const int handle = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (handle >= 0 && flock(handle, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    close(handle);
+    throw input_error(folder.string(), key, "is taken by a run that is not over, expected another folder");
+  }
+  return handle;
 }
 
 void require_run_directory(const fs::path& folder) {

@@ -6,6 +6,8 @@
 #include <cstdlib>
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -173,6 +175,13 @@ void take_run(const json& j, const json& output, Scenario& s) {
   s.output.frame_interval = output["frame_interval"];
 }
 
+void take_checkpoint(const json& j, Scenario& s) {
+  s.checkpoint.wall_interval = j["wall_interval"];
+  s.checkpoint.interval = j["interval"];
+  s.checkpoint.keep = j["keep"];
+  s.checkpoint.at_end = j["at_end"];
+}
+
 /// While the bed settles the other ranks wait, but the terrain may be bound to its own cores.
 int settle_threads(int wanted) {
   if (wanted > 0) return wanted;
@@ -195,6 +204,7 @@ void take_terrain(const json& j, Scenario& s) {
   o.seed = s.run.seed;
   if (j["bed"].is_string()) o.bed = find_file(j["bed"], "terrain.bed", s.file).string();
   o.bed_generator = j["bed_generator"];
+  o.undisturbed_height = number_or(j["undisturbed_height"], -1.0);
   o.compaction_pressure = j["compaction_pressure"];
   o.settling_friction = number_or(j["settling_friction"], -1.0);
   o.cache = j["cache"];
@@ -232,13 +242,50 @@ std::string digest_of(json completed, const Scenario& s) {
   for (const char* harmless : {"description", "$schema", "expected", "checkpoint"}) completed.erase(harmless);
   for (const char* harmless : {"threads", "peer_timeout"}) completed["run"].erase(harmless);
   completed["terrain"].erase("cache");
+  // Files count by what they hold, wherever they stand.
+  completed["terrain"].erase("bed");
+  if (completed.contains("tire")) completed["tire"].erase("file");
+  if (completed.contains("tires"))
+    for (json& tire : completed["tires"]) tire.erase("file");
   Hash hash;
   hash.add(completed.dump());
-  for (const TireOptions& tire : s.tires) hash.add(read_text_file(tire.file, "a tire file in JSON"));
+  for (const std::string& file : s.file_hashes()) hash.add(file);
   return hash.hex();
 }
 
+std::string file_bytes(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+/// Files that stand beside the scenario get their full names; those of the data folders are found from anywhere.
+void make_movable(json& document, const Scenario& s) {
+  const auto full = [&](json& name) {
+    std::error_code error;
+    if (!name.is_string() || std::filesystem::path(name.get<std::string>()).is_absolute()) return;
+    const std::filesystem::path beside = s.file.parent_path() / name.get<std::string>();
+    if (std::filesystem::is_regular_file(beside, error))
+      name = std::filesystem::absolute(beside, error).lexically_normal().string();
+  };
+  full(document["terrain"]["bed"]);
+  if (document.contains("tire")) full(document["tire"]["file"]);
+  if (document.contains("tires"))
+    for (json& tire : document["tires"]) full(tire["file"]);
+}
+
 }  // namespace
+
+std::vector<std::string> Scenario::file_hashes() const {
+  std::vector<std::string> hashes;
+  const auto add = [&](const std::string& bytes) {
+    Hash hash;
+    hash.add(bytes);
+    hashes.push_back(hash.hex());
+  };
+  for (const TireOptions& tire : tires) add(read_text_file(tire.file, "a tire file in JSON"));
+  if (!terrain.bed.empty()) add(file_bytes(terrain.bed));
+  return hashes;
+}
 
 std::int64_t RunOptions::steps() const { return std::llround(end / step); }
 
@@ -247,9 +294,9 @@ Scenario load_scenario(const std::filesystem::path& file, const Settings& settin
   s.file = file;
   s.name = file.stem().string();
   json document = read_document(file.string(), settings);
-  const bool checkpoints = document.contains("checkpoint");
   complete(document, file.string());
   take_run(document["run"], document["output"], s);
+  take_checkpoint(document["checkpoint"], s);
   take_rig(document["rig"], s);
   if (document.contains("tire"))
     for (std::size_t k = 0; k < s.rigs.size(); ++k) take_tire(document["tire"], "tire", s);
@@ -277,15 +324,22 @@ Scenario load_scenario(const std::filesystem::path& file, const Settings& settin
     for (const std::string& warning : unusual) text += "\n" + warning;
     throw Error(error.code(), text);
   }
-  if (checkpoints)
-    s.warnings.push_back(
-        input_error(file.string(), "checkpoint", "this version writes no checkpoints").what());
   document["rig"]["start"] = s.rigs.front().start;
   for (std::size_t k = 0; k < document["rig"]["wheels"].size(); ++k)
     document["rig"]["wheels"][k]["start"] = s.rigs[k].start;
-  s.completed = document.dump(2);
   s.digest = digest_of(document, s);
+  make_movable(document, s);
+  s.completed = document.dump(2);
   return s;
+}
+
+bool may_change_on_resume(const std::string& key) {
+  for (const char* section : {"output.", "checkpoint.", "expected."})
+    if (key.starts_with(section)) return true;
+  for (const char* name : {"run.end", "run.average_from", "run.threads", "run.peer_timeout", "terrain.cache",
+                           "description", "$schema"})
+    if (key == name) return true;
+  return false;
 }
 
 std::filesystem::path data_folder() {

@@ -33,6 +33,14 @@ struct OutputOptions {
   double frame_interval = 0.02;   // s; 0: none
 };
 
+/// `checkpoint.*`
+struct CheckpointOptions {
+  double wall_interval = 600.0;  // s of wall time; 0: none
+  double interval = 0.0;         // s of simulated time; 0: none
+  int keep = 2;
+  bool at_end = true;
+};
+
 /// `expected.*`, optional: what the shipped scenarios print beside their result.
 struct ExpectedResult {
   bool given = false;
@@ -42,9 +50,10 @@ struct ExpectedResult {
 
 struct Scenario {
   std::filesystem::path file;
-  std::string name;       // file name without extension
-  std::string completed;  // the whole scenario as JSON text with defaults filled in
-  std::string digest;     // hash of all in `completed` that decides the results, and of the tire files
+  std::string name;  // file name without extension
+  std::string
+      completed;       // the whole scenario as JSON text with defaults filled in; can be read from any folder
+  std::string digest;  // hash of all in `completed` that decides the results, and of the tire files
   std::vector<DrawbarRigOptions> rigs = std::vector<DrawbarRigOptions>(1);  // one per wheel
   int rig_substeps = 1;
   std::vector<TireOptions> tires;  // one per wheel
@@ -54,14 +63,22 @@ struct Scenario {
   int terrain_substeps = 1;
   RunOptions run;
   OutputOptions output;
+  CheckpointOptions checkpoint;
   ExpectedResult expected;
   std::vector<std::string> warnings;  // what looks wrong but is allowed
+
+  /// Of what the tire files and the bed's file hold, in this order.
+  std::vector<std::string> file_hashes() const;
 };
 
 /// Reads, applies `--set key=value` pairs, validates and completes a scenario.
 /// @throws Error(bad_input) naming file, key, what is wrong and what is expected; one line per mistake.
 Scenario load_scenario(const std::filesystem::path& file,
                        const std::vector<std::pair<std::string, std::string>>& settings);
+
+/// Which keys may differ when a run is continued: they say how long, how it is computed and what is written, and leave
+/// the physics alone.
+bool may_change_on_resume(const std::string& key);
 
 /// The folder that holds rigs/, tire/ and scripts/: from FURROW_HOME, or found from the program's own place.
 std::filesystem::path data_folder();

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <fstream>
 #include <numbers>
 
 #include <nlohmann/json.hpp>
@@ -8,6 +7,7 @@
 #include "nodes/results.hpp"
 #include "nodes/rut.hpp"
 #include "nodes/scenario_checks.hpp"
+#include "nodes/segments_json.hpp"
 #include "nodes/statistics.hpp"
 #include "protocol/hash.hpp"
 
@@ -58,13 +58,6 @@ Window averaging_window(const SummaryInput& in) {
     whole = off <= turn;
   }
   return {rows.subspan(chosen), rows[chosen - 1], whole};
-}
-
-std::string cpu_model() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);)
-    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-  return "unknown";
 }
 
 Json pull_statistics(const SummaryInput& in, const Window& w, double load) {
@@ -196,14 +189,13 @@ void add_cost(const SummaryInput& in, Json& json) {
   const SeriesRow& end = in.builder.now();
   const double steps = std::max(1.0, std::round(end.time / in.scenario.run.step));
   json["simulated_s"] = end.time;
-  json["wall_s"] = in.wall;
+  double wall = 0.0;
+  for (const Segment& segment : in.segments) wall += segment.wall_s;
+  json["wall_s"] = wall;
   json["settle_wall_s"] = in.setup.settle_wall_s;
-  json["wall_s_per_simulated_s"] = number(in.wall / end.time);
+  json["wall_s_per_simulated_s"] = number(wall / end.time);
   json["ranks"] = rank_table(in);
-  json["segments"] = Json::array({{{"from_step", 0},
-                                   {"to_step", static_cast<std::int64_t>(steps)},
-                                   {"wall_s", in.wall},
-                                   {"threads", in.reports.back().threads}}});
+  json["segments"] = segments_json(in.segments);
   json["grains"] = in.setup.grains;
   double contacts = 0.0, active = 0.0;
   for (const SeriesRow& row : in.rows) {

@@ -26,7 +26,8 @@
 namespace furrow {
 namespace {
 
-constexpr double kStopPatience = 30.0;   // s from the wish to stop until mpirun is told to end
+constexpr double kStopPatience =
+    300.0;  // s from the wish to stop until mpirun is told to end: time for a checkpoint
 constexpr double kStartPatience = 20.0;  // s that a wish to stop waits for ranks that are still starting
 constexpr double kKillPatience = 5.0;    // s from that until it is killed
 constexpr double kDrainPatience = 1.0;   // s to read what is left once mpirun has ended

@@ -30,37 +30,20 @@ class TerrainNode : public Node {
 
   void set_up(Transport& transport, std::span<const NodeCard> cards, const RunContext& context) override {
     directory_ = context.directory;
-    frame_steps_ =
-        directory_.empty() ? 0 : steps_between(scenario_.output.frame_interval, scenario_.run.step);
+    frames_ = frame_clock(scenario_, context);
     const int tires = static_cast<int>(scenario_.tires.size());
     std::vector<SurfaceSetup> surfaces;
     for (int k = 0; k < tires; ++k) surfaces.push_back(receive<SurfaceSetup>(transport, {Role::tire, k}));
 
-    TerrainSetup setup;
-    setup.settle_wall_s = terrain_->prepare([&](const std::string& what, double share) {
-      transport.heartbeat();
-      transport.check_peers();
-      if (context.stop_requested && context.stop_requested())
-        throw Error(ExitCode::stopped, "stopped by a signal while the bed was being prepared");
-      Progress progress;
-      progress.phase = what;
-      progress.share = share;
-      progress.end = scenario_.run.end;
-      if (context.progress) context.progress(progress);
-    });
-    setup.grains = terrain_->size();
-    setup.floor_height = terrain_->floor_height();
-    for (int k = 0; k < tires; ++k) {
-      const Vec3 at = receive_step<RimMotion>(transport, kRig, kPlacement).rim.position;
-      const double reach = kFootprintShare * cards[1 + k].tire_radius, half = 0.5 * cards[1 + k].tire_width;
-      setup.top_height.push_back(
-          terrain_->top_height(at.x() - reach, at.x() + reach, at.y() - 1.5 * half, at.y() + 1.5 * half));
-      const double length = scenario_.terrain.length;
-      setup.mean_height.push_back(
-          terrain_->mean_height(0.1 * length, 0.9 * length, at.y() - half, at.y() + half));
-    }
-    send(transport, kRig, setup);
-    before_ = terrain_->height_field();
+    std::vector<Vec3> rims;
+    if (context.saved)
+      restore_setup(*context.saved);
+    else
+      prepare(transport, context);
+    for (int k = 0; k < tires; ++k)
+      rims.push_back(receive_step<RimMotion>(transport, kRig, kPlacement).rim.position);
+    if (!context.saved) measure(rims, cards);
+    send(transport, kRig, setup_);
 
     targets_.resize(tires);
     forces_.resize(tires);
@@ -70,6 +53,7 @@ class TerrainNode : public Node {
       terrain_->attach(surfaces[k].mesh, surfaces[k].material, targets_[k]);
     }
     report_.state = terrain_->state();
+    if (context.saved) restore(*context.saved);
   }
 
   void synchronize(Transport& transport, const StepHeader& header) override {
@@ -81,7 +65,7 @@ class TerrainNode : public Node {
     for (int k = 0; k < static_cast<int>(forces_.size()); ++k) {
       SurfaceMotion motion = receive_step<SurfaceMotion>(transport, {Role::tire, k}, header.step);
       targets_[k] = std::move(motion.surface);
-      stopped_ = stopped_ || motion.stop_now;
+      due_ = motion.order;
     }
   }
 
@@ -94,9 +78,9 @@ class TerrainNode : public Node {
     report_.state = terrain_->state();
   }
 
-  bool stopped() const override { return stopped_; }
+  Order due() const override { return due_; }
 
-  void finish(Transport& transport, FinalReport own) override {
+  void finish(Transport& transport, FinalReport own, bool) override {
     own.height_before = before_;
     own.height_after = terrain_->height_field();
     send(transport, kRig, own);
@@ -118,6 +102,18 @@ class TerrainNode : public Node {
                                       c.moment.x(), c.moment.y(), c.moment.z(), c.transfer_force_residual,
                                       c.transfer_moment_residual, c.work, static_cast<double>(c.contacts)});
     }
+  }
+
+  void save_setup(Archive& archive) const override {
+    const Archive::Scope scope(archive, "setup/");
+    archive.put("top_height", setup_.top_height);
+    archive.put("mean_height", setup_.mean_height);
+    archive.put("floor_height", setup_.floor_height);
+    archive.put("settle_wall_s", setup_.settle_wall_s);
+    archive.put("grains", setup_.grains);
+    archive.put("before", before_.height);
+    archive.put("before_grid", std::vector<double>{before_.x0, before_.y0, before_.cell, double(before_.nx),
+                                                   double(before_.ny)});
   }
 
   void restore(const Archive& archive) override {
@@ -147,10 +143,54 @@ class TerrainNode : public Node {
   static constexpr Address kSelf{Role::terrain, 0};
   static constexpr Address kRig{Role::rig, 0};
 
+  void prepare(Transport& transport, const RunContext& context) {
+    setup_.settle_wall_s = terrain_->prepare([&](const std::string& what, double share) {
+      transport.heartbeat();
+      transport.check_peers();
+      if (context.stop_requested && context.stop_requested())
+        throw Error(ExitCode::stopped, "stopped by a signal while the bed was being prepared");
+      Progress progress;
+      progress.phase = what;
+      progress.share = share;
+      progress.end = scenario_.run.end;
+      if (context.progress) context.progress(progress);
+    });
+    setup_.grains = terrain_->size();
+    setup_.floor_height = terrain_->floor_height();
+    before_ = terrain_->height_field();
+  }
+
+  /// Heights under the tires' footprints.
+  void measure(std::span<const Vec3> rims, std::span<const NodeCard> cards) {
+    for (std::size_t k = 0; k < rims.size(); ++k) {
+      const Vec3& at = rims[k];
+      const double reach = kFootprintShare * cards[1 + k].tire_radius, half = 0.5 * cards[1 + k].tire_width;
+      setup_.top_height.push_back(
+          terrain_->top_height(at.x() - reach, at.x() + reach, at.y() - 1.5 * half, at.y() + 1.5 * half));
+      const double length = scenario_.terrain.length, known = scenario_.terrain.undisturbed_height;
+      setup_.mean_height.push_back(
+          known >= 0.0 ? known
+                       : terrain_->mean_height(0.1 * length, 0.9 * length, at.y() - half, at.y() + half));
+    }
+  }
+
+  void restore_setup(const Archive& archive) {
+    const Archive::Scope scope(archive, "setup/");
+    setup_.top_height = archive.get<double>("top_height");
+    setup_.mean_height = archive.get<double>("mean_height");
+    setup_.floor_height = archive.get_double("floor_height");
+    setup_.settle_wall_s = archive.get_double("settle_wall_s");
+    setup_.grains = archive.get_int("grains");
+    before_.height = archive.get<double>("before");
+    const auto& grid = archive.get<double>("before_grid", 5);
+    before_.x0 = grid[0], before_.y0 = grid[1], before_.cell = grid[2];
+    before_.nx = static_cast<std::int32_t>(grid[3]), before_.ny = static_cast<std::int32_t>(grid[4]);
+  }
+
   void write_frame(const StepHeader& header) {
-    if (frame_steps_ == 0 || header.step % frame_steps_ != 0) return;
+    if (!frames_.due(header.step)) return;
     terrain_->frame(frame_);
-    write_terrain_frame(directory_, header.step / frame_steps_, header.time, frame_);
+    write_terrain_frame(directory_, frames_.index(header.step), header.time, frame_);
   }
 
   Scenario scenario_;
@@ -159,11 +199,12 @@ class TerrainNode : public Node {
   std::vector<SurfaceState> targets_;
   std::vector<NodalForces> forces_;
   TerrainReport report_;
+  TerrainSetup setup_;
   HeightField before_;
   TerrainFrame frame_;
   std::filesystem::path directory_;
-  std::int64_t frame_steps_ = 0;
-  bool stopped_ = false;
+  FrameClock frames_;
+  Order due_ = Order::go_on;
 };
 
 }  // namespace

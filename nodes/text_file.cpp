@@ -35,6 +35,8 @@ void publish_file(const std::filesystem::path& written, const std::filesystem::p
   if (rename(written.c_str(), file.c_str()) != 0) throw failed(file, "cannot rename the finished file");
 }
 
+void sync_folder(const std::filesystem::path& folder) { flush_to_disk(folder); }
+
 void write_whole_file(const std::filesystem::path& file, const std::string& text) {
   const auto part = temporary_name(file);
   std::ofstream stream(part, std::ios::binary);

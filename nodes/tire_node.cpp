@@ -34,8 +34,7 @@ class TireNode : public Node {
 
   void set_up(Transport& transport, std::span<const NodeCard>, const RunContext& context) override {
     directory_ = context.directory;
-    frame_steps_ =
-        directory_.empty() ? 0 : steps_between(scenario_.output.frame_interval, scenario_.run.step);
+    frames_ = frame_clock(scenario_, context);
     send(transport, kTerrain, SurfaceSetup{tire_->mesh(), tire_->material()});
     const auto start = receive_step<RimMotion>(transport, kRig, kPlacement);
     trajectory_ = RimTrajectory(start.rim);
@@ -44,17 +43,17 @@ class TireNode : public Node {
     motion_.header = {kPlacement, 0.0};
     send(transport, kTerrain, motion_);
     describe_state();
+    if (context.saved) restore(*context.saved);
   }
 
   void synchronize(Transport& transport, const StepHeader& header) override {
     report_.header = motion_.header = header;
-    motion_.stop_now = stop_next_;
+    motion_.order = due_ = next_;
     write_frame(header);
     send(transport, kRig, report_);
     send(transport, kTerrain, motion_);
-    stopped_ = stop_next_;
     rim_ = receive_step<RimMotion>(transport, kRig, header.step);
-    stop_next_ = rim_.stop_next;
+    next_ = rim_.order;
     forces_ = receive_step<TerrainForces>(transport, kTerrain, header.step).forces;
   }
 
@@ -68,8 +67,8 @@ class TireNode : public Node {
     account(duration);
   }
 
-  bool stopped() const override { return stopped_; }
-  void finish(Transport& transport, FinalReport own) override { send(transport, kRig, own); }
+  Order due() const override { return due_; }
+  void finish(Transport& transport, FinalReport own, bool) override { send(transport, kRig, own); }
 
   void save(Archive& archive) const override {
     tire_->save(archive);
@@ -144,8 +143,8 @@ class TireNode : public Node {
   }
 
   void write_frame(const StepHeader& header) {
-    if (frame_steps_ == 0 || header.step % frame_steps_ != 0) return;
-    write_tire_frame(directory_, index_, header.step / frame_steps_, header.time, tire_->mesh(),
+    if (!frames_.due(header.step)) return;
+    write_tire_frame(directory_, index_, frames_.index(header.step), header.time, tire_->mesh(),
                      motion_.surface, forces_);
   }
 
@@ -159,8 +158,8 @@ class TireNode : public Node {
   SpindleReport report_;
   std::vector<Vec3> before_;
   std::filesystem::path directory_;
-  std::int64_t frame_steps_ = 0;
-  bool stop_next_ = false, stopped_ = false;
+  FrameClock frames_;
+  Order next_ = Order::go_on, due_ = Order::go_on;
 };
 
 }  // namespace

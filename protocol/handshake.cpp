@@ -31,6 +31,7 @@ void check(const std::vector<NodeCard>& cards, const std::vector<Address>& nodes
     require_same(rig, card, "scenario digest", rig.scenario_digest, card.scenario_digest);
     require_same(rig, card, "communication step", rig.step, card.step);
     require_same(rig, card, "number of steps", rig.steps, card.steps);
+    require_same(rig, card, "first step", rig.from_step, card.from_step);
     if (card.substeps < 1)
       throw Error(ExitCode::bad_input, fmt::format("handshake: {} takes {} substeps; expected 1 or more",
                                                    to_string(card.self), card.substeps));

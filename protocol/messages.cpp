@@ -42,6 +42,8 @@ std::string to_string(MessageKind kind) {
       return "control";
     case MessageKind::run_folder:
       return "run folder";
+    case MessageKind::checkpoint_part:
+      return "part of a checkpoint";
   }
   return "unknown kind";
 }

@@ -44,6 +44,7 @@ enum class MessageKind : std::int32_t {
   final_report = 9,
   control = 10,
   run_folder = 11,
+  checkpoint_part = 12,
 };
 std::string to_string(MessageKind kind);
 
@@ -56,6 +57,7 @@ struct NodeCard {
   std::string scenario_digest;  // hash of the completed scenario
   double step = 0.0;            // communication step H, s
   std::int64_t steps = 0;       // number of communication steps
+  std::int64_t from_step = 0;   // the step it begins at: 0, or that of the checkpoint it continues from
   std::int32_t substeps = 1;
   std::int32_t wheel_count = 0;  // rig: wheels it carries
   std::int32_t tire_count = 0;   // rig, terrain: tires they expect
@@ -91,11 +93,18 @@ struct StepHeader {
   double time = 0.0;      // t_n, s
 };
 
+/// What all nodes do at the same step, once the interval that follows the synchronization they all know it by is done.
+enum class Order : std::int32_t {
+  go_on = 0,
+  checkpoint = 1,  // save
+  stop = 2,        // save and end: a signal asked for it
+};
+
 struct RimMotion {
   static constexpr MessageKind kKind = MessageKind::rim_motion;
   StepHeader header;
   RimState rim;
-  bool stop_next = false;  // the run ends at synchronization n + 1: a signal asked for it
+  Order order = Order::go_on;  // due at synchronization n + 1
 };
 
 /// tire k → rig.
@@ -122,7 +131,7 @@ struct SurfaceMotion {
   static constexpr MessageKind kKind = MessageKind::surface_motion;
   StepHeader header;
   SurfaceState surface;
-  bool stop_now = false;  // the run ends at this synchronization
+  Order order = Order::go_on;  // due now: terrain hears of it through the tires
 };
 
 /// Sums over the contacts of one tire, interval means; force = normal + tangential, on the tire by the terrain.
@@ -181,6 +190,15 @@ struct HeightField {
 struct RunFolder {
   static constexpr MessageKind kKind = MessageKind::run_folder;
   std::string path;
+};
+
+/// Every node → rig once it has written its part of a checkpoint, or failed to.
+struct CheckpointPart {
+  static constexpr MessageKind kKind = MessageKind::checkpoint_part;
+  std::int64_t step = 0;
+  std::string file;      // name in the checkpoint's folder
+  std::string checksum;  // of the state it holds
+  std::string problem;   // why it could not be written; empty: it was
 };
 
 /// Every node → rig at the end.

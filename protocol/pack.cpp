@@ -28,7 +28,7 @@ template <class Stream, class M>
 requires std::is_same_v<std::remove_const_t<M>, NodeCard>
 void visit_fields(Stream& s, M& m) {
   each(s, m.protocol_version, m.self.role, m.self.index, m.node_kind, m.scenario_digest, m.step, m.steps,
-       m.substeps, m.wheel_count, m.tire_count, m.threads, m.pid, m.host, m.tire_mass.mass,
+       m.from_step, m.substeps, m.wheel_count, m.tire_count, m.threads, m.pid, m.host, m.tire_mass.mass,
        m.tire_mass.inertia, m.tire_radius, m.tire_width, m.size);
 }
 template <class Stream, class M>
@@ -48,7 +48,7 @@ requires std::is_same_v<std::remove_const_t<M>, RimMotion>
 void visit_fields(Stream& s, M& m) {
   visit_fields(s, m.header);
   visit_fields(s, m.rim);
-  s(m.stop_next);
+  s(m.order);
 }
 template <class Stream, class M>
 requires std::is_same_v<std::remove_const_t<M>, SpindleReport>
@@ -63,7 +63,7 @@ template <class Stream, class M>
 requires std::is_same_v<std::remove_const_t<M>, SurfaceMotion>
 void visit_fields(Stream& s, M& m) {
   visit_fields(s, m.header);
-  each(s, m.surface.position, m.surface.velocity, m.stop_now);
+  each(s, m.surface.position, m.surface.velocity, m.order);
 }
 template <class Stream, class M>
 requires std::is_same_v<std::remove_const_t<M>, TerrainForces>
@@ -91,6 +91,9 @@ void visit_fields(Stream& s, M& m) { each(s, m.x0, m.y0, m.cell, m.nx, m.ny, m.h
 template <class Stream, class M>
 requires std::is_same_v<std::remove_const_t<M>, RunFolder>
 void visit_fields(Stream& s, M& m) { s(m.path); }
+template <class Stream, class M>
+requires std::is_same_v<std::remove_const_t<M>, CheckpointPart>
+void visit_fields(Stream& s, M& m) { each(s, m.step, m.file, m.checksum, m.problem); }
 template <class Stream, class M>
 requires std::is_same_v<std::remove_const_t<M>, FinalReport>
 void visit_fields(Stream& s, M& m) {
@@ -127,6 +130,7 @@ FURROW_MESSAGE(SurfaceMotion)
 FURROW_MESSAGE(TerrainForces)
 FURROW_MESSAGE(TerrainReport)
 FURROW_MESSAGE(FinalReport)
+FURROW_MESSAGE(CheckpointPart)
 FURROW_MESSAGE(RunFolder)
 #undef FURROW_MESSAGE
 

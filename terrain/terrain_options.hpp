@@ -14,21 +14,23 @@ struct TerrainOptions {
   std::string engine = "dem";   // dem | rigid
   std::string law = "mindlin";  // mindlin | coulomb
   // Bed.
-  double radius = 0.006;    // grain radius, m
+  double radius = 0.006;                      // grain radius, m
   std::string size_distribution = "uniform";  // uniform | normal, by number of grains
-  double size_spread = 0.0;  // radii are drawn between radius (1 ± spread), -; 0: all alike
-  double density = 2500.0;   // kg/m³
-  int layers = 15;          // Poisson-disk layers dropped
-  double length = 10.0;     // bin, x from 0 to length, m
-  double width = 0.6;       // bin, y from −width/2 to width/2, m
+  double size_spread = 0.0;                   // radii are drawn between radius (1 ± spread), -; 0: all alike
+  double density = 2500.0;                    // kg/m³
+  int layers = 15;                            // Poisson-disk layers dropped
+  double length = 10.0;                       // bin, x from 0 to length, m
+  double width = 0.6;                         // bin, y from −width/2 to width/2, m
   bool periodic_x = false;  // grains that leave at one end of the bin come back at the other; no end walls
   bool periodic_y = false;  // the same across; no side walls
   std::uint64_t seed = 1;   // run.seed
   std::string bed;  // file: a settled bed (HDF5), or positions to settle (CSV x_m,y_m,z_m); empty: generate
   std::string bed_generator = "poisson";  // poisson | lattice: where the grains of a new bed start
-  double settling_friction = -1.0;        // friction while a new bed falls and is pressed, -; negative: friction
-  double compaction_pressure = 0.0;       // a lid pressed on the settled bed and lifted again, Pa; 0: none
-  bool cache = true;                      // keep settled beds under the user's cache directory
+  double undisturbed_height =
+      -1.0;  // of the surface that sinkage counts from, m; negative: the bed's own mean
+  double settling_friction = -1.0;   // friction while a new bed falls and is pressed, -; negative: friction
+  double compaction_pressure = 0.0;  // a lid pressed on the settled bed and lifted again, Pa; 0: none
+  bool cache = true;                 // keep settled beds under the user's cache directory
   // Contact between grains and of grains with walls.
   double young_modulus = 2.49e7;         // Pa, law mindlin
   double poisson_ratio = 0.3;            // -

@@ -76,14 +76,7 @@ Archive made_bed(const TerrainOptions& options, const ProgressCall& progress, Se
     result.time += before.time;
     result.steps += before.steps;
   }
-  Archive bed;
-  solver.save(bed);
-  bed.put("bed/settled", std::vector<double>{result.settled ? 1.0 : 0.0, result.force_ratio,
-                                             result.floor_error, result.time});
-  bed.put("bed/geometry", geometry(options));
-  bed.put("bed/size_spread", options.size_spread);
-  bed.put("bed/law", std::vector<std::uint8_t>(options.law.begin(), options.law.end()));
-  return bed;
+  return bed_archive(solver, options, result);
 }
 
 /// A cache that cannot be written costs time, not the run.
@@ -102,6 +95,17 @@ bool keep(const std::filesystem::path& file, const Archive& bed, const ProgressC
 
 bool bed_is_settled_anew(const TerrainOptions& options) {
   return options.bed.empty() || is_positions_file(options.bed);
+}
+
+Archive bed_archive(const GrainSolver& solver, const TerrainOptions& options, const SettleResult& settled) {
+  Archive bed;
+  solver.save(bed);
+  bed.put("bed/settled", std::vector<double>{settled.settled ? 1.0 : 0.0, settled.force_ratio,
+                                             settled.floor_error, settled.time});
+  bed.put("bed/geometry", geometry(options));
+  bed.put("bed/size_spread", options.size_spread);
+  bed.put("bed/law", std::vector<std::uint8_t>(options.law.begin(), options.law.end()));
+  return bed;
 }
 
 void check_bed_options(const TerrainOptions& o) {

@@ -22,6 +22,9 @@ PreparedBed prepare_bed(const TerrainOptions& options, const ProgressCall& progr
 /// False for a settled bed from the user's file, which is taken as it is.
 bool bed_is_settled_anew(const TerrainOptions& options);
 
+/// A bed as prepare_bed reads it from a file.
+Archive bed_archive(const GrainSolver& solver, const TerrainOptions& options, const SettleResult& settled);
+
 /// What can be said against the options of the bed before it is made. @throws Error(bad_input)
 void check_bed_options(const TerrainOptions& options);
 

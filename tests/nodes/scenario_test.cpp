@@ -76,6 +76,11 @@ TEST(Scenario, defaults_of_the_schema_are_those_of_the_options) {
   EXPECT_EQ(s.run.threads, run.threads);
   EXPECT_EQ(s.run.seed, run.seed);
   EXPECT_EQ(s.run.peer_timeout, run.peer_timeout);
+  EXPECT_EQ(s.terrain.undisturbed_height, terrain.undisturbed_height);
+  EXPECT_EQ(s.checkpoint.wall_interval, CheckpointOptions().wall_interval);
+  EXPECT_EQ(s.checkpoint.interval, CheckpointOptions().interval);
+  EXPECT_EQ(s.checkpoint.keep, CheckpointOptions().keep);
+  EXPECT_EQ(s.checkpoint.at_end, CheckpointOptions().at_end);
   EXPECT_EQ(s.output.series_interval, OutputOptions().series_interval);
   EXPECT_EQ(s.output.frame_interval, OutputOptions().frame_interval);
   EXPECT_FALSE(s.expected.given);

@@ -34,7 +34,7 @@ SurfaceSetup surface_setup() {
 }
 TerrainSetup terrain_setup() { return {{0.1, 0.2}, {0.3, 0.4}, -0.5, 12.5, 382'500}; }
 RimMotion rim_motion() {
-  return {{42, 1.5}, {{1, 2, 3}, Quat(0.5, -0.5, 0.5, -0.5), {4, 5, 6}, {7, 8, 9}}, true};
+  return {{42, 1.5}, {{1, 2, 3}, Quat(0.5, -0.5, 0.5, -0.5), {4, 5, 6}, {7, 8, 9}}, Order::stop};
 }
 SpindleReport spindle_report() {
   SpindleReport m;
@@ -62,7 +62,7 @@ SurfaceMotion surface_motion(int vertices) {
     m.surface.position.emplace_back(i, 0.1 * i, -0.0);
     m.surface.velocity.emplace_back(std::sqrt(i), 1e-310, -i);
   }
-  m.stop_now = true;
+  m.order = Order::checkpoint;
   return m;
 }
 TerrainForces terrain_forces() { return {{45, 1.8}, {{1, 5, 9}, {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}}}}; }
@@ -76,6 +76,7 @@ TerrainReport terrain_report() {
   return m;
 }
 RunFolder run_folder() { return {"results/first_look-001"}; }
+CheckpointPart checkpoint_part() { return {47, "tire0.h5", "0123456789abcdef", "disk full"}; }
 FinalReport final_report() {
   FinalReport m;
   m.self = {Role::terrain, 0};
@@ -126,6 +127,7 @@ TEST(Pack, every_message_survives_bit_for_bit) {
   expect_round_trip(terrain_forces());
   expect_round_trip(terrain_report());
   expect_round_trip(run_folder());
+  expect_round_trip(checkpoint_part());
   expect_round_trip(final_report());
 }
 
@@ -139,6 +141,7 @@ TEST(Pack, truncated_and_trailing_bytes_are_refused) {
   expect_other_lengths_refused(terrain_forces());
   expect_other_lengths_refused(terrain_report());
   expect_other_lengths_refused(run_folder());
+  expect_other_lengths_refused(checkpoint_part());
   expect_other_lengths_refused(final_report());
 }
 
@@ -153,15 +156,16 @@ TEST(Pack, an_absurd_length_is_refused) {
 TEST(Pack, every_field_is_there) {
   constexpr std::size_t kLength = 8, kHeader = 16, kVec = 24, kWrench = 48, kSums = 4 * kVec + 3 * 8 + 8;
   EXPECT_EQ(pack(node_card()).size(),
-            4 + 8 + (kLength + 4) + (kLength + 16) + 8 + 8 + 5 * 4 + (kLength + 7) + 80 + 8 + 8 + 8);
+            4 + 8 + (kLength + 4) + (kLength + 16) + 8 + 8 + 8 + 5 * 4 + (kLength + 7) + 80 + 8 + 8 + 8);
   EXPECT_EQ(pack(surface_setup()).size(), 4 + kLength + 2 * 12 + 8 * 8);
   EXPECT_EQ(pack(terrain_setup()).size(), 2 * (kLength + 16) + 8 + 8 + 8);
-  EXPECT_EQ(pack(rim_motion()).size(), kHeader + 3 * kVec + 32 + 1);
+  EXPECT_EQ(pack(rim_motion()).size(), kHeader + 3 * kVec + 32 + 4);
   EXPECT_EQ(pack(spindle_report()).size(), kHeader + 2 * kWrench + 2 * kVec + 10 * 8);
-  EXPECT_EQ(pack(surface_motion(4)).size(), kHeader + 2 * (kLength + 4 * kVec) + 1);
+  EXPECT_EQ(pack(surface_motion(4)).size(), kHeader + 2 * (kLength + 4 * kVec) + 4);
   EXPECT_EQ(pack(terrain_forces()).size(), kHeader + kLength + 3 * 4 + kLength + 3 * kVec);
   EXPECT_EQ(pack(terrain_report()).size(), kHeader + 9 * 8 + 3 * kVec + kLength + 2 * kSums);
   EXPECT_EQ(pack(run_folder()).size(), kLength + 22);
+  EXPECT_EQ(pack(checkpoint_part()).size(), 8 + (kLength + 8) + (kLength + 16) + (kLength + 9));
   EXPECT_EQ(pack(final_report()).size(),
             4 + 4 + 8 + 3 * 8 + 4 + (kLength + 16) + 2 * (3 * 8 + 2 * 4 + kLength) + 3 * 8);
 }
@@ -173,7 +177,7 @@ TEST(Pack, fields_arrive_where_they_belong) {
   EXPECT_EQ(card.tire_mass.inertia, node_card().tire_mass.inertia);
   const auto motion = unpack<RimMotion>(pack(rim_motion()));
   EXPECT_EQ(motion.rim.orientation.coeffs(), rim_motion().rim.orientation.coeffs());
-  EXPECT_TRUE(motion.stop_next);
+  EXPECT_EQ(motion.order, Order::stop);
   const auto report = unpack<TerrainReport>(pack(terrain_report()));
   EXPECT_EQ(report.contact[0].moment, Vec3(10, 11, 12));
   EXPECT_EQ(report.contact[1].contacts, 99);

@@ -43,9 +43,9 @@ def write_scenario(folder, scenario=None, name="small.json"):
     return path
 
 
-def furrow(*arguments, cwd, timeout=120, env=None):
+def furrow(*arguments, cwd, timeout=120, env=None, program=PROGRAM):
     """Runs the program to its end."""
-    return subprocess.run([PROGRAM, *map(str, arguments)], cwd=cwd, timeout=timeout, text=True, errors="replace",
+    return subprocess.run([program, *map(str, arguments)], cwd=cwd, timeout=timeout, text=True, errors="replace",
                           stdin=subprocess.DEVNULL, capture_output=True, env={**os.environ, **(env or {})})
 
 
@@ -55,9 +55,9 @@ def attend_to_signals():
         signal.signal(number, signal.SIG_DFL)
 
 
-def start(*arguments, cwd, env=None):
+def start(*arguments, cwd, env=None, program=PROGRAM):
     """Starts the program, whose output can be read when it has ended."""
-    return subprocess.Popen([PROGRAM, *map(str, arguments)], cwd=cwd, text=True, stdin=subprocess.DEVNULL,
+    return subprocess.Popen([program, *map(str, arguments)], cwd=cwd, text=True, stdin=subprocess.DEVNULL,
                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, env={**os.environ, **(env or {})},
                             preexec_fn=attend_to_signals)
 

@@ -1,0 +1,43 @@
+// `furrow sweep`: the table of runs of a study.
+#include <unistd.h>
+#include <cstdio>
+#include <iostream>
+
+#include "nodes/commands.hpp"
+#include "nodes/run_directory.hpp"
+#include "nodes/signals.hpp"
+#include "nodes/sweep.hpp"
+
+namespace furrow {
+
+ExitCode sweep_command(const SweepArguments& arguments) {
+  Study study = load_study(arguments.study);
+  if (arguments.jobs < 1 || arguments.jobs > 1024)
+    throw input_error("command line", "--jobs",
+                      "is " + std::to_string(arguments.jobs) + ", expected 1 to 1024");
+  const std::filesystem::path folder =
+      arguments.out.empty() ? std::filesystem::path("results") / study.name : arguments.out;
+  const int jobs = study.passes ? 1 : arguments.jobs;
+  Sweep sweep(std::move(study), {folder, jobs});
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || access(folder.c_str(), W_OK | X_OK) != 0)
+    throw input_error(folder.string(), "--out", "cannot be written, expected a place that can be written");
+  const int lock = lock_folder(folder, "--out");
+  catch_stop_signals();
+  const ExitCode code = sweep.run();
+  if (code != ExitCode::stopped) {
+    try {
+      make_report(folder, true);
+    } catch (const Error& problem) {
+      print_warning(std::string("no plots: ") + problem.what());
+    }
+  } else {
+    std::fprintf(stderr, "furrow: stopped by a signal; the same command goes on\n");
+  }
+  close(lock);
+  std::cout << folder.string() << "\n";
+  return code;
+}
+
+}  // namespace furrow

@@ -1,0 +1,11 @@
+// Places where tests make the program die, stop or fail. In `furrow` the call does nothing; tests/system/furrow_faults is
+// the same program linked with tests/system/fault_injection.cpp in place of fault_point.cpp.
+#pragma once
+
+namespace furrow {
+
+/// Names so far: "step", "frame", "checkpoint.write", "checkpoint.written", "checkpoint.manifest", "checkpoint.rename",
+/// "checkpoint.done", "results".
+void fault_point(const char* name);
+
+}  // namespace furrow

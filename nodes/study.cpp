@@ -1,0 +1,168 @@
+#include "nodes/study.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "nodes/json_text.hpp"
+#include "nodes/scenario_checks.hpp"
+#include "nodes/schema.hpp"
+#include "protocol/error.hpp"
+
+namespace furrow {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kFormatVersion = 1;
+constexpr std::size_t kMostRuns = 10000;
+constexpr double kLongestRest = 100.0;  // s
+constexpr const char* kKeys[] = {"format_version", "description", "scenario", "set",     "grid",
+                                 "list",           "passes",      "rest",     "results", "plot"};
+
+class Reader {
+ public:
+  explicit Reader(const std::filesystem::path& file) : file_(file.string()) {
+    parse_json(read_text_file(file, "a study in JSON"), file_);  // says where mistakes stand
+    root_ = Json::parse(read_text_file(file, "a study in JSON"));
+    if (!root_.is_object()) throw wrong("", "is no object, expected { }");
+    for (const auto& [key, value] : root_.items()) {
+      const std::vector<std::string> known(std::begin(kKeys), std::end(kKeys));
+      if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+      const auto similar = nearest_words(key, known);
+      throw wrong(key, similar.empty()
+                           ? fmt::format("is unknown, expected one of: {}", fmt::join(known, ", "))
+                           : "is unknown, expected '" + similar.front() + "'?");
+    }
+    if (const Json version = value("format_version"); version.is_number_integer() && version > kFormatVersion)
+      throw wrong("format_version",
+                  fmt::format("is {}: the file is newer than this program, expected at most {}",
+                              version.dump(), kFormatVersion));
+  }
+
+  Error wrong(const std::string& key, const std::string& what) const { return input_error(file_, key, what); }
+  Json value(const char* key) const { return root_.contains(key) ? root_.at(key) : Json(); }
+
+  Json object(const char* key) const {
+    const Json found = value(key);
+    if (found.is_null()) return Json::object();
+    if (!found.is_object()) throw wrong(key, "expected an object { } of keys and values");
+    return found;
+  }
+
+  std::string text(const char* key) const {
+    const Json found = value(key);
+    if (!found.is_string())
+      throw wrong(key, found.is_null() ? "is missing, expected a text" : "expected a text");
+    return found;
+  }
+
+  std::vector<Json> grid() const {
+    std::vector<Json> runs{Json::object()};
+    const Json axes = object("grid");
+    for (const auto& [key, values] : axes.items()) {
+      if (!values.is_array() || values.empty())
+        throw wrong("grid." + key, "expected a list of values, one or more");
+      if (runs.size() * values.size() > kMostRuns)
+        throw wrong("grid", fmt::format("makes more than {} runs, expected fewer", kMostRuns));
+      std::vector<Json> more;
+      for (const Json& run : runs)
+        for (const Json& one : values) {
+          more.push_back(run);
+          more.back()[key] = one;
+        }
+      runs = more;
+    }
+    return runs;
+  }
+
+  std::vector<Json> list() const {
+    const Json entries = value("list");
+    if (!entries.is_array() || entries.empty() || entries.size() > kMostRuns)
+      throw wrong("list",
+                  fmt::format("expected a list of 1 to {} objects {{ }} of keys and values", kMostRuns));
+    for (const Json& entry : entries)
+      if (!entry.is_object()) throw wrong("list", "expected objects { } of keys and values in it");
+    return entries.get<std::vector<Json>>();
+  }
+
+  int passes() const {
+    const Json count = value("passes");
+    if (!count.is_number_integer() || count < 1 || count > 1000)
+      throw wrong("passes", "expected a whole number, 1 to 1000");
+    return count;
+  }
+
+  double rest() const {
+    const Json rest = value("rest");
+    if (rest.is_null()) return Study().rest;
+    if (!rest.is_number() || rest < 0.0 || rest > kLongestRest)
+      throw wrong("rest", fmt::format("expected a number, 0 to {} s", kLongestRest));
+    return rest;
+  }
+
+ private:
+  std::string file_;
+  Json root_;
+};
+
+const std::vector<std::string> kUsualResults{"drawbar_pull_N.mean",
+                                             "drawbar_pull_N.sem",
+                                             "drawbar_pull_N.steady",
+                                             "drawbar_coefficient",
+                                             "sinkage_m",
+                                             "rut_depth_m",
+                                             "tractive_effort_N",
+                                             "terrain_resistance_N",
+                                             "drive_torque_Nm",
+                                             "tractive_efficiency",
+                                             "vertical_load_N",
+                                             "bed_clearance_m",
+                                             "wall_s"};
+
+}  // namespace
+
+Study load_study(const std::filesystem::path& file) {
+  const Reader reader(file);
+  Study study;
+  study.file = file;
+  study.name = file.stem().string();
+  study.scenario = find_file(reader.text("scenario"), "scenario", file);
+  study.common = reader.object("set");
+  int forms = 0;
+  for (const char* form : {"grid", "list", "passes"}) forms += reader.value(form).is_null() ? 0 : 1;
+  if (forms != 1) throw reader.wrong("", "expected one of 'grid', 'list' and 'passes'");
+  if (!reader.value("grid").is_null()) study.runs = reader.grid();
+  if (!reader.value("list").is_null()) study.runs = reader.list();
+  if (!reader.value("passes").is_null()) {
+    study.passes = true;
+    for (int pass = 1; pass <= reader.passes(); ++pass) study.runs.emplace_back(Json::object());
+    study.rest = reader.rest();
+  }
+  study.results = kUsualResults;
+  if (const Json results = reader.value("results"); !results.is_null()) {
+    if (!results.is_array() ||
+        !std::all_of(results.begin(), results.end(), [](const Json& r) { return r.is_string(); }))
+      throw reader.wrong("results", "expected a list of keys of summary.json");
+    study.results = results.get<std::vector<std::string>>();
+  }
+  if (!reader.value("plot").is_null()) study.plot = reader.object("plot");
+  return study;
+}
+
+std::vector<std::pair<std::string, std::string>> settings_of(const Json& values) {
+  std::vector<std::pair<std::string, std::string>> settings;
+  for (const auto& [key, value] : values.items())
+    settings.emplace_back(key, value.is_string() ? value.get<std::string>() : value.dump());
+  return settings;
+}
+
+std::string text_of(const Json& values) {
+  std::vector<std::string> parts;
+  for (const auto& [key, value] : settings_of(values)) parts.push_back(key + "=" + value);
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+}  // namespace furrow

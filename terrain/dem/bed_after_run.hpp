@@ -1,0 +1,20 @@
+// A bed that a tire has been over, as the start of another run.
+#pragma once
+
+#include "terrain/terrain_options.hpp"
+
+namespace furrow::dem {
+
+struct RestResult {
+  double force_ratio = 0.0;  // Σ|net force| / Σ|contact force| at the end
+  double floor_error = 0.0;  // |floor force − weight| / weight; walls may carry a share
+  double speed = 0.0;        // rms of the grains, m/s
+};
+
+/// Takes the tires away and lets the grains lie for `rest` seconds under the coefficients and step of the run.
+/// @param state what Terrain::save wrote
+/// @returns a bed as prepare_bed reads it
+/// @throws Error(physics) when a grain is lost, Error(io) when the state is of another kind
+Archive bed_after_run(const Archive& state, const TerrainOptions& options, double rest, RestResult& result);
+
+}  // namespace furrow::dem

@@ -1,0 +1,102 @@
+"""What the tests of checkpoints share: a run of a second, the same run made to fail at a named point, and comparisons."""
+import csv
+import json
+import os
+import pathlib
+import shutil
+import tempfile
+
+from program import ROOT, SystemTest, changed, furrow, start, survivors, wait_for, write_scenario
+
+FAULTY = os.environ.get("FURROW_FAULTY", str(ROOT / "build" / "furrow_faults"))
+INTERVAL, STEPS = 100, 500  # steps between checkpoints, steps of the run
+RANKS = {"rig": 0, "tire": 1, "terrain": 2}
+
+RUN = changed(rig={"touchdown_damping": 0}, run={"step": 1e-4, "end": 0.05, "average_from": 0.02, "peer_timeout": 20},
+              output={"frame_interval": 0.005}, checkpoint={"interval": 0.01, "keep": 3})
+FLEXIBLE = changed(tire={"file": "hmmwv_layered.json", "rigid": False, "elements_circumference": 30, "elements_width": 12},
+                   run=RUN["run"], output=RUN["output"], checkpoint=RUN["checkpoint"])
+
+
+def steps(run):
+    """Of the complete checkpoints, oldest first."""
+    folder = pathlib.Path(run) / "checkpoints"
+    return sorted(int(entry.name) for entry in folder.iterdir() if entry.name.isdigit()) if folder.exists() else []
+
+
+def summary(run):
+    return json.loads((pathlib.Path(run) / "summary.json").read_text())
+
+
+def table(run):
+    """The lines of the series."""
+    with open(pathlib.Path(run) / "timeseries.csv", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+class CheckpointTest(SystemTest):
+    """`whole` is the run that nothing disturbs."""
+    SCENARIO = RUN
+
+    @classmethod
+    def setUpClass(cls):
+        holder = tempfile.TemporaryDirectory(prefix="furrow whole ")
+        cls.addClassCleanup(holder.cleanup)
+        cls.whole = pathlib.Path(holder.name) / "whole"
+        path = write_scenario(holder.name, cls.SCENARIO)
+        done = furrow("run", path, "--out", cls.whole, "--no-plots", cwd=holder.name, program=FAULTY)
+        assert done.returncode == 0, done.stderr
+
+    def setUp(self):
+        super().setUp()
+        self.path = write_scenario(self.folder, self.SCENARIO)
+        self.run_folder = self.folder / "out"
+        self.mark = self.folder / "fired"
+
+    def program(self, *arguments, code=0, **options):
+        done = furrow(*arguments, cwd=self.folder, program=FAULTY, **options)
+        self.assertEqual(done.returncode, code, done.stderr)
+        self.no_process_left()
+        return done
+
+    def fault(self, point, rank, count, action):
+        return {"FURROW_FAULT": f"{point}:{rank}:{count}:{action}", "FURROW_FAULT_FIRED": str(self.mark)}
+
+    def run_with_fault(self, point, rank, count, action, code=4, flags=(), run=None):
+        done = self.program("run", self.path, "--out", run or self.run_folder, "--no-plots", *flags, code=code,
+                            env=self.fault(point, rank, count, action))
+        self.assertTrue(self.mark.exists(), f"the fault {point} of rank {rank} did not fire")
+        return done
+
+    def start_waiting(self, point, rank, count, run=None):
+        """A run that waits at the point until self.mark is removed."""
+        process = start("run", self.path, "--out", run or self.run_folder, "--no-plots", cwd=self.folder, program=FAULTY,
+                        env=self.fault(point, rank, count, "wait"))
+        self.addCleanup(process.kill)
+        wait_for(self.mark.exists, 60, "the fault fires")
+        return process
+
+    def resume(self, *flags, code=0, run=None):
+        return self.program("resume", run or self.run_folder, "--no-plots", *flags, code=code)
+
+    def no_process_left(self):
+        wait_for(lambda: not survivors(self.folder), 10, f"all processes end, still there: {survivors(self.folder)}")
+
+    def copy_of_whole(self):
+        """The whole run as if it had died in its last step."""
+        shutil.copytree(self.whole, self.run_folder)
+        for name in ("summary.json", "results.h5"):
+            (self.run_folder / name).unlink()
+        return self.run_folder
+
+    def same_as_whole(self, run=None):
+        run = run or self.run_folder
+        self.assertEqual((run / "timeseries.csv").read_bytes(), (self.whole / "timeseries.csv").read_bytes())
+        for key in ("state_hash", "scenario_digest", "drawbar_pull_N", "rut_depth_m", "momentum_residual", "factorizations"):
+            self.assertEqual(summary(run)[key], summary(self.whole)[key], key)
+        frames = sorted(path.name for path in (self.whole / "frames").iterdir())
+        self.assertEqual(sorted(path.name for path in (run / "frames").iterdir()), frames)
+        for name in frames:
+            self.assertEqual((run / "frames" / name).read_bytes(), (self.whole / "frames" / name).read_bytes(), name)
+        self.assertEqual((run / "results.xdmf").read_bytes(), (self.whole / "results.xdmf").read_bytes())
+        self.assertEqual([entry.name for entry in (run / "checkpoints").iterdir() if entry.name.startswith(".")], [])

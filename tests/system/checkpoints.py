@@ -1,0 +1,146 @@
+#!/usr/bin/python3
+"""Checkpoints and `furrow resume`: the run that goes on is bit for bit the one that was not interrupted."""
+import json
+import pathlib
+import shutil
+import signal
+import subprocess
+import unittest
+
+from checkpoint_runs import FAULTY, FLEXIBLE, INTERVAL, STEPS, CheckpointTest, steps, summary, table
+from program import PROGRAM, furrow, main
+
+
+class Signals(CheckpointTest):
+    def test_term_int_and_usr1_leave_a_checkpoint_to_go_on_from(self):
+        for number in (signal.SIGTERM, signal.SIGINT, signal.SIGUSR1):
+            with self.subTest(number.name):
+                run = self.folder / number.name
+                process = self.start_waiting("step", 0, 250, run=run)
+                process.send_signal(number)
+                wait_for_stop = process.stderr.readline
+                while "stopping" not in wait_for_stop():
+                    pass
+                self.mark.unlink()
+                out, err = process.communicate(timeout=30)
+                self.assertEqual(process.returncode, 75, err)
+                self.assertEqual(out, f"{run}\n")
+                self.assertIn(f"furrow: to go on from the last checkpoint: furrow resume {run}", err)
+                self.assertNotIn("error", err)
+                self.assertFalse((run / "summary.json").exists())
+                self.assertTrue((run / "results.h5").exists())
+                stopped = steps(run)[-1]
+                self.assertIn(stopped, range(250, 270))
+                self.resume(run=run)
+                self.same_as_whole(run)
+                self.assertEqual([s["from_step"] for s in summary(run)["segments"]], [0, stopped])
+
+
+class Resume(CheckpointTest):
+    def test_checkpoints_come_at_their_interval_and_the_newest_are_kept(self):
+        self.assertEqual(steps(self.whole), [STEPS - 2 * INTERVAL, STEPS - INTERVAL, STEPS])
+
+    def test_other_threads_give_the_same_bits_and_are_recorded(self):
+        self.run_with_fault("step", 2, 350, "kill", flags=["--threads", "2"])
+        self.resume("--threads", "1")
+        self.same_as_whole()
+        first, second = summary(self.run_folder)["segments"]
+        self.assertEqual((first["threads"], second["threads"]), (2, 1))
+        self.assertEqual(second["changed"], {"run.threads": 1})
+
+    def test_again_and_again(self):
+        self.run_with_fault("step", 1, 150, "kill")
+        for count in (120, 110):
+            done = furrow("resume", self.run_folder, "--no-plots", cwd=self.folder, program=FAULTY,
+                          env=self.fault("step", 1, count, "kill"))
+            self.assertEqual(done.returncode, 4, done.stderr)
+        self.resume()
+        self.same_as_whole()
+        self.assertEqual([s["from_step"] for s in summary(self.run_folder)["segments"]], [0, 100, 200, 300])
+
+    def test_a_later_end_is_as_if_it_had_been_so_from_the_start(self):
+        self.program("run", self.path, "--out", self.run_folder, "--set", "run.end=0.03", "--no-plots")
+        self.resume("--until", "0.05")
+        self.same_as_whole()
+        self.assertEqual(summary(self.run_folder)["segments"][1]["changed"], {"run.end": 0.05})
+
+    def test_another_output_rate_leaves_the_state_alone_and_numbers_frames_on(self):
+        self.run_with_fault("step", 0, 250, "kill")
+        self.resume("--set", "output.frame_interval=0.01", "--set", "output.series_interval=0.002")
+        self.assertEqual(summary(self.run_folder)["state_hash"], summary(self.whole)["state_hash"])
+        frames = sorted(path.name for path in (self.run_folder / "frames").glob("tire0_*"))
+        # every 50 steps before step 200, every 100 from there to 500
+        self.assertEqual(frames, [f"tire0_{i:06}.h5" for i in range(4 + 4)])
+        rows = table(self.run_folder)
+        times = [round(float(row["time_s"]) * 1e3) for row in rows]
+        self.assertEqual(times, [*range(1, 20), *range(20, 51, 2)])
+
+    def test_a_finished_run_has_nothing_to_do(self):
+        before = {path: path.stat().st_mtime_ns for path in self.whole.rglob("*")}
+        done = self.resume(run=self.whole)
+        self.assertIn("there is nothing to do", done.stderr)
+        self.assertEqual(done.stdout, f"{self.whole}\n")
+        self.assertEqual({path: path.stat().st_mtime_ns for path in self.whole.rglob("*")}, before)
+
+    def test_changed_physics_is_refused_by_its_key(self):
+        run = self.copy_of_whole()
+        for setting, key, was in (("rig.slip=0.5", "rig.slip", "0.3"), ("terrain.cohesion=1e3", "terrain.cohesion", "80e3"),
+                                  ("run.step=5e-5", "run.step", "1e-04"), ("run.seed=2", "run.seed", "1")):
+            done = self.resume("--set", setting, code=2)
+            self.assertIn(f"key '{key}': is ", done.stderr)
+            self.assertIn(f"but the run was computed with {was}", done.stderr)
+        # also where the file was edited
+        scenario = json.loads((run / "scenario.json").read_text())
+        scenario["terrain"]["friction"] = 0.5
+        (run / "scenario.json").write_text(json.dumps(scenario))
+        self.assertIn("key 'terrain.friction': is 0.5", self.resume(code=2).stderr)
+        self.assertFalse((run / "summary.json").exists())
+        self.assertEqual(steps(run), steps(self.whole))
+
+    def test_an_earlier_end_is_refused(self):
+        self.copy_of_whole()
+        self.assertIn("key 'run.end': is 0.03 s, but the run has come to 0.05 s", self.resume("--until", "0.03", code=2).stderr)
+
+    def test_nothing_goes_on_without_its_checkpoint(self):
+        run = self.copy_of_whole()
+        shutil.rmtree(run / "checkpoints")
+        self.assertIn("holds no checkpoint", self.resume(code=2).stderr)
+        self.assertFalse((run / "summary.json").exists())
+
+    def test_another_build_is_warned_of(self):
+        self.copy_of_whole()
+        done = furrow("resume", self.run_folder, "--no-plots", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("the checkpoint is of another build of furrow", done.stderr)
+
+    def test_under_the_users_mpirun(self):
+        self.run_with_fault("step", 0, 250, "kill")
+        command = [shutil.which("mpirun"), "--allow-run-as-root", "--oversubscribe", "--bind-to", "none", "-n", "3",
+                   FAULTY, "resume", str(self.run_folder)]
+        done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=120)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.same_as_whole()
+
+
+class FlexibleTire(CheckpointTest):
+    SCENARIO = FLEXIBLE
+
+    def test_in_the_middle_of_a_factors_life(self):
+        rows = table(self.whole)
+        made = [int(float(row["factorizations"])) for row in rows]
+        alive = [s for s in (200, 300, 400) if made[s // 10 - 2] == made[s // 10 + 1] > 0]
+        self.assertTrue(alive, f"no factor lives through a checkpoint: {made}")
+        self.run_with_fault("step", 1, alive[0] + 50, "kill")
+        self.resume()
+        self.same_as_whole()
+        self.assertEqual(summary(self.run_folder)["segments"][1]["from_step"], alive[0])
+
+
+class Release(unittest.TestCase):
+    def test_the_released_program_knows_no_faults(self):
+        self.assertNotIn(b"FURROW_FAULT", pathlib.Path(PROGRAM).read_bytes())
+        self.assertIn(b"FURROW_FAULT", pathlib.Path(FAULTY).read_bytes())
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,216 @@
+#!/usr/bin/python3
+"""Faults at named points (fault_injection.cpp) and damaged files: what the user sees, the exit code, no process left, and
+the run goes on from the last good checkpoint to the very same result."""
+import json
+import os
+import shutil
+import signal
+import subprocess
+import unittest
+
+from checkpoint_runs import FAULTY, INTERVAL, RANKS, STEPS, CheckpointTest, steps, summary
+from program import furrow, main, ranks
+
+# (point, rank, which time, step at which the run goes on at the latest)
+KILLS = [
+    ("step", "rig", 250, 200),
+    ("step", "tire", 250, 200),
+    ("step", "terrain", 250, 200),
+    ("frame", "tire", 6, 200),  # of step 250
+    ("frame", "terrain", 6, 200),
+    ("checkpoint.write", "rig", 2, 100),
+    ("checkpoint.write", "tire", 2, 100),
+    ("checkpoint.written", "terrain", 2, 100),
+    ("checkpoint.manifest", "rig", 2, 100),
+    ("checkpoint.rename", "rig", 2, 100),
+    ("checkpoint.done", "rig", 2, 200),
+    ("results", "rig", 1, 500),
+]
+
+
+class Killed(CheckpointTest):
+    """kill -9, one test per row of KILLS."""
+
+    def check(self, point, name, count, step):
+        done = self.run_with_fault(point, RANKS[name], count, "kill")
+        node = "tire 0" if name == "tire" else name
+        self.assertIn(f"furrow: error: rank {RANKS[name]} ({node}) was lost: killed by signal 9", done.stderr)
+        self.assertIn(f"furrow resume {self.run_folder}", done.stderr)
+        self.assertEqual(steps(self.run_folder)[-1], step)
+        self.assertEqual(furrow("report", self.run_folder, cwd=self.folder).returncode, 0) if point == "step" else None
+        self.resume()
+        self.same_as_whole()
+        self.assertEqual(summary(self.run_folder)["segments"][1]["from_step"], step)
+
+
+for row in KILLS:
+    setattr(Killed, f"test_{row[0].replace('.', '_')}_{row[1]}", lambda self, row=row: self.check(*row))
+
+
+class Stopped(CheckpointTest):
+    def test_a_rank_that_stops_is_named_and_the_run_goes_on_without_it(self):
+        done = self.run_with_fault("step", 1, 250, "stop", flags=["--set", "run.peer_timeout=2"])
+        self.assertRegex(done.stderr, r"furrow: error: .*waited 2 s for tire 0 .*tire 0 does not answer")
+        self.resume()
+        self.same_as_whole()
+
+
+class FullDisk(CheckpointTest):
+    """On a real tmpfs of 8 MB, filled at the point."""
+
+    def setUp(self):
+        super().setUp()
+        self.disk = self.folder / "disk"
+        self.disk.mkdir()
+        if os.geteuid() != 0 or subprocess.run(["mount", "-t", "tmpfs", "-o", "size=8m", "tmpfs", self.disk],
+                                               capture_output=True).returncode != 0:
+            self.skipTest("needs root and the right to mount")
+        self.addCleanup(subprocess.run, ["umount", "-l", self.disk])
+        self.run_folder = self.disk / "out"
+
+    def fill(self):
+        with open(self.disk / "ballast", "wb", buffering=0) as ballast:
+            try:
+                while True:
+                    ballast.write(bytes(4096))
+            except OSError:
+                pass
+
+    def check(self, point, rank, count, expected, step):
+        process = self.start_waiting(point, rank, count)
+        self.fill()
+        self.mark.unlink()
+        _, err = process.communicate(timeout=60)
+        self.no_process_left()
+        self.assertEqual(process.returncode, 5, err)
+        self.assertRegex(err, expected)
+        (self.disk / "ballast").unlink()
+        self.assertEqual(steps(self.run_folder)[-1], step)
+        self.resume()
+        self.same_as_whole()
+
+    def test_in_a_checkpoint_it_is_told_and_the_last_one_stays(self):
+        self.check("checkpoint.write", 2, 2, r"the checkpoint at t = 0.02 s could not be written: .*terrain.h5", 100)
+
+    def test_in_a_frame(self):
+        self.check("frame", 2, 6, r"furrow: error: .*frames/t.*_00000[5-6].h5: cannot", 200)
+
+    def test_in_the_results(self):
+        self.check("results", 0, 1, r"furrow: error: .*(results.h5|timeseries.csv|summary.json)", 500)
+
+
+class Damaged(CheckpointTest):
+    def setUp(self):
+        super().setUp()
+        self.run = self.copy_of_whole()
+        self.newest = self.run / "checkpoints" / f"{STEPS:012}"
+
+    def goes_on_from_the_one_before(self, words):
+        done = self.resume()
+        self.assertIn(f"furrow: warning: {self.newest}", done.stderr)
+        self.assertIn(words, done.stderr)
+        self.assertEqual(summary(self.run)["segments"][-1]["from_step"], STEPS - INTERVAL)
+        self.same_as_whole()
+
+    def test_truncated(self):
+        file = self.newest / "terrain.h5"
+        os.truncate(file, file.stat().st_size // 2)
+        self.goes_on_from_the_one_before("terrain.h5")
+
+    def test_a_flipped_bit_in_every_file(self):
+        for name in ("manifest.json", "rig.h5", "tire0.h5", "terrain.h5"):
+            with self.subTest(name):
+                shutil.rmtree(self.run)
+                self.copy_of_whole()
+                data = bytearray((self.newest / name).read_bytes())
+                # in a value: of the manifest its last digit, of an archive the last byte of data that is not zero
+                place = max(i for i, byte in enumerate(data) if chr(byte).isdigit()) if name.endswith("json") else \
+                    next(i for i in range(len(data) // 2, len(data)) if data[i])
+                data[place] ^= 1
+                (self.newest / name).write_bytes(data)
+                done = self.resume()
+                if "warning" not in done.stderr:  # the bit means nothing, as in padding
+                    self.assertNotEqual(name, "manifest.json")
+                self.same_as_whole()
+
+    def test_missing_part(self):
+        (self.newest / "tire0.h5").unlink()
+        self.goes_on_from_the_one_before("tire0.h5: does not exist")
+
+    def test_part_of_another_checkpoint(self):
+        shutil.copy(self.run / "checkpoints" / f"{STEPS - INTERVAL:012}" / "rig.h5", self.newest)
+        self.goes_on_from_the_one_before("rig.h5: belongs to another checkpoint")
+
+    def test_of_a_newer_program(self):
+        manifest = json.loads((self.newest / "manifest.json").read_text())
+        manifest["format_version"] = 2
+        (self.newest / "manifest.json").write_text(json.dumps(manifest))
+        self.goes_on_from_the_one_before("format_version 2 is newer than this program reads")
+
+    def test_of_another_scenario(self):
+        manifests = sorted((self.run / "checkpoints").glob("*/manifest.json"))
+        for manifest in manifests[:-1]:
+            shutil.rmtree(manifest.parent)
+        shutil.rmtree(self.newest)
+        other = self.folder / "other"
+        self.program("run", self.path, "--out", other, "--set", "run.seed=2", "--no-plots")
+        shutil.copytree(other / "checkpoints" / f"{STEPS:012}", self.newest)
+        self.assertIn("key 'run.seed': is 1 but the run was computed with 2", self.resume(code=2).stderr)
+
+    def test_all_of_them(self):
+        for part in (self.run / "checkpoints").glob("*/terrain.h5"):
+            os.truncate(part, 100)
+        done = self.resume(code=5)
+        self.assertIn("no checkpoint is whole, nothing can be continued", done.stderr)
+        self.assertEqual(done.stderr.count("terrain.h5: not a complete HDF5 file"), 3)
+
+    def test_series_that_was_written_on(self):
+        shutil.rmtree(self.newest)
+        with open(self.run / "timeseries.csv", "a") as series:
+            series.write("0.06,0.3,")  # a line cut short
+        self.resume()
+        self.same_as_whole()
+
+    def test_series_that_was_changed(self):
+        text = (self.run / "timeseries.csv").read_text()
+        (self.run / "timeseries.csv").write_text(text.replace("0", "1", 1))
+        self.assertIn("timeseries.csv: does not hold the lines that the checkpoint knows", self.resume(code=5).stderr)
+
+
+class Folder(CheckpointTest):
+    def test_two_on_one_folder(self):
+        process = self.start_waiting("step", 0, 250)
+        for command in (["resume", self.run_folder], ["run", self.path, "--out", self.run_folder, "--overwrite"]):
+            done = furrow(*command, cwd=self.folder)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn("is taken by a run that is not over", done.stderr)
+        self.mark.unlink()
+        _, err = process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 0, err)
+        self.same_as_whole()
+
+    @unittest.skipIf(os.geteuid() == 0 and not shutil.which("setpriv"), "needs a user who is not root")
+    def test_read_only(self):
+        run = self.copy_of_whole()
+        for path in (self.folder, run):
+            os.chmod(path, 0o555)
+        command = [FAULTY, "resume", str(run)]
+        if os.geteuid() == 0:
+            command = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups", *command]
+        done = subprocess.run(command, cwd="/", capture_output=True, text=True)
+        os.chmod(self.folder, 0o755)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("cannot be written, expected a place that can be written", done.stderr)
+
+    def test_killed_supervisor(self):
+        process = self.start_waiting("step", 1, 250)
+        process.send_signal(signal.SIGKILL)
+        process.communicate(timeout=10)
+        self.mark.unlink()
+        self.no_process_left()
+        self.resume()
+        self.same_as_whole()
+
+
+if __name__ == "__main__":
+    main()

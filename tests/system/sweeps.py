@@ -1,0 +1,104 @@
+#!/usr/bin/python3
+"""`furrow sweep`: a table of runs that goes on where it was interrupted, and passes over one bed."""
+import csv
+import json
+import shutil
+import signal
+import unittest
+
+from program import SystemTest, changed, furrow, main, start, survivors, wait_for, write_scenario
+
+
+class Sweep(SystemTest):
+    def study(self, **keys):
+        write_scenario(self.folder, changed(output={"frame_interval": 0}))
+        path = self.folder / "study.json"
+        path.write_text(json.dumps({"scenario": "small.json", **keys}))
+        return path
+
+    def table(self, folder="results/study"):
+        with open(self.folder / folder / "sweep.csv", newline="") as file:
+            return list(csv.DictReader(file))
+
+    def test_grid_is_run_kept_and_extended(self):
+        grid = {"rig.slip": [0.1, 0.4]}
+        study = self.study(set={"run.end": 0.03}, grid=grid, plot={"x": "rig.slip", "y": "drawbar_pull_N.mean"})
+        done = furrow("sweep", study, "--jobs", "2", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stdout, "results/study\n")
+        rows = self.table()
+        self.assertEqual([(row["rig.slip"], row["state"], row["exit_code"]) for row in rows], [("0.1", "done", "0"), ("0.4", "done", "0")])
+        for row in rows:
+            run = self.folder / "results" / "study" / row["folder"]
+            summary = json.loads((run / "summary.json").read_text())
+            self.assertEqual(float(row["drawbar_pull_N.mean"]), summary["drawbar_pull_N"]["mean"])
+            self.assertEqual(str(summary["slip"]), row["rig.slip"])
+        self.assertEqual((self.folder / "results" / "study" / "curve.png").read_bytes()[:4], b"\x89PNG")
+
+        study = self.study(set={"run.end": 0.03}, grid={"rig.slip": [0.1, 0.2, 0.4]})
+        done = furrow("sweep", study, cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stderr.count("is done already"), 2)
+        self.assertEqual([row["state"] for row in self.table()], ["done"] * 3)
+
+    def test_a_failed_run_stops_no_other(self):
+        # grains as soft as these leave the bin while they settle
+        study = self.study(list=[{"rig.slip": 0.1}, {"terrain.young_modulus": 1e3, "rig.carrier_mass": 20000, "run.end": 0.2},
+                                 {"rig.slip": 0.2}])
+        done = furrow("sweep", study, cwd=self.folder)
+        rows = self.table()
+        self.assertEqual([row["state"] for row in rows], ["done", "failed", "done"], done.stderr)
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertEqual(rows[1]["exit_code"], "3")
+        self.assertIn("was lost", rows[1]["problem"])
+
+    def test_a_killed_sweep_goes_on(self):
+        study = self.study(grid={"rig.slip": [0.1, 0.2]}, set={"run.end": 0.2, "checkpoint.interval": 0.01})
+        process = start("sweep", study, cwd=self.folder)
+        self.addCleanup(process.kill)
+        runs = self.folder / "results" / "study" / "runs"
+        wait_for(lambda: list(runs.glob("*/checkpoints/0*")), 60, "a checkpoint")
+        process.send_signal(signal.SIGTERM)
+        _, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 75, err)
+        self.assertEqual([row["state"] for row in self.table()], ["stopped", "waiting"])
+        self.assertEqual(survivors(self.folder), [])
+        done = furrow("sweep", study, cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("run 1 of 2 (rig.slip=0.1) goes on", done.stderr)
+        self.assertEqual([row["state"] for row in self.table()], ["done", "done"])
+        folders = [self.folder / "results" / "study" / row["folder"] for row in self.table()]
+        self.assertEqual([len(json.loads((run / "summary.json").read_text())["segments"]) for run in folders], [2, 1])
+
+    def test_mistakes_are_told_before_anything_runs(self):
+        for keys, words in (({"grid": {"rig.slpi": [1]}}, "key 'rig.slpi': is unknown, expected 'rig.slip'?"),
+                            ({"grid": {"rig.slip": [0.1, 2]}}, "key 'rig.slip': is 2, expected"),
+                            ({"grid": {"rig.slip": []}}, "key 'grid.rig.slip': expected a list of values"),
+                            ({"grid": {}, "list": [{}]}, "expected one of 'grid', 'list' and 'passes'"),
+                            ({"passes": 0}, "key 'passes': expected a whole number"),
+                            ({"gird": {}}, "key 'gird': is unknown, expected 'grid'?"),
+                            ({"scenario": "none.json", "passes": 1}, "key 'scenario': 'none.json' does not exist")):
+            done = furrow("sweep", self.study(**keys), cwd=self.folder)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(words, done.stderr)
+            self.assertFalse((self.folder / "results").exists())
+
+    def test_passes_begin_on_the_bed_that_the_last_one_left(self):
+        study = self.study(passes=2, rest=0.01, set={"run.end": 0.15, "run.average_from": 0.1})
+        done = furrow("sweep", study, cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        first, second = [self.folder / "results" / "study" / row["folder"] for row in self.table()]
+        a, b = [json.loads((run / "summary.json").read_text()) for run in (first, second)]
+        self.assertEqual(a["grains"], b["grains"])
+        self.assertEqual(a["surface_height_m"], b["surface_height_m"], "sinkage counts from another surface")
+        scenario = json.loads((second / "scenario.json").read_text())
+        self.assertTrue(scenario["terrain"]["bed"].endswith(f"beds/{first.name}.h5"))
+        self.assertNotEqual(a["state_hash"], b["state_hash"])
+        shutil.rmtree(second)
+        again = furrow("sweep", study, cwd=self.folder)
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assertEqual(json.loads((second / "summary.json").read_text())["state_hash"], b["state_hash"])
+
+
+if __name__ == "__main__":
+    main()

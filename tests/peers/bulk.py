@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Bulk tests in the engine and in LIGGGHTS from the same positions: settled beds, plate sinkage, direct shear.
 
-usage: bulk.py OUT bed|plate|shear [--seeds 5] [--engine furrow|liggghts]
+usage: bulk.py OUT bed|plate|shear [--seeds 5] [--engine furrow|liggghts|liggghts_sjkr]
 
 Appends one JSON line per run to OUT/<test>.jsonl and skips what is there: it can be stopped and started again, and the two
 engines run side by side (table.py makes the tables). Seeds differ in the random start. Material: common.py.
@@ -9,7 +9,8 @@ engines run side by side (table.py makes the tables). Seeds differ in the random
 bed    1200 grains fall between rough walls y = ±10 r, periodic along x, floor rough; 0.6 s; cohesion 0 and 80 kPa.
 plate  2500 grains on 36 r × 36 r, periodic, settled in the engine; a box of triangles 10 r wide goes in by 4 r at 0.2 m/s.
 shear  650 grains on 24 r × 14 r, periodic, between plates of grains: direct shear under 20, 50, 100 kPa, on the plateau at
-       three speeds one after the other, with two steps, cohesion 0 and 80 kPa.
+       three speeds one after the other, with two steps, cohesion 0 and 80 kPa. Engine liggghts_sjkr: LIGGGHTS's own cohesion
+       in place of the constant pull, which must differ.
 """
 import argparse
 import json
@@ -138,6 +139,9 @@ SHEAR_CELL = (24 * R, 14 * R)
 SHEAR_FREE = 650  # grains between the plates
 # Speed, m/s, and travel, r: first on to the plateau, then one after the other there.
 STAGES = ((0.4, 5), (0.15, 4), (0.4, 4), (1.0, 4))
+# Energy density of LIGGGHTS's cohesion model sjkr, J/m³, with which two grains rest at the overlap that 80 kPa gives ours:
+# k π (r² − d²/4) = F_c = K δ^{3/2}, d = 2 r − δ. It parts at 1.4 N, not at 9.0 N.
+SJKR = 1.127e6
 LID_SPEED = 0.4  # at which the lid falls under its load, m/s
 
 
@@ -157,10 +161,11 @@ def shear_start(seed):
 
 
 def shear(a, rows):
-    for step in (STEP, 0.5 * STEP):
+    sjkr = a.engines == ["liggghts_sjkr"]
+    for step in (STEP,) if sjkr else (STEP, 0.5 * STEP):
         for seed in range(1, a.seeds + 1):
             kinds, x = shear_start(seed)
-            for cohesion in (0.0, 80e3):
+            for cohesion in (80e3,) if sjkr else (0.0, 80e3):
                 for pressure in (20e3, 50e3, 100e3):
                     for engine in a.engines:
                         key = {"engine": engine, "seed": seed, "cohesion_Pa": cohesion, "step_s": step, "pressure_Pa": pressure}
@@ -193,7 +198,8 @@ def one_shear(a, key, kinds, x):
             lines += ["unfix lid_x", f"fix lid_x lid setforce {push!r} 0.0 NULL", f"run {s['ramp_steps']}", "unfix lid_x",
                       "fix lid_x lid setforce 0.0 0.0 NULL", f"run {s['steps'] - s['ramp_steps']}"]
             speed = s["speed"]
-        _, series = run_liggghts(folder, "deck_shear.in", kinds, x, box, key["cohesion_Pa"], load=key["pressure_Pa"] * area,
+        kind = {"sjkr": SJKR} if key["engine"] == "liggghts_sjkr" else {"cohesion": key["cohesion_Pa"]}
+        _, series = run_liggghts(folder, "deck_shear.in", kinds, x, box, **kind, load=key["pressure_Pa"] * area,
                                  lid_damping=damping, n_base=kinds.count(BASE), stages="\n".join(lines), **phases)
         series = series[-sum(s["steps"] for s in stages) // every:]
         tau, sigma, rise = -series[:, 1] / area, series[:, 2] / area, series[:, 3]
@@ -211,7 +217,7 @@ def main():
     parser.add_argument("out", type=pathlib.Path)
     parser.add_argument("test", choices=("bed", "plate", "shear"))
     parser.add_argument("--seeds", type=int, default=5)
-    parser.add_argument("--engine", choices=("furrow", "liggghts"))
+    parser.add_argument("--engine", choices=("furrow", "liggghts", "liggghts_sjkr"))
     a = parser.parse_args()
     a.out = a.out.resolve()
     a.out.mkdir(parents=True, exist_ok=True)

@@ -109,7 +109,7 @@ void call_back(void* pull, LAMMPS_NS::bigint, int count, int* ids, double** x, d
 int main(int argc, char** argv) {
   MPI_Init(&argc, &argv);
   if (argc != 5) return std::cerr << "usage: liggghts_with_pull DECK LOG PULL_N DIAMETER_M\n", 2;
-  std::vector<std::string> words = {"liggghts", "-log", argv[2], "-screen", "none"};
+  std::vector<std::string> words = {"liggghts", "-log", argv[2], "-screen", "/dev/null"};
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   void* handle = nullptr;

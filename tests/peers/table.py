@@ -32,12 +32,12 @@ def rows_of(folder, test):
     return [json.loads(line) for line in file.read_text().splitlines()] if file.exists() else []
 
 
-def compare(test, quantity, unit, values, scale=1.0):
+def compare(test, quantity, unit, values, scale=1.0, peer="liggghts"):
     """values: engine → seed → value. Seeds that both have count."""
-    seeds = sorted(set(values["furrow"]) & set(values["liggghts"]))
+    seeds = sorted(set(values["furrow"]) & set(values[peer]))
     if len(seeds) < 2:
         return None
-    mine, theirs = ([scale * values[e][s] for s in seeds] for e in ENGINES)
+    mine, theirs = ([scale * values[e][s] for s in seeds] for e in ("furrow", peer))
     apart = [m - t for m, t in zip(mine, theirs)]
     row = {"test": test, "quantity": quantity, "unit": unit, "seeds": len(seeds)}
     for name, v in (("furrow", mine), ("liggghts", theirs), ("difference", apart)):
@@ -78,26 +78,36 @@ def coulomb(points):
     return float(offset), math.degrees(math.atan(slope))
 
 
+def strength(rows, engine, cohesion, steps, speeds):
+    """c and φ per seed, of the line through all points: Pa, degrees."""
+    mine = [r for r in rows if r["engine"] == engine and r["cohesion_Pa"] == cohesion and r["step_s"] in steps]
+    c, phi = {}, {}
+    for seed in sorted({r["seed"] for r in mine}):
+        points = [(r[f"sigma_{v:g}_Pa"], r[f"tau_{v:g}_Pa"]) for r in mine if r["seed"] == seed for v in speeds]
+        if len(points) == 3 * len(speeds) * len(steps):
+            c[seed], phi[seed] = coulomb(points)
+    return c, phi
+
+
 def shear_rows(folder):
     rows = rows_of(folder, "shear")
+    all_steps = sorted({r["step_s"] for r in rows}, reverse=True)
     for cohesion in sorted({r["cohesion_Pa"] for r in rows}):
-        for step in sorted({r["step_s"] for r in rows}, reverse=True):
-            for speed in SPEEDS:
-                c, phi = {e: {} for e in ENGINES}, {e: {} for e in ENGINES}
-                for e in ENGINES:
-                    mine = [r for r in rows if r["engine"] == e and r["cohesion_Pa"] == cohesion and r["step_s"] == step]
-                    for seed in {r["seed"] for r in mine}:
-                        points = [(r[f"sigma_{speed:g}_Pa"], r[f"tau_{speed:g}_Pa"]) for r in mine if r["seed"] == seed]
-                        if len(points) == 3:
-                            c[e][seed], phi[e][seed] = coulomb(points)
-                test = f"shear, {kilo(cohesion)}, {speed:g} m/s, step {step * 1e6:g} µs"
-                yield compare(test, "c", "kPa", c, 1e-3)
-                yield compare(test, "φ", "°", phi)
+        cases = [(f"{v:g} m/s, step {h * 1e6:g} µs", (h,), (v,), "liggghts") for h in all_steps for v in SPEEDS]
+        cases += [(f"all speeds, step {h * 1e6:g} µs", (h,), SPEEDS, "liggghts") for h in all_steps]
+        cases += [("all speeds and steps", tuple(all_steps), SPEEDS, "liggghts")]
+        cases += [("all speeds, step 40 µs, LIGGGHTS: sjkr", (4e-5,), SPEEDS, "liggghts_sjkr")]
+        for name, steps, speeds, peer in cases:
+            c, phi = {}, {}
+            for e in ("furrow", peer):
+                c[e], phi[e] = strength(rows, e, cohesion, steps, speeds)
+            yield compare(f"shear, {kilo(cohesion)}, {name}", "c", "kPa", c, 1e-3, peer)
+            yield compare(f"shear, {kilo(cohesion)}, {name}", "φ", "°", phi, 1.0, peer)
 
 
 def plot_trajectories(folder, to):
     series = read_series(folder / "trajectories.csv")
-    shown = {"LIGGGHTS, grains in another order": (style.GREY, "-"), "no friction": (style.GREEN, "-"),
+    shown = {"LIGGGHTS, bed shifted sideways": (style.GREY, "-"), "no friction": (style.GREEN, "-"),
              "tangential law of LIGGGHTS": (style.BLUE, "-"), "the same with cohesion 80 kPa": (style.SKY, "-"),
              "but not: springs end with contact": (style.PURPLE, "--"), "but not: damper of m*": (style.RED, "--"),
              "the engine as it is": (style.ORANGE, "-"), "mixed against double precision": ("black", ":")}

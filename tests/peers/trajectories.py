@@ -1,21 +1,25 @@
 #!/usr/bin/python3
 """Early trajectories: the same falling grains in the engine and in LIGGGHTS, until they part and why.
 
-usage: trajectories.py OUT [--grains 1000] [--end 0.4] [--step 2e-5] [--seed 1]
+usage: trajectories.py OUT [--grains 2000] [--end 0.2] [--step 2e-5] [--seed 1]
 
 Both start from the same positions, the engine half a step of free fall before (LIGGGHTS's velocity Verlet stands at whole
-steps). Cases: without friction; with LIGGGHTS's tangential law in the engine, whole and with one difference put back at a time;
-the engine as it is; and LIGGGHTS on two ranks against itself on one, which parts by round-off alone.
+steps), and the floor has no friction. Cases: LIGGGHTS against itself with the bed shifted along a periodic side, which parts by
+round-off alone; without friction between grains; with LIGGGHTS's tangential law in the engine, whole and with one difference
+put back at a time; the engine as it is. LAMMPS's `granular` with mindlin_rescale/force keeps the spring's force as the engine
+does: beside it two switches and its dampers are left.
 OUT/trajectories.csv: time, then mean and greatest distance between the same grains per case, m. OUT/trajectories.json: when
 the mean passes 1e-12 … 1e-4 m, when grains first touch, what is left at the end.
 """
 import argparse
 import json
 import pathlib
+import shutil
 
 import numpy
 
-from common import (ALL_SWITCHES, FREE, RADIUS, SWITCHES, folder_name, program, random_spheres, run_furrow, run_liggghts)
+from common import (ALL_SWITCHES, FREE, MATERIAL, RADIUS, SWITCHES, folder_name, program, random_spheres, run_furrow, run_lammps,
+                    run_liggghts, tsuji_over_ours)
 
 SIDE = 20 * RADIUS  # m, periodic
 FILL = 0.28  # share of the space that the spheres take at the start
@@ -32,8 +36,8 @@ def distance(a, b):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("out", type=pathlib.Path)
-    parser.add_argument("--grains", type=int, default=1000)
-    parser.add_argument("--end", type=float, default=0.4, help="s")
+    parser.add_argument("--grains", type=int, default=2000)
+    parser.add_argument("--end", type=float, default=0.2, help="s")
     parser.add_argument("--step", type=float, default=2e-5, help="s")
     parser.add_argument("--frames", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
@@ -56,19 +60,25 @@ def main():
                             **{"wall_friction": 0.0, **more})[0]
 
     liggghts, smooth, rough_floor = peer("liggghts"), peer("liggghts smooth", friction=0.0), peer("liggghts floor", wall_friction=0.9)
-    order = numpy.random.default_rng(a.seed).permutation(a.grains)
-    renamed = numpy.empty_like(liggghts)
-    renamed[:, order] = peer("liggghts renamed", x=x[order])
+    moved = x + [0.3 * SIDE, 0.0, 0.0]
+    moved[:, 0] %= SIDE
+    shifted = peer("liggghts shifted", x=moved) - [0.3 * SIDE, 0.0, 0.0]
     stale = peer("liggghts stale", clear=False)
     theirs = {"switches": ALL_SWITCHES, "damper_mass": "full"}
     cases = {
-        "LIGGGHTS, grains in another order": (renamed, liggghts),
+        "LIGGGHTS, bed shifted sideways": (shifted, liggghts),
         "no friction": (furrow("smooth", friction=0.0)[0], smooth),
         "tangential law of LIGGGHTS": (furrow("theirs", **theirs)[0], liggghts),
     }
     if program("liggghts_with_pull"):
         cohesive, sticky = furrow("theirs cohesive", cohesion=80e3, **theirs)[0], peer("liggghts cohesive", cohesion=80e3)
         cases["the same with cohesion 80 kPa"] = (cohesive, sticky)
+    if shutil.which("lmp"):
+        like_lammps = {"damper_mass": "normal", "damping_scale": tsuji_over_ours(MATERIAL["restitution"])}
+        lammps = run_lammps(a.out / "runs/lammps", x, box, step=a.step, steps=steps, every=every)
+        no_turn = SWITCHES["no spin about the normal"] + SWITCHES["limit of |F_e|"]
+        cases["LAMMPS: its dampers, no spin, limit of |F_e|"] = (furrow("like lammps", switches=no_turn, **like_lammps)[0], lammps)
+        cases["LAMMPS: its dampers alone"] = (furrow("lammps dampers", switches=0, **like_lammps)[0], lammps)
     for name, bit in SWITCHES.items():
         cases["but not: " + name] = (furrow(name, **{**theirs, "switches": ALL_SWITCHES - bit})[0], liggghts)
     cases["but not: damper of m*"] = (furrow("damper", **{**theirs, "damper_mass": "sliding"})[0], liggghts)

@@ -127,7 +127,7 @@ def plate(a, rows):
                     box = {"length": side, "width": side, "height": low + plate_height + 5 * R}
                     rest_here = -(-rest // every) * every  # the samples of ave/time start at multiples of `every`
                     _, series = run_liggghts(folder, "deck_plate.in", [FREE] * count, y, box, cohesion, step=STEP, speed=speed,
-                                             rest_steps=rest_here, every=every, steps=every * samples)
+                                             rest=f"run {rest_here}", every=every, steps=every * samples)
                     force = series[-samples:, 3]
                 pressure = numpy.asarray(force) / plate_side**2
                 values = {"sinkage_m": [round((k + 0.5) * every * STEP * speed, 7) for k in range(samples)],

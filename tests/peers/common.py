@@ -91,7 +91,7 @@ def run_furrow(folder, job, kinds, x, switches=None, **more):
     write_start(folder / "start.csv", kinds, x)
     full = {**MATERIAL, "start": str(folder / "start.csv"), "periodic_x": True, "periodic_y": True, "cohesion": 0.0,
             "wall_friction": MATERIAL["friction"], "precision": "mixed", "half_step_start": True, "damper_mass": "sliding",
-            "damping_scale": 1.0, "switches": switches or 0, **job, **more}
+            "switches": switches or 0, **job, **more}
     (folder / "job.json").write_text(json.dumps(full))
     name = "peer_grains" if switches is None else "peer_grains_switched"
     environment = dict(os.environ, OMP_NUM_THREADS="1", OMP_WAIT_POLICY="passive")
@@ -131,35 +131,13 @@ def run_liggghts(folder, deck, kinds, x, box, cohesion=0.0, sjkr=0.0, clear=True
     text = head + (HERE / deck).read_text().format(**{"n_lid": n_lid, "law": law, **common})
     (folder / "deck.in").write_text(text)
     environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
+    # "-screen none" would do, but for meshes, which write to the screen without asking whether there is one.
     if cohesion:
         command = [program("liggghts_with_pull"), "deck.in", "log", repr(pull_force(cohesion)), repr(2 * RADIUS)]
     else:
-        command = [liggghts(), "-in", "deck.in", "-log", "log", "-screen", "/dev/null"]  # its meshes need a screen
+        command = [liggghts(), "-in", "deck.in", "-log", "log", "-screen", "/dev/null"]
     subprocess.run(command, check=True, cwd=folder, env=environment, stdout=subprocess.DEVNULL)
     return read_dump(folder / "positions.dump", len(x)), read_averages(folder)
-
-
-# LAMMPS `damping tsuji`: α √(m* k_n) with α(e) of its manual, k_n = 4/3 E* √(R*δ); the engine: 2 √(5/6) β √(m* 2 E* √(R*δ)).
-def tsuji_over_ours(e):
-    alpha = 1.2728 - 4.2783 * e + 11.087 * e**2 - 22.348 * e**3 + 27.467 * e**4 - 18.022 * e**5 + 4.8218 * e**6
-    beta = -math.log(e) / math.sqrt(math.log(e) ** 2 + math.pi**2)
-    return alpha * math.sqrt(4.0 / 3.0) / (2.0 * math.sqrt(5.0 / 6.0) * beta * math.sqrt(2.0))
-
-
-def run_lammps(folder, x, box, **values):
-    """Falling grains under LAMMPS's `granular` with mindlin_rescale/force; floor without friction, sides periodic."""
-    folder = folder.resolve()
-    folder.mkdir(parents=True, exist_ok=True)
-    with open(folder / "start.data", "w") as out:
-        out.write(f"spheres\n\n{len(x)} atoms\n1 atom types\n\n0 {box['length']!r} xlo xhi\n{-0.5 * box['width']!r} "
-                  f"{0.5 * box['width']!r} ylo yhi\n{-RADIUS!r} {box['height']!r} zlo zhi\n\nAtoms\n\n")
-        out.writelines(f"{n} 1 {2 * RADIUS!r} {DENSITY!r} {p[0]:.17g} {p[1]:.17g} {p[2]:.17g}\n" for n, p in enumerate(x, 1))
-    (folder / "deck.in").write_text((HERE / "deck_lammps.in").read_text().format(
-        wall_modulus=MATERIAL["young_modulus"] / (1.0 + MATERIAL["poisson_ratio"]), **{**MATERIAL, **values}))
-    environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
-    subprocess.run(["lmp", "-in", "deck.in", "-log", "log", "-screen", "none"], check=True, cwd=folder, env=environment,
-                   stdout=subprocess.DEVNULL)
-    return read_dump(folder / "positions.dump", len(x))
 
 
 def read_dump(file, count):

@@ -39,8 +39,6 @@ SolverCoefficients coefficients_of(const Job& job, const TerrainOptions& options
     c->velocity_scale = job.at("switches").get<int>();
     // m* in place of 2/7 m*.
     if (job.at("damper_mass") == "full") c->shear_damping *= std::sqrt(3.5);
-    c->damping *= job.at("damping_scale").get<double>();
-    if (job.at("damper_mass") == "normal") c->shear_damping = c->damping;
   }
   return all;
 }

@@ -30,8 +30,7 @@ class PeerBed {
  public:
   /// Keys of the job: start (CSV kind,x_m,y_m,z_m), length, width, periodic_x, periodic_y, radius, density,
   /// young_modulus, poisson_ratio, restitution, friction, wall_friction, cohesion, precision, step, half_step_start,
-  /// switches of the law, damping_scale on its normal damper, damper_mass of the tangential one ("sliding": 2/7 m*,
-  /// "full": m*, "normal": the coefficient of the normal damper). Walls have no cohesion.
+  /// switches and damper_mass ("sliding": 2/7 m*, or "full": m*) of the law. Walls have no cohesion.
   explicit PeerBed(const Job& job);
 
   /// One step; then `drive` may change the plates' velocities, from their forces, for this step's motion.

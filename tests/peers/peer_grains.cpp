@@ -81,9 +81,7 @@ void plate(PeerBed& bed, const Job& job, Output& out) {
   soil::Tool tool = box(0.5 * job.at("length").get<double>(), job.at("plate_side"), job.at("plate_z"),
                         job.at("plate_height"));
   dem::SurfaceContacts& surfaces = bed.solver().surfaces();
-  dem::ContactCoefficients contact = bed.coefficients().side;
-  contact.friction = job.at("friction");
-  surfaces.attach(tool.mesh(), {}, contact, tool.state());
+  surfaces.attach(tool.mesh(), {}, bed.coefficients().side, tool.state());
   const double high = 1.0;  // m
   const int rest = job.at("rest_steps"), steps = job.at("steps"), every = job.at("every");
   std::vector<NodalForces> forces(1);

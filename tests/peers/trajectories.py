@@ -6,20 +6,17 @@ usage: trajectories.py OUT [--grains 2000] [--end 0.2] [--step 2e-5] [--seed 1]
 Both start from the same positions, the engine half a step of free fall before (LIGGGHTS's velocity Verlet stands at whole
 steps), and the floor has no friction. Cases: LIGGGHTS against itself with the bed shifted along a periodic side, which parts by
 round-off alone; without friction between grains; with LIGGGHTS's tangential law in the engine, whole and with one difference
-put back at a time; the engine as it is. LAMMPS's `granular` with mindlin_rescale/force keeps the spring's force as the engine
-does: beside it two switches and its dampers are left.
+put back at a time; the engine as it is.
 OUT/trajectories.csv: time, then mean and greatest distance between the same grains per case, m. OUT/trajectories.json: when
 the mean passes 1e-12 … 1e-4 m, when grains first touch, what is left at the end.
 """
 import argparse
 import json
 import pathlib
-import shutil
 
 import numpy
 
-from common import (ALL_SWITCHES, FREE, MATERIAL, RADIUS, SWITCHES, folder_name, program, random_spheres, run_furrow, run_lammps,
-                    run_liggghts, tsuji_over_ours)
+from common import (ALL_SWITCHES, FREE, RADIUS, SWITCHES, folder_name, program, random_spheres, run_furrow, run_liggghts)
 
 SIDE = 20 * RADIUS  # m, periodic
 FILL = 0.28  # share of the space that the spheres take at the start
@@ -73,12 +70,6 @@ def main():
     if program("liggghts_with_pull"):
         cohesive, sticky = furrow("theirs cohesive", cohesion=80e3, **theirs)[0], peer("liggghts cohesive", cohesion=80e3)
         cases["the same with cohesion 80 kPa"] = (cohesive, sticky)
-    if shutil.which("lmp"):
-        like_lammps = {"damper_mass": "normal", "damping_scale": tsuji_over_ours(MATERIAL["restitution"])}
-        lammps = run_lammps(a.out / "runs/lammps", x, box, step=a.step, steps=steps, every=every)
-        no_turn = SWITCHES["no spin about the normal"] + SWITCHES["limit of |F_e|"]
-        cases["LAMMPS: its dampers, no spin, limit of |F_e|"] = (furrow("like lammps", switches=no_turn, **like_lammps)[0], lammps)
-        cases["LAMMPS: its dampers alone"] = (furrow("lammps dampers", switches=0, **like_lammps)[0], lammps)
     for name, bit in SWITCHES.items():
         cases["but not: " + name] = (furrow(name, **{**theirs, "switches": ALL_SWITCHES - bit})[0], liggghts)
     cases["but not: damper of m*"] = (furrow("damper", **{**theirs, "damper_mass": "sliding"})[0], liggghts)

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Bulk tests in the engine and in LIGGGHTS from the same positions: settled beds, plate sinkage, direct shear.
 
-usage: bulk.py OUT bed|plate|shear [--seeds 5] [--engine furrow|liggghts|liggghts_sjkr]
+usage: bulk.py OUT bed|plate|shear [--seeds 5] [--engine ENGINE] …
 
 Appends one JSON line per run to OUT/<test>.jsonl and skips what is there: it can be stopped and started again, and the two
 engines run side by side (table.py makes the tables). Seeds differ in the random start. Material: common.py.
@@ -9,8 +9,9 @@ engines run side by side (table.py makes the tables). Seeds differ in the random
 bed    1200 grains fall between rough walls y = ±10 r, periodic along x, floor rough; 0.6 s; cohesion 0 and 80 kPa.
 plate  2500 grains on 36 r × 36 r, periodic, settled in the engine; a box of triangles 10 r wide goes in by 4 r at 0.2 m/s.
 shear  650 grains on 24 r × 14 r, periodic, between plates of grains: direct shear under 20, 50, 100 kPa, on the plateau at
-       three speeds one after the other, with two steps, cohesion 0 and 80 kPa. Engine liggghts_sjkr: LIGGGHTS's own cohesion
-       in place of the constant pull, which must differ.
+       three speeds one after the other, with two steps, cohesion 0 and 80 kPa. More engines: furrow_switched, furrow_spring,
+       furrow_damper, with LIGGGHTS's tangential law or a part of it in the engine; liggghts_sjkr, with LIGGGHTS's own cohesion
+       in the place of the constant pull, which must differ.
 """
 import argparse
 import json
@@ -20,7 +21,7 @@ import time
 
 import numpy
 
-from common import (BASE, FREE, LID, MASS, RADIUS, random_spheres, run_furrow, run_liggghts)
+from common import (ALL_SWITCHES, BASE, FREE, LID, MASS, RADIUS, random_spheres, run_furrow, run_liggghts)
 from packing import measure
 
 STEP = 4e-5  # s
@@ -142,6 +143,9 @@ STAGES = ((0.4, 5), (0.15, 4), (0.4, 4), (1.0, 4))
 # Energy density of LIGGGHTS's cohesion model sjkr, J/m³, with which two grains rest at the overlap that 80 kPa gives ours:
 # k π (r² − d²/4) = F_c = K δ^{3/2}, d = 2 r − δ. It parts at 1.4 N, not at 9.0 N.
 SJKR = 1.127e6
+# The engine with parts of LIGGGHTS's tangential law: all of it, its spring alone, its damper alone.
+VARIANTS = {"furrow_switched": {"switches": ALL_SWITCHES, "damper_mass": "full"}, "furrow_spring": {"switches": ALL_SWITCHES},
+            "furrow_damper": {"switches": 0, "damper_mass": "full"}}
 LID_SPEED = 0.4  # at which the lid falls under its load, m/s
 
 
@@ -161,12 +165,11 @@ def shear_start(seed):
 
 
 def shear(a, rows):
-    sjkr = a.engines == ["liggghts_sjkr"]
-    for step in (STEP,) if sjkr else (STEP, 0.5 * STEP):
+    for step in a.steps:
         for seed in range(1, a.seeds + 1):
             kinds, x = shear_start(seed)
-            for cohesion in (80e3,) if sjkr else (0.0, 80e3):
-                for pressure in (20e3, 50e3, 100e3):
+            for cohesion in a.cohesions:
+                for pressure in a.pressures:
                     for engine in a.engines:
                         key = {"engine": engine, "seed": seed, "cohesion_Pa": cohesion, "step_s": step, "pressure_Pa": pressure}
                         if not rows.has(key):
@@ -185,10 +188,11 @@ def one_shear(a, key, kinds, x):
     damping = key["pressure_Pa"] * area / LID_SPEED
     phases = {"settle_steps": whole(0.12), "load_steps": whole(0.1), "hold_steps": whole(0.26), "every": every, "step": step}
     folder = a.out / f"runs/shear-{key['engine']}"
-    if key["engine"] == "furrow":
+    if key["engine"].startswith("furrow"):
+        law = VARIANTS.get(key["engine"], {})
         job = {"test": "shear", "length": length, "width": width, "cohesion": key["cohesion_Pa"], "pressure": key["pressure_Pa"],
                "lid_damping": damping, "stages": stages, **phases}
-        _, series = run_furrow(folder, job, kinds, x)
+        _, series = run_furrow(folder, job, kinds, x, **law)
         tau, sigma, rise = series["shear_N"] / area, series["normal_N"] / area, series["lid_m"]
     else:
         box = {"length": length, "width": width, "height": float(x[:, 2].max()) + 5 * R}
@@ -217,7 +221,10 @@ def main():
     parser.add_argument("out", type=pathlib.Path)
     parser.add_argument("test", choices=("bed", "plate", "shear"))
     parser.add_argument("--seeds", type=int, default=5)
-    parser.add_argument("--engine", choices=("furrow", "liggghts", "liggghts_sjkr"))
+    parser.add_argument("--engine", choices=("furrow", "liggghts", "liggghts_sjkr", *VARIANTS))
+    parser.add_argument("--steps", type=float, nargs="+", default=[STEP, 0.5 * STEP], help="of shear, s")
+    parser.add_argument("--cohesions", type=float, nargs="+", default=[0.0, 80e3], help="of shear, Pa")
+    parser.add_argument("--pressures", type=float, nargs="+", default=[20e3, 50e3, 100e3], help="of shear, Pa")
     a = parser.parse_args()
     a.out = a.out.resolve()
     a.out.mkdir(parents=True, exist_ok=True)

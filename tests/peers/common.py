@@ -161,14 +161,19 @@ def read_averages(folder):
     return numpy.loadtxt(file, ndmin=2) if file.exists() else None
 
 
+# 97.5 % points of Student's t for 1, 2, … degrees of freedom.
+STUDENT = [12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160, 2.145, 2.131, 2.120, 2.110,
+           2.101, 2.093, 2.086, 2.080, 2.074, 2.069, 2.064, 2.060, 2.056, 2.052, 2.048, 2.045, 2.042]
+
+
+def student(freedom):
+    return STUDENT[min(freedom, len(STUDENT)) - 1]
+
+
 def half_interval(values):
     """Half the 95 % confidence interval of the mean of independent values [Student's t]."""
     n = len(values)
-    if n < 2:
-        return math.nan
-    table = {1: 12.706, 2: 4.303, 3: 3.182, 4: 2.776, 5: 2.571, 6: 2.447, 7: 2.365, 8: 2.306, 9: 2.262, 10: 2.228, 11: 2.201,
-             12: 2.179, 13: 2.160, 14: 2.145, 15: 2.131}
-    return (table.get(n - 1) or 2.04) * statistics.stdev(values) / math.sqrt(n)
+    return student(n - 1) * statistics.stdev(values) / math.sqrt(n) if n > 1 else math.nan
 
 
 def folder_name(text):

@@ -11,6 +11,7 @@ OUT/trajectories.csv: time, then mean and greatest distance between the same gra
 the mean passes 1e-12 … 1e-4 m, when grains first touch, what is left at the end.
 """
 import argparse
+import csv
 import json
 import pathlib
 
@@ -86,12 +87,12 @@ def main():
         d = distance(mine, other)
         mean, most = d.mean(axis=1), d.max(axis=1)
         columns[f"mean: {name}"], columns[f"max: {name}"] = mean, most
-        passes = {f"{m:g}": next((float(t) for t, v in zip(time, mean) if v > m), None) for m in MARKS}
+        passes = {f"{m:g}": next((round(float(t), 6) for t, v in zip(time, mean) if v > m), None) for m in MARKS}
         summary[name] = {"mean_passes_m_at_s": passes, "final_mean_m": float(mean[-1]), "final_max_m": float(most[-1]),
                          "final_mean_height_difference_m": float((mine[-1][:, 2].mean() - other[-1][:, 2].mean()))}
         print(name, {k: v and round(v, 3) for k, v in passes.items()}, f"{mean[-1]:.2e}", flush=True)
     with open(a.out / "trajectories.csv", "w") as out:
-        out.write(",".join(columns) + "\n")
+        csv.writer(out, lineterminator="\n").writerow(columns)
         for row in zip(*columns.values()):
             out.write(",".join(f"{v:.4g}" for v in row) + "\n")
     touching = series["contacts"]

@@ -27,6 +27,7 @@ LIST
 }
 liggghts_packages() { cat <<'LIST'
 libliggghts-dev                           distributed DEM engine
+liggghts                                  comparisons of tests/peers
 LIST
 }
 vtk_packages() { cat <<'LIST'
@@ -37,7 +38,7 @@ LIST
 usage() { cat <<'HELP'
 usage: scripts/setup.sh [--liggghts] [--vtk] [-y]
 Installs the missing Debian packages, after saying which and how large, and asking.
-  --liggghts  also the LIGGGHTS engine (optional distributed terrain)
+  --liggghts  also LIGGGHTS (optional: distributed terrain, comparisons of tests/peers)
   --vtk       also the VTK that reads XDMF (needed by one test only; large)
   -y, --yes   do not ask; nor is asked where CI is set, or as root without a terminal
   --check     install nothing; exit 0 if nothing is missing, 1 if something is

@@ -1,0 +1,110 @@
+#include "tests/peers/peer_bed.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "protocol/error.hpp"
+#include "terrain/dem/solver_setup.hpp"
+
+namespace furrow::peers {
+namespace {
+
+using namespace dem;
+
+TerrainOptions options_of(const Job& job) {
+  TerrainOptions o;
+  o.length = job.at("length");
+  o.width = job.at("width");
+  o.periodic_x = job.at("periodic_x");
+  o.periodic_y = job.at("periodic_y");
+  o.radius = job.at("radius");
+  o.density = job.at("density");
+  o.young_modulus = job.at("young_modulus");
+  o.poisson_ratio = job.at("poisson_ratio");
+  o.restitution = job.at("restitution");
+  o.friction = job.at("friction");
+  o.cohesion = job.at("cohesion");
+  o.precision = job.at("precision");
+  o.step = job.at("step");
+  o.activity = false;
+  return o;
+}
+
+SolverCoefficients coefficients_of(const Job& job, const TerrainOptions& options) {
+  SolverCoefficients all = run_coefficients(options, options.step);
+  all.floor.cohesion_force = all.side.cohesion_force = 0.0;
+  all.floor.friction = all.side.friction = job.at("wall_friction");
+  for (ContactCoefficients* c : {&all.pair, &all.floor, &all.side}) {
+    c->velocity_scale = job.at("switches").get<int>();
+    // m* in place of 2/7 m*.
+    if (job.at("damper_mass") == "full") c->shear_damping *= std::sqrt(3.5);
+  }
+  return all;
+}
+
+}  // namespace
+
+PeerBed::PeerBed(const Job& job)
+    : options_(options_of(job)), step_(options_.step), params_(solver_params(options_)), solver_(params_) {
+  solver_.set_coefficients(coefficients_of(job, options_));
+  const std::string file = job.at("start");
+  std::ifstream in(file);
+  std::vector<Quad> at;
+  for (std::string line; std::getline(in, line);) {
+    if (line.find('x') != std::string::npos) continue;  // header
+    std::istringstream fields(line);
+    Quad p;
+    int kind = 0;
+    char comma;
+    if (!(fields >> kind >> comma >> p.x >> comma >> p.y >> comma >> p.z) || kind < kFree || kind > kLid)
+      throw input_error(file, "", "'" + line + "' is not kind,x,y,z with a kind of 0, 1 or 2");
+    at.push_back(p);
+    kind_.push_back(kind);
+    ++plates_[kind].grains;
+  }
+  if (at.empty()) throw io_error(file, "no grains could be read");
+  solver_.place(at);
+  // The peers' velocity Verlet stands at whole steps: half a step of free fall lies between.
+  if (job.at("half_step_start"))
+    for (int g = 0; g < solver_.grains().count; ++g)
+      if (kind_[solver_.grains().id[g]] == kFree) solver_.grains().velocity[g].z = 0.5 * step_ * kGravity;
+}
+
+void PeerBed::step(const std::function<void()>& drive) {
+  const int lost = solver_.step(step_);
+  Grains& grains = solver_.grains();
+  if (lost >= 0) throw physics_error("grain " + std::to_string(grains.id[lost]) + " was lost");
+  const double mass = params_.grain.mass;
+  const auto each_driven = [&](const auto& f) {
+    for (int g = 0; g < grains.count; ++g)
+      if (const int kind = kind_[grains.id[g]]; kind != kFree) f(g, plates_[kind]);
+  };
+  for (Plate& plate : plates_) plate.force.setZero();
+  each_driven([&](int g, Plate& plate) {
+    const Quad& v = grains.velocity[g];
+    plate.force += mass / step_ * (Vec3(v.x, v.y, v.z) - plate.velocity) + Vec3(0.0, 0.0, mass * kGravity);
+  });
+  if (drive) drive();
+  each_driven([&](int g, const Plate& plate) {
+    Quad &v = grains.velocity[g], &x = grains.position[g];
+    x.x += step_ * (plate.velocity.x() - v.x);
+    x.y += step_ * (plate.velocity.y() - v.y);
+    x.z += step_ * (plate.velocity.z() - v.z);
+    v = {plate.velocity.x(), plate.velocity.y(), plate.velocity.z(), 0.0};
+    grains.spin[g] = {};
+  });
+}
+
+void PeerBed::positions(std::vector<double>& out) const {
+  const Grains& grains = solver_.grains();
+  const std::size_t first = out.size();
+  out.resize(first + 3 * grains.count);
+  for (int g = 0; g < grains.count; ++g) {
+    const Quad& x = grains.position[g];
+    double* const to = &out[first + 3 * grains.id[g]];
+    to[0] = x.x, to[1] = x.y, to[2] = x.z;
+  }
+}
+
+}  // namespace furrow::peers

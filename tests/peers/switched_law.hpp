@@ -1,0 +1,68 @@
+// The engine's law `mindlin` with each of its differences from LIGGGHTS's `hertz` + `tangential history` on a switch.
+//
+// Included ahead of the engine's own sources when they are compiled for the comparison (CMakeLists.txt): there it
+// stands in the place of MindlinLaw, all else is the engine as it is. Coefficients::velocity_scale, which mindlin does
+// not use, holds the sum of the switches; 0 is the engine's law itself, kAll that of LIGGGHTS 3.8.
+#pragma once
+
+#include "terrain/dem/contact_law.hpp"
+
+namespace furrow::dem {
+
+using OwnLaw = MindlinLaw;
+
+struct SwitchedLaw {
+  static constexpr bool kHistory = true;
+
+  enum Switch {
+    kRescaleOnLoading = 1,  // spring = 8 G* √(R*δ) × displacement: rescaled by √(δ/δ_old) on loading too
+    kPlainProjection = 2,  // turned by projection only, which shortens it
+    kNoSpin = 4,           // not turned with the spin about the normal
+    kDamperApart = 8,      // the spring alone is cut at the limit, and where it is there is no damper
+    kLimitOfSize = 16,     // limit μ |F_e|: friction also while the damper pulls
+    kAll = 31
+  };
+
+  template <bool kRolling, class S, class T>
+  static inline ContactForce<T> force(const Coefficients<S>& c, S dt, const ContactMotion<T>& at,
+                                      ContactHistory<T>& history) {
+    const int on = static_cast<int>(c.velocity_scale);
+    if (kRolling || on == 0) return OwnLaw::force<kRolling>(c, dt, at, history);
+    const T zero = constant<T>(0.0), one = constant<T>(1.0), tiny = constant<T>(kTiny);
+    const T s = at.root_overlap, q = root(s);
+    const T v_n = dot(at.velocity, at.normal);
+    const Triple<T> v_t = at.velocity - v_n * at.normal;
+    const T hertz = c.stiffness * s * at.overlap;
+
+    ContactForce<T> f;
+    f.elastic = hertz - c.damping * q * v_n;
+    f.normal = f.elastic - c.cohesion_force;
+    f.energy = (constant<T>(0.4) * hertz - c.cohesion_force) * at.overlap;
+    f.rolling = {zero, zero, zero};
+    const T limit = c.friction * larger(f.elastic, on & kLimitOfSize ? -f.elastic : zero);
+
+    const T scale = s / larger(history.root_overlap, on & kRescaleOnLoading ? tiny : s);
+    const T angle = on & kNoSpin ? zero : dt * at.spin;
+    const Triple<T>& old = history.tangential;
+    const Triple<T> spun = old + angle * cross(at.normal, old);
+    Triple<T> spring = on & kPlainProjection ? scale * (spun - dot(spun, at.normal) * at.normal)
+                                             : turn_with_contact(old, at.normal, angle, scale);
+    spring = spring - (c.shear_stiffness * dt * s) * v_t;
+    const Triple<T> damper = (-c.shear_damping * q) * v_t;
+    if (on & kDamperApart) {
+      const T square = dot(spring, spring);
+      const auto over = square > limit * limit;
+      spring = (over ? limit / root(larger(square, tiny)) : one) * spring;
+      f.tangential = spring + (over ? zero : one) * damper;
+    } else {
+      f.tangential = cut_at_limit(spring, damper, limit);
+    }
+    history.tangential = spring;
+    history.root_overlap = s;
+    return f;
+  }
+};
+
+}  // namespace furrow::dem
+
+#define MindlinLaw SwitchedLaw

@@ -1,0 +1,105 @@
+#!/usr/bin/python3
+"""Early trajectories: the same falling grains in the engine and in LIGGGHTS, until they part and why.
+
+usage: trajectories.py OUT [--grains 2000] [--end 0.2] [--step 2e-5] [--seed 1]
+
+Both start from the same positions, the engine half a step of free fall before (LIGGGHTS's velocity Verlet stands at whole
+steps), and the floor has no friction. Cases: LIGGGHTS against itself with the bed shifted along a periodic side, which parts by
+round-off alone; without friction between grains; with LIGGGHTS's tangential law in the engine, whole and with one difference
+put back at a time; the engine as it is.
+OUT/trajectories.csv: time, then mean and greatest distance between the same grains per case, m. OUT/trajectories.json: when
+the mean passes 1e-12 … 1e-4 m, when grains first touch, what is left at the end.
+"""
+import argparse
+import csv
+import json
+import pathlib
+
+import numpy
+
+from common import (ALL_SWITCHES, FREE, RADIUS, SWITCHES, folder_name, program, random_spheres, run_furrow, run_liggghts)
+
+SIDE = 20 * RADIUS  # m, periodic
+FILL = 0.28  # share of the space that the spheres take at the start
+MARKS = [1e-14, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4]  # m
+
+
+def distance(a, b):
+    """Between the same grains, nearest image, m: time × grain."""
+    d = a - b
+    d[..., :2] -= SIDE * numpy.round(d[..., :2] / SIDE)
+    return numpy.sqrt((d * d).sum(axis=-1))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("out", type=pathlib.Path)
+    parser.add_argument("--grains", type=int, default=2000)
+    parser.add_argument("--end", type=float, default=0.2, help="s")
+    parser.add_argument("--step", type=float, default=2e-5, help="s")
+    parser.add_argument("--frames", type=int, default=200)
+    parser.add_argument("--seed", type=int, default=1)
+    a = parser.parse_args()
+    height = a.grains * 4.0 / 3.0 * numpy.pi * RADIUS**3 / (FILL * SIDE * SIDE)
+    x = random_spheres(a.grains, SIDE, SIDE, 1.5 * RADIUS, 1.5 * RADIUS + height, a.seed)
+    kinds = [FREE] * a.grains
+    steps = round(a.end / a.step)
+    every = max(1, steps // a.frames)
+    job = {"test": "fall", "length": SIDE, "width": SIDE, "step": a.step, "steps": steps, "every": every, "precision": "double",
+           "wall_friction": 0.0}
+    box = {"length": SIDE, "width": SIDE, "height": 2.0 * height}
+
+    def furrow(name, **more):
+        frames, series = run_furrow(a.out / "runs" / folder_name(name), job, kinds, x, **more)
+        return frames, series
+
+    def peer(name, x=x, **more):
+        return run_liggghts(a.out / "runs" / folder_name(name), "deck_fall.in", kinds, x, box, step=a.step, steps=steps, every=every,
+                            **{"wall_friction": 0.0, **more})[0]
+
+    liggghts, smooth, rough_floor = peer("liggghts"), peer("liggghts smooth", friction=0.0), peer("liggghts floor", wall_friction=0.9)
+    moved = x + [0.3 * SIDE, 0.0, 0.0]
+    moved[:, 0] %= SIDE
+    shifted = peer("liggghts shifted", x=moved) - [0.3 * SIDE, 0.0, 0.0]
+    stale = peer("liggghts stale", clear=False)
+    theirs = {"switches": ALL_SWITCHES, "damper_mass": "full"}
+    cases = {
+        "LIGGGHTS, bed shifted sideways": (shifted, liggghts),
+        "no friction": (furrow("smooth", friction=0.0)[0], smooth),
+        "tangential law of LIGGGHTS": (furrow("theirs", **theirs)[0], liggghts),
+    }
+    if program("liggghts_with_pull"):
+        cohesive, sticky = furrow("theirs cohesive", cohesion=80e3, **theirs)[0], peer("liggghts cohesive", cohesion=80e3)
+        cases["the same with cohesion 80 kPa"] = (cohesive, sticky)
+    for name, bit in SWITCHES.items():
+        cases["but not: " + name] = (furrow(name, **{**theirs, "switches": ALL_SWITCHES - bit})[0], liggghts)
+    cases["but not: damper of m*"] = (furrow("damper", **{**theirs, "damper_mass": "sliding"})[0], liggghts)
+    cases["but not: springs end with contact"] = (cases["tangential law of LIGGGHTS"][0], stale)
+    cases["but not: frictionless floor"] = (furrow("floor", **{**theirs, "wall_friction": 0.9})[0], rough_floor)
+    own, series = furrow("own")
+    cases["the engine as it is"] = (own, liggghts)
+    cases["the engine, mixed precision"] = (furrow("mixed", precision="mixed")[0], liggghts)
+    cases["mixed against double precision"] = (cases["the engine, mixed precision"][0], own)
+
+    time = a.step * every * numpy.arange(len(liggghts))
+    columns, summary = {"time_s": time}, {}
+    for name, (mine, other) in cases.items():
+        d = distance(mine, other)
+        mean, most = d.mean(axis=1), d.max(axis=1)
+        columns[f"mean: {name}"], columns[f"max: {name}"] = mean, most
+        passes = {f"{m:g}": next((round(float(t), 6) for t, v in zip(time, mean) if v > m), None) for m in MARKS}
+        summary[name] = {"mean_passes_m_at_s": passes, "final_mean_m": float(mean[-1]), "final_max_m": float(most[-1]),
+                         "final_mean_height_difference_m": float((mine[-1][:, 2].mean() - other[-1][:, 2].mean()))}
+        print(name, {k: v and round(v, 3) for k, v in passes.items()}, f"{mean[-1]:.2e}", flush=True)
+    with open(a.out / "trajectories.csv", "w") as out:
+        csv.writer(out, lineterminator="\n").writerow(columns)
+        for row in zip(*columns.values()):
+            out.write(",".join(f"{v:.4g}" for v in row) + "\n")
+    touching = series["contacts"]
+    facts = {"grains": a.grains, "step_s": a.step, "seed": a.seed,
+             "first_contacts_s": float(series["time_s"][next(k for k, c in enumerate(touching) if c > 0)]), "cases": summary}
+    (a.out / "trajectories.json").write_text(json.dumps(facts, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()

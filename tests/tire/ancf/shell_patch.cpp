@@ -41,8 +41,7 @@ int PatchMesh::nearest(const Vec3& place) const {
   return static_cast<int>(std::min_element(position.begin(), position.end(), closer) - position.begin());
 }
 
-PatchMesh grid_mesh(int n, int m,
-                    const std::function<std::pair<Vec3, Vec3>(double s, double t)>& surface) {
+PatchMesh grid_mesh(int n, int m, const std::function<std::pair<Vec3, Vec3>(double s, double t)>& surface) {
   PatchMesh mesh;
   for (int i = 0; i <= n; ++i)
     for (int j = 0; j <= m; ++j) {
@@ -77,8 +76,7 @@ PatchMesh distorted_mesh() {
 ShellPatch::ShellPatch(PatchMesh mesh, std::vector<ShellLayer> layers)
     : mesh_(std::move(mesh)), layers_(std::move(layers)) {
   reference_.resize(coordinates());
-  for (int n = 0; n < nodes(); ++n)
-    reference_.segment<6>(6 * n) << mesh_.position[n], mesh_.director[n];
+  for (int n = 0; n < nodes(); ++n) reference_.segment<6>(6 * n) << mesh_.position[n], mesh_.director[n];
   for (std::size_t e = 0; e < mesh_.elements.size(); ++e) {
     const ElementNodes corners = gather(reference_, static_cast<int>(e));
     stiffness_.push_back(shell_stiffness(corners, layers_));
@@ -145,8 +143,7 @@ double ShellPatch::energy(const Vector& q) const {
 Vector ShellPatch::forces(const Vector& q, const ElementStrains& stress) const {
   Vector f = Vector::Zero(coordinates());
   for (std::size_t k = 0; k < raw_.size(); ++k) {
-    const Eigen::Matrix<double, 24, 1> fe =
-        gradient(gather(q, static_cast<int>(k))).transpose() * stress[k];
+    const Eigen::Matrix<double, 24, 1> fe = gradient(gather(q, static_cast<int>(k))).transpose() * stress[k];
     for (int n = 0; n < 4; ++n) f.segment<6>(6 * mesh_.elements[k][n]) += fe.segment<6>(6 * n);
   }
   return f;

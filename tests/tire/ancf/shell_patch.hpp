@@ -54,7 +54,6 @@ class ShellPatch {
   const Vector& reference() const { return reference_; }
   int nodes() const { return mesh_.nodes(); }
   int coordinates() const { return 6 * mesh_.nodes(); }
-  const StrainMatrix& stiffness(int e) const { return stiffness_[e]; }
 
   ElementStrains strains(const Vector& q) const;
   /// D̂ E.

@@ -43,8 +43,8 @@ TEST(Dynamics, frequencies_of_a_simply_supported_plate) {
       for (int mode = 0; mode < 5; ++mode)
         if (mode != 2)
           verify("simply supported square plate, a/h = " + verification::brief(1 / height),
-                 "frequency " + std::to_string(mode + 1) + ", omega a^2 sqrt(rho h/D), " + size(n, n), ours[mode],
-                 kPi * kPi * theory[mode], 12.0 / (n * n) + 2e-3, "pi^2 (m^2 + n^2)");
+                 "frequency " + std::to_string(mode + 1) + ", omega a^2 sqrt(rho h/D), " + size(n, n),
+                 ours[mode], kPi * kPi * theory[mode], 12.0 / (n * n) + 2e-3, "pi^2 (m^2 + n^2)");
     }
 }
 
@@ -97,14 +97,15 @@ class Stepper {
       solver_.factorize(part);
       const Vector change = solver_.solve(restrict_to(r, free_));
       for (std::size_t a = 0; a < free_.size(); ++a) q[free_[a]] -= change[static_cast<int>(a)];
-      if (change.cwiseAbs().maxCoeff() < 1e-13) break;
+      if (change.cwiseAbs().maxCoeff() < 1e-12) break;
     }
     v = (q - q0) / (theta_ * h) - (1 - theta_) / theta_ * v0;
     const Vector dv = v - v0;
+    auto change = patch_.strains(q);
+    for (std::size_t e = 0; e < change.size(); ++e) change[e] -= e0[e];
+    const auto stress = patch_.stresses(change);
     double strain = 0.0;
-    const auto e1 = patch_.strains(q);
-    for (std::size_t e = 0; e < e1.size(); ++e)
-      strain += (e1[e] - e0[e]).dot(patch_.stiffness(static_cast<int>(e)) * (e1[e] - e0[e]));
+    for (std::size_t e = 0; e < change.size(); ++e) strain += change[e].dot(stress[e]);
     if (theta_ == 1.0) removed += 0.5 * dv.dot(mass_ * dv) + 0.5 * strain;
   }
 
@@ -134,7 +135,9 @@ class Stepper {
   Vector weight_;
 };
 
-ShellPatch rubber_strip() { return ShellPatch(plate_mesh(8, 1, 1.0, 0.1), {isotropic_layer(0.02, 5e6, 0.3)}); }
+ShellPatch rubber_strip() {
+  return ShellPatch(plate_mesh(4, 1, 1.0, 0.1), {isotropic_layer(0.02, 5e6, 0.3)});
+}
 
 TEST(Dynamics, flexible_pendulum_through_large_rotations) {
   // Hinged at one end, released horizontally; after 0.5 s it has passed the vertical.
@@ -145,15 +148,15 @@ TEST(Dynamics, flexible_pendulum_through_large_rotations) {
   for (const bool ours : {false, true}) {
     Vec3 tip[3];
     double lost[3];
-    const double steps[3] = {1e-3, 5e-4, 2.5e-4};
+    const double steps[3] = {5e-4, 2.5e-4, 1.25e-4};
     for (int k = 0; k < 3; ++k) {
       Stepper run(strip, hinge, 1100, 9.81, ours ? 1.0 : 0.5);
       const double start = run.energy();
       const int count = static_cast<int>(std::lround(0.5 / steps[k]));
       for (int n = 0; n < count; ++n) run.step(steps[k]);
-      tip[k] = run.q.segment<3>(6 * 17);
+      tip[k] = run.q.segment<3>(6 * 9);
       lost[k] = start - run.energy();
-      const std::string where = ", h = " + verification::brief(steps[k]) + " s, 8 x 1";
+      const std::string where = ", h = " + verification::brief(steps[k]) + " s, 4 x 1";
       if (!ours)
         verify(names[0], "energy change over m g L/2" + where, lost[k] / scale, 0.0, 1e-9,
                "conserved (Simo & Tarnow 1992 doi:10.1007/BF00913408)", 1.0);
@@ -162,11 +165,11 @@ TEST(Dynamics, flexible_pendulum_through_large_rotations) {
                "sum of dv M dv/2 + dE D dE/2 over the steps");
     }
     const double order = std::log2((tip[0] - tip[1]).norm() / (tip[1] - tip[2]).norm());
-    verify(names[ours], "order of the tip's position in the step, 8 x 1", order, ours ? 1.0 : 2.0, 0.15,
+    verify(names[ours], "order of the tip's position in the step, 4 x 1", order, ours ? 1.0 : 2.0, 0.15,
            ours ? "first order: backward Euler velocities" : "second order");
     if (ours)
-      verify(names[1], "order of the energy lost in the step, 8 x 1",
-             std::log2(lost[1] / lost[2]), 1.0, 0.15, "first order");
+      verify(names[1], "order of the energy lost in the step, 4 x 1", std::log2(lost[1] / lost[2]), 1.0, 0.15,
+             "first order");
   }
 }
 
@@ -181,12 +184,13 @@ TEST(Dynamics, free_flight_of_a_strip) {
     }
     const Vec3 p = run.momentum(), l = run.angular_momentum();
     for (int n = 0; n < 300; ++n) run.step(1e-3);
-    const std::string name = std::string("free flight with bending, ") + (ours ? "rule of the tire" : "mid-point rule");
-    verify(name, "momentum change after 300 steps, 8 x 1", (run.momentum() - p).norm(), 0.0, 1e-12, "conserved",
-           p.norm());
+    const std::string name =
+        std::string("free flight with bending, ") + (ours ? "rule of the tire" : "mid-point rule");
+    verify(name, "momentum change after 300 steps, 4 x 1", (run.momentum() - p).norm(), 0.0, 1e-12,
+           "conserved", p.norm());
     if (!ours)
-      verify(name, "angular momentum change after 300 steps, 8 x 1", (run.angular_momentum() - l).norm(), 0.0, 1e-10,
-             "conserved", l.norm());
+      verify(name, "angular momentum change after 300 steps, 4 x 1", (run.angular_momentum() - l).norm(), 0.0,
+             1e-10, "conserved", l.norm());
   }
 }
 
@@ -232,10 +236,11 @@ TEST(Dynamics, tire_on_a_swinging_rim) {
   for (int k = 0; k < 4; ++k) impulse[k] = swung_tire(steps[k]);
   const double limit = 2 * impulse[3] - impulse[2];
   const double order = std::log2((impulse[1] - impulse[2]) / (impulse[2] - impulse[3]));
-  verify("toroidal tire on a rim swinging through 60 deg", "angular impulse on the rim, N m s, h = 1e-4 s, 24 x 8",
-         impulse[3], limit, 5e-3, "extrapolated in the step");
-  verify("toroidal tire on a rim swinging through 60 deg", "order in the step, 24 x 8", std::max(order, 1.0) - order, 0.0,
-         0.2, "first order or better", 1.0);
+  verify("toroidal tire on a rim swinging through 60 deg",
+         "angular impulse on the rim, N m s, h = 1e-4 s, 24 x 8", impulse[3], limit, 5e-3,
+         "extrapolated in the step");
+  verify("toroidal tire on a rim swinging through 60 deg", "order in the step, 24 x 8",
+         std::max(order, 1.0) - order, 0.0, 0.2, "first order or better", 1.0);
 }
 
 }  // namespace

@@ -22,7 +22,8 @@ Ply graphite() { return {25e9, 1e9, 0.5e9, 0.2e9, 0.25, 0.25}; }
 
 std::vector<ShellLayer> layup(const std::vector<double>& angles, double thickness) {
   std::vector<ShellLayer> layers;
-  for (const double a : angles) layers.push_back(ply_layer(thickness / static_cast<double>(angles.size()), a, graphite()));
+  for (const double a : angles)
+    layers.push_back(ply_layer(thickness / static_cast<double>(angles.size()), a, graphite()));
   return layers;
 }
 
@@ -67,7 +68,8 @@ double difference(const Abd& ours, const Abd& reference) {
   double worst = 0.0;
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j)
-      worst = std::max(worst, std::abs(ours(i, j) - reference(i, j)) / std::sqrt(reference(i, i) * reference(j, j)));
+      worst = std::max(worst,
+                       std::abs(ours(i, j) - reference(i, j)) / std::sqrt(reference(i, i) * reference(j, j)));
   return worst;
 }
 
@@ -104,8 +106,9 @@ TEST(Laminate, extension_twist_coupling) {
     for (const bool plane : {false, true}) {
       const Abd abd = plane ? plane_stress_abd(layers) : linear_thickness_abd(layers);
       const double reference = abd.ldlt().solve(pull)[5], ours = twist_of_pulled_strip(layers, n, n);
-      verify("laminate [45/-45] pulled", "twist per pull, 1/N, " + std::to_string(n) + " x " + std::to_string(n), ours,
-             reference, plane ? 0.01 : 1e-9, plane ? kClassical : kLinear);
+      verify("laminate [45/-45] pulled",
+             "twist per pull, 1/N, " + std::to_string(n) + " x " + std::to_string(n), ours, reference,
+             plane ? 0.01 : 1e-9, plane ? kClassical : kLinear);
     }
 }
 
@@ -145,12 +148,14 @@ TEST(Laminate, simply_supported_cross_ply_plates) {
       };
       for (const int n : {8, 16, 32}) {
         const double ours = plate_deflection(layers, n);
-        const std::string quantity = "central deflection per load, m/Pa, " + std::to_string(n) + " x " + std::to_string(n);
-        verify(name, quantity, ours, closed(linear_thickness_abd(layers), 1.0), 1.0 / (n * n), std::string(source) + ", " + kLinear);
+        const std::string quantity =
+            "central deflection per load, m/Pa, " + std::to_string(n) + " x " + std::to_string(n);
+        verify(name, quantity, ours, closed(linear_thickness_abd(layers), 1.0), 1.0 / (n * n),
+               std::string(source) + ", " + kLinear);
         if (n == 32) {
           verify(name, quantity, ours, closed(plane_stress_abd(layers), 1.0), 0.02, source);
-          verify(name, quantity, ours, closed(plane_stress_abd(layers), 5.0 / 6.0), slenderness > 50 ? 0.02 : 0.15,
-                 "Navier solution, first-order theory, factor 5/6");
+          verify(name, quantity, ours, closed(plane_stress_abd(layers), 5.0 / 6.0),
+                 slenderness > 50 ? 0.02 : 0.15, "Navier solution, first-order theory, factor 5/6");
         }
       }
     }

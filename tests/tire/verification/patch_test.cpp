@@ -22,8 +22,7 @@ const char* kExact = "exact constant state";
 PatchMesh twisted_mesh(double degrees) {
   PatchMesh mesh = distorted_mesh();
   const Vec3 centre(0.95, 0.5, 0);
-  const Mat3 turn =
-      Eigen::AngleAxisd(degrees * std::numbers::pi / 180, Vec3::UnitZ()).toRotationMatrix();
+  const Mat3 turn = Eigen::AngleAxisd(degrees * std::numbers::pi / 180, Vec3::UnitZ()).toRotationMatrix();
   for (int n = 4; n < 8; ++n) mesh.position[n] = centre + turn * (mesh.position[n] - centre);
   return mesh;
 }
@@ -61,8 +60,8 @@ TEST(Patch, membrane_state) {
     const Vector q = solve(patch, Supports(8).fix(outside(), "xyz"), exact);
     verify("membrane patch", "largest coordinate off, " + mesh_name(turn), (q - exact).cwiseAbs().maxCoeff(),
            0.0, 1e-11, kExact, 1.0);
-    verify("membrane patch", "energy, J, " + mesh_name(turn), patch.energy(q), density * 2 * kThickness,
-           1e-9, "plane stress");
+    verify("membrane patch", "energy, J, " + mesh_name(turn), patch.energy(q), density * 2 * kThickness, 1e-9,
+           "plane stress");
   }
 }
 
@@ -73,10 +72,9 @@ TEST(Patch, thickness_state) {
     const ShellPatch patch(twisted_mesh(turn), {isotropic_layer(kThickness, kYoung, kPoisson)});
     Vector exact = patch.reference();
     for (int n = 0; n < 8; ++n) exact[6 * n + 5] = 1.02;
-    const Vector q =
-        solve(patch, Supports(8).fix(outside(), "xyzabc").fix({4, 5, 6, 7}, "abc"), exact);
-    verify("thickness patch", "largest coordinate off, " + mesh_name(turn),
-           (q - exact).cwiseAbs().maxCoeff(), 0.0, 1e-11, kExact, 1.0);
+    const Vector q = solve(patch, Supports(8).fix(outside(), "xyzabc").fix({4, 5, 6, 7}, "abc"), exact);
+    verify("thickness patch", "largest coordinate off, " + mesh_name(turn), (q - exact).cwiseAbs().maxCoeff(),
+           0.0, 1e-11, kExact, 1.0);
     verify("thickness patch", "energy, J, " + mesh_name(turn), patch.energy(q),
            0.5 * c33 * e33 * e33 * 2 * kThickness, 1e-9, "c33 of the material");
   }
@@ -110,8 +108,7 @@ TEST(Patch, transverse_shear_state) {
     const ShellPatch patch(twisted_mesh(turn), {isotropic_layer(kThickness, kYoung, kPoisson)});
     Vector exact = patch.reference();
     for (int n = 0; n < 8; ++n) exact[6 * n + 2] = gamma * exact[6 * n];  // directors stay
-    const Vector q =
-        solve(patch, Supports(8).fix(outside(), "xyzabc").fix({4, 5, 6, 7}, "abc"), exact);
+    const Vector q = solve(patch, Supports(8).fix(outside(), "xyzabc").fix({4, 5, 6, 7}, "abc"), exact);
     verify("shear patch", "largest coordinate off, of the largest, " + mesh_name(turn),
            (q - exact).cwiseAbs().maxCoeff(), 0.0, 1e-3, kExact, 2 * gamma);
     verify("shear patch", "energy, J, " + mesh_name(turn), patch.energy(q),
@@ -122,13 +119,13 @@ TEST(Patch, transverse_shear_state) {
 /// A piece of a sphere of radius 1 m, layered.
 ShellPatch dome() {
   const Ply ply{7.56e9, 4.74e7, 1.634e7, 1.634e7, 0.45, 0.45};
-  return ShellPatch(
-      grid_mesh(4, 4,
-                [](double s, double t) {
-                  const Vec3 d(std::sin(s - 0.4) * std::cos(t), std::sin(t), std::cos(s - 0.4) * std::cos(t));
-                  return std::pair(d, d);
-                }),
-      {ply_layer(2e-3, 45, ply), ply_layer(1e-3, 0, ply), ply_layer(2e-3, -45, ply)});
+  return ShellPatch(grid_mesh(4, 4,
+                              [](double s, double t) {
+                                const Vec3 d(std::sin(s - 0.4) * std::cos(t), std::sin(t),
+                                             std::cos(s - 0.4) * std::cos(t));
+                                return std::pair(d, d);
+                              }),
+                    {ply_layer(2e-3, 45, ply), ply_layer(1e-3, 0, ply), ply_layer(2e-3, -45, ply)});
 }
 
 Vector moved(const ShellPatch& patch, const Vector& q, const Mat3& turn, const Vec3& shift) {
@@ -146,8 +143,8 @@ TEST(Patch, rigid_motion_through_many_turns) {
                              "zero");
   verification::Worst force("rigid motion, 100 turns in steps of 37 deg", "largest force over E h L, 4 x 4",
                             1e-12, "zero");
-  const Mat3 step = Eigen::AngleAxisd(37 * std::numbers::pi / 180, Vec3(1, -2, 0.5).normalized())
-                        .toRotationMatrix();
+  const Mat3 step =
+      Eigen::AngleAxisd(37 * std::numbers::pi / 180, Vec3(1, -2, 0.5).normalized()).toRotationMatrix();
   Mat3 turn = Mat3::Identity();
   for (int n = 0; n < 973; ++n) {
     turn = Eigen::Quaterniond(step * turn).normalized().toRotationMatrix();

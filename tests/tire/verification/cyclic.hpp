@@ -1,7 +1,6 @@
 // An axisymmetric tire seen order by order: displacements û e^{i n θ} in axes that turn with the columns decouple, so
 // that stiffness and mass of the whole ring are one Hermitian matrix of a single column per circumferential order n.
-//   Thomas (1979), Dynamics of rotationally periodic structures, Int. J. Numer. Methods Eng. 14,
-//   doi:10.1002/nme.1620140106.
+//   Thomas (1979), Dynamics of rotationally periodic structures, Int. J. Numer. Methods Eng. 14:81.
 #pragma once
 
 #include <Eigen/Dense>

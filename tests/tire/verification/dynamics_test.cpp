@@ -194,8 +194,7 @@ TEST(Dynamics, free_flight_of_a_strip) {
   }
 }
 
-/// Elastic energy of the inflated toroidal tire after its rim has swung like a pendulum about a far axis, J, less that
-/// before.
+/// Angular impulse (N m s) on the rim about its pivot while the rim of the inflated toroidal tire swings for 0.06 s.
 double swung_tire(double h) {
   TireFile file = small_file("toroidal.json", 24, 8);
   const RingMesh mesh = make_ring_mesh(file);

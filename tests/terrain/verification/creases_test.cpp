@@ -14,7 +14,7 @@
 
 #include "tests/terrain/surface_meshes.hpp"
 #include "tests/terrain/verification/engine_grains.hpp"
-#include "tests/terrain/verification/record.hpp"
+#include "tests/verification/record.hpp"
 
 namespace furrow::verification {
 namespace {

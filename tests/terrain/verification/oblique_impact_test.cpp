@@ -13,7 +13,7 @@
 
 #include "tests/terrain/few_grains.hpp"
 #include "tests/terrain/verification/chung_ooi_2011.hpp"
-#include "tests/terrain/verification/record.hpp"
+#include "tests/verification/record.hpp"
 
 namespace furrow::verification {
 namespace {

@@ -4,34 +4,41 @@
 
 #include <cmath>
 
-#include "flat_patch.hpp"
+#include "shell_patch.hpp"
 
 namespace furrow::test {
 namespace {
 
 constexpr double kYoung = 2.0e7, kPoisson = 0.3, kThickness = 0.05;  // Pa, –, m
 
-std::vector<int> coordinates(int first_node, int last_node, int first, int last) {
+std::vector<int> range(int first, int last) {
   std::vector<int> list;
-  for (int n = first_node; n < last_node; ++n)
-    for (int c = first; c < last; ++c) list.push_back(6 * n + c);
+  for (int n = first; n < last; ++n) list.push_back(n);
   return list;
 }
 
+/// Equilibrium with the prescribed coordinates as in `q`.
+Vector solve(const ShellPatch& patch, const Supports& supports, const Vector& q) {
+  StaticPath path(patch, supports, Vector::Zero(patch.coordinates()));
+  path.prescribe([&](double share, Vector& target) {
+    for (int c = 0; c < patch.coordinates(); ++c)
+      if (supports.fixed(c)) target[c] = patch.reference()[c] + share * (q[c] - patch.reference()[c]);
+  });
+  EXPECT_TRUE(path.go_to(1.0));
+  return path.q();
+}
+
 TEST(ShellPatch, membrane_state_of_constant_plane_stress_is_exact) {
-  const FlatPatch patch = FlatPatch::distorted({isotropic_layer(kThickness, kYoung, kPoisson)});
+  const ShellPatch patch(distorted_mesh(), {isotropic_layer(kThickness, kYoung, kPoisson)});
   Mat3 f;
   f << 1.04, 0.03, 0, -0.02, 0.98, 0, 0, 0, 1;
   const Mat3 e = 0.5 * (f.transpose() * f - Mat3::Identity());
   const double e33 = -kPoisson / (1 - kPoisson) * (e(0, 0) + e(1, 1));  // S₃₃ = 0
   f(2, 2) = std::sqrt(1 + 2 * e33);
-  Eigen::VectorXd exact = patch.reference(), q = patch.reference();
+  Vector exact = patch.reference();
   for (int n = 0; n < patch.nodes(); ++n)
     for (const int s : {0, 3}) exact.segment<3>(6 * n + s) = f * patch.reference().segment<3>(6 * n + s);
-  for (int n = 0; n < 4; ++n) q.segment<3>(6 * n) = exact.segment<3>(6 * n);
-  auto free = coordinates(4, 8, 0, 6);
-  for (const int c : coordinates(0, 4, 3, 6)) free.push_back(c);
-  patch.solve(q, free, Eigen::VectorXd::Zero(q.size()));
+  const Vector q = solve(patch, Supports(8).fix(range(0, 4), "xyz"), exact);
   EXPECT_LT((q - exact).norm(), 1e-11);
   const double plane = kYoung / (1 - kPoisson * kPoisson);
   const double density = 0.5 * plane *
@@ -41,12 +48,10 @@ TEST(ShellPatch, membrane_state_of_constant_plane_stress_is_exact) {
 }
 
 TEST(ShellPatch, thickness_state_keeps_the_full_stiffness_c33) {
-  const FlatPatch patch = FlatPatch::distorted({isotropic_layer(kThickness, kYoung, kPoisson)});
-  Eigen::VectorXd exact = patch.reference();
+  const ShellPatch patch(distorted_mesh(), {isotropic_layer(kThickness, kYoung, kPoisson)});
+  Vector exact = patch.reference();
   for (int n = 0; n < patch.nodes(); ++n) exact[6 * n + 5] = 1.02;  // directors held, as by a uniform squeeze
-  Eigen::VectorXd q = exact;
-  q[6 * 4] += 0.01, q[6 * 6 + 1] -= 0.02;
-  patch.solve(q, coordinates(4, 8, 0, 3), Eigen::VectorXd::Zero(q.size()));
+  const Vector q = solve(patch, Supports(8).fix(range(0, 4), "xyzabc").fix(range(4, 8), "abc"), exact);
   EXPECT_LT((q - exact).norm(), 1e-11);
   const double e33 = 0.5 * (1.02 * 1.02 - 1),
                c33 = kYoung * (1 - kPoisson) / ((1 + kPoisson) * (1 - 2 * kPoisson));
@@ -54,18 +59,16 @@ TEST(ShellPatch, thickness_state_keeps_the_full_stiffness_c33) {
 }
 
 TEST(ShellPatch, bending_state_of_constant_moment_matches_kirchhoff_plate_energy) {
-  const FlatPatch patch = FlatPatch::distorted({isotropic_layer(kThickness, kYoung, kPoisson)});
+  const ShellPatch patch(distorted_mesh(), {isotropic_layer(kThickness, kYoung, kPoisson)});
   const double kxx = 1e-5, kyy = -0.6e-5, kxy = 0.4e-5;  // w = ½ (kxx x² + kyy y²) + kxy x y
-  Eigen::VectorXd exact = patch.reference();
+  Vector exact = patch.reference();
   for (int n = 0; n < patch.nodes(); ++n) {
     const double x = exact[6 * n], y = exact[6 * n + 1];
     exact[6 * n + 2] = 0.5 * (kxx * x * x + kyy * y * y) + kxy * x * y;
     exact[6 * n + 3] = -(kxx * x + kxy * y);
     exact[6 * n + 4] = -(kyy * y + kxy * x);
   }
-  Eigen::VectorXd q = exact;
-  for (const int c : coordinates(4, 8, 0, 6)) q[c] = patch.reference()[c];
-  patch.solve(q, coordinates(4, 8, 0, 6), Eigen::VectorXd::Zero(q.size()));
+  const Vector q = solve(patch, Supports(8).fix(range(0, 4), "xyzabc"), exact);
   EXPECT_LT((q - exact).norm(), 1e-9);  // second-order terms of the large-rotation strain
   const double d = kYoung * std::pow(kThickness, 3) / (12 * (1 - kPoisson * kPoisson));
   const double theory =
@@ -74,9 +77,9 @@ TEST(ShellPatch, bending_state_of_constant_moment_matches_kirchhoff_plate_energy
 }
 
 TEST(ShellPatch, rigid_motion_by_a_large_rotation_has_no_energy) {
-  const FlatPatch patch = FlatPatch::distorted({isotropic_layer(kThickness, kYoung, kPoisson)});
+  const ShellPatch patch(distorted_mesh(), {isotropic_layer(kThickness, kYoung, kPoisson)});
   const Mat3 turn = Eigen::AngleAxisd(2.1, Vec3(1, -2, 0.5).normalized()).toRotationMatrix();
-  Eigen::VectorXd q = patch.reference();
+  Vector q = patch.reference();
   for (int n = 0; n < patch.nodes(); ++n) {
     q.segment<3>(6 * n) = turn * q.segment<3>(6 * n) + Vec3(7, -3, 2);
     q.segment<3>(6 * n + 3) = turn * q.segment<3>(6 * n + 3);
@@ -84,21 +87,14 @@ TEST(ShellPatch, rigid_motion_by_a_large_rotation_has_no_energy) {
   EXPECT_LT(patch.energy(q), 1e-20 * kYoung);
 }
 
-/// Length 1 m, width 0.1 m, along x.
+/// Length 1 m, width 0.1 m, along x. The clamp lets thickness and width breathe.
 double cantilever_tip(int elements, double height, double force) {
-  std::vector<Vec3> nodes;
-  std::vector<std::array<int, 4>> quads;
-  for (int i = 0; i <= elements; ++i)
-    for (int j = 0; j < 2; ++j) nodes.push_back({static_cast<double>(i) / elements, 0.1 * j, 0});
-  for (int i = 0; i < elements; ++i) quads.push_back({2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1});
-  const FlatPatch strip(nodes, quads, {isotropic_layer(height, kYoung, 0.3)});
-  Eigen::VectorXd q = strip.reference(), load = Eigen::VectorXd::Zero(q.size());
+  const ShellPatch strip(plate_mesh(elements, 1, 1.0, 0.1), {isotropic_layer(height, kYoung, 0.3)});
+  Vector load = Vector::Zero(strip.coordinates());
   load[6 * (2 * elements) + 2] = load[6 * (2 * elements + 1) + 2] = 0.5 * force;
-  std::vector<int> free = coordinates(2, strip.nodes(), 0, 6);
-  for (int n = 0; n < 2; ++n) free.insert(free.end(), {6 * n + 5});  // the clamp lets the thickness breathe
-  if (strip.nodes() > 1) free.push_back(6 + 1);                      // and the width
-  strip.solve(q, free, load);
-  return q[6 * 2 * elements + 2];
+  StaticPath path(strip, Supports(strip.nodes()).fix({0}, "xyzab").fix({1}, "xzab"), load);
+  EXPECT_TRUE(path.go_to(1.0));
+  return path.q()[6 * 2 * elements + 2];
 }
 
 TEST(ShellPatch, cantilever_tip_matches_beam_theory_for_thick_and_thin_strips) {

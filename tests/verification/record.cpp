@@ -1,4 +1,4 @@
-#include "tests/terrain/verification/record.hpp"
+#include "tests/verification/record.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

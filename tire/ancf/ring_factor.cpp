@@ -1,5 +1,6 @@
 #include "tire/ancf/ring_factor.hpp"
 
+#include <cholmod.h>
 #include <omp.h>
 
 #include <algorithm>
@@ -27,16 +28,33 @@ class Serial {
 };
 }  // namespace
 
-RingFactor::RingFactor(const RingLayout& layout, int slots) : layout_(layout), factors_(slots, nullptr) {
+struct RingFactor::Cholmod {
+  cholmod_common common{};
+  cholmod_sparse* matrix = nullptr;
+  cholmod_factor* factor = nullptr;
+
+  Cholmod() {
+    cholmod_start(&common);
+    common.supernodal = CHOLMOD_SUPERNODAL;
+    common.final_ll = 1;
+    common.nmethods = 1;
+    common.method[0].ordering = CHOLMOD_METIS;
+    common.postorder = 1;
+    common.print = 0;
+  }
+  ~Cholmod() {
+    cholmod_free_factor(&factor, &common);
+    cholmod_free_sparse(&matrix, &common);
+    cholmod_finish(&common);
+  }
+  Cholmod(const Cholmod&) = delete;
+  Cholmod& operator=(const Cholmod&) = delete;
+};
+
+RingFactor::RingFactor(const RingLayout& layout, int slots) : layout_(layout), slots_(slots) {
   const Serial serial;
   openblas_set_num_threads(1);  // results and timing must not depend on the library's own threads
-  cholmod_start(&common_);
-  common_.supernodal = CHOLMOD_SUPERNODAL;
-  common_.final_ll = 1;
-  common_.nmethods = 1;
-  common_.method[0].ordering = CHOLMOD_METIS;
-  common_.postorder = 1;
-  common_.print = 0;
+  cholmod_ = std::make_unique<Cholmod>();
   const int across = layout.rows - 2, nodes = layout.columns * across;
   neighbours_.resize(nodes);
   start_.resize(nodes + 1, 0);
@@ -51,9 +69,11 @@ RingFactor::RingFactor(const RingLayout& layout, int slots) : layout_(layout), f
     start_[node + 1] = start_[node] + 36 * (near.size() - 1) + 21;
   }
   const std::size_t n = 6 * static_cast<std::size_t>(nodes);
-  matrix_ = cholmod_allocate_sparse(n, n, start_[nodes], 1, 1, -1, CHOLMOD_REAL, &common_);
-  auto* column = static_cast<int*>(matrix_->p);
-  auto* row = static_cast<int*>(matrix_->i);
+  cholmod_common* common = &cholmod_->common;
+  cholmod_sparse*& matrix = cholmod_->matrix;
+  matrix = cholmod_allocate_sparse(n, n, start_[nodes], 1, 1, -1, CHOLMOD_REAL, common);
+  auto* column = static_cast<int*>(matrix->p);
+  auto* row = static_cast<int*>(matrix->i);
   for (int node = 0; node < nodes; ++node)
     for (int c = 0; c < 6; ++c) {
       std::size_t at = column_start(node, c);
@@ -62,19 +82,17 @@ RingFactor::RingFactor(const RingLayout& layout, int slots) : layout_(layout), f
         for (int r = other == node ? c : 0; r < 6; ++r) row[at++] = 6 * other + r;
     }
   column[n] = static_cast<int>(start_[nodes]);
-  symbolic_ = cholmod_analyze(matrix_, &common_);
-  rhs_ = cholmod_zeros(n, 1, CHOLMOD_REAL, &common_);
-  if (!symbolic_ || !rhs_)
-    throw physics_error("the tire's stiffness matrix could not be analysed: out of memory");
+  cholmod_->factor = cholmod_analyze(matrix, common);
+  const cholmod_factor* factor = cholmod_->factor;
+  if (!factor) throw physics_error("the tire's stiffness matrix could not be analysed: out of memory");
+  pattern_ = PanelPattern(static_cast<int>(factor->nsuper), static_cast<const int*>(factor->super),
+                          static_cast<const int*>(factor->pi), static_cast<const int*>(factor->s));
+  place_.resize(n);
+  for (std::size_t k = 0; k < n; ++k) place_[static_cast<const int*>(factor->Perm)[k]] = static_cast<int>(k);
+  x_.resize(n);
 }
 
-RingFactor::~RingFactor() {
-  for (cholmod_factor*& factor : factors_) cholmod_free_factor(&factor, &common_);
-  cholmod_free_factor(&symbolic_, &common_);
-  cholmod_free_sparse(&matrix_, &common_);
-  for (cholmod_dense** dense : {&rhs_, &x_, &y_, &e_}) cholmod_free_dense(dense, &common_);
-  cholmod_finish(&common_);
-}
+RingFactor::~RingFactor() = default;
 
 std::size_t RingFactor::column_start(int node, int c) const {
   const std::size_t below = 6 * (neighbours_[node].size() - 1);
@@ -83,13 +101,13 @@ std::size_t RingFactor::column_start(int node, int c) const {
 }
 
 void RingFactor::clear() {
-  auto* values = static_cast<double*>(matrix_->x);
+  auto* values = static_cast<double*>(cholmod_->matrix->x);
   std::fill(values, values + start_.back(), 0.0);
 }
 
 void RingFactor::add(const BatchTangent& tangent, const ElementMass& mass, double mass_factor, int j,
                      int batch) {
-  auto* values = static_cast<double*>(matrix_->x);
+  auto* values = static_cast<double*>(cholmod_->matrix->x);
   const int across = layout_.rows - 2;
   for (int lane = 0; lane < kLanes; ++lane) {
     const int i = batch * kLanes + lane;
@@ -121,33 +139,34 @@ void RingFactor::add(const BatchTangent& tangent, const ElementMass& mass, doubl
 
 bool RingFactor::factorize(int slot) {
   const Serial serial;
-  cholmod_factor*& factor = factors_[slot];
-  if (!factor) factor = cholmod_copy_factor(symbolic_, &common_);
-  const bool done = cholmod_factorize(matrix_, factor, &common_) != 0;
-  return done && common_.status == CHOLMOD_OK && factor->minor == factor->n;
+  cholmod_factor* factor = cholmod_->factor;
+  const bool done = cholmod_factorize(cholmod_->matrix, factor, &cholmod_->common) != 0;
+  if (!done || cholmod_->common.status != CHOLMOD_OK || factor->minor != factor->n) return false;
+  pattern_.pack(static_cast<const double*>(factor->x), static_cast<const int*>(factor->px), slots_[slot]);
+  return true;
 }
 
 void RingFactor::solve(int slot, const Mat3& turn, int shift, const Field& rhs, Field& x) {
   const int across = layout_.rows - 2, columns = layout_.columns, stride = layout_.stride();
-  auto* b = static_cast<double*>(rhs_->x);
   const Mat3 back = turn.transpose();
   for (int i = 0; i < columns; ++i) {
     const int from = ((i + shift) % columns + columns) % columns;
     for (int j = 0; j < across; ++j)
       for (int s = 0; s < 2; ++s) {
         const double* p = rhs.data() + layout_.offset(j + 1, 3 * s) + from;
-        Eigen::Map<Vec3>(b + 6 * (i * across + j) + 3 * s) = back * Vec3(p[0], p[stride], p[2 * stride]);
+        const Vec3 v = back * Vec3(p[0], p[stride], p[2 * stride]);
+        const int* to = place_.data() + 6 * (i * across + j) + 3 * s;
+        for (int c = 0; c < 3; ++c) x_[to[c]] = static_cast<float>(v[c]);
       }
   }
-  const Serial serial;
-  cholmod_solve2(CHOLMOD_A, factors_[slot], rhs_, nullptr, &x_, nullptr, &y_, &e_, &common_);
-  const auto* solution = static_cast<const double*>(x_->x);
+  pattern_.solve(slots_[slot], x_.data(), work_);
   for (int i = 0; i < columns; ++i) {
     const int to = ((i + shift) % columns + columns) % columns;
     for (int j = 0; j < across; ++j)
       for (int s = 0; s < 2; ++s) {
         double* p = x.data() + layout_.offset(j + 1, 3 * s) + to;
-        const Vec3 v = turn * Eigen::Map<const Vec3>(solution + 6 * (i * across + j) + 3 * s);
+        const int* from = place_.data() + 6 * (i * across + j) + 3 * s;
+        const Vec3 v = turn * Vec3(x_[from[0]], x_[from[1]], x_[from[2]]);
         p[0] = v.x(), p[stride] = v.y(), p[2 * stride] = v.z();
       }
   }

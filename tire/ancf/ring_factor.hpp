@@ -5,11 +5,10 @@
 //   objective.
 #pragma once
 
-#include <cholmod.h>
-
 #include <memory>
 #include <vector>
 
+#include "tire/ancf/panel_solver.hpp"
 #include "tire/ancf/ring_layout.hpp"
 #include "tire/ancf/shell_tangent.hpp"
 #include "tire/ring_mesh.hpp"
@@ -23,7 +22,9 @@ class RingFactor {
   RingFactor(const RingFactor&) = delete;
   RingFactor& operator=(const RingFactor&) = delete;
 
-  int unknowns() const { return static_cast<int>(matrix_->nrow); }
+  int unknowns() const { return pattern_.size(); }
+  /// Entries of a factor that are stored, with padding.
+  std::size_t factor_values() const { return pattern_.values(); }
   void clear();
   /// Adds the lanes of a batch that are elements: tangent plus mass_factor × M_e.
   void add(const BatchTangent& tangent, const ElementMass& mass, double mass_factor, int j, int batch);
@@ -35,12 +36,13 @@ class RingFactor {
  private:
   std::size_t column_start(int node, int c) const;
 
+  struct Cholmod;  // matrix and factor in double precision
   RingLayout layout_;
-  cholmod_common common_{};
-  cholmod_sparse* matrix_ = nullptr;
-  std::vector<cholmod_factor*> factors_;
-  cholmod_factor* symbolic_ = nullptr;
-  cholmod_dense *rhs_ = nullptr, *x_ = nullptr, *y_ = nullptr, *e_ = nullptr;
+  std::unique_ptr<Cholmod> cholmod_;
+  PanelPattern pattern_;
+  std::vector<std::vector<float>> slots_;
+  std::vector<int> place_;  // of an unknown in the factor's order
+  std::vector<float> x_, work_;
   std::vector<std::vector<int>> neighbours_;  // free nodes ≥ own number that share an element, ascending
   std::vector<std::size_t> start_;            // first entry of each node's columns
 };

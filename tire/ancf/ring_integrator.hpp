@@ -39,6 +39,7 @@ struct RingIntegratorParams {
   int max_iterations = 40;  // per attempt
   int slow_iterations = 5;  // more than these, and kAged more than when it was new: the factor is renewed
   int slots = 4;            // factors kept, one per fraction of a pitch of rolling
+  int threads = 1;          // of a step; results do not depend on them
 };
 
 class RingIntegrator {

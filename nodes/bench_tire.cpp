@@ -110,15 +110,17 @@ int most_layers(const TireFile& file) {
 
 /// Value below which the share `p` of the sorted values lies.
 double quantile(const std::vector<double>& sorted, double p) {
-  return sorted[std::min(sorted.size() - 1, static_cast<std::size_t>(p * static_cast<double>(sorted.size())))];
+  return sorted[std::min(sorted.size() - 1,
+                         static_cast<std::size_t>(p * static_cast<double>(sorted.size())))];
 }
 
 }  // namespace
 
 std::string bench_tire(const TireBench& bench) {
   check(bench);
-  const std::string path =
-      bench.tire == "default" ? std::string(FURROW_SOURCE_FOLDER "/tire/data/hmmwv_layered.json") : bench.tire;
+  const std::string path = bench.tire == "default"
+                               ? std::string(FURROW_SOURCE_FOLDER "/tire/data/hmmwv_layered.json")
+                               : bench.tire;
   TireFile file = read_tire_file(path);
   file.pressure = bench.pressure;
   if (bench.columns > 0) file.elements_circumference = bench.columns;
@@ -134,10 +136,12 @@ std::string bench_tire(const TireBench& bench) {
     rolling.step(static_cast<double>(n) < kTouchdownShare * static_cast<double>(warm) ? kTouchdown : 0.0);
 
   const double turn = 2.0 * std::numbers::pi;
-  const long steps = bench.steps > 0 ? bench.steps
-                                     : std::lround(std::ceil(turn / (std::max(bench.speed, 1.0) * bench.step)));
+  const long steps = bench.steps > 0
+                         ? bench.steps
+                         : std::lround(std::ceil(turn / (std::max(bench.speed, 1.0) * bench.step)));
   const RingIntegrator::Times before = tire.integrator().times();
   const TireDiagnostics start = tire.diagnostics();
+  const double work = tire.integrator().factor_work();
   std::vector<double> spent(steps);
   double load = 0.0, pull = 0.0, moment = 0.0, height = 0.0, worst = 0.0, total = 0.0;
   for (long n = 0; n < steps; ++n) {
@@ -151,8 +155,10 @@ std::string bench_tire(const TireBench& bench) {
   const TireDiagnostics end = tire.diagnostics();
   const RingIntegrator::Times& t = tire.integrator().times();
   const double per_step = 1e3 / static_cast<double>(steps);
-  const double force = per_step * (t.force - before.force), jacobian = per_step * (t.jacobian - before.jacobian),
-               factorize = per_step * (t.factorize - before.factorize), solve = per_step * (t.solve - before.solve);
+  const double force = per_step * (t.force - before.force),
+               jacobian = per_step * (t.jacobian - before.jacobian),
+               factorize = per_step * (t.factorize - before.factorize),
+               solve = per_step * (t.solve - before.solve);
   std::sort(spent.begin(), spent.end());
   Hash hash;
   hash.add(std::span<const double>(tire.integrator().q()));
@@ -168,6 +174,7 @@ std::string bench_tire(const TireBench& bench) {
         {"solve", solve},
         {"other", per_step * total - force - jacobian - factorize - solve}}},
       {"factorizations", end.factorizations - start.factorizations},
+      {"factorizations_whole", tire.integrator().factor_work() - work},
       {"newton_iterations_mean",
        static_cast<double>(end.newton_iterations - start.newton_iterations) / static_cast<double>(steps)},
       {"max_residual", worst},

@@ -60,7 +60,8 @@ void add_grain_bench(CLI::App& command, GrainBench& bench) {
 void add_tire_bench(CLI::App& command, TireBench& bench) {
   command.add_option("--tire", bench.tire, "tire file, or default: the layered tire")->capture_default_str();
   command.add_option("--threads", bench.threads, "threads")->capture_default_str();
-  command.add_option("--steps", bench.steps, "steps that are timed; 0: one revolution")->capture_default_str();
+  command.add_option("--steps", bench.steps, "steps that are timed; 0: one revolution")
+      ->capture_default_str();
   command.add_option("--step", bench.step, "time step, s")->capture_default_str();
   command.add_option("--warm", bench.warm, "touch-down and transients before that, s")->capture_default_str();
   command.add_option("--pressure", bench.pressure, "inflation pressure, gauge, Pa")->capture_default_str();
@@ -72,7 +73,8 @@ void add_tire_bench(CLI::App& command, TireBench& bench) {
       ->capture_default_str();
   command.add_option("--elements-circumference", bench.columns, "elements around; 0: the file's")
       ->capture_default_str();
-  command.add_option("--elements-width", bench.width, "elements across; 0: the file's")->capture_default_str();
+  command.add_option("--elements-width", bench.width, "elements across; 0: the file's")
+      ->capture_default_str();
 }
 
 void add_soil_options(CLI::App& command, SoilArguments& soil) {
@@ -213,7 +215,8 @@ ExitCode run_command_line(int argc, char** argv) {
       *bench.add_subcommand("grains", "steps a settled bed, every grain in every step");
   add_grain_bench(bench_of_grains, grains);
   TireBench tire;
-  CLI::App& bench_of_tire = *bench.add_subcommand("tire", "rolls a loaded tire on hard ground, by parts of a step");
+  CLI::App& bench_of_tire =
+      *bench.add_subcommand("tire", "rolls a loaded tire on hard ground, by parts of a step");
   add_tire_bench(bench_of_tire, tire);
 
   try {

@@ -1,6 +1,5 @@
 #include "tire/ancf/panel_solver.hpp"
 
-#include <Eigen/Core>
 #include <algorithm>
 
 namespace furrow {
@@ -14,9 +13,7 @@ typedef float UnalignedFloats __attribute__((vector_size(4 * kHalf), aligned(4),
 
 Floats read(const float* p) { return *reinterpret_cast<const UnalignedFloats*>(p); }
 void write(float* p, Floats v) { *reinterpret_cast<UnalignedFloats*>(p) = v; }
-float sum(Floats v) {
-  return ((v[0] + v[4]) + (v[1] + v[5])) + ((v[2] + v[6]) + (v[3] + v[7]));
-}
+float sum(Floats v) { return ((v[0] + v[4]) + (v[1] + v[5])) + ((v[2] + v[6]) + (v[3] + v[7])); }
 
 int strips(int rows) { return (rows + kStrip - 1) / kStrip; }
 /// Columns of strip s of the inverse of a diagonal block: it is lower triangular.
@@ -75,24 +72,18 @@ PanelPattern::PanelPattern(int supernodes, const int* super, const int* row_star
           kHalf * static_cast<std::size_t>(widest) + 4 * kStrip;
 }
 
-void PanelPattern::pack(const double* supernodal, const int* value_start, std::vector<float>& out) const {
-  out.assign(values_, 0.0f);
-  Eigen::MatrixXd inverse;
-  for (std::size_t n = 0; n < panels_.size(); ++n) {
-    const Panel& p = panels_[n];
-    const Eigen::Map<const Eigen::MatrixXd> block(supernodal + value_start[n], p.columns + p.below, p.columns);
-    inverse.setIdentity(p.columns, p.columns);
-    block.topRows(p.columns).triangularView<Eigen::Lower>().solveInPlace(inverse);
-    float* to = out.data() + p.data;
-    for (int s = 0; s < strips(p.columns); ++s)
-      for (int k = 0; k < triangle_columns(s, p.columns); ++k)
-        for (int r = s * kStrip; r < (s + 1) * kStrip; ++r)
-          *to++ = r < p.columns && r >= k ? static_cast<float>(inverse(r, k)) : 0.0f;
-    for (int s = 0; s < strips(p.below); ++s)
-      for (int k = 0; k < p.columns; ++k)
-        for (int r = s * kStrip; r < (s + 1) * kStrip; ++r)
-          *to++ = r < p.below ? static_cast<float>(block(p.columns + r, k)) : 0.0f;
-  }
+void PanelPattern::pack(int s, const float* inverse, const float* columns, std::vector<float>& values) const {
+  const Panel& p = panels_[s];
+  float* to = values.data() + p.data;
+  for (int first = 0; first < p.columns; first += kStrip)
+    for (int k = 0; k < triangle_columns(first / kStrip, p.columns); ++k)
+      for (int r = first; r < first + kStrip; ++r)
+        *to++ = r < p.columns ? inverse[r + static_cast<std::size_t>(k) * p.columns] : 0.0f;
+  for (int first = 0; first < p.below; first += kStrip)
+    for (int k = 0; k < p.columns; ++k) {
+      const float* from = columns + static_cast<std::size_t>(k) * (p.columns + p.below) + p.columns;
+      for (int r = first; r < first + kStrip; ++r) *to++ = r < p.below ? from[r] : 0.0f;
+    }
 }
 
 void PanelPattern::forward(const float* values, float* x, float* work) const {

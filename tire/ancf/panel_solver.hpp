@@ -16,10 +16,10 @@ namespace furrow {
 class PanelPattern {
  public:
   struct Panel {
-    int first = 0;     // column
-    int columns = 0;   //
-    int below = 0;     // rows of L₂₁
-    int rows = 0;      // where their numbers begin in `row`
+    int first = 0;         // column
+    int columns = 0;       // how many
+    int below = 0;         // rows of L₂₁
+    int rows = 0;          // where their numbers begin
     std::size_t data = 0;  // where the panel begins in a factor's values
   };
 
@@ -32,8 +32,8 @@ class PanelPattern {
   const std::vector<Panel>& panels() const { return panels_; }
   const int* rows(const Panel& panel) const { return row_.data() + panel.rows; }
 
-  /// Fills `out` (values() long) from the factor's columns, panel after panel, each by columns.
-  void pack(const double* supernodal, const int* value_start, std::vector<float>& out) const;
+  /// Writes panel s of a factor: the inverse of its diagonal block, and its columns with L₂₁ below.
+  void pack(int s, const float* inverse, const float* columns, std::vector<float>& values) const;
 
   /// x ← (L Lᵀ)⁻¹ x; `work` is scratch memory, grown when needed.
   void solve(const std::vector<float>& values, float* x, std::vector<float>& work) const;

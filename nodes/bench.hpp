@@ -1,4 +1,4 @@
-// `furrow bench`: how fast this machine steps grains. Prints one JSON object.
+// `furrow bench`: how fast this machine steps grains and tires. Prints one JSON object.
 #pragma once
 
 #include <string>
@@ -22,5 +22,21 @@ struct GrainBench {
 
 /// Every grain is integrated and every contact evaluated in every step. @throws Error
 std::string bench_grains(const GrainBench& bench);
+
+struct TireBench {
+  std::string tire = "default";  // tire file, or default: the layered tire
+  double pressure = 200e3;       // gauge, Pa
+  double load = 465.0;           // carried by the spindle, kg
+  double speed = 8.56;           // of the rim's spin, rad/s
+  double step = 4e-5;            // s
+  double tolerance = 1e-4;       // of the free residual, relative to the norm of the pressure forces
+  int columns = 0, width = 0;    // elements around and across; 0: the file's
+  int threads = 1;
+  int steps = 0;      // timed; 0: one revolution
+  double warm = 0.6;  // touch-down and transients before that, s
+};
+
+/// The tire rolls freely on hard ground under a carriage. @throws Error
+std::string bench_tire(const TireBench& bench);
 
 }  // namespace furrow

@@ -61,6 +61,26 @@ void add_grain_bench(CLI::App& command, GrainBench& bench) {
   command.add_option("--step", bench.step, "time step, s")->capture_default_str();
 }
 
+void add_tire_bench(CLI::App& command, TireBench& bench) {
+  command.add_option("--tire", bench.tire, "tire file, or default: the layered tire")->capture_default_str();
+  command.add_option("--threads", bench.threads, "threads")->capture_default_str();
+  command.add_option("--steps", bench.steps, "steps that are timed; 0: one revolution")
+      ->capture_default_str();
+  command.add_option("--step", bench.step, "time step, s")->capture_default_str();
+  command.add_option("--warm", bench.warm, "touch-down and transients before that, s")->capture_default_str();
+  command.add_option("--pressure", bench.pressure, "inflation pressure, gauge, Pa")->capture_default_str();
+  command.add_option("--load", bench.load, "mass that the tire carries, kg")->capture_default_str();
+  command.add_option("--speed", bench.speed, "angular speed, rad/s")->capture_default_str();
+  command
+      .add_option("--tolerance", bench.tolerance,
+                  "of the free residual, relative to the norm of the pressure forces")
+      ->capture_default_str();
+  command.add_option("--elements-circumference", bench.columns, "elements around; 0: the file's")
+      ->capture_default_str();
+  command.add_option("--elements-width", bench.width, "elements across; 0: the file's")
+      ->capture_default_str();
+}
+
 void add_soil_options(CLI::App& command, SoilArguments& soil) {
   command.add_option("--out", soil.out,
                      "new folder for the results (default: results/<scenario>-soil-NNN here)");
@@ -221,6 +241,10 @@ ExitCode run_command_line(int argc, char** argv) {
   CLI::App& bench_of_grains =
       *bench.add_subcommand("grains", "steps a settled bed, every grain in every step");
   add_grain_bench(bench_of_grains, grains);
+  TireBench tire;
+  CLI::App& bench_of_tire =
+      *bench.add_subcommand("tire", "rolls a loaded tire on hard ground, by parts of a step");
+  add_tire_bench(bench_of_tire, tire);
 
   try {
     app.parse(argc, argv);
@@ -240,6 +264,10 @@ ExitCode run_command_line(int argc, char** argv) {
   if (report.parsed()) return report_command(typed);
   if (bench_of_grains.parsed()) {
     std::cout << bench_grains(grains);
+    return ExitCode::done;
+  }
+  if (bench_of_tire.parsed()) {
+    std::cout << bench_tire(tire);
     return ExitCode::done;
   }
   std::cout << explain(typed.key);

@@ -36,7 +36,7 @@ class ColumnCreep {
   /// @returns false when the tangent lost its definiteness or Newton's method did not converge; q is then
   /// unchanged
   bool step(double h) {
-    const Field before = q_;
+    before_ = q_;
     const double c = 1.0 + kCreepTime / h;
     Eigen::VectorXd r = residual(c);
     for (int n = 0; n < kMaxNewton; ++n) {
@@ -50,7 +50,7 @@ class ColumnCreep {
         return true;
       }
     }
-    q_ = before;
+    q_ = before_;
     return false;
   }
 
@@ -96,9 +96,10 @@ class ColumnCreep {
         tie.block<3, 3>(6 * n + s, (n < 2 ? 0 : 6) + s) = n == 1 || n == 2 ? mesh_.turn(1) : Mat3::Identity();
     for (int j = 0; j + 1 < layout_.rows; ++j) {
       Lanes stress[kStrains];
-      shell_.batch_stress_at(q_, strains_, c, j, 0, stress);
-      BatchNodes nodes;
+      BatchNodes before, nodes;
+      before.read(layout_, before_.data(), 0, j);
       nodes.read(layout_, q_.data(), 0, j);
+      shell_.batch_stress_between(before, nodes, c, j, stress);
       element->compute(shell_.stiffness(j), nodes, stress, c, 1.0, shell_.pressure());
       Eigen::Matrix<double, 24, 24> e;
       for (int a = 0; a < 24; ++a)
@@ -111,7 +112,7 @@ class ColumnCreep {
   ShellRing shell_;
   const RingMesh& mesh_;
   RingLayout layout_;
-  Field q_, strains_, force_;
+  Field q_, before_, strains_, force_;
   double reference_ = 0.0;  // norm of the pressure forces on the undeformed column, N
 };
 

@@ -1,15 +1,14 @@
-// Sparse Cholesky factors (CHOLMOD) of a symmetric matrix on the free nodes of a ring, assembled element by
-// element. The pattern is analysed once; several numeric factors ("slots") share it. A factor made in one
-// orientation and numbering is used in another by turning and shifting right-hand side and solution:
-//   A(q turned by Q, columns shifted by m) = P_m Q A Qᵀ P_mᵀ  exactly, because strain energy and mass are
-//   objective.
+// Cholesky factor of a symmetric matrix on the free nodes of a ring, assembled element by element, in rim axes:
+// strain energy and mass are objective, so a factor made in one orientation of the rim is used in another by turning
+// right-hand side and solution,
+//   A(q turned by Q) = Q A Qᵀ.
+// The elements are held in sectors of kLanes columns; a factor is renewed in those sectors that have changed.
 #pragma once
-
-#include <cholmod.h>
 
 #include <memory>
 #include <vector>
 
+#include "tire/ancf/frontal_factor.hpp"
 #include "tire/ancf/ring_layout.hpp"
 #include "tire/ancf/shell_tangent.hpp"
 #include "tire/ring_mesh.hpp"
@@ -18,31 +17,32 @@ namespace furrow {
 
 class RingFactor {
  public:
-  RingFactor(const RingLayout& layout, int slots);
-  ~RingFactor();
-  RingFactor(const RingFactor&) = delete;
-  RingFactor& operator=(const RingFactor&) = delete;
+  explicit RingFactor(const RingLayout& layout);
 
-  int unknowns() const { return static_cast<int>(matrix_->nrow); }
-  void clear();
-  /// Adds the lanes of a batch that are elements: tangent plus mass_factor × M_e.
-  void add(const BatchTangent& tangent, const ElementMass& mass, double mass_factor, int j, int batch);
+  int unknowns() const { return factor_.pattern().size(); }
+  int sectors() const { return layout_.batches(); }
+  /// Forgets the elements of a sector.
+  void clear(int sector);
+  /// Adds the elements of row j of a sector: tangent plus mass_factor × M_e.
+  void add(const BatchTangent& tangent, const ElementMass& mass, double mass_factor, int j, int sector);
+  /// Renews the factor where sectors were cleared and added since it was made.
   /// @returns false when the matrix is not positive definite
-  bool factorize(int slot);
-  /// x = turn · shift · A⁻¹ · (turn · shift)ᵀ rhs on the free rows; padding of x is zero there.
-  void solve(int slot, const Mat3& turn, int shift, const Field& rhs, Field& x);
+  bool factorize();
+  /// Share of a whole factorization that the last one took.
+  double work() const { return factor_.operations() / factor_.all_operations(); }
+  /// x = turn A⁻¹ turnᵀ rhs on the free rows; padding of x is zero there.
+  void solve(const Mat3& turn, const Field& rhs, Field& x);
 
  private:
-  std::size_t column_start(int node, int c) const;
+  std::size_t block(int sector, int column, int row, int kind) const;
 
   RingLayout layout_;
-  cholmod_common common_{};
-  cholmod_sparse* matrix_ = nullptr;
-  std::vector<cholmod_factor*> factors_;
-  cholmod_factor* symbolic_ = nullptr;
-  cholmod_dense *rhs_ = nullptr, *x_ = nullptr, *y_ = nullptr, *e_ = nullptr;
-  std::vector<std::vector<int>> neighbours_;  // free nodes ≥ own number that share an element, ascending
-  std::vector<std::size_t> start_;            // first entry of each node's columns
+  int across_ = 0;             // free nodes of a column
+  std::vector<int> place_;     // of an unknown in the order of elimination
+  std::vector<float> values_;  // 6 × 6 blocks of each sector
+  std::vector<char> changed_;  // sectors
+  FrontalFactor factor_;
+  std::vector<float> x_;
 };
 
 }  // namespace furrow

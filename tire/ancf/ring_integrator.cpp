@@ -13,7 +13,8 @@ namespace {
 constexpr double kGravity = 9.81;         // m/s²
 constexpr double kDirectorLength = 0.01;  // m, makes director residuals (N m) comparable with forces
 constexpr int kPairs = 12;
-constexpr int kAged = 3;  // iterations
+constexpr double kDirectorWeight = 0.5;  // the age of a director counts less: what it turns is softer
+constexpr double kAlso = 0.4;  // of the age of renewal: sectors as old as this are renewed with others
 
 double dot(const Field& a, const Field& b, const RingLayout& layout) {
   const std::size_t first = layout.free_begin(), count = layout.free_size();
@@ -45,8 +46,13 @@ RingIntegrator::RingIntegrator(const TireFile& file, const RingMesh& mesh, const
       layout_{mesh.columns, mesh.rows},
       shell_(file, mesh),
       mass_(mesh, element_masses(file, mesh)),
-      factor_(layout_, params.slots),
-      slots_(params.slots) {
+      factor_(layout_),
+      made_layout_{2 * kLanes * layout_.batches(), layout_.rows},
+      made_old_(made_layout_.size()),
+      made_new_(made_layout_.size()),
+      geometric_(layout_.batches(), 1),
+      age_(layout_.batches()),
+      which_(layout_.batches()) {
   for (Field* f : {&q_, &v_, &v_before_, &gravity_, &q_new_, &v_new_, &q_force_, &change_, &r_, &d_})
     f->assign(layout_.size(), 0.0);
   s_.assign(kPairs, r_);
@@ -63,15 +69,18 @@ void RingIntegrator::start(const Field& q, const Field& v) {
   q_ = q;
   v_ = v;
   v_before_ = v;
-  shell_.strains(q_, strains_);
-  elastic_ = shell_.account(q_, strains_).elastic;
+  Field strains;
+  shell_.strains(q_, strains);
+  elastic_ = shell_.account(q_, strains).elastic;
+  shell_.begin(q_, shell_step_);
   dissipation_ = residual_ = 0.0;
   iterations_ = factorizations_ = 0;
-  for (Slot& slot : slots_) slot.valid = false;
-  shell_.forces(q_, q_, strains_, 0.0, r_);  // elastic − pressure
+  factor_work_ = 0.0;
+  factor_valid_ = false;
+  shell_.forces(q_, q_, strains, 0.0, r_);  // elastic − pressure
   ShellRing bare = shell_;
   bare.set_pressure(0.0);
-  bare.forces(q_, q_, strains_, 0.0, d_);
+  bare.forces(q_, q_, strains, 0.0, d_);
   for (std::size_t k = 0; k < d_.size(); ++k) d_[k] -= r_[k];
   reference_ = std::max(free_norm(d_), 10.0 * free_norm(gravity_));
 }
@@ -116,75 +125,114 @@ void RingIntegrator::evaluate(double h, const Field& force) {
     q_force_[k] = 0.5 * (q_[k] + q_new_[k]);
     change_[k] = v_new_[k] - v_[k];
   }
-  shell_.forces(q_new_, q_force_, strains_, coefficient(h), r_);
+  shell_.forces(q_new_, q_force_, shell_step_, coefficient(h), r_, params_.threads);
   mass_.add(change_, 1.0 / h, r_);
   for (std::size_t k = 0; k < r_.size(); ++k) r_[k] -= force[k] + gravity_[k];
 }
 
-bool RingIntegrator::make_factor(Slot& slot, int index) {
-  Field strains;
-  shell_.strains(slot.q_old, strains);
-  Field at(slot.q_old.size());
-  for (std::size_t k = 0; k < at.size(); ++k) at[k] = 0.5 * (slot.q_old[k] + slot.q_new[k]);
-  const double c = coefficient(slot.h), inertia = 1.0 / (slot.h * slot.h);
-  auto tangent = std::make_unique<BatchTangent>();
-  ++factorizations_;
-  for (const double geometric : {0.5, 0.0}) {  // without its geometric part the tangent is positive definite
-    {
-      const Stopwatch watch(times_.jacobian);
-      factor_.clear();
-      for (int j = 0; j + 1 < layout_.rows; ++j)
-        for (int b = 0; b < layout_.batches(); ++b) {
-          Lanes stress[kStrains];
-          shell_.batch_stress_at(slot.q_new, strains, c, j, b, stress);
-          BatchNodes nodes;
-          nodes.read(layout_, at.data(), b * kLanes, j);
-          tangent->compute(shell_.stiffness(j), nodes, stress, c, geometric, shell_.pressure());
-          factor_.add(*tangent, mass_.element(j), inertia, j, b);
-        }
+/// Keeps the shape of a sector over the step, in rim axes.
+void RingIntegrator::note_shape(int sector, const RimState& rim) {
+  const Mat3 back = rim.orientation.toRotationMatrix().transpose();
+  for (int j = 0; j < layout_.rows; ++j)
+    for (int k = 0; k <= kLanes; ++k) {
+      const int i = sector * kLanes + k, to = 2 * sector * kLanes + k;
+      made_layout_.set(made_old_, to, j, 0, back * (layout_.get(q_, i, j, 0) - rim.position));
+      made_layout_.set(made_new_, to, j, 0, back * (layout_.get(q_new_, i, j, 0) - rim.position));
+      made_layout_.set(made_old_, to, j, 3, back * layout_.get(q_, i, j, 3));
+      made_layout_.set(made_new_, to, j, 3, back * layout_.get(q_new_, i, j, 3));
     }
-    const Stopwatch watch(times_.factorize);
-    if (factor_.factorize(index)) return slot.valid = true;
-  }
-  return slot.valid = false;
 }
 
-/// The factor whose rim stood, after turning by whole pitches, nearest to `orientation`; a new one when none
-/// is near.
-RingIntegrator::Placement RingIntegrator::place_factor(double h, const Mat3& orientation, bool renew) {
-  const double pitch = mesh_.pitch();
-  Placement best;
-  double least = pitch;
-  int unused = -1;
-  for (std::size_t k = 0; k < slots_.size(); ++k) {
-    const Slot& slot = slots_[k];
-    if (!slot.valid || slot.h != h) {
-      if (unused < 0) unused = static_cast<int>(k);
-      continue;
-    }
-    const Mat3 since = slot.turn.transpose() * orientation;
-    const double angle = std::atan2(since(0, 2) - since(2, 0), since(0, 0) + since(2, 2));
-    const int shift = -static_cast<int>(std::lround(angle / pitch));
-    const double off = std::abs(angle + shift * pitch);
-    if (off < least) {
-      least = off;
-      best = {static_cast<int>(k), orientation * mesh_.turn(shift) * slot.turn.transpose(), shift};
-    }
-  }
-  const bool near = least <= 0.5 * pitch / static_cast<double>(slots_.size());
-  if (near || unused < 0) {
-    if (least < pitch && !renew && !slots_[best.slot].stale) return best;
+void RingIntegrator::build(const std::vector<char>& which) {
+  const Stopwatch watch(times_.jacobian);
+  const int count = factor_.sectors();
+  if (params_.threads > 1) {
+#pragma omp parallel for schedule(dynamic) num_threads(params_.threads)
+    for (int b = 0; b < count; ++b)
+      if (which[b]) build_sector(b);
   } else {
-    best.slot = unused;
+    for (int b = 0; b < count; ++b)
+      if (which[b]) build_sector(b);
   }
-  Slot& slot = slots_[best.slot];
-  slot = {false, false, orientation, h, -1, q_, q_new_};
-  make_factor(slot, best.slot);
-  return {best.slot, Mat3::Identity(), 0};
+}
+
+/// The tangent of a sector's elements in the shape that was kept.
+void RingIntegrator::build_sector(int sector) {
+  const double c = coefficient(factor_h_), inertia = 1.0 / (factor_h_ * factor_h_);
+  BatchTangent tangent;
+  factor_.clear(sector);
+  for (int j = 0; j + 1 < layout_.rows; ++j) {
+    BatchNodes before, now, middle;
+    before.read(made_layout_, made_old_.data(), 2 * sector * kLanes, j);
+    now.read(made_layout_, made_new_.data(), 2 * sector * kLanes, j);
+    for (int n = 0; n < 4; ++n) {
+      middle.r[n] = 0.5 * (before.r[n] + now.r[n]);
+      middle.d[n] = 0.5 * (before.d[n] + now.d[n]);
+    }
+    Lanes stress[kStrains];
+    shell_.batch_stress_between(before, now, c, j, stress);
+    tangent.compute(shell_.stiffness(j), middle, stress, c, geometric_[sector] ? 0.5 : 0.0,
+                    shell_.pressure());
+    factor_.add(tangent, mass_.element(j), inertia, j, sector);
+  }
+}
+
+/// Makes the factor anew in the sectors marked. Without its geometric part the tangent is positive definite.
+bool RingIntegrator::renew(const std::vector<char>& which, const RimState& rim) {
+  ++factorizations_;
+  excess_ = 0;
+  const auto rebuild = [&](const std::vector<char>& these, char geometric) {
+    for (int b = 0; b < factor_.sectors(); ++b)
+      if (these[b]) geometric_[b] = geometric;
+    build(these);
+    const Stopwatch watch(times_.factorize);
+    factor_valid_ = factor_.factorize();
+    factor_work_ += factor_.work();
+    return factor_valid_;
+  };
+  for (int b = 0; b < factor_.sectors(); ++b)
+    if (which[b]) note_shape(b, rim);
+  return rebuild(which, 1) || rebuild(which, 0) || rebuild(std::vector<char>(which.size(), 1), 0);
+}
+
+/// Largest relative change of an edge or a director of a sector since the factor was made, in rim axes.
+double RingIntegrator::age(int sector, const Mat3& turn) const {
+  Lanes most = {};
+  const auto compare = [&](const Lanes3& now, const Lanes3& made, double weight) {
+    const Lanes3 change{turn(0, 0) * now.x + turn(1, 0) * now.y + turn(2, 0) * now.z - made.x,
+                        turn(0, 1) * now.x + turn(1, 1) * now.y + turn(2, 1) * now.z - made.y,
+                        turn(0, 2) * now.x + turn(1, 2) * now.y + turn(2, 2) * now.z - made.z};
+    const Lanes relative = weight * weight * dot(change, change) / dot(made, made);
+    most = relative > most ? relative : most;
+  };
+  for (int j = 0; j + 1 < layout_.rows; ++j) {
+    BatchNodes now, made;
+    now.read(layout_, q_new_.data(), sector * kLanes, j);
+    made.read(made_layout_, made_new_.data(), 2 * sector * kLanes, j);
+    compare(now.r[1] - now.r[0], made.r[1] - made.r[0], 1.0);
+    compare(now.r[3] - now.r[0], made.r[3] - made.r[0], 1.0);
+    compare(now.d[0], made.d[0], kDirectorWeight);
+  }
+  return std::sqrt(std::max(std::max(most[0], most[1]), std::max(most[2], most[3])));
+}
+
+/// A factor that is young enough everywhere; after a failed attempt one that is renewed wherever it has aged at all,
+/// then one that is new.
+bool RingIntegrator::prepare_factor(double h, const RimState& rim, int attempt) {
+  const Mat3 turn = rim.orientation.toRotationMatrix();
+  const bool all = !factor_valid_ || factor_h_ != h || attempt > 1;
+  factor_h_ = h;
+  double oldest = 0.0;
+  for (int b = 0; b < factor_.sectors() && !all; ++b) oldest = std::max(oldest, age_[b] = age(b, turn));
+  const bool slow = excess_ > params_.worth, due = oldest > params_.age || slow;
+  if (!all && !due && attempt == 0) return true;
+  const double limit = attempt > 0 ? 0.1 * params_.age : std::min(kAlso * params_.age, 0.5 * oldest);
+  for (int b = 0; b < factor_.sectors(); ++b) which_[b] = all || age_[b] > limit;
+  return renew(which_, rim);
 }
 
 /// d_ = H r_ with the BFGS inverse that `pairs` steps have built on the factor.
-void RingIntegrator::direction(const Placement& at, int pairs) {
+void RingIntegrator::direction(const Mat3& turn, int pairs) {
   const Stopwatch watch(times_.solve);
   const std::size_t first = layout_.free_begin();
   const auto part = [&](Field& f) {
@@ -196,17 +244,17 @@ void RingIntegrator::direction(const Placement& at, int pairs) {
     weight[k] = rho_[k] * dot(s_[k], change_, layout_);
     part(change_) -= weight[k] * part(y_[k]);
   }
-  factor_.solve(at.slot, at.turn, at.shift, change_, d_);
+  factor_.solve(turn, change_, d_);
   for (int k = 0; k < pairs; ++k) part(d_) += (weight[k] - rho_[k] * dot(y_[k], d_, layout_)) * part(s_[k]);
 }
 
 /// @returns true when converged; false when slow, growing or not finite
-bool RingIntegrator::iterate(double h, const Field& force, Placement& at, int& count, double& norm) {
+bool RingIntegrator::iterate(double h, const Field& force, const Mat3& turn, int& count, double& norm) {
   int pairs = 0;
   double best = norm;
   const std::size_t first = layout_.free_begin(), last = first + layout_.free_size();
   for (int n = 0; n < params_.max_iterations; ++n) {
-    direction(at, pairs);
+    direction(turn, pairs);
     const int slot = std::min(pairs, kPairs - 1);
     if (pairs == kPairs) {  // forget the oldest
       std::rotate(s_.begin(), s_.begin() + 1, s_.end());
@@ -236,12 +284,6 @@ bool RingIntegrator::iterate(double h, const Field& force, Placement& at, int& c
   return false;
 }
 
-/// A factorization costs some fifteen iterations; it is not worth it where a new factor was no better.
-void RingIntegrator::judge(Slot& slot, int count) {
-  if (slot.first_iterations < 0) slot.first_iterations = count;
-  slot.stale = count > std::max(params_.slow_iterations, slot.first_iterations + kAged);
-}
-
 TireStatus RingIntegrator::step(double h, const RimState& end, const Field& force, const Vec3& about,
                                 Wrench& on_rim) {
   set_bead(end);
@@ -255,9 +297,8 @@ TireStatus RingIntegrator::step(double h, const RimState& end, const Field& forc
     norm = free_norm(r_);
     bool converged = norm <= params_.tolerance * reference_;
     if (!converged) {
-      Placement at = place_factor(h, orientation, attempt > 0);
-      converged = slots_[at.slot].valid && iterate(h, force, at, count, norm);
-      judge(slots_[at.slot], count);
+      converged = prepare_factor(h, end, attempt) && iterate(h, force, orientation, count, norm);
+      excess_ += std::max(0, count - 1);
     }
     if (converged) {
       iterations_ += count;
@@ -298,8 +339,8 @@ void RingIntegrator::finish(double h, const Vec3& about, Wrench& on_rim) {
   v_before_.swap(v_);
   v_.swap(v_new_);
   q_.swap(q_new_);
-  const ShellRing::Energies energies = shell_.account(q_, strains_);
-  elastic_ = energies.elastic;
+  const ShellRing::Energies energies = shell_.accept(shell_step_);
+  elastic_ += energies.elastic;
   dissipation_ += params_.damping / h * energies.change;
 }
 
@@ -307,38 +348,36 @@ void RingIntegrator::save(Archive& archive) const {
   archive.put("q", q_);
   archive.put("v", v_);
   archive.put("v_before", v_before_);
+  archive.put("stress", shell_step_.stress);
   archive.put("scalars", std::vector<double>{reference_, elastic_, dissipation_, residual_});
   archive.put("counts", std::vector<std::int64_t>{iterations_, factorizations_});
-  for (std::size_t k = 0; k < slots_.size(); ++k) {
-    const Archive::Scope scope(archive, fmt::format("factor{}/", k));
-    const Slot& slot = slots_[k];
-    archive.put("flags", std::vector<std::int64_t>{slot.valid, slot.stale, slot.first_iterations});
-    archive.put("turn", std::vector<double>(slot.turn.data(), slot.turn.data() + 9));
-    archive.put("h", slot.h);
-    archive.put("q_old", slot.q_old);
-    archive.put("q_new", slot.q_new);
-  }
+  archive.put("factor/flags", std::vector<std::int64_t>{factor_valid_, excess_});
+  archive.put("factor/numbers", std::vector<double>{factor_h_, factor_work_});
+  archive.put("factor/old", made_old_);
+  archive.put("factor/new", made_new_);
+  archive.put("factor/geometric", std::vector<std::int32_t>(geometric_.begin(), geometric_.end()));
 }
 
 void RingIntegrator::restore(const Archive& archive) {
   q_ = archive.get<double>("q", layout_.size());
   v_ = archive.get<double>("v", layout_.size());
   v_before_ = archive.get<double>("v_before", layout_.size());
-  shell_.strains(q_, strains_);
+  shell_.begin(q_, shell_step_);
+  shell_step_.stress = archive.get<double>("stress", shell_.strains_size());
   const auto& scalars = archive.get<double>("scalars", 4);
   const auto& counts = archive.get<std::int64_t>("counts", 2);
-  for (std::size_t k = 0; k < slots_.size(); ++k) {
-    const Archive::Scope scope(archive, fmt::format("factor{}/", k));
-    Slot& slot = slots_[k];
-    const auto& flags = archive.get<std::int64_t>("flags", 3);
-    slot.stale = flags[1] != 0;
-    slot.first_iterations = static_cast<int>(flags[2]);
-    std::copy_n(archive.get<double>("turn", 9).data(), 9, slot.turn.data());
-    slot.h = archive.get_double("h");
-    slot.q_old = archive.get<double>("q_old");
-    slot.q_new = archive.get<double>("q_new");
-    slot.valid = false;
-    if (flags[0] != 0) make_factor(slot, static_cast<int>(k));
+  const auto& flags = archive.get<std::int64_t>("factor/flags", 2);
+  const auto& numbers = archive.get<double>("factor/numbers", 2);
+  made_old_ = archive.get<double>("factor/old", made_layout_.size());
+  made_new_ = archive.get<double>("factor/new", made_layout_.size());
+  const auto& geometric = archive.get<std::int32_t>("factor/geometric", geometric_.size());
+  geometric_.assign(geometric.begin(), geometric.end());
+  excess_ = static_cast<int>(flags[1]);
+  factor_h_ = numbers[0], factor_work_ = numbers[1];
+  factor_valid_ = false;
+  if (flags[0] != 0) {
+    build(std::vector<char>(factor_.sectors(), 1));
+    factor_valid_ = factor_.factorize();
   }
   reference_ = scalars[0], elastic_ = scalars[1], dissipation_ = scalars[2], residual_ = scalars[3];
   iterations_ = counts[0], factorizations_ = counts[1];

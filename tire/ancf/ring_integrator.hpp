@@ -18,9 +18,11 @@
 // Forces at the middle: Simo & Tarnow (1992), The discrete energy-momentum method, ZAMP 43,
 // doi:10.1007/BF00913408.
 //
-// The equations are solved by a quasi-Newton method: an old Cholesky factor of the tangent, turned and
-// renumbered to the present orientation, corrected by BFGS pairs [Nocedal & Wright 2006, Alg. 7.4];
-// refactored when it has aged.
+// The equations are solved by a quasi-Newton method: an old Cholesky factor of the tangent in rim axes, turned to the
+// present orientation, corrected by BFGS pairs [Nocedal & Wright 2006, Alg. 7.4]. The tangent ages where the tire
+// deforms: as τ K/h is some hundred times K, a degree of local rotation matters. So the ring is cut into sectors, and
+// the factor is renewed in those whose shape has changed since it was made: around the contact patch, which travels
+// through the rim's axes, and where the tire sways or wrinkles.
 #pragma once
 
 #include <cstdint>
@@ -37,8 +39,10 @@ struct RingIntegratorParams {
   double damping = 0.005;   // τ, s
   double tolerance = 1e-4;  // of the free residual, relative to the norm of the pressure forces
   int max_iterations = 40;  // per attempt
-  int slow_iterations = 5;  // more than these, and kAged more than when it was new: the factor is renewed
-  int slots = 4;            // factors kept, one per fraction of a pitch of rolling
+  double age =
+      0.01;  // of a sector at which it is renewed: largest relative change of an edge or a director; 0: always
+  int worth = 30;   // iterations that a renewal may cost
+  int threads = 1;  // of a step; results do not depend on them
 };
 
 class RingIntegrator {
@@ -64,7 +68,8 @@ class RingIntegrator {
   double elastic_energy() const { return elastic_; }   // J
   double dissipation() const { return dissipation_; }  // J, cumulative
   std::int64_t iterations() const { return iterations_; }
-  std::int64_t factorizations() const { return factorizations_; }
+  std::int64_t factorizations() const { return factorizations_; }  // whole or in part
+  double factor_work() const { return factor_work_; }              // the same, in whole factorizations
   double residual() const { return residual_; }
 
   /// Processor time spent in the parts of a step, s, cumulative; not part of the state.
@@ -77,30 +82,19 @@ class RingIntegrator {
   void restore(const Archive& archive);
 
  private:
-  /// What a factor was made from: enough to make it again.
-  struct Slot {
-    bool valid = false, stale = false;
-    Mat3 turn = Mat3::Identity();  // rim orientation
-    double h = 0.0;                // s
-    int first_iterations = -1;     // needed when it was new; -1 before
-    Field q_old, q_new;
-  };
-  struct Placement {
-    int slot = 0;
-    Mat3 turn = Mat3::Identity();
-    int shift = 0;
-  };
-
   void set_bead(const RimState& rim);
   void predict(double h, double share);
   void evaluate(double h, const Field& force);
   double free_norm(const Field& f) const;
   double coefficient(double h) const { return 1.0 + params_.damping / h; }
-  bool make_factor(Slot& slot, int index);
-  Placement place_factor(double h, const Mat3& orientation, bool renew);
-  void direction(const Placement& at, int pairs);
-  void judge(Slot& slot, int count);
-  bool iterate(double h, const Field& force, Placement& at, int& count, double& norm);
+  void note_shape(int sector, const RimState& rim);
+  void build(const std::vector<char>& which);
+  void build_sector(int sector);
+  bool renew(const std::vector<char>& which, const RimState& rim);
+  double age(int sector, const Mat3& turn) const;
+  bool prepare_factor(double h, const RimState& rim, int attempt);
+  void direction(const Mat3& turn, int pairs);
+  bool iterate(double h, const Field& force, const Mat3& turn, int& count, double& norm);
   void finish(double h, const Vec3& about, Wrench& on_rim);
 
   RingIntegratorParams params_;
@@ -109,19 +103,29 @@ class RingIntegrator {
   ShellRing shell_;
   RingMass mass_;
   RingFactor factor_;
-  std::vector<Slot> slots_;
 
   Field q_, v_;             // state: coordinates (m, –) and velocities
   Field v_before_;          // velocities one step earlier, for the prediction
   double reference_ = 0.0;  // norm of the pressure forces, N
   double elastic_ = 0.0, dissipation_ = 0.0, residual_ = 0.0;
   std::int64_t iterations_ = 0, factorizations_ = 0;
+  double factor_work_ = 0.0;
 
-  Field strains_;                                   // at q_
+  // What the factor was made from: coordinates in rim axes at the ends of a step, sector beside sector.
+  RingLayout made_layout_;
+  Field made_old_, made_new_;
+  std::vector<char> geometric_;  // sectors made with their geometric stiffness
+  bool factor_valid_ = false;
+  double factor_h_ = 0.0;  // s
+  int excess_ = 0;         // iterations beyond one per step since the last renewal
+
+  ShellRing::Step shell_step_;                      // from q_
   Field gravity_;                                   // M g
   Field q_new_, v_new_, q_force_, change_, r_, d_;  // work
   std::vector<Field> s_, y_;                        // BFGS pairs
   std::vector<double> rho_;
+  std::vector<double> age_;
+  std::vector<char> which_;
   Times times_;
 };
 

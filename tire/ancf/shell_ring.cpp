@@ -60,6 +60,18 @@ void ShellRing::batch_stress_at(const Field& q_new, const Field& e_old, double c
   batch_stress(stiffness_[j].data(), e, stress);
 }
 
+void ShellRing::batch_stress_between(const BatchNodes& before, const BatchNodes& now, double c, int j,
+                                     Lanes* stress) const {
+  Lanes old[kStrains], e[kStrains];
+  batch_strains(before, old);
+  batch_strains(now, e);
+  for (int k = 0; k < kStrains; ++k) {
+    old[k] -= reference_[j][k];
+    e[k] = old[k] + c * (e[k] - reference_[j][k] - old[k]);
+  }
+  batch_stress(stiffness_[j].data(), e, stress);
+}
+
 void ShellRing::forces(const Field& q_new, const Field& q_force, const Field& e_old, double c,
                        Field& f) const {
   std::fill(f.begin(), f.end(), 0.0);
@@ -75,6 +87,74 @@ void ShellRing::forces(const Field& q_new, const Field& q_force, const Field& e_
       BatchForces(nodes, stress, pressure_ * valid).add(layout_, f.data(), b * kLanes, j);
     }
   layout_.fold_padding(f);
+}
+
+void ShellRing::begin(const Field& q, Step& step) const {
+  strains(q, step.strains);
+  step.new_strains = step.strains;
+  step.stress.assign(strains_size(), 0.0);
+  step.stress_change = step.stress;
+  step.rows.assign(layout_.rows - 1, {});
+  Lanes e[kStrains], stress[kStrains];
+  for (int j = 0; j + 1 < layout_.rows; ++j)
+    for (int b = 0; b < layout_.batches(); ++b) {
+      const std::size_t at = batch_of(step.strains, j, b) - step.strains.data();
+      for (int k = 0; k < kStrains; ++k) e[k] = load(step.strains.data() + at + k * kLanes);
+      batch_stress(stiffness_[j].data(), e, stress);
+      for (int k = 0; k < kStrains; ++k) store(step.stress.data() + at + k * kLanes, mask(b) * stress[k]);
+    }
+}
+
+void ShellRing::row_forces(const Field& q_new, const Field& q_force, Step& step, double c, int j,
+                           Field& f) const {
+  Lanes e[kStrains], u[kStrains];
+  Lanes elastic = {}, change = {};
+  for (int b = 0; b < layout_.batches(); ++b) {
+    const std::size_t at = batch_of(step.strains, j, b) - step.strains.data();
+    const double *old = step.strains.data() + at, *stress = step.stress.data() + at;
+    double *strains_to = step.new_strains.data() + at, *change_to = step.stress_change.data() + at;
+    const Lanes valid = mask(b);
+    batch_strains_at(q_new, j, b, e);
+    for (int k = 0; k < kStrains; ++k) {
+      store(strains_to + k * kLanes, e[k]);
+      e[k] = valid * (e[k] - load(old + k * kLanes));
+    }
+    batch_stress(stiffness_[j].data(), e, u);
+    for (int k = 0; k < kStrains; ++k) {
+      const Lanes s = load(stress + k * kLanes);
+      store(change_to + k * kLanes, u[k]);
+      elastic += (s + 0.5 * u[k]) * e[k];
+      change += u[k] * e[k];
+      u[k] = s + c * u[k];
+    }
+    BatchNodes nodes;
+    nodes.read(layout_, q_force.data(), b * kLanes, j);
+    BatchForces(nodes, u, pressure_ * valid).add(layout_, f.data(), b * kLanes, j);
+  }
+  step.rows[j] = {sum(elastic), sum(change)};
+}
+
+// Row j adds to the nodes of rows j and j + 1: first the even rows, then the odd ones, so that no two threads meet.
+void ShellRing::forces(const Field& q_new, const Field& q_force, Step& step, double c, Field& f,
+                       int threads) const {
+  std::fill(f.begin(), f.end(), 0.0);
+  for (const int parity : {0, 1}) {
+    if (threads > 1) {
+#pragma omp parallel for schedule(static) num_threads(threads)
+      for (int j = parity; j < layout_.rows - 1; j += 2) row_forces(q_new, q_force, step, c, j, f);
+    } else {
+      for (int j = parity; j < layout_.rows - 1; j += 2) row_forces(q_new, q_force, step, c, j, f);
+    }
+  }
+  layout_.fold_padding(f);
+}
+
+ShellRing::Energies ShellRing::accept(Step& step) const {
+  Energies total;
+  for (const Energies& row : step.rows) total.elastic += row.elastic, total.change += row.change;
+  step.strains.swap(step.new_strains);
+  for (std::size_t k = 0; k < step.stress.size(); ++k) step.stress[k] += step.stress_change[k];
+  return total;
 }
 
 ShellRing::Energies ShellRing::account(const Field& q, Field& e) const {

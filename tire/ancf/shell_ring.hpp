@@ -12,6 +12,8 @@
 
 namespace furrow {
 
+struct BatchNodes;
+
 class ShellRing {
  public:
   ShellRing(const TireFile& file, const RingMesh& mesh);
@@ -35,6 +37,19 @@ class ShellRing {
   /// Strains of `q` replace those in `e`.
   Energies account(const Field& q, Field& e) const;
 
+  /// What a time step knows of all elements, [row][batch][strain][lane].
+  struct Step {
+    Field strains, stress;             // E_old and D̂ E_old
+    Field new_strains, stress_change;  // at q_new, and D̂ (E_new − E_old)
+    std::vector<Energies> rows;        // changes over the step, by width position
+  };
+  /// Starts at q: strains and stress.
+  void begin(const Field& q, Step& step) const;
+  /// forces() of a step. Rows are shared out to `threads`; the result does not depend on how many.
+  void forces(const Field& q_new, const Field& q_force, Step& step, double c, Field& f, int threads) const;
+  /// Takes the last q_new as the next step's start. @returns change of ½ Σ Eᵀ D̂ E, and Σ ΔEᵀ D̂ ΔE, J
+  Energies accept(Step& step) const;
+
   /// Between the mid-surface and the two cones from the bead loops to `centre`, m³.
   double volume(const Field& q, const Vec3& centre) const;
 
@@ -42,11 +57,14 @@ class ShellRing {
   /// loops alone.
   Wrench pressure_resultant(const Field& q, const Vec3& centre) const;
 
-  /// Current strain-driven stress of one batch (used for the tangent).
+  /// Stress D̂ [E_old + c (E_new − E_old)] of a batch at width position j.
   void batch_stress_at(const Field& q_new, const Field& e_old, double c, int j, int batch,
                        Lanes* stress) const;
+  void batch_stress_between(const BatchNodes& before, const BatchNodes& now, double c, int j,
+                            Lanes* stress) const;
 
  private:
+  void row_forces(const Field& q_new, const Field& q_force, Step& step, double c, int j, Field& f) const;
   /// Lanes of a batch that are elements (1) and not padding (0).
   Lanes mask(int batch) const;
   void batch_strains_at(const Field& q, int j, int batch, Lanes* e) const;

@@ -110,6 +110,37 @@ TEST(AncfTire, restored_tire_continues_bit_for_bit) {
   EXPECT_GT(a.factorizations, 0);
 }
 
+/// Coordinates after rolling into contact.
+Field rolled(const RingIntegratorParams& params, int steps) {
+  const double h = 1e-4, speed = 8.0, depth = 0.008;
+  AncfTire tire(small_file(), params);
+  RimTrajectory t(rolling_rim(0, tire.radius(), speed, depth));
+  tire.place(t.start());
+  for (int n = 0; n < steps; ++n) {
+    t.extend(rolling_rim(n * h, tire.radius(), speed, depth), h);
+    const TireStatus status = tire.advance(t, ground_forces(tire), 1);
+    EXPECT_TRUE(status.converged) << status.message;
+  }
+  return tire.integrator().q();
+}
+
+TEST(AncfTire, an_old_factor_gives_the_results_of_one_renewed_in_every_step_to_1e8) {
+  RingIntegratorParams old, renewed;
+  old.tolerance = renewed.tolerance = 1e-10;
+  renewed.age = 0.0;
+  const Field a = rolled(old, 200), b = rolled(renewed, 200);
+  double difference = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) difference = std::max(difference, std::abs(a[k] - b[k]));
+  EXPECT_LT(difference, 1e-8);
+  EXPECT_GT(difference, 0.0);  // not the same path
+}
+
+TEST(AncfTire, threads_do_not_change_a_bit) {
+  RingIntegratorParams one, three;
+  three.threads = 3;
+  EXPECT_EQ(rolled(one, 150), rolled(three, 150));
+}
+
 TEST(AncfTire, mirrored_forces_give_the_mirrored_wrench) {
   AncfTire tire(small_file("hmmwv_lumped.json"));
   const int rows = static_cast<int>(tire.integrator().layout().rows);

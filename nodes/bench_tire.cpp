@@ -1,0 +1,196 @@
+// `furrow bench tire`: the tire's own time on hard ground, under the coupling rule of a run.
+//
+// The ground answers one step late; the carriage m is free along x and z, so that the driven wheel, which turns at
+// constant speed, rolls without pull.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+#include <nlohmann/json.hpp>
+
+#include "nodes/bench.hpp"
+#include "nodes/scenario.hpp"
+#include "protocol/error.hpp"
+#include "protocol/hash.hpp"
+#include "terrain/rigid/rigid_ground.hpp"
+#include "tire/ancf/ancf_tire.hpp"
+
+namespace furrow {
+namespace {
+
+constexpr double kGravity = 9.81;        // m/s²
+constexpr double kGap = 1e-3;            // m, between ground and undeformed tire at the start
+constexpr double kTouchdown = 20e3;      // N s/m, vertical damper of the carriage during the touch-down
+constexpr double kTouchdownShare = 0.8;  // of the time before the timed steps
+constexpr double kFriction = 0.9, kVelocityScale = 50.0;  // -, s/m: the ground of rigs/rigid_ground.json
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+void check(const TireBench& bench) {
+  const auto require = [](bool ok, const char* key, const char* expected) {
+    if (!ok) throw input_error("command line", key, std::string("expected ") + expected);
+  };
+  require(bench.threads >= 1 && bench.threads <= 1024, "--threads", "1 to 1024");
+  require(bench.steps >= 0, "--steps", "0 (one revolution) or more");
+  require(bench.warm >= 0.0, "--warm", "0 or more, s");
+  require(bench.step > 0.0 && bench.step <= 1e-2, "--step", "a positive number, at most 0.01 s");
+  require(bench.speed >= 0.0, "--speed", "0 or more, rad/s");
+  require(bench.load > 0.0, "--load", "a positive number, kg");
+  require(bench.tolerance > 0.0 && bench.tolerance < 1.0, "--tolerance", "between 0 and 1");
+}
+
+/// A tire under a carriage on the plane z = 0.
+class RollingTire {
+ public:
+  RollingTire(AncfTire& tire, const TireBench& bench) : tire_(tire), bench_(bench) {
+    TerrainOptions options;
+    options.engine = "rigid";
+    options.friction = kFriction;
+    options.friction_velocity_scale = kVelocityScale;
+    ground_ = make_rigid_ground(options);
+    rim_.position = Vec3(0.0, 0.0, tire.radius() + kGap);
+    rim_.velocity = Vec3(bench.speed * tire.radius(), 0.0, 0.0);
+    rim_.angular_velocity = Vec3(0.0, bench.speed, 0.0);
+    trajectory_ = RimTrajectory(rim_);
+    tire.place(rim_);
+    tire.surface(surface_);
+    ground_->attach(tire.mesh(), tire.material(), surface_);
+  }
+
+  /// @returns seconds of wall time that the tire took
+  double step(double damper) {
+    const NodalForces forces = forces_;  // the ground's of the last step
+    if (const TerrainStatus status =
+            ground_->advance({&surface_, 1}, bench_.step, 1, {&forces_, 1}, {&contact_, 1});
+        !status.ok)
+      throw physics_error(status.message);
+    trajectory_.extend(rim_, bench_.step);
+    const double begin = now();
+    const TireStatus status = tire_.advance(trajectory_, forces, 1);
+    tire_.surface(surface_);
+    const double spent = now() - begin;
+    if (!status.converged) throw physics_error(status.message);
+    move_carriage(damper);
+    return spent;
+  }
+
+  const Wrench& wrench() const { return wrench_; }
+  double height() const { return rim_.position.z(); }
+
+ private:
+  void move_carriage(double damper) {
+    const double h = bench_.step;
+    const Vec3 before = wrench_.force;  // as known to the carriage, one step late
+    wrench_ = tire_.spindle_wrench();
+    rim_.velocity.x() += h * before.x() / bench_.load;
+    rim_.velocity.z() += h * ((before.z() - damper * rim_.velocity.z()) / bench_.load - kGravity);
+    rim_.position += h * rim_.velocity;
+    rim_.orientation =
+        (Quat(Eigen::AngleAxisd(h * bench_.speed, Vec3::UnitY())) * rim_.orientation).normalized();
+  }
+
+  AncfTire& tire_;
+  const TireBench& bench_;
+  std::unique_ptr<Terrain> ground_;
+  RimState rim_;
+  RimTrajectory trajectory_;
+  SurfaceState surface_;
+  NodalForces forces_;
+  ContactSums contact_;
+  Wrench wrench_;
+};
+
+int most_layers(const TireFile& file) {
+  return static_cast<int>(
+      std::max({file.bead.layers.size(), file.sidewall.layers.size(), file.tread.layers.size()}));
+}
+
+/// Value below which the share `p` of the sorted values lies.
+double quantile(const std::vector<double>& sorted, double p) {
+  return sorted[std::min(sorted.size() - 1,
+                         static_cast<std::size_t>(p * static_cast<double>(sorted.size())))];
+}
+
+}  // namespace
+
+std::string bench_tire(const TireBench& bench) {
+  check(bench);
+  const std::string path = bench.tire == "default"
+                               ? std::string(FURROW_SOURCE_FOLDER "/tire/data/hmmwv_layered.json")
+                               : bench.tire;
+  TireFile file = read_tire_file(path);
+  file.pressure = bench.pressure;
+  if (bench.columns > 0) file.elements_circumference = bench.columns;
+  if (bench.width > 0) set_elements_width(file, bench.width);
+  RingIntegratorParams params;
+  params.tolerance = bench.tolerance;
+  params.threads = bench.threads;
+  AncfTire tire(file, params);
+  RollingTire rolling(tire, bench);
+
+  const auto warm = static_cast<long>(std::lround(bench.warm / bench.step));
+  for (long n = 0; n < warm; ++n)
+    rolling.step(static_cast<double>(n) < kTouchdownShare * static_cast<double>(warm) ? kTouchdown : 0.0);
+
+  const double turn = 2.0 * std::numbers::pi;
+  const long steps = bench.steps > 0
+                         ? bench.steps
+                         : std::lround(std::ceil(turn / (std::max(bench.speed, 1.0) * bench.step)));
+  const RingIntegrator::Times before = tire.integrator().times();
+  const TireDiagnostics start = tire.diagnostics();
+  const double work = tire.integrator().factor_work();
+  std::vector<double> spent(steps);
+  double load = 0.0, pull = 0.0, moment = 0.0, height = 0.0, worst = 0.0, total = 0.0;
+  for (long n = 0; n < steps; ++n) {
+    total += spent[n] = rolling.step(0.0);
+    load += rolling.wrench().force.z() / static_cast<double>(steps);
+    pull += rolling.wrench().force.x() / static_cast<double>(steps);
+    moment += rolling.wrench().moment.y() / static_cast<double>(steps);
+    height += rolling.height() / static_cast<double>(steps);
+    worst = std::max(worst, tire.integrator().residual());
+  }
+  const TireDiagnostics end = tire.diagnostics();
+  const RingIntegrator::Times& t = tire.integrator().times();
+  const double per_step = 1e3 / static_cast<double>(steps);
+  const double force = per_step * (t.force - before.force),
+               jacobian = per_step * (t.jacobian - before.jacobian),
+               factorize = per_step * (t.factorize - before.factorize),
+               solve = per_step * (t.solve - before.solve);
+  std::sort(spent.begin(), spent.end());
+  Hash hash;
+  hash.add(std::span<const double>(tire.integrator().q()));
+  hash.add(std::span<const double>(tire.integrator().v()));
+  const nlohmann::ordered_json json = {
+      {"ms_per_step", per_step * total},
+      {"median_ms", 1e3 * quantile(spent, 0.5)},
+      {"p99_ms", 1e3 * quantile(spent, 0.99)},
+      {"parts_ms",
+       {{"force", force},
+        {"jacobian", jacobian},
+        {"factorize", factorize},
+        {"solve", solve},
+        {"other", per_step * total - force - jacobian - factorize - solve}}},
+      {"factorizations", end.factorizations - start.factorizations},
+      {"factorizations_whole", tire.integrator().factor_work() - work},
+      {"newton_iterations_mean",
+       static_cast<double>(end.newton_iterations - start.newton_iterations) / static_cast<double>(steps)},
+      {"max_residual", worst},
+      {"residual_tolerance", bench.tolerance},
+      {"deflection_m", tire.radius() - height},
+      {"spindle_load_N", load},
+      {"pull_N", pull},
+      {"rolling_moment_Nm", moment},
+      {"layers", most_layers(file)},
+      {"revolutions", static_cast<double>(steps) * bench.step * bench.speed / turn},
+      {"coordinates", tire.coordinates()},
+      {"step_s", bench.step},
+      {"steps", steps},
+      {"threads", bench.threads},
+      {"state_hash", hash.hex()}};
+  return json.dump(2) + "\n";
+}
+
+}  // namespace furrow

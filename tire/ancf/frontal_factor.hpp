@@ -1,0 +1,64 @@
+// Cholesky factor of a sparse symmetric matrix that can be renewed in part.
+//
+// Multifrontal method [Duff & Reid 1983, The multifrontal solution of indefinite sparse symmetric linear equations,
+// ACM Trans. Math. Softw. 9, doi:10.1145/356044.356047]: each supernode of the elimination tree adds its entries of the
+// matrix and what its children pass on, eliminates its own columns, and passes the rest to its parent. What is passed is
+// kept; when entries of the matrix change only the supernodes that hold them and those above are computed again.
+// The result does not depend on what was renewed before: a factor made at once has the same bits.
+//
+// Single precision: the factor corrects a residual that is computed in double precision.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tire/ancf/panel_solver.hpp"
+
+namespace furrow {
+
+class FrontalFactor {
+ public:
+  /// One entry of the matrix: where its value stands among the values given to factorize, its row and column in the
+  /// order of elimination (row ≥ column), and the group of entries with which it changes.
+  struct Entry {
+    int value = 0, row = 0, column = 0, group = 0;
+  };
+
+  FrontalFactor() = default;
+  /// Entries with the same row and column are summed in the order given.
+  FrontalFactor(PanelPattern pattern, const std::vector<Entry>& entries, int groups);
+
+  /// Computes what depends on the groups marked in `changed`.
+  /// @returns false when the matrix is not positive definite; the factor is then unusable until all groups are renewed
+  bool factorize(std::span<const float> values, std::span<const char> changed);
+
+  /// x ← A⁻¹ x
+  void solve(float* x) { pattern_.solve(factor_, x, work_); }
+
+  const PanelPattern& pattern() const { return pattern_; }
+  /// Floating point operations of the last factorize, and of one that renews all.
+  double operations() const { return operations_; }
+  double all_operations() const { return all_operations_; }
+
+ private:
+  struct Place {
+    int value = 0;
+    int at = 0;  // row + rows of the front × column
+  };
+  bool eliminate(int s, std::span<const float> values);
+  void gather(int s, std::span<const float> values);
+
+  PanelPattern pattern_;
+  std::vector<int> parent_;
+  std::vector<std::vector<int>> children_;
+  std::vector<std::vector<int>> place_in_parent_;  // of the rows below, in the parent's front
+  std::vector<std::vector<Place>> entries_;        // of each supernode
+  std::vector<std::vector<char>> holds_;           // [supernode][group]
+  std::vector<std::vector<float>> passed_;  // Schur complement of each supernode, lower triangle by columns
+  std::vector<char> dirty_;
+  std::vector<float> factor_, front_, inverse_, work_;
+  double operations_ = 0.0, all_operations_ = 0.0;
+};
+
+}  // namespace furrow

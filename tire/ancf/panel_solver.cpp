@@ -1,0 +1,134 @@
+#include "tire/ancf/panel_solver.hpp"
+
+#include <algorithm>
+
+namespace furrow {
+namespace {
+
+constexpr int kStrip = 16;  // rows
+constexpr int kHalf = 8;    // lanes of a vector
+
+typedef float Floats __attribute__((vector_size(4 * kHalf)));
+typedef float UnalignedFloats __attribute__((vector_size(4 * kHalf), aligned(4), may_alias));
+
+Floats read(const float* p) { return *reinterpret_cast<const UnalignedFloats*>(p); }
+void write(float* p, Floats v) { *reinterpret_cast<UnalignedFloats*>(p) = v; }
+float sum(Floats v) { return ((v[0] + v[4]) + (v[1] + v[5])) + ((v[2] + v[6]) + (v[3] + v[7])); }
+
+int strips(int rows) { return (rows + kStrip - 1) / kStrip; }
+/// Columns of strip s of the inverse of a diagonal block: it is lower triangular.
+int triangle_columns(int s, int columns) { return std::min(columns, (s + 1) * kStrip); }
+
+std::size_t triangle_values(int columns) {
+  std::size_t total = 0;
+  for (int s = 0; s < strips(columns); ++s) total += kStrip * triangle_columns(s, columns);
+  return total;
+}
+
+/// y (kStrip long) = strip · x
+const float* multiply(const float* a, int columns, const float* x, float* y) {
+  Floats s0 = {}, s1 = {}, t0 = {}, t1 = {};
+  int k = 0;
+  for (; k + 1 < columns; k += 2, a += 2 * kStrip) {
+    s0 += x[k] * read(a), s1 += x[k] * read(a + kHalf);
+    t0 += x[k + 1] * read(a + kStrip), t1 += x[k + 1] * read(a + kStrip + kHalf);
+  }
+  if (k < columns) {
+    s0 += x[k] * read(a), s1 += x[k] * read(a + kHalf);
+    a += kStrip;
+  }
+  write(y, s0 + t0), write(y + kHalf, s1 + t1);
+  return a;
+}
+
+/// Adds to the kHalf partial sums of each of the columns of y = stripᵀ · x.
+const float* multiply_transposed(const float* a, int columns, const float* x, float* y) {
+  const Floats x0 = read(x), x1 = read(x + kHalf);
+  for (int k = 0; k < columns; ++k, a += kStrip)
+    write(y + kHalf * k, read(y + kHalf * k) + (read(a) * x0 + read(a + kHalf) * x1));
+  return a;
+}
+
+}  // namespace
+
+PanelPattern::PanelPattern(int supernodes, const int* super, const int* row_start, const int* row_number) {
+  int widest = 0, tallest = 0;
+  for (int s = 0; s < supernodes; ++s) {
+    Panel panel;
+    panel.first = super[s];
+    panel.columns = super[s + 1] - super[s];
+    panel.below = row_start[s + 1] - row_start[s] - panel.columns;
+    panel.rows = static_cast<int>(row_.size());
+    panel.data = values_;
+    row_.insert(row_.end(), row_number + row_start[s] + panel.columns, row_number + row_start[s + 1]);
+    values_ += triangle_values(panel.columns) +
+               static_cast<std::size_t>(kStrip) * strips(panel.below) * panel.columns;
+    widest = std::max(widest, panel.columns);
+    tallest = std::max(tallest, panel.below);
+    panels_.push_back(panel);
+  }
+  size_ = super[supernodes];
+  work_ = kStrip * static_cast<std::size_t>(strips(widest) + strips(tallest)) +
+          kHalf * static_cast<std::size_t>(widest) + 4 * kStrip;
+}
+
+void PanelPattern::pack(int s, const float* inverse, const float* columns, std::vector<float>& values) const {
+  const Panel& p = panels_[s];
+  float* to = values.data() + p.data;
+  for (int first = 0; first < p.columns; first += kStrip)
+    for (int k = 0; k < triangle_columns(first / kStrip, p.columns); ++k)
+      for (int r = first; r < first + kStrip; ++r)
+        *to++ = r < p.columns ? inverse[r + static_cast<std::size_t>(k) * p.columns] : 0.0f;
+  for (int first = 0; first < p.below; first += kStrip)
+    for (int k = 0; k < p.columns; ++k) {
+      const float* from = columns + static_cast<std::size_t>(k) * (p.columns + p.below) + p.columns;
+      for (int r = first; r < first + kStrip; ++r) *to++ = r < p.below ? from[r] : 0.0f;
+    }
+}
+
+void PanelPattern::forward(const float* values, float* x, float* work) const {
+  float y[kStrip];
+  for (const Panel& p : panels_) {
+    const float* a = values + p.data;
+    for (int s = 0; s < strips(p.columns); ++s)
+      a = multiply(a, triangle_columns(s, p.columns), x + p.first, work + s * kStrip);
+    std::copy(work, work + p.columns, x + p.first);
+    const int* row = rows(p);
+    for (int s = 0; s < p.below; s += kStrip) {
+      a = multiply(a, p.columns, x + p.first, y);
+      const int count = std::min(kStrip, p.below - s);
+      for (int r = 0; r < count; ++r) x[row[s + r]] -= y[r];
+    }
+  }
+}
+
+void PanelPattern::backward(const float* values, float* x, float* work) const {
+  for (std::size_t n = panels_.size(); n-- > 0;) {
+    const Panel& p = panels_[n];
+    float* partial = work;
+    std::fill(partial, partial + kHalf * p.columns, 0.0f);
+    const float* triangle = values + p.data;
+    const float* a = triangle + triangle_values(p.columns);
+    const int* row = rows(p);
+    float gathered[kStrip];
+    for (int s = 0; s < p.below; s += kStrip) {
+      for (int r = 0; r < kStrip; ++r) gathered[r] = s + r < p.below ? x[row[s + r]] : 0.0f;
+      a = multiply_transposed(a, p.columns, gathered, partial);
+    }
+    float* own = work + kHalf * p.columns;
+    for (int k = 0; k < p.columns; ++k) own[k] = x[p.first + k] - sum(read(partial + kHalf * k));
+    std::fill(own + p.columns, own + strips(p.columns) * kStrip, 0.0f);
+    std::fill(partial, partial + kHalf * p.columns, 0.0f);
+    for (int s = 0; s < strips(p.columns); ++s)
+      triangle = multiply_transposed(triangle, triangle_columns(s, p.columns), own + s * kStrip, partial);
+    for (int k = 0; k < p.columns; ++k) x[p.first + k] = sum(read(partial + kHalf * k));
+  }
+}
+
+void PanelPattern::solve(const std::vector<float>& values, float* x, std::vector<float>& work) const {
+  if (work.size() < work_) work.resize(work_);
+  forward(values.data(), x, work.data());
+  backward(values.data(), x, work.data());
+}
+
+}  // namespace furrow

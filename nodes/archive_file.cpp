@@ -16,6 +16,23 @@ std::string swapped(std::string name, char from, char to) {
   return name;
 }
 
+std::string checksum(const Archive& archive) {
+  Hash hash;
+  for (const auto& [name, array] : archive.arrays()) {
+    const std::size_t type = array.index();
+    hash.add(name);
+    hash.add(&type, sizeof type);
+    std::visit(
+        [&hash](const auto& values) {
+          const std::size_t size = values.size();
+          hash.add(&size, sizeof size);
+          hash.add(std::span(values));
+        },
+        array);
+  }
+  return hash.hex();
+}
+
 Archive::Array read_array(const Hdf5Reader& file, const std::string& name) {
   switch (file.type(name)) {
     case Hdf5Type::float64:
@@ -33,29 +50,11 @@ Archive::Array read_array(const Hdf5Reader& file, const std::string& name) {
 
 }  // namespace
 
-std::string archive_checksum(const Archive& archive) {
-  Hash hash;
-  for (const auto& [name, array] : archive.arrays()) {
-    const std::size_t type = array.index();
-    hash.add(name);
-    hash.add(&type, sizeof type);
-    std::visit(
-        [&hash](const auto& values) {
-          const std::size_t size = values.size();
-          hash.add(&size, sizeof size);
-          hash.add(std::span(values));
-        },
-        array);
-  }
-  return hash.hex();
-}
-
-std::string write_archive(const std::filesystem::path& path, const Archive& archive) {
-  const std::string checksum = archive_checksum(archive);
+void write_archive(const std::filesystem::path& path, const Archive& archive) {
   Hdf5Writer file(path);
   file.attribute("kind", std::string(kKind));
   file.attribute("arrays", static_cast<std::int64_t>(archive.arrays().size()));
-  file.attribute("checksum", checksum);
+  file.attribute("checksum", checksum(archive));
   for (const auto& [name, array] : archive.arrays()) {
     if (name.find(':') != std::string::npos)
       throw io_error(path.string(), "array name '" + name + "' holds a ':'");
@@ -63,7 +62,6 @@ std::string write_archive(const std::filesystem::path& path, const Archive& arch
     std::visit([&](const auto& values) { file.put(stored, std::span(values), {values.size()}); }, array);
   }
   file.finish();
-  return checksum;
 }
 
 Archive read_archive(const std::filesystem::path& path) {
@@ -74,7 +72,7 @@ Archive read_archive(const std::filesystem::path& path) {
   if (file.integer("arrays") > 0)
     for (const std::string& stored : file.list(kGroup))
       archive.put_array(swapped(stored, ':', '/'), read_array(file, std::string(kGroup) + "/" + stored));
-  if (archive_checksum(archive) != file.text("checksum"))
+  if (checksum(archive) != file.text("checksum"))
     throw io_error(path.string(), "the checksum does not fit the contents: the file is damaged");
   return archive;
 }

@@ -10,13 +10,10 @@
 
 namespace furrow {
 
-/// The file appears whole or not at all. @returns the checksum @throws Error(io)
-std::string write_archive(const std::filesystem::path& file, const Archive& archive);
+/// The file appears whole or not at all. @throws Error(io)
+void write_archive(const std::filesystem::path& file, const Archive& archive);
 
 /// @throws Error(io) naming the file when it is missing, cut short, damaged, of another kind or of a newer format
 Archive read_archive(const std::filesystem::path& file);
-
-/// Over names, types and bytes, as 16 hexadecimal digits.
-std::string archive_checksum(const Archive& archive);
 
 }  // namespace furrow

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "nodes/archive_file.hpp"
 #include "nodes/fault_point.hpp"
 #include "nodes/segments_json.hpp"
 #include "nodes/text_file.hpp"
@@ -47,7 +46,9 @@ Json to_json(const CheckpointManifest& m) {
             {"name", m.name},
             {"scenario_digest", m.scenario_digest},
             {"step", m.step},
-            {"time_s", m.time}};
+            {"time_s", m.time},
+            {"bytes", m.bytes},
+            {"write_s", m.write_s}};
   for (const CheckpointPart& part : m.parts)
     json["parts"].push_back({{"file", part.file}, {"checksum", part.checksum}});
   for (const SeriesMark& mark : m.series)
@@ -69,6 +70,8 @@ CheckpointManifest from_json(const Json& json) {
   m.scenario_digest = json.at("scenario_digest");
   m.step = json.at("step");
   m.time = json.at("time_s");
+  m.bytes = json.at("bytes");
+  m.write_s = json.at("write_s");
   for (const Json& part : json.at("parts"))
     m.parts.push_back(
         {m.step, part.at("file").get<std::string>(), part.at("checksum").get<std::string>(), ""});
@@ -148,10 +151,23 @@ CheckpointManifest read_checkpoint(const fs::path& folder) {
   CheckpointManifest manifest = read_manifest(folder / kManifest);
   for (const CheckpointPart& part : manifest.parts) {
     const fs::path file = folder / fs::path(part.file).filename();
-    if (archive_checksum(read_archive(file)) != part.checksum)
-      throw io_error(file.string(), "belongs to another checkpoint");
+    if (part_checksum(file) != part.checksum)
+      throw io_error(file.string(), "does not fit its checkpoint: it is damaged, or belongs to another");
   }
   return manifest;
+}
+
+std::string part_checksum(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file)
+    throw io_error(path.string(), "does not exist or cannot be read: the checkpoint is not complete");
+  Hash hash;
+  std::vector<char> block(1 << 20);
+  while (file) {
+    file.read(block.data(), static_cast<std::streamsize>(block.size()));
+    hash.add(block.data(), static_cast<std::size_t>(file.gcount()));
+  }
+  return hash.hex();
 }
 
 std::vector<fs::path> list_checkpoints(const fs::path& run) {

@@ -38,6 +38,8 @@ struct CheckpointManifest {
   std::vector<SeriesMark> series;     // per wheel
   FrameClock frames;
   std::vector<Segment> segments;  // the last one ends here
+  std::int64_t bytes = 0;         // of the parts on disk
+  double write_s = 0.0;           // wall time that the run stood still for it, until this was written
 };
 
 /// Where a run goes on.
@@ -60,6 +62,9 @@ void complete_checkpoint(const std::filesystem::path& run, const CheckpointManif
 
 /// @throws Error(io) when the checkpoint is damaged, incomplete or of a newer format; every part is read
 CheckpointManifest read_checkpoint(const std::filesystem::path& folder);
+
+/// Of all bytes of a part: damage is found before anything interprets the file. @throws Error(io)
+std::string part_checksum(const std::filesystem::path& file);
 
 /// Folders of the complete checkpoints, newest first.
 std::vector<std::filesystem::path> list_checkpoints(const std::filesystem::path& run);

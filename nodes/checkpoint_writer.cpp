@@ -43,7 +43,8 @@ CheckpointPart CheckpointWriter::write_part(std::int64_t step) const {
     std::error_code ignored;  // if it cannot be made, the file says so
     std::filesystem::create_directories(folder, ignored);
     fault_point("checkpoint.write");
-    part.checksum = write_archive(folder / part.file, archive);
+    write_archive(folder / part.file, archive);
+    part.checksum = part_checksum(folder / part.file);
     fault_point("checkpoint.written");
   } catch (const Error& error) {
     part.problem = error.what();
@@ -54,6 +55,7 @@ CheckpointPart CheckpointWriter::write_part(std::int64_t step) const {
 void CheckpointWriter::write(std::int64_t step, bool needed) {
   if (context_.directory.empty()) return;
   last_step_ = step;
+  write_begin_ = machine_clock();
   transport_.heartbeat();
   const CheckpointPart own = write_part(step);
   if (transport_.self() == kRig) {
@@ -77,8 +79,13 @@ CheckpointManifest CheckpointWriter::manifest(std::int64_t step, std::vector<Che
   m.time = static_cast<double>(step) * scenario_.run.step;
   m.parts = std::move(parts);
   m.series = node_.mark_series();
+  std::error_code ignored;
+  for (const CheckpointPart& part : m.parts)
+    m.bytes += static_cast<std::int64_t>(
+        std::filesystem::file_size(unfinished_checkpoint(context_.directory, step) / part.file, ignored));
   m.frames = frames_;
   m.segments = segments_until(step, machine_clock() - begin_, cards_.back().threads, context_.resume);
+  m.write_s = machine_clock() - write_begin_;
   return m;
 }
 

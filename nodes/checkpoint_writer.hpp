@@ -36,7 +36,8 @@ class CheckpointWriter {
   std::function<NodeCost()> cost_;
   FrameClock frames_;
   std::string build_;
-  double begin_;  // wall time, s
+  double begin_;              // wall time, s
+  double write_begin_ = 0.0;  // of the last checkpoint, wall time, s
   std::int64_t last_step_ = -1;
 };
 

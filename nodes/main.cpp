@@ -9,7 +9,8 @@
 
 int main(int argc, char** argv) {
   // Threads that spin while they wait make a short bed slow as soon as the machine has something else to do.
-  const bool settles = argc > 1 && std::string(argv[1]) == "bed";
+  const std::string command = argc > 1 ? argv[1] : "";
+  const bool settles = command == "bed" || command == "sweep";
   if (settles || furrow::launched_by_mpi()) furrow::wait_passively(argv);
   furrow::ExitCode code = furrow::ExitCode::done;
   try {

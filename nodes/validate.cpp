@@ -17,6 +17,9 @@ constexpr double kBytesPerRank = 40e6;        // program, MPI and libraries
 constexpr double kBytesPerCoordinate = 20e3;  // shell matrices, tangent and its factors
 constexpr double kBytesPerFrameGrain = 20.0;  // position, speed, radius in single precision
 constexpr double kBytesPerFrameVertex = 100.0;
+constexpr double kBytesPerSavedGrain = 300.0;  // in a checkpoint: state, pair list, contact history
+constexpr double kBytesPerSavedCoordinate =
+    110.0;                               // coordinates, velocities, and those that factors were made from
 constexpr double kBytesPerLine = 900.0;  // of timeseries.csv, and the same again in results.h5
 constexpr double kMegabyte = 1e6;
 
@@ -41,7 +44,9 @@ Estimate estimate(const Scenario& s) {
              kBytesPerRank * ranks;
   e.disk = frames(s) * (kBytesPerFrameGrain * static_cast<double>(e.terrain.grains) +
                         kBytesPerFrameVertex * vertices) +
-           kBytesPerLine * s.run.end / s.output.series_interval;
+           kBytesPerLine * s.run.end / s.output.series_interval +
+           s.checkpoint.keep * (kBytesPerSavedGrain * static_cast<double>(e.terrain.grains) +
+                                kBytesPerSavedCoordinate * static_cast<double>(e.coordinates));
   return e;
 }
 

@@ -73,7 +73,7 @@ TEST(InProcess, messages_keep_their_order_per_kind) {
 
 TEST(InProcess, a_message_of_another_step_is_refused_by_name) {
   const auto ends = play(1, [](Transport& t) {
-    if (t.self() == kRig) send(t, kTire, RimMotion{{7, 0.0}, {}, false});
+    if (t.self() == kRig) send(t, kTire, RimMotion{{7, 0.0}, {}, Order::go_on});
     if (t.self() == kTire) receive_step<RimMotion>(t, kRig, 8);
   });
   EXPECT_EQ(ends[1], "4: tire 0 expected step 8 from rig but got step 7");

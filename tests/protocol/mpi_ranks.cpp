@@ -59,7 +59,7 @@ SurfaceMotion motion_of(std::int64_t step, std::size_t vertices) {
 void exchange(Transport& t, std::int64_t step, std::size_t vertices) {
   const StepHeader header{step, 1e-4 * static_cast<double>(step)};
   if (t.self() == kRig) {
-    send(t, kTire, RimMotion{header, {}, false});
+    send(t, kTire, RimMotion{header, {}, Order::go_on});
     require(receive_step<SpindleReport>(t, kTire, step).header.time == header.time, "spindle report");
     receive_step<TerrainReport>(t, kTerrain, step);
   } else if (t.self() == kTire) {

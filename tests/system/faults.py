@@ -123,15 +123,9 @@ class Damaged(CheckpointTest):
                 shutil.rmtree(self.run)
                 self.copy_of_whole()
                 data = bytearray((self.newest / name).read_bytes())
-                # in a value: of the manifest its last digit, of an archive the last byte of data that is not zero
-                place = max(i for i, byte in enumerate(data) if chr(byte).isdigit()) if name.endswith("json") else \
-                    next(i for i in range(len(data) // 2, len(data)) if data[i])
-                data[place] ^= 1
+                data[len(data) // 2] ^= 1
                 (self.newest / name).write_bytes(data)
-                done = self.resume()
-                if "warning" not in done.stderr:  # the bit means nothing, as in padding
-                    self.assertNotEqual(name, "manifest.json")
-                self.same_as_whole()
+                self.goes_on_from_the_one_before(name)
 
     def test_missing_part(self):
         (self.newest / "tire0.h5").unlink()
@@ -139,7 +133,7 @@ class Damaged(CheckpointTest):
 
     def test_part_of_another_checkpoint(self):
         shutil.copy(self.run / "checkpoints" / f"{STEPS - INTERVAL:012}" / "rig.h5", self.newest)
-        self.goes_on_from_the_one_before("rig.h5: belongs to another checkpoint")
+        self.goes_on_from_the_one_before("rig.h5: does not fit its checkpoint")
 
     def test_of_a_newer_program(self):
         manifest = json.loads((self.newest / "manifest.json").read_text())
@@ -162,7 +156,7 @@ class Damaged(CheckpointTest):
             os.truncate(part, 100)
         done = self.resume(code=5)
         self.assertIn("no checkpoint is whole, nothing can be continued", done.stderr)
-        self.assertEqual(done.stderr.count("terrain.h5: not a complete HDF5 file"), 3)
+        self.assertEqual(done.stderr.count("terrain.h5: does not fit its checkpoint"), 3)
 
     def test_series_that_was_written_on(self):
         shutil.rmtree(self.newest)

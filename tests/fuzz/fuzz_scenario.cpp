@@ -1,0 +1,30 @@
+// Scenario files: JSON as people write it, the schema's mistakes, defaults and warnings.
+#include <set>
+
+#include "nodes/json_text.hpp"
+#include "nodes/scenario.hpp"
+#include "nodes/schema.hpp"
+#include "protocol/error.hpp"
+#include "tests/fuzz/input_file.hpp"
+
+namespace furrow {
+std::filesystem::path data_folder() { return FURROW_SOURCE_FOLDER; }
+}  // namespace furrow
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace furrow;
+  static const Schema schema = Schema::load();
+  try {
+    const auto file = fuzz::input_file("scenario.json", data, size);
+    nlohmann::json document = parse_json(read_text_file(file, "a scenario"), file.string());
+    if (!document.is_object()) return 0;
+    schema.normalize(document);
+    if (!schema.problems(document).empty()) return 0;
+    schema.fill_defaults(document);
+    schema.normalize(document);
+    schema.unusual(document);
+    if (!schema.problems(document).empty()) __builtin_trap();  // defaults must not make mistakes
+  } catch (const Error&) {
+  }
+  return 0;
+}

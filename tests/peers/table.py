@@ -96,16 +96,20 @@ def shear_rows(folder):
             mine, theirs = ({key(r): r for r in rows if r["engine"] == e and r["cohesion_Pa"] == cohesion and r["step_s"] == step}
                             for e in ("furrow", peer))
             both = sorted(set(mine) & set(theirs))
-            if len(both) < 4:
+            compared = len(both) >= 4 and len({k[3] for k in both}) > 1
+            if not compared and (len(mine) < 4 or peer != "liggghts"):
                 continue
             # The speeds of one test are not independent: their mean is one point.
-            fits = [coulomb([[numpy.mean([r[k][f"{what}_{v:g}_Pa"] for v in speeds]) for what in ("sigma", "tau")] for k in both])
-                    for r in (mine, theirs)]
+            fits = [coulomb([[numpy.mean([r[k][f"{what}_{v:g}_Pa"] for v in speeds]) for what in ("sigma", "tau")]
+                             for k in (both if compared else r)]) for r in ((mine, theirs) if compared else (mine,))]
             for n, (quantity, unit) in enumerate((("c", "kPa"), ("φ", "°"))):
-                (f, f_half), (g, g_half) = fits[0][n], fits[1][n]
-                yield {"test": f"shear, {kilo(cohesion)}, {name}", "quantity": quantity, "unit": unit, "seeds": len({k[0] for k in both}),
-                       "furrow": f, "furrow_ci95": f_half, "liggghts": g, "liggghts_ci95": g_half, "difference": f - g,
-                       "difference_ci95": math.hypot(f_half, g_half)}
+                row = dict.fromkeys(COLUMNS)
+                row.update(test=f"shear, {kilo(cohesion)}, {name}", quantity=quantity, unit=unit,
+                           seeds=len({k[0] for k in (both if compared else mine)}), furrow=fits[0][n][0], furrow_ci95=fits[0][n][1])
+                if compared:
+                    row.update(liggghts=fits[1][n][0], liggghts_ci95=fits[1][n][1], difference=fits[0][n][0] - fits[1][n][0],
+                               difference_ci95=math.hypot(fits[0][n][1], fits[1][n][1]))
+                yield row
 
 
 def law_and_step(folder, to):
@@ -166,11 +170,13 @@ def plot_shear(folder, to):
                 for cohesion in sorted({r["cohesion_Pa"] for r in rows}):
                     points = [(r[f"sigma_{speed:g}_Pa"] / 1e3, r[f"tau_{speed:g}_Pa"] / 1e3) for r in rows
                               if (r["engine"], r["cohesion_Pa"], r["step_s"]) == (e, cohesion, step)]
-                    if len(points) < 4:
+                    if not points:
                         continue
                     sigma, tau = numpy.array(points).T
-                    slope, offset = numpy.polyfit(sigma, tau, 1)
                     axis.plot(sigma, tau, marker, color=colour, ms=4, mfc=colour if cohesion else "none")
+                    if len(points) < 4 or numpy.ptp(sigma) < 15.0:
+                        continue
+                    slope, offset = numpy.polyfit(sigma, tau, 1)
                     axis.plot([0, 110], [offset, offset + 110 * slope], line, color=colour, label=f"{name}, {kilo(cohesion)}", lw=1)
             axis.set(title=f"{speed:g} m/s, step {1e6 * step:g} µs", xlim=(0, 112), ylim=(0, 70))
         line_of_axes[0].set_ylabel("shear stress in kPa")
@@ -193,15 +199,15 @@ def main():
     with open(to / "bulk.csv", "w") as out:
         out.write(",".join(COLUMNS) + "\n")
         for row in table:
-            out.write(",".join(f'"{row[k]}"' if isinstance(row[k], str) else f"{row[k]:.4g}" for k in COLUMNS) + "\n")
-    outside = 0
-    for row in table:
+            out.write(",".join("" if row[k] is None else f'"{row[k]}"' if isinstance(row[k], str) else f"{row[k]:.4g}" for k in COLUMNS) + "\n")
+    compared, outside = [row for row in table if row["liggghts"] is not None], 0
+    for row in compared:
         differs = abs(row["difference"]) > row["difference_ci95"]
         outside += differs
         print(f"| {row['test']} | {row['quantity']}, {row['unit']} | {row['furrow']:.4g} ± {row['furrow_ci95']:.2g} | "
               f"{row['liggghts']:.4g} ± {row['liggghts_ci95']:.2g} | {row['difference']:+.3g} ± {row['difference_ci95']:.2g}"
               f"{' *' if differs else ''} | {row['seeds']} |")
-    print(f"{outside} of {len(table)} differences outside their 95 % interval")
+    print(f"{outside} of {len(compared)} differences outside their 95 % interval")
     law_and_step(folder, to)
     if (folder / "trajectories.csv").exists():
         plot_trajectories(folder, to)

@@ -36,7 +36,8 @@ struct TireBench {
   double warm = 0.6;  // touch-down and transients before that, s
 };
 
-/// The tire rolls freely on hard ground under a carriage. @throws Error
+/// The tire rolls freely on hard ground under a carriage. Times per step are those of the tire alone: wall time, and
+/// processor time of the calling thread, also by parts. @throws Error
 std::string bench_tire(const TireBench& bench);
 
 }  // namespace furrow

@@ -81,6 +81,19 @@ void add_tire_bench(CLI::App& command, TireBench& bench) {
       ->capture_default_str();
 }
 
+void add_press_options(CLI::App& command, PressArguments& press) {
+  command.add_option("--out", press.out,
+                     "new folder for the results (default: results/<scenario>-press-NNN here)");
+  command.add_flag("--overwrite", press.overwrite, "let --out replace the results of an earlier run");
+  command.add_option("--on", press.obstacle, "plate or cleat")->capture_default_str();
+  command.add_option("--deflection", press.deflection, "largest deflection, m")->capture_default_str();
+  command.add_option("--points", press.points, "points of the curve up to it")->capture_default_str();
+  command.add_option("--load", press.load, "load of the footprint, N")->capture_default_str();
+  command.add_option("--cleat-height", press.cleat_height, "m")->capture_default_str();
+  command.add_option("--cleat-width", press.cleat_width, "of the cleat's top, along the travel, m")
+      ->capture_default_str();
+}
+
 void add_soil_options(CLI::App& command, SoilArguments& soil) {
   command.add_option("--out", soil.out,
                      "new folder for the results (default: results/<scenario>-soil-NNN here)");
@@ -230,6 +243,11 @@ ExitCode run_command_line(int argc, char** argv) {
   sweep.add_option("--out", sweep_arguments.out, "folder of the study (default: results/<study> here)");
   sweep.add_option("--jobs", sweep_arguments.jobs, "runs at once, each with its share of the cores")
       ->capture_default_str();
+  PressArguments press_arguments;
+  CLI::App& press = *app.add_subcommand(
+      "press", "presses the tire of a scenario on a plate or a cleat, statically; prints the folder");
+  add_scenario(press, typed);
+  add_press_options(press, press_arguments);
   CLI::App& report = *app.add_subcommand("report", "plots of a finished run, as PNG files in its folder");
   report.add_option("DIR", typed.directory, "folder of the run, or of soil tests")->required();
   report.add_option("--soil", typed.soil,
@@ -259,6 +277,7 @@ ExitCode run_command_line(int argc, char** argv) {
   if (validate.parsed()) return validate_command(typed);
   if (ranks.parsed()) return ranks_command(typed, {argv, argv + argc});
   if (soil.parsed()) return soil_command(load(typed), soil_arguments);
+  if (press.parsed()) return press_command(load(typed), press_arguments);
   if (bed.parsed()) return bed_command(load(typed));
   if (sweep.parsed()) return sweep_command(sweep_arguments);
   if (report.parsed()) return report_command(typed);

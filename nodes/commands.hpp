@@ -59,6 +59,19 @@ struct SoilArguments {
 /// `furrow soil` (commands_soil.cpp). @throws Error
 ExitCode soil_command(const struct Scenario& scenario, const SoilArguments& arguments);
 
+struct PressArguments {
+  std::filesystem::path out;  // empty: a fresh folder under results/
+  bool overwrite = false;
+  std::string obstacle = "plate";                    // plate | cleat
+  double deflection = 0.02;                          // largest, m
+  int points = 10;                                   // of the curve up to it
+  double load = 4561.65;                             // of the footprint, N
+  double cleat_height = 0.025, cleat_width = 0.025;  // m
+};
+
+/// `furrow press` (commands_press.cpp). @throws Error
+ExitCode press_command(const struct Scenario& scenario, const PressArguments& arguments);
+
 /// `furrow bed` (commands_bed.cpp). @throws Error
 ExitCode bed_command(const struct Scenario& scenario);
 

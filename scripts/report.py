@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Plots of a run, of soil tests or of a study: PNG files in the run directory, their names as a JSON list on stdout.
+"""Plots of a run, of soil tests, of a pressed tire or of a study: PNG files in the run directory, their names as a JSON list on stdout.
 
 usage: report.py DIR [--out FOLDER] [--only NAME]...
 
@@ -17,7 +17,7 @@ matplotlib.use("Agg")
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-from plot import charts, ground, scene, soil, sweep  # noqa: E402
+from plot import charts, ground, press, scene, soil, sweep  # noqa: E402
 from plot.run_data import Missing, Run  # noqa: E402
 
 PLOTS = {
@@ -30,6 +30,7 @@ PLOTS = {
 }
 SWEEP_PLOTS = {"curve": sweep.curve, "passes": sweep.passes, "rut_along": sweep.rut_along}
 SOIL_PLOTS = {"plate": soil.plate, "shear": soil.shear, "cone": soil.cone, "repose": soil.repose}
+PRESS_PLOTS = {"load_deflection": press.load_deflection, "footprint": press.footprint}
 
 
 def words(run):
@@ -48,20 +49,21 @@ def main():
     parser = argparse.ArgumentParser(description="Plots of a run as PNG files.")
     parser.add_argument("directory", type=pathlib.Path)
     parser.add_argument("--out", type=pathlib.Path, help="folder for the plots (default: the run directory)")
-    parser.add_argument("--only", action="append", choices=PLOTS | SOIL_PLOTS | SWEEP_PLOTS, help="this plot only; may be repeated")
+    parser.add_argument("--only", action="append", choices=PLOTS | SOIL_PLOTS | PRESS_PLOTS | SWEEP_PLOTS, help="this plot only; may be repeated")
     arguments = parser.parse_args()
     out = arguments.out or arguments.directory
     try:
         of_soil = (arguments.directory / "soil.json").is_file()
         of_sweep = (arguments.directory / "sweep.json").is_file()
-        of = soil.Soil if of_soil else sweep.Sweep if of_sweep else Run
+        of_press = (arguments.directory / "press.csv").is_file()
+        of = soil.Soil if of_soil else sweep.Sweep if of_sweep else press.Press if of_press else Run
         run = of(arguments.directory)
         out.mkdir(parents=True, exist_ok=True)
     except (OSError, ValueError) as error:
         print(f"furrow: error: {arguments.directory}: {error}", file=sys.stderr)
         return 5
     written = []
-    plots = SOIL_PLOTS if of_soil else SWEEP_PLOTS if of_sweep else PLOTS
+    plots = SOIL_PLOTS if of_soil else SWEEP_PLOTS if of_sweep else PRESS_PLOTS if of_press else PLOTS
     for name in arguments.only or plots:
         try:
             figure = plots[name](run)
@@ -81,7 +83,7 @@ def main():
             return 5
         matplotlib.pyplot.close(figure)
         written.append(str(out / f"{name}.png"))
-    if not of_soil and not of_sweep:
+    if not (of_soil or of_sweep or of_press):
         words(run)
     print(json.dumps(written))
     if not written:

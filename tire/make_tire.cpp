@@ -8,10 +8,8 @@
 #include "tire/tire_file.hpp"
 
 namespace furrow {
-namespace {
 
-/// The file with the scenario's choices in place of its own.
-TireFile apply(const TireOptions& options) {
+TireFile tire_file_of(const TireOptions& options) {
   TireFile file = read_tire_file(options.file);
   if (options.pressure >= 0.0) file.pressure = options.pressure;
   if (options.friction >= 0.0) file.contact.friction = options.friction;
@@ -26,10 +24,8 @@ TireFile apply(const TireOptions& options) {
   return file;
 }
 
-}  // namespace
-
 std::unique_ptr<Tire> make_tire(const TireOptions& options) {
-  const TireFile file = apply(options);
+  const TireFile file = tire_file_of(options);
   if (options.rigid) return std::make_unique<RigidTire>(file);
   return std::make_unique<AncfTire>(file);
 }

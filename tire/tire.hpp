@@ -75,6 +75,9 @@ struct TireOptions {
   double substep = 0.0;              // s, time step the tire will be advanced with
 };
 
+/// The tire file with the scenario's choices in place of its own. @throws Error(bad_input)
+struct TireFile tire_file_of(const TireOptions& options);
+
 /// Reads a tire file (our layout or the public ANCFTire layout) and makes the model it describes.
 /// @throws Error(bad_input) naming file and key; a file of an unknown template lists the valid ones.
 std::unique_ptr<Tire> make_tire(const TireOptions& options);

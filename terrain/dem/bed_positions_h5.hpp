@@ -11,8 +11,7 @@ namespace furrow::dem {
 /// Whether the file is HDF5; by its first bytes, whatever its name.
 bool is_hdf5(const std::filesystem::path& file);
 
-/// Whether an HDF5 file is a settled bed of furrow.
-/// @throws Error(io) when it cannot be opened
+/// Whether an HDF5 file is a settled bed of furrow, or too damaged to tell.
 bool is_settled_bed(const std::filesystem::path& file);
 
 /// Reads the dataset `position` (N × 3, m) and, where there is one, `radius` (N, m; w of the result, else 0).

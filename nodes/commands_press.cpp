@@ -1,0 +1,83 @@
+// `furrow press`: a tire of a scenario against a plate or a cleat.
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+
+#include "nodes/commands.hpp"
+#include "nodes/press.hpp"
+#include "nodes/progress.hpp"
+#include "nodes/run_directory.hpp"
+#include "nodes/scenario.hpp"
+#include "nodes/signals.hpp"
+#include "nodes/text_file.hpp"
+
+namespace furrow {
+namespace {
+
+constexpr int kFormatVersion = 1;
+
+PressOptions press_options(const Scenario& scenario, const PressArguments& arguments) {
+  const auto require = [](bool ok, const char* key, const std::string& what) {
+    if (!ok) throw input_error("command line", key, what);
+  };
+  require(arguments.obstacle == "plate" || arguments.obstacle == "cleat", "--on",
+          "is '" + arguments.obstacle + "', expected plate or cleat");
+  require(arguments.deflection > 0.0 && arguments.deflection <= 0.2, "--deflection",
+          "expected above 0 up to 0.2 m");
+  require(arguments.points >= 1 && arguments.points <= 1000, "--points", "expected 1 to 1000");
+  require(arguments.load > 0.0, "--load", "expected above 0 N");
+  require(arguments.cleat_height > 0.0 && arguments.cleat_height <= 0.2, "--cleat-height",
+          "expected above 0 up to 0.2 m");
+  require(arguments.cleat_width > 0.0 && arguments.cleat_width <= 1.0, "--cleat-width",
+          "expected above 0 up to 1 m");
+  PressOptions o;
+  o.tire = scenario.tires.front();
+  if (arguments.obstacle == "cleat")
+    o.obstacle.height = arguments.cleat_height, o.obstacle.width = arguments.cleat_width;
+  o.deflection = arguments.deflection;
+  o.points = arguments.points;
+  o.load = arguments.load;
+  return o;
+}
+
+}  // namespace
+
+ExitCode press_command(const Scenario& scenario, const PressArguments& arguments) {
+  const PressOptions options = press_options(scenario, arguments);
+  RunDirectory directory(scenario.name + "-press", arguments.out, arguments.overwrite);
+  catch_stop_signals();
+  try {
+    ProgressDisplay display;
+    const auto begin = std::chrono::steady_clock::now();
+    const PressResults results = press_tire(options, [&](const std::string& what, double share) {
+      if (stop_signalled()) throw Error(ExitCode::stopped, "stopped by a signal during pressing");
+      display.show({.phase = what, .share = share});
+    });
+    display.clear();
+    nlohmann::ordered_json summary = {{"format_version", kFormatVersion},
+                                      {"version", FURROW_VERSION},
+                                      {"scenario", scenario.name},
+                                      {"tire", options.tire.file.filename().string()}};
+    summary.update(press_json(options, results));
+    summary["wall_s"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    write_whole_file(directory.path() / "scenario.json", scenario.completed + "\n");
+    write_press_tables(directory.path(), results);
+    write_whole_file(directory.path() / "summary.json", summary.dump(2) + "\n");
+    if (!summary["statically_stable"].get<bool>())
+      print_warning(
+          "this tire wrinkles under its pressure: the equilibrium was reached by creep and need not be the "
+          "only one; see summary.json, loading_unloading_difference");
+    std::cout << directory.path().string() << std::endl;
+  } catch (const Error&) {
+    directory.discard();
+    throw;
+  }
+  try {
+    make_report(directory.path(), true);
+  } catch (const Error& error) {
+    print_warning(std::string("no plots: ") + error.what());
+  }
+  return ExitCode::done;
+}
+
+}  // namespace furrow

@@ -1,0 +1,54 @@
+"""A tire pressed on a plate or a cleat: what `furrow press` leaves in its directory."""
+import json
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from .soil import Soil
+from .style import BLUE, GREY, ORANGE
+
+
+class Press(Soil):
+    """summary.json and the tables beside it."""
+
+    def __init__(self, directory):
+        self.directory = directory
+        try:
+            self.values = json.loads((directory / "summary.json").read_text(encoding="utf-8"))
+        except ValueError as error:
+            raise ValueError(f"summary.json is no valid JSON: {error}") from error
+
+    def title(self, figure, what):
+        figure.suptitle(f"{self.values['scenario']} · {self.values['tire']} on a {self.values['obstacle']} · {what}",
+                        fontsize=11, x=0.01, ha="left", fontweight="bold")
+
+
+def load_deflection(run):
+    table = run.table("press.csv")
+    figure, axis = plt.subplots(figsize=(7.2, 4.6))
+    run.title(figure, "static load–deflection curve")
+    back = table["unloading"] > 0
+    axis.plot(1e3 * table["deflection_m"][~back], 1e-3 * table["force_N"][~back], "o-", color=BLUE, label="loading")
+    axis.plot(1e3 * table["deflection_m"][back], 1e-3 * table["force_N"][back], "x--", color=ORANGE, label="unloading")
+    if run.values.get("deflection_m"):
+        axis.axhline(1e-3 * run.values["load_N"], color=GREY, lw=0.8)
+        axis.set_title(f"{1e-3 * run.values['load_N']:.3g} kN at {1e3 * run.values['deflection_m']:.2f} mm: "
+                       f"secant {1e-3 * run.values['secant_stiffness_N_per_m']:.0f} kN/m")
+    axis.set(xlabel="deflection, mm", ylabel="force, kN")
+    axis.legend()
+    return figure
+
+
+def footprint(run):
+    table = run.table("footprint.csv")
+    values = run.values["footprint"]
+    figure, axis = plt.subplots(figsize=(7.2, 4.6))
+    run.title(figure, "contact pressure")
+    points = axis.scatter(1e3 * table["y_m"], 1e3 * table["x_m"], c=1e-3 * table["pressure_Pa"], s=14, marker="s",
+                          cmap="viridis", vmin=0, vmax=1e-3 * np.max(table["pressure_Pa"], initial=1.0))
+    figure.colorbar(points, label="kPa")
+    axis.set_aspect("equal")
+    axis.set(xlabel="across, mm", ylabel="along, mm",
+             title=f"{1e-3 * values['force_N']:.3g} kN: {1e3 * values['length_m']:.0f} × {1e3 * values['width_m']:.0f} mm, "
+                   f"mean {1e-3 * values['mean_pressure_Pa']:.0f} kPa")
+    return figure

@@ -1,0 +1,91 @@
+#!/usr/bin/python3
+"""`furrow bench tire` and `furrow press` on coarse tires: what they print, leave behind, and refuse."""
+import json
+
+from program import SystemTest, furrow, main
+
+SCENARIO = {
+    "format_version": 1,
+    "rig": {"type": "drawbar", "slip": 0.1},
+    "tire": {"file": "hmmwv_lumped.json", "elements_circumference": 36, "elements_width": 8},
+    "terrain": {"engine": "rigid"},
+    "run": {"step": 1e-4, "end": 0.1},
+}
+COARSE = ("--elements-circumference", "24", "--elements-width", "6", "--warm", "0.02", "--steps", "60", "--step", "1e-4")
+
+
+class Bench(SystemTest):
+    def bench(self, *more):
+        done = furrow("bench", "tire", *COARSE, *more, cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads(done.stdout)
+
+    def test_keys_and_same_state_for_any_threads(self):
+        one, two = self.bench(), self.bench("--threads", "2")
+        for key in ("ms_per_step", "median_ms", "p99_ms", "factorizations", "newton_iterations_mean", "max_residual",
+                    "residual_tolerance", "deflection_m", "spindle_load_N", "layers", "revolutions", "coordinates",
+                    "threads", "state_hash"):
+            self.assertIn(key, one)
+        self.assertEqual(sorted(one["parts_ms"]), ["factorize", "force", "jacobian", "other", "solve"])
+        self.assertLessEqual(one["max_residual"], one["residual_tolerance"])
+        self.assertEqual(one["layers"], 4)
+        self.assertEqual(one["steps"], 60)
+        self.assertEqual(one["state_hash"], two["state_hash"])
+        self.assertEqual(two["threads"], 2)
+
+    def test_bad_input(self):
+        done = furrow("bench", "tire", "--threads", "0", cwd=self.folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--threads", done.stderr)
+        done = furrow("bench", "tire", "--tire", "none.json", cwd=self.folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("none.json", done.stderr)
+
+
+class Press(SystemTest):
+    def press(self, *more):
+        path = self.folder / "pressed.json"
+        path.write_text(json.dumps(SCENARIO))
+        return furrow("press", path, "--out", self.folder / "out", "--deflection", "0.012", "--points", "4", *more,
+                      cwd=self.folder)
+
+    def test_plate(self):
+        done = self.press("--load", "2000")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        out = self.folder / "out"
+        self.assertEqual(done.stdout.strip(), str(out))
+        summary = json.loads((out / "summary.json").read_text())
+        self.assertLess(summary["loading_unloading_difference"], 1e-5)
+        self.assertLessEqual(summary["max_residual"], 1e-6)
+        self.assertTrue(summary["statically_stable"])
+        patch = summary["footprint"]
+        self.assertAlmostEqual(patch["force_N"], 2000, delta=2)
+        self.assertAlmostEqual(patch["mean_pressure_Pa"] * patch["area_m2"], 2000, delta=20)
+        self.assertTrue(0.02 < patch["length_m"] < 0.3 and 0.02 < patch["width_m"] < 0.3, patch)
+        lines = (out / "press.csv").read_text().splitlines()
+        self.assertTrue(lines[0].startswith("deflection_m,force_N"))
+        self.assertEqual(len(lines), 1 + 5 + 4)
+        forces = [float(line.split(",")[1]) for line in lines[1:6]]
+        self.assertEqual(forces, sorted(forces))
+
+    def test_cleat_is_softer_than_a_plate(self):
+        done = self.press("--on", "cleat", "--load", "1e5")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        cleat = json.loads((self.folder / "out/summary.json").read_text())
+        self.assertIsNone(cleat["deflection_m"])  # the load is not reached
+        self.assertLess(cleat["loading_unloading_difference"], 1e-4)
+        done = self.press("--overwrite", "--load", "1e5")
+        plate = json.loads((self.folder / "out/summary.json").read_text())
+        self.assertLess(cleat["footprint"]["force_N"], plate["footprint"]["force_N"])
+
+    def test_bad_input(self):
+        for more, word in ((("--on", "sand"), "--on"), (("--deflection", "-1"), "--deflection"),
+                           (("--set", "tire.rigid=true"), "tire.rigid")):
+            done = self.press(*more)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(word, done.stderr)
+            self.assertFalse((self.folder / "out").exists())
+
+
+if __name__ == "__main__":
+    main()

@@ -35,7 +35,7 @@ class Killed(CheckpointTest):
         done = self.run_with_fault(point, RANKS[name], count, "kill")
         node = "tire 0" if name == "tire" else name
         self.assertIn(f"furrow: error: rank {RANKS[name]} ({node}) was lost: killed by signal 9", done.stderr)
-        self.assertIn(f"furrow resume {self.run_folder}", done.stderr)
+        self.assertIn(f"furrow resume '{self.run_folder}'", done.stderr)
         self.assertEqual(steps(self.run_folder)[-1], step)
         if point == "checkpoint.done":  # what there is can be read
             self.assertEqual(furrow("report", self.run_folder, cwd=self.folder).returncode, 0)

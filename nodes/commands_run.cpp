@@ -44,7 +44,8 @@ void tell_how_to_go_on(const std::filesystem::path& directory) {
   if (list_checkpoints(directory).empty())
     std::fprintf(stderr, "furrow: there is no checkpoint yet; start again with furrow run\n");
   else
-    std::fprintf(stderr, "furrow: to go on from the last checkpoint: furrow resume %s\n", directory.c_str());
+    std::fprintf(stderr, "furrow: to go on from the last checkpoint: furrow resume %s\n",
+                 shell_quoted(directory.string()).c_str());
 }
 
 ExitCode have_it_run(const Scenario& scenario, RunDirectory& directory, const RunArguments& arguments) {

@@ -161,7 +161,8 @@ std::vector<std::pair<std::string, std::string>> settings_of(const Json& values)
 
 std::string text_of(const Json& values) {
   std::vector<std::string> parts;
-  for (const auto& [key, value] : settings_of(values)) parts.push_back(key + "=" + value);
+  for (const auto& [key, value] : values.items())
+    parts.push_back(key + "=" + (value.is_number() ? number_text(value.get<double>()) : value.dump()));
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 

@@ -25,7 +25,7 @@ class Signals(CheckpointTest):
                 out, err = process.communicate(timeout=30)
                 self.assertEqual(process.returncode, 75, err)
                 self.assertEqual(out, f"{run}\n")
-                self.assertIn(f"furrow: to go on from the last checkpoint: furrow resume {run}", err)
+                self.assertIn(f"furrow: to go on from the last checkpoint: furrow resume '{run}'", err)
                 self.assertNotIn("error", err)
                 self.assertFalse((run / "summary.json").exists())
                 self.assertTrue((run / "results.h5").exists())
@@ -85,7 +85,7 @@ class Resume(CheckpointTest):
     def test_changed_physics_is_refused_by_its_key(self):
         run = self.copy_of_whole()
         for setting, key, was in (("rig.slip=0.5", "rig.slip", "0.3"), ("terrain.cohesion=1e3", "terrain.cohesion", "80e3"),
-                                  ("run.step=5e-5", "run.step", "1e-04"), ("run.seed=2", "run.seed", "1")):
+                                  ("run.step=5e-5", "run.step", "0.0001"), ("run.seed=2", "run.seed", "1")):
             done = self.resume("--set", setting, code=2)
             self.assertIn(f"key '{key}': is ", done.stderr)
             self.assertIn(f"but the run was computed with {was}", done.stderr)

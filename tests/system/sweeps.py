@@ -6,7 +6,7 @@ import shutil
 import signal
 import unittest
 
-from program import SystemTest, changed, furrow, main, start, survivors, wait_for, write_scenario
+from program import ROOT, SystemTest, changed, furrow, main, start, survivors, wait_for, write_scenario
 
 
 class Sweep(SystemTest):
@@ -82,6 +82,12 @@ class Sweep(SystemTest):
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(words, done.stderr)
             self.assertFalse((self.folder / "results").exists())
+
+    def test_shipped_studies_are_valid(self):
+        for name in ("study_slip.json", "multipass.json"):
+            done = furrow("sweep", ROOT / "rigs" / name, "--out", "/proc/furrow", cwd=self.folder)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn("key '--out': cannot be written", done.stderr)
 
     def test_passes_begin_on_the_bed_that_the_last_one_left(self):
         study = self.study(passes=2, rest=0.01, set={"run.end": 0.15, "run.average_from": 0.1})

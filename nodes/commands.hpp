@@ -37,6 +37,8 @@ void let_first_rank_speak();
 
 /// `furrow report`: makes the plots of a run (commands_report.cpp). @throws Error
 std::vector<std::filesystem::path> make_report(const std::filesystem::path& run, bool quiet);
+/// The same after a command whose results stand without plots: what goes wrong is a warning.
+std::vector<std::filesystem::path> make_report_or_warn(const std::filesystem::path& run);
 
 struct SweepArguments {
   std::filesystem::path study;

@@ -72,11 +72,7 @@ ExitCode press_command(const Scenario& scenario, const PressArguments& arguments
     directory.discard();
     throw;
   }
-  try {
-    make_report(directory.path(), true);
-  } catch (const Error& error) {
-    print_warning(std::string("no plots: ") + error.what());
-  }
+  make_report_or_warn(directory.path());
   return ExitCode::done;
 }
 

@@ -84,4 +84,13 @@ std::vector<std::filesystem::path> make_report(const std::filesystem::path& run,
   return plots;
 }
 
+std::vector<std::filesystem::path> make_report_or_warn(const std::filesystem::path& run) {
+  try {
+    return make_report(run, true);
+  } catch (const Error& error) {
+    print_warning(std::string("no plots: ") + error.what());
+    return {};
+  }
+}
+
 }  // namespace furrow

@@ -30,13 +30,9 @@ std::vector<std::string> rank_arguments(const RunArguments& arguments,
 void tell_result(const Scenario& scenario, const std::filesystem::path& directory, bool plots) {
   std::fputs(result_text(directory, scenario).c_str(), stderr);
   if (!plots) return;
-  try {
-    const auto made = make_report(directory, true);
-    if (!made.empty())
-      std::fprintf(stderr, "furrow: plots: %s and %zu more\n", made.front().c_str(), made.size() - 1);
-  } catch (const Error& error) {
-    print_warning(std::string("no plots: ") + error.what());
-  }
+  const auto made = make_report_or_warn(directory);
+  if (!made.empty())
+    std::fprintf(stderr, "furrow: plots: %s and %zu more\n", made.front().c_str(), made.size() - 1);
 }
 
 /// What can be done with a run that did not come to its end.

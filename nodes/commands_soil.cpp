@@ -83,11 +83,7 @@ ExitCode soil_command(const Scenario& scenario, const SoilArguments& arguments) 
     directory.discard();
     throw;
   }
-  try {
-    make_report(directory.path(), true);
-  } catch (const Error& error) {
-    print_warning(std::string("no plots: ") + error.what());
-  }
+  make_report_or_warn(directory.path());
   return ExitCode::done;
 }
 

@@ -27,11 +27,7 @@ ExitCode sweep_command(const SweepArguments& arguments) {
   catch_stop_signals();
   const ExitCode code = sweep.run();
   if (code != ExitCode::stopped) {
-    try {
-      make_report(folder, true);
-    } catch (const Error& problem) {
-      print_warning(std::string("no plots: ") + problem.what());
-    }
+    make_report_or_warn(folder);
   } else {
     std::fprintf(stderr, "furrow: stopped by a signal; the same command goes on\n");
   }

@@ -23,10 +23,15 @@ struct SwitchedLaw {
     kAll = 31
   };
 
-  template <bool kRolling, class S, class T>
-  static inline ContactForce<T> force(const Coefficients<S>& c, S dt, const ContactMotion<T>& at,
+  template <bool kRolling, class C, class S, class T>
+  static inline ContactForce<T> force(const Coefficients<C>& c, S dt, const ContactMotion<T>& at,
                                       ContactHistory<T>& history) {
-    const int on = static_cast<int>(c.velocity_scale);
+    int on = 0;  // the same in all lanes
+    if constexpr (std::is_arithmetic_v<C>) {
+      on = static_cast<int>(c.velocity_scale);
+    } else {
+      on = static_cast<int>(c.velocity_scale[0]);
+    }
     if (kRolling || on == 0) return OwnLaw::force<kRolling>(c, dt, at, history);
     const T zero = constant<T>(0.0), one = constant<T>(1.0), tiny = constant<T>(kTiny);
     const T s = at.root_overlap, q = root(s);

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <vector>
 
-#include "protocol/hash.hpp"
 #include "terrain/dem/bed_layers.hpp"
 #include "terrain/dem/bed_settling.hpp"
 #include "terrain/dem/solver_setup.hpp"
+#include "tests/terrain/few_grains.hpp"
 
 namespace furrow::dem {
 namespace {
@@ -88,13 +88,6 @@ std::vector<double> press(GrainSolver& solver, const TerrainOptions& options, do
     force.push_back(mean);
   }
   return force;
-}
-
-std::uint64_t hash_of(const GrainSolver& s) {
-  Hash hash;
-  for (const auto* a : {&s.grains().position, &s.grains().velocity, &s.grains().spin})
-    hash.add(std::span(*a).first(s.grains().count));
-  return hash.value();
 }
 
 TEST(Activity, bed_at_rest_falls_asleep_and_stays_where_it_is) {

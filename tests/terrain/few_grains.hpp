@@ -1,8 +1,10 @@
 // A handful of grains in a bin, for tests of laws and solver.
 #pragma once
 
+#include <span>
 #include <vector>
 
+#include "protocol/hash.hpp"
 #include "terrain/dem/grain_solver.hpp"
 
 namespace furrow::dem {
@@ -45,6 +47,13 @@ struct FewGrains {
     return {mix(material, material, Partner::grain, grain, law), wall, wall};
   }
 };
+
+inline std::uint64_t hash_of(const GrainSolver& s) {
+  Hash hash;
+  for (const auto* a : {&s.grains().position, &s.grains().velocity, &s.grains().spin})
+    hash.add(std::span(*a).first(s.grains().count));
+  return hash.value();
+}
 
 inline Vec3 vec(const Quad& q) { return {q.x, q.y, q.z}; }
 inline Quad quad(const Vec3& v) { return {v.x(), v.y(), v.z(), 0.0}; }

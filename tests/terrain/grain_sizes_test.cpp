@@ -8,7 +8,6 @@
 #include <random>
 
 #include "protocol/error.hpp"
-#include "protocol/hash.hpp"
 #include "terrain/dem/bed_preparation.hpp"
 #include "terrain/dem/bed_statistics.hpp"
 #include "terrain/dem/grain_sizes.hpp"
@@ -209,13 +208,6 @@ GrainSolver crowd(const FewGrains& few, int n, double speed) {
   for (int id = 0; id < n; ++id) set_velocity(s, id, speed * Vec3(uniform(), uniform(), uniform()));
   s.reset_accounts();
   return s;
-}
-
-std::uint64_t hash_of(const GrainSolver& s) {
-  Hash hash;
-  for (const auto* a : {&s.grains().position, &s.grains().velocity, &s.grains().spin})
-    hash.add(std::span(*a).first(s.grains().count));
-  return hash.value();
 }
 
 TEST(GrainSizes, crowd_keeps_momentum_and_books_its_energy) {

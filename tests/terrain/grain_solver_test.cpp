@@ -5,7 +5,6 @@
 #include <numbers>
 #include <random>
 
-#include "protocol/hash.hpp"
 #include "tests/terrain/few_grains.hpp"
 
 namespace furrow::dem {
@@ -172,13 +171,6 @@ GrainSolver random_bed(FewGrains& few, int n, double speed) {
         s, id, speed * Vec3::NullaryExpr([&] { return static_cast<double>(bits() >> 11) * 0x1p-52 - 1.0; }));
   s.reset_accounts();
   return s;
-}
-
-std::uint64_t hash_of(const GrainSolver& s) {
-  Hash hash;
-  for (const auto* a : {&s.grains().position, &s.grains().velocity, &s.grains().spin})
-    hash.add(std::span(*a).first(s.grains().count));
-  return hash.value();
 }
 
 TEST(GrainSolver, crowd_keeps_momentum_and_books_its_energy) {

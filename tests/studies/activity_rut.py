@@ -4,10 +4,12 @@
 usage: activity_rut.py [--radius 0.01] OUT.csv      after run_study.py activity.json
 
 One row per seed and strip of the bin along y: mean depth of the rut from 0.3 to 0.55 m behind the axle, both runs, m.
-The last line of each seed on the screen is the largest difference in grain radii.
+On the screen, in grain radii: root mean square of the difference with and without sleep for each seed, of the difference
+between seeds without sleep as the yardstick, and of the difference of the profiles' means over the seeds.
 """
 import argparse
 import csv
+import itertools
 import pathlib
 
 import h5py
@@ -28,12 +30,16 @@ def profile(folder):
     return y0 + cell * np.arange(before.shape[1]), np.nanmean((before - after)[behind], axis=0)
 
 
+def rms(difference):
+    return np.sqrt((difference**2).mean())
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("out", type=pathlib.Path)
     parser.add_argument("--radius", type=float, default=0.01, help="of the grains, m")
     arguments = parser.parse_args()
-    rows = []
+    rows, asleep_all, awake_all = [], [], []
     for on in sorted(RUNS.glob("seed_*_on")):
         off = on.with_name(on.name.replace("_on", "_off"))
         seed = on.name.split("_")[1]
@@ -41,9 +47,11 @@ def main():
         _, awake = profile(off)
         rows += [{"seed": seed, "y_m": f"{at:.4g}", "depth_activity_on_m": f"{a:.5g}", "depth_activity_off_m": f"{b:.5g}"}
                  for at, a, b in zip(y, asleep, awake)]
-        difference = asleep - awake
-        print(f"seed {seed}: largest difference {np.abs(difference).max() / arguments.radius:.3f} r, "
-              f"root mean square {np.sqrt((difference**2).mean()) / arguments.radius:.3f} r")
+        asleep_all.append(asleep / arguments.radius)
+        awake_all.append(awake / arguments.radius)
+        print(f"seed {seed}, on against off: {rms(asleep_all[-1] - awake_all[-1]):.2f}")
+    print("between seeds, off:", *(f"{rms(a - b):.2f}" for a, b in itertools.combinations(awake_all, 2)))
+    print(f"means over seeds, on against off: {rms(np.mean(asleep_all, axis=0) - np.mean(awake_all, axis=0)):.2f}")
     with open(arguments.out, "w", newline="") as file:
         writer = csv.DictWriter(file, rows[0])
         writer.writeheader()

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "protocol/error.hpp"
-#include "terrain/dem/grain_sizes.hpp"
+#include "terrain/dem/solver_setup.hpp"
 
 namespace furrow::dem {
 namespace {
@@ -18,29 +18,21 @@ constexpr double kRestDrag = 20.0;    // 1/s, once they lie; grains on top must 
 constexpr double kLyingSpeed = 0.03;  // rms, m/s: slower counts as lying
 constexpr double kRestSpeed = 0.002;  // rms, m/s: slower counts as at rest
 
+TerrainOptions with_impulse_limit(TerrainOptions options) {
+  options.friction_impulse_limit = true;
+  return options;
+}
+
 }  // namespace
 
 double settle_step(const TerrainOptions& options) {
-  LawSettings law = law_settings(options);
-  law.friction_impulse_limit = true;
-  law.step = options.step;
-  const double radius = smallest_radius(options);
-  const GrainProperties grain = grain_properties(radius, options.density);
-  const ContactMaterial material = grain_material(options);
-  const ContactCoefficients pair = mix(material, material, Partner::grain, grain, law);
-  const double share = law.kind == LawKind::mindlin ? kStepShareMindlin : kStepShareCoulomb;
-  return share * stable_step(pair, grain, law, kStatedOverlap * radius).step;
+  const TerrainOptions limited = with_impulse_limit(options);
+  const double share = law_from(options.law) == LawKind::mindlin ? kStepShareMindlin : kStepShareCoulomb;
+  return share * stable_at(limited, stated_overlap(limited)).step;
 }
 
 SolverCoefficients settle_coefficients(const TerrainOptions& options) {
-  LawSettings law = law_settings(options);
-  law.friction_impulse_limit = true;
-  law.step = settle_step(options);
-  const GrainProperties grain = grain_properties(options.radius, options.density);
-  const ContactMaterial material = grain_material(options);
-  SolverCoefficients c;
-  c.pair = mix(material, material, Partner::grain, grain, law);
-  c.floor = c.side = mix(material, material, Partner::surface, grain, law);
+  SolverCoefficients c = run_coefficients(with_impulse_limit(options), settle_step(options));
   c.side.friction = c.side.rolling_arm = 0.0;
   return c;
 }

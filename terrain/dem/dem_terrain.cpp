@@ -55,15 +55,6 @@ void check(const TerrainOptions& o) {
                       fmt::format("{} is out of range, expected a positive number, s", o.step));
 }
 
-/// The smallest grains are the least stable: K ∝ r^½ against m ∝ r³, and their neighbours are no stiffer than theirs.
-StableStep stable_at(const TerrainOptions& options, double overlap) {
-  const double radius = smallest_radius(options);
-  return stable_step(run_coefficients(of_one_size(options, radius), options.step).pair,
-                     grain_properties(radius, options.density), law_settings(options), overlap);
-}
-
-double stated_overlap(const TerrainOptions& options) { return kStatedOverlap * smallest_radius(options); }
-
 class DemTerrain : public Terrain {
  public:
   explicit DemTerrain(const TerrainOptions& options)

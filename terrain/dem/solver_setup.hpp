@@ -16,5 +16,9 @@ SolverParams solver_params(const TerrainOptions& options);
 SolverParams settling_params(const TerrainOptions& options);
 /// Coefficients of a run with this step, s: walls are of the grains' material.
 SolverCoefficients run_coefficients(const TerrainOptions& options, double step);
+/// Of a bed of these grains whose contacts have overlap `overlap`, m.
+StableStep stable_at(const TerrainOptions& options, double overlap);
+/// The overlap at which scenarios are checked, m.
+double stated_overlap(const TerrainOptions& options);
 
 }  // namespace furrow::dem

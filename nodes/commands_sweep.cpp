@@ -17,8 +17,7 @@ ExitCode sweep_command(const SweepArguments& arguments) {
                       "is " + std::to_string(arguments.jobs) + ", expected 1 to 1024");
   const std::filesystem::path folder =
       arguments.out.empty() ? std::filesystem::path("results") / study.name : arguments.out;
-  const int jobs = study.passes ? 1 : arguments.jobs;
-  Sweep sweep(std::move(study), {folder, jobs});
+  Sweep sweep(std::move(study), {folder, arguments.jobs});
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error || access(folder.c_str(), W_OK | X_OK) != 0)

@@ -9,7 +9,7 @@
 
 namespace furrow {
 
-dem::RestResult make_pass_bed(const std::filesystem::path& run, double rest,
+dem::RestResult make_pass_bed(const std::filesystem::path& run, double rest, const ProgressCall& progress,
                               const std::filesystem::path& file) {
   const ResumePoint point = last_checkpoint(run);
   Scenario scenario = load_scenario(run / "scenario.json", {});
@@ -21,7 +21,7 @@ dem::RestResult make_pass_bed(const std::filesystem::path& run, double rest,
   scenario.terrain.threads = scenario.terrain.settle_threads;
   dem::RestResult result;
   const Archive state = read_archive(point.folder / part_name({Role::terrain, 0}));
-  dem::write_bed(file, dem::bed_after_run(state, scenario.terrain, rest, result));
+  dem::write_bed(file, dem::bed_after_run(state, scenario.terrain, rest, progress, result));
   return result;
 }
 

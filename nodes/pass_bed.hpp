@@ -11,7 +11,7 @@ namespace furrow {
 /// @param rest  simulated time that the bed lies before the next pass, s
 /// @param file  receives the bed, for `terrain.bed`
 /// @throws Error
-dem::RestResult make_pass_bed(const std::filesystem::path& run, double rest,
+dem::RestResult make_pass_bed(const std::filesystem::path& run, double rest, const ProgressCall& progress,
                               const std::filesystem::path& file);
 
 }  // namespace furrow

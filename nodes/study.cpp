@@ -131,15 +131,16 @@ Study load_study(const std::filesystem::path& file) {
   study.name = file.stem().string();
   study.scenario = find_file(reader.text("scenario"), "scenario", file);
   study.common = reader.object("set");
-  int forms = 0;
-  for (const char* form : {"grid", "list", "passes"}) forms += reader.value(form).is_null() ? 0 : 1;
-  if (forms != 1) throw reader.wrong("", "expected one of 'grid', 'list' and 'passes'");
-  if (!reader.value("grid").is_null()) study.runs = reader.grid();
-  if (!reader.value("list").is_null()) study.runs = reader.list();
-  if (!reader.value("passes").is_null()) {
-    study.passes = true;
-    for (int pass = 1; pass <= reader.passes(); ++pass) study.runs.emplace_back(Json::object());
+  const auto given = [&](const char* key) { return !reader.value(key).is_null(); };
+  if (given("grid") && given("list")) throw reader.wrong("", "has 'grid' and 'list', expected one of them");
+  if (!given("grid") && !given("list") && !given("passes"))
+    throw reader.wrong("", "expected one of 'grid', 'list' and 'passes'");
+  study.runs = given("list") ? reader.list() : reader.grid();
+  if (given("passes")) {
+    study.passes = reader.passes();
     study.rest = reader.rest();
+    if (study.runs.size() * static_cast<std::size_t>(study.passes) > kMostRuns)
+      throw reader.wrong("passes", fmt::format("makes more than {} runs, expected fewer", kMostRuns));
   }
   study.results = kUsualResults;
   if (const Json results = reader.value("results"); !results.is_null()) {

@@ -4,9 +4,10 @@
 //    "set": {"run.end": 1.2},                        for all runs
 //    "grid": {"rig.slip": [0, 0.3], "terrain.cohesion": [40e3, 80e3]},   every combination, the last key fastest
 //    "list": [{"rig.slip": 0.1}, …],                 or these
-//    "passes": 3, "rest": 0.2,                       or one after another over the same bed
+//    "passes": 3, "rest": 0.2,                       each of these, or the scenario alone, so many times over the same bed
 //    "results": ["drawbar_pull_N.mean", …],          of summary.json; columns of the collected table
-//    "plot": {"x": "rig.slip", "y": "drawbar_pull_N.mean", "error": "drawbar_pull_N.sem", "lines": "terrain.cohesion"}}
+//    "plot": {"x": "rig.slip", "y": "drawbar_pull_N.mean", "error": "drawbar_pull_N.sem", "lines": "terrain.cohesion",
+//             "mean_over": "run.seed"}}                  points are means over these runs, bars their 95 % intervals
 #pragma once
 
 #include <filesystem>
@@ -26,8 +27,8 @@ struct Study {
   std::vector<nlohmann::ordered_json> runs;  // keys and values of each
   std::vector<std::string> results;
   nlohmann::ordered_json plot;  // null: none
-  bool passes = false;          // every run begins on the bed that the one before it left
-  double rest = 0.2;            // s, simulated, that the bed lies between passes
+  int passes = 0;     // of each run, every one on the bed that the one before it left; 0: beds of their own
+  double rest = 0.2;  // s, simulated, that the bed lies between passes
 };
 
 /// @throws Error(bad_input) naming file and key

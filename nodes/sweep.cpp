@@ -16,6 +16,7 @@
 
 #include "nodes/checkpoint.hpp"
 #include "nodes/pass_bed.hpp"
+#include "nodes/progress.hpp"
 #include "nodes/scenario.hpp"
 #include "nodes/signals.hpp"
 #include "nodes/text_file.hpp"
@@ -94,12 +95,13 @@ std::string state_name(int state) {
 
 Sweep::Sweep(Study study, const SweepOptions& options)
     : study_(std::move(study)), options_(options), shares_(core_shares(options.jobs)) {
-  for (const Json& keys : study_.runs) {
-    runs_.emplace_back();
-    runs_.back().keys = keys;
-  }
-  const std::size_t known = study_.passes ? 1 : runs_.size();
-  for (std::size_t i = 0; i < known; ++i) load(runs_[i]);
+  for (const Json& keys : study_.runs)
+    for (int pass = study_.passes > 0 ? 1 : 0; pass <= study_.passes; ++pass) {
+      runs_.emplace_back();
+      runs_.back().keys = keys;
+      runs_.back().pass = pass;
+      if (pass <= 1) load(runs_.back());
+    }
 }
 
 void Sweep::load(Run& run) {
@@ -143,7 +145,8 @@ std::vector<std::string> Sweep::command(const Run& run) const {
 
 void Sweep::tell(const Run& run, const std::string& what) const {
   const auto number = static_cast<std::size_t>(&run - runs_.data()) + 1;
-  const std::string keys = study_.passes ? fmt::format("pass {}", number) : text_of(run.keys);
+  std::string keys = text_of(run.keys);
+  if (run.pass > 0) keys += fmt::format("{}pass {}", keys.empty() ? "" : ", ", run.pass);
   std::fprintf(stderr, "furrow: run %zu of %zu (%s) %s\n", number, runs_.size(), keys.c_str(), what.c_str());
 }
 
@@ -152,9 +155,12 @@ Sweep::Run* Sweep::next() {
   for (std::size_t i = 0; i < runs_.size(); ++i) {
     Run& run = runs_[i];
     if (run.state == State::done) continue;
-    if (study_.passes && i > 0 && runs_[i - 1].state != State::done) return nullptr;
     if (run.state != State::waiting) continue;
-    if (!run.loaded) take_over_bed(i);
+    if (run.pass > 1 && runs_[i - 1].state != State::done) continue;
+    if (!run.loaded && !take_over_bed(run)) {
+      if (stop_signalled()) return nullptr;
+      continue;
+    }
     if (!finished(run)) return &run;
     run.state = State::done;
     tell(run, "is done already");
@@ -163,22 +169,37 @@ Sweep::Run* Sweep::next() {
 }
 
 /// The bed of a pass is what the pass before it left, after a rest; sinkage counts from the surface before the first.
-void Sweep::take_over_bed(std::size_t pass) {
-  Run& run = runs_[pass];
-  const fs::path before = folder_of(runs_[pass - 1]);
-  const fs::path bed = options_.folder / "beds" / (runs_[pass - 1].digest + ".h5");
+/// @returns false when there is none: stopped by a signal, or the run has failed
+bool Sweep::take_over_bed(Run& run) try {
+  const Run& before = *(&run - 1);
+  const Run& first = *(&run - (run.pass - 1));
+  const fs::path bed = options_.folder / "beds" / fmt::format("{}_rest_{}.h5", before.digest, study_.rest);
   std::error_code error;
   if (!fs::exists(bed, error)) {
     fs::create_directories(bed.parent_path(), error);
-    const dem::RestResult rest = make_pass_bed(before, study_.rest, bed);
+    ProgressDisplay display;
+    const auto progress = [&](const std::string& what, double share) {
+      if (stop_signalled()) throw Error(ExitCode::stopped, "stopped by a signal while the bed lay");
+      display.show({.phase = what, .share = share});
+    };
+    const dem::RestResult rest = make_pass_bed(folder_of(before), study_.rest, progress, bed);
+    display.clear();
     tell(run, fmt::format(
-                  "begins on the bed after {} s of rest: net force {:.1e} of the contact forces, {:.2g} mm/s",
-                  study_.rest, rest.force_ratio, 1e3 * rest.speed));
+                  "begins on the bed after {:.2g} s: {}, net force {:.1e} of the contact forces, {:.2g} mm/s",
+                  rest.time, rest.settled ? "settled" : "NOT settled", rest.force_ratio, 1e3 * rest.speed));
   }
   run.passes_on["terrain.bed"] = fs::absolute(bed, error).string();
-  run.passes_on["terrain.undisturbed_height"] =
-      value_at(read_summary(folder_of(runs_.front())), "surface_height_m");
+  run.passes_on["terrain.undisturbed_height"] = value_at(read_summary(folder_of(first)), "surface_height_m");
   load(run);
+  return true;
+} catch (const Error& error) {
+  if (error.code() == ExitCode::stopped) return false;
+  run.state = State::failed;
+  run.exit_code = static_cast<int>(error.code());
+  run.problem = error.what();
+  tell(run, fmt::format("FAILED with exit code {}: {}", run.exit_code, run.problem));
+  write_table();
+  return false;
 }
 
 void Sweep::start(Run& run, std::size_t share) {
@@ -225,8 +246,7 @@ void Sweep::look_at(Run& run) {
     };
     tell(run, fmt::format("is done: pull {:.0f} ± {:.0f} N", number("drawbar_pull_N.mean"),
                           number("drawbar_pull_N.sem")));
-    if (const double deep = number("sinkage_m") / number("surface_height_m");
-        study_.passes && deep > kDeepRut)
+    if (const double deep = number("sinkage_m") / number("surface_height_m"); run.pass > 0 && deep > kDeepRut)
       tell(run,
            fmt::format(
                "stands {:.0f} % of the bed's depth in it: the floor carries it too; a deeper bed is needed "
@@ -253,6 +273,7 @@ ExitCode Sweep::run() {
                                                         {"study", study_.name},
                                                         {"passes", study_.passes},
                                                         {"rest_s", study_.rest},
+                                                        {"results", study_.results},
                                                         {"plot", study_.plot}}
                                                            .dump(2) +
                                                        "\n");
@@ -285,7 +306,7 @@ void Sweep::write_table() const {
   for (const Run& run : runs_)
     for (const auto& [key, unused] : run.keys.items())
       if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
-  std::string text = "run,folder,state,exit_code";
+  std::string text = study_.passes > 0 ? "run,folder,state,exit_code,pass" : "run,folder,state,exit_code";
   for (const std::vector<std::string>* names : {&std::as_const(keys), &study_.results})
     for (const std::string& name : *names) text += "," + cell(name);
   text += ",problem\n";
@@ -294,6 +315,7 @@ void Sweep::write_table() const {
     text += fmt::format(
         "{},{},{},{}", i + 1, run.loaded ? "runs/" + run.digest : "", state_name(static_cast<int>(run.state)),
         run.state == State::done || run.state == State::failed ? std::to_string(run.exit_code) : "");
+    if (run.pass > 0) text += fmt::format(",{}", run.pass);
     for (const std::string& key : keys) text += "," + (run.keys.contains(key) ? cell(run.keys[key]) : "");
     const Json summary = run.state == State::done ? read_summary(folder_of(run)) : Json();
     for (const std::string& name : study_.results) text += "," + cell(value_at(summary, name));

@@ -38,6 +38,7 @@ class Sweep {
     nlohmann::ordered_json keys = nlohmann::ordered_json::object();  // what the user varies
     nlohmann::ordered_json passes_on =
         nlohmann::ordered_json::object();  // what a pass takes from those before
+    int pass = 0;                          // 1, 2, …; 0: on a bed of its own
     State state = State::waiting;
     bool loaded = false;
     std::string digest, problem;
@@ -52,7 +53,7 @@ class Sweep {
   bool finished(const Run& run) const;
   std::vector<std::string> command(const Run& run) const;
   Run* next();
-  void take_over_bed(std::size_t pass);
+  bool take_over_bed(Run& run);
   void start(Run& run, std::size_t share);
   void look_at(Run& run);
   void ended(Run& run, int status);

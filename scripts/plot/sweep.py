@@ -37,10 +37,54 @@ def number(text):
         return math.nan
 
 
+# two-sided 95 % points of Student's t for 1, 2, … degrees of freedom
+STUDENT = [12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228]
+
+
+def mean_and_interval(values):
+    """(mean, half the 95 % interval of the mean); NaN for the interval of one value."""
+    values = np.asarray(values, dtype=float)
+    if len(values) < 2:
+        return float(values.mean()), math.nan
+    factor = STUDENT[len(values) - 2] if len(values) - 2 < len(STUDENT) else 1.96 + 2.4 / (len(values) - 1)
+    return float(values.mean()), factor * float(values.std(ddof=1)) / math.sqrt(len(values))
+
+
+def varied(sweep):
+    """The keys that the runs differ in, without those that points are means over."""
+    if not sweep.rows:
+        raise Missing("no run is done")
+    names = list(sweep.rows[0])
+    first = names.index("pass") if "pass" in names else names.index("exit_code")
+    over = sweep.plot.get("mean_over")
+    results = set(sweep.values.get("results", []))
+    return [name for name in names[first + 1:] if name not in results and name not in ("problem", over)]
+
+
+def points(rows, x, y, error, over):
+    """Rows x, y, half bar, sorted by x: each run, or the mean over the runs with the same x with its 95 % interval."""
+    if not over:
+        return np.array(sorted((number(row.get(x)), number(row.get(y)), number(row.get(error))) for row in rows)).T
+    same = {}
+    for row in rows:
+        same.setdefault(number(row.get(x)), []).append(number(row.get(y)))
+    return np.array([(at, *mean_and_interval(values)) for at, values in sorted(same.items())]).T
+
+
+def bars(error):
+    return None if np.isnan(error).all() else np.nan_to_num(error)
+
+
+def bar_meaning(plot):
+    if plot.get("mean_over"):
+        return f" (mean over {plot['mean_over']}, bars: 95 %)"
+    return " (bars: standard error)" if plot.get("error") else ""
+
+
 def curve(sweep):
     """y over x with error bars, one line per value of a third key, as the study's plot says."""
     plot = sweep.plot
-    if sweep.values.get("passes") or not plot.get("x") or not plot.get("y"):
+    if not plot.get("x") or not plot.get("y"):
         raise Missing("the study asks for no such plot")
     if not sweep.rows:
         raise Missing("no run is done")
@@ -49,40 +93,51 @@ def curve(sweep):
         groups.setdefault(row.get(plot.get("lines", ""), ""), []).append(row)
     figure, axis = plt.subplots(figsize=(8.4, 5.0))
     for i, (label, rows) in enumerate(groups.items()):
-        points = sorted((number(row.get(plot["x"])), number(row.get(plot["y"])), number(row.get(plot.get("error", "")))) for row in rows)
-        x, y, error = np.array(points).T
-        axis.errorbar(x, y, yerr=None if np.isnan(error).all() else np.nan_to_num(error), marker="o", capsize=3,
+        x, y, error = points(rows, plot["x"], plot["y"], plot.get("error", ""), plot.get("mean_over"))
+        axis.errorbar(x, y, yerr=bars(error), marker="o", capsize=3,
                       color=COLOURS[i % len(COLOURS)], label=f"{plot['lines']} = {label}" if label else None)
     axis.axhline(0.0, color=GREY, lw=0.8)
     axis.set_xlabel(plot["x"])
-    axis.set_ylabel(plot["y"] + (" (bars: standard error)" if plot.get("error") else ""))
+    axis.set_ylabel(plot["y"] + bar_meaning(plot))
     axis.set_title(sweep.title(), loc="left", fontweight="bold")
     if any(groups):
         axis.legend()
     return figure
 
 
-def passes(sweep):
-    """Pull, sinkage and rut against the number of the pass."""
+def chains(sweep):
+    """{text of the keys that differ: rows} of the studies with passes, and of each pass its rows."""
     if not sweep.values.get("passes"):
         raise Missing("the study has no passes")
-    summaries = [sweep.summary(row) for row in sweep.rows]
-    if not summaries:
-        raise Missing("no pass is done")
-    pass_number = np.arange(1, len(summaries) + 1)
-    pull = [s["drawbar_pull_N"] for s in summaries]
+    keys = varied(sweep)
+    groups = {}
+    for row in sweep.rows:
+        groups.setdefault(", ".join(f"{key} = {row[key]}" for key in keys), []).append(row)
+    return groups
+
+
+def passes(sweep):
+    """Pull, sinkage and rut against the number of the pass; means over `mean_over` with their 95 % intervals."""
+    groups = chains(sweep)
+    over = sweep.plot.get("mean_over")
     figure, (left, middle, right) = plt.subplots(1, 3, figsize=(14.0, 4.6))
-    left.errorbar(pass_number, [number(p["mean"]) for p in pull], yerr=[number(p["sem"]) for p in pull], marker="o", capsize=4, color=BLUE)
-    left.set_ylabel("drawbar pull, N (bars: standard error)")
-    sinkage = 1e3 * np.array([number(s["sinkage_m"]) for s in summaries])
-    middle.plot(pass_number, sinkage, "o-", color=ORANGE, label="sinkage below the undisturbed surface")
-    middle.bar(pass_number, np.diff(sinkage, prepend=0.0), width=0.3, color=ORANGE, alpha=0.35, label="increment of the pass")
-    middle.plot(pass_number, [1e3 * number(s["bed_clearance_m"]) for s in summaries], "s--", color=GREY, label="tire to floor")
+    for i, (label, rows) in enumerate(groups.items()):
+        colour = COLOURS[i % len(COLOURS)]
+        of_pass, pull, error = points(rows, "pass", "drawbar_pull_N.mean", "drawbar_pull_N.sem", over)
+        left.errorbar(of_pass, pull, yerr=bars(error), marker="o", capsize=4, color=colour, label=label)
+        by_pass = [[sweep.summary(row) for row in rows if number(row["pass"]) == n] for n in of_pass]
+        sinkage, bar = np.array([mean_and_interval([1e3 * number(s["sinkage_m"]) for s in run]) for run in by_pass]).T
+        clearance = [np.mean([1e3 * number(s["bed_clearance_m"]) for s in run]) for run in by_pass]
+        middle.errorbar(of_pass, sinkage, yerr=bars(bar), marker="o", capsize=4, color=colour, label="sinkage" if i == 0 else None)
+        middle.plot(of_pass, clearance, "s--", color=colour, alpha=0.5, label="tire to floor" if i == 0 else None)
+    left.set_ylabel("drawbar pull, N" + (bar_meaning(sweep.plot) if over else " (bars: standard error)"))
     middle.set_ylabel("mm")
     middle.legend(fontsize=8)
+    if any(groups):
+        left.legend(fontsize=8)
     for axis in (left, middle):
         axis.set_xlabel("pass")
-        axis.set_xticks(pass_number)
+        axis.set_xticks(range(1, int(sweep.values["passes"]) + 1))
     profiles(sweep, right)
     figure.suptitle(f"{sweep.title()} · {sweep.values.get('rest_s', 0):g} s of rest between passes", x=0.01, ha="left", fontweight="bold")
     figure.tight_layout()
@@ -100,15 +155,29 @@ def heights(sweep, row):
     return x, y, before, after
 
 
+def rut_lines(sweep, axis, where, profile):
+    """A line per pass of each group, mean over its runs, of the surface against that before the first pass of the run;
+    `profile(x, y, summary, change)` makes it and `where(x, y)` its abscissa."""
+    groups = chains(sweep)
+    for g, (label, rows) in enumerate(groups.items()):
+        undisturbed, lines = None, {}
+        for row in rows:
+            x, y, before, after = heights(sweep, row)
+            if number(row["pass"]) == 1:
+                undisturbed = before
+            lines.setdefault(int(row["pass"]), []).append(profile(x, y, sweep.summary(row), after - undisturbed))
+        for n, of_runs in sorted(lines.items()):
+            axis.plot(where(x, y), 1e3 * np.nanmean(of_runs, axis=0), color=COLOURS[g % len(COLOURS)], alpha=0.35 + 0.65 * n / len(lines),
+                      lw=0.6 + 0.6 * n, label=f"after pass {n}" + (f", {label}" if label else ""))
+    axis.axhline(0.0, color=GREY, lw=0.8)
+
+
 def profiles(sweep, axis):
     """The rut across, mean over the middle of the path, against the surface before the first pass."""
-    undisturbed = None
-    for i, row in enumerate(sweep.rows):
-        x, y, before, after = heights(sweep, row)
-        undisturbed = before if undisturbed is None else undisturbed
+    def across(x, y, _, change):
         middle = (x > x[0] + 0.35 * (x[-1] - x[0])) & (x < x[0] + 0.65 * (x[-1] - x[0]))
-        axis.plot(1e3 * y, 1e3 * np.nanmean((after - undisturbed)[middle], axis=0), color=COLOURS[i], label=f"after pass {i + 1}")
-    axis.axhline(0.0, color=GREY, lw=0.8)
+        return np.nanmean(change[middle], axis=0)
+    rut_lines(sweep, axis, lambda x, y: 1e3 * y, across)
     axis.set_xlabel("across, mm (mean over the middle 30 % of the bed)")
     axis.set_ylabel("surface against undisturbed, mm")
     axis.legend(fontsize=8)
@@ -116,19 +185,14 @@ def profiles(sweep, axis):
 
 def rut_along(sweep):
     """The rut along the path, mean over the middle of the tread."""
-    if not sweep.values.get("passes") or not sweep.rows:
-        raise Missing("the study has no passes that are done")
     figure, axis = plt.subplots(figsize=(9.0, 4.4))
-    undisturbed = None
-    for i, row in enumerate(sweep.rows):
-        x, y, before, after = heights(sweep, row)
-        undisturbed = before if undisturbed is None else undisturbed
-        summary = sweep.summary(row)
+
+    def along(_, y, summary, change):
         tread = np.abs(y - summary["lateral_m"]) < 0.25 * summary["tread_width_m"]
-        axis.plot(x, 1e3 * np.nanmean((after - undisturbed)[:, tread], axis=1), color=COLOURS[i], label=f"after pass {i + 1}")
-    axis.axhline(0.0, color=GREY, lw=0.8)
+        return np.nanmean(change[:, tread], axis=1)
+    rut_lines(sweep, axis, lambda x, y: x, along)
     axis.set_xlabel("along, m")
     axis.set_ylabel("surface against undisturbed, mm")
     axis.set_title(f"{sweep.title()} · middle half of the tread", loc="left", fontweight="bold")
-    axis.legend()
+    axis.legend(fontsize=8)
     return figure

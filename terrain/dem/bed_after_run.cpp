@@ -1,6 +1,8 @@
 #include "terrain/dem/bed_after_run.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
 
 #include "protocol/error.hpp"
@@ -29,28 +31,39 @@ Archive grains_of(const Archive& state) {
 
 }  // namespace
 
-Archive bed_after_run(const Archive& state, const TerrainOptions& options, double rest, RestResult& result) {
+Archive bed_after_run(const Archive& state, const TerrainOptions& options, double rest,
+                      const ProgressCall& progress, RestResult& result) {
   SolverParams params = solver_params(options);
   params.threads = std::max(1, options.threads);
   GrainSolver solver(params);
   solver.restore(grains_of(state));
+  result = {};
   const double dt = options.step;
   solver.set_coefficients(run_coefficients(options, dt));
-  const auto steps = static_cast<std::int64_t>(std::ceil(rest / dt));
-  for (std::int64_t n = 1; n <= steps; ++n)
-    if (const int lost = solver.step(dt, n == steps); lost >= 0)
+  const double mass = params.grain.mass * solver.relative_mass(), weight = mass * params.gravity;
+  const auto resting = static_cast<std::int64_t>(std::ceil(rest / dt));
+  const auto most = resting + static_cast<std::int64_t>(kMaxSettleTime / dt);
+  for (std::int64_t n = 0; n < most && !result.settled; ++n) {
+    if (n == resting) solver.set_drag(kRestDrag);
+    const bool check = (n + 1) % kSettleCheckEvery == 0;
+    if (const int lost = solver.step(dt, check); lost >= 0)
       throw physics_error("grain " + std::to_string(solver.grains().id[lost]) +
                           " was lost while the bed lay");
-  const Accounts& a = solver.accounts();
-  const double mass = params.grain.mass * solver.relative_mass(), weight = mass * params.gravity;
-  result.force_ratio = a.contact_force > 0.0 ? a.net_force / a.contact_force : 1.0;
-  result.floor_error = std::abs(a.floor_force - weight) / weight;
-  result.speed = std::sqrt(2.0 * a.kinetic / mass);
+    if (!check) continue;
+    const Accounts& a = solver.accounts();
+    result.time = dt * static_cast<double>(n + 1);
+    result.force_ratio = a.contact_force > 0.0 ? a.net_force / a.contact_force : 1.0;
+    result.floor_error = std::abs(a.floor_force - weight) / weight;
+    result.speed = std::sqrt(2.0 * a.kinetic / mass);
+    result.settled = n >= resting && result.speed < kRestSpeed && result.force_ratio < kSettledForceRatio;
+    if (progress) progress("letting the bed lie", static_cast<double>(n + 1) / static_cast<double>(most));
+  }
+  solver.set_drag(0.0);
   SettleResult settled;
-  settled.settled = result.force_ratio < kSettledForceRatio;
+  settled.settled = result.settled;
   settled.force_ratio = result.force_ratio;
   settled.floor_error = result.floor_error;
-  settled.time = rest;
+  settled.time = result.time;
   return bed_archive(solver, options, settled);
 }
 

@@ -175,6 +175,10 @@ Archive read_bed(const std::filesystem::path& file) {
   if (all.get_int("format_version") > kBedFormat)
     throw io_error(file.string(), "format_version " + std::to_string(all.get_int("format_version")) +
                                       " is newer than this program's " + std::to_string(kBedFormat));
+  if (all.get_int("format_version") < kBedFormat)
+    throw io_error(file.string(), "format_version " + std::to_string(all.get_int("format_version")) +
+                                      " is older than this program's " + std::to_string(kBedFormat) +
+                                      ", expected a bed made by this version: make it anew");
   Archive archive;
   for (const auto& [name, array] : all.arrays())
     if (name != "format_version" && name != "checksum") archive.put_array(name, array);

@@ -14,7 +14,7 @@ namespace {
 constexpr double kPressSpeed =
     1.0;  // m/s: the load grows over the time that this speed takes for the bed's depth
 constexpr double kLongestHold = 8.0;    // of that time
-constexpr double kRestSpeed = 1e-3;     // m/s: a slower lid counts as at rest
+constexpr double kLidAtRest = 1e-3;     // m/s: a slower lid counts as at rest
 constexpr double kSolidFraction = 0.5;  // of a loose bed, for the lid's mass
 
 struct Lid {
@@ -87,7 +87,7 @@ std::vector<Quad> compacted_positions(GrainSolver& solver, const TerrainOptions&
       step(share(done));
       if (progress && k % 50 == 0) progress("compacting the bed", from + 0.3 * done);
       const bool bears = std::abs(force - load) < 0.01 * load;
-      if (until_rest && bears && std::abs(body.velocity()) < kRestSpeed) return;
+      if (until_rest && bears && std::abs(body.velocity()) < kLidAtRest) return;
     }
   };
   phase(

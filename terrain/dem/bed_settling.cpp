@@ -12,11 +12,8 @@ namespace {
 
 constexpr double kStepShareMindlin = 0.8;  // of the stable step
 constexpr double kStepShareCoulomb = 0.7;  // grains that fall on each other overlap more without history
-constexpr int kCheckEvery = 40;            // steps
 constexpr double kFallDrag = 4.0;          // 1/s, while the layers fall
-constexpr double kRestDrag = 20.0;    // 1/s, once they lie; grains on top must still roll to their places
-constexpr double kLyingSpeed = 0.03;  // rms, m/s: slower counts as lying
-constexpr double kRestSpeed = 0.002;  // rms, m/s: slower counts as at rest
+constexpr double kLyingSpeed = 0.03;       // rms, m/s: slower counts as lying
 
 TerrainOptions with_impulse_limit(TerrainOptions options) {
   options.friction_impulse_limit = true;
@@ -49,7 +46,7 @@ SettleResult settle(GrainSolver& solver, const TerrainOptions& options, const Pr
   double best = 1.0;
   const auto most = static_cast<std::int64_t>(most_time / dt);
   while (result.steps < most && !result.settled) {
-    const bool check = ++result.steps % kCheckEvery == 0;
+    const bool check = ++result.steps % kSettleCheckEvery == 0;
     if (const int lost = solver.step(dt, check); lost >= 0)
       throw physics_error("grain " + std::to_string(solver.grains().id[lost]) +
                           " was lost while the bed settled");

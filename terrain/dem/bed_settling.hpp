@@ -26,6 +26,10 @@ double settle_step(const TerrainOptions& options);
 SolverCoefficients settle_coefficients(const TerrainOptions& options);
 
 inline constexpr double kMaxSettleTime = 4.0;  // s
+inline constexpr double kRestDrag =
+    20.0;  // 1/s, once the grains lie; those on top must still roll to their places
+inline constexpr double kRestSpeed = 0.002;   // rms, m/s: slower counts as at rest
+inline constexpr int kSettleCheckEvery = 40;  // steps
 
 /// Runs the solver until the bed is settled or `most` seconds have passed. May throw what `progress` throws.
 /// @throws Error(physics) when a grain is lost.

@@ -138,8 +138,6 @@ void GrainSolver::restore(const Archive& archive) {
   const auto n = static_cast<std::size_t>(archive.get_int("count"));
   grains_.resize(static_cast<int>(n));
   get_quads(archive, "position", grains_.position.data(), n);
-  for (std::size_t g = 0; g < n; ++g)  // older beds have no radii
-    if (grains_.position[g].w == 0.0) grains_.position[g].w = params_.grain.radius;
   get_quads(archive, "velocity", grains_.velocity.data(), n);
   get_quads(archive, "spin", grains_.spin.data(), n);
   grains_.id = archive.get<std::int32_t>("id", n);

@@ -99,7 +99,7 @@ def run_peer(program, tangential, data, ranks, steps, folder):
 
 
 def run_furrow(law, cohesion, precision, bed, threads, steps, *more):
-    command = [ROOT / "build/furrow", "bench", "grains", "--bed", bed, "--law", law, "--cohesion", str(cohesion), "--precision",
+    command = [os.environ.get("FURROW", ROOT / "build/furrow"), "bench", "grains", "--bed", bed, "--law", law, "--cohesion", str(cohesion), "--precision",
                precision, "--threads", str(threads), "--steps", str(steps), "--warm", str(WARM), *more]
     return json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
 

@@ -74,7 +74,8 @@ class Sweep(SystemTest):
         for keys, words in (({"grid": {"rig.slpi": [1]}}, "key 'rig.slpi': is unknown, expected 'rig.slip'?"),
                             ({"grid": {"rig.slip": [0.1, 2]}}, "key 'rig.slip': is 2, expected"),
                             ({"grid": {"rig.slip": []}}, "key 'grid.rig.slip': expected a list of values"),
-                            ({"grid": {}, "list": [{}]}, "expected one of 'grid', 'list' and 'passes'"),
+                            ({"grid": {}, "list": [{}]}, "has 'grid' and 'list', expected one of them"),
+                            ({}, "expected one of 'grid', 'list' and 'passes'"),
                             ({"passes": 0}, "key 'passes': expected a whole number"),
                             ({"gird": {}}, "key 'gird': is unknown, expected 'grid'?"),
                             ({"scenario": "none.json", "passes": 1}, "key 'scenario': 'none.json' does not exist")):
@@ -90,15 +91,21 @@ class Sweep(SystemTest):
             self.assertIn("key '--out': cannot be written", done.stderr)
 
     def test_passes_begin_on_the_bed_that_the_last_one_left(self):
-        study = self.study(passes=2, rest=0.01, set={"run.end": 0.15, "run.average_from": 0.1})
-        done = furrow("sweep", study, cwd=self.folder)
+        study = self.study(passes=2, rest=0.01, grid={"run.seed": [1, 2]}, set={"run.end": 0.15, "run.average_from": 0.1},
+                           plot={"x": "pass", "y": "drawbar_pull_N.mean", "mean_over": "run.seed"})
+        done = furrow("sweep", study, "--jobs", "2", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
-        first, second = [self.folder / "results" / "study" / row["folder"] for row in self.table()]
+        self.assertEqual([(row["run.seed"], row["pass"], row["state"]) for row in self.table()],
+                         [("1", "1", "done"), ("1", "2", "done"), ("2", "1", "done"), ("2", "2", "done")])
+        self.assertEqual(done.stderr.count(": settled, net force"), 2, done.stderr)
+        for plot in ("curve", "passes", "rut_along"):
+            self.assertEqual((self.folder / "results" / "study" / f"{plot}.png").read_bytes()[:4], b"\x89PNG")
+        first, second = [self.folder / "results" / "study" / row["folder"] for row in self.table()[:2]]
         a, b = [json.loads((run / "summary.json").read_text()) for run in (first, second)]
         self.assertEqual(a["grains"], b["grains"])
         self.assertEqual(a["surface_height_m"], b["surface_height_m"], "sinkage counts from another surface")
         scenario = json.loads((second / "scenario.json").read_text())
-        self.assertTrue(scenario["terrain"]["bed"].endswith(f"beds/{first.name}.h5"))
+        self.assertTrue(scenario["terrain"]["bed"].endswith(f"beds/{first.name}_rest_0.01.h5"))
         self.assertNotEqual(a["state_hash"], b["state_hash"])
         shutil.rmtree(second)
         again = furrow("sweep", study, cwd=self.folder)

@@ -243,6 +243,27 @@ TEST_F(Beds, compaction_of_a_settled_file_is_refused) {
   EXPECT_NE(refusal().find("terrain.compaction_pressure"), std::string::npos);
 }
 
+TEST_F(Beds, beds_of_another_format_are_refused_by_version) {
+  const PreparedBed made = prepare_bed(options_, {});
+  options_.bed = (folder_ / "other.h5").string();
+  for (const auto& [step, words] : {std::pair(-1, "is older than"), std::pair(1, "is newer than")}) {
+    std::filesystem::copy_file(made.file, options_.bed, std::filesystem::copy_options::overwrite_existing);
+    const Handle file(H5Fopen(options_.bed.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+    const Handle set(H5Dopen2(file.get(), "format_version", H5P_DEFAULT), H5Dclose);
+    std::int64_t version = 0;
+    H5Dread(set.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &version);
+    version += step;
+    H5Dwrite(set.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &version);
+    H5Fflush(file.get(), H5F_SCOPE_GLOBAL);
+    try {
+      read_bed(options_.bed);
+      ADD_FAILURE() << "was read";
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+  }
+}
+
 TEST_F(Beds, digest_knows_every_way_to_make_a_bed) {
   const std::string plain = bed_digest(options_);
   TerrainOptions other = options_;

@@ -7,7 +7,9 @@
 #include <fstream>
 
 #include "protocol/hash.hpp"
+#include "terrain/dem/bed_after_run.hpp"
 #include "terrain/dem/bed_cache.hpp"
+#include "terrain/dem/bed_settling.hpp"
 #include "terrain/terrain_options.hpp"
 
 namespace furrow {
@@ -229,6 +231,38 @@ TEST_F(DemTerrain, restored_terrain_with_a_tire_continues_bit_for_bit) {
   ASSERT_EQ(press.forces[0].force.size(), again.forces[0].force.size());
   for (std::size_t k = 0; k < press.forces[0].force.size(); ++k)
     EXPECT_EQ(press.forces[0].force[k], again.forces[0].force[k]);
+}
+
+TEST_F(DemTerrain, bed_after_a_plate_lies_until_it_rests_and_starts_another_run) {
+  const auto a = make_terrain(options_);
+  a->prepare({});
+  const double before = a->mean_height(0.12, 0.18, -0.03, 0.03);
+  Plate plate(0.1, -0.05, 0.1, 4, a->top_height(0.1, 0.2, -0.05, 0.05));
+  a->attach(plate.mesh, kRubber, plate.state);
+  Press press;
+  ASSERT_TRUE(press.run(*a, plate, Vec3(0.0, 0.0, -0.3), 1000, 6e-5).ok);
+  ASSERT_TRUE(press.run(*a, plate, Vec3(0.0, 0.0, 0.3), 500, 6e-5).ok);
+  Archive run;
+  a->save(run);
+  dem::RestResult rest;
+  int told = 0;
+  const Archive bed = dem::bed_after_run(
+      run, options_, 0.02, [&](const std::string&, double) { ++told; }, rest);
+  EXPECT_TRUE(rest.settled);
+  EXPECT_GE(rest.time, 0.02);
+  EXPECT_LT(rest.force_ratio, dem::kSettledForceRatio);
+  EXPECT_LT(rest.speed, dem::kRestSpeed);
+  EXPECT_GT(told, 0);
+  options_.bed = (folder_ / "bed.h5").string();
+  dem::write_bed(options_.bed, bed);
+  const auto b = make_terrain(options_);
+  b->prepare({});
+  EXPECT_EQ(b->size(), a->size());
+  EXPECT_LT(b->mean_height(0.12, 0.18, -0.03, 0.03), before - 2e-3) << "the plate's print is gone";
+  struct Stop {};
+  EXPECT_THROW(dem::bed_after_run(
+                   run, options_, 0.02, [](const std::string&, double) { throw Stop{}; }, rest),
+               Stop);
 }
 
 TEST_F(DemTerrain, tire_that_reaches_the_floor_stops_the_run_with_a_message) {

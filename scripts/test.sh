@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Builds everything and runs the tests. Fails if a test fails, and if there was none to run.
+# Builds and runs the tests. Fails if a test fails, and if there was none to run.
 set -euo pipefail
 root=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/.." && pwd -P)
 
 usage() { cat <<'HELP'
 usage: scripts/test.sh [--label LABEL]... [--preset NAME] [-- CTEST-OPTION ...]
-Builds everything and runs the tests with the labels unit, mpi and system, or with the labels given.
+Builds everything and runs the tests with the labels unit, mpi and system; or builds what the labels given need, and runs those.
   --label LABEL  unit, mpi, system, verify (longer comparisons), fresh (bare Debian machine; needs root)
   --preset NAME  a preset of CMakePresets.json, for example asan
   --             what follows goes to ctest, for example -- -R terrain
@@ -25,6 +25,8 @@ while (($#)); do
 done
 build=$root/build; [[ $preset == release ]] || build=$root/build-$preset
 
-"$root/scripts/build.sh" --preset "$preset"
+targets=()
+case $labels in unit) targets=(tests_unit) ;; verify) targets=(tests_verify) ;; esac
+"$root/scripts/build.sh" --preset "$preset" "${targets[@]}"
 exec ctest --test-dir "$build" -L "^(${labels:-unit|mpi|system})\$" -j "$(nproc)" --no-tests=error \
   --output-on-failure "$@"

@@ -109,7 +109,7 @@ SeriesWriter::SeriesWriter(const std::filesystem::path& file, const SeriesMark& 
     : file_(file), stream_(std::fopen(file.c_str(), "rb+")) {
   check(stream_ != nullptr);
   std::string text(static_cast<std::size_t>(mark.bytes), '\0');
-  text.resize(std::fread(text.data(), 1, text.size(), stream_));
+  text.resize(std::fread(text.data(), 1, text.size(), stream_.get()));
   hash_.add(text);
   const std::string header = header_line();
   if (hash_.hex() != mark.checksum || !text.starts_with(header))
@@ -121,12 +121,8 @@ SeriesWriter::SeriesWriter(const std::filesystem::path& file, const SeriesMark& 
   }
   bytes_ = mark.bytes;
   lines_ = mark.lines;
-  check(ftruncate(fileno(stream_), bytes_) == 0);
-  check(std::fseek(stream_, 0, SEEK_END) == 0);
-}
-
-SeriesWriter::~SeriesWriter() {
-  if (stream_) std::fclose(stream_);
+  check(ftruncate(fileno(stream_.get()), bytes_) == 0);
+  check(std::fseek(stream_.get(), 0, SEEK_END) == 0);
 }
 
 void SeriesWriter::check(bool ok) {
@@ -134,7 +130,7 @@ void SeriesWriter::check(bool ok) {
 }
 
 void SeriesWriter::write(const std::string& text) {
-  check(std::fwrite(text.data(), 1, text.size(), stream_) == text.size());
+  check(std::fwrite(text.data(), 1, text.size(), stream_.get()) == text.size());
   hash_.add(text);
   bytes_ += static_cast<std::int64_t>(text.size());
 }
@@ -148,11 +144,11 @@ void SeriesWriter::add(const SeriesRow& row) {
   ++lines_;
 }
 
-void SeriesWriter::flush() { check(std::fflush(stream_) == 0); }
+void SeriesWriter::flush() { check(std::fflush(stream_.get()) == 0); }
 
 SeriesMark SeriesWriter::mark() {
   flush();
-  check(fsync(fileno(stream_)) == 0);
+  check(fsync(fileno(stream_.get())) == 0);
   return {bytes_, lines_, hash_.hex()};
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -38,9 +39,6 @@ class SeriesWriter {
   /// @param rows receives its lines
   /// @throws Error(io) when the file does not begin with what the mark stands for
   SeriesWriter(const std::filesystem::path& file, const SeriesMark& mark, std::vector<SeriesRow>& rows);
-  ~SeriesWriter();
-  SeriesWriter(const SeriesWriter&) = delete;
-  SeriesWriter& operator=(const SeriesWriter&) = delete;
 
   void add(const SeriesRow& row);
   void flush();
@@ -51,7 +49,10 @@ class SeriesWriter {
   void check(bool ok);
   void write(const std::string& text);
   std::filesystem::path file_;
-  std::FILE* stream_;
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  std::unique_ptr<std::FILE, Close> stream_;
   Hash hash_;
   std::int64_t bytes_ = 0, lines_ = 0;
 };

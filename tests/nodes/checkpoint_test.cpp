@@ -160,7 +160,13 @@ TEST(SeriesWriter, goes_on_at_its_mark_bit_for_bit) {
   EXPECT_EQ(text_of(file), three);
   SeriesMark other = mark;
   other.bytes -= 1;
+  const auto open_files = [] {
+    const std::filesystem::directory_iterator all("/proc/self/fd");
+    return std::distance(begin(all), end(all));
+  };
+  const auto before = open_files();
   EXPECT_THROW(SeriesWriter(file, other, rows), Error);
+  EXPECT_EQ(open_files(), before);
 }
 
 TEST(Resume, what_decides_the_results_may_not_change) {

@@ -49,14 +49,14 @@ TEST(Inflation, at_low_pressure_growth_is_linear_on_fine_meshes_too) {
   double growth[2];
   for (int k = 0; k < 2; ++k) {
     TireFile file = small_file("hmmwv_layered.json", 180, 48);
-    file.pressure = k == 0 ? 2e3 : 20e3;
+    file.pressure = k == 0 ? 2e3 : 4e3;
     const RingMesh mesh = make_ring_mesh(file);
     const ShellRing shell(file, mesh);
     InflationReport report;
     growth[k] = shell.layout().get(inflate(shell, mesh, report), 0, mesh.rows / 2, 0).norm() - file.radius;
     EXPECT_LT(report.residual, 1e-6);
   }
-  EXPECT_NEAR(growth[1] / growth[0], 10.0, 0.2);
+  EXPECT_NEAR(growth[1] / growth[0], 2.0, 0.02);
 }
 
 TEST(Inflation, at_ten_times_the_pressure_it_converges_and_beyond_it_says_how_far_it_came) {

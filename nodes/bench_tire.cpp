@@ -91,7 +91,7 @@ class RollingTire {
     const TireStatus status = tire_.advance(trajectory_, forces, 1);
     tire_.surface(surface_);
     const Spent spent{now() - begin, processor_time() - begin_processor};
-    if (!status.converged) throw physics_error(status.message);
+    if (!status.converged) throw physics_error(status.message());
     move_carriage(damper);
     return spent;
   }

@@ -37,7 +37,7 @@ class RigNode : public Node {
     setup_ = receive<TerrainSetup>(transport, kTerrain);
     std::vector<double> height(wheels);
     for (int k = 0; k < wheels; ++k)
-      height[k] = setup_.top_height[k] + cards[1 + k].tire_radius + kPlacementGap;
+      height[k] = setup_.top_height[k] + cards[1 + k].tire_radius + kPlacementGap + scenario_.drop_height;
     rig_->place(height);
     // First of all, as the others begin to write frames once they are placed.
     if (!context.directory.empty())

@@ -133,6 +133,7 @@ DrawbarRigOptions rig_options(const json& j) {
 void take_rig(const json& j, Scenario& s) {
   s.rigs = {rig_options(j)};
   s.rig_substeps = j["substeps"];
+  s.drop_height = j["drop_height"];
   if (j["wheels"].empty()) return;
   s.rigs.assign(j["wheels"].size(), s.rigs.front());
   for (std::size_t k = 0; k < s.rigs.size(); ++k) {
@@ -146,10 +147,30 @@ void take_rig(const json& j, Scenario& s) {
   }
 }
 
+/// A number is one knot, null none.
+PressureSchedule pressure_schedule(const json& value, const std::string& key, const std::string& file) {
+  PressureSchedule schedule;
+  if (value.is_number()) schedule.knots = {{0.0, value.get<double>()}};
+  if (!value.is_array()) return schedule;
+  for (const json& entry : value) {
+    const PressureSchedule::Knot knot{entry[0].get<double>(), entry[1].get<double>()};
+    const std::string here = fmt::format("{}.{}", key, schedule.knots.size());
+    if (knot.pressure < 0.0)
+      throw input_error(file, here + ".1",
+                        fmt::format("is {} Pa, expected 0 or more", number_text(knot.pressure)));
+    if (!schedule.empty() && !(knot.time > schedule.knots.back().time))
+      throw input_error(file, here + ".0",
+                        fmt::format("is {} s, expected a time after that of the entry before, {} s",
+                                    number_text(knot.time), number_text(schedule.knots.back().time)));
+    schedule.knots.push_back(knot);
+  }
+  return schedule;
+}
+
 void take_tire(const json& j, const std::string& key, Scenario& s) {
   TireOptions o;
   o.file = find_file(j["file"], key + ".file", s.file);
-  o.pressure = number_or(j["pressure"], -1.0);
+  o.pressure = pressure_schedule(j["pressure"], key + ".pressure", s.file.string());
   o.friction = number_or(j["friction"], -1.0);
   o.elements_circumference = count_or(j["elements_circumference"], 0);
   o.elements_width = count_or(j["elements_width"], 0);

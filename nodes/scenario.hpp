@@ -56,6 +56,7 @@ struct Scenario {
   std::string digest;  // hash of all in `completed` that decides the results, and of the tire files
   std::vector<DrawbarRigOptions> rigs = std::vector<DrawbarRigOptions>(1);  // one per wheel
   int rig_substeps = 1;
+  double drop_height = 0.0;        // of all tires above the ground at t = 0, m
   std::vector<TireOptions> tires;  // one per wheel
   int tire_substeps = 1;
   TerrainOptions terrain;

@@ -203,7 +203,8 @@ TireSize tire_size(const TireOptions& options) {
   TireSize size;
   size.radius = file.radius;
   for (const ProfileKnot& knot : file.profile) size.width = std::max(size.width, 2.0 * std::abs(knot.y));
-  size.pressure = options.pressure >= 0.0 ? options.pressure : file.pressure;
+  size.pressure = options.pressure;
+  if (size.pressure.empty()) size.pressure.knots = {{0.0, file.pressure}};
   size.elements_circumference = file.elements_circumference;
   size.elements_width = file.elements_width();
   size.rigid = options.rigid;

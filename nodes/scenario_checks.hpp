@@ -11,9 +11,9 @@ namespace furrow {
 
 /// What the checks need to know of a tire without building its model.
 struct TireSize {
-  double radius = 0.0;    // undeformed, m
-  double width = 0.0;     // overall, m
-  double pressure = 0.0;  // Pa
+  double radius = 0.0;  // undeformed, m
+  double width = 0.0;   // overall, m
+  PressureSchedule pressure;
   int elements_circumference = 0, elements_width = 0;
   bool rigid = false;
   /// Unknowns: position and transverse gradient of every node; 0 for a rigid tire.

@@ -67,6 +67,12 @@ bool in_range(const json& node, const json& value) {
   return !node.contains("multipleOf") || std::fmod(x, bound("multipleOf")) == 0.0;
 }
 
+std::string list_text(const json& node) {
+  const int least = node.value("minItems", 0), most = node.value("maxItems", 0);
+  return fmt::format("a list of {}{} {}", least == most ? "" : fmt::format("{} to ", least), most,
+                     node.value("entries", "entries"));
+}
+
 std::string with_unit(const std::string& text, const json& node) {
   const std::string unit = node.value("unit", std::string("-"));
   return unit == "-" ? text : text + " " + unit;
@@ -160,9 +166,7 @@ std::string Schema::expectation(const json& node) {
   }
   if (allows(node, "boolean")) words.push_back("true or false");
   if (allows(node, "object")) words.push_back("an object { }");
-  if (allows(node, "array"))
-    words.push_back(
-        fmt::format("a list of {} to {} entries", node.value("minItems", 0), node.value("maxItems", 0)));
+  if (allows(node, "array")) words.push_back(list_text(node));
   if (allows(node, "null")) words.push_back("null");
   return fmt::format("{}", fmt::join(words, " or "));
 }

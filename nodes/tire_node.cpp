@@ -5,6 +5,8 @@
 // with v and ω those of the bead's trajectory: nothing is counted twice, and a rigid tire sends its contact alone.
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "nodes/frames.hpp"
 #include "nodes/node.hpp"
 
@@ -19,7 +21,10 @@ Vec3 spin_momentum(const MassProperties& mass, const RimState& rim) {
 class TireNode : public Node {
  public:
   TireNode(const Scenario& scenario, int index)
-      : scenario_(scenario), index_(index), tire_(make_tire(scenario.tires.at(index))) {}
+      : scenario_(scenario),
+        index_(index),
+        pressure_(scenario.tires.at(index).pressure),
+        tire_(make_tire(scenario.tires.at(index))) {}
 
   NodeCard card() const override {
     NodeCard card = common_card(scenario_, {Role::tire, index_});
@@ -60,10 +65,11 @@ class TireNode : public Node {
   void advance(const StepHeader& header) override {
     const double duration = scenario_.run.step;
     trajectory_.extend(rim_.rim, duration);
+    if (pressure_.varies()) tire_->set_pressure(pressure_.at(header.time + 0.5 * duration));
     const TireStatus status = tire_->advance(trajectory_, forces_, scenario_.tire_substeps);
     if (!status.converged)
-      throw physics_error(to_string(Address{Role::tire, index_}) + " at t = " + std::to_string(header.time) +
-                          " s, step " + std::to_string(header.step) + ": " + status.message);
+      throw physics_error(status.message(fmt::format("{} ", index_),
+                                         fmt::format(" at t = {:.6g} s, step {}", header.time, header.step)));
     account(duration);
   }
 
@@ -150,6 +156,7 @@ class TireNode : public Node {
 
   Scenario scenario_;
   int index_;
+  PressureSchedule pressure_;
   std::unique_ptr<Tire> tire_;
   RimTrajectory trajectory_;
   RimMotion rim_;

@@ -23,6 +23,12 @@ constexpr double kBytesPerSavedCoordinate =
 constexpr double kBytesPerLine = 900.0;  // of timeseries.csv, and the same again in results.h5
 constexpr double kMegabyte = 1e6;
 
+std::string pressure_text(const PressureSchedule& p) {
+  if (!p.varies()) return fmt::format("{:g} kPa", 1e-3 * p.at(0.0));
+  return fmt::format("{:g} kPa, later {:g} to {:g} kPa", 1e-3 * p.at(0.0), 1e-3 * p.lowest(),
+                     1e-3 * p.highest());
+}
+
 double frames(const Scenario& s) {
   return s.output.frame_interval > 0.0 ? 1.0 + std::floor(s.run.end / s.output.frame_interval) : 0.0;
 }
@@ -115,9 +121,9 @@ std::string validation_text(const Scenario& s) {
     line("tire",
          size.rigid
              ? fmt::format("{}, rigid, radius {:g} m", options.file.filename().string(), size.radius)
-             : fmt::format("{}, {} × {} elements, {} coordinates, {:g} kPa, radius {:g} m",
+             : fmt::format("{}, {} × {} elements, {} coordinates, {}, radius {:g} m",
                            options.file.filename().string(), size.elements_circumference, size.elements_width,
-                           size.coordinates(), 1e-3 * size.pressure, size.radius));
+                           size.coordinates(), pressure_text(size.pressure), size.radius));
     line("axle", fmt::format("from x = {:.3f} m to {:.3f} m", path.from, path.to));
   }
   line("memory", fmt::format("about {:.0f} MB in all", e.memory / kMegabyte));

@@ -11,7 +11,7 @@ namespace furrow {
 
 TireFile tire_file_of(const TireOptions& options) {
   TireFile file = read_tire_file(options.file);
-  if (options.pressure >= 0.0) file.pressure = options.pressure;
+  if (!options.pressure.empty()) file.pressure = options.pressure.at(0.0);
   if (options.friction >= 0.0) file.contact.friction = options.friction;
   if (options.structural_damping >= 0.0) file.structural_damping = options.structural_damping;
   if (options.elements_circumference != 0) {

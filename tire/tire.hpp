@@ -8,6 +8,7 @@
 
 #include "protocol/archive.hpp"
 #include "protocol/surface.hpp"
+#include "tire/pressure_schedule.hpp"
 #include "tire/rim_trajectory.hpp"
 
 namespace furrow {
@@ -15,8 +16,8 @@ namespace furrow {
 /// Cumulative account of what a tire did since it was placed.
 struct TireDiagnostics {
   double kinetic_energy = 0.0;         // J, now
-  double strain_energy = 0.0;          // elastic + pressure potential, J, now
-  double dissipation = 0.0;            // structural damping, J, cumulative
+  double strain_energy = 0.0;          // elastic − work of the pressure on the volume, J, now
+  double dissipation = 0.0;            // structural damping and relaxation, J, cumulative
   Vec3 momentum = Vec3::Zero();        // kg m/s, now
   std::int64_t newton_iterations = 0;  // cumulative
   std::int64_t factorizations = 0;     // cumulative
@@ -25,8 +26,13 @@ struct TireDiagnostics {
 
 /// Outcome of an advance; a failure names itself and what to try.
 struct TireStatus {
-  bool converged = true;
-  std::string message;
+  bool converged = true;  // and the state can be used
+  std::string what;       // "did not converge", "reached its rim"
+  std::string detail;     // figures, and what to try
+  /// "tire WHO WHAT WHERE: DETAIL", the caller's words for which tire and when.
+  std::string message(const std::string& who = "", const std::string& where = "") const {
+    return "tire " + who + what + where + ": " + detail;
+  }
 };
 
 class Tire {
@@ -39,6 +45,9 @@ class Tire {
   virtual double radius() const = 0;       // of the undeformed contact surface, m
   virtual double tread_width() const = 0;  // m
   virtual int coordinates() const = 0;     // unknowns
+
+  /// Gauge pressure from now on, Pa. A rigid tire does not mind.
+  virtual void set_pressure(double pressure) = 0;
 
   /// Puts the tire on the rim, inflated, with the velocity field of a rigid body moving with the rim.
   /// @throws Error(physics) when inflation does not converge.
@@ -66,7 +75,7 @@ class Tire {
 /// What a scenario says about a tire.
 struct TireOptions {
   std::filesystem::path file;        // resolved
-  double pressure = -1.0;            // gauge, Pa; negative: the file's default
+  PressureSchedule pressure;         // gauge, Pa; empty: the file's, constant
   double friction = -1.0;            // contact friction; negative: the file's
   int elements_circumference = 0;    // 0: the file's
   int elements_width = 0;            // 0: the file's; split over the sections in the file's proportions

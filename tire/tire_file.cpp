@@ -85,6 +85,18 @@ ContactMaterial read_contact(JsonReader reader) {
   return c;
 }
 
+std::vector<MaxwellBranch> read_prony(JsonReader& reader) {
+  std::vector<MaxwellBranch> branches;
+  if (!reader.has("prony")) return branches;
+  const json& rows = reader.array("prony");
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    JsonReader row(rows[i], reader.file(), reader.full(fmt::format("prony[{}]", i)));
+    branches.push_back({row.positive("relative_modulus"), row.positive("relaxation_time")});
+    row.finish();
+  }
+  return branches;
+}
+
 TireFile read_own(JsonReader& reader) {
   const int version = reader.count("format_version", 1);
   if (version > kFormatVersion)
@@ -99,6 +111,7 @@ TireFile read_own(JsonReader& reader) {
   f.rim_width = reader.positive("rim_width");
   f.pressure = reader.not_negative("pressure");
   f.structural_damping = reader.not_negative("structural_damping");
+  f.prony = read_prony(reader);
   f.tread_mass_per_area = reader.not_negative_or("tread_mass_per_area", 0.0);
   f.elements_circumference = reader.count("elements_circumference", 8);
   f.contact = read_contact(reader.child("contact"));

@@ -37,6 +37,12 @@ struct Section {
   }
 };
 
+/// A spring and a dashpot in series, beside the tire's elastic stiffness.
+struct MaxwellBranch {
+  double modulus = 0.0;  // g, relative to the long-term stiffness
+  double time = 0.0;     // relaxation time, s
+};
+
 /// One knot of the meridian of the mid-surface.
 struct ProfileKnot {
   double t = 0.0;  // share of the way from the left to the right bead, 0…1
@@ -52,6 +58,7 @@ struct TireFile {
   double radius = 0.0;               // of the undeformed mid-surface at the crown, m
   double pressure = 0.0;             // gauge, Pa
   double structural_damping = 0.0;   // τ of the Kelvin–Voigt law, s
+  std::vector<MaxwellBranch> prony;  // branches of a generalised Maxwell model; none: no relaxation
   double tread_mass_per_area = 0.0;  // rubber outside the tread's layup, kg/m²
   ContactMaterial contact;
   std::vector<LayerMaterial> materials;

@@ -192,6 +192,17 @@ TEST(Scenario, mistakes_are_named_with_what_is_expected) {
             "");
 }
 
+TEST(Scenario, pressure_is_a_number_or_a_table_in_time_and_part_of_the_digest) {
+  const ScenarioFile file(kSmallest);
+  const Scenario constant = file.load({{"tire.pressure", "150e3"}}),
+                 table = file.load({{"tire.pressure", "[[0.5, 2e5], [1, 1e5]]"}}),
+                 other = file.load({{"tire.pressure", "[[0.5, 2e5], [1.5, 1e5]]"}});
+  EXPECT_EQ(constant.tires[0].pressure, (PressureSchedule{{{0.0, 150e3}}}));
+  EXPECT_EQ(table.tires[0].pressure, (PressureSchedule{{{0.5, 2e5}, {1.0, 1e5}}}));
+  EXPECT_NE(table.digest, other.digest);
+  EXPECT_FALSE(may_change_on_resume("tire.pressure.1.0"));
+}
+
 TEST(Scenario, magnitudes_of_another_unit_are_warned_of) {
   const ScenarioFile file(kSmallest);
   const auto warnings =

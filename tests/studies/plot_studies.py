@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Charts of the studies' CSV files, beside them: step_size.png, rigid_ground.png."""
+"""Charts of the studies' CSV files, beside them: step_size.png, tire_step.png, rigid_ground.png."""
 import csv
 import pathlib
 import re
@@ -41,6 +41,34 @@ def step_size():
     save(figure, "step_size")
 
 
+def tire_step():
+    """Drawbar pull, and energy lost or gained at the interface, over the communication step, one line per damping time."""
+    lines = {}
+    for row in table("tire_step"):
+        found = re.fullmatch(r"tau_([\d.]+)ms_step_([\de-]+)_seed_(\d+)", row["case"])
+        if found:
+            tau, step, seed = found.groups()
+            lines.setdefault((float(tau), seed), []).append(
+                (1e6 * float(step), float(row["drawbar_pull_N.mean"]), 2.0 * float(row["drawbar_pull_N.sem"]),
+                 100.0 * float(row["interface_energy_error_abs_J"]) / float(row["interface_work_J"])))
+    figure, (pull, error) = plt.subplots(1, 2, figsize=(9.6, 4.0))
+    markers = {2.5: "v", 5.0: "o", 10.0: "s", 20.0: "D"}
+    for (tau, seed), points in sorted(lines.items()):
+        step, mean, bar, share = zip(*sorted(points))
+        label = f"τ = {tau:g} ms, seed {seed}"
+        pull.errorbar(step, mean, bar, marker=markers[tau], capsize=3, label=label)
+        error.plot(step, share, marker=markers[tau], label=label)
+    pull.set(xlabel="step in µs", ylabel="drawbar pull in N", title="Small rig, slip 0.3, 4.6 kN")
+    error.set(xlabel="step in µs", ylabel="Σ|energy error| / work in %", yscale="log", title="Interface of tire and soil")
+    for axes in (pull, error):
+        axes.set(xscale="log")
+        axes.set_xticks([40, 100, 200, 400], ["40", "100", "200", "400"])
+        axes.minorticks_off()
+    pull.legend()
+    figure.tight_layout()
+    save(figure, "tire_step")
+
+
 def rigid_ground():
     """Drawbar pull over load against slip on hard ground."""
     lines = {}
@@ -65,6 +93,6 @@ def save(figure, name):
 
 
 if __name__ == "__main__":
-    for name, draw in (("step_size", step_size), ("rigid_ground", rigid_ground)):
+    for name, draw in (("step_size", step_size), ("tire_step", tire_step), ("rigid_ground", rigid_ground)):
         if (HERE / f"{name}.csv").exists():
             draw()

@@ -59,6 +59,26 @@ TEST(RingMesh, tread_rubber_adds_its_mass) {
               1.0);  // meridian length of the tread about 0.29 m
 }
 
+TEST(RingMesh, tread_rubber_on_a_torus_weighs_its_outer_surface_times_mass_per_area) {
+  Made tire("toroidal.json");
+  tire.file.elements_circumference = 180;
+  set_elements_width(tire.file, 60);
+  tire.file.tread_mass_per_area = 15.0;
+  const RingMesh mesh = make_ring_mesh(tire.file);
+  const MassProperties with = rigid_mass(mesh, element_masses(tire.file, mesh));
+  tire.file.tread_mass_per_area = 0.0;
+  const MassProperties without = rigid_mass(mesh, element_masses(tire.file, mesh));
+  // The tread is the middle half of the half circle: |θ| < π/4 of a tube of radius a = 0.195 + 0.007, on R = 0.35.
+  const double a = 0.202, r = 0.35, t = std::numbers::pi / 4, s = std::sin(t);
+  const double area = 2 * std::numbers::pi * a * (2 * r * t + 2 * a * s);
+  EXPECT_NEAR(with.mass - without.mass, 15.0 * area, 1e-3 * 15.0 * area);
+  // ∫ (R + a cos θ)³ 2π a dθ
+  const double cube = 2 * std::numbers::pi * a *
+                      (2 * t * r * r * r + 6 * r * r * a * s + 3 * r * a * a * (t + s * std::cos(t)) +
+                       2 * a * a * a * (s - s * s * s / 3));
+  EXPECT_NEAR(with.inertia(1, 1) - without.inertia(1, 1), 15.0 * cube, 2e-3 * 15.0 * cube);
+}
+
 TEST(RingMesh, surface_is_closed_and_faces_outwards) {
   const Made tire("hmmwv_layered.json");
   const SurfaceMesh surface = make_surface_mesh(tire.mesh);

@@ -64,7 +64,8 @@ TEST_F(TireFileTest, layered_hmmwv_holds_the_reference_layup) {
 }
 
 TEST_F(TireFileTest, shipped_files_make_both_models) {
-  for (const char* name : {"hmmwv_layered.json", "hmmwv_lumped.json", "toroidal.json"}) {
+  for (const char* name :
+       {"hmmwv_layered.json", "hmmwv_lumped.json", "toroidal.json", "passenger_205_55r16.json"}) {
     TireOptions options;
     options.file = std::string(TIRE_DATA "/") + name;
     options.elements_circumference = 12;
@@ -116,6 +117,16 @@ TEST_F(TireFileTest, every_mistake_names_its_key) {
               j["profile"][3] = {0.5, 0.01};
             }),
             "key 'profile[3]': expected three numbers t, x, y");
+  EXPECT_EQ(with([](json& j) {
+              j["prony"] = {{{"relative_modulus", 0.1}}};
+            }),
+            "key 'prony[0].relaxation_time': is missing");
+  EXPECT_EQ(with([](json& j) {
+              j["prony"] = {{{"relative_modulus", 0}, {"relaxation_time", 0.1}}};
+            }),
+            "key 'prony[0].relative_modulus': is 0, expected a number above zero");
+  EXPECT_EQ(with([](json& j) { j["tread_mass_per_area"] = -1; }),
+            "key 'tread_mass_per_area': is -1, expected a number of zero or above");
   EXPECT_EQ(with([](json& j) { j["profile"][3][0] = 0.001; }), "key 'profile[3]': expected t to increase");
   EXPECT_EQ(with([](json& j) { j["profile"][3][1] = -0.1; }),
             "key 'profile[3]': lies below the rim radius, expected x of zero or above");

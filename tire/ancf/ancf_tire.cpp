@@ -30,14 +30,28 @@ AncfTire::AncfTire(const TireFile& file, const RingIntegratorParams& params)
       rigid_mass_(furrow::rigid_mass(ring_, element_masses(file, ring_))),
       radius_(file.radius),
       tread_width_(furrow::tread_width(file, ring_)),
+      clearance_(file, ring_),
       integrator_(file, ring_, [&] {
         RingIntegratorParams p = params;
         p.damping = file.structural_damping;
         return p;
       }()) {
-  material_.area_density = rigid_mass_.mass / shell_area(ring_, surface_mesh_, integrator_.layout());
+  TireFile bare = file;
+  bare.tread_mass_per_area = 0.0;
+  material_.area_density = furrow::rigid_mass(ring_, element_masses(bare, ring_)).mass /
+                               shell_area(ring_, surface_mesh_, integrator_.layout()) +
+                           file.tread_mass_per_area;
   undeformed_volume_ = integrator_.shell().volume(undeformed(ring_), Vec3::Zero());
   force_.assign(integrator_.layout().size(), 0.0);
+}
+
+void AncfTire::set_pressure(double pressure) {
+  const double before = integrator_.shell().pressure();
+  if (pressure == before) return;
+  if (placed_)
+    pump_ += (pressure - before) *
+             (integrator_.shell().volume(integrator_.q(), rim_.position) - undeformed_volume_);
+  integrator_.set_pressure(pressure);
 }
 
 void AncfTire::place(const RimState& rim) {
@@ -58,7 +72,8 @@ void AncfTire::place(const RimState& rim) {
   integrator_.start(q, v);
   rim_ = rim;
   spindle_ = {};
-  steps_ = 0;
+  pump_ = 0.0;
+  placed_ = true;
 }
 
 void AncfTire::surface(SurfaceState& out) const {
@@ -85,6 +100,9 @@ TireStatus AncfTire::advance(const RimTrajectory& rim, const NodalForces& forces
   std::fill(force_.begin(), force_.end(), 0.0);
   for (std::size_t k = 0; k < forces.vertex.size(); ++k) {
     const int vertex = forces.vertex[k];
+    if (!forces.force[k].allFinite())
+      return {false, "was pushed with a force that is not finite",
+              fmt::format("at vertex {} of its surface; try a smaller run.step", vertex)};
     if (vertex < ring_.nodes()) {
       layout.set(force_, vertex / ring_.rows, vertex % ring_.rows, 0, forces.force[k]);
       continue;
@@ -95,17 +113,13 @@ TireStatus AncfTire::advance(const RimTrajectory& rim, const NodalForces& forces
     disc.moment += (mean * ring_.disc_centre(vertex - ring_.nodes())).cross(forces.force[k]);
   }
   for (int n = 1; n <= substeps; ++n) {
-    TireStatus status = step(rim, n - 1.0, n, substeps, kMostHalvings);
-    if (!status.converged) {
-      status.message = fmt::format("tire did not converge at step {}: {}", steps_ + n, status.message);
-      return status;
-    }
+    const TireStatus status = step(rim, n - 1.0, n, substeps, kMostHalvings);
+    if (!status.converged) return status;
   }
-  steps_ += substeps;
   rim_ = rim.end();
   spindle_.force += disc.force;
   spindle_.moment += disc.moment;
-  return {};
+  return clearance_.status(clearance_.measure(layout, integrator_.q(), rim_));
 }
 
 /// The step from `from` to `to`, counted in substeps; in halves of it where the iteration does not converge.
@@ -144,7 +158,7 @@ TireDiagnostics AncfTire::diagnostics() const {
     }
   const double volume = integrator_.shell().volume(q, rim_.position);
   d.strain_energy =
-      integrator_.elastic_energy() - integrator_.shell().pressure() * (volume - undeformed_volume_);
+      integrator_.elastic_energy() - integrator_.shell().pressure() * (volume - undeformed_volume_) + pump_;
   d.dissipation = integrator_.dissipation();
   d.newton_iterations = integrator_.iterations();
   d.factorizations = integrator_.factorizations();
@@ -156,7 +170,7 @@ void AncfTire::save(Archive& archive) const {
   const Archive::Scope scope(archive, "ancf/");
   save_rim(archive, "rim", rim_);
   save_wrench(archive, "spindle", spindle_);
-  archive.put("steps", steps_);
+  archive.put("pump", pump_);
   integrator_.save(archive);
 }
 
@@ -164,7 +178,8 @@ void AncfTire::restore(const Archive& archive) {
   const Archive::Scope scope(archive, "ancf/");
   rim_ = restore_rim(archive, "rim");
   spindle_ = restore_wrench(archive, "spindle");
-  steps_ = archive.get_int("steps");
+  pump_ = archive.get_double("pump");
+  placed_ = true;
   integrator_.restore(archive);
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "tire/ancf/inflation.hpp"
+#include "tire/ancf/rim_clearance.hpp"
 #include "tire/ancf/ring_integrator.hpp"
 
 namespace furrow {
@@ -19,6 +20,7 @@ class AncfTire final : public Tire {
   double tread_width() const override { return tread_width_; }
   int coordinates() const override { return 6 * ring_.nodes(); }
 
+  void set_pressure(double pressure) override;
   void place(const RimState& rim) override;
   void surface(SurfaceState& out) const override;
   TireStatus advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) override;
@@ -40,11 +42,15 @@ class AncfTire final : public Tire {
   double radius_ = 0.0;             // m
   double tread_width_ = 0.0;        // m
   double undeformed_volume_ = 0.0;  // m³
+  RimClearance clearance_;
   RingIntegrator integrator_;
   InflationReport inflation_;
   RimState rim_;    // now
   Wrench spindle_;  // of the last advance
-  std::int64_t steps_ = 0;
+  bool placed_ = false;
+  // ∫ (V − V₀) dp since the tire was placed, J: what a changing pressure puts into the potential −p (V − V₀) without work
+  // on the tire.
+  double pump_ = 0.0;
   Field force_;                // of the running interval
   Vec3 about_ = Vec3::Zero();  // where its moments are taken, m
 };

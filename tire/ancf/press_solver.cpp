@@ -56,6 +56,7 @@ PressSolver::PressSolver(const TireFile& file, const RingMesh& mesh, const Field
       shell_(file, mesh),
       layout_(shell_.layout()),
       obstacle_(obstacle),
+      clearance_(file, mesh),
       q_(inflated),
       r_(layout_.size()),
       linear_(std::make_unique<Linear>()) {
@@ -243,6 +244,9 @@ PressPoint PressSolver::press(double deflection) {
     point.residual = norm / (force_ > kLeastLoad ? force_ : pressure_norm_);
     if (point.residual <= kTolerance && h >= kStaticStep) {
       point.failed_factorizations = failed_;
+      const TireStatus status = clearance_.status(clearance_.measure(layout_, q_, RimState{}));
+      if (!status.converged)
+        throw physics_error(status.message("", fmt::format(" at a deflection of {:.4g} m", deflection)));
       return point;
     }
     h = std::min((failed_ > 0 ? 1.5 : 3.0) * h, kLargestStep);

@@ -14,6 +14,7 @@
 #include <memory>
 #include <vector>
 
+#include "tire/ancf/rim_clearance.hpp"
 #include "tire/ancf/shell_ring.hpp"
 
 namespace furrow {
@@ -55,7 +56,8 @@ class PressSolver {
 
   /// Largest radius of the inflated tire: where deflection starts, m.
   double start_radius() const { return start_radius_; }
-  /// Moves the obstacle to a deflection and finds equilibrium. @throws Error(physics) when there is none.
+  /// Moves the obstacle to a deflection and finds equilibrium. @throws Error(physics) when there is none,
+  /// or when the tire would stand in its rim.
   PressPoint press(double deflection);
   std::vector<PressSample> footprint() const;
   const Field& q() const { return q_; }
@@ -73,6 +75,7 @@ class PressSolver {
   ShellRing shell_;
   RingLayout layout_;
   PressObstacle obstacle_;
+  RimClearance clearance_;
   Field q_, strains_, r_;
   double start_radius_ = 0.0, top_ = 0.0, pressure_norm_ = 0.0, force_ = 0.0;
   int failed_ = 0;

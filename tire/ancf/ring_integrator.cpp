@@ -51,6 +51,7 @@ RingIntegrator::RingIntegrator(const TireFile& file, const RingMesh& mesh, const
       made_old_(made_layout_.size()),
       made_new_(made_layout_.size()),
       geometric_(layout_.batches(), 1),
+      made_pressure_(layout_.batches(), 0.0),
       age_(layout_.batches()),
       which_(layout_.batches()) {
   for (Field* f : {&q_, &v_, &v_before_, &gravity_, &q_new_, &v_new_, &q_force_, &change_, &r_, &d_})
@@ -79,10 +80,22 @@ void RingIntegrator::start(const Field& q, const Field& v) {
   factor_valid_ = false;
   shell_.forces(q_, q_, strains, 0.0, r_);  // elastic − pressure
   ShellRing bare = shell_;
-  bare.set_pressure(0.0);
+  const double other = shell_.pressure() > 0.0 ? 0.0 : 1.0;  // Pa
+  bare.set_pressure(other);
   bare.forces(q_, q_, strains, 0.0, d_);
   for (std::size_t k = 0; k < d_.size(); ++k) d_[k] -= r_[k];
-  reference_ = std::max(free_norm(d_), 10.0 * free_norm(gravity_));
+  const double norm = free_norm(d_);
+  unit_force_ = norm / std::abs(shell_.pressure() - other);
+  set_reference(other > 0.0 ? 0.0 : norm);
+}
+
+void RingIntegrator::set_reference(double pressure_force) {
+  reference_ = std::max(pressure_force, 10.0 * free_norm(gravity_));
+}
+
+void RingIntegrator::set_pressure(double pressure) {
+  shell_.set_pressure(pressure);
+  set_reference(unit_force_ * pressure);
 }
 
 double RingIntegrator::free_norm(const Field& f) const {
@@ -133,6 +146,7 @@ void RingIntegrator::evaluate(double h, const Field& force) {
 /// Keeps the shape of a sector over the step, in rim axes.
 void RingIntegrator::note_shape(int sector, const RimState& rim) {
   const Mat3 back = rim.orientation.toRotationMatrix().transpose();
+  made_pressure_[sector] = shell_.pressure();
   for (int j = 0; j < layout_.rows; ++j)
     for (int k = 0; k <= kLanes; ++k) {
       const int i = sector * kLanes + k, to = 2 * sector * kLanes + k;
@@ -158,7 +172,8 @@ void RingIntegrator::build(const std::vector<char>& which) {
 
 /// The tangent of a sector's elements in the shape that was kept.
 void RingIntegrator::build_sector(int sector) {
-  const double c = coefficient(factor_h_), inertia = 1.0 / (factor_h_ * factor_h_);
+  const double c = coefficient(factor_h_) + shell_.branch_gain(factor_h_),
+               inertia = 1.0 / (factor_h_ * factor_h_);
   BatchTangent tangent;
   factor_.clear(sector);
   for (int j = 0; j + 1 < layout_.rows; ++j) {
@@ -172,7 +187,7 @@ void RingIntegrator::build_sector(int sector) {
     Lanes stress[kStrains];
     shell_.batch_stress_between(before, now, c, j, stress);
     tangent.compute(shell_.stiffness(j), middle, stress, c, geometric_[sector] ? 0.5 : 0.0,
-                    shell_.pressure());
+                    made_pressure_[sector]);
     factor_.add(tangent, mass_.element(j), inertia, j, sector);
   }
 }
@@ -287,6 +302,7 @@ bool RingIntegrator::iterate(double h, const Field& force, const Mat3& turn, int
 TireStatus RingIntegrator::step(double h, const RimState& end, const Field& force, const Vec3& about,
                                 Wrench& on_rim) {
   set_bead(end);
+  shell_.prepare(shell_step_, h);
   layout_.fill_padding(v_new_);
   const Mat3 orientation = end.orientation.toRotationMatrix();
   double norm = 0.0;
@@ -307,10 +323,11 @@ TireStatus RingIntegrator::step(double h, const RimState& end, const Field& forc
       return {};
     }
   }
-  return {false, fmt::format("residual {:.3g} of the pressure force after {} iterations and a new "
-                             "factorization, allowed {:.3g}; "
-                             "try a smaller run.step or more tire.substeps",
-                             norm / reference_, count, params_.tolerance)};
+  return {false, "did not converge",
+          fmt::format("residual {:.3g} of the pressure force, allowed {:.3g}, after {} iterations and a new "
+                      "factorization with a step of {:.3g} s; try a smaller run.step or a larger "
+                      "tire.structural_damping",
+                      norm / reference_, params_.tolerance, count, h)};
 }
 
 /// Spindle wrench from (2): −Σ Q − pressure resultant, moments at q_f, and the term Δx × ½ (p + p')/h. What
@@ -340,8 +357,8 @@ void RingIntegrator::finish(double h, const Vec3& about, Wrench& on_rim) {
   v_.swap(v_new_);
   q_.swap(q_new_);
   const ShellRing::Energies energies = shell_.accept(shell_step_);
-  elastic_ += energies.elastic;
-  dissipation_ += params_.damping / h * energies.change;
+  elastic_ += energies.elastic + energies.stored;
+  dissipation_ += params_.damping / h * energies.change + energies.relaxed;
 }
 
 void RingIntegrator::save(Archive& archive) const {
@@ -349,12 +366,18 @@ void RingIntegrator::save(Archive& archive) const {
   archive.put("v", v_);
   archive.put("v_before", v_before_);
   archive.put("stress", shell_step_.stress);
+  for (std::size_t i = 0; i < shell_step_.branch_strain.size(); ++i) {
+    archive.put(fmt::format("branch/{}/strain", i), shell_step_.branch_strain[i]);
+    archive.put(fmt::format("branch/{}/stress", i), shell_step_.branch_stress[i]);
+  }
+  archive.put("pressure", std::vector<double>{shell_.pressure(), unit_force_});
   archive.put("scalars", std::vector<double>{reference_, elastic_, dissipation_, residual_});
   archive.put("counts", std::vector<std::int64_t>{iterations_, factorizations_});
   archive.put("factor/flags", std::vector<std::int64_t>{factor_valid_, excess_});
   archive.put("factor/numbers", std::vector<double>{factor_h_, factor_work_});
   archive.put("factor/old", made_old_);
   archive.put("factor/new", made_new_);
+  archive.put("factor/pressure", made_pressure_);
   archive.put("factor/geometric", std::vector<std::int32_t>(geometric_.begin(), geometric_.end()));
 }
 
@@ -364,12 +387,21 @@ void RingIntegrator::restore(const Archive& archive) {
   v_before_ = archive.get<double>("v_before", layout_.size());
   shell_.begin(q_, shell_step_);
   shell_step_.stress = archive.get<double>("stress", shell_.strains_size());
+  for (std::size_t i = 0; i < shell_step_.branch_strain.size(); ++i) {
+    shell_step_.branch_strain[i] =
+        archive.get<double>(fmt::format("branch/{}/strain", i), shell_.strains_size());
+    shell_step_.branch_stress[i] =
+        archive.get<double>(fmt::format("branch/{}/stress", i), shell_.strains_size());
+  }
+  const auto& pressure = archive.get<double>("pressure", 2);
+  shell_.set_pressure(pressure[0]), unit_force_ = pressure[1];
   const auto& scalars = archive.get<double>("scalars", 4);
   const auto& counts = archive.get<std::int64_t>("counts", 2);
   const auto& flags = archive.get<std::int64_t>("factor/flags", 2);
   const auto& numbers = archive.get<double>("factor/numbers", 2);
   made_old_ = archive.get<double>("factor/old", made_layout_.size());
   made_new_ = archive.get<double>("factor/new", made_layout_.size());
+  made_pressure_ = archive.get<double>("factor/pressure", made_pressure_.size());
   const auto& geometric = archive.get<std::int32_t>("factor/geometric", geometric_.size());
   geometric_.assign(geometric.begin(), geometric.end());
   excess_ = static_cast<int>(flags[1]);

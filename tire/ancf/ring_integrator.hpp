@@ -52,6 +52,9 @@ class RingIntegrator {
   /// Starts from the given coordinates and velocities (padding filled).
   void start(const Field& q, const Field& v);
 
+  /// Gauge pressure from the next step on, Pa.
+  void set_pressure(double pressure);
+
   /// One step of size h to the rim state `end`. `force`: contact forces, padding zero. `about`: moments are
   /// taken about this point. The wrench is what the tire exerts on the rim, the step's mean, without forces
   /// on the bead discs.
@@ -65,7 +68,7 @@ class RingIntegrator {
   const RingIntegratorParams& params() const { return params_; }
   int unknowns() const { return factor_.unknowns(); }
 
-  double elastic_energy() const { return elastic_; }   // J
+  double elastic_energy() const { return elastic_; }   // with what relaxing branches store, J
   double dissipation() const { return dissipation_; }  // J, cumulative
   std::int64_t iterations() const { return iterations_; }
   std::int64_t factorizations() const { return factorizations_; }  // whole or in part
@@ -87,6 +90,7 @@ class RingIntegrator {
   void evaluate(double h, const Field& force);
   double free_norm(const Field& f) const;
   double coefficient(double h) const { return 1.0 + params_.damping / h; }
+  void set_reference(double pressure_force);
   void note_shape(int sector, const RimState& rim);
   void build(const std::vector<char>& which);
   void build_sector(int sector);
@@ -104,9 +108,10 @@ class RingIntegrator {
   RingMass mass_;
   RingFactor factor_;
 
-  Field q_, v_;             // state: coordinates (m, –) and velocities
-  Field v_before_;          // velocities one step earlier, for the prediction
-  double reference_ = 0.0;  // norm of the pressure forces, N
+  Field q_, v_;              // state: coordinates (m, –) and velocities
+  Field v_before_;           // velocities one step earlier, for the prediction
+  double reference_ = 0.0;   // norm of the pressure forces, N
+  double unit_force_ = 0.0;  // of the pressure forces of 1 Pa, N/Pa
   double elastic_ = 0.0, dissipation_ = 0.0, residual_ = 0.0;
   std::int64_t iterations_ = 0, factorizations_ = 0;
   double factor_work_ = 0.0;
@@ -114,7 +119,8 @@ class RingIntegrator {
   // What the factor was made from: coordinates in rim axes at the ends of a step, sector beside sector.
   RingLayout made_layout_;
   Field made_old_, made_new_;
-  std::vector<char> geometric_;  // sectors made with their geometric stiffness
+  std::vector<char> geometric_;        // sectors made with their geometric stiffness
+  std::vector<double> made_pressure_;  // Pa, by sector
   bool factor_valid_ = false;
   double factor_h_ = 0.0;  // s
   int excess_ = 0;         // iterations beyond one per step since the last renewal

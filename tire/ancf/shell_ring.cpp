@@ -3,10 +3,27 @@
 #include "tire/ancf/shell_batch.hpp"
 #include "tire/ancf/shell_matrices.hpp"
 
+#include <cmath>
+
 namespace furrow {
+namespace {
+
+/// Over a step of h = x τ: what is left of H, e^{−x}, and what of ΔE is added to it, b; the mean of H is
+/// b H + (1 − b)/x ΔE.
+struct Decay {
+  double left, taken, taken_mean;
+  Decay(const MaxwellBranch& branch, double h) {
+    const double x = h / branch.time;
+    left = std::exp(-x);
+    taken = -std::expm1(-x) / x;
+    taken_mean = x < 1e-3 ? 0.5 - x / 6.0 + x * x / 24.0 : (1.0 - taken) / x;
+  }
+};
+
+}  // namespace
 
 ShellRing::ShellRing(const TireFile& file, const RingMesh& mesh)
-    : layout_{mesh.columns, mesh.rows}, pressure_(file.pressure) {
+    : layout_{mesh.columns, mesh.rows}, branches_(file.prony), pressure_(file.pressure) {
   const Mat3 next = mesh.turn(1);
   for (int j = 0; j < mesh.elements_width(); ++j) {
     const Vec3 corner[4] = {mesh.position[j], next * mesh.position[j], next * mesh.position[j + 1],
@@ -95,6 +112,9 @@ void ShellRing::begin(const Field& q, Step& step) const {
   step.stress.assign(strains_size(), 0.0);
   step.stress_change = step.stress;
   step.rows.assign(layout_.rows - 1, {});
+  step.branch_strain.assign(branches_.size(), Field(strains_size(), 0.0));
+  step.branch_stress = step.branch_strain;
+  step.relaxed_stress.assign(branches_.empty() ? 0 : strains_size(), 0.0);
   Lanes e[kStrains], stress[kStrains];
   for (int j = 0; j + 1 < layout_.rows; ++j)
     for (int b = 0; b < layout_.batches(); ++b) {
@@ -105,13 +125,31 @@ void ShellRing::begin(const Field& q, Step& step) const {
     }
 }
 
+double ShellRing::branch_gain(double h) const {
+  double gain = 0.0;
+  for (const MaxwellBranch& branch : branches_) gain += branch.modulus * Decay(branch, h).taken;
+  return gain;
+}
+
+void ShellRing::prepare(Step& step, double h) const {
+  step.h = h;
+  if (branches_.empty()) return;
+  std::copy(step.stress.begin(), step.stress.end(), step.relaxed_stress.begin());
+  for (std::size_t i = 0; i < branches_.size(); ++i) {
+    const double left = Decay(branches_[i], h).left;
+    for (std::size_t k = 0; k < step.stress.size(); ++k)
+      step.relaxed_stress[k] += left * step.branch_stress[i][k];
+  }
+}
+
 void ShellRing::row_forces(const Field& q_new, const Field& q_force, Step& step, double c, int j,
                            Field& f) const {
   Lanes e[kStrains], u[kStrains];
   Lanes elastic = {}, change = {};
   for (int b = 0; b < layout_.batches(); ++b) {
     const std::size_t at = batch_of(step.strains, j, b) - step.strains.data();
-    const double *old = step.strains.data() + at, *stress = step.stress.data() + at;
+    const double *old = step.strains.data() + at, *stress = step.stress.data() + at,
+                 *relaxed = branches_.empty() ? stress : step.relaxed_stress.data() + at;
     double *strains_to = step.new_strains.data() + at, *change_to = step.stress_change.data() + at;
     const Lanes valid = mask(b);
     batch_strains_at(q_new, j, b, e);
@@ -125,25 +163,29 @@ void ShellRing::row_forces(const Field& q_new, const Field& q_force, Step& step,
       store(change_to + k * kLanes, u[k]);
       elastic += (s + 0.5 * u[k]) * e[k];
       change += u[k] * e[k];
-      u[k] = s + c * u[k];
+      u[k] = load(relaxed + k * kLanes) + c * u[k];
     }
     BatchNodes nodes;
     nodes.read(layout_, q_force.data(), b * kLanes, j);
     BatchForces(nodes, u, pressure_ * valid).add(layout_, f.data(), b * kLanes, j);
   }
-  step.rows[j] = {sum(elastic), sum(change)};
+  step.rows[j].elastic = sum(elastic);
+  step.rows[j].change = sum(change);
 }
 
 // Row j adds to the nodes of rows j and j + 1: first the even rows, then the odd ones, so that no two threads meet.
 void ShellRing::forces(const Field& q_new, const Field& q_force, Step& step, double c, Field& f,
                        int threads) const {
+  const double with_branches = c + branch_gain(step.h);
   std::fill(f.begin(), f.end(), 0.0);
   for (const int parity : {0, 1}) {
     if (threads > 1) {
 #pragma omp parallel for schedule(static) num_threads(threads)
-      for (int j = parity; j < layout_.rows - 1; j += 2) row_forces(q_new, q_force, step, c, j, f);
+      for (int j = parity; j < layout_.rows - 1; j += 2)
+        row_forces(q_new, q_force, step, with_branches, j, f);
     } else {
-      for (int j = parity; j < layout_.rows - 1; j += 2) row_forces(q_new, q_force, step, c, j, f);
+      for (int j = parity; j < layout_.rows - 1; j += 2)
+        row_forces(q_new, q_force, step, with_branches, j, f);
     }
   }
   layout_.fold_padding(f);
@@ -152,9 +194,40 @@ void ShellRing::forces(const Field& q_new, const Field& q_force, Step& step, dou
 ShellRing::Energies ShellRing::accept(Step& step) const {
   Energies total;
   for (const Energies& row : step.rows) total.elastic += row.elastic, total.change += row.change;
+  accept_branches(step, total);
   step.strains.swap(step.new_strains);
   for (std::size_t k = 0; k < step.stress.size(); ++k) step.stress[k] += step.stress_change[k];
   return total;
+}
+
+/// H_i and g_i D̂ H_i at the step's end. What is lost is the work of the mean stress, Σ ΔEᵀ g D̂ H̄, less what is stored:
+/// exact for an even change of strain.
+void ShellRing::accept_branches(Step& step, Energies& total) const {
+  for (std::size_t i = 0; i < branches_.size(); ++i) {
+    const Decay decay(branches_[i], step.h);
+    const double g = branches_[i].modulus;
+    for (int j = 0; j + 1 < layout_.rows; ++j) {
+      Lanes work = {}, change = {};
+      for (int b = 0; b < layout_.batches(); ++b) {
+        const std::size_t at = batch_of(step.strains, j, b) - step.strains.data();
+        const Lanes valid = mask(b);
+        for (int k = 0; k < kStrains; ++k) {
+          const std::size_t n = at + static_cast<std::size_t>(k) * kLanes;
+          double *strain = step.branch_strain[i].data() + n, *stress = step.branch_stress[i].data() + n;
+          const Lanes e = valid * (load(step.new_strains.data() + n) - load(step.strains.data() + n)),
+                      u = load(step.stress_change.data() + n), h = load(strain), s = load(stress);
+          const Lanes h_new = decay.left * h + decay.taken * e, s_new = decay.left * s + g * decay.taken * u;
+          work += (decay.taken * s + g * decay.taken_mean * u) * e;
+          change += s_new * h_new - s * h;
+          store(strain, h_new);
+          store(stress, s_new);
+        }
+      }
+      const double stored = 0.5 * sum(change);
+      total.stored += stored;
+      total.relaxed += sum(work) - stored;
+    }
+  }
 }
 
 ShellRing::Energies ShellRing::account(const Field& q, Field& e) const {

@@ -18,6 +18,7 @@ class RigidTire final : public Tire {
   double tread_width() const override { return tread_width_; }
   int coordinates() const override { return 0; }
 
+  void set_pressure(double) override {}
   void place(const RimState& rim) override;
   void surface(SurfaceState& out) const override;
   TireStatus advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) override;

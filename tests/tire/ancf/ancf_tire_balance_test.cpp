@@ -39,7 +39,7 @@ TEST(AncfTireBalance,
     }
     t.extend(rolling_rim(n * kStep, tire.radius(), kSpeed, kDepth), kStep);
     const TireStatus status = tire.advance(t, f, 1);
-    ASSERT_TRUE(status.converged) << status.message;
+    ASSERT_TRUE(status.converged) << status.message();
     tire.surface(end);
     const Field& after = tire.integrator().q();
     const Wrench spindle = tire.spindle_wrench();

@@ -119,7 +119,7 @@ Field rolled(const RingIntegratorParams& params, int steps) {
   for (int n = 0; n < steps; ++n) {
     t.extend(rolling_rim(n * h, tire.radius(), speed, depth), h);
     const TireStatus status = tire.advance(t, ground_forces(tire), 1);
-    EXPECT_TRUE(status.converged) << status.message;
+    EXPECT_TRUE(status.converged) << status.message();
   }
   return tire.integrator().q();
 }
@@ -179,8 +179,9 @@ TEST(AncfTire, a_blow_that_cannot_be_integrated_is_a_status_with_advice) {
     status = tire.advance(t, f, 1);
   }
   EXPECT_FALSE(status.converged);
-  EXPECT_EQ(status.message.rfind("tire did not converge at step", 0), 0u) << status.message;
-  EXPECT_NE(status.message.find("try"), std::string::npos);
+  const std::string message = status.message("0 ", " at t = 0.1 s, step 7");
+  EXPECT_EQ(message.rfind("tire 0 did not converge at t = 0.1 s, step 7: residual ", 0), 0u) << message;
+  EXPECT_NE(message.find("; try "), std::string::npos) << message;
 }
 
 TEST(AncfTire, pressed_on_a_plane_it_carries_350_to_800_newtons_per_millimetre) {
@@ -193,7 +194,7 @@ TEST(AncfTire, pressed_on_a_plane_it_carries_350_to_800_newtons_per_millimetre) 
   for (int n = 0; n < 500; ++n) {
     t.extend(rolling_rim(n * h, tire.radius(), 0.0, depth), h);
     const TireStatus status = tire.advance(t, ground_forces(tire), 1);
-    ASSERT_TRUE(status.converged) << status.message;
+    ASSERT_TRUE(status.converged) << status.message();
   }
   SurfaceState s;
   tire.surface(s);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "protocol/error.hpp"
 #include "small_tire.hpp"
 
 namespace furrow::test {
@@ -44,8 +45,42 @@ TEST(Inflation, pressure_zero_leaves_the_reference) {
   EXPECT_EQ(inflate(ShellRing(file, mesh), mesh, report), undeformed(mesh));
 }
 
+TEST(Inflation, at_low_pressure_growth_is_linear_on_fine_meshes_too) {
+  double growth[2];
+  for (int k = 0; k < 2; ++k) {
+    TireFile file = small_file("hmmwv_layered.json", 180, 48);
+    file.pressure = k == 0 ? 2e3 : 4e3;
+    const RingMesh mesh = make_ring_mesh(file);
+    const ShellRing shell(file, mesh);
+    InflationReport report;
+    growth[k] = shell.layout().get(inflate(shell, mesh, report), 0, mesh.rows / 2, 0).norm() - file.radius;
+    EXPECT_LT(report.residual, 1e-6);
+  }
+  EXPECT_NEAR(growth[1] / growth[0], 2.0, 0.02);
+}
+
+TEST(Inflation, at_ten_times_the_pressure_it_converges_and_beyond_it_says_how_far_it_came) {
+  TireFile file = small_file();
+  file.pressure = 2e6;
+  const RingMesh mesh = make_ring_mesh(file);
+  InflationReport report;
+  inflate(ShellRing(file, mesh), mesh, report);
+  EXPECT_LT(report.residual, 1e-6);
+  file.pressure = 1e8;
+  try {
+    inflate(ShellRing(file, mesh), mesh, report);
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::physics);
+    const std::string what = error.what();
+    EXPECT_EQ(what.rfind("tire inflation to 1e+08 Pa did not converge: it came to ", 0), 0u) << what;
+    EXPECT_NE(what.find("; try "), std::string::npos) << what;
+  }
+}
+
 TEST(Inflation, all_shipped_tires_inflate_at_low_and_full_pressure) {
-  for (const char* name : {"hmmwv_layered.json", "hmmwv_lumped.json", "toroidal.json"})
+  for (const char* name :
+       {"hmmwv_layered.json", "hmmwv_lumped.json", "toroidal.json", "passenger_205_55r16.json"})
     for (const double share : {0.35, 1.0, 1.5}) {
       TireFile file = small_file(name, 30, 12);
       file.pressure *= share;

@@ -223,7 +223,7 @@ double swung_tire(double h) {
   double torque = 0.0;
   for (int n = 1; n <= count; ++n) {
     const TireStatus status = run.step(h, rim(n * h), none, Vec3(0, 0, 1), on_rim);
-    EXPECT_TRUE(status.converged) << status.message;
+    EXPECT_TRUE(status.converged) << status.message();
     torque += h * on_rim.moment.x();
   }
   return torque;

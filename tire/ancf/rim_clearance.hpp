@@ -1,0 +1,36 @@
+// How far the shell is from the rim that holds it. The rim is taken as a solid cylinder of the beads' radius between the
+// bead loops; what hangs outside of it, beyond a flange, may come nearer to the axle. Rim and shell have no contact law: a
+// tire whose clearance is used up is beyond this model.
+#pragma once
+
+#include <vector>
+
+#include "tire/ancf/ring_layout.hpp"
+#include "tire/ring_mesh.hpp"
+#include "tire/tire.hpp"
+
+namespace furrow {
+
+class RimClearance {
+ public:
+  RimClearance(const TireFile& file, const RingMesh& mesh);
+
+  /// The node between the beads whose inner surface is nearest to the rim, and the one farthest from the axle's centre.
+  struct Nodes {
+    double clearance = 1e300;  // m, below zero: inside the rim; huge when no node stands over the rim
+    int column = 0, row = 0;   // of the nearest
+    double farthest = 0.0;     // m
+    int far_column = 0, far_row = 0;
+  };
+  Nodes measure(const RingLayout& layout, const Field& q, const RimState& rim) const;
+
+  /// What is wrong with these nodes, with figures and what to try.
+  TireStatus status(const Nodes& nodes) const;
+
+ private:
+  double radius_ = 0.0, half_width_ = 0.0;  // of the cylinder, m
+  double limit_ = 0.0;                      // of the distance from the axle's centre, m
+  std::vector<double> inside_;              // of the mid-surface, by row: half the thickness, m
+};
+
+}  // namespace furrow

@@ -1,0 +1,28 @@
+#include "tire/pressure_schedule.hpp"
+
+#include <algorithm>
+
+namespace furrow {
+namespace {
+bool by_pressure(const PressureSchedule::Knot& a, const PressureSchedule::Knot& b) {
+  return a.pressure < b.pressure;
+}
+}  // namespace
+
+double PressureSchedule::at(double time) const {
+  const auto after = std::find_if(knots.begin(), knots.end(), [&](const Knot& k) { return k.time > time; });
+  if (after == knots.begin()) return knots.front().pressure;
+  if (after == knots.end()) return knots.back().pressure;
+  const Knot &a = *(after - 1), &b = *after;
+  return a.pressure + (b.pressure - a.pressure) * ((time - a.time) / (b.time - a.time));
+}
+
+double PressureSchedule::lowest() const {
+  return std::min_element(knots.begin(), knots.end(), by_pressure)->pressure;
+}
+
+double PressureSchedule::highest() const {
+  return std::max_element(knots.begin(), knots.end(), by_pressure)->pressure;
+}
+
+}  // namespace furrow

@@ -1,0 +1,25 @@
+// Inflation pressure as a function of time: straight lines between knots, constant before the first and after the
+// last one.
+#pragma once
+
+#include <vector>
+
+namespace furrow {
+
+struct PressureSchedule {
+  struct Knot {
+    double time = 0.0;      // s
+    double pressure = 0.0;  // gauge, Pa
+    bool operator==(const Knot&) const = default;
+  };
+  std::vector<Knot> knots;  // times increase; none: nothing is said
+
+  bool empty() const { return knots.empty(); }
+  bool varies() const { return knots.size() > 1; }
+  double at(double time) const;  // Pa; only of a schedule that is not empty
+  double lowest() const;
+  double highest() const;
+  bool operator==(const PressureSchedule&) const = default;
+};
+
+}  // namespace furrow

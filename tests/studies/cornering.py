@@ -1,10 +1,15 @@
 #!/usr/bin/python3
 """Side force, aligning moment and camber thrust on hard ground from the sweeps of rigs/study_slip_angle.json,
-study_camber.json and study_hard_slip.json, and what the runs of rolling.json add: relaxation length, energy per
-revolution. Writes cornering.csv (one line a run), cornering_figures.csv (what is derived) and cornering.png beside it.
+study_camber.json and study_hard_slip.json, and what the runs of rolling.json add: relaxation length, mesh and
+friction checks. Writes cornering.csv (one line a run), cornering_figures.csv (what is derived) and cornering.png beside it.
+
+The tire takes about half a metre to build up its side force, so that at small angles the means of the summaries are a
+few per cent short of the steady values. Those are taken from the series: F = F_end - B exp(-x/sigma), x the distance
+travelled, fitted from 0.2 s on; the interval is the difference from a fit that begins at 0.28 s.
 
     build/furrow sweep rigs/study_slip_angle.json --out results/study_slip_angle      (and the other two)
     /usr/bin/python3 tests/studies/run_study.py tests/studies/rolling.json
+    FURROW_ROLLING_MESH=60x12 FURROW_ROLLING_CSV=tests/studies/revolutions.csv build/tests_nodes_rolling --gtest_filter='*ten*'
     /usr/bin/python3 tests/studies/cornering.py
 """
 import csv
@@ -33,10 +38,37 @@ COLUMNS = {"Fx_N": "iso_w.force_N.0", "Fy_N": "iso_w.force_N.1", "Fz_N": "iso_w.
            "pull_sem_N": "drawbar_pull_N.sem", "steady": "drawbar_pull_N.steady"}
 STUDENT = {1: 12.7, 2: 4.30, 3: 3.18, 4: 2.78, 5: 2.57, 6: 2.45, 7: 2.36}  # 97.5 % quantiles of Student's t
 LINEAR = math.radians(1.05)  # slip angles up to here are fitted with a line
+FITTED = ("Fy_N", "iso_force_y_N"), ("Mz_Nm", "iso_moment_z_Nm")
 
 
 def tire_of(file):
     return file.removesuffix(".json").removeprefix("hmmwv_")
+
+
+def read_series(file):
+    """timeseries.csv, also of a run that is not over: its last line may be cut."""
+    lines = file.read_text(encoding="utf-8").splitlines()
+    width = lines[0].count(",")
+    return np.genfromtxt([line for line in lines if line.count(",") == width], delimiter=",", names=True)
+
+
+def steady(series, name, begin):
+    """Where a series is heading: least squares of end − B exp(−x/σ), x from the distance at `begin`; its last mean where
+    it has no more than 2 % of the range to go."""
+    window = series["time_s"] > begin
+    x, y = series["position_m"][window], series[name][window]
+    x = x - x[0]
+    last = y[x > 0.8 * x[-1]].mean()
+    if abs(last - y[x < 0.2 * x[-1]].mean()) < 0.02 * max(abs(last), 5.0 * y[x > 0.8 * x[-1]].std()):
+        return {"end": last, "sigma": math.nan}
+    best = None
+    for sigma in np.linspace(0.05, 1.5, 146):
+        design = np.column_stack([np.ones_like(x), np.exp(-x / sigma)])
+        found, *_ = np.linalg.lstsq(design, y, rcond=None)
+        error = np.sum((y - design @ found) ** 2)
+        if best is None or error < best[0]:
+            best = (error, sigma, found[0])
+    return {"end": best[2], "sigma": best[1]}
 
 
 def sweep_rows():
@@ -52,6 +84,12 @@ def sweep_rows():
                     continue
                 values = {name: row[column] for name, column in COLUMNS.items()}
                 values = {name: value if name == "steady" else float(value) for name, value in values.items()}
+                series = read_series(RESULTS / study / row["folder"] / "timeseries.csv")
+                for name, source in FITTED:
+                    first, second = steady(series, source, 0.2), steady(series, source, 0.28)
+                    values[f"steady_{name}"], values[f"steady_interval_{name}"] = first["end"], abs(first["end"] - second["end"])
+                    if name == "Fy_N":
+                        values["sigma_m"] = first["sigma"]
                 rows.append({"study": study.removeprefix("study_"), "tire": tire_of(row["tire.file"]),
                              "setting": float(row[key]), **values})
     return rows
@@ -99,7 +137,7 @@ def relaxation(series, toe_time, toe_ramp, reach):
 
 def series_of(case):
     file = RESULTS / "studies" / "rolling" / case / "timeseries.csv"
-    return np.genfromtxt(file, delimiter=",", names=True) if file.exists() else None
+    return read_series(file) if file.exists() else None
 
 
 def figures(rows):
@@ -109,22 +147,30 @@ def figures(rows):
     def add(tire, quantity, value, interval, unit, how):
         out.append({"tire": tire, "quantity": quantity, "value": f"{value:.5g}", "interval": f"{interval:.2g}", "unit": unit, "how": how})
 
+    def chord(rows, angle, size, force):
+        """Mean of |force|/|angle| at ±size, with half the difference of the two sides and of the fits as its interval."""
+        these = [r for r in rows if abs(abs(r[angle]) - size) < 1e-4]
+        values = [abs(r[f"steady_{force}"]) / size for r in these]
+        if not values:
+            return math.nan, math.nan
+        return np.mean(values), 0.5 * (max(values) - min(values)) + max(r[f"steady_interval_{force}"] for r in these) / size
+
     for tire in ("layered", "lumped"):
-        side = select(rows, "slip_angle", tire)
-        small = [r for r in side if abs(r["slip_angle_rad"]) < LINEAR]
-        if len(small) > 2:
-            slope, error = line(column(small, "slip_angle_rad"), column(small, "Fy_N"))
-            add(tire, "cornering stiffness", -slope, error, "N/rad", f"line through {len(small)} runs up to 1 degree")
-            slope, error = line(column(small, "Fy_N"), column(small, "Mz_Nm"))
-            add(tire, "pneumatic trail", -slope, error, "m", "-dMz/dFy of the same runs")
-            slope, error = line(column(small, "slip_angle_rad"), column(small, "Mz_Nm"))
-            add(tire, "aligning stiffness", slope, error, "N m/rad", "the same runs")
-        camber = select(rows, "camber", tire)
-        if len(camber) > 2:
-            slope, error = line(column(camber, "camber_angle_rad"), column(camber, "Fy_N"))
-            add(tire, "camber stiffness", -slope, error, "N/rad", f"line through {len(camber)} runs up to 5 degrees")
-            slope, error = line(column(camber, "camber_angle_rad"), column(camber, "Mz_Nm"))
-            add(tire, "camber aligning stiffness", slope, error, "N m/rad", "the same runs")
+        side, camber = select(rows, "slip_angle", tire), select(rows, "camber", tire)
+        for size, degrees in ((0.00873, 0.5), (0.01745, 1.0)):
+            stiffness, error = chord(side, "slip_angle_rad", size, "Fy_N")
+            aligning, aligning_error = chord(side, "slip_angle_rad", size, "Mz_Nm")
+            add(tire, f"cornering stiffness, {degrees:g} degrees", stiffness, error, "N/rad", "-Fy/alpha")
+            add(tire, f"aligning stiffness, {degrees:g} degrees", aligning, aligning_error, "N m/rad", "Mz/alpha")
+            trail = aligning / stiffness
+            add(tire, f"pneumatic trail, {degrees:g} degrees", trail, trail * math.hypot(error / stiffness, aligning_error / aligning), "m", "-Mz/Fy")
+        small = [r["sigma_m"] for r in side if 1e-3 < abs(r["slip_angle_rad"]) < LINEAR and not math.isnan(r["sigma_m"])]
+        if small:
+            add(tire, "relaxation length, start with a slip angle", np.mean(small), 0.5 * (max(small) - min(small)), "m",
+                f"fits of the side force of {len(small)} runs up to 1 degree")
+        for size, degrees in ((0.04363, 2.5), (0.08727, 5.0)):
+            stiffness, error = chord(camber, "camber_angle_rad", size, "Fy_N")
+            add(tire, f"camber stiffness, {degrees:g} degrees", stiffness, error, "N/rad", "-Fy/gamma")
         driven = select(rows, "hard_slip", tire)
         near = [r for r in driven if -0.001 < r["setting"] < 0.011]
         if len(near) > 1:
@@ -132,28 +178,27 @@ def figures(rows):
             add(tire, "slip stiffness", slope, error, "N", f"line through {len(near)} runs, slip 0 to 1 %")
         step = series_of(f"{tire}_step_of_1_degree")
         if step is not None:
-            fits = [relaxation(step, 0.3, 0.01, reach)["sigma"] for reach in (0.5, 0.8, 1.1, 1.35)]
-            add(tire, "relaxation length", np.mean(fits), 0.5 * (max(fits) - min(fits)), "m",
-                "fit of 1 - exp(-x/sigma) over 0.5, 0.8, 1.1, 1.35 m; half the range")
+            fits = [relaxation(step, 0.3, 0.01, reach)["sigma"] for reach in (0.8, 1.1, 1.35)]
+            add(tire, "relaxation length, step of 1 degree", np.mean(fits), 0.5 * (max(fits) - min(fits)), "m",
+                "fit of 1 - exp(-x/sigma) over 0.8, 1.1, 1.35 m; half the range")
+        for check, what in (("c_50", "friction scale 50 s/m"), ("half_shear_stiffness", "half the ground's shear stiffness"), ("90x24", "90 x 24 elements")):
+            series = series_of(f"{tire}_toe_1_{check}")
+            if series is not None and series["time_s"][-1] > 0.5:
+                force, moment = (steady(series, source, 0.2)["end"] for _, source in FITTED)
+                add(tire, f"cornering stiffness, 1 degree, {what}", abs(force) / 0.01745, abs(force - steady(series, "iso_force_y_N", 0.28)["end"]) / 0.01745,
+                    "N/rad", "-Fy/alpha")
+                add(tire, f"pneumatic trail, 1 degree, {what}", -moment / force, 0.0, "m", "-Mz/Fy")
     return out
 
 
-def energies():
-    """Mean and highest energy (kinetic + strain) of every revolution of the long runs."""
-    lines = []
-    for tire in ("layered", "lumped"):
-        s = series_of(f"{tire}_speed_8_ten_revolutions")
-        if s is None:
-            continue
-        angle = np.cumsum(s["spin_rad_per_s"]) * (s["time_s"][1] - s["time_s"][0])
-        angle -= np.interp(0.3, s["time_s"], angle)
-        for k in range(int(angle[-1] // (2 * math.pi))):
-            these = (angle >= 2 * math.pi * k) & (angle < 2 * math.pi * (k + 1))
-            e = s["tire_energy_J"][these]
-            lines.append({"tire": tire, "revolution": k + 1, "energy_mean_J": f"{e.mean():.6g}", "energy_highest_J": f"{e.max():.6g}",
-                          "energy_std_J": f"{e.std():.4g}", "pull_mean_N": f"{s['drawbar_pull_N'][these].mean():.5g}",
-                          "loaded_radius_mean_m": f"{s['loaded_radius_m'][these].mean():.7g}"})
-    return lines
+def energies(tire):
+    """Revolutions and their mean energy (kinetic + strain) on the finest mesh of revolutions.csv."""
+    file = HERE / "revolutions.csv"
+    if not file.exists():
+        return []
+    with open(file, newline="", encoding="utf-8") as stream:
+        rows = [row for row in csv.DictReader(stream) if tire_of(row["tire"]) == tire and row["mesh"] == "60x12" and int(row["revolution"]) > 0]
+    return [(int(row["revolution"]), float(row["energy_mean_J"])) for row in rows]
 
 
 def write(name, rows):
@@ -171,11 +216,11 @@ def draw(rows):
         side, camber, slip = (select(rows, study, tire) for study in ("slip_angle", "camber", "hard_slip"))
         angle = np.degrees(column(side, "slip_angle_rad")) if side else []
         if side:
-            axes[0, 0].errorbar(angle, column(side, "Fy_N") / 1e3, 2e-3 * column(side, "Fy_sem_N"), marker=marker, capsize=2, label=tire)
-            axes[0, 1].errorbar(angle, column(side, "Mz_Nm"), 2 * column(side, "Mz_sem_Nm"), marker=marker, capsize=2, label=tire)
+            axes[0, 0].errorbar(angle, column(side, "steady_Fy_N") / 1e3, 1e-3 * column(side, "steady_interval_Fy_N"), marker=marker, capsize=2, label=tire)
+            axes[0, 1].errorbar(angle, column(side, "steady_Mz_Nm"), column(side, "steady_interval_Mz_Nm"), marker=marker, capsize=2, label=tire)
         if camber:
-            axes[0, 2].errorbar(np.degrees(column(camber, "camber_angle_rad")), column(camber, "Fy_N"),
-                                2 * column(camber, "Fy_sem_N"), marker=marker, capsize=2, label=tire)
+            axes[0, 2].errorbar(np.degrees(column(camber, "camber_angle_rad")), column(camber, "steady_Fy_N"),
+                                column(camber, "steady_interval_Fy_N"), marker=marker, capsize=2, label=tire)
         if slip:
             axes[1, 0].plot(column(slip, "setting"), column(slip, "Fx_N") / 1e3, marker=marker, label=tire)
         step = series_of(f"{tire}_step_of_1_degree")
@@ -183,10 +228,9 @@ def draw(rows):
             fit = relaxation(step, 0.3, 0.01, 1.2)
             line_, = axes[1, 1].plot(fit["s"], fit["y"], lw=0.8, alpha=0.6, label=f"{tire}, σ = {fit['sigma']:.3f} m")
             axes[1, 1].plot(fit["s"], fit["size"] * (1 - np.exp(-fit["s"] / fit["sigma"])), "--", color=line_.get_color())
-        long = [row for row in energies() if row["tire"] == tire]
-        if long:
-            first = float(long[0]["energy_mean_J"])
-            axes[1, 2].plot([r["revolution"] for r in long], [float(r["energy_mean_J"]) - first for r in long], marker=marker, label=tire)
+        turns = energies(tire)
+        if turns:
+            axes[1, 2].plot([k for k, _ in turns], [energy - turns[0][1] for _, energy in turns], marker=marker, label=tire)
     for axis, x, y in ((axes[0, 0], "slip angle, degrees", "lateral force, kN"), (axes[0, 1], "slip angle, degrees", "aligning moment, N m"),
                        (axes[0, 2], "camber angle, degrees", "lateral force, N"), (axes[1, 0], "slip (undeformed radius)", "longitudinal force, kN"),
                        (axes[1, 1], "distance after a step of 1 degree, m", "lateral force, N"),
@@ -207,7 +251,6 @@ def main():
     write("cornering.csv", rows)
     derived = figures(rows)
     write("cornering_figures.csv", derived)
-    write("revolutions.csv", energies())
     for row in derived:
         print(f"{row['tire']:8} {row['quantity']:28} {row['value']:>10} ± {row['interval']:8} {row['unit']}")
     draw(rows)

@@ -130,9 +130,15 @@ TEST(Inflated, crown_of_the_lumped_tire_carries_the_pressure_by_its_hoop_stiffne
     const auto at = [&](int j) { return ring.shell.layout().get(ring.q, 0, j, 0); };
     const Vec3 a = at(crown - 1), b = at(crown), c = at(crown + 1);
     const double h = 0.5 * (c - a).norm(), sag = b.z() - 0.5 * (a.z() + c.z());
-    const double radius = b.z(), radius_0 = ring.mesh.position[crown].z();
+    // Resultants are means over the two elements at the crown, and so are the radii.
+    const auto mean = [](double low, double middle, double high) {
+      return 0.25 * (low + 2.0 * middle + high);
+    };
+    const auto& reference = ring.mesh.position;
+    const double radius = mean(a.z(), b.z(), c.z()),
+                 radius_0 = mean(reference[crown - 1].z(), reference[crown].z(), reference[crown + 1].z());
     const double stretch = radius / radius_0,
-                 along = h / (0.5 * (ring.mesh.position[crown + 1] - ring.mesh.position[crown - 1]).norm());
+                 along = h / (0.5 * (reference[crown + 1] - reference[crown - 1]).norm());
     const double hoop = 0.5 * (n[1][0] + n[2][0]), meridian = 0.5 * (n[1][1] + n[2][1]);
     const double shear = (n[0][4] - n[1][4] - n[2][4] + n[3][4]) / (2 * h * h);
     const std::string mesh = size(180, width), tire = "inflated hmmwv_lumped.json, crown";
@@ -140,18 +146,14 @@ TEST(Inflated, crown_of_the_lumped_tire_carries_the_pressure_by_its_hoop_stiffne
     const double carried =
         hoop * stretch / along / radius + meridian * along / stretch * 2 * sag / (h * h) - shear;
     verify(tire, "N hoop/R + N meridian kappa - M'' over p, " + mesh, carried / ring.file.pressure, 1.0,
-           12.0 / (width * width) + 5e-3, "equilibrium (Flugge 1973, ch. 2, 5)");
+           0.7 / width, "equilibrium (Flugge 1973, ch. 2, 5)");
     const double modulus = 7.522762e8, thickness = 8.1e-3, nu = 0.013982;
     const double strain = (hoop - nu * meridian) / (modulus * thickness);
     verify(tire, "growth by Hooke's law from N hoop, mm, " + mesh, 1e3 * (radius - radius_0),
-           1e3 * radius_0 * (std::sqrt(1 + 2 * strain) - 1), 1e-2, "plane stress, E of the circumference");
+           1e3 * radius_0 * (std::sqrt(1 + 2 * strain) - 1), 5e-3, "plane stress, E of the circumference");
     const double free_ring = ring.file.pressure * radius_0 * radius_0 / (modulus * thickness);
     EXPECT_LT(radius - radius_0, free_ring);
     EXPECT_GT(radius - radius_0, 0.75 * free_ring);
-    std::printf("%s: hoop %.4g, meridian %.4g, bending %.4g of the pressure; free ring %.3g mm\n",
-                mesh.c_str(), hoop * stretch / along / radius / ring.file.pressure,
-                meridian * along / stretch * 2 * sag / (h * h) / ring.file.pressure,
-                -shear / ring.file.pressure, 1e3 * free_ring);
   }
 }
 

@@ -13,6 +13,7 @@ travelled, fitted from 0.2 s on; the interval is the difference from a fit that 
     /usr/bin/python3 tests/studies/cornering.py
 """
 import csv
+import json
 import math
 import pathlib
 import sys
@@ -35,9 +36,10 @@ COLUMNS = {"Fx_N": "iso_w.force_N.0", "Fy_N": "iso_w.force_N.1", "Fz_N": "iso_w.
            "Mz_sem_Nm": "iso_w.moment_sem_Nm.2", "slip_angle_rad": "iso_w.slip_angle_rad",
            "camber_angle_rad": "iso_w.camber_angle_rad", "loaded_radius_m": "iso_w.loaded_radius_m",
            "effective_rolling_radius_m": "effective_rolling_radius_m", "pull_N": "drawbar_pull_N.mean",
-           "pull_sem_N": "drawbar_pull_N.sem", "steady": "drawbar_pull_N.steady"}
+           "pull_sem_N": "drawbar_pull_N.sem", "vertical_balance_residual": "vertical_balance_residual"}
 STUDENT = {1: 12.7, 2: 4.30, 3: 3.18, 4: 2.78, 5: 2.57, 6: 2.45, 7: 2.36}  # 97.5 % quantiles of Student's t
 LINEAR = math.radians(1.05)  # slip angles up to here are fitted with a line
+CONTACT = 0.12  # m
 FITTED = ("Fy_N", "iso_force_y_N"), ("Mz_Nm", "iso_moment_z_Nm")
 
 
@@ -45,11 +47,29 @@ def tire_of(file):
     return file.removesuffix(".json").removeprefix("hmmwv_")
 
 
+def value_of(summary, path):
+    for part in path.split("."):
+        summary = summary[int(part)] if isinstance(summary, list) else summary[part]
+    return summary
+
+
 def read_series(file):
     """timeseries.csv, also of a run that is not over: its last line may be cut."""
     lines = file.read_text(encoding="utf-8").splitlines()
     width = lines[0].count(",")
     return np.genfromtxt([line for line in lines if line.count(",") == width], delimiter=",", names=True)
+
+
+def exponential(x, y):
+    """Least squares of end − size exp(−x/σ)."""
+    best = None
+    for sigma in np.linspace(0.05, 1.5, 291):
+        design = np.column_stack([np.ones_like(x), -np.exp(-x / sigma)])
+        found, *_ = np.linalg.lstsq(design, y, rcond=None)
+        error = np.sum((y - design @ found) ** 2)
+        if best is None or error < best[0]:
+            best = (error, sigma, *found)
+    return {"end": best[2], "size": best[3], "sigma": best[1]}
 
 
 def steady(series, name, begin):
@@ -61,38 +81,28 @@ def steady(series, name, begin):
     last = y[x > 0.8 * x[-1]].mean()
     if abs(last - y[x < 0.2 * x[-1]].mean()) < 0.02 * max(abs(last), 5.0 * y[x > 0.8 * x[-1]].std()):
         return {"end": last, "sigma": math.nan}
-    best = None
-    for sigma in np.linspace(0.05, 1.5, 146):
-        design = np.column_stack([np.ones_like(x), np.exp(-x / sigma)])
-        found, *_ = np.linalg.lstsq(design, y, rcond=None)
-        error = np.sum((y - design @ found) ** 2)
-        if best is None or error < best[0]:
-            best = (error, sigma, found[0])
-    return {"end": best[2], "sigma": best[1]}
+    return exponential(x, y)
 
 
 def sweep_rows():
     """One dictionary a finished run."""
     rows = []
     for study, key in SWEEPS.items():
-        table = RESULTS / study / "sweep.csv"
-        if not table.exists():
-            continue
-        with open(table, newline="", encoding="utf-8") as file:
-            for row in csv.DictReader(file):
-                if row["state"] != "done":
-                    continue
-                values = {name: row[column] for name, column in COLUMNS.items()}
-                values = {name: value if name == "steady" else float(value) for name, value in values.items()}
-                series = read_series(RESULTS / study / row["folder"] / "timeseries.csv")
-                for name, source in FITTED:
-                    first, second = steady(series, source, 0.2), steady(series, source, 0.28)
-                    values[f"steady_{name}"], values[f"steady_interval_{name}"] = first["end"], abs(first["end"] - second["end"])
-                    if name == "Fy_N":
-                        values["sigma_m"] = first["sigma"]
-                rows.append({"study": study.removeprefix("study_"), "tire": tire_of(row["tire.file"]),
-                             "setting": float(row[key]), **values})
-    return rows
+        for summary in sorted((RESULTS / study / "runs").glob("*/summary.json")):
+            values = json.loads(summary.read_text(encoding="utf-8"))
+            scenario = json.loads(summary.with_name("scenario.json").read_text(encoding="utf-8"))
+            section, name = key.split(".")
+            setting, tire = scenario[section][name], tire_of(scenario["tire"]["file"])
+            values = {name: value_of(values, path) for name, path in COLUMNS.items()}
+            series = read_series(summary.with_name("timeseries.csv"))
+            for name, source in FITTED:
+                first, second = steady(series, source, 0.2), steady(series, source, 0.28)
+                values[f"steady_{name}"], values[f"steady_interval_{name}"] = first["end"], abs(first["end"] - second["end"])
+                if name == "Fy_N":
+                    values["sigma_m"] = first["sigma"]
+            values = {name: value if isinstance(value, bool) or value is None else f"{value:.6g}" for name, value in values.items()}
+            rows.append({"study": study.removeprefix("study_"), "tire": tire, "setting": setting, **values})
+    return sorted(rows, key=lambda r: (r["study"], r["tire"], r["setting"]))
 
 
 def line(x, y):
@@ -113,26 +123,18 @@ def select(rows, study, tire):
 
 
 def column(rows, name):
-    return np.array([r[name] for r in rows])
+    return np.array([float(r[name]) for r in rows])
 
 
 def relaxation(series, toe_time, toe_ramp, reach):
-    """σ of F = F0 + F1 (1 − exp(−s/σ)), s the distance travelled since the middle of the step, fitted up to `reach`."""
+    """σ of F = F_end − B exp(−s/σ), s the distance travelled since the middle of the step, fitted from CONTACT to `reach`.
+    Until the wheel has rolled one contact length off, what the turn of the wheel twisted is still in contact."""
     middle = toe_time + 0.5 * toe_ramp
     time, position, force = series["time_s"], series["position_m"], series["iso_force_y_N"]
-    start = np.interp(middle, time, position)
-    before = force[(time > toe_time - 0.1) & (time < toe_time)].mean()
-    s = position - start
-    window = (s > 0.5 * toe_ramp * series["speed_m_per_s"].mean()) & (s < reach)
-    s, y = s[window], force[window] - before
-    best = None
-    for sigma in np.linspace(0.01, 1.0, 1981):
-        shape = 1.0 - np.exp(-s / sigma)
-        size = (shape @ y) / (shape @ shape)
-        error = np.sum((y - size * shape) ** 2)
-        if best is None or error < best[0]:
-            best = (error, sigma, size)
-    return {"sigma": best[1], "size": best[2], "rms": math.sqrt(best[0] / len(s)), "s": s, "y": y}
+    s = position - np.interp(middle, time, position)
+    window = (s > CONTACT) & (s < reach)
+    found = exponential(s[window], force[window])
+    return {**found, "s": s[s > -0.05], "y": force[s > -0.05]}
 
 
 def series_of(case):
@@ -149,11 +151,11 @@ def figures(rows):
 
     def chord(rows, angle, size, force):
         """Mean of |force|/|angle| at ±size, with half the difference of the two sides and of the fits as its interval."""
-        these = [r for r in rows if abs(abs(r[angle]) - size) < 1e-4]
-        values = [abs(r[f"steady_{force}"]) / size for r in these]
+        these = [r for r in rows if abs(abs(float(r[angle])) - size) < 1e-4]
+        values = [abs(float(r[f"steady_{force}"])) / size for r in these]
         if not values:
             return math.nan, math.nan
-        return np.mean(values), 0.5 * (max(values) - min(values)) + max(r[f"steady_interval_{force}"] for r in these) / size
+        return np.mean(values), 0.5 * (max(values) - min(values)) + max(float(r[f"steady_interval_{force}"]) for r in these) / size
 
     for tire in ("layered", "lumped"):
         side, camber = select(rows, "slip_angle", tire), select(rows, "camber", tire)
@@ -164,7 +166,7 @@ def figures(rows):
             add(tire, f"aligning stiffness, {degrees:g} degrees", aligning, aligning_error, "N m/rad", "Mz/alpha")
             trail = aligning / stiffness
             add(tire, f"pneumatic trail, {degrees:g} degrees", trail, trail * math.hypot(error / stiffness, aligning_error / aligning), "m", "-Mz/Fy")
-        small = [r["sigma_m"] for r in side if 1e-3 < abs(r["slip_angle_rad"]) < LINEAR and not math.isnan(r["sigma_m"])]
+        small = [float(r["sigma_m"]) for r in side if 1e-3 < abs(float(r["slip_angle_rad"])) < LINEAR and not math.isnan(float(r["sigma_m"]))]
         if small:
             add(tire, "relaxation length, start with a slip angle", np.mean(small), 0.5 * (max(small) - min(small)), "m",
                 f"fits of the side force of {len(small)} runs up to 1 degree")
@@ -177,10 +179,10 @@ def figures(rows):
             slope, error = line(column(near, "setting"), column(near, "Fx_N"))
             add(tire, "slip stiffness", slope, error, "N", f"line through {len(near)} runs, slip 0 to 1 %")
         step = series_of(f"{tire}_step_of_1_degree")
-        if step is not None:
-            fits = [relaxation(step, 0.3, 0.01, reach)["sigma"] for reach in (0.8, 1.1, 1.35)]
+        if step is not None and step["time_s"][-1] > 0.64:
+            fits = [relaxation(step, 0.3, 0.01, reach)["sigma"] for reach in (0.9, 1.1, 1.35)]
             add(tire, "relaxation length, step of 1 degree", np.mean(fits), 0.5 * (max(fits) - min(fits)), "m",
-                "fit of 1 - exp(-x/sigma) over 0.8, 1.1, 1.35 m; half the range")
+                "fits from 0.12 m to 0.9, 1.1, 1.35 m; half the range")
         for check, what in (("c_50", "friction scale 50 s/m"), ("half_shear_stiffness", "half the ground's shear stiffness"), ("90x24", "90 x 24 elements")):
             series = series_of(f"{tire}_toe_1_{check}")
             if series is not None and series["time_s"][-1] > 0.5:
@@ -224,10 +226,11 @@ def draw(rows):
         if slip:
             axes[1, 0].plot(column(slip, "setting"), column(slip, "Fx_N") / 1e3, marker=marker, label=tire)
         step = series_of(f"{tire}_step_of_1_degree")
-        if step is not None:
+        if step is not None and step["time_s"][-1] > 0.64:
             fit = relaxation(step, 0.3, 0.01, 1.2)
             line_, = axes[1, 1].plot(fit["s"], fit["y"], lw=0.8, alpha=0.6, label=f"{tire}, σ = {fit['sigma']:.3f} m")
-            axes[1, 1].plot(fit["s"], fit["size"] * (1 - np.exp(-fit["s"] / fit["sigma"])), "--", color=line_.get_color())
+            s = np.linspace(CONTACT, 1.3)
+            axes[1, 1].plot(s, fit["end"] - fit["size"] * np.exp(-s / fit["sigma"]), "--", color=line_.get_color())
         turns = energies(tire)
         if turns:
             axes[1, 2].plot([k for k, _ in turns], [energy - turns[0][1] for _, energy in turns], marker=marker, label=tire)

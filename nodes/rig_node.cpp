@@ -11,7 +11,7 @@
 namespace furrow {
 namespace {
 
-constexpr double kPlacementGap = 1e-3;      // m, between the highest grain and the undeformed tire
+constexpr double kPlacementGap = 1e-3;      // m, between the highest grain and the inflated tire
 constexpr double kProgressInterval = 0.25;  // s of wall time
 
 class RigNode : public Node {
@@ -37,7 +37,7 @@ class RigNode : public Node {
     setup_ = receive<TerrainSetup>(transport, kTerrain);
     std::vector<double> height(wheels);
     for (int k = 0; k < wheels; ++k)
-      height[k] = setup_.top_height[k] + cards[1 + k].tire_radius + kPlacementGap + scenario_.drop_height;
+      height[k] = setup_.top_height[k] + cards[1 + k].tire_reach + kPlacementGap + scenario_.drop_height;
     rig_->place(height);
     // First of all, as the others begin to write frames once they are placed.
     if (!context.directory.empty())

@@ -119,6 +119,9 @@ DrawbarRigOptions rig_options(const json& j) {
   o.touchdown_damping = j["touchdown_damping"];
   o.touchdown_time = j["touchdown_time"];
   o.toe_angle = j["toe_angle"];
+  o.toe_time = j["toe_time"];
+  o.toe_ramp = j["toe_ramp"];
+  o.camber_angle = j["camber_angle"];
   o.travel_sign = j["travel_sign"];
   o.start = number_or(j["start"], 0.0);
   o.carrier_mass = j["carrier_mass"];
@@ -142,6 +145,7 @@ void take_rig(const json& j, Scenario& s) {
     o.lateral = wheel["lateral"];
     o.slip = number_or(wheel["slip"], o.slip);
     o.toe_angle = number_or(wheel["toe_angle"], o.toe_angle);
+    o.camber_angle = number_or(wheel["camber_angle"], o.camber_angle);
     o.start = number_or(wheel["start"], o.start);
     o.carrier_mass = number_or(wheel["carrier_mass"], o.carrier_mass);
   }

@@ -37,14 +37,18 @@ class Checks {
   void machine();
 
  private:
-  /// Half of what a wheel, turned by its toe angle, takes of the bin along x and across, m.
+  /// Half of what a wheel, turned by its toe angle and leaning by its camber, takes of the bin along x and across, m.
   struct Footprint {
     double along = 0.0, across = 0.0;
   };
   Footprint footprint(std::size_t wheel) const {
     const TireSize& tire = tires_[wheel];
-    const double c = std::cos(s_.rigs[wheel].toe_angle), s = std::abs(std::sin(s_.rigs[wheel].toe_angle));
-    return {tire.radius * c + 0.5 * tire.width * s, 0.5 * tire.width * c + tire.radius * s};
+    const DrawbarRigOptions& rig = s_.rigs[wheel];
+    const double c = std::cos(rig.toe_angle), s = std::abs(std::sin(rig.toe_angle));
+    const double half =
+        0.5 * tire.width * std::cos(rig.camber_angle) + tire.radius * std::abs(std::sin(rig.camber_angle));
+    const double along = tire.radius * c + half * s;
+    return {rig.toe_time > 0.0 ? std::max(along, tire.radius) : along, half * c + tire.radius * s};
   }
   bool grains() const { return s_.terrain.engine == "dem"; }
   /// The key of a wheel's value: the rig's own while there is no list of wheels.

@@ -72,6 +72,18 @@ constexpr SeriesColumn kColumns[] = {
     {"factorizations", 1.0, [](R& r) { return &r.factorizations; }},
     {"transfer_force_residual", 1.0, [](R& r) { return &r.transfer_force_residual; }},
     {"transfer_moment_residual", 1.0, [](R& r) { return &r.transfer_moment_residual; }},
+    {"iso_force_x_N", 1.0, [](R& r) { return &r.iso_force.x(); }},
+    {"iso_force_y_N", 1.0, [](R& r) { return &r.iso_force.y(); }},
+    {"iso_force_z_N", 1.0, [](R& r) { return &r.iso_force.z(); }},
+    {"iso_moment_x_Nm", 1.0, [](R& r) { return &r.iso_moment.x(); }},
+    {"iso_moment_y_Nm", 1.0, [](R& r) { return &r.iso_moment.y(); }},
+    {"iso_moment_z_Nm", 1.0, [](R& r) { return &r.iso_moment.z(); }},
+    {"slip_angle_rad", 1.0, [](R& r) { return &r.slip_angle; }},
+    {"camber_angle_rad", 1.0, [](R& r) { return &r.camber_angle; }},
+    {"loaded_radius_m", 1.0, [](R& r) { return &r.loaded_radius; }},
+    {"effective_rolling_radius_m", 1.0, [](R& r) { return &r.effective_rolling_radius; }},
+    {"tractive_efficiency", 1.0, [](R& r) { return &r.tractive_efficiency; }},
+    {"motion_resistance_coefficient", 1.0, [](R& r) { return &r.motion_resistance; }},
 };
 
 std::string header_line() {

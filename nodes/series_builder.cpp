@@ -9,18 +9,23 @@
 #include <cstring>
 #include <vector>
 
+#include "nodes/wheel_axes.hpp"
+
 namespace furrow {
 
 namespace {
+
+constexpr double kGravity = 9.81;  // m/s²
 
 /// Visits the fields that are means over the intervals of a line.
 template <class Visit>
 void for_each_mean(SeriesRow& row, Visit visit) {
   for (double* mean :
        {&row.slip, &row.speed, &row.spin, &row.drawbar_pull, &row.drawbar_pull_raw, &row.normal_force_travel,
-        &row.tractive_effort, &row.drive_torque, &row.lateral_force, &row.aligning_moment, &row.damper_force})
+        &row.tractive_effort, &row.drive_torque, &row.lateral_force, &row.aligning_moment, &row.damper_force,
+        &row.slip_angle, &row.camber_angle, &row.loaded_radius, &row.effective_rolling_radius})
     visit(*mean);
-  for (Vec3* mean : {&row.force, &row.spindle_force, &row.spindle_moment})
+  for (Vec3* mean : {&row.force, &row.spindle_force, &row.spindle_moment, &row.iso_force, &row.iso_moment})
     for (int i = 0; i < 3; ++i) visit((*mean)[i]);
 }
 
@@ -28,6 +33,7 @@ void for_each_mean(SeriesRow& row, Visit visit) {
 
 void SeriesBuilder::add(const StepReports& r) {
   add_means(r);
+  add_tire_axes(r);
   add_work(r);
   set_instants(r);
   memory_.started = 1.0;
@@ -50,6 +56,23 @@ void SeriesBuilder::add_means(const StepReports& r) {
   row.lateral_force += r.wheel.lateral_force;
   row.aligning_moment += r.wheel.aligning_moment;
   row.damper_force += r.wheel.damper_force;
+}
+
+/// Contact sums are means over the interval, so the contact centre is that of its middle. The ground plane is the
+/// undisturbed surface, or where the tire has sunk below it the tire's lowest point: the bottom of the rut.
+void SeriesBuilder::add_tire_axes(const StepReports& r) {
+  SeriesRow& row = memory_.row;
+  RimState middle = r.rim;
+  if (memory_.started > 0.0) middle.position = 0.5 * (memory_.last_rim_position + r.rim.position);
+  const WheelAxes axes = wheel_axes(middle, r.travel, std::min(ground_, r.tire.lowest_point));
+  const Wrench wrench = axes.wrench(r.contact.force, r.contact.moment, Vec3::Zero());
+  row.iso_force += wrench.force;
+  row.iso_moment += wrench.moment;
+  row.slip_angle += axes.slip_angle;
+  row.camber_angle += axes.camber_angle;
+  row.loaded_radius += axes.loaded_radius;
+  row.effective_rolling_radius += r.wheel.speed * axes.x.dot(r.travel);  // divided by the spin in take()
+  memory_.load = r.wheel.carried_mass * kGravity;
 }
 
 void SeriesBuilder::add_work(const StepReports& r) {
@@ -107,7 +130,7 @@ void SeriesBuilder::set_instants(const StepReports& r) {
   // Vertical motion and height of the carried mass; its imposed horizontal motion exchanges no net energy at
   // constant speed and is in the raw pull's work while it changes.
   const double mass = r.wheel.carried_mass, w = r.wheel.vertical_speed, u = r.wheel.speed;
-  row.carried_energy = 0.5 * mass * (w * w + u * u) + mass * 9.81 * r.wheel.axle_height;
+  row.carried_energy = 0.5 * mass * (w * w + u * u) + mass * kGravity * r.wheel.axle_height;
   row.contacts_tire = static_cast<double>(r.contact.contacts);
   row.contacts_terrain = static_cast<double>(r.terrain.contacts);
   row.active_share =
@@ -120,6 +143,10 @@ SeriesRow SeriesBuilder::take() {
   SeriesRow line = memory_.row;
   const double share = memory_.count > 0.0 ? 1.0 / memory_.count : 0.0;
   for_each_mean(line, [share](double& mean) { mean *= share; });
+  const auto ratio = [](double a, double b) { return b != 0.0 ? a / b : 0.0; };
+  line.effective_rolling_radius = ratio(line.effective_rolling_radius, line.spin);
+  line.tractive_efficiency = ratio(line.drawbar_pull * line.speed, line.drive_torque * line.spin);
+  line.motion_resistance = ratio(line.drive_torque / radius_ - line.drawbar_pull, memory_.load);
   for_each_mean(memory_.row, [](double& sum) { sum = 0.0; });
   memory_.count = 0.0;
   return line;

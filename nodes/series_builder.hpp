@@ -43,6 +43,7 @@ class SeriesBuilder {
 
  private:
   void add_means(const StepReports& r);
+  void add_tire_axes(const StepReports& r);
   void add_work(const StepReports& r);
   void set_instants(const StepReports& r);
 
@@ -57,6 +58,7 @@ class SeriesBuilder {
     Vec3 sent = Vec3::Zero();                       // cumulative impulse, N s
     Vec3 sent_arrived = Vec3::Zero();               // the same, without the interval in flight, N s
     double sent_abs = 0.0, sent_abs_arrived = 0.0;  // N s
+    double load = 0.0;                              // weight carried by the wheel, N
     Wrench last_spindle;
     Vec3 last_rim_position = Vec3::Zero();      // m
     Vec3 last_angular_velocity = Vec3::Zero();  // rad/s

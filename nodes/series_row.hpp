@@ -54,6 +54,16 @@ struct SeriesRow {
   double factorizations = 0.0;            // cumulative
   double transfer_force_residual = 0.0;   // largest since the start
   double transfer_moment_residual = 0.0;  // largest since the start
+  // In the tire's axes on the ground (wheel_axes.hpp); means over the line
+  Vec3 iso_force = Vec3::Zero();   // on the tire by the terrain, N
+  Vec3 iso_moment = Vec3::Zero();  // about the contact centre, N m
+  double slip_angle = 0.0;         // rad
+  double camber_angle = 0.0;       // rad
+  double loaded_radius = 0.0;      // m
+  double effective_rolling_radius =
+      0.0;                           // forward speed of the wheel centre in the wheel's heading / spin, m
+  double tractive_efficiency = 0.0;  // pull power / spindle power; 0 where the spindle gives none
+  double motion_resistance = 0.0;    // (torque / undeformed radius − pull) / load
 };
 
 }  // namespace furrow

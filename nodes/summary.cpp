@@ -106,6 +106,28 @@ Json power_balance(const Window& w) {
           {"residual_share", number(residual / (spindle - pull))}};
 }
 
+/// Means in the tire's axes on the ground, with the standard errors of forces and moments.
+Json tire_axes_means(const Window& w) {
+  Json json;
+  for (const auto& [name, vector] :
+       {std::pair{"force_N", &SeriesRow::iso_force}, std::pair{"moment_Nm", &SeriesRow::iso_moment}}) {
+    Json means = Json::array(), errors = Json::array();
+    for (int i = 0; i < 3; ++i) {
+      std::vector<double> samples;
+      for (const SeriesRow& row : w.rows) samples.push_back((row.*vector)[i]);
+      const SeriesStatistics s = statistics(samples);
+      means.push_back(number(s.mean));
+      errors.push_back(number(s.sem));
+    }
+    json[name] = means;
+    json[std::string(name).insert(std::string(name).find('_'), "_sem")] = errors;
+  }
+  json["slip_angle_rad"] = number(w.mean([](const SeriesRow& r) { return r.slip_angle; }));
+  json["camber_angle_rad"] = number(w.mean([](const SeriesRow& r) { return r.camber_angle; }));
+  json["loaded_radius_m"] = number(w.mean([](const SeriesRow& r) { return r.loaded_radius; }));
+  return json;
+}
+
 void add_rut(const SummaryInput& in, Json& json) {
   const FinalReport& terrain = in.reports.back();
   Rut rut;
@@ -138,7 +160,9 @@ void add_mobility(const SummaryInput& in, const Window& w, Json& json) {
   json["sinkage_kinematic_m"] = number(mean([](const SeriesRow& r) { return r.sinkage_kinematic; }));
   add_rut(in, json);
   json["tire_deflection_m"] = number(radius - (axle - lowest));
-  json["effective_rolling_radius_m"] = number(spin != 0.0 ? speed / spin : NAN);
+  json["effective_rolling_radius_m"] =
+      number(spin != 0.0 ? mean([](const SeriesRow& r) { return r.effective_rolling_radius * r.spin; }) / spin
+                         : NAN);
   json["bed_clearance_m"] = number(lowest - in.setup.floor_height);
   json["vertical_load_N"] = number(load);
   json["net_terrain_force_N"] = {number(mean([](const SeriesRow& r) { return r.force.x(); })),
@@ -153,6 +177,7 @@ void add_mobility(const SummaryInput& in, const Window& w, Json& json) {
   json["aligning_moment_Nm"] = number(mean([](const SeriesRow& r) { return r.aligning_moment; }));
   json["tractive_efficiency"] = number(pull * speed / (torque * spin));
   json["motion_resistance_coefficient"] = number((torque / radius - pull) / load);
+  json["iso_w"] = tire_axes_means(w);
 }
 
 Json rank_table(const SummaryInput& in) {

@@ -1,22 +1,17 @@
 // The tire's rank. Its bead follows the rim's extrapolated motion (tire/rim_trajectory.hpp); the terrain's forces of
 // the last interval act over the next one. To the rig goes the spindle wrench without the tire's own rigid-body
-// inertia and weight, which the rig carries as added mass:
-//   F_sent = F + m (Δv/H − g),   M_sent = M + Δ(R J Rᵀ ω)/H
-// with v and ω those of the bead's trajectory: nothing is counted twice, and a rigid tire sends its contact alone.
+// inertia and weight, which the rig carries as added mass (nodes/carried_wrench.hpp), with v and ω those of the
+// bead's trajectory: nothing is counted twice, and a rigid tire sends its contact alone.
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
+#include "nodes/carried_wrench.hpp"
 #include "nodes/frames.hpp"
-#include "nodes/node.hpp"
 
 namespace furrow {
 namespace {
-
-Vec3 spin_momentum(const MassProperties& mass, const RimState& rim) {
-  const Mat3 r = rim.orientation.toRotationMatrix();
-  return r * (mass.inertia * (r.transpose() * rim.angular_velocity));
-}
 
 class TireNode : public Node {
  public:
@@ -24,7 +19,8 @@ class TireNode : public Node {
       : scenario_(scenario),
         index_(index),
         pressure_(scenario.tires.at(index).pressure),
-        tire_(make_tire(scenario.tires.at(index))) {}
+        tire_(make_tire(scenario.tires.at(index))),
+        reach_(reach(*tire_, scenario.rigs.at(index).camber_angle)) {}
 
   NodeCard card() const override {
     NodeCard card = common_card(scenario_, {Role::tire, index_});
@@ -33,6 +29,7 @@ class TireNode : public Node {
     card.tire_mass = tire_->mass_properties();
     card.tire_radius = tire_->radius();
     card.tire_width = tire_->tread_width();
+    card.tire_reach = reach_;
     card.size = tire_->coordinates();
     return card;
   }
@@ -107,14 +104,22 @@ class TireNode : public Node {
   static constexpr Address kRig{Role::rig, 0};
   static constexpr Address kTerrain{Role::terrain, 0};
 
+  /// How far the inflated tire reaches below the rim's centre, whatever its spin angle, leaning by `camber`.
+  static double reach(Tire& tire, double camber) {
+    tire.place(RimState());
+    SurfaceState inflated;
+    tire.surface(inflated);
+    const double c = std::cos(camber), s = std::sin(camber);
+    double most = 0.0;
+    for (const Vec3& x : inflated.position)
+      most = std::max(most, std::hypot(x.x(), x.z()) * c + std::abs(x.y() * s));
+    return most;
+  }
+
   void account(double duration) {
     const RimState &from = trajectory_.start(), &to = trajectory_.end();
-    const MassProperties mass = tire_->mass_properties();
     report_.spindle = tire_->spindle_wrench();
-    report_.wrench.force = report_.spindle.force + mass.mass * (to.velocity - from.velocity) / duration +
-                           Vec3(0.0, 0.0, mass.mass * kGravity);
-    report_.wrench.moment =
-        report_.spindle.moment + (spin_momentum(mass, to) - spin_momentum(mass, from)) / duration;
+    report_.wrench = carried_wrench(report_.spindle, tire_->mass_properties(), from, to, duration);
     const Vec3 turned = 0.5 * duration * (from.angular_velocity + to.angular_velocity);
     report_.rim_work -=
         report_.spindle.force.dot(to.position - from.position) + report_.spindle.moment.dot(turned);
@@ -158,6 +163,7 @@ class TireNode : public Node {
   int index_;
   PressureSchedule pressure_;
   std::unique_ptr<Tire> tire_;
+  double reach_;  // m
   RimTrajectory trajectory_;
   RimMotion rim_;
   NodalForces forces_;

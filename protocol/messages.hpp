@@ -16,7 +16,7 @@
 
 namespace furrow {
 
-inline constexpr std::int32_t kProtocolVersion = 1;
+inline constexpr std::int32_t kProtocolVersion = 2;
 
 enum class Role : std::int32_t { rig = 0, tire = 1, terrain = 2 };
 /// "rig", "tire", "terrain".
@@ -67,7 +67,9 @@ struct NodeCard {
   MassProperties tire_mass;  // tire: rigid-body mass properties, added to the rim body by the rig
   double tire_radius = 0.0;  // tire: undeformed radius of the contact surface, m
   double tire_width = 0.0;   // tire: tread width, m
-  std::int64_t size = 0;     // grains or coordinates, for the reports
+  double tire_reach =
+      0.0;  // tire: how far it reaches below the rim centre, inflated, with the camber of the rig, m
+  std::int64_t size = 0;  // grains or coordinates, for the reports
 };
 
 /// tire k → terrain, once: connectivity and material of its contact surface.

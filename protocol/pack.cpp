@@ -29,7 +29,7 @@ requires std::is_same_v<std::remove_const_t<M>, NodeCard>
 void visit_fields(Stream& s, M& m) {
   each(s, m.protocol_version, m.self.role, m.self.index, m.node_kind, m.scenario_digest, m.step, m.steps,
        m.from_step, m.substeps, m.wheel_count, m.tire_count, m.threads, m.pid, m.host, m.tire_mass.mass,
-       m.tire_mass.inertia, m.tire_radius, m.tire_width, m.size);
+       m.tire_mass.inertia, m.tire_radius, m.tire_width, m.tire_reach, m.size);
 }
 template <class Stream, class M>
 requires std::is_same_v<std::remove_const_t<M>, SurfaceSetup>

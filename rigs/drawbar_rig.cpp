@@ -13,8 +13,8 @@
 namespace furrow {
 namespace {
 
-// Guided bodies never rotate, so their inertia has no effect on any result; it only scales the constraint
-// matrix.
+// Guided bodies rotate only as imposed, so their inertia has no effect on any result; it only scales the
+// constraint matrix.
 constexpr double kGuidedInertia = 1.0;    // kg m², chassis and set-toe
 constexpr double kCarrierInertia = 20.0;  // kg m²
 constexpr double kSlipLimit = 1e6;        // reported instead of larger magnitudes when the wheel hardly turns
@@ -34,6 +34,10 @@ void validate(const DrawbarRigOptions& o) {
           "must not be negative");
   require(o.touchdown_time >= 0.0, "touchdown_time", "must not be negative");
   require(std::abs(o.toe_angle) < 0.5 * std::numbers::pi, "toe_angle", "must lie between -pi/2 and pi/2 rad");
+  require(o.toe_time >= 0.0 && std::isfinite(o.toe_time), "toe_time", "must not be negative");
+  require(o.toe_ramp > 0.0 && std::isfinite(o.toe_ramp), "toe_ramp", "must be positive");
+  require(std::abs(o.camber_angle) < 0.25 * std::numbers::pi, "camber_angle",
+          "must lie between -pi/4 and pi/4 rad");
   require(o.travel_sign == 1.0 || o.travel_sign == -1.0, "travel_sign", "must be 1 or -1");
   require(std::isfinite(o.start), "start", "must be finite");
   require(std::isfinite(o.lateral), "lateral", "must be finite");
@@ -70,6 +74,7 @@ class DrawbarRig final : public Rig {
 
  private:
   bool free_rolling() const { return options_.mode == "free_rolling"; }
+  bool steered() const { return options_.toe_time > 0.0; }
   void check_wheel(int wheel) const;
   void check_built() const;
   void set_speeds();
@@ -137,8 +142,11 @@ void DrawbarRig::build(double axle_height) {
   placed_height_ = axle_height;
   BodyState state = moving(axle_height);
   chassis_ = system_->add_body("chassis", options_.chassis_mass, kGuidedInertia * Mat3::Identity(), state);
-  state.orientation = Quat(Eigen::AngleAxisd(options_.toe_angle, Vec3::UnitZ()));
+  if (!steered()) state.orientation = Quat(Eigen::AngleAxisd(options_.toe_angle, Vec3::UnitZ()));
   set_toe_ = system_->add_body("set-toe", options_.set_toe_mass, kGuidedInertia * Mat3::Identity(), state);
+  // Camber: about the wheel's forward axis.
+  state.orientation = state.orientation *
+                      Quat(Eigen::AngleAxisd(options_.travel_sign * options_.camber_angle, Vec3::UnitX()));
   carrier_ =
       system_->add_body("wheel carrier", options_.carrier_mass, kCarrierInertia * Mat3::Identity(), state);
   const Vec3 axle = state.orientation * Vec3::UnitY();
@@ -156,7 +164,8 @@ void DrawbarRig::build(double axle_height) {
     return joint;
   };
   rail_ = system_->add_joint(JointKind::prismatic, "rail", kGround, chassis_, place(forward_));
-  toe_lock_ = system_->add_joint(JointKind::fixed, "toe lock", chassis_, set_toe_, place(Vec3::UnitZ()));
+  toe_lock_ = system_->add_joint(steered() ? JointKind::revolute : JointKind::fixed, "toe lock", chassis_,
+                                 set_toe_, place(Vec3::UnitZ()));
   slider_ =
       system_->add_joint(JointKind::prismatic, "vertical slider", set_toe_, carrier_, place(Vec3::UnitZ()));
   spindle_ = system_->add_joint(JointKind::revolute, "spindle", carrier_, rim_, place(axle));
@@ -169,6 +178,10 @@ void DrawbarRig::build(double axle_height) {
     spindle_motor_ = system_->add_motor("spindle motor", spindle_,
                                         [spin, ramp](double t) { return ramped_motion(t, spin, ramp); });
   }
+  if (steered())
+    system_->add_motor("steering", toe_lock_,
+                       [angle = options_.toe_angle, from = options_.toe_time, duration = options_.toe_ramp](
+                           double t) { return step_motion(t - from, angle, duration); });
   const double c = options_.touchdown_damping, until = options_.touchdown_time;
   damper_ =
       system_->add_joint_element("touch-down damper", slider_, [c, until](double, double rate, double t) {

@@ -18,17 +18,20 @@ struct DrawbarRigOptions {
   double angular_speed = 8.56;               // rad/s
   double speed = 4.0;                        // carriage speed, m/s, modes fixed_speed and free_rolling
   double ramp = 0.15;  // smooth (C²) ramp of both motions from rest, s; 0: from t = 0 at full speed
-  double touchdown_damping = 12e3;     // N s/m, vertical damper between set-toe and carrier
-  double touchdown_time = 0.35;        // s, how long it acts
-  double toe_angle = 0.0;              // rad, about +z
-  double travel_sign = 1.0;            // +1 along +x, −1 along −x (mirrored travel)
-  double start = 0.0;                  // x of the axle at t = 0, m; the scenario loader fills a default
-  double lateral = 0.0;                // y of the wheel's mid-plane, m
-  double carrier_mass = 450.0;         // wheel carrier with ballast, kg
-  double chassis_mass = 1.0;           // kg, rides on the rail
-  double set_toe_mass = 1.0;           // kg, rides on the rail
-  double rim_mass = 15.0;              // kg
-  double rim_spin_inertia = 0.7;       // kg m², about the axle
+  double touchdown_damping = 12e3;  // N s/m, vertical damper between set-toe and carrier
+  double touchdown_time = 0.35;     // s, how long it acts
+  double toe_angle = 0.0;           // rad, about +z
+  double toe_time = 0.0;   // s, when the wheel is turned from 0 to toe_angle; 0: it stands so from the start
+  double toe_ramp = 0.01;  // s, how long that takes
+  double camber_angle = 0.0;      // rad, about the wheel's forward axis: positive leans the top to the right
+  double travel_sign = 1.0;       // +1 along +x, −1 along −x (mirrored travel)
+  double start = 0.0;             // x of the axle at t = 0, m; the scenario loader fills a default
+  double lateral = 0.0;           // y of the wheel's mid-plane, m
+  double carrier_mass = 450.0;    // wheel carrier with ballast, kg
+  double chassis_mass = 1.0;      // kg, rides on the rail
+  double set_toe_mass = 1.0;      // kg, rides on the rail
+  double rim_mass = 15.0;         // kg
+  double rim_spin_inertia = 0.7;  // kg m², about the axle
   double rim_diametral_inertia = 0.4;  // kg m²
 };
 

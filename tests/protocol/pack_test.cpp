@@ -26,6 +26,7 @@ NodeCard node_card() {
   m.tire_mass.inertia << 1, 2, 3, 4, 5, 6, 7, 8, 9;
   m.tire_radius = 0.4673;
   m.tire_width = 0.3;
+  m.tire_reach = 0.47;
   m.size = 13'500;
   return m;
 }

@@ -155,6 +155,73 @@ TEST(Travel, lateral_force_is_positive_to_the_left_of_travel) {
   EXPECT_EQ(rig->report(0).lateral_force, -100.0);
 }
 
+TEST(Camber, wheel_leans_about_its_forward_axis_and_keeps_to_it) {
+  for (const double travel : {1.0, -1.0}) {
+    DrawbarRigOptions options = steady_options();
+    options.travel_sign = travel;
+    options.camber_angle = 0.08;
+    options.toe_angle = -0.05;
+    const auto rig = placed_rig(options);
+    const Vec3 forward = travel * Vec3(std::cos(0.05), -std::sin(0.05), 0.0);
+    const Vec3 left = std::cos(0.08) * Vec3::UnitZ().cross(forward) + std::sin(0.08) * Vec3::UnitZ();
+    EXPECT_LT((rig->rim(0).angular_velocity - options.angular_speed * left).norm(), 1e-14);
+    advance(*rig, wrench(Vec3(travel * 900, 350, 4600), Vec3(30, -250, 8)), 5000);
+    EXPECT_LT((travel * (rig->rim(0).orientation * Vec3::UnitY()) - left).norm(), 1e-12);
+    EXPECT_LT((rig->rim(0).angular_velocity - options.angular_speed * left).norm(), 1e-11);
+    EXPECT_LT(rig->report(0).joint_drift, 1e-12);
+    EXPECT_NEAR(rig->report(0).spin, options.angular_speed, 1e-9);
+    EXPECT_NEAR(rig->report(0).drive_torque, -travel * Vec3(30, -250, 8).dot(travel * left), 1e-6);
+  }
+}
+
+TEST(Camber, mirrored_camber_and_toe_mirror_everything) {
+  DrawbarRigOptions options;
+  options.toe_angle = 0.1;
+  options.camber_angle = -0.07;
+  options.toe_time = 0.05;
+  const auto one = placed_rig(options);
+  options.toe_angle = -0.1;
+  options.camber_angle = 0.07;
+  const auto other = placed_rig(options);
+  // Mirror in the x–z plane: forces change y, moments (axial) change x and z.
+  advance(*one, wrench(Vec3(900, 120, 4700), Vec3(15, -250, 8)), 5000);
+  advance(*other, wrench(Vec3(900, -120, 4700), Vec3(-15, -250, -8)), 5000);
+  const WheelReport a = one->report(0), b = other->report(0);
+  EXPECT_NEAR(a.drawbar_pull, b.drawbar_pull, 1e-6);
+  EXPECT_NEAR(a.drive_torque, b.drive_torque, 1e-7);
+  EXPECT_NEAR(a.lateral_force, -b.lateral_force, 1e-12);
+  EXPECT_NEAR(a.spin, b.spin, 1e-9);
+  EXPECT_NEAR(a.axle_height, b.axle_height, 1e-12);
+  const Vec3 axle = one->rim(0).orientation * Vec3::UnitY(),
+             mirrored = other->rim(0).orientation * Vec3::UnitY();
+  EXPECT_LT((axle - Vec3(-mirrored.x(), mirrored.y(), -mirrored.z())).norm(), 1e-12);
+}
+
+TEST(Steering, wheel_runs_straight_until_its_time_then_turns_smoothly_to_the_toe_angle) {
+  DrawbarRigOptions options = steady_options();
+  options.toe_angle = 0.06;
+  options.toe_time = 0.02;
+  options.toe_ramp = 0.01;
+  const auto rig = placed_rig(options);
+  double turned = 0.0;
+  for (int i = 1; i <= 1250; ++i) {  // 0.05 s
+    advance(*rig, wrench(Vec3(0, 0, 4600), Vec3(0, -100, 0)), 1);
+    turned += kStep * rig->rim(0).angular_velocity.z();
+    const double time = i * kStep;
+    const Vec3 axle = rig->rim(0).orientation * Vec3::UnitY();
+    if (time <= 0.02) {
+      ASSERT_LT((axle - Vec3::UnitY()).norm(), 1e-12) << time;
+    }
+    if (time >= 0.03 + kStep) {
+      ASSERT_LT((axle - Vec3(-std::sin(0.06), std::cos(0.06), 0.0)).norm(), 1e-9) << time;
+      ASSERT_NEAR(rig->rim(0).angular_velocity.z(), 0.0, 1e-9) << time;
+    }
+  }
+  EXPECT_NEAR(turned, 0.06, 1e-6);
+  EXPECT_NEAR(rig->report(0).spin, options.angular_speed, 1e-9);
+  EXPECT_LT(rig->report(0).joint_drift, 1e-12);
+}
+
 TEST(Refusals, bad_options_and_states_name_themselves) {
   DrawbarRigOptions options;
   options.mode = "fast";

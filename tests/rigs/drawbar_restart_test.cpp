@@ -32,6 +32,8 @@ TEST(Restart, continues_bit_for_bit_whether_placed_before_or_not) {
     DrawbarRigOptions options;
     options.mode = mode;
     options.toe_angle = 0.05;
+    options.toe_time = 0.004;
+    options.camber_angle = -0.03;
     options.ramp = 0.01;
     options.touchdown_time = 0.012;
     const auto original = placed_rig(options);

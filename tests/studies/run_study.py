@@ -25,7 +25,7 @@ def run_case(study, name, case, out, force):
     summary = out / "summary.json"
     if force or not summary.exists():
         scenario = ROOT / case.get("scenario", study["scenario"])
-        command = [os.environ.get("FURROW", str(ROOT / "build" / "furrow")), "run", str(scenario), "--out", str(out), "--overwrite"]
+        command = [os.environ.get("FURROW", str(ROOT / "build" / "furrow")), "run", str(scenario), "--out", str(out), "--overwrite", "--no-plots"]
         command += settings(study.get("set", {}), case.get("set", {}))
         begin = time.time()
         done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)

@@ -29,6 +29,7 @@ SCENARIOS = [
     ("slip_above_one", text(rig={"slip": 1.5}), [], "key 'rig.slip': is 1.5, expected a number, -10 to 1"),
     ("full_slip_at_fixed_speed", text(rig={"slip": 1, "mode": "fixed_speed"}), [], "key 'rig.slip': is 1, expected below 1"),
     ("toe_angle_in_degrees", text(rig={"toe_angle": 2}), [], "key 'rig.toe_angle': is 2 rad"),
+    ("camber_angle_in_degrees", text(rig={"camber_angle": 3}), [], "key 'rig.camber_angle': is 3 rad"),
     ("text_for_number", text(rig={"slip": "much"}), [], "key 'rig.slip': is 'much', expected a number"),
     ("null_for_number", text(rig={"slip": None}), [], "key 'rig.slip': is null, expected a number"),
     ("number_for_text", text(rig={"mode": 3}), [], "key 'rig.mode': is 3, expected 'fixed_angular_speed'"),

@@ -6,7 +6,7 @@ import unittest
 
 from program import ROOT, SystemTest, changed, furrow, main, write_scenario
 
-STUDIES = ("study_slip.json", "multipass.json")  # for `furrow sweep`
+STUDIES = ("study_slip.json", "study_slip_angle.json", "study_camber.json", "study_hard_slip.json", "multipass.json")  # for `furrow sweep`
 SHIPPED = sorted(path.name for path in (ROOT / "rigs").glob("*.json") if path.name not in ("scenario.schema.json", *STUDIES))
 
 

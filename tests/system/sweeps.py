@@ -85,7 +85,7 @@ class Sweep(SystemTest):
             self.assertFalse((self.folder / "results").exists())
 
     def test_shipped_studies_are_valid(self):
-        for name in ("study_slip.json", "multipass.json"):
+        for name in ("study_slip.json", "study_slip_angle.json", "study_camber.json", "study_hard_slip.json", "multipass.json"):
             done = furrow("sweep", ROOT / "rigs" / name, "--out", "/proc/furrow", cwd=self.folder)
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn("key '--out': cannot be written", done.stderr)

@@ -24,4 +24,13 @@ inline Motion ramped_motion(double time, double speed, double ramp) {
   return {speed * (time - 0.5 * ramp), speed};
 }
 
+/// Value from 0 at time 0 to `change` after `duration` seconds by the same smoothstep.
+inline Motion step_motion(double time, double change, double duration) {
+  if (!(time > 0.0)) return {};
+  if (time >= duration) return {change, 0.0};
+  const double u = time / duration;
+  return {change * u * u * u * (10.0 + u * (6.0 * u - 15.0)),
+          change / duration * 30.0 * u * u * (1.0 - u) * (1.0 - u)};
+}
+
 }  // namespace furrow

@@ -22,17 +22,23 @@ struct TorusPoint {
 };
 constexpr double kTube = 0.195, kRim = 0.35;  // m
 
+/// Coordinates of the first column of elements.
+Vector column_of(const InflatedRing& ring) {
+  Vector q(12 * ring.mesh.rows);
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < ring.mesh.rows; ++j)
+      for (const int s : {0, 3})
+        q.segment<3>(6 * (i * ring.mesh.rows + j) + s) = ring.shell.layout().get(ring.q, i, j, s);
+  return q;
+}
+
 std::vector<TorusPoint> inflated_torus(int columns, int width, double thickness) {
   TireFile file = small_file("toroidal.json", columns, width);
   for (Section* s : {&file.bead, &file.sidewall, &file.tread}) s->layers[0].thickness = thickness;
   file.pressure = 5e5 * thickness;  // strains of 1e-3
   const InflatedRing ring(file);
   const ShellPatch column(ring_patch_mesh(ring.mesh, true), shell_layers(file, file.tread));
-  Vector q(column.coordinates());
-  for (int i = 0; i < 2; ++i)
-    for (int j = 0; j < ring.mesh.rows; ++j)
-      for (const int s : {0, 3})
-        q.segment<3>(6 * (i * ring.mesh.rows + j) + s) = ring.shell.layout().get(ring.q, i, j, s);
+  const Vector q = column_of(ring);
   std::vector<TorusPoint> points;
   for (int j = 0; j < width; ++j) {
     const Eigen::Matrix<double, 6, 1> n = column.resultants(q, j) / (file.pressure * kTube);
@@ -107,6 +113,47 @@ TEST(Inflated, growth_converges_with_the_mesh) {
     for (int k = 0; k < 3; ++k)
       verify(std::string("inflated ") + name, "crown growth, mm, " + size(180, widths[k]), crown[k], limit,
              20.0 / (widths[k] * widths[k]), "extrapolated in the mesh");
+  }
+}
+
+TEST(Inflated, crown_of_the_lumped_tire_carries_the_pressure_by_its_hoop_stiffness) {
+  //   N_hoop/R + N_meridian κ − M_meridian'' = p          balance of forces along the normal (Flugge 1973, ch. 2, 5)
+  //   (R/R₀)² = 1 + 2 (N_hoop − ν N_meridian)/(E h)       Hooke, S = C E; E, ν of the tread's single layer
+  // and by themselves a free ring: growth p R²/(E h) = 7.2 mm.
+  for (const int width : {24, 48}) {
+    const InflatedRing ring(small_file("hmmwv_lumped.json", 180, width));
+    const ShellPatch column(ring_patch_mesh(ring.mesh, true), shell_layers(ring.file, ring.file.tread));
+    const Vector q = column_of(ring);
+    const int crown = width / 2;
+    Eigen::Matrix<double, 6, 1> n[4];  // elements −2, −1, 1, 2 from the crown
+    for (int k = 0; k < 4; ++k) n[k] = column.resultants(q, crown - 2 + k);
+    const auto at = [&](int j) { return ring.shell.layout().get(ring.q, 0, j, 0); };
+    const Vec3 a = at(crown - 1), b = at(crown), c = at(crown + 1);
+    const double h = 0.5 * (c - a).norm(), sag = b.z() - 0.5 * (a.z() + c.z());
+    // Resultants are means over the two elements at the crown, and so are the radii.
+    const auto mean = [](double low, double middle, double high) {
+      return 0.25 * (low + 2.0 * middle + high);
+    };
+    const auto& reference = ring.mesh.position;
+    const double radius = mean(a.z(), b.z(), c.z()),
+                 radius_0 = mean(reference[crown - 1].z(), reference[crown].z(), reference[crown + 1].z());
+    const double stretch = radius / radius_0,
+                 along = h / (0.5 * (reference[crown + 1] - reference[crown - 1]).norm());
+    const double hoop = 0.5 * (n[1][0] + n[2][0]), meridian = 0.5 * (n[1][1] + n[2][1]);
+    const double shear = (n[0][4] - n[1][4] - n[2][4] + n[3][4]) / (2 * h * h);
+    const std::string mesh = size(180, width), tire = "inflated hmmwv_lumped.json, crown";
+    // Forces per current length from second Piola–Kirchhoff resultants.
+    const double carried =
+        hoop * stretch / along / radius + meridian * along / stretch * 2 * sag / (h * h) - shear;
+    verify(tire, "N hoop/R + N meridian kappa - M'' over p, " + mesh, carried / ring.file.pressure, 1.0,
+           0.7 / width, "equilibrium (Flugge 1973, ch. 2, 5)");
+    const double modulus = 7.522762e8, thickness = 8.1e-3, nu = 0.013982;
+    const double strain = (hoop - nu * meridian) / (modulus * thickness);
+    verify(tire, "growth by Hooke's law from N hoop, mm, " + mesh, 1e3 * (radius - radius_0),
+           1e3 * radius_0 * (std::sqrt(1 + 2 * strain) - 1), 5e-3, "plane stress, E of the circumference");
+    const double free_ring = ring.file.pressure * radius_0 * radius_0 / (modulus * thickness);
+    EXPECT_LT(radius - radius_0, free_ring);
+    EXPECT_GT(radius - radius_0, 0.75 * free_ring);
   }
 }
 

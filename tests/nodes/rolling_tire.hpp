@@ -1,0 +1,78 @@
+// A flexible tire on the drawbar rig over hard ground, coupled as the nodes couple them, in one thread and open to view.
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "nodes/carried_wrench.hpp"
+#include "rigs/drawbar_rig.hpp"
+#include "terrain/rigid/rigid_ground.hpp"
+#include "tests/tire/ancf/small_tire.hpp"
+
+namespace furrow::test {
+
+/// Forces come one step late: above 4e-5 s the ground is softened with the step (terrain/rigid/rigid_ground.hpp).
+inline TerrainOptions hard_ground(double step) {
+  TerrainOptions options;
+  options.engine = "rigid";
+  const double slower = std::max(1.0, step / 4e-5);
+  options.ground_stiffness /= slower * slower;
+  options.ground_shear_stiffness /= slower * slower;
+  options.ground_damping /= slower;
+  options.friction_velocity_scale = 200.0;
+  return options;
+}
+
+class RollingTire {
+ public:
+  AncfTire tire;
+  std::unique_ptr<Rig> rig;
+  std::unique_ptr<Terrain> ground;
+  RimTrajectory trajectory;    // of the last interval
+  NodalForces on_tire;         // that acted on the tire over the last interval
+  SurfaceState before, after;  // of the tire, at its ends
+  ContactSums contact;         // of the ground over the last interval
+
+  RollingTire(const TireFile& file, const DrawbarRigOptions& options, double step)
+      : tire(file),
+        rig(make_drawbar_rig(options)),
+        ground(make_rigid_ground(hard_ground(step))),
+        step_(step) {
+    rig->add_tire_mass(0, tire.mass_properties(), tire.radius());
+    tire.place({});
+    tire.surface(after);
+    double reach = 0.0;
+    for (const Vec3& x : after.position)
+      reach = std::max(reach, std::hypot(x.x(), x.z()) + 0.1 * std::abs(x.y()));
+    const std::array<double, 1> height{reach};
+    rig->place(height);
+    trajectory = RimTrajectory(rig->rim(0));
+    tire.place(rig->rim(0));
+    tire.surface(after);
+    ground->attach(tire.mesh(), tire.material(), after);
+  }
+
+  /// One interval. @throws Error(physics) when a part of it fails
+  void step() {
+    on_tire = forces_;
+    before = after;
+    const Wrench sent = sent_;
+    const RimState rim = rig->rim(0);
+    const TerrainStatus status = ground->advance({&before, 1}, step_, 1, {&forces_, 1}, {&contact, 1});
+    if (!status.ok) throw physics_error(status.message);
+    trajectory.extend(rim, step_);
+    const TireStatus done = tire.advance(trajectory, on_tire, 1);
+    if (!done.converged) throw physics_error(done.message);
+    sent_ = carried_wrench(tire.spindle_wrench(), tire.mass_properties(), trajectory.start(),
+                           trajectory.end(), step_);
+    tire.surface(after);
+    rig->advance({&sent, 1}, step_, 1);
+  }
+
+ private:
+  double step_;
+  NodalForces forces_;
+  Wrench sent_;
+};
+
+}  // namespace furrow::test

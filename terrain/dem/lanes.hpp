@@ -41,8 +41,8 @@ inline void add(Quad& q, Wide v) { store(q, load(q) + v); }
 
 /// Quads are reached by four times their number: a double's address takes that without a shift.
 inline constexpr int kQuad = 4;
-inline const double* flat(const Quad* quads) { return &quads->x; }
-inline double* flat(Quad* quads) { return &quads->x; }
+inline const double* flat(const Quad* quads) { return reinterpret_cast<const double*>(quads); }
+inline double* flat(Quad* quads) { return reinterpret_cast<double*>(quads); }
 
 template <class Lanes, class Real>
 inline Lanes load_lanes(const Real* p) {

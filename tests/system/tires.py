@@ -29,7 +29,7 @@ class TireTest(SystemTest):
         path = self.folder / "tire.json"
         path.write_text(json.dumps(HARD))
         flags = [flag for key, value in settings.items() for flag in ("--set", f"{key}={json.dumps(value)}")]
-        return furrow(command, path, "--out", self.folder / "out", *flags, *more, cwd=self.folder, timeout=240)
+        return furrow(command, path, "--out", self.folder / "out", *flags, *more, cwd=self.folder, timeout=280)
 
     def series(self, name="out"):
         """Columns of the series; every number in it is finite."""

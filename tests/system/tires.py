@@ -125,7 +125,7 @@ class Pressure(TireTest):
         whole, _ = self.ends_well(settings)
         (self.folder / "out").rename(self.folder / "whole")
         self.ends_well({**settings, "run.end": 0.03})
-        done = furrow("resume", self.folder / "out", "--until", "0.06", cwd=self.folder)
+        done = furrow("resume", self.folder / "out", "--until", "0.06", "--no-plots", cwd=self.folder, timeout=400)
         self.assertEqual(done.returncode, 0, done.stderr)
         resumed = json.loads((self.folder / "out/summary.json").read_text())
         self.assertEqual(resumed["state_hash"], whole["state_hash"])
@@ -155,7 +155,7 @@ class OtherTires(TireTest):
 
     def check(self, file, mass, stiffness):
         coarse = {"tire.file": file, "tire.elements_circumference": 40, "tire.elements_width": 12, "rig.carrier_mass": mass}
-        done = self.start(coarse, "press", ["--deflection", "0.02", "--points", "5", "--load", str(9.81 * mass)])
+        done = self.start(coarse, "press", ["--deflection", "0.035", "--points", "4", "--load", str(9.81 * mass)])
         self.assertEqual(done.returncode, 0, done.stderr)
         press = json.loads((self.folder / "out/summary.json").read_text())
         self.assertLess(press["loading_unloading_difference"], 1e-3)
@@ -172,7 +172,7 @@ class OtherTires(TireTest):
         self.check("toroidal.json", 450, (200e3, 2000e3))
 
     def test_passenger_205_55r16(self):
-        self.check("passenger_205_55r16.json", 400, (150e3, 300e3))
+        self.check("passenger_205_55r16.json", 400, (120e3, 300e3))
 
 
 if __name__ == "__main__":

@@ -29,7 +29,7 @@ class TireTest(SystemTest):
         path = self.folder / "tire.json"
         path.write_text(json.dumps(HARD))
         flags = [flag for key, value in settings.items() for flag in ("--set", f"{key}={json.dumps(value)}")]
-        return furrow(command, path, "--out", self.folder / "out", *flags, *more, cwd=self.folder, timeout=240)
+        return furrow(command, path, "--out", self.folder / "out", *flags, *more, cwd=self.folder, timeout=400)
 
     def series(self, name="out"):
         """Columns of the series; every number in it is finite."""
@@ -84,12 +84,12 @@ class Load(TireTest):
         self.assertLess(abs(summary["net_terrain_force_N"][2] / summary["vertical_load_N"] - 1), 0.05)
 
     def test_the_rim_stops_the_run(self):
-        error = self.stops({"tire.pressure": 15e3, "rig.carrier_mass": 3000, "rig.drop_height": 0.5, "rig.touchdown_damping": 0,
-                            "terrain.ground_stiffness": 5e7, "run.end": 1.0},
+        error = self.stops({"tire.pressure": 15e3, "rig.carrier_mass": 3000, "rig.drop_height": 0.1, "rig.touchdown_damping": 0,
+                            "terrain.ground_stiffness": 2e7, "terrain.ground_damping": 5e3, "run.step": 2e-4, "run.end": 1.0},
                            r"tire 0 reached its rim at t = [\d.]+ s, step \d+: clearance -[\d.e-]+ m at the node of column \d+, "
                            r"row \d+ .*try a higher pressure")
         time = float(re.search(r"t = ([\d.]+)", error)[1])
-        self.assertGreater(time, math.sqrt(2 * 0.5 / 9.81))
+        self.assertGreater(time, math.sqrt(2 * 0.1 / 9.81))
 
     def test_a_step_too_large_is_told(self):
         self.stops({**ROLLING, "run.step": 4e-3, "run.end": 1.0, "terrain.ground_stiffness": 4e8, "output.series_interval": 4e-3},
@@ -120,11 +120,12 @@ class Pressure(TireTest):
         self.assertLess(abs(low["power_balance"]["residual_share"]), 0.05)
 
     def test_a_run_with_a_schedule_goes_on_bit_for_bit(self):
-        settings = {**ROLLING, "tire.pressure": [[0.0, 2e5], [0.04, 2e5], [0.14, 8e4]], "run.end": 0.16, "checkpoint.at_end": True}
+        settings = {**ROLLING, "tire.pressure": [[0.0, 2e5], [0.01, 2e5], [0.05, 8e4]], "run.end": 0.06, "run.average_from": 0.02,
+                    "checkpoint.at_end": True}
         whole, _ = self.ends_well(settings)
         (self.folder / "out").rename(self.folder / "whole")
-        self.ends_well({**settings, "run.end": 0.12})
-        done = furrow("resume", self.folder / "out", "--until", "0.16", cwd=self.folder)
+        self.ends_well({**settings, "run.end": 0.03})
+        done = furrow("resume", self.folder / "out", "--until", "0.06", "--no-plots", cwd=self.folder, timeout=400)
         self.assertEqual(done.returncode, 0, done.stderr)
         resumed = json.loads((self.folder / "out/summary.json").read_text())
         self.assertEqual(resumed["state_hash"], whole["state_hash"])
@@ -154,7 +155,7 @@ class OtherTires(TireTest):
 
     def check(self, file, mass, stiffness):
         coarse = {"tire.file": file, "tire.elements_circumference": 40, "tire.elements_width": 12, "rig.carrier_mass": mass}
-        done = self.start(coarse, "press", ["--deflection", "0.02", "--points", "5", "--load", str(9.81 * mass)])
+        done = self.start(coarse, "press", ["--deflection", "0.035", "--points", "4", "--load", str(9.81 * mass)])
         self.assertEqual(done.returncode, 0, done.stderr)
         press = json.loads((self.folder / "out/summary.json").read_text())
         self.assertLess(press["loading_unloading_difference"], 1e-3)
@@ -171,7 +172,7 @@ class OtherTires(TireTest):
         self.check("toroidal.json", 450, (200e3, 2000e3))
 
     def test_passenger_205_55r16(self):
-        self.check("passenger_205_55r16.json", 400, (150e3, 300e3))
+        self.check("passenger_205_55r16.json", 400, (120e3, 300e3))
 
 
 if __name__ == "__main__":

@@ -157,7 +157,7 @@ TEST(Pack, an_absurd_length_is_refused) {
 TEST(Pack, every_field_is_there) {
   constexpr std::size_t kLength = 8, kHeader = 16, kVec = 24, kWrench = 48, kSums = 4 * kVec + 3 * 8 + 8;
   EXPECT_EQ(pack(node_card()).size(),
-            4 + 8 + (kLength + 4) + (kLength + 16) + 8 + 8 + 8 + 5 * 4 + (kLength + 7) + 80 + 8 + 8 + 8);
+            4 + 8 + (kLength + 4) + (kLength + 16) + 8 + 8 + 8 + 5 * 4 + (kLength + 7) + 80 + 8 + 8 + 8 + 8);
   EXPECT_EQ(pack(surface_setup()).size(), 4 + kLength + 2 * 12 + 8 * 8);
   EXPECT_EQ(pack(terrain_setup()).size(), 2 * (kLength + 16) + 8 + 8 + 8);
   EXPECT_EQ(pack(rim_motion()).size(), kHeader + 3 * kVec + 32 + 4);

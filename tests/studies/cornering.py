@@ -183,7 +183,7 @@ def figures(rows):
             fits = [relaxation(step, 0.3, 0.01, reach)["sigma"] for reach in (0.9, 1.1, 1.35)]
             add(tire, "relaxation length, step of 1 degree", np.mean(fits), 0.5 * (max(fits) - min(fits)), "m",
                 "fits from 0.12 m to 0.9, 1.1, 1.35 m; half the range")
-        for check, what in (("c_50", "friction scale 50 s/m"), ("half_shear_stiffness", "half the ground's shear stiffness"), ("90x24", "90 x 24 elements")):
+        for check, what in (("c_50", "friction scale 50 s/m"), ("half_shear_stiffness", "half the ground's shear stiffness"), ("40x12", "40 x 12 elements"), ("90x24", "90 x 24 elements")):
             series = series_of(f"{tire}_toe_1_{check}")
             if series is not None and series["time_s"][-1] > 0.5:
                 force, moment = (steady(series, source, 0.2)["end"] for _, source in FITTED)
@@ -242,6 +242,8 @@ def draw(rows):
         axis.axhline(0.0, color="0.8", zorder=0)
         if axis.get_legend_handles_labels()[0]:
             axis.legend(fontsize=8)
+        else:
+            axis.set_visible(False)
     figure.suptitle("Hard ground, 200 kPa, 60 × 12 elements, 4 m/s, friction 0.9", x=0.01, ha="left", fontweight="bold")
     figure.tight_layout()
     figure.savefig(HERE / "cornering.png", dpi=90)

@@ -59,7 +59,7 @@ def main():
         for name in plates:
             for x, y, p in coarse(table(RESULTS / name / "footprint.csv")):
                 writer.writerow([name, f"{x:.0f}", f"{y:.0f}", f"{p:.1f}"])
-    figure = plt.figure(figsize=(13.0, 7.0))
+    figure = plt.figure(figsize=(13.0, 7.0), layout="constrained")
     grid = figure.add_gridspec(2, max(len(plates), 2))
     for k, name in enumerate(plates):
         foot, s = table(RESULTS / name / "footprint.csv"), cases[name]["footprint"]
@@ -71,17 +71,17 @@ def main():
         axis.set_title(f"{name.replace('_plate', '').replace('_', ' ')}\n{1e3 * s['length_m']:.0f} × {1e3 * s['width_m']:.0f} mm, "
                        f"mean {1e-3 * s['mean_pressure_Pa']:.0f} kPa", fontsize=10)
     for k, obstacle in enumerate(("plate", "cleat")):
+        pressed = [name for name in cases if name.endswith(obstacle)]
+        if not pressed:
+            continue
         axis = figure.add_subplot(grid[1, k])
-        for name in cases:
-            if name.endswith(obstacle):
-                curve = table(RESULTS / name / "press.csv")
-                loading = curve["unloading"] == 0
-                axis.plot(1e3 * curve["deflection_m"][loading], 1e-3 * curve["force_N"][loading], "o-", ms=3,
-                          label=name.removesuffix(f"_{obstacle}").replace("_", " "))
+        for name in pressed:
+            curve = table(RESULTS / name / "press.csv")
+            loading = curve["unloading"] == 0
+            axis.plot(1e3 * curve["deflection_m"][loading], 1e-3 * curve["force_N"][loading], "o-", ms=3,
+                      label=name.removesuffix(f"_{obstacle}").replace("_", " "))
         axis.set(xlabel="deflection, mm", ylabel="force, kN", title=f"on a {obstacle}")
-        if axis.get_legend_handles_labels()[0]:
-            axis.legend(fontsize=8)
-    figure.tight_layout()
+        axis.legend(fontsize=8)
     figure.savefig(HERE / "footprints.png", dpi=90)
 
 

@@ -254,7 +254,9 @@ void Sweep::look_at(Run& run) {
                100.0 * deep));
   } else {
     run.state = State::failed;
-    run.problem = last_error(log_of(run));
+    run.problem = run.exit_code == 0 ? "ended, but with another scenario: its files were changed meanwhile"
+                                     : last_error(log_of(run));
+    if (run.exit_code == 0) run.exit_code = static_cast<int>(ExitCode::bad_input);
     tell(run, fmt::format("FAILED with exit code {}: {}; see {}", run.exit_code, run.problem,
                           log_of(run).string()));
   }

@@ -62,7 +62,7 @@ class RollingTire {
     if (!status.ok) throw physics_error(status.message);
     trajectory.extend(rim, step_);
     const TireStatus done = tire.advance(trajectory, on_tire, 1);
-    if (!done.converged) throw physics_error(done.message);
+    if (!done.converged) throw physics_error(done.message());
     sent_ = carried_wrench(tire.spindle_wrench(), tire.mass_properties(), trajectory.start(),
                            trajectory.end(), step_);
     tire.surface(after);

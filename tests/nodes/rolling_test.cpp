@@ -109,7 +109,7 @@ TEST(Rolling, ten_revolutions_gain_no_energy) {
     const auto [columns, width] = mesh();
     RollingTire rolling(small_file(name, columns, width), free_rolling(8.0), kStep);
     std::vector<double> mean, highest;
-    double angle = 0.0, sum = 0.0, most = 0.0;
+    double angle = 0.0, sum = 0.0, most = -1e300;
     int count = 0;
     while (mean.size() < 11) {
       rolling.step();
@@ -119,7 +119,7 @@ TEST(Rolling, ten_revolutions_gain_no_energy) {
       sum += energy, most = std::max(most, energy), ++count;
       if (angle < 2.0 * std::numbers::pi) continue;
       mean.push_back(sum / count), highest.push_back(most);
-      angle -= 2.0 * std::numbers::pi, sum = most = 0.0, count = 0;
+      angle -= 2.0 * std::numbers::pi, sum = 0.0, most = -1e300, count = 0;
     }
     write_energies(name, columns, width, mean, highest);
     // The first revolution holds touch-down and start; the bounce that they leave dies out.

@@ -153,7 +153,7 @@ class Pressure(TireTest):
 class OtherTires(TireTest):
     """The toroidal tire and the one of tire/HOWTO.md, pressed and rolled."""
 
-    def check(self, file, mass, stiffness, drop=0.0):
+    def check(self, file, mass, stiffness):
         coarse = {"tire.file": file, "tire.elements_circumference": 40, "tire.elements_width": 12, "rig.carrier_mass": mass}
         done = self.start(coarse, "press", ["--deflection", "0.035", "--points", "4", "--load", str(9.81 * mass)])
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -161,7 +161,7 @@ class OtherTires(TireTest):
         self.assertLess(press["loading_unloading_difference"], 1e-3)
         self.assertTrue(stiffness[0] < press["secant_stiffness_N_per_m"] < stiffness[1], press)
         (self.folder / "out").rename(self.folder / "press")
-        rolled, _ = self.ends_well({**ROLLING, **coarse, "rig.drop_height": drop, "rig.slip": 0.01, "run.end": 0.6, "run.average_from": 0.3,
+        rolled, _ = self.ends_well({**ROLLING, **coarse, "rig.slip": 0.01, "run.end": 0.6, "run.average_from": 0.3,
                                     "rig.touchdown_time": 0.25})
         self.assertLess(abs(rolled["net_terrain_force_N"][2] / rolled["vertical_load_N"] - 1), 0.03)
         # a run counts deflection from the undeformed radius, a press from the inflated one
@@ -171,8 +171,7 @@ class OtherTires(TireTest):
         self.assertLess(abs(rolled["power_balance"]["residual_share"]), 0.05)
 
     def test_toroidal(self):
-        # its crown grows by 9 mm when inflated, more than the ground forgives
-        self.check("toroidal.json", 450, (200e3, 2000e3), drop=0.015)
+        self.check("toroidal.json", 450, (200e3, 2000e3))
 
     def test_passenger_205_55r16(self):
         self.check("passenger_205_55r16.json", 400, (120e3, 300e3))

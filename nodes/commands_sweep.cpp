@@ -17,6 +17,7 @@ ExitCode sweep_command(const SweepArguments& arguments) {
                       "is " + std::to_string(arguments.jobs) + ", expected 1 to 1024");
   const std::filesystem::path folder =
       arguments.out.empty() ? std::filesystem::path("results") / study.name : arguments.out;
+  const bool to_plot = study.passes > 0 || !study.plot.is_null();
   Sweep sweep(std::move(study), {folder, arguments.jobs});
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -26,7 +27,7 @@ ExitCode sweep_command(const SweepArguments& arguments) {
   catch_stop_signals();
   const ExitCode code = sweep.run();
   if (code != ExitCode::stopped) {
-    make_report_or_warn(folder);
+    if (to_plot) make_report_or_warn(folder);
   } else {
     std::fprintf(stderr, "furrow: stopped by a signal; the same command goes on\n");
   }

@@ -122,6 +122,32 @@ const std::vector<std::string> kUsualResults{"drawbar_pull_N.mean",
                                              "bed_clearance_m",
                                              "wall_s"};
 
+/// Lines and means are over keys that the runs differ in, the ordinate is a result, the abscissa either.
+Json checked_plot(const Reader& reader, const Study& study) {
+  const std::vector<std::string> known{"x", "y", "error", "lines", "mean_over"};
+  std::vector<std::string> varied;
+  if (study.passes > 0) varied.emplace_back("pass");
+  for (const Json& run : study.runs)
+    for (const auto& [key, unused] : run.items())
+      if (std::find(varied.begin(), varied.end(), key) == varied.end()) varied.push_back(key);
+  Json plot = reader.object("plot");
+  for (const auto& [key, value] : plot.items()) {
+    const std::string path = "plot." + key;
+    if (std::find(known.begin(), known.end(), key) == known.end())
+      throw reader.wrong(path, fmt::format("is unknown, expected one of: {}", fmt::join(known, ", ")));
+    if (!value.is_string()) throw reader.wrong(path, "expected a text");
+    const bool of_results = key == "y" || key == "error";
+    std::vector<std::string> choice = of_results ? std::vector<std::string>() : varied;
+    if (of_results || key == "x") choice.insert(choice.end(), study.results.begin(), study.results.end());
+    if (std::find(choice.begin(), choice.end(), value.get<std::string>()) == choice.end())
+      throw reader.wrong(path, fmt::format("is '{}', expected one of: {}", value.get<std::string>(),
+                                           fmt::join(choice, ", ")));
+  }
+  if (plot.contains("x") != plot.contains("y"))
+    throw reader.wrong(plot.contains("x") ? "plot.y" : "plot.x", "is missing, expected both x and y");
+  return plot;
+}
+
 }  // namespace
 
 Study load_study(const std::filesystem::path& file) {
@@ -149,7 +175,7 @@ Study load_study(const std::filesystem::path& file) {
       throw reader.wrong("results", "expected a list of keys of summary.json");
     study.results = results.get<std::vector<std::string>>();
   }
-  if (!reader.value("plot").is_null()) study.plot = reader.object("plot");
+  if (!reader.value("plot").is_null()) study.plot = checked_plot(reader, study);
   return study;
 }
 

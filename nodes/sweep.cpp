@@ -17,10 +17,12 @@
 #include "nodes/checkpoint.hpp"
 #include "nodes/pass_bed.hpp"
 #include "nodes/progress.hpp"
+#include "nodes/run_directory.hpp"
 #include "nodes/scenario.hpp"
 #include "nodes/signals.hpp"
 #include "nodes/text_file.hpp"
 #include "protocol/host.hpp"
+#include "terrain/dem/bed_cache.hpp"
 
 namespace furrow {
 namespace {
@@ -28,7 +30,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr int kPoll = 100000;     // µs
+constexpr int kPoll = 100000;  // µs
+constexpr int kTriesForFolder = 100;
 constexpr double kDeepRut = 0.4;  // of the bed's depth: a tire this deep feels the floor
 
 Json read_summary(const fs::path& run) {
@@ -86,6 +89,22 @@ std::vector<cpu_set_t> core_shares(int jobs) {
   return sets;
 }
 
+bool readable(const fs::path& bed) try {
+  dem::read_bed(bed);
+  return true;
+} catch (const Error&) {
+  return false;  // absent or damaged: made anew
+}
+
+/// Ranks outlive a supervisor that was killed by a second or two.
+void wait_until_free(const fs::path& folder) {
+  for (int tries = 0; tries < kTriesForFolder && fs::exists(folder); ++tries, usleep(kPoll)) try {
+      close(lock_folder(folder, ""));
+      return;
+    } catch (const Error&) {
+    }
+}
+
 std::string state_name(int state) {
   constexpr const char* kNames[] = {"waiting", "running", "done", "failed", "stopped"};
   return kNames[state];
@@ -109,7 +128,15 @@ void Sweep::load(Run& run) {
   all.update(run.keys);
   all.update(run.passes_on);
   try {
-    run.digest = load_scenario(study_.scenario, settings_of(all)).digest;
+    const Scenario scenario = load_scenario(study_.scenario, settings_of(all));
+    if (study_.passes > 1 && scenario.terrain.engine != "dem")
+      throw input_error(
+          study_.scenario.string(), "terrain.engine",
+          "is '" + scenario.terrain.engine + "', expected 'dem': passes need grains, which keep a rut");
+    if (study_.passes > 1 && !scenario.checkpoint.at_end)
+      throw input_error(study_.scenario.string(), "checkpoint.at_end",
+                        "is false, expected true: the next pass begins on the checkpoint at the end");
+    run.digest = scenario.digest;
   } catch (const Error& error) {
     throw Error(error.code(), fmt::format("{}\n{}: in the run with {}", error.what(), study_.file.string(),
                                           run.keys.empty() ? "these settings" : text_of(run.keys)));
@@ -175,7 +202,7 @@ bool Sweep::take_over_bed(Run& run) try {
   const Run& first = *(&run - (run.pass - 1));
   const fs::path bed = options_.folder / "beds" / fmt::format("{}_rest_{}.h5", before.digest, study_.rest);
   std::error_code error;
-  if (!fs::exists(bed, error)) {
+  if (!readable(bed)) {
     fs::create_directories(bed.parent_path(), error);
     ProgressDisplay display;
     const auto progress = [&](const std::string& what, double share) {
@@ -205,6 +232,7 @@ bool Sweep::take_over_bed(Run& run) try {
 void Sweep::start(Run& run, std::size_t share) {
   std::error_code error;
   fs::create_directories(folder_of(run).parent_path(), error);
+  wait_until_free(folder_of(run));
   std::vector<std::string> list = command(run);
   std::vector<char*> arguments;
   for (std::string& argument : list) arguments.push_back(argument.data());
@@ -244,6 +272,8 @@ void Sweep::look_at(Run& run) {
       const Json value = value_at(summary, path);
       return value.is_number() ? value.get<double>() : std::nan("");
     };
+    for (const std::string& name : study_.results)
+      if (value_at(summary, name).is_null()) tell(run, "has no result '" + name + "'");
     tell(run, fmt::format("is done: pull {:.0f} ± {:.0f} N", number("drawbar_pull_N.mean"),
                           number("drawbar_pull_N.sem")));
     if (const double deep = number("sinkage_m") / number("surface_height_m"); run.pass > 0 && deep > kDeepRut)
@@ -254,8 +284,11 @@ void Sweep::look_at(Run& run) {
                100.0 * deep));
   } else {
     run.state = State::failed;
-    run.problem = run.exit_code == 0 ? "ended, but with another scenario: its files were changed meanwhile"
-                                     : last_error(log_of(run));
+    run.problem =
+        run.exit_code == 0
+            ? "holds the results of another scenario: it was resumed with other keys, or files were "
+              "changed meanwhile; remove it to run it again"
+            : last_error(log_of(run));
     if (run.exit_code == 0) run.exit_code = static_cast<int>(ExitCode::bad_input);
     tell(run, fmt::format("FAILED with exit code {}: {}; see {}", run.exit_code, run.problem,
                           log_of(run).string()));

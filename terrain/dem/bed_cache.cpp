@@ -46,8 +46,10 @@ bool write_array(hid_t file, const std::string& name, const Archive::Array& arra
         const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
         const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
         H5Pset_create_intermediate_group(links.get(), 1);
+        const Handle timeless(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);  // the same bed, the same bytes
+        H5Pset_obj_track_times(timeless.get(), false);
         const Handle set(H5Dcreate2(file, name.c_str(), native_type<T>(), space.get(), links.get(),
-                                    H5P_DEFAULT, H5P_DEFAULT),
+                                    timeless.get(), H5P_DEFAULT),
                          H5Dclose);
         if (!set.ok()) return false;
         return size == 0 ||

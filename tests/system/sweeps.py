@@ -77,6 +77,11 @@ class Sweep(SystemTest):
                             ({"grid": {}, "list": [{}]}, "has 'grid' and 'list', expected one of them"),
                             ({}, "expected one of 'grid', 'list' and 'passes'"),
                             ({"passes": 0}, "key 'passes': expected a whole number"),
+                            ({"passes": 2, "set": {"checkpoint.at_end": False}}, "key 'checkpoint.at_end': is false, expected true"),
+                            ({"passes": 2, "set": {"terrain.engine": "rigid"}}, "key 'terrain.engine': is 'rigid', expected 'dem'"),
+                            ({"list": [{"rig.slip": 0.1}], "plot": {"x": "rig.slipp", "y": "sinkage_m"}}, "key 'plot.x': is 'rig.slipp', expected"),
+                            ({"list": [{"rig.slip": 0.1}], "plot": {"x": "rig.slip", "y": "q"}}, "key 'plot.y': is 'q', expected one of: drawbar_pull_N.mean"),
+                            ({"list": [{"rig.slip": 0.1}], "plot": {"x": "rig.slip"}}, "key 'plot.y': is missing"),
                             ({"gird": {}}, "key 'gird': is unknown, expected 'grid'?"),
                             ({"scenario": "none.json", "passes": 1}, "key 'scenario': 'none.json' does not exist")):
             done = furrow("sweep", self.study(**keys), cwd=self.folder)
@@ -107,6 +112,12 @@ class Sweep(SystemTest):
         scenario = json.loads((second / "scenario.json").read_text())
         self.assertTrue(scenario["terrain"]["bed"].endswith(f"beds/{first.name}_rest_0.01.h5"))
         self.assertNotEqual(a["state_hash"], b["state_hash"])
+        # the bed of a pass is made again, bit for bit, so that the pass is still the one that is done
+        (bed := self.folder / "results" / "study" / "beds" / f"{first.name}_rest_0.01.h5").write_bytes(b"damaged")
+        again = furrow("sweep", study, cwd=self.folder)
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assertEqual(again.stderr.count("is done already"), 4, again.stderr)
+        self.assertGreater(bed.stat().st_size, 1000)
         shutil.rmtree(second)
         again = furrow("sweep", study, cwd=self.folder)
         self.assertEqual(again.returncode, 0, again.stderr)

@@ -119,7 +119,8 @@ SeriesWriter::SeriesWriter(const std::filesystem::path& file)
 SeriesWriter::SeriesWriter(const std::filesystem::path& file, const SeriesMark& mark,
                            std::vector<SeriesRow>& rows)
     : file_(file), stream_(std::fopen(file.c_str(), "rb+")) {
-  check(stream_ != nullptr);
+  if (!stream_)
+    throw io_error(file_.string(), std::string("cannot be opened to go on with it: ") + std::strerror(errno));
   std::string text(static_cast<std::size_t>(mark.bytes), '\0');
   text.resize(std::fread(text.data(), 1, text.size(), stream_.get()));
   hash_.add(text);

@@ -174,6 +174,7 @@ Study load_study(const std::filesystem::path& file) {
         !std::all_of(results.begin(), results.end(), [](const Json& r) { return r.is_string(); }))
       throw reader.wrong("results", "expected a list of keys of summary.json");
     study.results = results.get<std::vector<std::string>>();
+    study.results_chosen = true;
   }
   if (!reader.value("plot").is_null()) study.plot = checked_plot(reader, study);
   return study;

@@ -26,6 +26,7 @@ struct Study {
   nlohmann::ordered_json common;             // keys and values for all runs
   std::vector<nlohmann::ordered_json> runs;  // keys and values of each
   std::vector<std::string> results;
+  bool results_chosen = false;  // by the user
   nlohmann::ordered_json plot;  // null: none
   int passes = 0;     // of each run, every one on the bed that the one before it left; 0: beds of their own
   double rest = 0.2;  // s, simulated, that the bed lies between passes

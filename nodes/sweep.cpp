@@ -273,7 +273,8 @@ void Sweep::look_at(Run& run) {
       return value.is_number() ? value.get<double>() : std::nan("");
     };
     for (const std::string& name : study_.results)
-      if (value_at(summary, name).is_null()) tell(run, "has no result '" + name + "'");
+      if (study_.results_chosen && value_at(summary, name).is_null())
+        tell(run, "has no result '" + name + "'");
     tell(run, fmt::format("is done: pull {:.0f} ± {:.0f} N", number("drawbar_pull_N.mean"),
                           number("drawbar_pull_N.sem")));
     if (const double deep = number("sinkage_m") / number("surface_height_m"); run.pass > 0 && deep > kDeepRut)

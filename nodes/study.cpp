@@ -28,6 +28,8 @@ class Reader {
     parse_json(read_text_file(file, "a study in JSON"), file_);  // says where mistakes stand
     root_ = Json::parse(read_text_file(file, "a study in JSON"));
     if (!root_.is_object()) throw wrong("", "is no object, expected { }");
+    if (root_.contains("terrain") || root_.contains("tire"))
+      throw wrong("", "is a scenario, expected a study ('furrow run' takes scenarios)");
     for (const auto& [key, value] : root_.items()) {
       const std::vector<std::string> known(std::begin(kKeys), std::end(kKeys));
       if (std::find(known.begin(), known.end(), key) != known.end()) continue;

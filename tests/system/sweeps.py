@@ -82,6 +82,7 @@ class Sweep(SystemTest):
                             ({"list": [{"rig.slip": 0.1}], "plot": {"x": "rig.slipp", "y": "sinkage_m"}}, "key 'plot.x': is 'rig.slipp', expected"),
                             ({"list": [{"rig.slip": 0.1}], "plot": {"x": "rig.slip", "y": "q"}}, "key 'plot.y': is 'q', expected one of: drawbar_pull_N.mean"),
                             ({"list": [{"rig.slip": 0.1}], "plot": {"x": "rig.slip"}}, "key 'plot.y': is missing"),
+                            ({"terrain": {}}, "is a scenario, expected a study"),
                             ({"gird": {}}, "key 'gird': is unknown, expected 'grid'?"),
                             ({"scenario": "none.json", "passes": 1}, "key 'scenario': 'none.json' does not exist")):
             done = furrow("sweep", self.study(**keys), cwd=self.folder)

@@ -133,34 +133,11 @@ TEST(Prony, branches_raise_the_rolling_loss_the_more_the_stiffer_they_are) {
 }
 
 TEST(Prony, restored_tire_with_branches_and_a_changing_pressure_continues_bit_for_bit) {
-  const double h = 1e-4, speed = 8.0, depth = 0.008;
   TireFile file = small_file();
   file.prony = kTwo;
   AncfTire tire(file), other(file);
-  RimTrajectory t(rolling_rim(0, tire.radius(), speed, depth));
-  tire.place(t.start());
-  const auto advance = [&](AncfTire& which, RimTrajectory& path, int n) {
-    which.set_pressure(2e5 - 400.0 * n);
-    path.extend(rolling_rim(n * h, which.radius(), speed, depth), h);
-    ASSERT_TRUE(which.advance(path, ground_forces(which), 2).converged);
-  };
-  for (int n = 0; n < 120; ++n) advance(tire, t, n);
-  Archive archive;
-  tire.save(archive);
-  RimTrajectory again = t;
-  other.restore(archive);
-  for (int n = 120; n < 200; ++n) {
-    advance(tire, t, n);
-    advance(other, again, n);
-  }
-  EXPECT_EQ(tire.integrator().q(), other.integrator().q());
-  EXPECT_EQ(tire.integrator().v(), other.integrator().v());
-  EXPECT_EQ(tire.spindle_wrench().moment, other.spindle_wrench().moment);
-  const TireDiagnostics a = tire.diagnostics(), b = other.diagnostics();
-  EXPECT_EQ(a.newton_iterations, b.newton_iterations);
-  EXPECT_EQ(a.factorizations, b.factorizations);
-  EXPECT_EQ(a.dissipation, b.dissipation);
-  EXPECT_EQ(a.strain_energy, b.strain_energy);
+  expect_restart_bit_for_bit(tire, other,
+                             [](AncfTire& which, int n) { which.set_pressure(2e5 - 400.0 * n); });
 }
 
 }  // namespace

@@ -7,6 +7,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from .run_data import Missing
+from .student import half_interval
 from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY
 
 COLOURS = [BLUE, ORANGE, GREEN, RED, PURPLE, SKY, GREY]
@@ -37,17 +38,9 @@ def number(text):
         return math.nan
 
 
-# two-sided 95 % points of Student's t for 1, 2, … degrees of freedom
-STUDENT = [12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228]
-
-
 def mean_and_interval(values):
     """(mean, half the 95 % interval of the mean); NaN for the interval of one value."""
-    values = np.asarray(values, dtype=float)
-    if len(values) < 2:
-        return float(values.mean()), math.nan
-    factor = STUDENT[len(values) - 2] if len(values) - 2 < len(STUDENT) else 1.96 + 2.4 / (len(values) - 1)
-    return float(values.mean()), factor * float(values.std(ddof=1)) / math.sqrt(len(values))
+    return float(np.mean(values)), half_interval(values)
 
 
 def varied(sweep):

@@ -6,13 +6,14 @@ import os
 import pathlib
 import re
 import shutil
-import statistics
 import subprocess
+import sys
 
 import numpy
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
+sys.path.insert(0, str(ROOT / "scripts"))
 RADIUS, DENSITY = 0.006, 2500.0  # m, kg/m³
 GRAVITY = 9.81  # m/s²
 MATERIAL = {"radius": RADIUS, "density": DENSITY, "young_modulus": 2.49e7, "poisson_ratio": 0.3, "restitution": 0.2,
@@ -159,21 +160,6 @@ def read_averages(folder):
     """The file of `fix ave/time`: rows of numbers after two comment lines."""
     file = folder / "series.dat"
     return numpy.loadtxt(file, ndmin=2) if file.exists() else None
-
-
-# 97.5 % points of Student's t for 1, 2, … degrees of freedom.
-STUDENT = [12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160, 2.145, 2.131, 2.120, 2.110,
-           2.101, 2.093, 2.086, 2.080, 2.074, 2.069, 2.064, 2.060, 2.056, 2.052, 2.048, 2.045, 2.042]
-
-
-def student(freedom):
-    return STUDENT[min(freedom, len(STUDENT)) - 1]
-
-
-def half_interval(values):
-    """Half the 95 % confidence interval of the mean of independent values [Student's t]."""
-    n = len(values)
-    return student(n - 1) * statistics.stdev(values) / math.sqrt(n) if n > 1 else math.nan
 
 
 def folder_name(text):

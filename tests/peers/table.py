@@ -17,7 +17,8 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy
 
-from common import RADIUS, ROOT, half_interval, read_series, student
+from common import RADIUS, ROOT, read_series
+from plot.student import half_interval, student
 
 sys.path.insert(0, str(ROOT / "scripts"))
 from plot import style  # noqa: E402

@@ -17,11 +17,9 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy
 
-from common import RADIUS, ROOT, read_series
+from common import RADIUS, read_series
+from plot import style  # found by what common adds to the path
 from plot.student import half_interval, student
-
-sys.path.insert(0, str(ROOT / "scripts"))
-from plot import style  # noqa: E402
 
 ENGINES = ("furrow", "liggghts")
 COLUMNS = ["test", "quantity", "unit", "furrow", "furrow_ci95", "liggghts", "liggghts_ci95", "difference", "difference_ci95", "seeds"]
@@ -194,6 +192,8 @@ def save(figure, to, name, dpi=90):
 
 def main():
     folder = pathlib.Path(sys.argv[1])
+    if not folder.is_dir():
+        sys.exit(f"table.py: {folder}: no such folder, expected what bulk.py left")
     to = pathlib.Path(sys.argv[2]) if len(sys.argv) > 2 else pathlib.Path(__file__).resolve().parent
     table = [row for part in (bed_rows, plate_rows, shear_rows) for row in part(folder) if row]
     (to / "bulk.json").write_text(json.dumps([{k: row[k] for k in COLUMNS} for row in table], indent=0, ensure_ascii=False) + "\n")

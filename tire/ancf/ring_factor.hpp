@@ -27,11 +27,11 @@ class RingFactor {
   void add(const BatchTangent& tangent, const ElementMass& mass, double mass_factor, int j, int sector);
   /// Renews the factor where sectors were cleared and added since it was made.
   /// @returns false when the matrix is not positive definite
-  bool factorize();
+  bool factorize(int threads = 1);
   /// Share of a whole factorization that the last one took.
   double work() const { return factor_.operations() / factor_.all_operations(); }
   /// x = turn A⁻¹ turnᵀ rhs on the free rows; padding of x is zero there.
-  void solve(const Mat3& turn, const Field& rhs, Field& x);
+  void solve(const Mat3& turn, const Field& rhs, Field& x, int threads = 1);
 
  private:
   std::size_t block(int sector, int column, int row, int kind) const;

@@ -54,7 +54,7 @@ PressResults press_tire(const PressOptions& options, const ProgressCall& progres
     const int step = k <= options.points ? k : total - k;
     return solver.press(options.deflection * step / options.points);
   };
-  results.loading.push_back({});
+  results.loading.push_back(at(0));
   for (int k = 1; k <= options.points; ++k) {
     const PressPoint before = results.loading.back();
     results.loading.push_back(at(k));

@@ -109,7 +109,7 @@ nlohmann::ordered_json press_json(const PressOptions& options, const PressResult
   j["max_residual"] = residual;
   j["creep_steps"] = steps;
   j["failed_factorizations"] = failed;
-  j["statically_stable"] = failed == 0;
+  j["statically_stable"] = results.loading.front().failed_factorizations == 0;  // inflated and not pressed
   double area = 0.0, force = 0.0, highest = 0.0;
   for (const PressSample& s : results.footprint) highest = std::max(highest, s.pressure);
   Extent length, width;

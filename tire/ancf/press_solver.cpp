@@ -288,6 +288,20 @@ PressPoint PressSolver::press(double deflection) {
       deflection, point.residual, point.creep_steps, kTolerance));
 }
 
+double PressSolver::runout() const {
+  double most = 0.0;
+  for (int j = 1; j + 1 < layout_.rows; ++j) {
+    double low = 1e300, high = 0.0;
+    for (int i = 0; i < layout_.columns; ++i) {
+      const Vec3 x = layout_.get(q_, i, j, 0);
+      const double radius = std::hypot(x.x(), x.z());
+      low = std::min(low, radius), high = std::max(high, radius);
+    }
+    most = std::max(most, high - low);
+  }
+  return most;
+}
+
 std::vector<PressSample> PressSolver::footprint() const {
   std::vector<PressSample> samples;
   contact_points([&](int, int, const std::array<double, 4>&, const Vec3& x, double area) {

@@ -62,6 +62,8 @@ class PressSolver {
   PressPoint press(double deflection);
   /// Π at the last point, J; its derivative by the deflection is the force.
   double potential() const { return potential_; }
+  /// Largest difference of radius around a row of nodes, m: of the tire not pressed, the height of its wrinkles.
+  double runout() const;
   std::vector<PressSample> footprint() const;
   const Field& q() const { return q_; }
 

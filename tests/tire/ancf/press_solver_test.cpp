@@ -57,8 +57,9 @@ TEST(PressSolver, unloads_along_the_loading_path) {
 TEST(PressSolver, a_wrinkled_tire_comes_to_a_stable_rest) {
   const auto solver = solver_of(small_file("hmmwv_layered.json", 60, 12), {});
   EXPECT_GT(solver->press(0.0).failed_factorizations, 0);  // 200 kPa: the axisymmetric shape is not stable
+  EXPECT_GT(solver->runout(), 1e-4);
   double last = 0.0;
-  for (int k = 1; k <= 3; ++k) {
+  for (int k = 1; k <= 2; ++k) {
     const PressPoint point = solver->press(0.003 * k);
     EXPECT_LE(point.residual, 1e-6);
     EXPECT_GT(point.force, last);

@@ -54,7 +54,7 @@ def draw_footprint(axis, name, s):
     foot = table(RESULTS / name / "footprint.csv")
     points = axis.scatter(1e3 * foot["y_m"], 1e3 * foot["x_m"], c=1e-3 * foot["pressure_Pa"], marker="s", lw=0,
                           s=1.5e4 * np.sqrt(np.median(foot["area_m2"])) ** 1.2, cmap="viridis", vmin=0,
-                          vmax=1e-3 * np.percentile(foot["pressure_Pa"], 99))
+                          vmax=800)
     plt.colorbar(points, label="kPa", ax=axis, shrink=0.7)
     axis.set_aspect("equal")
     axis.set(xlabel="across, mm", ylabel="along, mm", xlim=(-115, 115), ylim=(-85, 85))
@@ -63,22 +63,22 @@ def draw_footprint(axis, name, s):
 
 
 def draw_curves(axis, cases):
-    for k, (name, s) in enumerate(cases.items()):
+    shown = {name: s for name, s in cases.items() if name in MAPS or name.endswith("cleat")}
+    for name, s in shown.items():
         curve = table(RESULTS / name / "press.csv")
         back, cleat = curve["unloading"] > 0, s["obstacle"] == "cleat"
-        line, = axis.plot(1e3 * curve["deflection_m"][~back], 1e-3 * curve["force_N"][~back], "--" if cleat else "-",
-                          marker="o", ms=2.5, lw=1.2, color=f"C{k % 10}", label=label(name))
-        if s["loading_unloading_difference"] > 1e-4:
-            axis.plot(1e3 * curve["deflection_m"][back], 1e-3 * curve["force_N"][back], ":", marker="x", ms=4, lw=1.0,
-                      color=line.get_color(), label=f"{label(name)}, unloading")
-    axis.set(xlabel="deflection, mm", ylabel="force, kN", title="plate solid, cleat dashed")
-    axis.legend(fontsize=7)
+        color = plt.get_cmap("Blues" if name.startswith("lumped") else "Oranges")(0.9 if "180x48" in name else 0.6)
+        axis.plot(1e3 * curve["deflection_m"][~back], 1e-3 * curve["force_N"][~back], "--" if cleat else "-", lw=1.3,
+                  color=color, label=label(name))
+        axis.plot(1e3 * curve["deflection_m"][back], 1e-3 * curve["force_N"][back], "x", ms=4, color=color)
+    axis.set(xlabel="deflection, mm", ylabel="force, kN", title="plate solid, cleat dashed; crosses: unloading")
+    axis.legend(fontsize=8)
 
 
 def draw_convergence(axis, cases, tire):
     """Secant stiffness and size of the footprint against the elements around, each over that of the finest mesh."""
     meshes = sorted((int(name.split("_")[1].split("x")[0]), s) for name, s in cases.items()
-                    if name.startswith(tire) and name.endswith("plate") and s["secant_stiffness_N_per_m"])
+                    if name.split("_")[0] == tire and name.endswith("plate") and s["secant_stiffness_N_per_m"])
     if len(meshes) < 2:
         return
     around = [n for n, _ in meshes]
@@ -120,7 +120,7 @@ def main():
     draw_curves(figure.add_subplot(grid[1, :2]), cases)
     for k, tire in enumerate(("lumped", "layered")):
         draw_convergence(figure.add_subplot(grid[1, 2 + k]), cases, tire)
-    figure.savefig(HERE / "footprints.png", dpi=80)
+    figure.savefig(HERE / "footprints.png", dpi=64)
 
 
 if __name__ == "__main__":

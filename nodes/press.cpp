@@ -54,7 +54,8 @@ PressResults press_tire(const PressOptions& options, const ProgressCall& progres
     const int step = k <= options.points ? k : total - k;
     return solver.press(options.deflection * step / options.points);
   };
-  results.loading.push_back({});
+  results.loading.push_back(at(0));
+  results.runout = solver.runout();
   for (int k = 1; k <= options.points; ++k) {
     const PressPoint before = results.loading.back();
     results.loading.push_back(at(k));
@@ -78,6 +79,7 @@ nlohmann::ordered_json press_json(const PressOptions& options, const PressResult
     j["cleat_width_m"] = options.obstacle.width;
   }
   j["inflation_growth_m"] = results.inflation_growth;
+  j["runout_m"] = results.runout;
   j["load_N"] = options.load;
   const PressPoint& p = results.at_load;
   const bool reached = std::abs(p.force - options.load) <= kLoadTolerance * options.load;
@@ -109,7 +111,7 @@ nlohmann::ordered_json press_json(const PressOptions& options, const PressResult
   j["max_residual"] = residual;
   j["creep_steps"] = steps;
   j["failed_factorizations"] = failed;
-  j["statically_stable"] = failed == 0;
+  j["statically_stable"] = results.loading.front().failed_factorizations == 0;  // inflated and not pressed
   double area = 0.0, force = 0.0, highest = 0.0;
   for (const PressSample& s : results.footprint) highest = std::max(highest, s.pressure);
   Extent length, width;

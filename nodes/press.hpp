@@ -23,7 +23,8 @@ struct PressResults {
   std::vector<PressPoint> loading, unloading;
   PressPoint at_load;  // of the footprint; at the largest deflection when the load is not reached
   std::vector<PressSample> footprint;
-  double inflation_growth = 0.0;  // of the largest radius, m
+  double inflation_growth = 0.0;  // of the largest radius, axisymmetric, m
+  double runout = 0.0;            // of the tire at rest before it is pressed: its wrinkles, m
 };
 
 /// @throws Error(bad_input) for a tire that does not deform, Error(physics) when there is no equilibrium

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Static footprints and load–deflection curves of the layered and the lumped tire from folders of `furrow press`:
-footprints.csv (one line a case), footprints_pressure.csv (pressure maps) and footprints.png beside it.
+footprints.csv (one line a case), footprints_curves.csv, footprints_pressure.csv (pressure maps) and footprints.png beside it.
 
     for each tire, mesh and obstacle:
     build/furrow press rigs/rigid_ground.json --set tire.file=hmmwv_lumped.json --set tire.elements_circumference=90 \\
@@ -24,9 +24,11 @@ RESULTS = ROOT / "results" / "press"
 sys.path.insert(0, str(ROOT / "scripts"))
 import plot.style  # noqa: E402, F401  the look of all plots
 
-KEYS = ("obstacle", "inflation_growth_m", "load_N", "deflection_m", "secant_stiffness_N_per_m", "tangent_stiffness_N_per_m",
-        "loading_unloading_difference", "max_residual", "failed_factorizations", "statically_stable")
+KEYS = ("obstacle", "inflation_growth_m", "runout_m", "load_N", "deflection_m", "secant_stiffness_N_per_m", "tangent_stiffness_N_per_m",
+        "loading_unloading_difference", "max_residual", "creep_steps", "failed_factorizations", "statically_stable", "wall_s")
 FOOT = ("deflection_m", "force_N", "length_m", "width_m", "area_m2", "mean_pressure_Pa", "max_pressure_Pa")
+
+MAPS = ("lumped_90x24_plate", "lumped_180x48_plate", "layered_90x24_plate", "layered_180x48_plate")
 
 
 def table(file):
@@ -44,45 +46,81 @@ def coarse(foot, cell=8e-3):
     return lines
 
 
+def label(name):
+    return name.replace("_plate", "").replace("_cleat", ", cleat").replace("_", " ").replace("x", " × ")
+
+
+def draw_footprint(axis, name, s):
+    foot = table(RESULTS / name / "footprint.csv")
+    points = axis.scatter(1e3 * foot["y_m"], 1e3 * foot["x_m"], c=1e-3 * foot["pressure_Pa"], marker="s", lw=0,
+                          s=1.5e4 * np.sqrt(np.median(foot["area_m2"])) ** 1.2, cmap="viridis", vmin=0,
+                          vmax=800)
+    plt.colorbar(points, label="kPa", ax=axis, shrink=0.7)
+    axis.set_aspect("equal")
+    axis.set(xlabel="across, mm", ylabel="along, mm", xlim=(-115, 115), ylim=(-85, 85))
+    axis.set_title(f"{label(name)}, {1e-3 * s['force_N']:.2f} kN\n{1e3 * s['length_m']:.0f} × {1e3 * s['width_m']:.0f} mm, "
+                   f"mean {1e-3 * s['mean_pressure_Pa']:.0f} kPa", fontsize=10)
+
+
+def draw_curves(axis, cases):
+    shown = {name: s for name, s in cases.items() if name in MAPS or name.endswith("cleat")}
+    for name, s in shown.items():
+        curve = table(RESULTS / name / "press.csv")
+        back, cleat = curve["unloading"] > 0, s["obstacle"] == "cleat"
+        color = plt.get_cmap("Blues" if name.startswith("lumped") else "Oranges")(0.9 if "180x48" in name else 0.6)
+        axis.plot(1e3 * curve["deflection_m"][~back], 1e-3 * curve["force_N"][~back], "--" if cleat else "-", lw=1.3,
+                  color=color, label=label(name))
+        axis.plot(1e3 * curve["deflection_m"][back], 1e-3 * curve["force_N"][back], "x", ms=4, color=color)
+    axis.set(xlabel="deflection, mm", ylabel="force, kN", title="plate solid, cleat dashed; crosses: unloading")
+    axis.legend(fontsize=8)
+
+
+def draw_convergence(axis, cases, tire):
+    """Secant stiffness and size of the footprint against the elements around, each over that of the finest mesh."""
+    meshes = sorted((int(name.split("_")[1].split("x")[0]), s) for name, s in cases.items()
+                    if name.split("_")[0] == tire and name.endswith("plate") and s["secant_stiffness_N_per_m"])
+    if len(meshes) < 2:
+        return
+    around = [n for n, _ in meshes]
+    for values, what in (([s["secant_stiffness_N_per_m"] for _, s in meshes], "secant stiffness"),
+                         ([s["footprint"]["length_m"] for _, s in meshes], "length"),
+                         ([s["footprint"]["width_m"] for _, s in meshes], "width"),
+                         ([s["footprint"]["area_m2"] for _, s in meshes], "area")):
+        axis.plot(around, np.array(values) / values[-1], "o-", ms=3, lw=1.2, label=what)
+    axis.set(xlabel="elements around", ylabel="over the finest mesh", title=f"{tire}, plate, 4.56 kN")
+    axis.legend(fontsize=7)
+
+
 def main():
     cases = {folder.name: json.loads((folder / "summary.json").read_text())
              for folder in sorted(RESULTS.iterdir()) if (folder / "summary.json").exists()}
+    plates = [name for name in cases if name.endswith("plate")]
     with open(HERE / "footprints.csv", "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(["case", *KEYS, *(f"footprint_{key}" for key in FOOT)])
         for name, s in cases.items():
             writer.writerow([name, *(s.get(key) for key in KEYS), *(s["footprint"][key] for key in FOOT)])
-    plates = [name for name in cases if name.endswith("plate")]
+    with open(HERE / "footprints_curves.csv", "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(["case", "deflection_m", "force_N", "residual", "unloading"])
+        for name in cases:
+            for row in table(RESULTS / name / "press.csv"):
+                writer.writerow([name, *(f"{value:.9g}" for value in row)])
     with open(HERE / "footprints_pressure.csv", "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(["case", "along_mm", "across_mm", "pressure_kPa"])
         for name in plates:
             for x, y, p in coarse(table(RESULTS / name / "footprint.csv")):
                 writer.writerow([name, f"{x:.0f}", f"{y:.0f}", f"{p:.1f}"])
-    figure = plt.figure(figsize=(13.0, 7.0), layout="constrained")
-    grid = figure.add_gridspec(2, max(len(plates), 2))
-    for k, name in enumerate(plates):
-        foot, s = table(RESULTS / name / "footprint.csv"), cases[name]["footprint"]
-        axis = figure.add_subplot(grid[0, k])
-        points = axis.scatter(1e3 * foot["y_m"], 1e3 * foot["x_m"], c=1e-3 * foot["pressure_Pa"], s=6, marker="s", cmap="viridis", vmin=0)
-        figure.colorbar(points, label="kPa", ax=axis, shrink=0.8)
-        axis.set_aspect("equal")
-        axis.set(xlabel="across, mm", ylabel="along, mm", xlim=(-130, 130), ylim=(-90, 90))
-        axis.set_title(f"{name.replace('_plate', '').replace('_', ' ')}\n{1e3 * s['length_m']:.0f} × {1e3 * s['width_m']:.0f} mm, "
-                       f"mean {1e-3 * s['mean_pressure_Pa']:.0f} kPa", fontsize=10)
-    for k, obstacle in enumerate(("plate", "cleat")):
-        pressed = [name for name in cases if name.endswith(obstacle)]
-        if not pressed:
-            continue
-        axis = figure.add_subplot(grid[1, k])
-        for name in pressed:
-            curve = table(RESULTS / name / "press.csv")
-            loading = curve["unloading"] == 0
-            axis.plot(1e3 * curve["deflection_m"][loading], 1e-3 * curve["force_N"][loading], "o-", ms=3,
-                      label=name.removesuffix(f"_{obstacle}").replace("_", " "))
-        axis.set(xlabel="deflection, mm", ylabel="force, kN", title=f"on a {obstacle}")
-        axis.legend(fontsize=8)
-    figure.savefig(HERE / "footprints.png", dpi=90)
+    shown = [name for name in MAPS if name in cases]
+    figure = plt.figure(figsize=(15.0, 8.0), layout="constrained")
+    grid = figure.add_gridspec(2, 4)
+    for k, name in enumerate(shown):
+        draw_footprint(figure.add_subplot(grid[0, k]), name, cases[name]["footprint"])
+    draw_curves(figure.add_subplot(grid[1, :2]), cases)
+    for k, tire in enumerate(("lumped", "layered")):
+        draw_convergence(figure.add_subplot(grid[1, 2 + k]), cases, tire)
+    figure.savefig(HERE / "footprints.png", dpi=64)
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@
 #include <Eigen/CholmodSupport>
 #include <Eigen/Sparse>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 
@@ -16,17 +17,15 @@
 namespace furrow {
 namespace {
 
-constexpr double kCreepTime = 5e-3;   // τ, s
-constexpr double kFirstStep = 2e-3;   // s
-constexpr double kLargestStep = 1e6;  // s
-constexpr double kStaticStep =
-    0.5;  // s, a creep step this long shows the static tangent to be definite to τ/h = 1 %
-constexpr double kTolerance = 1e-6;       // of the free static residual, relative to the load
-constexpr double kNewton = 1e-8;          // of a creep step's residual, relative to the pressure forces
+constexpr double kTolerance = 1e-6;       // of the free residual, relative to the load
 constexpr double kDirectorLength = 0.01;  // m, makes director residuals (N m) comparable with forces
 constexpr double kLeastLoad = 1.0;        // N, below which the residual is relative to the pressure forces
-constexpr int kMaxNewton = 15;
-constexpr int kMaxSteps = 400;
+constexpr double kLeastViscosity = 1e-3;  // σ = τ/h: first tried where the tangent is not positive definite
+constexpr double kMostViscosity = 1e6;
+constexpr double kRounding = 1e-13;  // of the potential, relative to its elastic part and p V
+constexpr int kMaxSteps = 1500;
+constexpr int kMaxCuts = 12;
+constexpr double kShortStep = 0.2;       // share of a step below which σ grows
 constexpr int kAround = 6, kAcross = 4;  // contact points of an element
 constexpr int kColumn[4] = {0, 1, 1, 0}, kRow[4] = {0, 0, 1, 1};
 
@@ -37,17 +36,66 @@ PressObstacle::Profile PressObstacle::at(double x) const {
   const double beyond = std::abs(x) - 0.5 * width;
   if (beyond <= 0.0) return {};
   if (beyond >= edge) return {-height, 0.0};
-  const double s = beyond / edge;  // smooth step of second order
-  const double fall = s * s * (3.0 - 2.0 * s), slope = 6.0 * s * (1.0 - s) / edge;
-  return {-height * fall, -height * slope * (x < 0.0 ? -1.0 : 1.0)};
+  const double s = beyond / edge;  // smooth step, its slope and curvature continuous
+  const double fall = s * s * s * (10.0 - s * (15.0 - 6.0 * s));
+  const double slope = 30.0 * s * s * (1.0 - s) * (1.0 - s) / edge;
+  const double curvature = 60.0 * s * (1.0 - s) * (1.0 - 2.0 * s) / (edge * edge);
+  return {-height * fall, -height * slope * (x < 0.0 ? -1.0 : 1.0), -height * curvature};
 }
 
+/// The tangent of the free coordinates, 6 (column × rows between the beads + row) + component, and its factor.
 struct PressSolver::Linear {
-  Eigen::SparseMatrix<double> matrix;
+  Eigen::SparseMatrix<double> matrix;  // lower triangle
   Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>, Eigen::Lower> llt;
-  std::vector<Eigen::Triplet<double>> entries;
   BatchTangent tangent;
-  bool analyzed = false;
+  std::vector<std::array<int, 300>>
+      slot;  // of each element: where the lower triangle of its matrix goes; −1: a bead's
+
+  static int at(int r, int k) { return r >= k ? r * (r + 1) / 2 + k : k * (k + 1) / 2 + r; }
+
+  explicit Linear(const RingLayout& layout) {
+    const int across = layout.rows - 2, n = 6 * across * layout.columns;
+    std::vector<Eigen::Triplet<double>> entries;
+    std::vector<std::array<int, 24>> unknowns;
+    for (int j = 0; j + 1 < layout.rows; ++j)
+      for (int i = 0; i < layout.columns; ++i) {
+        std::array<int, 24>& u = unknowns.emplace_back();
+        for (int r = 0; r < 24; ++r) {
+          const int row = j + kRow[r / 6] - 1, column = (i + kColumn[r / 6]) % layout.columns;
+          u[r] = row < 0 || row >= across ? -1 : 6 * (column * across + row) + r % 6;
+        }
+        for (const int r : u)
+          for (const int k : u)
+            if (k >= 0 && r >= k) entries.emplace_back(r, k, 0.0);
+      }
+    matrix.resize(n, n);
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    slot.resize(unknowns.size());
+    for (std::size_t e = 0; e < slot.size(); ++e)
+      for (int r = 0; r < 24; ++r)
+        for (int k = 0; k <= r; ++k) {
+          const int low = std::min(unknowns[e][r], unknowns[e][k]),
+                    high = std::max(unknowns[e][r], unknowns[e][k]);
+          slot[e][at(r, k)] =
+              low < 0 ? -1 : static_cast<int>(&matrix.coeffRef(high, low) - matrix.valuePtr());
+        }
+    llt.cholmod().print = 0;
+    llt.analyzePattern(matrix);
+  }
+
+  /// Where unknown k lies in a field.
+  static std::size_t place(const RingLayout& layout, int k) {
+    const int across = layout.rows - 2;
+    return layout.offset(1 + k / 6 % across, k % 6) + k / 6 / across;
+  }
+  Eigen::VectorXd gather(const RingLayout& layout, const Field& f) const {
+    Eigen::VectorXd v(matrix.rows());
+    for (int k = 0; k < v.size(); ++k) v[k] = f[place(layout, k)];
+    return v;
+  }
+  void add(int element, int r, int k, double value) {
+    if (const int to = slot[element][at(r, k)]; to >= 0) matrix.valuePtr()[to] += value;
+  }
 };
 
 PressSolver::PressSolver(const TireFile& file, const RingMesh& mesh, const Field& inflated,
@@ -59,8 +107,7 @@ PressSolver::PressSolver(const TireFile& file, const RingMesh& mesh, const Field
       clearance_(file, mesh),
       q_(inflated),
       r_(layout_.size()),
-      linear_(std::make_unique<Linear>()) {
-  linear_->llt.cholmod().print = 0;
+      linear_(std::make_unique<Linear>(layout_)) {
   shell_.strains(q_, strains_);
   for (int j = 0; j < layout_.rows; ++j)
     start_radius_ = std::max(start_radius_, layout_.get(q_, 0, j, 0).z());
@@ -73,6 +120,8 @@ PressSolver::PressSolver(const TireFile& file, const RingMesh& mesh, const Field
   for (std::size_t k = layout_.free_begin(); k < layout_.free_begin() + layout_.free_size(); ++k)
     total += (r_[k] - without[k]) * (r_[k] - without[k]);
   pressure_norm_ = std::max(std::sqrt(total), 1.0);
+  rounding_ = kRounding *
+              (shell_.account(q_, strains_).elastic + shell_.pressure() * shell_.volume(q_, Vec3::Zero()));
 }
 
 PressSolver::~PressSolver() = default;
@@ -102,41 +151,40 @@ void PressSolver::contact_points(Visit visit) const {
   }
 }
 
-double PressSolver::contact(bool with_tangent) {
-  double vertical = 0.0;
-  const int across = layout_.rows - 2;
+/// Adds to r_, force_ and potential_, or to the tangent.
+void PressSolver::contact(bool tangent) {
   contact_points([&](int i, int j, const std::array<double, 4>& w, const Vec3& x, double area) {
     const PressObstacle::Profile top = obstacle_.at(x.x());
     const double depth = top_ + top.height - x.z();
     if (depth <= 0.0) return;
-    const double force = obstacle_.stiffness * area * depth;
-    vertical += force;
-    const Vec3 push(-top.slope * force, 0.0, force), normal(-top.slope, 0.0, 1.0);
+    const double stiffness = obstacle_.stiffness * area;
+    const Vec3 normal(-top.slope, 0.0, 1.0);  // −∂depth/∂x
+    if (tangent) {
+      const double bend = depth * top.curvature;
+      for (int n = 0; n < 4; ++n)
+        for (int m = 0; m <= n; ++m)
+          for (const int a : {0, 2})
+            for (const int b : {0, 2})
+              if (6 * n + a >= 6 * m + b)
+                linear_->add(j * layout_.columns + i, 6 * n + a, 6 * m + b,
+                             stiffness * w[n] * w[m] * (normal[a] * normal[b] + (a + b == 0 ? bend : 0.0)));
+      return;
+    }
+    force_ += stiffness * depth;
+    potential_ += 0.5 * stiffness * depth * depth;
     for (int n = 0; n < 4; ++n) {
       const int row = j + kRow[n], column = (i + kColumn[n]) % layout_.columns;
-      layout_.set(r_, column, row, 0, layout_.get(r_, column, row, 0) - w[n] * push);
-      if (!with_tangent || row < 1 || row > across) continue;
-      for (int m = 0; m < 4; ++m) {
-        const int other = j + kRow[m], other_column = (i + kColumn[m]) % layout_.columns;
-        if (other < 1 || other > across) continue;
-        for (const int a : {0, 2})
-          for (const int b : {0, 2}) {
-            const int r = 6 * (column * across + row - 1) + a,
-                      c = 6 * (other_column * across + other - 1) + b;
-            if (r >= c)
-              linear_->entries.emplace_back(r, c,
-                                            obstacle_.stiffness * area * w[n] * w[m] * normal[a] * normal[b]);
-          }
-      }
+      layout_.set(r_, column, row, 0, layout_.get(r_, column, row, 0) - w[n] * stiffness * depth * normal);
     }
   });
-  return vertical;
 }
 
-/// Residual of a creep step (c = 1: of the static equations) and its norm; sets force_.
-double PressSolver::evaluate(double c, const Field& e_old) {
-  shell_.forces(q_, q_, e_old, c, r_);
-  force_ = contact(false);
+/// ∂Π/∂q into r_, Π into potential_, the vertical force into force_. @returns the free residual's norm
+double PressSolver::evaluate() {
+  potential_ = shell_.account(q_, strains_).elastic - shell_.pressure() * shell_.volume(q_, Vec3::Zero());
+  shell_.forces(q_, q_, strains_, 1.0, r_);
+  force_ = 0.0;
+  contact(false);
   double total = 0.0;
   for (int j = 1; j + 1 < layout_.rows; ++j)
     for (int k = 0; k < 6; ++k) {
@@ -147,114 +195,111 @@ double PressSolver::evaluate(double c, const Field& e_old) {
   return std::sqrt(total);
 }
 
-void PressSolver::assemble(double c, const Field& e_old) {
-  const int across = layout_.rows - 2, n = 6 * across * layout_.columns;
-  auto& entries = linear_->entries;
-  entries.clear();
-  // The whole pattern, so that its analysis holds while contact comes and goes: contact couples nodes of one element.
+/// Factor of ∂²Π/∂q² + σ K_material at q_. @returns false when it is not positive definite
+bool PressSolver::factorize() {
+  linear_->matrix.coeffs().setZero();
   for (int j = 0; j + 1 < layout_.rows; ++j)
     for (int b = 0; b < layout_.batches(); ++b) {
       Lanes stress[kStrains];
-      shell_.batch_stress_at(q_, e_old, c, j, b, stress);
+      shell_.batch_stress_at(q_, strains_, 1.0, j, b, stress);
       BatchNodes nodes;
       nodes.read(layout_, q_.data(), b * kLanes, j);
-      linear_->tangent.compute(shell_.stiffness(j), nodes, stress, c, 1.0, shell_.pressure());
-      for (int lane = 0; lane < kLanes && b * kLanes + lane < layout_.columns; ++lane) {
-        int node[4];
-        for (int m = 0; m < 4; ++m) {
-          const int row = j + kRow[m] - 1;
-          node[m] = row < 0 || row >= across
-                        ? -1
-                        : (b * kLanes + lane + kColumn[m]) % layout_.columns * across + row;
-        }
+      linear_->tangent.compute(shell_.stiffness(j), nodes, stress, 1.0 + viscosity_, 1.0, shell_.pressure());
+      for (int lane = 0; lane < kLanes && b * kLanes + lane < layout_.columns; ++lane)
         for (int r = 0; r < 24; ++r)
-          for (int k = 0; k < 24; ++k) {
-            if (node[r / 6] < 0 || node[k / 6] < 0) continue;
-            const int row = 6 * node[r / 6] + r % 6, column = 6 * node[k / 6] + k % 6;
-            if (row >= column)
-              entries.emplace_back(row, column,
-                                   r >= k ? linear_->tangent.k[r][k][lane] : linear_->tangent.k[k][r][lane]);
-          }
-      }
+          for (int k = 0; k <= r; ++k)
+            linear_->add(j * layout_.columns + b * kLanes + lane, r, k, linear_->tangent.k[r][k][lane]);
     }
   contact(true);
-  linear_->matrix.resize(n, n);
-  linear_->matrix.setFromTriplets(entries.begin(), entries.end());
+  linear_->llt.factorize(linear_->matrix);
+  return linear_->llt.info() == Eigen::Success;
 }
 
-/// One creep step of size h. @returns false when the tangent is not positive definite or Newton's method fails; q_ is
-/// then unchanged
-bool PressSolver::creep(double h) {
-  const Field before = q_, e_old = strains_;
-  const double c = 1.0 + kCreepTime / h;
-  const int across = layout_.rows - 2;
-  double norm = evaluate(c, e_old), first = norm;
-  for (int n = 0; n < kMaxNewton && norm > kNewton * pressure_norm_; ++n) {
-    assemble(c, e_old);
-    if (!linear_->analyzed) linear_->llt.analyzePattern(linear_->matrix), linear_->analyzed = true;
-    linear_->llt.factorize(linear_->matrix);
-    if (linear_->llt.info() != Eigen::Success) {
-      ++failed_;
-      q_ = before;
-      return false;
-    }
-    evaluate(c, e_old);
-    Eigen::VectorXd rhs(linear_->matrix.rows());
-    for (int k = 0; k < rhs.size(); ++k)
-      rhs[k] = -r_[layout_.offset(1 + k / 6 % across, k % 6) + k / 6 / across];
-    const Eigen::VectorXd change = linear_->llt.solve(rhs);
-    const Field from = q_;
-    double step = 1.0, next = 0.0;
-    for (int cut = 0;; ++cut) {  // halved while the residual grows much
-      for (int k = 0; k < rhs.size(); ++k) {
-        const std::size_t at = layout_.offset(1 + k / 6 % across, k % 6) + k / 6 / across;
-        q_[at] = from[at] + step * change[k];
-      }
-      layout_.fill_padding(q_);
-      next = evaluate(c, e_old);
-      if (cut == 5 || (std::isfinite(next) && next < 3.0 * norm)) break;
-      step *= 0.5;
-    }
-    norm = next;
-    if (!(norm < 1e3 * std::max(first, 1e-3 * pressure_norm_))) break;
+/// One step of creep, with a factor in place; `norm` is the residual's norm before and after.
+/// @returns the share of it that was taken; 0: the potential does not fall along it, q_ is unchanged
+double PressSolver::creep(double& norm) {
+  const Eigen::VectorXd gradient = linear_->gather(layout_, r_), change = -linear_->llt.solve(gradient);
+  const double slope = gradient.dot(change), start = potential_, norm_before = norm;
+  const Field from = q_;
+  double step = 1.0;
+  for (int cut = 0; cut <= kMaxCuts; ++cut, step *= 0.5) {
+    move(from, change, step);
+    norm = evaluate();
+    // Where the change of the potential drowns in its rounding errors the residual decides.
+    if (-slope < rounding_ ? norm < 2.0 * norm_before : potential_ < start + 1e-4 * step * slope) return step;
   }
-  if (!(norm <= kNewton * pressure_norm_)) {
-    q_ = before;
-    return false;
+  q_ = from;
+  norm = evaluate();
+  return 0.0;
+}
+
+void PressSolver::move(const Field& from, const Eigen::VectorXd& change, double share) {
+  for (int k = 0; k < change.size(); ++k) {
+    const std::size_t at = Linear::place(layout_, k);
+    q_[at] = from[at] + share * change[k];
   }
-  shell_.strains(q_, strains_);
-  return true;
+  layout_.fill_padding(q_);
+}
+
+/// Moves the obstacle, and with it to first order, by the factor of the last point, what it touches: the step is one of
+/// a slow motion, not a sudden release.
+void PressSolver::follow(double top) {
+  const double rise = top - top_;
+  Field pull(layout_.size(), 0.0);
+  contact_points([&](int i, int j, const std::array<double, 4>& w, const Vec3& x, double area) {
+    const PressObstacle::Profile at = obstacle_.at(x.x());
+    if (top_ + at.height - x.z() <= 0.0) return;
+    const Vec3 force = obstacle_.stiffness * area * rise * Vec3(-at.slope, 0.0, 1.0);
+    for (int n = 0; n < 4; ++n) {
+      const int row = j + kRow[n], column = (i + kColumn[n]) % layout_.columns;
+      layout_.set(pull, column, row, 0, layout_.get(pull, column, row, 0) + w[n] * force);
+    }
+  });
+  top_ = top;
+  if (force_ > 0.0) move(Field(q_), linear_->llt.solve(linear_->gather(layout_, pull)), 1.0);
 }
 
 PressPoint PressSolver::press(double deflection) {
   PressPoint point;
   point.deflection = deflection;
-  top_ = deflection - start_radius_;
-  failed_ = 0;
-  double h = kFirstStep;
-  for (point.creep_steps = 0; point.creep_steps < kMaxSteps;) {
-    if (!creep(h)) {
-      h *= 0.25;
-      if (h < 1e-8) break;
-      continue;
-    }
-    ++point.creep_steps;
-    const double norm = evaluate(1.0, strains_);
+  follow(deflection - start_radius_);
+  viscosity_ = 0.0;
+  double norm = evaluate();
+  for (; point.creep_steps < kMaxSteps && viscosity_ < kMostViscosity; ++point.creep_steps) {
+    const bool definite = factorize();
+    if (!definite) ++point.failed_factorizations;
     point.force = force_;
     point.residual = norm / (force_ > kLeastLoad ? force_ : pressure_norm_);
-    if (point.residual <= kTolerance && h >= kStaticStep) {
-      point.failed_factorizations = failed_;
+    if (definite && viscosity_ == 0.0 && point.residual <= kTolerance) {
       const TireStatus status = clearance_.status(clearance_.measure(layout_, q_, RimState{}));
       if (!status.converged)
         throw physics_error(status.message("", fmt::format(" at a deflection of {:.4g} m", deflection)));
       return point;
     }
-    h = std::min((failed_ > 0 ? 1.5 : 3.0) * h, kLargestStep);
+    const double share = definite ? creep(norm) : 0.0;
+    if (share < kShortStep)
+      viscosity_ = std::max(4.0 * viscosity_, kLeastViscosity);
+    else if (share == 1.0)
+      viscosity_ = viscosity_ > kLeastViscosity ? 0.5 * viscosity_ : 0.0;
   }
   throw physics_error(fmt::format(
       "the tire found no static equilibrium at a deflection of {:.4g} m: residual {:.2g} of the load after "
       "{} creep steps, allowed {:.0e}; try smaller steps of deflection or a finer mesh",
       deflection, point.residual, point.creep_steps, kTolerance));
+}
+
+double PressSolver::runout() const {
+  double most = 0.0;
+  for (int j = 1; j + 1 < layout_.rows; ++j) {
+    double low = 1e300, high = 0.0;
+    for (int i = 0; i < layout_.columns; ++i) {
+      const Vec3 x = layout_.get(q_, i, j, 0);
+      const double radius = std::hypot(x.x(), x.z());
+      low = std::min(low, radius), high = std::max(high, radius);
+    }
+    most = std::max(most, high - low);
+  }
+  return most;
 }
 
 std::vector<PressSample> PressSolver::footprint() const {

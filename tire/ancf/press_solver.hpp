@@ -1,14 +1,15 @@
 // Static pressing of an inflated ring of shell elements, its beads fixed, on a frictionless obstacle z = H(x).
 //
-// Equilibrium of elastic, pressure and contact forces, without inertia, viscosity and weight:
-//   B(q)ᵀ D̂ E(q) − p ∂V/∂q − ∂/∂q Σ ½ κ A ⟨H(x) − z⟩² = 0,
-// the contact summed over points of the mid-surface with their share A of the undeformed area. All forces have
-// potentials, so loading and unloading coincide wherever the equilibrium is unique.
+// Equilibrium is a minimum of the potential of elastic, pressure and contact forces, without inertia, viscosity and weight:
+//   Π(q) = ½ EᵀD̂E − p V(q) + Σ ½ κ A ⟨H(x) − z⟩²,
+// the contact summed over points of the mid-surface with their share A of the undeformed area. Loading and unloading
+// coincide wherever the minimum is unique.
 //
-// A layered tire need not be stable as a static body: where belts or sidewalls are compressed they wrinkle, and the
-// tangent loses its definiteness on the way. The remedy is that of ancf/inflation.hpp: the equilibrium is approached by
-// creep under the Kelvin–Voigt law, whose step h shrinks when the Cholesky factorization fails and grows otherwise. In
-// the limit of large h a creep step is a Newton step of the static equations, and only a stable equilibrium is reached.
+// It is approached by creep of the Kelvin–Voigt solid, in linearly implicit steps h along which Π has to fall:
+//   (∂²Π/∂q² + σ BᵀD̂B) Δq = −∂Π/∂q,   σ = τ/h.
+// σ = 0 is Newton's method. A layered tire need not be stable as a static body: where belts or sidewalls are compressed
+// they wrinkle, and ∂²Π/∂q² loses its definiteness on the way. There σ grows until the Cholesky factorization succeeds,
+// and falls again afterwards; only an equilibrium at which it succeeds with σ = 0, a stable one, is accepted.
 #pragma once
 
 #include <memory>
@@ -27,7 +28,7 @@ struct PressObstacle {
   double stiffness = 4e9;  // κ, N/m³: 0.06 mm under 240 kPa
 
   struct Profile {
-    double height = 0.0, slope = 0.0;
+    double height = 0.0, slope = 0.0, curvature = 0.0;  // m, -, 1/m
   };
   /// Top at 0; the base of a bar is never touched.
   Profile at(double x) const;
@@ -59,15 +60,21 @@ class PressSolver {
   /// Moves the obstacle to a deflection and finds equilibrium. @throws Error(physics) when there is none,
   /// or when the tire would stand in its rim.
   PressPoint press(double deflection);
+  /// Π at the last point, J; its derivative by the deflection is the force.
+  double potential() const { return potential_; }
+  /// Largest difference of radius around a row of nodes, m: of the tire not pressed, the height of its wrinkles.
+  double runout() const;
   std::vector<PressSample> footprint() const;
   const Field& q() const { return q_; }
 
  private:
   struct Linear;
-  bool creep(double h);
-  double evaluate(double c, const Field& e_old);  // residual into r_; its norm
-  double contact(bool with_tangent);              // into r_; @returns vertical force
-  void assemble(double c, const Field& e_old);
+  double evaluate();
+  bool factorize();
+  double creep(double& norm);
+  void contact(bool tangent);
+  void move(const Field& from, const Eigen::VectorXd& change, double share);
+  void follow(double top);
   template <class Visit>
   void contact_points(Visit visit) const;
 
@@ -77,8 +84,9 @@ class PressSolver {
   PressObstacle obstacle_;
   RimClearance clearance_;
   Field q_, strains_, r_;
-  double start_radius_ = 0.0, top_ = 0.0, pressure_norm_ = 0.0, force_ = 0.0;
-  int failed_ = 0;
+  double start_radius_ = 0.0, top_ = 0.0, pressure_norm_ = 0.0, rounding_ = 0.0;
+  double force_ = 0.0, potential_ = 0.0;  // N, J, at q_
+  double viscosity_ = 0.0;                // σ
   std::unique_ptr<Linear> linear_;
 };
 

@@ -99,7 +99,12 @@ void Checks::rig() {
 }
 
 void Checks::tires() {
-  for (const TireOptions& options : s_.tires) tires_.push_back(tire_size(options));
+  for (const TireOptions& options : s_.tires) {
+    if (options.rigid && options.contact_tangent)
+      throw wrong("tire.contact_tangent",
+                  "is true for a rigid tire, which does not answer to its forces, expected false");
+    tires_.push_back(tire_size(options));
+  }
   if (!grains()) return;
   for (std::size_t k = 0; k < tires_.size(); ++k) {
     const TireSize& tire = tires_[k];

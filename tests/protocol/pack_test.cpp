@@ -54,6 +54,10 @@ SpindleReport spindle_report() {
   m.newton_iterations = 19;
   m.factorizations = 20;
   m.residual = 21;
+  m.contact_tangent = true;
+  m.impulse_ahead = {22, 23, 24};
+  m.ledger = 25;
+  m.ledger_largest = 26;
   return m;
 }
 SurfaceMotion surface_motion(int vertices) {
@@ -66,7 +70,12 @@ SurfaceMotion surface_motion(int vertices) {
   m.order = Order::checkpoint;
   return m;
 }
-TerrainForces terrain_forces() { return {{45, 1.8}, {{1, 5, 9}, {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}}}}; }
+TerrainForces terrain_forces() {
+  TerrainForces m{{45, 1.8}, {{1, 5, 9}, {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}}}};
+  for (int k = 0; k < 3; ++k)
+    m.forces.tangent.push_back({Mat3::Constant(k), Mat3::Constant(k + 0.5), {1, 2, k}, {3, 4, k}});
+  return m;
+}
 TerrainReport terrain_report() {
   TerrainReport m;
   m.header = {46, 1.9};

@@ -78,7 +78,7 @@ NodalForces push_grain(const Surface& surface, const Vec3& shift, const std::str
   for (Vec3& x : here.vertex) x += Vec3(0.3, 0.0, 0.3 + few.options.radius - 3e-4);
   solver.surfaces().give_tangents(true);
   const SurfaceState target = moved(here, shift);
-  solver.surfaces().attach(here.mesh, material, few.coefficients().wall, target);
+  solver.surfaces().attach(here.mesh, material, few.coefficients().floor, target);
   solver.surfaces().set_targets({&target, 1}, kStep);
   solver.surfaces().restrict_to({Vec3::Zero(), Vec3::Ones()});
   NodalForces forces;

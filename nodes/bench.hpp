@@ -30,6 +30,7 @@ struct TireBench {
   double speed = 8.56;           // of the rim's spin, rad/s
   double step = 4e-5;            // s
   double tolerance = 1e-4;       // of the free residual, relative to the norm of the pressure forces
+  double renewal = 0.01;         // change of shape at which a sector of the factor is renewed
   int columns = 0, width = 0;    // elements around and across; 0: the file's
   int threads = 1;
   int steps = 0;      // timed; 0: one revolution

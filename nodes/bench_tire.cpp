@@ -54,6 +54,7 @@ void check(const TireBench& bench) {
   require(bench.speed >= 0.0, "--speed", "0 or more, rad/s");
   require(bench.load > 0.0, "--load", "a positive number, kg");
   require(bench.tolerance > 0.0 && bench.tolerance < 1.0, "--tolerance", "between 0 and 1");
+  require(bench.renewal >= 0.0 && bench.renewal <= 10.0, "--renewal", "0 to 10");
 }
 
 /// A tire under a carriage on the plane z = 0.
@@ -146,6 +147,7 @@ std::string bench_tire(const TireBench& bench) {
   if (bench.width > 0) set_elements_width(file, bench.width);
   RingIntegratorParams params;
   params.tolerance = bench.tolerance;
+  params.age = bench.renewal;
   params.threads = bench.threads;
   AncfTire tire(file, params);
   RollingTire rolling(tire, bench);
@@ -205,6 +207,7 @@ std::string bench_tire(const TireBench& bench) {
        static_cast<double>(end.newton_iterations - start.newton_iterations) / static_cast<double>(steps)},
       {"max_residual", worst},
       {"residual_tolerance", bench.tolerance},
+      {"renewal", bench.renewal},
       {"deflection_m", tire.radius() - height},
       {"spindle_load_N", load},
       {"pull_N", pull},

@@ -75,6 +75,10 @@ void add_tire_bench(CLI::App& command, TireBench& bench) {
       .add_option("--tolerance", bench.tolerance,
                   "of the free residual, relative to the norm of the pressure forces")
       ->capture_default_str();
+  command
+      .add_option("--renewal", bench.renewal,
+                  "relative change of a sector's shape at which its part of the factor is renewed; 0: every step")
+      ->capture_default_str();
   command.add_option("--elements-circumference", bench.columns, "elements around; 0: the file's")
       ->capture_default_str();
   command.add_option("--elements-width", bench.width, "elements across; 0: the file's")

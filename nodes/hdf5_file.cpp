@@ -6,6 +6,7 @@
 
 #include "nodes/text_file.hpp"
 #include "protocol/error.hpp"
+#include "terrain/dem/hdf5_handle.hpp"
 
 namespace furrow {
 namespace {
@@ -14,21 +15,7 @@ constexpr std::int64_t kFormatVersion = 1;
 
 std::recursive_mutex library;  // held by every open writer and reader
 
-/// Closes any kind of HDF5 handle at the end of a scope.
-class Handle {
- public:
-  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-  ~Handle() {
-    if (id_ >= 0) close_(id_);
-  }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  operator hid_t() const { return id_; }
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
+using dem::Handle;
 
 /// Errors reach the user through exceptions alone.
 void silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }

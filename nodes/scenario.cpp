@@ -76,6 +76,8 @@ json read_document(const std::string& file, const Settings& settings) {
   json document = parse_json(read_text_file(file, "a scenario in JSON"), file);
   if (!document.is_object())
     throw input_error(file, "", "is " + value_text(document) + ", expected an object { }");
+  if (document.contains("scenario"))
+    throw input_error(file, "", "is a study, expected a scenario ('furrow sweep' takes studies)");
   // What is said later wins: a soil of the command line replaces what the file says of its soil.
   const std::string soil = "terrain.material";
   if (std::none_of(settings.begin(), settings.end(), [&](const auto& one) { return one.first == soil; }))

@@ -63,8 +63,9 @@ class Reader {
 
   std::vector<Json> grid() const {
     std::vector<Json> runs{Json::object()};
-    const Json axes = object("grid");
+    const Json axes = object("grid"), common = object("set");
     for (const auto& [key, values] : axes.items()) {
+      if (common.contains(key)) throw wrong("grid." + key, "is in 'set' as well, expected it in one of them");
       if (!values.is_array() || values.empty())
         throw wrong("grid." + key, "expected a list of values, one or more");
       if (runs.size() * values.size() > kMostRuns)
@@ -164,6 +165,12 @@ Study load_study(const std::filesystem::path& file) {
   if (!given("grid") && !given("list") && !given("passes"))
     throw reader.wrong("", "expected one of 'grid', 'list' and 'passes'");
   study.runs = given("list") ? reader.list() : reader.grid();
+  for (auto run = study.runs.begin(); run != study.runs.end(); ++run)
+    if (std::find(study.runs.begin(), run, *run) != run)
+      throw reader.wrong(given("list") ? "list" : "grid",
+                         fmt::format("has the run '{}' twice, expected each once", text_of(*run)));
+  if (given("rest") && !given("passes"))
+    throw reader.wrong("rest", "is the time between passes, expected 'passes' as well");
   if (given("passes")) {
     study.passes = reader.passes();
     study.rest = reader.rest();

@@ -45,15 +45,14 @@ bool write_array(hid_t file, const std::string& name, const Archive::Array& arra
         const hsize_t size = values.size();
         const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
         const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
-        H5Pset_create_intermediate_group(links.get(), 1);
+        H5Pset_create_intermediate_group(links, 1);
         const Handle timeless(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);  // the same bed, the same bytes
-        H5Pset_obj_track_times(timeless.get(), false);
-        const Handle set(H5Dcreate2(file, name.c_str(), native_type<T>(), space.get(), links.get(),
-                                    timeless.get(), H5P_DEFAULT),
-                         H5Dclose);
+        H5Pset_obj_track_times(timeless, false);
+        const Handle set(
+            H5Dcreate2(file, name.c_str(), native_type<T>(), space, links, timeless, H5P_DEFAULT), H5Dclose);
         if (!set.ok()) return false;
         return size == 0 ||
-               H5Dwrite(set.get(), native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0;
+               H5Dwrite(set, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0;
       },
       array);
 }
@@ -72,14 +71,14 @@ herr_t read_object(hid_t file, const char* name, const H5O_info_t* info, void* t
   if (info->type != H5O_TYPE_DATASET) return 0;
   const Handle set(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
   if (!set.ok()) return -1;
-  const Handle space(H5Dget_space(set.get()), H5Sclose), type(H5Dget_type(set.get()), H5Tclose);
-  const auto size = static_cast<hsize_t>(H5Sget_simple_extent_npoints(space.get()));
+  const Handle space(H5Dget_space(set), H5Sclose), type(H5Dget_type(set), H5Tclose);
+  const auto size = static_cast<hsize_t>(H5Sget_simple_extent_npoints(space));
   auto& archive = *static_cast<Archive*>(target);
-  const bool good = read_as<double>(set.get(), type.get(), size, name, archive) ||
-                    read_as<std::int64_t>(set.get(), type.get(), size, name, archive) ||
-                    read_as<std::int32_t>(set.get(), type.get(), size, name, archive) ||
-                    read_as<std::uint64_t>(set.get(), type.get(), size, name, archive) ||
-                    read_as<std::uint8_t>(set.get(), type.get(), size, name, archive);
+  const bool good = read_as<double>(set, type, size, name, archive) ||
+                    read_as<std::int64_t>(set, type, size, name, archive) ||
+                    read_as<std::int32_t>(set, type, size, name, archive) ||
+                    read_as<std::uint64_t>(set, type, size, name, archive) ||
+                    read_as<std::uint8_t>(set, type, size, name, archive);
   return good ? 0 : -1;
 }
 
@@ -149,10 +148,10 @@ void write_bed(const std::filesystem::path& file, const Archive& archive) {
   {
     Handle out(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
     if (out.ok()) {
-      good = write_array(out.get(), "format_version", std::vector<std::int64_t>{kBedFormat}) &&
-             write_array(out.get(), "checksum", std::vector<std::uint64_t>{checksum(archive)});
-      for (const auto& [name, array] : archive.arrays()) good = good && write_array(out.get(), name, array);
-      good = good && H5Fflush(out.get(), H5F_SCOPE_GLOBAL) >= 0;
+      good = write_array(out, "format_version", std::vector<std::int64_t>{kBedFormat}) &&
+             write_array(out, "checksum", std::vector<std::uint64_t>{checksum(archive)});
+      for (const auto& [name, array] : archive.arrays()) good = good && write_array(out, name, array);
+      good = good && H5Fflush(out, H5F_SCOPE_GLOBAL) >= 0;
       good = out.close() && good;
     }
   }
@@ -170,7 +169,7 @@ Archive read_bed(const std::filesystem::path& file) {
   const Handle in(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!in.ok()) throw io_error(file.string(), "not an HDF5 file, or damaged");
   Archive all;
-  if (H5Ovisit2(in.get(), H5_INDEX_NAME, H5_ITER_NATIVE, read_object, &all, H5O_INFO_BASIC) < 0)
+  if (H5Ovisit2(in, H5_INDEX_NAME, H5_ITER_NATIVE, read_object, &all, H5O_INFO_BASIC) < 0)
     throw io_error(file.string(), "damaged");
   if (!all.has("format_version") || !all.has("checksum"))
     throw io_error(file.string(), "not a bed of furrow");

@@ -1,4 +1,4 @@
-// HDF5 identifiers that close themselves, for the bed files of this library.
+// HDF5 identifiers that close themselves
 #pragma once
 
 #include <hdf5.h>
@@ -14,7 +14,7 @@ class Handle {
   }
   Handle(const Handle&) = delete;
   Handle& operator=(const Handle&) = delete;
-  hid_t get() const { return id_; }
+  operator hid_t() const { return id_; }
   bool ok() const { return id_ >= 0; }
   /// Closes now; false when what was buffered could not be written.
   bool close() {

@@ -76,6 +76,9 @@ class Sweep(SystemTest):
                             ({"grid": {"rig.slip": []}}, "key 'grid.rig.slip': expected a list of values"),
                             ({"grid": {}, "list": [{}]}, "has 'grid' and 'list', expected one of them"),
                             ({}, "expected one of 'grid', 'list' and 'passes'"),
+                            ({"grid": {"rig.slip": [0.1, 0.2, 0.1]}}, "key 'grid': has the run 'rig.slip=0.1' twice"),
+                            ({"grid": {"rig.slip": [0.1]}, "set": {"rig.slip": 0.2}}, "key 'grid.rig.slip': is in 'set' as well"),
+                            ({"grid": {"rig.slip": [0.1]}, "rest": 0.1}, "key 'rest': is the time between passes"),
                             ({"passes": 0}, "key 'passes': expected a whole number"),
                             ({"passes": 2, "set": {"checkpoint.at_end": False}}, "key 'checkpoint.at_end': is false, expected true"),
                             ({"passes": 2, "set": {"terrain.engine": "rigid"}}, "key 'terrain.engine': is 'rigid', expected 'dem'"),
@@ -89,6 +92,11 @@ class Sweep(SystemTest):
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(words, done.stderr)
             self.assertFalse((self.folder / "results").exists())
+
+    def test_run_says_that_it_was_given_a_study(self):
+        done = furrow("run", self.study(passes=1), cwd=self.folder)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("is a study, expected a scenario", done.stderr)
 
     def test_shipped_studies_are_valid(self):
         for name in ("study_slip.json", "study_slip_angle.json", "study_camber.json", "study_hard_slip.json", "multipass.json"):

@@ -157,15 +157,14 @@ TEST_F(Beds, hdf5_of_positions_is_settled_like_csv) {
   const auto put = [](hid_t out, const char* name, const std::vector<float>& values,
                       std::vector<hsize_t> size) {
     const Handle space(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
-    const Handle set(
-        H5Dcreate2(out, name, H5T_NATIVE_FLOAT, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-        H5Dclose);
-    H5Dwrite(set.get(), H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+    const Handle set(H5Dcreate2(out, name, H5T_NATIVE_FLOAT, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                     H5Dclose);
+    H5Dwrite(set, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
   };
   {
     const Handle out(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
-    put(out.get(), "position", x, {2, 3});
-    put(out.get(), "radius", r, {2});
+    put(out, "position", x, {2, 3});
+    put(out, "radius", r, {2});
   }
   options_.bed = file;
   const PreparedBed prepared = prepare_bed(options_, {});
@@ -173,7 +172,7 @@ TEST_F(Beds, hdf5_of_positions_is_settled_like_csv) {
   EXPECT_EQ(prepared.bed.get<double>("position")[3], 0.01);
   {
     const Handle out(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
-    put(out.get(), "position", x, {3, 2});
+    put(out, "position", x, {3, 2});
   }
   EXPECT_NE(refusal().find("dataset 'position'': expected N × 3 numbers, m"), std::string::npos) << refusal();
 }
@@ -249,12 +248,12 @@ TEST_F(Beds, beds_of_another_format_are_refused_by_version) {
   for (const auto& [step, words] : {std::pair(-1, "is older than"), std::pair(1, "is newer than")}) {
     std::filesystem::copy_file(made.file, options_.bed, std::filesystem::copy_options::overwrite_existing);
     const Handle file(H5Fopen(options_.bed.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
-    const Handle set(H5Dopen2(file.get(), "format_version", H5P_DEFAULT), H5Dclose);
+    const Handle set(H5Dopen2(file, "format_version", H5P_DEFAULT), H5Dclose);
     std::int64_t version = 0;
-    H5Dread(set.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &version);
+    H5Dread(set, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &version);
     version += step;
-    H5Dwrite(set.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &version);
-    H5Fflush(file.get(), H5F_SCOPE_GLOBAL);
+    H5Dwrite(set, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &version);
+    H5Fflush(file, H5F_SCOPE_GLOBAL);
     try {
       read_bed(options_.bed);
       ADD_FAILURE() << "was read";

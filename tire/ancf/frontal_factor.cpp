@@ -21,7 +21,6 @@ FrontalFactor::FrontalFactor(PanelPattern pattern, const std::vector<Entry>& ent
   std::vector<int> supernode_of(pattern_.size());
   for (int s = 0; s < count; ++s)
     for (int k = 0; k < panels[s].columns; ++k) supernode_of[panels[s].first + k] = s;
-  parent_.assign(count, -1);
   children_.resize(count);
   place_in_parent_.resize(count);
   entries_.resize(count);
@@ -43,9 +42,9 @@ FrontalFactor::FrontalFactor(PanelPattern pattern, const std::vector<Entry>& ent
     all_operations_ += supernode_operations(p.columns, p.below);
     passed_[s].assign(static_cast<std::size_t>(p.below) * p.below, 0.0f);
     if (p.below == 0) continue;
-    parent_[s] = supernode_of[pattern_.rows(p)[0]];
-    children_[parent_[s]].push_back(s);
-    for (int k = 0; k < p.below; ++k) place_in_parent_[s].push_back(place(parent_[s], pattern_.rows(p)[k]));
+    const int parent = pattern_.parent(s);
+    children_[parent].push_back(s);
+    for (int k = 0; k < p.below; ++k) place_in_parent_[s].push_back(place(parent, pattern_.rows(p)[k]));
   }
   for (const Entry& e : entries) {
     const int s = supernode_of[e.column];
@@ -53,30 +52,46 @@ FrontalFactor::FrontalFactor(PanelPattern pattern, const std::vector<Entry>& ent
     entries_[s].push_back({e.value, place(s, e.row) + (p.columns + p.below) * (e.column - p.first)});
     holds_[s][e.group] = 1;
   }
-  front_.resize(largest);
-  inverse_.resize(widest * widest);
-}
-
-bool FrontalFactor::factorize(std::span<const float> values, std::span<const char> changed) {
-  operations_ = 0.0;
-  const int count = static_cast<int>(dirty_.size());
-  std::fill(dirty_.begin(), dirty_.end(), 0);
-  for (int s = 0; s < count; ++s) {
-    for (std::size_t g = 0; g < changed.size(); ++g) dirty_[s] |= changed[g] & holds_[s][g];
-    if (!dirty_[s]) continue;
-    if (parent_[s] >= 0) dirty_[parent_[s]] = 1;
-    if (!eliminate(s, values)) return false;
+  fronts_.resize(PanelPattern::kBranches);
+  for (Front& front : fronts_) {
+    front.columns.resize(largest);
+    front.inverse.resize(widest * widest);
   }
-  return true;
 }
 
-/// The columns of supernode s in front_, what its children pass on to rows below in passed_[s].
-void FrontalFactor::gather(int s, std::span<const float> values) {
+bool FrontalFactor::factorize(std::span<const float> values, std::span<const char> changed, int threads) {
+  std::fill(dirty_.begin(), dirty_.end(), 0);
+  for (std::size_t s = 0; s < dirty_.size(); ++s) {
+    for (std::size_t g = 0; g < changed.size(); ++g) dirty_[s] |= changed[g] & holds_[s][g];
+    if (const int parent = pattern_.parent(static_cast<int>(s)); dirty_[s] && parent >= 0) dirty_[parent] = 1;
+  }
+  for (Front& front : fronts_) front.operations = 0.0, front.failed = false;
+  constexpr int branches = PanelPattern::kBranches;
+#pragma omp parallel for schedule(static, 1) num_threads(std::min(threads, branches)) if (threads > 1)
+  for (int b = 0; b < branches; ++b) eliminate(pattern_.branch(b), values, fronts_[b]);
+  const auto failed = [](const Front& front) { return front.failed; };
+  if (std::none_of(fronts_.begin(), fronts_.end(), failed)) eliminate(pattern_.trunk(), values, fronts_[0]);
+  operations_ = 0.0;
+  for (const Front& front : fronts_) operations_ += front.operations;
+  return std::none_of(fronts_.begin(), fronts_.end(), failed);
+}
+
+void FrontalFactor::eliminate(const std::vector<int>& supernodes, std::span<const float> values,
+                              Front& front) {
+  for (const int s : supernodes)
+    if (dirty_[s] && !eliminate(s, values, front)) {
+      front.failed = true;
+      return;
+    }
+}
+
+/// The columns of supernode s, and what its children pass on to rows below in passed_[s].
+void FrontalFactor::gather(int s, std::span<const float> values, std::vector<float>& columns) {
   const auto& p = pattern_.panels()[s];
   const int rows = p.columns + p.below;
-  std::fill(front_.begin(), front_.begin() + static_cast<std::size_t>(rows) * p.columns, 0.0f);
+  std::fill(columns.begin(), columns.begin() + static_cast<std::size_t>(rows) * p.columns, 0.0f);
   std::fill(passed_[s].begin(), passed_[s].end(), 0.0f);
-  for (const Place& e : entries_[s]) front_[e.at] += values[e.value];
+  for (const Place& e : entries_[s]) columns[e.at] += values[e.value];
   for (const int child : children_[s]) {
     const std::vector<int>& to = place_in_parent_[child];
     const int n = static_cast<int>(to.size());
@@ -84,22 +99,22 @@ void FrontalFactor::gather(int s, std::span<const float> values) {
       const float* from = passed_[child].data() + static_cast<std::size_t>(c) * n;
       float* column =
           to[c] < p.columns
-              ? front_.data() + static_cast<std::size_t>(to[c]) * rows
+              ? columns.data() + static_cast<std::size_t>(to[c]) * rows
               : passed_[s].data() + static_cast<std::size_t>(to[c] - p.columns) * p.below - p.columns;
       for (int r = c; r < n; ++r) column[to[r]] += from[r];
     }
   }
 }
 
-bool FrontalFactor::eliminate(int s, std::span<const float> values) {
+bool FrontalFactor::eliminate(int s, std::span<const float> values, Front& front) {
   const auto& p = pattern_.panels()[s];
-  gather(s, values);
-  operations_ += supernode_operations(p.columns, p.below);
-  Matrix panel(front_.data(), p.columns + p.below, p.columns);
+  gather(s, values, front.columns);
+  front.operations += supernode_operations(p.columns, p.below);
+  Matrix panel(front.columns.data(), p.columns + p.below, p.columns);
   Eigen::Ref<Eigen::MatrixXf> top = panel.topRows(p.columns);
   Eigen::LLT<Eigen::Ref<Eigen::MatrixXf>> llt(top);
   if (llt.info() != Eigen::Success) return false;
-  Matrix inverse(inverse_.data(), p.columns, p.columns);
+  Matrix inverse(front.inverse.data(), p.columns, p.columns);
   inverse.setIdentity();
   top.triangularView<Eigen::Lower>().solveInPlace(inverse);
   inverse.triangularView<Eigen::StrictlyUpper>().setZero();
@@ -108,7 +123,7 @@ bool FrontalFactor::eliminate(int s, std::span<const float> values) {
     top.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(panel.bottomRows(p.below));
     passed.selfadjointView<Eigen::Lower>().rankUpdate(panel.bottomRows(p.below), -1.0f);
   }
-  pattern_.pack(s, inverse_.data(), front_.data(), factor_);
+  pattern_.pack(s, front.inverse.data(), front.columns.data(), factor_);
   return true;
 }
 

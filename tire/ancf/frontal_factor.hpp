@@ -29,12 +29,12 @@ class FrontalFactor {
   /// Entries with the same row and column are summed in the order given.
   FrontalFactor(PanelPattern pattern, const std::vector<Entry>& entries, int groups);
 
-  /// Computes what depends on the groups marked in `changed`.
+  /// Computes what depends on the groups marked in `changed`, the branches of the pattern by `threads`.
   /// @returns false when the matrix is not positive definite; the factor is then unusable until all groups are renewed
-  bool factorize(std::span<const float> values, std::span<const char> changed);
+  bool factorize(std::span<const float> values, std::span<const char> changed, int threads);
 
-  /// x ← A⁻¹ x
-  void solve(float* x) { pattern_.solve(factor_, x, work_); }
+  /// x ← A⁻¹ x; x is pattern().padded_size() long.
+  void solve(float* x, int threads) { pattern_.solve(factor_, x, work_, threads); }
 
   const PanelPattern& pattern() const { return pattern_; }
   /// Floating point operations of the last factorize, and of one that renews all.
@@ -46,18 +46,25 @@ class FrontalFactor {
     int value = 0;
     int at = 0;  // row + rows of the front × column
   };
-  bool eliminate(int s, std::span<const float> values);
-  void gather(int s, std::span<const float> values);
+  /// Scratch memory of a branch.
+  struct Front {
+    std::vector<float> columns, inverse;
+    double operations = 0.0;
+    bool failed = false;
+  };
+  void eliminate(const std::vector<int>& supernodes, std::span<const float> values, Front& front);
+  bool eliminate(int s, std::span<const float> values, Front& front);
+  void gather(int s, std::span<const float> values, std::vector<float>& columns);
 
   PanelPattern pattern_;
-  std::vector<int> parent_;
   std::vector<std::vector<int>> children_;
   std::vector<std::vector<int>> place_in_parent_;  // of the rows below, in the parent's front
   std::vector<std::vector<Place>> entries_;        // of each supernode
   std::vector<std::vector<char>> holds_;           // [supernode][group]
   std::vector<std::vector<float>> passed_;  // Schur complement of each supernode, lower triangle by columns
   std::vector<char> dirty_;
-  std::vector<float> factor_, front_, inverse_, work_;
+  std::vector<float> factor_, work_;
+  std::vector<Front> fronts_;  // of each branch
   double operations_ = 0.0, all_operations_ = 0.0;
 };
 

@@ -70,6 +70,65 @@ PanelPattern::PanelPattern(int supernodes, const int* super, const int* row_star
   size_ = super[supernodes];
   work_ = kStrip * static_cast<std::size_t>(strips(widest) + strips(tallest)) +
           kHalf * static_cast<std::size_t>(widest) + 4 * kStrip;
+  std::vector<int> panel_of(size_);
+  for (int s = 0; s < supernodes; ++s)
+    std::fill_n(panel_of.begin() + panels_[s].first, panels_[s].columns, s);
+  for (const Panel& p : panels_) parent_.push_back(p.below > 0 ? panel_of[rows(p)[0]] : -1);
+  cut();
+}
+
+std::size_t PanelPattern::panel_values(int s) const {
+  const Panel& p = panels_[s];
+  return triangle_values(p.columns) + static_cast<std::size_t>(kStrip) * strips(p.below) * p.columns;
+}
+
+/// Subtrees of at most 1/(2 kBranches) of the factor are shared out, the largest first; what is above them is the trunk.
+void PanelPattern::cut() {
+  const int count = static_cast<int>(panels_.size());
+  std::vector<std::size_t> weight(count, 0);  // of the subtree
+  std::vector<std::vector<int>> children(count);
+  std::vector<int> whole;            // roots of subtrees
+  for (int s = 0; s < count; ++s) {  // children come before their parents
+    weight[s] += panel_values(s);
+    if (parent_[s] < 0) {
+      whole.push_back(s);
+    } else {
+      weight[parent_[s]] += weight[s];
+      children[parent_[s]].push_back(s);
+    }
+  }
+  const auto heavier = [&](int a, int b) { return weight[a] != weight[b] ? weight[a] > weight[b] : a < b; };
+  std::vector<int> owner(count, kBranches);
+  while (!whole.empty()) {
+    const auto most = std::min_element(whole.begin(), whole.end(), heavier);
+    if (weight[*most] <= values_ / (2 * kBranches)) break;
+    const std::vector<int> parts = children[*most];
+    whole.erase(most);
+    whole.insert(whole.end(), parts.begin(), parts.end());
+  }
+  std::sort(whole.begin(), whole.end(), heavier);
+  std::size_t load[kBranches] = {};
+  for (const int root : whole) {
+    owner[root] = static_cast<int>(std::min_element(load, load + kBranches) - load);
+    load[owner[root]] += weight[root];
+  }
+  branch_.resize(kBranches + 1);
+  for (int s = count; s-- > 0;)
+    if (owner[s] == kBranches && parent_[s] >= 0) owner[s] = owner[parent_[s]];
+  std::vector<int> place(size_, -1);
+  for (int s = 0; s < count; ++s) {
+    branch_[owner[s]].push_back(s);
+    for (int k = 0; k < panels_[s].columns && owner[s] == kBranches; ++k) {
+      place[panels_[s].first + k] = trunk_columns_++;
+      trunk_column_.push_back(panels_[s].first + k);
+    }
+  }
+  to_ = row_;
+  for (int s = 0; s < count; ++s)
+    for (int k = 0; k < panels_[s].below && owner[s] < kBranches; ++k) {
+      int& row = to_[panels_[s].rows + k];
+      if (place[row] >= 0) row = size_ + owner[s] * trunk_columns_ + place[row];
+    }
 }
 
 void PanelPattern::pack(int s, const float* inverse, const float* columns, std::vector<float>& values) const {
@@ -86,14 +145,15 @@ void PanelPattern::pack(int s, const float* inverse, const float* columns, std::
     }
 }
 
-void PanelPattern::forward(const float* values, float* x, float* work) const {
+void PanelPattern::forward(const std::vector<int>& panels, const float* values, float* x, float* work) const {
   float y[kStrip];
-  for (const Panel& p : panels_) {
+  for (const int n : panels) {
+    const Panel& p = panels_[n];
     const float* a = values + p.data;
     for (int s = 0; s < strips(p.columns); ++s)
       a = multiply(a, triangle_columns(s, p.columns), x + p.first, work + s * kStrip);
     std::copy(work, work + p.columns, x + p.first);
-    const int* row = rows(p);
+    const int* row = to_.data() + p.rows;
     for (int s = 0; s < p.below; s += kStrip) {
       a = multiply(a, p.columns, x + p.first, y);
       const int count = std::min(kStrip, p.below - s);
@@ -102,9 +162,10 @@ void PanelPattern::forward(const float* values, float* x, float* work) const {
   }
 }
 
-void PanelPattern::backward(const float* values, float* x, float* work) const {
-  for (std::size_t n = panels_.size(); n-- > 0;) {
-    const Panel& p = panels_[n];
+void PanelPattern::backward(const std::vector<int>& panels, const float* values, float* x,
+                            float* work) const {
+  for (std::size_t n = panels.size(); n-- > 0;) {
+    const Panel& p = panels_[panels[n]];
     float* partial = work;
     std::fill(partial, partial + kHalf * p.columns, 0.0f);
     const float* triangle = values + p.data;
@@ -125,10 +186,21 @@ void PanelPattern::backward(const float* values, float* x, float* work) const {
   }
 }
 
-void PanelPattern::solve(const std::vector<float>& values, float* x, std::vector<float>& work) const {
-  if (work.size() < work_) work.resize(work_);
-  forward(values.data(), x, work.data());
-  backward(values.data(), x, work.data());
+void PanelPattern::solve(const std::vector<float>& values, float* x, std::vector<float>& work,
+                         int threads) const {
+  if (work.size() < kBranches * work_) work.resize(kBranches * work_);
+  float* passed = x + size_;
+#pragma omp parallel for schedule(static, 1) num_threads(std::min(threads, kBranches)) if (threads > 1)
+  for (int b = 0; b < kBranches; ++b) {
+    std::fill_n(passed + b * trunk_columns_, trunk_columns_, 0.0f);
+    forward(branch_[b], values.data(), x, work.data() + b * work_);
+  }
+  for (int k = 0; k < trunk_columns_; ++k)
+    for (int b = 0; b < kBranches; ++b) x[trunk_column_[k]] += passed[b * trunk_columns_ + k];
+  forward(trunk(), values.data(), x, work.data());
+  backward(trunk(), values.data(), x, work.data());
+#pragma omp parallel for schedule(static, 1) num_threads(std::min(threads, kBranches)) if (threads > 1)
+  for (int b = 0; b < kBranches; ++b) backward(branch_[b], values.data(), x, work.data() + b * work_);
 }
 
 }  // namespace furrow

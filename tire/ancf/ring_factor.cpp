@@ -97,7 +97,7 @@ RingFactor::RingFactor(const RingLayout& layout)
         }
   }
   factor_ = FrontalFactor(std::move(pattern), entries, sectors());
-  x_.resize(unknowns());
+  x_.resize(factor_.pattern().padded_size());
 }
 
 std::size_t RingFactor::block(int sector, int column, int row, int kind) const {
@@ -138,8 +138,8 @@ void RingFactor::add_node(const Mat3& stiffness, int sector, int lane, int row) 
     for (int c = 0; c <= r; ++c) to[6 * r + c] += static_cast<float>(stiffness(r, c));
 }
 
-bool RingFactor::factorize() {
-  if (!factor_.factorize(values_, changed_)) {
+bool RingFactor::factorize(int threads) {
+  if (!factor_.factorize(values_, changed_, threads)) {
     std::fill(changed_.begin(), changed_.end(), 1);
     return false;
   }
@@ -147,7 +147,7 @@ bool RingFactor::factorize() {
   return true;
 }
 
-void RingFactor::solve(const Mat3& turn, const Field& rhs, Field& x) {
+void RingFactor::solve(const Mat3& turn, const Field& rhs, Field& x, int threads) {
   const int columns = layout_.columns, stride = layout_.stride();
   const Mat3 back = turn.transpose();
   for (int j = 0; j < across_; ++j)
@@ -159,7 +159,7 @@ void RingFactor::solve(const Mat3& turn, const Field& rhs, Field& x) {
         for (int c = 0; c < 3; ++c) x_[to[c]] = static_cast<float>(v[c]);
       }
     }
-  factor_.solve(x_.data());
+  factor_.solve(x_.data(), threads);
   for (int j = 0; j < across_; ++j)
     for (int s = 0; s < 2; ++s) {
       double* p = x.data() + layout_.offset(j + 1, 3 * s);

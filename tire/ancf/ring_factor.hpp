@@ -29,11 +29,11 @@ class RingFactor {
   void add_node(const Mat3& stiffness, int sector, int lane, int row);
   /// Renews the factor where sectors were cleared and added since it was made.
   /// @returns false when the matrix is not positive definite
-  bool factorize();
+  bool factorize(int threads = 1);
   /// Share of a whole factorization that the last one took.
   double work() const { return factor_.operations() / factor_.all_operations(); }
   /// x = turn A⁻¹ turnᵀ rhs on the free rows; padding of x is zero there.
-  void solve(const Mat3& turn, const Field& rhs, Field& x);
+  void solve(const Mat3& turn, const Field& rhs, Field& x, int threads = 1);
 
  private:
   std::size_t block(int sector, int column, int row, int kind) const;

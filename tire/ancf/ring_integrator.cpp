@@ -217,7 +217,7 @@ bool RingIntegrator::renew(const std::vector<char>& which, const RimState& rim) 
       if (these[b]) geometric_[b] = geometric;
     build(these);
     const Stopwatch watch(times_.factorize);
-    factor_valid_ = factor_.factorize();
+    factor_valid_ = factor_.factorize(params_.threads);
     factor_work_ += factor_.work();
     return factor_valid_;
   };
@@ -295,7 +295,7 @@ void RingIntegrator::direction(const Mat3& turn, int pairs) {
     weight[k] = rho_[k] * dot(s_[k], change_, layout_);
     part(change_) -= weight[k] * part(y_[k]);
   }
-  factor_.solve(turn, change_, d_);
+  factor_.solve(turn, change_, d_, params_.threads);
   for (int k = 0; k < pairs; ++k) part(d_) += (weight[k] - rho_[k] * dot(y_[k], d_, layout_)) * part(s_[k]);
 }
 
@@ -458,7 +458,7 @@ void RingIntegrator::restore(const Archive& archive) {
   factor_valid_ = false;
   if (flags[0] != 0) {
     build(std::vector<char>(factor_.sectors(), 1));
-    factor_valid_ = factor_.factorize();
+    factor_valid_ = factor_.factorize(params_.threads);
   }
   reference_ = scalars[0], elastic_ = scalars[1], dissipation_ = scalars[2], residual_ = scalars[3];
   iterations_ = counts[0], factorizations_ = counts[1];

@@ -104,6 +104,12 @@ void hemisphere(int n, double tolerance) {
          "MacNeal & Harder 1985 doi:10.1016/0168-874X(85)90003-4");
   StaticPath path(patch, supports, load);
   const Judge judge{"pinched hemisphere", size(n, n), {"outward", "inward"}, tolerance};
+  ASSERT_TRUE(path.go_to(0.01));  // where a quartic element has been published, independent of the table
+  const char* quartic = "Elmer, Shell_OpenHemisphere_High_Order_Blending, p = 4";
+  verify("pinched hemisphere, 1 % of the load", "outward, " + size(n, n), path.q()[6 * a] - 10, 0.184936,
+         tolerance, quartic);
+  verify("pinched hemisphere, 1 % of the load", "inward, " + size(n, n), 10 - path.q()[6 * b + 1], 0.189022,
+         tolerance, quartic);
   for (const Row& row : kHemisphere) {
     ASSERT_TRUE(path.go_to(row.load));
     judge.compare(kHemisphere, {row.load, path.q()[6 * a] - 10, 10 - path.q()[6 * b + 1]}, row);

@@ -101,8 +101,7 @@ void Checks::rig() {
 void Checks::tires() {
   for (const TireOptions& options : s_.tires) {
     if (options.rigid && options.contact_tangent)
-      throw wrong("tire.contact_tangent",
-                  "is true for a rigid tire, which does not answer to its forces, expected false");
+      throw wrong("tire.contact_tangent", "is true, expected false for a rigid tire");
     tires_.push_back(tire_size(options));
   }
   if (!grains()) return;

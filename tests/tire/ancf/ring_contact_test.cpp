@@ -82,8 +82,8 @@ TEST(RingContact, holds_a_tire_at_rest_at_a_step_at_which_late_forces_throw_it) 
 
 TEST(RingContact, comes_to_the_load_of_small_steps_without_it) {
   double late = 0.0, answering = 0.0;
-  unrest(false, 8e-5, late);
-  unrest(true, 8e-5, answering);
+  unrest(false, 4e-5, late);
+  unrest(true, 4e-5, answering);
   EXPECT_NEAR(answering / late, 1.0, 0.01);
 }
 

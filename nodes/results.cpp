@@ -84,7 +84,8 @@ void Results::write_hdf5(std::span<const FinalReport> reports) const {
 }
 
 void Results::finish(std::span<const FinalReport> reports, std::span<const SeriesBuilder> builders,
-                     std::span<const double> carried_mass, double wall, bool stopped) {
+                     std::span<const SpindleReport> tires, std::span<const double> carried_mass, double wall,
+                     bool stopped) {
   for (auto& writer : writers_) writer->flush();
   write_hdf5(reports);
   write_xdmf_index(directory_);
@@ -93,9 +94,8 @@ void Results::finish(std::span<const FinalReport> reports, std::span<const Serie
       static_cast<std::int64_t>(std::llround(builders.front().now().time / scenario_.run.step));
   const std::vector<Segment> segments = segments_until(steps, wall, reports.back().threads, resume_);
   for (std::size_t k = builders.size(); k-- > 0;) {
-    const SummaryInput input{scenario_,       cards_,   setup_,
-                             reports,         rows_[k], builders[k],
-                             carried_mass[k], segments, static_cast<int>(k)};
+    const SummaryInput input{scenario_,   cards_,   setup_,          reports,  rows_[k],
+                             builders[k], tires[k], carried_mass[k], segments, static_cast<int>(k)};
     write_whole_file(directory_ / numbered("summary", k, ".json"), summary_text(input));
   }
 }

@@ -22,6 +22,7 @@ struct SummaryInput {
   std::span<const FinalReport> reports;  // as cards
   std::span<const SeriesRow> rows;
   const SeriesBuilder& builder;  // totals at the end
+  const SpindleReport& tire;     // the last one
   double carried_mass = 0.0;     // kg
   std::vector<Segment> segments;
   int wheel = 0;
@@ -44,7 +45,8 @@ class Results {
 
   /// Writes results.h5, results.xdmf and, unless the run was stopped early, summary.json. @throws Error(io)
   void finish(std::span<const FinalReport> reports, std::span<const SeriesBuilder> builders,
-              std::span<const double> carried_mass, double wall, bool stopped);
+              std::span<const SpindleReport> tires, std::span<const double> carried_mass, double wall,
+              bool stopped);
 
  private:
   void continue_from(const ResumePoint& resume);

@@ -59,14 +59,14 @@ class RigNode : public Node {
     const int wheels = rig_->wheel_count();
     for (int k = 0; k < wheels; ++k)
       send(transport, Address{Role::tire, k}, RimMotion{header, rig_->rim(k), next_});
-    std::vector<SpindleReport> tires(wheels);
+    tires_.resize(wheels);
     for (int k = 0; k < wheels; ++k) {
-      tires[k] = receive_step<SpindleReport>(transport, {Role::tire, k}, header.step);
-      wrenches_[k] = tires[k].wrench;
+      tires_[k] = receive_step<SpindleReport>(transport, {Role::tire, k}, header.step);
+      wrenches_[k] = tires_[k].wrench;
     }
     const auto terrain = receive_step<TerrainReport>(transport, kTerrain, header.step);
     for (int k = 0; k < wheels && header.step > 0; ++k)
-      builders_[k].add({header.time, rig_->report(k), rig_->rim(k), tires[k], terrain.contact[k],
+      builders_[k].add({header.time, rig_->report(k), rig_->rim(k), tires_[k], terrain.contact[k],
                         terrain.state, setup_.grains, rig_->travel_direction()});
     const bool line = header.step > 0 && series_steps_ > 0 && header.step % series_steps_ == 0;
     if (line) record();
@@ -91,7 +91,7 @@ class RigNode : public Node {
     if (context_.profile) write_profile(context_.directory / "profile.json", reports);
     std::vector<double> carried_mass;
     for (int k = 0; k < rig_->wheel_count(); ++k) carried_mass.push_back(rig_->report(k).carried_mass);
-    results_->finish(reports, builders_, carried_mass, machine_clock() - wall_start_, stopped);
+    results_->finish(reports, builders_, tires_, carried_mass, machine_clock() - wall_start_, stopped);
   }
 
   void save(Archive& archive) const override {
@@ -163,6 +163,7 @@ class RigNode : public Node {
   std::vector<NodeCard> cards_;
   TerrainSetup setup_;
   std::vector<Wrench> wrenches_;
+  std::vector<SpindleReport> tires_;  // the last ones
   std::vector<SeriesBuilder> builders_;
   std::unique_ptr<Results> results_;
   SeriesRow last_;

@@ -182,6 +182,7 @@ void take_tire(const json& j, const std::string& key, Scenario& s) {
   o.elements_width = count_or(j["elements_width"], 0);
   o.structural_damping = number_or(j["structural_damping"], -1.0);
   o.rigid = j["rigid"];
+  o.contact_tangent = j["contact_tangent"];
   const int substeps = j["substeps"];
   if (!s.tires.empty() && substeps != s.tire_substeps)
     throw input_error(s.file.string(), key + ".substeps",
@@ -331,6 +332,7 @@ Scenario load_scenario(const std::filesystem::path& file, const Settings& settin
     for (std::size_t k = 0; k < document["tires"].size(); ++k)
       take_tire(document["tires"][k], fmt::format("tires.{}", k), s);
   take_terrain(document["terrain"], s);
+  for (const TireOptions& tire : s.tires) s.terrain.contact_tangents |= tire.contact_tangent;
   if (document.contains("expected")) {
     s.expected.drawbar_pull = document["expected"]["drawbar_pull"];
     s.expected.drawbar_pull_spread = document["expected"]["drawbar_pull_spread"];

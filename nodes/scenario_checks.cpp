@@ -99,7 +99,11 @@ void Checks::rig() {
 }
 
 void Checks::tires() {
-  for (const TireOptions& options : s_.tires) tires_.push_back(tire_size(options));
+  for (const TireOptions& options : s_.tires) {
+    if (options.rigid && options.contact_tangent)
+      throw wrong("tire.contact_tangent", "is true, expected false for a rigid tire");
+    tires_.push_back(tire_size(options));
+  }
   if (!grains()) return;
   for (std::size_t k = 0; k < tires_.size(); ++k) {
     const TireSize& tire = tires_[k];

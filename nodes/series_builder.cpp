@@ -1,6 +1,7 @@
 // Interface energy errors: a force crosses one interval late, so that the works compared are those of the *same*
 // force on either side (the ground frame on both):
 //   tire–terrain  e = Σ f̄ₙ·Δx_tire(n+1) − Σ_substeps f·Δx̃_terrain(n)
+//                 with contact tangents, whose forces are those expected of the *same* interval, at n for both
 //   rim–tire      e = (Fₙ·Δx + Mₙ·ωH)_rim(n+1) − (F·Δx + M·ωH)_tire(n),  F, M the complete spindle wrench
 #include "nodes/series_builder.hpp"
 
@@ -79,7 +80,7 @@ void SeriesBuilder::add_work(const StepReports& r) {
   Memory& m = memory_;
   SeriesRow& row = m.row;
   const double tire_work = r.tire.terrain_work - m.last_tire_work;
-  const double error = tire_work - m.last_terrain_work;
+  const double error = tire_work - (r.tire.contact_tangent ? r.contact.work : m.last_terrain_work);
   row.energy_error += error;
   row.energy_error_abs += std::abs(error);
   m.last_tire_work = r.tire.terrain_work;

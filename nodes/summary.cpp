@@ -204,8 +204,14 @@ void add_accounts(const SummaryInput& in, const Window& w, Json& json) {
   json["interface_energy_error_abs_J"] = number(end.energy_error_abs);
   json["rim_energy_error_J"] = number(end.rim_energy_error);
   json["interface_work_J"] = number(end.spindle_work);
-  json["momentum_residual"] =
-      number(sent > 0.0 ? (in.builder.impulse_sent_arrived() - end.impulse_received).norm() / sent : 0.0);
+  json["momentum_residual"] = number(
+      sent > 0.0
+          ? (in.builder.impulse_sent_arrived() - (end.impulse_received - in.tire.impulse_ahead)).norm() / sent
+          : 0.0);
+  if (in.tire.contact_tangent) {
+    json["contact_ledger_Ns"] = number(in.tire.ledger);
+    json["contact_ledger_largest_Ns"] = number(in.tire.ledger_largest);
+  }
   json["transfer_force_residual"] = number(end.transfer_force_residual);
   json["transfer_moment_residual"] = number(end.transfer_moment_residual);
 }

@@ -10,6 +10,27 @@ namespace {
 constexpr double kFootprintShare =
     0.6;  // of the tire radius ahead and behind: where a grain can touch it at rest
 
+void save_tangents(Archive& archive, const std::string& name, const NodalForces& forces) {
+  if (forces.tangent.empty()) return;
+  std::vector<double> flat;
+  for (const ContactTangent& t : forces.tangent)
+    for (const auto& [data, size] : {std::pair{t.stiffness.data(), 9},
+                                     {t.damping.data(), 9},
+                                     {t.position.data(), 3},
+                                     {t.velocity.data(), 3}})
+      flat.insert(flat.end(), data, data + size);
+  archive.put(name + "/tangent", flat);
+}
+
+void restore_tangents(const Archive& archive, const std::string& name, NodalForces& forces) {
+  forces.tangent.clear();
+  if (!archive.has(name + "/tangent")) return;
+  const auto& flat = archive.get<double>(name + "/tangent", 24 * forces.vertex.size());
+  for (std::size_t i = 0; i < flat.size(); i += 24)
+    forces.tangent.push_back({Eigen::Map<const Mat3>(&flat[i]), Eigen::Map<const Mat3>(&flat[i + 9]),
+                              Eigen::Map<const Vec3>(&flat[i + 18]), Eigen::Map<const Vec3>(&flat[i + 21])});
+}
+
 class TerrainNode : public Node {
  public:
   TerrainNode(const Scenario& scenario, int threads) : scenario_(scenario), threads_(threads) {
@@ -95,6 +116,7 @@ class TerrainNode : public Node {
       archive.put(name + "/vertex",
                   std::vector<std::int32_t>(forces_[k].vertex.begin(), forces_[k].vertex.end()));
       archive.put(name + "/force", flat);
+      save_tangents(archive, name, forces_[k]);
       const ContactSums& c = report_.contact[k];
       archive.put(name + "/sums",
                   std::vector<double>{c.force.x(), c.force.y(), c.force.z(), c.normal.x(), c.normal.y(),
@@ -126,6 +148,7 @@ class TerrainNode : public Node {
       forces_[k].force.clear();
       for (std::size_t i = 0; i < vertex.size(); ++i)
         forces_[k].force.emplace_back(flat[3 * i], flat[3 * i + 1], flat[3 * i + 2]);
+      restore_tangents(archive, name, forces_[k]);
       const auto& v = archive.get<double>(name + "/sums", 16);
       report_.contact[k] = {{v[0], v[1], v[2]},
                             {v[3], v[4], v[5]},

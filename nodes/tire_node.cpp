@@ -2,6 +2,8 @@
 // the last interval act over the next one. To the rig goes the spindle wrench without the tire's own rigid-body
 // inertia and weight, which the rig carries as added mass (nodes/carried_wrench.hpp), with v and ω those of the
 // bead's trajectory: nothing is counted twice, and a rigid tire sends its contact alone.
+// With contact tangents the forces answer to the tire's motion; what they differ by from those that the terrain then
+// reports is booked and handed back (nodes/impulse_ledger.hpp).
 #include <algorithm>
 #include <cmath>
 
@@ -9,6 +11,7 @@
 
 #include "nodes/carried_wrench.hpp"
 #include "nodes/frames.hpp"
+#include "nodes/impulse_ledger.hpp"
 
 namespace furrow {
 namespace {
@@ -20,7 +23,10 @@ class TireNode : public Node {
         index_(index),
         pressure_(scenario.tires.at(index).pressure),
         tire_(make_tire(scenario.tires.at(index))),
-        reach_(reach(*tire_, scenario.rigs.at(index).camber_angle)) {}
+        reach_(reach(*tire_, scenario.rigs.at(index).camber_angle)) {
+    report_.contact_tangent = scenario.tires.at(index).contact_tangent;
+    if (report_.contact_tangent) ledger_ = ImpulseLedger(tire_->mesh().vertex_count);
+  }
 
   NodeCard card() const override {
     NodeCard card = common_card(scenario_, {Role::tire, index_});
@@ -62,11 +68,18 @@ class TireNode : public Node {
   void advance(const StepHeader& header) override {
     const double duration = scenario_.run.step;
     trajectory_.extend(rim_.rim, duration);
+    if (report_.contact_tangent) {
+      ledger_.settle(forces_, duration);
+      ledger_.hand_back(forces_, duration);
+    } else {
+      forces_.tangent.clear();
+    }
     if (pressure_.varies()) tire_->set_pressure(pressure_.at(header.time + 0.5 * duration));
     const TireStatus status = tire_->advance(trajectory_, forces_, scenario_.tire_substeps);
     if (!status.converged)
       throw physics_error(status.message(fmt::format("{} ", index_),
                                          fmt::format(" at t = {:.6g} s, step {}", header.time, header.step)));
+    tire_->acted(forces_);
     account(duration);
   }
 
@@ -77,6 +90,7 @@ class TireNode : public Node {
     tire_->save(archive);
     trajectory_.save(archive);
     const auto& r = report_;
+    if (r.contact_tangent) ledger_.save(archive);
     archive.put("node/report",
                 std::vector<double>{r.wrench.force.x(), r.wrench.force.y(), r.wrench.force.z(),
                                     r.wrench.moment.x(), r.wrench.moment.y(), r.wrench.moment.z(),
@@ -96,6 +110,10 @@ class TireNode : public Node {
     report_.impulse_received_abs = v[15];
     report_.terrain_work = v[16];
     report_.rim_work = v[17];
+    if (report_.contact_tangent) {
+      ledger_.restore(archive);
+      report_ledger();
+    }
     tire_->surface(motion_.surface);
     describe_state();
   }
@@ -134,7 +152,17 @@ class TireNode : public Node {
     }
     report_.impulse_received += impulse;
     report_.impulse_received_abs += impulse.norm();
+    if (report_.contact_tangent) {
+      ledger_.book(forces_, duration);
+      report_ledger();
+    }
     describe_state();
+  }
+
+  void report_ledger() {
+    report_.impulse_ahead = ledger_.sum();
+    report_.ledger = ledger_.settled();
+    report_.ledger_largest = ledger_.largest();
   }
 
   void describe_state() {
@@ -167,6 +195,7 @@ class TireNode : public Node {
   RimTrajectory trajectory_;
   RimMotion rim_;
   NodalForces forces_;
+  ImpulseLedger ledger_;
   SurfaceMotion motion_;
   SpindleReport report_;
   std::vector<Vec3> before_;

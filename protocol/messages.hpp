@@ -16,7 +16,7 @@
 
 namespace furrow {
 
-inline constexpr std::int32_t kProtocolVersion = 2;
+inline constexpr std::int32_t kProtocolVersion = 3;
 
 enum class Role : std::int32_t { rig = 0, tire = 1, terrain = 2 };
 /// "rig", "tire", "terrain".
@@ -127,6 +127,11 @@ struct SpindleReport {
   std::int64_t newton_iterations = 0;  // cumulative
   std::int64_t factorizations = 0;     // cumulative
   double residual = 0.0;               // last converged free residual / reference
+  // Of a tire that uses contact tangents: its forces differ from those reported for the same interval.
+  bool contact_tangent = false;
+  Vec3 impulse_ahead = Vec3::Zero();  // received beyond what the terrain had reported until then, N s
+  double ledger = 0.0;                // |Σ| of the differences when last settled, N s
+  double ledger_largest = 0.0;        // until now, N s
 };
 
 struct SurfaceMotion {

@@ -57,7 +57,8 @@ void visit_fields(Stream& s, M& m) {
   visit_fields(s, m.wrench);
   visit_fields(s, m.spindle);
   each(s, m.lowest_point, m.momentum, m.impulse_received, m.impulse_received_abs, m.terrain_work, m.rim_work,
-       m.dissipation, m.kinetic_energy, m.strain_energy, m.newton_iterations, m.factorizations, m.residual);
+       m.dissipation, m.kinetic_energy, m.strain_energy, m.newton_iterations, m.factorizations, m.residual,
+       m.contact_tangent, m.impulse_ahead, m.ledger, m.ledger_largest);
 }
 template <class Stream, class M>
 requires std::is_same_v<std::remove_const_t<M>, SurfaceMotion>
@@ -66,10 +67,13 @@ void visit_fields(Stream& s, M& m) {
   each(s, m.surface.position, m.surface.velocity, m.order);
 }
 template <class Stream, class M>
+requires std::is_same_v<std::remove_const_t<M>, ContactTangent>
+void visit_fields(Stream& s, M& m) { each(s, m.stiffness, m.damping, m.position, m.velocity); }
+template <class Stream, class M>
 requires std::is_same_v<std::remove_const_t<M>, TerrainForces>
 void visit_fields(Stream& s, M& m) {
   visit_fields(s, m.header);
-  each(s, m.forces.vertex, m.forces.force);
+  each(s, m.forces.vertex, m.forces.force, m.forces.tangent);
 }
 template <class Stream, class M>
 requires std::is_same_v<std::remove_const_t<M>, ContactSums>

@@ -34,15 +34,26 @@ struct SurfaceState {
   std::vector<Vec3> velocity;
 };
 
+/// How a nodal force answers to the motion of its vertex, means over the interval in which it acted: over an interval in
+/// which the vertex moves otherwise it would be about force − stiffness (x − position) − damping (v − velocity).
+struct ContactTangent {
+  Mat3 stiffness = Mat3::Zero();  // −∂f/∂x, N/m, W, symmetric, not negative
+  Mat3 damping = Mat3::Zero();    // −∂f/∂v, N s/m, likewise
+  Vec3 position = Vec3::Zero();   // of the vertex as the terrain moved it, m
+  Vec3 velocity = Vec3::Zero();   // m/s
+};
+
 /// Sparse nodal forces on the tire's contact surface, impulse-averaged over one communication interval.
 /// Vertices are strictly increasing. force = normal + tangential by construction.
 struct NodalForces {
   std::vector<int> vertex;
-  std::vector<Vec3> force;  // N, W, on the tire by the terrain
+  std::vector<Vec3> force;                   // N, W, on the tire by the terrain
+  std::vector<ContactTangent> tangent = {};  // of each force; empty: none were asked for
 
   void clear() {
     vertex.clear();
     force.clear();
+    tangent.clear();
   }
 };
 

@@ -49,6 +49,8 @@ struct TerrainOptions {
   double ground_stiffness = 4e8;  // N/m³: 0.6 mm under 240 kPa; 4e5 N/m on a vertex that carries 10 cm²
   double ground_shear_stiffness = 1e8;  // N/m³: a tread of 1 MPa shear modulus, 10 mm thick
   double ground_damping = 2.5e4;        // N s/m³: holds such a vertex of 2.8 g by itself up to H = 4e-5 s
+  // Coupling.
+  bool contact_tangents = false;  // tire.contact_tangent of any tire: send them beside the forces
   // Stepping.
   double step = 4e-5;  // run.step / terrain.substeps, s: the step the engine will be advanced with
   bool allow_unstable_step = false;  // *_tr scenarios: warn instead of refusing

@@ -56,7 +56,8 @@ class Tire {
   /// Vertices at the current time.
   virtual void surface(SurfaceState& out) const = 0;
 
-  /// Integrates from the trajectory's start to its end in `substeps` equal steps. `forces` act constantly.
+  /// Integrates from the trajectory's start to its end in `substeps` equal steps. `forces` act constantly; those that
+  /// come with tangents answer to the motion, where the model can (TireOptions::contact_tangent).
   /// Gravity (0, 0, −9.81 m/s²) acts.
   virtual TireStatus advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) = 0;
 
@@ -64,6 +65,10 @@ class Tire {
   /// complete, with the tire's inertia and weight, so that impulse = Δ momentum holds to round-off for the
   /// tire as a whole.
   virtual Wrench spindle_wrench() const = 0;
+
+  /// Replaces the forces that the last advance was given by the means of what acted. They differ where tangents came
+  /// with them.
+  virtual void acted(NodalForces&) const {}
 
   virtual TireDiagnostics diagnostics() const = 0;
 
@@ -82,6 +87,7 @@ struct TireOptions {
   double structural_damping = -1.0;  // s; negative: the file's
   bool rigid = false;                // same surface, no deformation
   double substep = 0.0;              // s, time step the tire will be advanced with
+  bool contact_tangent = false;      // contact forces answer to the tire's motion within the step
 };
 
 /// The tire file with the scenario's choices in place of its own. @throws Error(bad_input)

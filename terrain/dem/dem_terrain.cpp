@@ -59,6 +59,7 @@ class DemTerrain : public Terrain {
  public:
   explicit DemTerrain(const TerrainOptions& options)
       : options_(options), solver_(solver_params(options)), dt_(options.step) {
+    solver_.surfaces().give_tangents(options.contact_tangents);
     solver_.set_coefficients(run_coefficients(options_, dt_));
   }
 

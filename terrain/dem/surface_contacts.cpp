@@ -5,6 +5,7 @@
 #include <string>
 
 #include "protocol/error.hpp"
+#include "terrain/dem/contact_tangent.hpp"
 #include "terrain/dem/size_scale.hpp"
 
 namespace furrow::dem {
@@ -58,7 +59,7 @@ void SurfaceContacts::attach(const SurfaceMesh& mesh, const ContactMaterial& mat
                              const ContactCoefficients& coefficients, const SurfaceState& start) {
   Surface s;
   s.collider = std::make_unique<SurfaceCollider>(mesh, largest_);
-  s.sum = std::make_unique<NodalForceSum>(mesh.vertex_count);
+  s.sum = std::make_unique<NodalForceSum>(mesh.vertex_count, tangents_);
   s.material = material;
   s.coefficients = coefficients;
   s.mass_share = mass_share(grain_, material);
@@ -167,7 +168,8 @@ void SurfaceContacts::touch(const Grains& grains, Strip& strip, SurfaceStrip& mi
     const Triple<double> push = (hit.share * f.normal) * motion.normal, drag = hit.share * f.tangential;
     add(*load.force, push + drag);
     add(*load.torque, cross(arm, push + drag) + hit.share * f.rolling);
-    mine.touches.push_back({k, {hit.triangle, hit.weight, hit.point, -vec(push), -vec(drag)}});
+    mine.touches.push_back({k, {hit.triangle, hit.weight, hit.point, -vec(push), -vec(drag), {}}});
+    if (tangents_) mine.touches.back().force.tangent = contact_tangent<Law>(c, motion, f, hit.share);
     strip.contact.power += hit.share * (power_of(f, motion) + dot(f.rolling, motion.roll));
     strip.contact.elastic += hit.share * f.energy;
     strip.contact.max_overlap = std::max(strip.contact.max_overlap, hit.overlap);

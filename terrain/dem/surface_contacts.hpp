@@ -45,6 +45,8 @@ class SurfaceContacts {
   /// @pre start has the mesh's vertex count.
   void attach(const SurfaceMesh& mesh, const ContactMaterial& material,
               const ContactCoefficients& coefficients, const SurfaceState& start);
+  /// Whether surfaces attached from now on get their contact tangents beside the forces.
+  void give_tangents(bool yes) { tangents_ = yes; }
   int count() const { return static_cast<int>(surfaces_.size()); }
   bool any() const { return !surfaces_.empty(); }
   const ContactMaterial& material(int k) const { return surfaces_[k].material; }
@@ -100,6 +102,7 @@ class SurfaceContacts {
   GrainProperties grain_;
   double largest_;  // m
   bool rolling_;
+  bool tangents_ = false;
   double top_ = 1e300;  // no grain reaches higher, m
   std::vector<Surface> surfaces_;
   std::vector<SurfaceStrip> strips_;

@@ -10,15 +10,42 @@ constexpr double kArmFloor = 1e-3;
 
 }  // namespace
 
-NodalForceSum::NodalForceSum(int vertex_count)
+NodalForceSum::NodalForceSum(int vertex_count, bool tangents)
     : impulse_(vertex_count, Vec3::Zero()),
       touched_(vertex_count, 0),
       substep_force_(vertex_count, Vec3::Zero()),
-      substep_touched_(vertex_count, 0) {}
+      substep_touched_(vertex_count, 0),
+      tangent_(tangents ? vertex_count : 0) {}
+
+void NodalForceSum::add_tangents(std::span<const SurfaceContactForce> contacts, const SurfaceNow& surface,
+                                 double dt) {
+  for (std::size_t v = 0; v < tangent_.size(); ++v) {
+    tangent_[v].position += dt * surface.position[v];
+    tangent_[v].velocity += dt * surface.velocity[v];
+  }
+  for (const auto& contact : contacts) {
+    const Mat3 stiffness = dt * contact.tangent.stiffness(), damping = dt * contact.tangent.damping();
+    for (int k = 0; k < 3; ++k) {
+      ContactTangent& t = tangent_[surface.triangles[contact.triangle][k]];
+      t.stiffness += contact.weight[k] * stiffness;
+      t.damping += contact.weight[k] * damping;
+    }
+  }
+}
+
+void NodalForceSum::finish_tangents(double duration, NodalForces& forces) {
+  for (const int v : forces.vertex) {
+    const ContactTangent& t = tangent_[v];
+    forces.tangent.push_back(
+        {t.stiffness / duration, t.damping / duration, t.position / duration, t.velocity / duration});
+  }
+  std::fill(tangent_.begin(), tangent_.end(), ContactTangent());
+}
 
 void NodalForceSum::add_substep(std::span<const SurfaceContactForce> contacts, const SurfaceNow& surface,
                                 double dt) {
   sums_.contacts = static_cast<std::int64_t>(contacts.size());
+  if (!tangent_.empty()) add_tangents(contacts, surface, dt);
   if (contacts.empty()) return;
   const auto& [triangles, position, velocity] = surface;
 
@@ -82,6 +109,7 @@ void NodalForceSum::finish(double duration, NodalForces& forces, ContactSums& su
     touched_[v] = 0;
   }
   touched_list_.clear();
+  if (!tangent_.empty()) finish_tangents(duration, forces);
   sums = sums_;
   sums.normal /= duration;
   sums.tangential /= duration;

@@ -22,7 +22,9 @@ double sliding_speed(double drive, double g, double limit, double c) {
 
 }  // namespace
 
-Vec3 slide(const GroundLaw& law, double load, double area, const Vec3& velocity, double dt, Vec3& shear) {
+Vec3 slide(const GroundLaw& law, double load, double area, const Vec3& velocity, double dt, Vec3& shear,
+           double* grip) {
+  if (grip) *grip = 0.0;
   const double limit = law.friction * load, stiffness = law.shear_stiffness * area;
   if (!(limit > 0.0) || !(stiffness > 0.0)) {
     shear = Vec3::Zero();
@@ -33,9 +35,14 @@ Vec3 slide(const GroundLaw& law, double load, double area, const Vec3& velocity,
   const double g = stiffness * dt + law.damping * area;
   const Vec3 drive = stiffness * shear + g * flat;
   const double size = drive.norm();
+  const double sliding = sliding_speed(size, g, limit, law.velocity_scale);
+  if (grip) {
+    const double t = std::tanh(law.velocity_scale * sliding);
+    const double viscosity = limit * law.velocity_scale * (1.0 - t * t);  // of the friction, N s/m
+    *grip = viscosity / (g + viscosity);
+  }
   if (!(size > 0.0)) return Vec3::Zero();
   const Vec3 direction = drive / size;
-  const double sliding = sliding_speed(size, g, limit, law.velocity_scale);
   shear += dt * (flat - sliding * direction);
   return -(size - g * sliding) * direction;
 }

@@ -18,6 +18,9 @@ namespace furrow {
 
 /// Advances the shear ξ (m, z = 0) of a vertex over dt and returns the force on it, N.
 /// @param load N ≥ 0, N; @param area A, m²; @param velocity m/s, its z is ignored
-Vec3 slide(const GroundLaw& law, double load, double area, const Vec3& velocity, double dt, Vec3& shear);
+/// @param grip if not null: the share of the layer's stiffness κ_t A and damping d A that the vertex still feels along
+/// its motion, from 1 (sticks) to 0 (slides)
+Vec3 slide(const GroundLaw& law, double load, double area, const Vec3& velocity, double dt, Vec3& shear,
+           double* grip = nullptr);
 
 }  // namespace furrow

@@ -67,6 +67,7 @@ double add_ground_force(const GroundLaw& law, int triangle, const GroundPoint& a
   contact.weight = at.weight;
   contact.point = position;
   contact.normal = Vec3(0.0, 0.0, pressure * at.area);
+  contact.tangent = {Vec3::UnitZ(), law.stiffness * at.area, 0.0, law.damping * at.area, 0.0};
   contacts.push_back(contact);
   return contact.normal.z();
 }

@@ -116,7 +116,7 @@ void RigidGround::add_surface(const SurfaceMesh& mesh, const ContactMaterial& ma
                         .area = std::vector<double>(mesh.vertex_count, 0.0),
                         .contacts = {},
                         .corner = std::vector<std::pair<int, int>>(mesh.vertex_count, {-1, 0}),
-                        .sum = NodalForceSum(mesh.vertex_count)};
+                        .sum = NodalForceSum(mesh.vertex_count, options_.contact_tangents)};
   surface.position = surface.last;
   for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t)
     for (int k = 0; k < 3; ++k) surface.corner[mesh.triangles[t][k]] = {t, k};
@@ -173,15 +173,18 @@ void RigidGround::press(GroundSurface& surface, double dt) const {
   surface.floor_force = 0.0;
   for (const auto& one : surface.contacts) surface.floor_force += one.normal.z();
   for (std::size_t vertex = 0; vertex < surface.shear.size(); ++vertex) {
+    double grip = 0.0;
     const Vec3 force = slide(law, surface.load[vertex], surface.area[vertex], surface.velocity[vertex], dt,
-                             surface.shear[vertex]);
-    if (force.isZero(0.0)) continue;
+                             surface.shear[vertex], &grip);
+    if (force.isZero(0.0) && !(options_.contact_tangents && grip > 0.0)) continue;
     SurfaceContactForce contact;
     const auto [triangle, corner] = surface.corner[vertex];
     contact.triangle = triangle;
     contact.weight[corner] = 1.0;
     contact.point = x[vertex];
     contact.tangential = force;
+    const double held = grip * surface.area[vertex];
+    contact.tangent = {Vec3::UnitZ(), 0.0, law.shear_stiffness * held, 0.0, law.damping * held};
     surface.contacts.push_back(contact);
   }
 }

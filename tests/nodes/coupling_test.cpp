@@ -100,6 +100,51 @@ TEST(Coupling, momentum_received_equals_momentum_sent_one_interval_before) {
   EXPECT_LE(builder.now().transfer_moment_residual, 1e-12);
 }
 
+Scenario flexible_tire_on_grains_with_tangents() {
+  Scenario scenario = rigid_wheel_on_grains();
+  scenario.rigs[0].carrier_mass = 100.0;
+  scenario.tires[0].rigid = false;
+  scenario.tires[0].elements_circumference = 30;
+  scenario.tires[0].contact_tangent = true;
+  scenario.terrain.contact_tangents = true;
+  scenario.terrain_substeps = 2;
+  scenario.run.step = 2e-4;
+  scenario.tires[0].substep = 2e-4;
+  return scenario;
+}
+
+TEST(Coupling, contact_tangents_continue_bit_for_bit_for_any_number_of_threads) {
+  const Scenario scenario = flexible_tire_on_grains_with_tangents();
+  expect_same_bits_after_restore(scenario, 250, 350);
+  RunContext one, two;
+  one.threads = 1;
+  two.threads = 2;
+  InProcessRun first(scenario, one), second(scenario, two);
+  first.steps(0, 350);
+  second.steps(0, 350);
+  EXPECT_EQ(first.hashes(), second.hashes());
+}
+
+/// Σ impulses on the tire − Σ impulses by the grains = what the ledger holds.
+TEST(Coupling, the_ledger_holds_the_difference_of_the_impulses) {
+  const Scenario scenario = flexible_tire_on_grains_with_tangents();
+  InProcessRun run(scenario);
+  run.steps(0, 600);
+  run.synchronize(600);
+  const auto saved = run.save();
+  SeriesBuilder builder(0.4673, 0.0, scenario.run.step);
+  const Archive::Scope scope(saved[0], "wheel0/");
+  builder.restore(saved[0]);
+  Vec3 ahead = Vec3::Zero();
+  const auto& owed = saved[1].get<double>("ledger/owed");
+  for (std::size_t i = 0; i < owed.size(); i += 3) ahead += Vec3(owed[i], owed[i + 1], owed[i + 2]);
+  const Vec3 difference = builder.now().impulse_received - builder.impulse_sent_arrived();
+  EXPECT_GT(builder.impulse_sent_abs(), 10.0) << "the wheel never touched the grains";
+  EXPECT_LE((difference - ahead).norm(), 1e-12 * builder.impulse_sent_abs());
+  EXPECT_GT(ahead.norm(), 0.0);
+  EXPECT_LT(saved[1].get<double>("ledger/norms", 2)[1], 0.05 * builder.impulse_sent_abs());
+}
+
 /// The series of wheel 0 as the rig's node has it now; means are sums since the last line.
 SeriesRow series_now(const InProcessRun& run) {
   const Archive rig = run.save().front();

@@ -69,6 +69,7 @@ TEST(Scenario, defaults_of_the_schema_are_those_of_the_options) {
   EXPECT_EQ(s.tires[0].elements_width, tire.elements_width);
   EXPECT_EQ(s.tires[0].structural_damping, tire.structural_damping);
   EXPECT_EQ(s.tires[0].rigid, tire.rigid);
+  EXPECT_EQ(s.tires[0].contact_tangent, tire.contact_tangent);
   const RunOptions run;
   EXPECT_EQ(s.run.step, run.step);
   EXPECT_EQ(s.run.end, run.end);
@@ -184,6 +185,9 @@ TEST(Scenario, mistakes_are_named_with_what_is_expected) {
             ": key 'tire.elements_width': is 7, expected a whole number, 6 to 1000, a multiple of 2 or null");
   EXPECT_EQ(file.complaint({{"terrain.layers", "many"}}),
             ": key 'terrain.layers': is 'many', expected a whole number, 1 to 9999");
+  EXPECT_EQ(file.complaint({{"tire.rigid", "true"}, {"tire.contact_tangent", "true"}}),
+            ": key 'tire.contact_tangent': is true, expected false for a rigid tire");
+  EXPECT_TRUE(file.load({{"tire.contact_tangent", "true"}}).terrain.contact_tangents);
   EXPECT_EQ(file.complaint({{"run.step", "1e-3"}}).substr(0, 66),
             ": key 'run.step': 0.001 s is above the stable step of 6.35e-05 s (");
   EXPECT_EQ(file.complaint({{"run.step", "1e-3"},

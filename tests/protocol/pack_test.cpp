@@ -54,6 +54,10 @@ SpindleReport spindle_report() {
   m.newton_iterations = 19;
   m.factorizations = 20;
   m.residual = 21;
+  m.contact_tangent = true;
+  m.impulse_ahead = {22, 23, 24};
+  m.ledger = 25;
+  m.ledger_largest = 26;
   return m;
 }
 SurfaceMotion surface_motion(int vertices) {
@@ -66,7 +70,12 @@ SurfaceMotion surface_motion(int vertices) {
   m.order = Order::checkpoint;
   return m;
 }
-TerrainForces terrain_forces() { return {{45, 1.8}, {{1, 5, 9}, {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}}}}; }
+TerrainForces terrain_forces() {
+  TerrainForces m{{45, 1.8}, {{1, 5, 9}, {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}}}};
+  for (int k = 0; k < 3; ++k)
+    m.forces.tangent.push_back({Mat3::Constant(k), Mat3::Constant(k + 0.5), {1, 2, k}, {3, 4, k}});
+  return m;
+}
 TerrainReport terrain_report() {
   TerrainReport m;
   m.header = {46, 1.9};
@@ -155,15 +164,16 @@ TEST(Pack, an_absurd_length_is_refused) {
 
 // The number of bytes is that of all fields of the struct, so a field forgotten in the list is noticed.
 TEST(Pack, every_field_is_there) {
-  constexpr std::size_t kLength = 8, kHeader = 16, kVec = 24, kWrench = 48, kSums = 4 * kVec + 3 * 8 + 8;
+  constexpr std::size_t kLength = 8, kHeader = 16, kVec = 24, kWrench = 48, kMat = 72,
+                        kSums = 4 * kVec + 3 * 8 + 8;
   EXPECT_EQ(pack(node_card()).size(),
             4 + 8 + (kLength + 4) + (kLength + 16) + 8 + 8 + 8 + 5 * 4 + (kLength + 7) + 80 + 8 + 8 + 8 + 8);
   EXPECT_EQ(pack(surface_setup()).size(), 4 + kLength + 2 * 12 + 8 * 8);
   EXPECT_EQ(pack(terrain_setup()).size(), 2 * (kLength + 16) + 8 + 8 + 8);
   EXPECT_EQ(pack(rim_motion()).size(), kHeader + 3 * kVec + 32 + 4);
-  EXPECT_EQ(pack(spindle_report()).size(), kHeader + 2 * kWrench + 2 * kVec + 10 * 8);
+  EXPECT_EQ(pack(spindle_report()).size(), kHeader + 2 * kWrench + 3 * kVec + 12 * 8 + 1);
   EXPECT_EQ(pack(surface_motion(4)).size(), kHeader + 2 * (kLength + 4 * kVec) + 4);
-  EXPECT_EQ(pack(terrain_forces()).size(), kHeader + kLength + 3 * 4 + kLength + 3 * kVec);
+  EXPECT_EQ(pack(terrain_forces()).size(), kHeader + 3 * kLength + 3 * 4 + 3 * kVec + 3 * 2 * (kMat + kVec));
   EXPECT_EQ(pack(terrain_report()).size(), kHeader + 9 * 8 + 3 * kVec + kLength + 2 * kSums);
   EXPECT_EQ(pack(run_folder()).size(), kLength + 22);
   EXPECT_EQ(pack(checkpoint_part()).size(), 8 + (kLength + 8) + (kLength + 16) + (kLength + 9));

@@ -98,13 +98,22 @@ TireStatus AncfTire::advance(const RimTrajectory& rim, const NodalForces& forces
   spindle_ = {};
   Wrench disc;
   std::fill(force_.begin(), force_.end(), 0.0);
+  RingContact& contact = integrator_.contact();
+  contact.clear();
+  answering_.clear();
+  interval_ = rim.duration();
   for (std::size_t k = 0; k < forces.vertex.size(); ++k) {
     const int vertex = forces.vertex[k];
     if (!forces.force[k].allFinite())
       return {false, "was pushed with a force that is not finite",
               fmt::format("at vertex {} of its surface; try a smaller run.step", vertex)};
     if (vertex < ring_.nodes()) {
-      layout.set(force_, vertex / ring_.rows, vertex % ring_.rows, 0, forces.force[k]);
+      const int i = vertex / ring_.rows, j = vertex % ring_.rows;
+      layout.set(force_, i, j, 0, forces.force[k]);
+      const bool answers =
+          !forces.tangent.empty() && j > 0 && j + 1 < ring_.rows &&
+          !(forces.tangent[k].stiffness.isZero(0.0) && forces.tangent[k].damping.isZero(0.0));
+      if (answers) answering_.emplace_back(k, contact.add(i, j, forces.force[k], forces.tangent[k]));
       continue;
     }
     const Mat3 mean =
@@ -120,6 +129,11 @@ TireStatus AncfTire::advance(const RimTrajectory& rim, const NodalForces& forces
   spindle_.force += disc.force;
   spindle_.moment += disc.moment;
   return clearance_.status(clearance_.measure(layout, integrator_.q(), rim_));
+}
+
+void AncfTire::acted(NodalForces& forces) const {
+  for (const auto& [k, entry] : answering_)
+    forces.force[k] = integrator_.contact().impulse(entry) / interval_;
 }
 
 /// The step from `from` to `to`, counted in substeps; in halves of it where the iteration does not converge.

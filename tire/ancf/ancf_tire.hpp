@@ -25,6 +25,7 @@ class AncfTire final : public Tire {
   void surface(SurfaceState& out) const override;
   TireStatus advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) override;
   Wrench spindle_wrench() const override { return spindle_; }
+  void acted(NodalForces& forces) const override;
   TireDiagnostics diagnostics() const override;
   void save(Archive& archive) const override;
   void restore(const Archive& archive) override;
@@ -51,7 +52,10 @@ class AncfTire final : public Tire {
   // ∫ (V − V₀) dp since the tire was placed, J: what a changing pressure puts into the potential −p (V − V₀) without work
   // on the tire.
   double pump_ = 0.0;
-  Field force_;                // of the running interval
+  Field force_;  // of the running interval
+  std::vector<std::pair<std::size_t, std::size_t>>
+      answering_;  // of the last interval: forces that answered to the motion, and their numbers there
+  double interval_ = 0.0;      // s
   Vec3 about_ = Vec3::Zero();  // where its moments are taken, m
 };
 

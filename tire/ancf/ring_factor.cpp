@@ -132,6 +132,12 @@ void RingFactor::add(const BatchTangent& tangent, const ElementMass& mass, doubl
       }
 }
 
+void RingFactor::add_node(const Mat3& stiffness, int sector, int lane, int row) {
+  float* to = values_.data() + block(sector, lane, row - 1, 0);
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c <= r; ++c) to[6 * r + c] += static_cast<float>(stiffness(r, c));
+}
+
 bool RingFactor::factorize(int threads) {
   if (!factor_.factorize(values_, changed_, threads)) {
     std::fill(changed_.begin(), changed_.end(), 1);

@@ -25,6 +25,8 @@ class RingFactor {
   void clear(int sector);
   /// Adds the elements of row j of a sector: tangent plus mass_factor × M_e.
   void add(const BatchTangent& tangent, const ElementMass& mass, double mass_factor, int j, int sector);
+  /// Adds a symmetric stiffness of the positions of a free node, `lane` columns into a sector, in rim axes.
+  void add_node(const Mat3& stiffness, int sector, int lane, int row);
   /// Renews the factor where sectors were cleared and added since it was made.
   /// @returns false when the matrix is not positive definite
   bool factorize(int threads = 1);

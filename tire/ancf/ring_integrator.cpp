@@ -141,6 +141,7 @@ void RingIntegrator::evaluate(double h, const Field& force) {
   shell_.forces(q_new_, q_force_, shell_step_, coefficient(h), r_, params_.threads);
   mass_.add(change_, 1.0 / h, r_);
   for (std::size_t k = 0; k < r_.size(); ++k) r_[k] -= force[k] + gravity_[k];
+  contact_.apply(layout_, q_force_, v_new_, r_);
 }
 
 /// Keeps the shape of a sector over the step, in rim axes.
@@ -155,6 +156,17 @@ void RingIntegrator::note_shape(int sector, const RimState& rim) {
       made_layout_.set(made_old_, to, j, 3, back * layout_.get(q_, i, j, 3));
       made_layout_.set(made_new_, to, j, 3, back * layout_.get(q_new_, i, j, 3));
     }
+  if (contact_made_.empty()) return;
+  const int nodes = layout_.rows * std::min(kLanes, layout_.columns - sector * kLanes);
+  const std::size_t first = static_cast<std::size_t>(sector) * kLanes * layout_.rows;
+  std::copy_n(contact_now_.begin() + first, nodes, contact_made_.begin() + first);
+}
+
+/// What the nodes' contact tangents are in a step of size h, once there is or was one.
+void RingIntegrator::note_contact(double h, const Mat3& turn) {
+  if (contact_.empty() && contact_made_.empty()) return;
+  contact_.stiffness(layout_, h, turn, contact_now_);
+  if (contact_made_.empty()) contact_made_.assign(contact_now_.size(), Mat3::Zero());
 }
 
 void RingIntegrator::build(const std::vector<char>& which) {
@@ -190,6 +202,10 @@ void RingIntegrator::build_sector(int sector) {
                     made_pressure_[sector]);
     factor_.add(tangent, mass_.element(j), inertia, j, sector);
   }
+  if (contact_made_.empty()) return;
+  for (int lane = 0; lane < kLanes && sector * kLanes + lane < layout_.columns; ++lane)
+    for (int j = 1; j + 1 < layout_.rows; ++j)
+      factor_.add_node(contact_made_[(sector * kLanes + lane) * layout_.rows + j], sector, lane, j);
 }
 
 /// Makes the factor anew in the sectors marked. Without its geometric part the tangent is positive definite.
@@ -231,6 +247,22 @@ double RingIntegrator::age(int sector, const Mat3& turn) const {
   return std::sqrt(std::max(std::max(most[0], most[1]), std::max(most[2], most[3])));
 }
 
+/// Largest change of a contact tangent of a sector since the factor was made, relative to what the factor holds of the
+/// node: that tangent and the node's inertia.
+double RingIntegrator::contact_age(int sector, double h) const {
+  if (contact_made_.empty()) return 0.0;
+  double most = 0.0;
+  for (int i = sector * kLanes; i < std::min((sector + 1) * kLanes, layout_.columns); ++i)
+    for (int j = 1; j + 1 < layout_.rows; ++j) {
+      const std::size_t node = static_cast<std::size_t>(i) * layout_.rows + j;
+      const double change = (contact_now_[node] - contact_made_[node]).norm();
+      if (change == 0.0) continue;
+      const double inertia = -gravity_[layout_.offset(j, 2) + i] / (kGravity * h * h);
+      most = std::max(most, change / (contact_made_[node].norm() + inertia));
+    }
+  return most;
+}
+
 /// A factor that is young enough everywhere; after a failed attempt one that is renewed wherever it has aged at all,
 /// then one that is new.
 bool RingIntegrator::prepare_factor(double h, const RimState& rim, int attempt) {
@@ -238,7 +270,11 @@ bool RingIntegrator::prepare_factor(double h, const RimState& rim, int attempt) 
   const bool all = !factor_valid_ || factor_h_ != h || attempt > 1;
   factor_h_ = h;
   double oldest = 0.0;
-  for (int b = 0; b < factor_.sectors() && !all; ++b) oldest = std::max(oldest, age_[b] = age(b, turn));
+  note_contact(h, turn);
+  for (int b = 0; b < factor_.sectors() && !all; ++b) {
+    age_[b] = std::max(age(b, turn), params_.age / params_.contact_age * contact_age(b, h));
+    oldest = std::max(oldest, age_[b]);
+  }
   const bool slow = excess_ > params_.worth, due = oldest > params_.age || slow;
   if (!all && !due && attempt == 0) return true;
   const double limit = attempt > 0 ? 0.1 * params_.age : std::min(kAlso * params_.age, 0.5 * oldest);
@@ -353,6 +389,7 @@ void RingIntegrator::finish(double h, const Vec3& about, Wrench& on_rim) {
       for (const int s : {0, 3})
         on_rim.moment -=
             (layout_.get(q_new_, i, j, s) - layout_.get(q_, i, j, s)).cross(layout_.get(d_, i, j, s));
+  contact_.accept(layout_, q_force_, v_new_, h);
   v_before_.swap(v_);
   v_.swap(v_new_);
   q_.swap(q_new_);
@@ -378,6 +415,11 @@ void RingIntegrator::save(Archive& archive) const {
   archive.put("factor/old", made_old_);
   archive.put("factor/new", made_new_);
   archive.put("factor/pressure", made_pressure_);
+  if (!contact_made_.empty()) {
+    std::vector<double> flat;
+    for (const Mat3& m : contact_made_) flat.insert(flat.end(), m.data(), m.data() + 9);
+    archive.put("factor/contact", flat);
+  }
   archive.put("factor/geometric", std::vector<std::int32_t>(geometric_.begin(), geometric_.end()));
 }
 
@@ -404,6 +446,13 @@ void RingIntegrator::restore(const Archive& archive) {
   made_pressure_ = archive.get<double>("factor/pressure", made_pressure_.size());
   const auto& geometric = archive.get<std::int32_t>("factor/geometric", geometric_.size());
   geometric_.assign(geometric.begin(), geometric.end());
+  contact_made_.clear();
+  if (archive.has("factor/contact")) {
+    contact_made_.resize(static_cast<std::size_t>(layout_.columns) * layout_.rows);
+    const auto& flat = archive.get<double>("factor/contact", 9 * contact_made_.size());
+    for (std::size_t k = 0; k < contact_made_.size(); ++k)
+      contact_made_[k] = Eigen::Map<const Mat3>(&flat[9 * k]);
+  }
   excess_ = static_cast<int>(flags[1]);
   factor_h_ = numbers[0], factor_work_ = numbers[1];
   factor_valid_ = false;

@@ -3,8 +3,8 @@
 // Over a step h from (q, v) to (q', v'), with q_f = ½ (q + q') and E, E' the strains at q, q':
 //   q' − q = h v'                                                                          (1) free nodes
 //   M (v' − v)/h + B(q_f)ᵀ D̂ [E' + τ (E' − E)/h] − p ∂V/∂q(q_f) = F + M g + Q              (2)
-// F are the contact forces, constant over the step, Q the reactions at the beads. q', v' of the beads come from
-// the rim.
+// F are the contact forces, constant over the step or answering to it (ring_contact.hpp), Q the reactions at the beads.
+// q', v' of the beads come from the rim.
 //  - As E is quadratic in q, E' − E = B(q_f) (q' − q): strain rates vanish exactly for a rigid motion between
 //    the step's ends, and the work of the internal forces is Δ(elastic energy) + ½ ΔEᵀ D̂ ΔE + (τ/h) ΔEᵀ D̂ ΔE.
 //    With the ½ Δvᵀ M Δv that (1) removes, energy cannot grow; the numerical damping acts like h of
@@ -28,6 +28,7 @@
 #include <cstdint>
 #include <string>
 
+#include "tire/ancf/ring_contact.hpp"
 #include "tire/ancf/ring_factor.hpp"
 #include "tire/ancf/ring_mass.hpp"
 #include "tire/ancf/shell_ring.hpp"
@@ -41,6 +42,8 @@ struct RingIntegratorParams {
   int max_iterations = 40;  // per attempt
   double age =
       0.01;  // of a sector at which it is renewed: largest relative change of an edge or a director; 0: always
+  double contact_age =
+      0.5;          // change of a node's contact tangent, relative to its stiffness, that counts as `age`
   int worth = 30;   // iterations that a renewal may cost
   int threads = 1;  // of a step; results do not depend on them
 };
@@ -59,6 +62,10 @@ class RingIntegrator {
   /// taken about this point. The wrench is what the tire exerts on the rim, the step's mean, without forces
   /// on the bead discs.
   TireStatus step(double h, const RimState& end, const Field& force, const Vec3& about, Wrench& on_rim);
+
+  /// Forces with tangents, in addition to those that step() is given; to be set before each interval.
+  RingContact& contact() { return contact_; }
+  const RingContact& contact() const { return contact_; }
 
   const Field& q() const { return q_; }
   const Field& v() const { return v_; }
@@ -96,6 +103,8 @@ class RingIntegrator {
   void build_sector(int sector);
   bool renew(const std::vector<char>& which, const RimState& rim);
   double age(int sector, const Mat3& turn) const;
+  double contact_age(int sector, double h) const;
+  void note_contact(double h, const Mat3& turn);
   bool prepare_factor(double h, const RimState& rim, int attempt);
   void direction(const Mat3& turn, int pairs);
   bool iterate(double h, const Field& force, const Mat3& turn, int& count, double& norm);
@@ -121,10 +130,13 @@ class RingIntegrator {
   Field made_old_, made_new_;
   std::vector<char> geometric_;        // sectors made with their geometric stiffness
   std::vector<double> made_pressure_;  // Pa, by sector
+  // Contact tangents in rim axes, [column * rows + row]: now, and in the factor; empty until there was one.
+  std::vector<Mat3> contact_now_, contact_made_;
   bool factor_valid_ = false;
   double factor_h_ = 0.0;  // s
   int excess_ = 0;         // iterations beyond one per step since the last renewal
 
+  RingContact contact_;
   ShellRing::Step shell_step_;                      // from q_
   Field gravity_;                                   // M g
   Field q_new_, v_new_, q_force_, change_, r_, d_;  // work

@@ -1,0 +1,65 @@
+#include "nodes/impulse_ledger.hpp"
+
+#include <algorithm>
+
+namespace furrow {
+namespace {
+
+constexpr double kShare = 0.1;        // β
+constexpr double kMostOfForce = 0.5;  // of a reported force that is taken back at once
+constexpr double kNothing = 1e-12;    // N s
+
+}  // namespace
+
+void ImpulseLedger::settle(const NodalForces& reported, double duration) {
+  for (std::size_t k = 0; k < reported.vertex.size(); ++k)
+    owed_[reported.vertex[k]] -= duration * reported.force[k];
+  settled_ = sum().norm();
+  largest_ = std::max(largest_, settled_);
+}
+
+void ImpulseLedger::hand_back(NodalForces& forces, double duration) {
+  next_.clear();
+  std::size_t k = 0;
+  for (int v = 0; v < static_cast<int>(owed_.size()); ++v) {
+    const bool touches = k < forces.vertex.size() && forces.vertex[k] == v;
+    Vec3 change = -kShare / duration * owed_[v];
+    if (!touches && owed_[v].norm() < kNothing) continue;
+    if (touches) {
+      const double size = change.norm(), most = kMostOfForce * forces.force[k].norm();
+      if (size > most) change *= most / size;
+    }
+    next_.vertex.push_back(v);
+    next_.force.push_back(touches ? Vec3(forces.force[k] + change) : change);
+    next_.tangent.push_back(touches ? forces.tangent[k] : ContactTangent());
+    if (touches) ++k;
+  }
+  std::swap(forces, next_);
+}
+
+void ImpulseLedger::book(const NodalForces& acted, double duration) {
+  for (std::size_t k = 0; k < acted.vertex.size(); ++k) owed_[acted.vertex[k]] += duration * acted.force[k];
+}
+
+Vec3 ImpulseLedger::sum() const {
+  Vec3 total = Vec3::Zero();
+  for (const Vec3& one : owed_) total += one;
+  return total;
+}
+
+void ImpulseLedger::save(Archive& archive) const {
+  std::vector<double> flat;
+  for (const Vec3& one : owed_) flat.insert(flat.end(), one.data(), one.data() + 3);
+  archive.put("ledger/owed", flat);
+  archive.put("ledger/norms", std::vector<double>{settled_, largest_});
+}
+
+void ImpulseLedger::restore(const Archive& archive) {
+  const auto& flat = archive.get<double>("ledger/owed", 3 * owed_.size());
+  for (std::size_t v = 0; v < owed_.size(); ++v)
+    owed_[v] = Vec3(flat[3 * v], flat[3 * v + 1], flat[3 * v + 2]);
+  const auto& norms = archive.get<double>("ledger/norms", 2);
+  settled_ = norms[0], largest_ = norms[1];
+}
+
+}  // namespace furrow

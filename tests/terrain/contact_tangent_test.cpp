@@ -1,0 +1,149 @@
+// Contact tangents: what the terrains say of how their forces change, against differences of these forces.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "terrain/rigid/rigid_ground.hpp"
+#include "tests/terrain/few_grains.hpp"
+#include "tests/terrain/surface_meshes.hpp"
+
+namespace furrow {
+namespace {
+
+using testing::sheet;
+using testing::Surface;
+
+constexpr double kStep = 1e-5;  // of an interval, s
+
+/// A quad under the plane z = height that looks down.
+Surface plate(double size, double height) {
+  Surface s = sheet(-0.5 * size, -0.5 * size, size, 1, 1, [=](double, double) { return height; });
+  for (auto& triangle : s.mesh.triangles) std::swap(triangle[1], triangle[2]);
+  return s;
+}
+
+SurfaceState moved(const Surface& surface, const Vec3& shift) {
+  return {surface.vertex, std::vector<Vec3>(surface.vertex.size(), shift / kStep)};
+}
+
+/// Sums of forces and of what the tangents expect, both of the whole surface, whose vertices move alike.
+struct Answer {
+  Vec3 force = Vec3::Zero();
+  ContactTangent tangent;
+};
+
+Answer sum(const NodalForces& forces) {
+  Answer a;
+  EXPECT_EQ(forces.tangent.size(), forces.vertex.size());
+  for (std::size_t k = 0; k < forces.tangent.size(); ++k) {
+    a.force += forces.force[k];
+    a.tangent.stiffness += forces.tangent[k].stiffness;
+    a.tangent.damping += forces.tangent[k].damping;
+  }
+  return a;
+}
+
+/// Means of the motion of vertex 0 less where it began.
+std::pair<Vec3, Vec3> motion(const NodalForces& forces, const Surface& surface) {
+  return {forces.tangent[0].position - surface.vertex[forces.vertex[0]], forces.tangent[0].velocity};
+}
+
+/// The force that a surface gets which stood still and is then moved by `shift`, less the force standing still; and
+/// what the tangents of standing still make of it.
+template <class Push>
+void expect_difference(const Surface& surface, const Vec3& shift, double tolerance, Push push) {
+  const NodalForces still = push(Vec3::Zero()), after = push(shift);
+  ASSERT_FALSE(still.vertex.empty());
+  const Answer a = sum(still), b = sum(after);
+  const auto [x, v] = motion(after, surface);
+  EXPECT_NEAR((v - shift / kStep).norm(), 0.0, 1e-5 * v.norm());
+  const Vec3 expected = -a.tangent.stiffness * x - a.tangent.damping * v;
+  EXPECT_GT(expected.norm(), 0.0);
+  EXPECT_LE((b.force - a.force - expected).norm(), tolerance * expected.norm())
+      << (b.force - a.force).transpose() << " N, expected " << expected.transpose() << " N";
+}
+
+/// A grain too heavy to move, 0.3 mm deep in a plate above it.
+NodalForces push_grain(const Surface& surface, const Vec3& shift, const std::string& law, double friction) {
+  constexpr int kSubsteps = 10;
+  dem::FewGrains few;
+  few.options.law = law;
+  few.options.density = 1e9;
+  few.options.friction = friction;
+  few.options.friction_impulse_limit = false;
+  few.options.step = kStep / kSubsteps;
+  dem::GrainSolver solver = few.make({{0.3, 0.0, 0.3, few.options.radius}});
+  const ContactMaterial material = dem::grain_material(few.options);
+  Surface here = surface;
+  for (Vec3& x : here.vertex) x += Vec3(0.3, 0.0, 0.3 + few.options.radius - 3e-4);
+  solver.surfaces().give_tangents(true);
+  const SurfaceState target = moved(here, shift);
+  solver.surfaces().attach(here.mesh, material, few.coefficients().floor, target);
+  solver.surfaces().set_targets({&target, 1}, kStep);
+  solver.surfaces().restrict_to({Vec3::Zero(), Vec3::Ones()});
+  NodalForces forces;
+  ContactSums sums;
+  for (int s = 0; s < kSubsteps; ++s) {
+    solver.surfaces().move_to(static_cast<double>(s) / kSubsteps);
+    solver.step(few.options.step);
+  }
+  solver.surfaces().finish(kStep, {&forces, 1}, {&sums, 1});
+  for (std::size_t k = 0; k < forces.vertex.size(); ++k)
+    forces.tangent[k].position -= here.vertex[forces.vertex[k]] - surface.vertex[forces.vertex[k]];
+  return forces;
+}
+
+TEST(ContactTangent, of_a_grain_is_the_difference_of_its_force) {
+  const Surface surface = plate(0.1, 0.0);
+  for (const char* law : {"mindlin", "coulomb"})
+    for (const Vec3& shift : {Vec3(0, 0, -1e-10), Vec3(0, 0, 1e-10), Vec3(1e-10, 2e-10, -1e-10)})
+      expect_difference(surface, shift, 1e-3,
+                        [&](const Vec3& d) { return push_grain(surface, d, law, 100.0); });
+}
+
+TEST(ContactTangent, of_a_grain_without_friction_is_normal_to_the_surface) {
+  const Surface surface = plate(0.1, 0.0);
+  const Answer a = sum(push_grain(surface, Vec3::Zero(), "mindlin", 0.0));
+  EXPECT_GT(a.tangent.stiffness(2, 2), 1e4);
+  EXPECT_EQ(a.tangent.stiffness.leftCols<2>().norm(), 0.0);
+  EXPECT_EQ(a.tangent.damping.leftCols<2>().norm(), 0.0);
+  expect_difference(surface, Vec3(0, 0, -1e-10), 1e-3,
+                    [&](const Vec3& d) { return push_grain(surface, d, "mindlin", 0.0); });
+}
+
+/// A plate that has stood 0.4 mm deep in hard ground.
+NodalForces push_ground(const Surface& surface, const Vec3& shift) {
+  TerrainOptions options;
+  options.contact_tangents = true;
+  const auto ground = make_rigid_ground(options);
+  ContactMaterial material;
+  material.friction = 0.8;
+  const SurfaceState target = moved(surface, shift);
+  ground->attach(surface.mesh, material, target);
+  NodalForces forces;
+  ContactSums sums;
+  EXPECT_TRUE(ground->advance({&target, 1}, kStep, 10, {&forces, 1}, {&sums, 1}).ok);
+  return forces;
+}
+
+TEST(ContactTangent, of_rigid_ground_is_the_difference_of_its_force) {
+  const Surface surface = plate(0.1, -4e-4);
+  for (const Vec3& shift : {Vec3(0, 0, -1e-9), Vec3(0, 0, 1e-9), Vec3(1e-9, 2e-9, -1e-9)})
+    expect_difference(surface, shift, 0.02, [&](const Vec3& d) { return push_ground(surface, d); });
+}
+
+TEST(ContactTangent, is_not_sent_unless_wanted) {
+  TerrainOptions options;
+  const auto ground = make_rigid_ground(options);
+  const Surface surface = plate(0.1, -4e-4);
+  const SurfaceState target = moved(surface, Vec3::Zero());
+  ground->attach(surface.mesh, {}, target);
+  NodalForces forces;
+  ContactSums sums;
+  ASSERT_TRUE(ground->advance({&target, 1}, kStep, 1, {&forces, 1}, {&sums, 1}).ok);
+  EXPECT_FALSE(forces.vertex.empty());
+  EXPECT_TRUE(forces.tangent.empty());
+}
+
+}  // namespace
+}  // namespace furrow

@@ -1,0 +1,46 @@
+#include "tire/ancf/ring_contact.hpp"
+
+#include <cmath>
+
+namespace furrow {
+
+std::size_t RingContact::add(int i, int j, const Vec3& force, const ContactTangent& tangent) {
+  entries_.push_back({i, j, force, tangent, Vec3::Zero()});
+  return entries_.size() - 1;
+}
+
+/// Eq. (1), (2).
+Vec3 RingContact::force(const Entry& e, const RingLayout& layout, const Field& q_force, const Field& v_new) {
+  const ContactTangent& t = e.tangent;
+  const Vec3 f = e.force - t.stiffness * (layout.get(q_force, e.column, e.row, 0) - t.position) -
+                 t.damping * (layout.get(v_new, e.column, e.row, 0) - t.velocity);
+  const double size = e.force.norm();
+  if (!(size > 0.0)) return Vec3::Zero();
+  const Vec3 n = e.force / size;
+  const double p = f.dot(n);
+  if (!(p > 0.0)) return Vec3::Zero();
+  const Vec3 across = f - p * n;
+  const double across_size = across.norm();
+  return across_size > p ? Vec3(p * n + p / across_size * across) : f;
+}
+
+void RingContact::apply(const RingLayout& layout, const Field& q_force, const Field& v_new,
+                        Field& residual) const {
+  for (const Entry& e : entries_)
+    layout.set(residual, e.column, e.row, 0,
+               layout.get(residual, e.column, e.row, 0) - (force(e, layout, q_force, v_new) - e.force));
+}
+
+void RingContact::accept(const RingLayout& layout, const Field& q_force, const Field& v_new, double h) {
+  for (Entry& e : entries_) e.impulse += h * force(e, layout, q_force, v_new);
+}
+
+void RingContact::stiffness(const RingLayout& layout, double h, const Mat3& axes,
+                            std::vector<Mat3>& out) const {
+  out.assign(static_cast<std::size_t>(layout.columns) * layout.rows, Mat3::Zero());
+  for (const Entry& e : entries_)
+    out[static_cast<std::size_t>(e.column) * layout.rows + e.row] =
+        axes.transpose() * (0.5 * e.tangent.stiffness + e.tangent.damping / h) * axes;
+}
+
+}  // namespace furrow

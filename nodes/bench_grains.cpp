@@ -56,7 +56,8 @@ void check(const GrainBench& bench) {
   require(bench.warm >= 0, "--warm", "0 or more");
   require(bench.cohesion >= 0.0, "--cohesion", "0 or more, Pa");
   require(bench.rolling_friction >= 0.0, "--rolling-friction", "0 or more");
-  require(bench.step > 0.0 && bench.step < 1.0, "--step", "a positive number, s");
+  require(bench.step > 0.0 && bench.step < 1.0, "--step", "above 0 and below 1 s");
+  require(bench.save.empty() || bench.save != bench.bed, "--save-bed", "another file than --bed");
   require(bench.settle >= 0.0, "--settle", "0 or more, s");
 }
 

@@ -51,10 +51,26 @@ void check(const TireBench& bench) {
   require(bench.steps >= 0, "--steps", "0 (one revolution) or more");
   require(bench.warm >= 0.0, "--warm", "0 or more, s");
   require(bench.step > 0.0 && bench.step <= 1e-2, "--step", "a positive number, at most 0.01 s");
-  require(bench.speed >= 0.0, "--speed", "0 or more, rad/s");
+  require(bench.speed >= 0.0 && (bench.speed > 0.0 || bench.steps > 0), "--speed",
+          "above 0 rad/s, or 0 and --steps");
+  require(bench.pressure >= 0.0, "--pressure", "0 or more, Pa");
+  require(bench.columns == 0 || (bench.columns >= 8 && bench.columns <= 2000), "--elements-circumference",
+          "8 to 2000, or 0 for the file's");
+  require(bench.width == 0 || (bench.width >= 6 && bench.width <= 400), "--elements-width",
+          "6 to 400, or 0 for the file's");
   require(bench.load > 0.0, "--load", "a positive number, kg");
   require(bench.tolerance > 0.0 && bench.tolerance < 1.0, "--tolerance", "between 0 and 1");
   require(bench.renewal >= 0.0 && bench.renewal <= 10.0, "--renewal", "0 to 10");
+}
+
+/// Largest distance of the inflated tire's surface from its axis, m.
+double inflated_radius(AncfTire& tire) {
+  SurfaceState surface;
+  tire.place(RimState());
+  tire.surface(surface);
+  double most = 0.0;
+  for (const Vec3& x : surface.position) most = std::max(most, std::hypot(x.x(), x.z()));
+  return most;
 }
 
 /// A tire under a carriage on the plane z = 0.
@@ -71,7 +87,7 @@ class RollingTire {
     options.friction = kFriction;
     options.friction_velocity_scale = kVelocityScale;
     ground_ = make_rigid_ground(options);
-    rim_.position = Vec3(0.0, 0.0, tire.radius() + kGap);
+    rim_.position = Vec3(0.0, 0.0, inflated_radius(tire) + kGap);
     rim_.velocity = Vec3(bench.speed * tire.radius(), 0.0, 0.0);
     rim_.angular_velocity = Vec3(0.0, bench.speed, 0.0);
     trajectory_ = RimTrajectory(rim_);

@@ -45,7 +45,10 @@ void add_scenario(CLI::App& command, Typed& typed) {
 }
 
 void add_grain_bench(CLI::App& command, GrainBench& bench) {
-  command.add_option("--bed", bench.bed, "CSV of positions x_m,y_m,z_m, or default: the reference bed")
+  command
+      .add_option("--bed", bench.bed,
+                  "CSV x_m,y_m,z_m of centres of grains of 6 mm, x ≥ 0, y from 0 to 0.6, z ≥ 0; or default: "
+                  "the reference bed")
       ->capture_default_str();
   command.add_option("--law", bench.law, "mindlin or coulomb")->capture_default_str();
   command.add_option("--precision", bench.precision, "of the law: mixed or double")->capture_default_str();
@@ -76,8 +79,9 @@ void add_tire_bench(CLI::App& command, TireBench& bench) {
                   "of the free residual, relative to the norm of the pressure forces")
       ->capture_default_str();
   command
-      .add_option("--renewal", bench.renewal,
-                  "relative change of a sector's shape at which its part of the factor is renewed; 0: every step")
+      .add_option(
+          "--renewal", bench.renewal,
+          "relative change of a sector's shape at which its part of the factor is renewed; 0: every step")
       ->capture_default_str();
   command.add_option("--elements-circumference", bench.columns, "elements around; 0: the file's")
       ->capture_default_str();

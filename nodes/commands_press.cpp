@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <iostream>
 
+#include <fmt/format.h>
+
 #include "nodes/commands.hpp"
 #include "nodes/press.hpp"
 #include "nodes/progress.hpp"
@@ -67,6 +69,11 @@ ExitCode press_command(const Scenario& scenario, const PressArguments& arguments
       print_warning(
           "this tire wrinkles under its pressure: the equilibrium was reached by creep and need not be the "
           "only one; see summary.json, loading_unloading_difference");
+    if (summary["deflection_m"].is_null())
+      print_warning(fmt::format(
+          "the load of {:g} N was not reached: the largest force is {:.4g} N; no stiffness is given, and the "
+          "footprint is that of this force; see --load and --deflection",
+          options.load, results.at_load.force));
     std::cout << directory.path().string() << std::endl;
   } catch (const Error&) {
     directory.discard();

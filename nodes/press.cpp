@@ -47,6 +47,8 @@ PressResults press_tire(const PressOptions& options, const ProgressCall& progres
   InflationReport inflation;
   PressSolver solver(file, mesh, inflate(shell, mesh, inflation), options.obstacle);
   PressResults results;
+  results.pressure = file.pressure;
+  results.mass = make_tire(options.tire)->mass_properties();
   results.inflation_growth = solver.start_radius() - file.radius;
   const int total = 2 * options.points;
   const auto at = [&](int k) {
@@ -78,6 +80,9 @@ nlohmann::ordered_json press_json(const PressOptions& options, const PressResult
     j["cleat_height_m"] = options.obstacle.height;
     j["cleat_width_m"] = options.obstacle.width;
   }
+  j["pressure_Pa"] = results.pressure;
+  j["mass_kg"] = results.mass.mass;
+  j["spin_inertia_kg_m2"] = results.mass.inertia(1, 1);
   j["inflation_growth_m"] = results.inflation_growth;
   j["runout_m"] = results.runout;
   j["load_N"] = options.load;

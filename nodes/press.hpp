@@ -24,6 +24,8 @@ struct PressResults {
   PressPoint at_load;  // of the footprint; at the largest deflection when the load is not reached
   std::vector<PressSample> footprint;
   double inflation_growth = 0.0;  // of the largest radius, axisymmetric, m
+  double pressure = 0.0;          // gauge, Pa
+  MassProperties mass;            // of the whole tire about its centre
   double runout = 0.0;            // of the tire at rest before it is pressed: its wrinkles, m
 };
 

@@ -33,6 +33,9 @@ json read_object(const std::filesystem::path& file, const std::string& expected)
 }
 
 double number(const json& object, const std::filesystem::path& file, const std::string& key, double above) {
+  if (!object.contains(key))
+    throw input_error(file.string(), key,
+                      "is missing: not the expected file, or not all soil tests were run");
   const json value = object.value(key, json(nullptr));
   if (!value.is_number() || !(value.get<double>() > above))
     throw input_error(file.string(), key,
@@ -99,6 +102,8 @@ std::string write_soil_estimate(const std::filesystem::path& run, const std::fil
   j["format_version"] = kFormatVersion;
   j["what"] = "rigid wheel by Bekker, Wong & Reece, Janosi & Hanamoto";
   j["soil_file"] = std::filesystem::absolute(file).lexically_normal().string();
+  const bool quick = soil.value("quick", false);
+  j["quick"] = quick;
   j["soil"] = {{"k_c", s.k_c},
                {"k_phi", s.k_phi},
                {"n", s.n},
@@ -120,6 +125,13 @@ std::string write_soil_estimate(const std::filesystem::path& run, const std::fil
     j["largest_pressure_Pa"] = e.pressure;
     text = fmt::format("soil theory (rigid wheel): drawbar pull {:.0f} ± {:.0f} N, sinkage {:.1f} mm", e.pull,
                        error, 1e3 * e.sinkage);
+    if (quick) text += "; from a quick look at the soil, no result to quote";
+    const json sinkage = summary.value("sinkage_m", json()),
+               clearance = summary.value("bed_clearance_m", json());
+    if (sinkage.is_number() && clearance.is_number())
+      if (const double depth = sinkage.get<double>() + clearance.get<double>(); e.sinkage > depth)
+        text +=
+            fmt::format("; deeper than the bed of {:.0f} mm, of which the theory knows nothing", 1e3 * depth);
   }
   for (int k = 0; k <= 16; ++k) {
     const soil::WheelEstimate at = rigid_wheel(s, wheel, 0.05 * k);

@@ -53,6 +53,8 @@ json read_soil_material(const std::filesystem::path& file) {
   for (const auto& [key, value] : soil.items())
     if (key != "format_version" && key != "description" && key != "terrain" && key != "measured")
       throw input_error(name, key, "is unknown, expected format_version, description, terrain or measured");
+  if (!soil.contains("format_version"))
+    throw input_error(name, "format_version", fmt::format("is missing, expected {}", kFormatVersion));
   if (soil.value("format_version", json(0)) != kFormatVersion)
     throw input_error(
         name, "format_version",

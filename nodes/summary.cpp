@@ -1,6 +1,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "nodes/node.hpp"
@@ -16,6 +17,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr double kMostLate =
+    0.05;  // of load × speed: energy error of the interface of a run that can be trusted
 constexpr std::size_t kMostLinesLeftOut = 50;  // at the window's beginning, for a whole number of facets
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -69,8 +72,14 @@ Json pull_statistics(const SummaryInput& in, const Window& w, double load) {
   const double turned = w.mean([](const SeriesRow& r) { return std::abs(r.spin); }) * w.duration() *
                         in.cards[1 + in.wheel].tire_radius;
   const double radius = in.cards[1 + in.wheel].tire_radius;
-  const auto reasons =
-      unsteady_because(s, {load, w.duration(), std::max(travel, turned), radius, w.whole_facets});
+  auto reasons = unsteady_because(s, {load, w.duration(), std::max(travel, turned), radius, w.whole_facets});
+  const double late = w.rate([](const SeriesRow& r) { return r.energy_error_abs; });
+  const double rolling = load * std::max(travel, turned) / w.duration();
+  if (late > kMostLate * rolling)
+    reasons.push_back(fmt::format(
+        "contact forces that come one step late feed the tire: {:.3g} W at its interface, {:.0f} % of "
+        "load × speed; take a smaller run.step or tire.contact_tangent",
+        late, 100.0 * late / rolling));
   return {{"mean", number(s.mean)},
           {"std", number(s.std)},
           {"sem", number(s.sem)},

@@ -58,7 +58,10 @@ json load_json(const std::filesystem::path& file) {
   try {
     document = json::parse(in, note_key);
   } catch (const json::exception& e) {
-    throw input_error(file.string(), "", std::string("is not valid JSON: ") + e.what());
+    const std::string what = e.what();  // begins with the library's own name of the error in brackets
+    const std::size_t name = what.find("] ");
+    throw input_error(file.string(), "",
+                      "is not valid JSON: " + (name < what.size() ? what.substr(name + 2) : what));
   }
   if (!duplicate.empty()) throw input_error(file.string(), duplicate, "stands twice in the same object");
   if (!document.is_object()) throw input_error(file.string(), "", "expected a JSON object");

@@ -28,7 +28,8 @@ std::vector<Quad> read_positions_csv(const std::filesystem::path& file) {
   std::ifstream in(file);
   std::string line;
   if (!in || !std::getline(in, line)) throw io_error(file.string(), "the bed cannot be read");
-  while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
+  if (line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);  // a byte-order mark, as spreadsheets write it
+  std::erase_if(line, [](char c) { return c == '\r' || c == ' '; });
   const bool radii = line == "x_m,y_m,z_m,radius_m";
   if (line != "x_m,y_m,z_m" && !radii)
     throw input_error(

@@ -1,0 +1,34 @@
+#include "tire/tire_magnitudes.hpp"
+
+#include <gtest/gtest.h>
+
+namespace furrow {
+namespace {
+
+TireFile file(const std::string& name) { return read_tire_file(TIRE_DATA "/" + name); }
+
+TEST(TireMagnitudes, shipped_tires_have_nothing_odd) {
+  for (const char* name :
+       {"hmmwv_layered.json", "hmmwv_lumped.json", "passenger_205_55r16.json", "toroidal.json"})
+    EXPECT_TRUE(unlikely_values(file(name)).empty())
+        << name << ": " << unlikely_values(file(name)).front().first;
+}
+
+TEST(TireMagnitudes, another_unit_is_named_with_its_key) {
+  TireFile tire = file("passenger_205_55r16.json");
+  tire.pressure = 2.4;                          // bar
+  tire.materials.front().density *= 1e-3;       // g/cm³
+  tire.materials.back().young_modulus *= 1e-6;  // MPa
+  tire.tread.layers.front().thickness *= 1e3;   // mm
+  tire.bead.layers.front().angle = 240.0 * 3.14159265 / 180.0;
+  tire.rim_width = 0.02;
+  tire.tread_mass_per_area = 7000.0;
+  std::string keys;
+  for (const auto& [key, what] : unlikely_values(tire)) keys += key + " ";
+  for (const char* key : {"density", "young_modulus", "sections.tread.layers.0.thickness",
+                          "sections.bead.layers.0.angle_deg", "rim_width", "pressure", "tread_mass_per_area"})
+    EXPECT_NE(keys.find(key), std::string::npos) << key << " is not among " << keys;
+}
+
+}  // namespace
+}  // namespace furrow

@@ -2,6 +2,9 @@
 // that stays where it is. What carries the grain gives way as well, so these are upper bounds.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "terrain/dem/contact_law.hpp"
 #include "terrain/dem/surface_forces.hpp"
 

@@ -3,6 +3,9 @@
 // with the rim; forces on the disc centres go to the rim.
 #pragma once
 
+#include <utility>
+#include <vector>
+
 #include "tire/ancf/inflation.hpp"
 #include "tire/ancf/rim_clearance.hpp"
 #include "tire/ancf/ring_integrator.hpp"

@@ -19,8 +19,8 @@ constexpr double kMostSteps = 1e10;    // beyond it a run is a slip of the pen
 constexpr double kFewestGrains = 4.0;  // radii that the bin must measure at least
 constexpr double kCoarseGrain = 0.1;   // of the tire radius
 constexpr double kGigabyte = 1e9;
-constexpr double kLateShare =
-    0.04;  // of τ that the step may be: tests/studies/README.md, "Step of the flexible tire"
+// Of τ that the step may be, without and with contact tangents: tests/studies/README.md, "Step of the flexible tire".
+constexpr double kLateShare = 0.04, kTangentShare = 0.1;
 
 class Checks {
  public:
@@ -110,12 +110,14 @@ void Checks::tires() {
     const TireFile file = tire_file_of(options);
     for (const auto& [key, what] : unlikely_values(file))
       s_.warnings.push_back(input_error(file.path, key, what).what());
-    if (!options.rigid && !options.contact_tangent && s_.run.step > kLateShare * file.structural_damping)
-      warn("run.step", fmt::format("{} s is more than 1/25 of the tire's damping time of {} s: contact "
-                                   "forces come one step late and can feed "
-                                   "the tire; expected at most {} s, or tire.contact_tangent",
-                                   number_text(s_.run.step), number_text(file.structural_damping),
-                                   number_text(0.5 * kLateShare * file.structural_damping)));
+    const double share = options.contact_tangent ? kTangentShare : kLateShare, tau = file.structural_damping;
+    if (!options.rigid && s_.run.step > share * tau)
+      warn("run.step",
+           fmt::format("{} s is more than {:g} of the tire's damping time of {} s: contact forces come one "
+                       "step late and can "
+                       "feed the tire; expected at most {} s{}",
+                       number_text(s_.run.step), share, number_text(tau), number_text(0.5 * share * tau),
+                       options.contact_tangent ? "" : ", or tire.contact_tangent"));
   }
   if (!grains()) return;
   for (std::size_t k = 0; k < tires_.size(); ++k) {

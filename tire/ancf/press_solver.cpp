@@ -282,10 +282,15 @@ PressPoint PressSolver::press(double deflection) {
     else if (share == 1.0)
       viscosity_ = viscosity_ > kLeastViscosity ? 0.5 * viscosity_ : 0.0;
   }
-  throw physics_error(fmt::format(
-      "the tire found no static equilibrium at a deflection of {:.4g} m: residual {:.2g} of the load after "
-      "{} creep steps, allowed {:.0e}; try smaller steps of deflection or a finer mesh",
-      deflection, point.residual, point.creep_steps, kTolerance));
+  const std::string how =
+      viscosity_ < kMostViscosity
+          ? fmt::format("residual {:.2g} of the load, allowed {:.0e}", point.residual, kTolerance)
+          : std::string("its stiffness is not positive definite there, creep or not");
+  throw physics_error(
+      fmt::format("the tire found no static equilibrium at a deflection of {:.4g} m after {} creep steps: "
+                  "{}; try smaller steps of "
+                  "deflection, a finer mesh or more pressure",
+                  deflection, point.creep_steps, how));
 }
 
 double PressSolver::runout() const {

@@ -72,7 +72,7 @@ SurfaceMotion surface_motion(int vertices) {
 }
 TerrainForces terrain_forces() {
   TerrainForces m{{45, 1.8}, {{1, 5, 9}, {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}}}};
-  for (int k = 0; k < 3; ++k)
+  for (const double k : {0.0, 1.0, 2.0})
     m.forces.tangent.push_back({Mat3::Constant(k), Mat3::Constant(k + 0.5), {1, 2, k}, {3, 4, k}});
   return m;
 }

@@ -108,7 +108,7 @@ void Checks::tires() {
       throw wrong("tire.contact_tangent", "is true, expected false for a rigid tire");
     tires_.push_back(tire_size(options));
     const TireFile file = tire_file_of(options);
-    for (const auto& [key, what] : unlikely_values(file))
+    for (const auto& [key, what] : unlikely_values(read_tire_file(options.file)))
       s_.warnings.push_back(input_error(file.path, key, what).what());
     const double share = options.contact_tangent ? kTangentShare : kLateShare, tau = file.structural_damping;
     if (!options.rigid && s_.run.step > share * tau)

@@ -10,8 +10,10 @@
 namespace furrow {
 namespace {
 
-constexpr double kGravity = 9.81;         // m/s²
-constexpr double kDirectorLength = 0.01;  // m, makes director residuals (N m) comparable with forces
+constexpr double kGravity = 9.81;            // m/s²
+constexpr int kAttempts = 10, kCareful = 2;  // per step; from which one on corrections are halved
+constexpr double kLeastShare = 0.01;         // of a correction that is halved
+constexpr double kDirectorLength = 0.01;     // m, makes director residuals (N m) comparable with forces
 constexpr int kPairs = 12;
 constexpr double kDirectorWeight = 0.5;  // the age of a director counts less: what it turns is softer
 constexpr double kAlso = 0.4;  // of the age of renewal: sectors as old as this are renewed with others
@@ -299,8 +301,10 @@ void RingIntegrator::direction(const Mat3& turn, int pairs) {
   for (int k = 0; k < pairs; ++k) part(d_) += (weight[k] - rho_[k] * dot(y_[k], d_, layout_)) * part(s_[k]);
 }
 
+/// `careful`: a correction that makes the residual grow is halved.
 /// @returns true when converged; false when slow, growing or not finite
-bool RingIntegrator::iterate(double h, const Field& force, const Mat3& turn, int& count, double& norm) {
+bool RingIntegrator::iterate(double h, const Field& force, const Mat3& turn, bool careful, int& count,
+                             double& norm) {
   int pairs = 0;
   double best = norm;
   const std::size_t first = layout_.free_begin(), last = first + layout_.free_size();
@@ -317,9 +321,19 @@ bool RingIntegrator::iterate(double h, const Field& force, const Mat3& turn, int
       y_[slot][k] = -r_[k];
       q_new_[k] -= d_[k];
     }
+    const double before = norm;
     evaluate(h, force);
     ++count;
     norm = free_norm(r_);
+    for (double share = 0.5; careful && !(norm <= before) && share > kLeastShare; share *= 0.5) {
+      for (std::size_t k = first; k < last; ++k) {
+        q_new_[k] += share * d_[k];
+        s_[slot][k] = -share * d_[k];
+      }
+      evaluate(h, force);
+      ++count;
+      norm = free_norm(r_);
+    }
     if (!std::isfinite(norm) || norm > 1e3 * best) return false;
     if (norm <= params_.tolerance * reference_) return true;
     best = std::min(best, norm);
@@ -343,13 +357,19 @@ TireStatus RingIntegrator::step(double h, const RimState& end, const Field& forc
   const Mat3 orientation = end.orientation.toRotationMatrix();
   double norm = 0.0;
   int count = 0;
-  for (int attempt = 0; attempt < 3; ++attempt) {
-    predict(h, attempt < 2 ? 1.0 : 0.0);
-    evaluate(h, force);
-    norm = free_norm(r_);
+  // An old factor, a younger one, then Newton's method with new ones as long as the residual stays finite.
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    if (attempt <= kCareful) {
+      predict(h, attempt < kCareful ? 1.0 : 0.0);
+      evaluate(h, force);
+      norm = free_norm(r_);
+    } else if (!std::isfinite(norm)) {
+      break;
+    }
     bool converged = norm <= params_.tolerance * reference_;
     if (!converged) {
-      converged = prepare_factor(h, end, attempt) && iterate(h, force, orientation, count, norm);
+      converged =
+          prepare_factor(h, end, attempt) && iterate(h, force, orientation, attempt >= kCareful, count, norm);
       excess_ += std::max(0, count - 1);
     }
     if (converged) {

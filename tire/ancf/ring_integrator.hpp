@@ -107,7 +107,7 @@ class RingIntegrator {
   void note_contact(double h, const Mat3& turn);
   bool prepare_factor(double h, const RimState& rim, int attempt);
   void direction(const Mat3& turn, int pairs);
-  bool iterate(double h, const Field& force, const Mat3& turn, int& count, double& norm);
+  bool iterate(double h, const Field& force, const Mat3& turn, bool careful, int& count, double& norm);
   void finish(double h, const Vec3& about, Wrench& on_rim);
 
   RingIntegratorParams params_;

@@ -19,12 +19,13 @@ constexpr double kMostStartDepth = 5e-3;
 struct GroundSurface {
   SurfaceMesh mesh;
   ContactMaterial material;
-  double friction = 0.0;           // -, of the pair
-  std::vector<Vec3> last;          // where the ground last had the vertices, m
-  std::vector<Vec3> velocity;      // of the running interval, m/s
-  std::vector<Vec3> position;      // at the middle of the running substep, m
-  std::vector<Vec3> shear;         // of the layer under each vertex, m
-  std::vector<double> load, area;  // of each vertex in the running substep, N, m²
+  double friction = 0.0;            // -, of the pair
+  std::vector<Vec3> last;           // where the ground last had the vertices, m
+  std::vector<Vec3> velocity;       // of the running interval, m/s
+  std::vector<Vec3> position;       // at the middle of the running substep, m
+  std::vector<Vec3> shear;          // of the layer under each vertex, m
+  std::vector<double> load, area;   // of each vertex in the running substep, N, m²
+  std::vector<double> area_before;  // in the one before, m²
   std::vector<SurfaceContactForce> contacts;
   std::vector<std::pair<int, int>>
       corner;  // of each vertex: one of its triangles, and which corner it is there
@@ -114,6 +115,7 @@ void RigidGround::add_surface(const SurfaceMesh& mesh, const ContactMaterial& ma
                         .shear = std::vector<Vec3>(mesh.vertex_count, Vec3::Zero()),
                         .load = std::vector<double>(mesh.vertex_count, 0.0),
                         .area = std::vector<double>(mesh.vertex_count, 0.0),
+                        .area_before = std::vector<double>(mesh.vertex_count, 0.0),
                         .contacts = {},
                         .corner = std::vector<std::pair<int, int>>(mesh.vertex_count, {-1, 0}),
                         .sum = NodalForceSum(mesh.vertex_count, options_.contact_tangents)};
@@ -151,6 +153,7 @@ void RigidGround::press(GroundSurface& surface, double dt) const {
   const GroundLaw law{options_.ground_stiffness, options_.ground_damping, options_.ground_shear_stiffness,
                       surface.friction, options_.friction_velocity_scale};
   surface.contacts.clear();
+  surface.area.swap(surface.area_before);
   std::fill(surface.load.begin(), surface.load.end(), 0.0);
   std::fill(surface.area.begin(), surface.area.end(), 0.0);
   std::array<GroundPoint, kMaxGroundPoints> points;
@@ -173,6 +176,8 @@ void RigidGround::press(GroundSurface& surface, double dt) const {
   surface.floor_force = 0.0;
   for (const auto& one : surface.contacts) surface.floor_force += one.normal.z();
   for (std::size_t vertex = 0; vertex < surface.shear.size(); ++vertex) {
+    const double before = surface.area_before[vertex], now = surface.area[vertex];
+    if (now > before) surface.shear[vertex] *= before / now;  // what touches anew is not yet sheared
     double grip = 0.0;
     const Vec3 force = slide(law, surface.load[vertex], surface.area[vertex], surface.velocity[vertex], dt,
                              surface.shear[vertex], &grip);

@@ -142,6 +142,37 @@ TEST(RigidGround, sticks_like_a_spring_before_it_slides) {
   EXPECT_NEAR((ground->state().dissipation + at_rest) / (0.5 * stiffness * 1e-8), 0.0, 2e-3);
 }
 
+TEST(RigidGround, shears_what_it_touches_from_then_on) {
+  // A sheet rolls out along x with the speed c while it drifts sideways with v: what touches at x has been sheared by
+  // v (t − x/c), so F = ½ κ_t W c v t² with its centre at x = c t/3, on any mesh.
+  TerrainOptions options;
+  options.ground_damping = 0.0;
+  options.friction_velocity_scale = 1e6;
+  options.friction = 10.0;
+  const double slope = 0.01, c = 4.0, v = 0.02, width = 0.06, dt = 1e-5;
+  for (const double cell : {0.03, 0.01}) {
+    const auto ground = make_rigid_ground(options);
+    const int across = static_cast<int>(std::lround(width / cell));
+    const Surface tread =
+        testing::sheet(0.0, 0.0, cell, 4 * across, across, [&](double x, double) { return slope * x; });
+    SurfaceState state = placed(tread, Vec3::Zero(), {0.0, v, -slope * c});
+    ground->attach(tread.mesh, rubber(10.0), state);
+    Push one;
+    const int steps = 3000;
+    for (int i = 0; i < steps; ++i) {
+      one = push(*ground, state, dt);
+      for (std::size_t k = 0; k < state.position.size(); ++k) state.position[k] += dt * state.velocity[k];
+    }
+    const double t = steps * dt;
+    EXPECT_NEAR(one.sums.tangential.y() / (-0.5 * options.ground_shear_stiffness * width * c * v * t * t),
+                1.0, 1e-3);
+    double moment = 0.0;
+    for (std::size_t k = 0; k < one.forces.vertex.size(); ++k)
+      moment += one.forces.force[k].y() * state.position[one.forces.vertex[k]].x();
+    EXPECT_NEAR(moment / one.sums.tangential.y() / (c * t / 3.0), 1.0, 1e-3) << cell;
+  }
+}
+
 TEST(RigidGround, does_not_let_a_light_vertex_chatter) {
   // A tread vertex of 2 g under 50 N is driven along by 5 N through its spring of 1e5 N/m; forces come one step late.
   // The bare law, a dashpot of c μ N = 1750 N s/m, would throw it back and forth by (c μ N h/m) v.

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "terrain/terrain.hpp"
+
 namespace furrow {
 
 struct GrainBench {
@@ -20,8 +22,8 @@ struct GrainBench {
   std::string save;     // CSV that receives the positions before the timed steps; empty: none
 };
 
-/// Every grain is integrated and every contact evaluated in every step. @throws Error
-std::string bench_grains(const GrainBench& bench);
+/// Every grain is integrated and every contact evaluated in every step. `progress` may throw. @throws Error
+std::string bench_grains(const GrainBench& bench, const ProgressCall& progress);
 
 struct TireBench {
   std::string tire = "default";  // tire file, or default: the layered tire
@@ -38,7 +40,7 @@ struct TireBench {
 };
 
 /// The tire rolls freely on hard ground under a carriage. Times per step are those of the tire alone: wall time, and
-/// processor time of the calling thread, also by parts. @throws Error
-std::string bench_tire(const TireBench& bench);
+/// processor time of the calling thread, also by parts. `progress` may throw. @throws Error
+std::string bench_tire(const TireBench& bench, const ProgressCall& progress);
 
 }  // namespace furrow

@@ -1,12 +1,14 @@
 #include <chrono>
 #include <cmath>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "nodes/bench.hpp"
 #include "protocol/error.hpp"
 #include "protocol/hash.hpp"
 #include "terrain/dem/bed_csv.hpp"
+#include "terrain/dem/bed_generators.hpp"
 #include "terrain/dem/bed_settling.hpp"
 #include "terrain/dem/dem_terrain.hpp"
 #include "terrain/dem/solver_setup.hpp"
@@ -19,12 +21,12 @@ using namespace dem;
 constexpr double kReferenceWidth = 0.6;  // m
 
 /// Positions of the bed, and how long it is.
-std::vector<Quad> bed_of(const GrainBench& bench, TerrainOptions& options) {
+std::vector<Quad> bed_of(const GrainBench& bench, TerrainOptions& options, const ProgressCall& progress) {
   std::vector<Quad> grains;
   options.width = kReferenceWidth;
   if (bench.bed == "default") {
     const auto terrain = make_dem_terrain(options);
-    terrain->prepare({});
+    terrain->prepare(progress);
     Archive archive;
     terrain->save(archive);
     const auto& x = archive.get<double>("terrain/position");
@@ -33,15 +35,18 @@ std::vector<Quad> bed_of(const GrainBench& bench, TerrainOptions& options) {
   }
   grains = read_positions_csv(bench.bed);
   double longest = 0.0;
-  for (Quad& p : grains) {
+  for (std::size_t k = 0; k < grains.size(); ++k) {
+    Quad& p = grains[k];
+    if (!(p.x >= 0.0 && p.y >= 0.0 && p.y <= kReferenceWidth))
+      throw input_error(bench.bed, fmt::format("line {}", k + 2),
+                        fmt::format("the grain is outside the bin, expected x from 0 m on, y 0 to {:g} m",
+                                    kReferenceWidth));
     longest = std::max(longest, p.x);
     p.y -= 0.5 * kReferenceWidth;
   }
   options.length = std::max(1.0, std::ceil(longest));
-  for (std::size_t k = 0; k < grains.size(); ++k)
-    if (grains[k].x < 0.0 || std::abs(grains[k].y) > 0.5 * kReferenceWidth || grains[k].z < 0.0)
-      throw input_error(bench.bed, "line " + std::to_string(k + 2),
-                        "the grain is outside the bin, expected x ≥ 0, 0 ≤ y ≤ 0.6, z ≥ 0");
+  options.periodic_x = true;
+  check_positions(options, bench.bed, grains);
   return grains;
 }
 
@@ -49,8 +54,8 @@ void check(const GrainBench& bench) {
   const auto require = [](bool ok, const char* key, const char* expected) {
     if (!ok) throw input_error("command line", key, std::string("expected ") + expected);
   };
-  law_from(bench.law);
-  precision_from(bench.precision);
+  require(bench.law == "mindlin" || bench.law == "coulomb", "--law", "mindlin or coulomb");
+  require(bench.precision == "mixed" || bench.precision == "double", "--precision", "mixed or double");
   require(bench.threads >= 1 && bench.threads <= 1024, "--threads", "1 to 1024");
   require(bench.steps >= 1, "--steps", "1 or more");
   require(bench.warm >= 0, "--warm", "0 or more");
@@ -63,7 +68,7 @@ void check(const GrainBench& bench) {
 
 }  // namespace
 
-std::string bench_grains(const GrainBench& bench) {
+std::string bench_grains(const GrainBench& bench, const ProgressCall& progress) {
   check(bench);
   TerrainOptions options;
   options.law = bench.law;
@@ -73,28 +78,35 @@ std::string bench_grains(const GrainBench& bench) {
   options.threads = options.settle_threads = bench.threads;
   options.precision = bench.precision;
   options.activity = false;
-  const std::vector<Quad> bed = bed_of(bench, options);
+  const StableStep stable = stable_at(options, stated_overlap(options));
+  if (bench.step > stable.step)
+    throw input_error("command line", "--step",
+                      fmt::format("is {:g} s, expected at most the stable step of {:.3g} s ({})", bench.step,
+                                  stable.step, stable.reason));
+  const std::vector<Quad> bed = bed_of(bench, options, progress);
   options.periodic_x = true;
 
   const SolverParams params = solver_params(options);
   GrainSolver solver(params);
   solver.place(bed);
   SettleResult settled;
-  if (bench.settle > 0.0) settled = settle(solver, options, {}, bench.settle);
+  if (bench.settle > 0.0) settled = settle(solver, options, progress, bench.settle);
   solver.set_coefficients(run_coefficients(options, bench.step));
 
-  const auto steps = [&](int count) {
-    for (int k = 0; k < count; ++k)
+  const auto steps = [&](const char* what, int count) {
+    for (int k = 0; k < count; ++k) {
+      progress(what, static_cast<double>(k) / count);
       if (solver.step(bench.step, k + 1 == count) >= 0)
         throw physics_error("a grain left the bin: the bed is not at rest with this law");
+    }
   };
-  steps(bench.warm);
+  steps("warming up", bench.warm);
   if (!bench.save.empty())
     write_positions_csv(bench.save, std::span(solver.grains().position).first(solver.grains().count),
                         0.5 * kReferenceWidth);
   solver.reset_accounts();
   const auto begin = std::chrono::steady_clock::now();
-  steps(bench.steps);
+  steps("stepping", bench.steps);
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
   const Accounts& a = solver.accounts();

@@ -17,6 +17,7 @@
 #include "protocol/hash.hpp"
 #include "terrain/rigid/rigid_ground.hpp"
 #include "tire/ancf/ancf_tire.hpp"
+#include "tire/reach.hpp"
 
 namespace furrow {
 namespace {
@@ -63,16 +64,6 @@ void check(const TireBench& bench) {
   require(bench.renewal >= 0.0 && bench.renewal <= 10.0, "--renewal", "0 to 10");
 }
 
-/// Largest distance of the inflated tire's surface from its axis, m.
-double inflated_radius(AncfTire& tire) {
-  SurfaceState surface;
-  tire.place(RimState());
-  tire.surface(surface);
-  double most = 0.0;
-  for (const Vec3& x : surface.position) most = std::max(most, std::hypot(x.x(), x.z()));
-  return most;
-}
-
 /// A tire under a carriage on the plane z = 0.
 class RollingTire {
  public:
@@ -87,7 +78,7 @@ class RollingTire {
     options.friction = kFriction;
     options.friction_velocity_scale = kVelocityScale;
     ground_ = make_rigid_ground(options);
-    rim_.position = Vec3(0.0, 0.0, inflated_radius(tire) + kGap);
+    rim_.position = Vec3(0.0, 0.0, inflated_reach(tire, 0.0) + kGap);
     rim_.velocity = Vec3(bench.speed * tire.radius(), 0.0, 0.0);
     rim_.angular_velocity = Vec3(0.0, bench.speed, 0.0);
     trajectory_ = RimTrajectory(rim_);
@@ -152,7 +143,7 @@ double quantile(const std::vector<double>& sorted, double p) {
 
 }  // namespace
 
-std::string bench_tire(const TireBench& bench) {
+std::string bench_tire(const TireBench& bench, const ProgressCall& progress) {
   check(bench);
   const std::string path = bench.tire == "default"
                                ? std::string(FURROW_SOURCE_FOLDER "/tire/data/hmmwv_layered.json")
@@ -169,8 +160,10 @@ std::string bench_tire(const TireBench& bench) {
   RollingTire rolling(tire, bench);
 
   const auto warm = static_cast<long>(std::lround(bench.warm / bench.step));
-  for (long n = 0; n < warm; ++n)
+  for (long n = 0; n < warm; ++n) {
+    progress("touching down", static_cast<double>(n) / static_cast<double>(warm));
     rolling.step(static_cast<double>(n) < kTouchdownShare * static_cast<double>(warm) ? kTouchdown : 0.0);
+  }
 
   const double turn = 2.0 * std::numbers::pi;
   const long steps = bench.steps > 0
@@ -182,6 +175,7 @@ std::string bench_tire(const TireBench& bench) {
   std::vector<double> wall(steps), processor(steps);
   double load = 0.0, pull = 0.0, moment = 0.0, height = 0.0, worst = 0.0;
   for (long n = 0; n < steps; ++n) {
+    progress("rolling", static_cast<double>(n) / static_cast<double>(steps));
     const Spent spent = rolling.step(0.0);
     wall[n] = 1e3 * spent.wall, processor[n] = 1e3 * spent.processor;
     load += rolling.wrench().force.z() / static_cast<double>(steps);

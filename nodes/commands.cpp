@@ -10,10 +10,12 @@
 
 #include "nodes/bench.hpp"
 #include "nodes/explain.hpp"
+#include "nodes/progress.hpp"
 #include "nodes/rank_table.hpp"
 #include "nodes/run_directory.hpp"
 #include "nodes/scenario.hpp"
 #include "nodes/schema.hpp"
+#include "nodes/signals.hpp"
 #include "nodes/soil_estimate.hpp"
 #include "nodes/validate.hpp"
 #include "protocol/mpi_transport.hpp"
@@ -154,6 +156,7 @@ ExitCode report_command(const Typed& typed) {
     const std::string theory = write_soil_estimate(typed.directory, typed.soil);
     std::cerr << "furrow: " << theory << "\n";
   }
+  std::cerr << "furrow: plotting " << typed.directory << "\n";
   for (const auto& plot : make_report(typed.directory, false)) std::cout << plot.string() << "\n";
   return ExitCode::done;
 }
@@ -168,6 +171,26 @@ ExitCode resume_command(const Typed& typed, int argc, char** argv) {
   RunArguments arguments{{},  settings_of(typed), typed.directory, false, typed.profile, !typed.no_plots,
                          true};
   return launched_by_mpi() ? run_as_rank(arguments, argc, argv) : resume_supervised(arguments);
+}
+
+template <class Bench>
+ExitCode bench_command(std::string (*run)(const Bench&, const ProgressCall&), const Bench& bench) {
+  catch_stop_signals();
+  ProgressDisplay display;
+  const std::string json = run(bench, [&](const std::string& what, double share) {
+    if (stop_signalled()) throw Error(ExitCode::stopped, "stopped by a signal during " + what);
+    display.show({.phase = what, .share = share});
+  });
+  display.clear();
+  std::cout << json;
+  return ExitCode::done;
+}
+
+/// The command whose help says more, with a blank after it.
+std::string asked_command(const CLI::App& app) {
+  for (const CLI::App* command : app.get_subcommands())
+    return command->get_name() + " " + asked_command(*command);
+  return {};
 }
 
 /// CLI11's words, with a guess at what was meant.
@@ -186,7 +209,7 @@ std::string parse_problem(const CLI::App& app, const CLI::ParseError& error, int
                            ? fmt::format("one of: {}; see furrow --help", fmt::join(commands, ", "))
                            : "'" + similar.front() + "'?");
   }
-  return fmt::format("{}, see furrow {}--help", error.what(), first[0] != '-' ? first + " " : "");
+  return fmt::format("{}, see furrow {}--help", error.what(), asked_command(app));
 }
 
 void print_lines(const char* kind, const std::string& text) {
@@ -289,14 +312,8 @@ ExitCode run_command_line(int argc, char** argv) {
   if (bed.parsed()) return bed_command(load(typed));
   if (sweep.parsed()) return sweep_command(sweep_arguments);
   if (report.parsed()) return report_command(typed);
-  if (bench_of_grains.parsed()) {
-    std::cout << bench_grains(grains);
-    return ExitCode::done;
-  }
-  if (bench_of_tire.parsed()) {
-    std::cout << bench_tire(tire);
-    return ExitCode::done;
-  }
+  if (bench_of_grains.parsed()) return bench_command(bench_grains, grains);
+  if (bench_of_tire.parsed()) return bench_command(bench_tire, tire);
   std::cout << explain(typed.key);
   return ExitCode::done;
 }

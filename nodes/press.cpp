@@ -19,11 +19,12 @@ constexpr int kMostTrials = 12;
 constexpr double kEdgePressure = 0.02;  // of the largest: where the footprint ends
 
 /// Deflection that carries the load, between two points of the curve; the solver is left there.
-PressPoint find_load(PressSolver& solver, PressPoint low, PressPoint high, double load) {
+template <class Press>
+PressPoint find_load(Press&& press, PressPoint low, PressPoint high, double load) {
   PressPoint now = high;
   for (int n = 0; n < kMostTrials && std::abs(now.force - load) > kLoadTolerance * load; ++n) {
     const double share = std::clamp((load - low.force) / (high.force - low.force), 0.02, 0.98);
-    now = solver.press(low.deflection + share * (high.deflection - low.deflection));
+    now = press(low.deflection + share * (high.deflection - low.deflection));
     (now.force < load ? low : high) = now;
   }
   return now;
@@ -48,13 +49,19 @@ PressResults press_tire(const PressOptions& options, const ProgressCall& progres
   PressSolver solver(file, mesh, inflate(shell, mesh, inflation), options.obstacle);
   PressResults results;
   results.pressure = file.pressure;
-  results.mass = make_tire(options.tire)->mass_properties();
+  results.mass = rigid_mass(mesh, element_masses(file, mesh));
   results.inflation_growth = solver.start_radius() - file.radius;
   const int total = 2 * options.points;
+  double share = 0.0;
+  const auto press = [&](double deflection) {
+    return solver.press(deflection, [&] {
+      if (progress) progress("pressing", share);
+    });
+  };
   const auto at = [&](int k) {
-    if (progress) progress("pressing", static_cast<double>(k) / total);
+    share = static_cast<double>(k) / total;
     const int step = k <= options.points ? k : total - k;
-    return solver.press(options.deflection * step / options.points);
+    return press(options.deflection * step / options.points);
   };
   results.loading.push_back(at(0));
   results.runout = solver.runout();
@@ -64,7 +71,7 @@ PressResults press_tire(const PressOptions& options, const ProgressCall& progres
     const PressPoint& now = results.loading.back();
     const bool reached = before.force < options.load && now.force >= options.load;
     if (reached || (k == options.points && results.footprint.empty())) {
-      results.at_load = reached ? find_load(solver, before, now, options.load) : now;
+      results.at_load = reached ? find_load(press, before, now, options.load) : now;
       results.footprint = solver.footprint();
     }
   }

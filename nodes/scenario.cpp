@@ -220,6 +220,7 @@ int settle_threads(int wanted) {
 
 void take_terrain(const json& j, Scenario& s) {
   TerrainOptions& o = s.terrain;
+  o.scenario = s.file.string();
   o.engine = j["engine"];
   o.law = j["law"];
   o.radius = j["radius"];
@@ -349,7 +350,6 @@ Scenario load_scenario(const std::filesystem::path& file, const Settings& settin
     check_scenario(s, default_start);
   } catch (const Error& error) {  // what looks wrong may be why it does not fit
     std::string text = error.what();
-    if (text.starts_with("scenario: ")) text.replace(0, 8, file.string());  // the terrain knows no file
     for (const std::string& warning : unusual) text += "\n" + warning;
     throw Error(error.code(), text);
   }

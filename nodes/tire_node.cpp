@@ -12,6 +12,7 @@
 #include "nodes/carried_wrench.hpp"
 #include "nodes/frames.hpp"
 #include "nodes/impulse_ledger.hpp"
+#include "tire/reach.hpp"
 
 namespace furrow {
 namespace {
@@ -23,7 +24,7 @@ class TireNode : public Node {
         index_(index),
         pressure_(scenario.tires.at(index).pressure),
         tire_(make_tire(scenario.tires.at(index))),
-        reach_(reach(*tire_, scenario.rigs.at(index).camber_angle)) {
+        reach_(inflated_reach(*tire_, scenario.rigs.at(index).camber_angle)) {
     report_.contact_tangent = scenario.tires.at(index).contact_tangent;
     if (report_.contact_tangent) ledger_ = ImpulseLedger(tire_->mesh().vertex_count);
   }
@@ -121,18 +122,6 @@ class TireNode : public Node {
  private:
   static constexpr Address kRig{Role::rig, 0};
   static constexpr Address kTerrain{Role::terrain, 0};
-
-  /// How far the inflated tire reaches below the rim's centre, whatever its spin angle, leaning by `camber`.
-  static double reach(Tire& tire, double camber) {
-    tire.place(RimState());
-    SurfaceState inflated;
-    tire.surface(inflated);
-    const double c = std::cos(camber), s = std::sin(camber);
-    double most = 0.0;
-    for (const Vec3& x : inflated.position)
-      most = std::max(most, std::hypot(x.x(), x.z()) * c + std::abs(x.y() * s));
-    return most;
-  }
 
   void account(double duration) {
     const RimState &from = trajectory_.start(), &to = trajectory_.end();

@@ -11,8 +11,9 @@
 namespace furrow {
 
 struct TerrainOptions {
-  std::string engine = "dem";   // dem | rigid
-  std::string law = "mindlin";  // mindlin | coulomb
+  std::string scenario = "scenario";  // what messages name: the scenario's file
+  std::string engine = "dem";         // dem | rigid
+  std::string law = "mindlin";        // mindlin | coulomb
   // Bed.
   double radius = 0.006;                      // grain radius, m
   std::string size_distribution = "uniform";  // uniform | normal, by number of grains

@@ -25,6 +25,8 @@ bool number(const char*& at, char end, double& value) {
 }  // namespace
 
 std::vector<Quad> read_positions_csv(const std::filesystem::path& file) {
+  if (std::error_code error; !std::filesystem::exists(file, error))
+    throw input_error(file.string(), "", "does not exist, expected a CSV file of positions");
   std::ifstream in(file);
   std::string line;
   if (!in || !std::getline(in, line)) throw io_error(file.string(), "the bed cannot be read");

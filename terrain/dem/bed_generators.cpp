@@ -82,19 +82,26 @@ const Generator& generator_of(const TerrainOptions& o) {
     if (o.bed_generator == g.name) return g;
     names += (names.empty() ? "" : " or ") + std::string(g.name);
   }
-  throw input_error("scenario", "terrain.bed_generator",
+  throw input_error(o.scenario, "terrain.bed_generator",
                     "'" + o.bed_generator + "' is unknown, expected " + names);
 }
 
 std::string place_text(const Quad& p) { return fmt::format("({:g}, {:g}, {:g}) m", p.x, p.y, p.z); }
 
-/// The user's grains must stand in the bin and not in each other. Lines are counted as if none were blank.
 std::vector<Quad> positions_of(const TerrainOptions& o) {
-  const bool hdf5 = is_hdf5(o.bed);
-  std::vector<Quad> grains = hdf5 ? read_positions_h5(o.bed) : read_positions_csv(o.bed);
+  std::vector<Quad> grains = is_hdf5(o.bed) ? read_positions_h5(o.bed) : read_positions_csv(o.bed);
+  check_positions(o, o.bed, grains);
+  return grains;
+}
+
+}  // namespace
+
+void check_positions(const TerrainOptions& o, const std::filesystem::path& file, std::vector<Quad>& grains) {
+  const bool hdf5 = is_hdf5(file);
   const Bin bin = bin_of(o);
   const auto wrong = [&](std::size_t g, const std::string& what) {
-    return input_error(o.bed, hdf5 ? fmt::format("grain {}", g) : fmt::format("line {}", g + 2), what);
+    return input_error(file.string(), hdf5 ? fmt::format("grain {}", g) : fmt::format("line {}", g + 2),
+                       what);
   };
   for (std::size_t g = 0; g < grains.size(); ++g) {
     double& radius = grains[g].w;
@@ -107,6 +114,11 @@ std::vector<Quad> positions_of(const TerrainOptions& o) {
                                  "terrain.size_spread of the scenario",
                                  radius, smallest_radius(o), largest_radius(o)));
     const double least = kLeastWall * radius * (1.0 - 1e-9);
+    const auto& p = grains[g];
+    if ((o.periodic_x && !(p.x >= 0.0 && p.x <= o.length)) ||
+        (o.periodic_y && !(std::abs(p.y) <= 0.5 * o.width)))
+      throw wrong(g, fmt::format("the grain stands at {}, expected x 0 to {:g} m, y {:g} to {:g} m",
+                                 place_text(p), o.length, -0.5 * o.width, 0.5 * o.width));
     for (int wall = 0; wall < kWalls; ++wall)
       if (bin.has_wall(wall) && !(bin.distance(wall, grains[g]) >= least))
         throw wrong(
@@ -126,10 +138,7 @@ std::vector<Quad> positions_of(const TerrainOptions& o) {
                             place_text(grains[std::max(a, b)]), distance, hdf5 ? "of number" : "of line",
                             std::min(a, b) + (hdf5 ? 0 : 2), least, mean));
   });
-  return grains;
 }
-
-}  // namespace
 
 std::vector<Quad> lattice_layer(const Bin& bin, double radius, std::uint64_t seed, bool shifted) {
   const Lattice lattice = lattice_of(bin, radius);

@@ -23,6 +23,11 @@ std::vector<Quad> lattice_layer(const Bin& bin, double radius, std::uint64_t see
 /// @throws Error(bad_input) listing the valid generators, or what is wrong with the file and in which line.
 std::vector<Quad> starting_positions(const TerrainOptions& options, const ProgressCall& progress);
 
+/// The grains of a user's `file` must stand in the bin and not in each other; radii that it does not give become
+/// `radius`. Lines are counted as if none were blank. @throws Error(bad_input) naming file and line, or grain
+void check_positions(const TerrainOptions& options, const std::filesystem::path& file,
+                     std::vector<Quad>& grains);
+
 /// How many grains starting_positions will give, without making them. @throws Error as starting_positions
 double expected_grains(const TerrainOptions& options);
 

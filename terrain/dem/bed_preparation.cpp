@@ -24,20 +24,20 @@ void check_bed(const Archive& bed, const TerrainOptions& o) {
   const std::vector<double> wanted = geometry(o);
   for (int k = 0; k < 4; ++k)
     if (made[k] != wanted[k])
-      throw input_error("scenario", std::string("terrain.") + kKey[k],
+      throw input_error(o.scenario, std::string("terrain.") + kKey[k],
                         fmt::format("is {} but the bed '{}' was made with {}", wanted[k], o.bed, made[k]));
   const double spread = bed.has("bed/size_spread") ? bed.get_double("bed/size_spread") : 0.0;
   if (spread != o.size_spread)
-    throw input_error("scenario", "terrain.size_spread",
+    throw input_error(o.scenario, "terrain.size_spread",
                       fmt::format("is {} but the bed '{}' was made with {}", o.size_spread, o.bed, spread));
   const auto& law = bed.get<std::uint8_t>("bed/law");
   if (std::string(law.begin(), law.end()) != o.law)
-    throw input_error("scenario", "terrain.law",
+    throw input_error(o.scenario, "terrain.law",
                       fmt::format("is {} but the bed '{}' was settled with {}", o.law, o.bed,
                                   std::string(law.begin(), law.end())));
   if ((o.rolling_friction > 0.0) && bed.get<double>("pairs/rolling").empty() && bed.get_int("count") > 0 &&
       o.law == "mindlin")
-    throw input_error("scenario", "terrain.rolling_friction",
+    throw input_error(o.scenario, "terrain.rolling_friction",
                       fmt::format("is {} but the bed '{}' was settled without", o.rolling_friction, o.bed));
 }
 
@@ -110,11 +110,11 @@ Archive bed_archive(const GrainSolver& solver, const TerrainOptions& options, co
 
 void check_bed_options(const TerrainOptions& o) {
   if (!(o.compaction_pressure >= 0.0) || !(o.compaction_pressure <= 1e9))
-    throw input_error("scenario", "terrain.compaction_pressure",
+    throw input_error(o.scenario, "terrain.compaction_pressure",
                       fmt::format("{} is out of range, expected 0 to 1e9 Pa", o.compaction_pressure));
   if (o.compaction_pressure > 0.0 && !bed_is_settled_anew(o))
     throw input_error(
-        "scenario", "terrain.compaction_pressure",
+        o.scenario, "terrain.compaction_pressure",
         fmt::format("is {:g} Pa but the bed '{}' is a settled one and taken as it is, expected 0",
                     o.compaction_pressure, o.bed));
 }

@@ -23,13 +23,12 @@ using namespace dem;
 constexpr double kLooseFraction = 0.50;   // solid fraction of a bed that settled with cohesion, estimate
 constexpr double kBytesPerGrain = 900.0;  // state, list with history, and what a rebuild holds twice
 
-void require(bool ok, const char* key, double value, const char* expected) {
-  if (!ok)
-    throw input_error("scenario", std::string("terrain.") + key,
-                      fmt::format("{} is out of range, expected {}", value, expected));
-}
-
 void check(const TerrainOptions& o) {
+  const auto require = [&](bool ok, const char* key, double value, const char* expected) {
+    if (!ok)
+      throw input_error(o.scenario, std::string("terrain.") + key,
+                        fmt::format("{} is out of range, expected {}", value, expected));
+  };
   law_from(o.law);
   precision_from(o.precision);
   require(o.radius > 0.0 && o.radius < 1.0, "radius", o.radius, "0 < radius < 1 m");
@@ -51,7 +50,7 @@ void check(const TerrainOptions& o) {
   check_sizes(o);
   check_bed_options(o);
   if (!(o.step > 0.0))
-    throw input_error("scenario", "run.step",
+    throw input_error(o.scenario, "run.step",
                       fmt::format("{} is out of range, expected a positive number, s", o.step));
 }
 
@@ -92,7 +91,7 @@ class DemTerrain : public Terrain {
                   "a tire's contact surface has another number of vertices than positions");
     for (const Vec3& x : start.position)
       if (const char* wall = beyond(x, x))
-        throw input_error("scenario", "terrain",
+        throw input_error(options_.scenario, "terrain",
                           fmt::format("the tire starts beyond {}: it has a point at ({:.4g}, {:.4g}, {:.4g}) "
                                       "m; expected a larger bin or another start",
                                       wall, x.x(), x.y(), x.z()));
@@ -243,7 +242,7 @@ std::unique_ptr<Terrain> make_dem_terrain(const TerrainOptions& options) {
   check(options);
   const StableStep stable = stable_at(options, stated_overlap(options));
   if (options.step > stable.step && !options.allow_unstable_step)
-    throw input_error("scenario", "run.step",
+    throw input_error(options.scenario, "run.step",
                       fmt::format("{} s is above the stable step {:.3g} s ({}); expected a smaller step, "
                                   "more terrain.substeps, or softer grains",
                                   options.step, stable.step, stable.reason));

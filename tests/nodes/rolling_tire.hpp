@@ -8,6 +8,7 @@
 #include "rigs/drawbar_rig.hpp"
 #include "terrain/rigid/rigid_ground.hpp"
 #include "tests/tire/ancf/small_tire.hpp"
+#include "tire/reach.hpp"
 
 namespace furrow::test {
 
@@ -39,12 +40,7 @@ class RollingTire {
         ground(make_rigid_ground(hard_ground(step))),
         step_(step) {
     rig->add_tire_mass(0, tire.mass_properties(), tire.radius());
-    tire.place({});
-    tire.surface(after);
-    double reach = 0.0;
-    for (const Vec3& x : after.position)
-      reach = std::max(reach, std::hypot(x.x(), x.z()) + 0.1 * std::abs(x.y()));
-    const std::array<double, 1> height{reach};
+    const std::array<double, 1> height{inflated_reach(tire, options.camber_angle)};
     rig->place(height);
     trajectory = RimTrajectory(rig->rim(0));
     tire.place(rig->rim(0));

@@ -2,7 +2,7 @@
 """`furrow bench tire` and `furrow press` on coarse tires: what they print, leave behind, and refuse."""
 import json
 
-from program import SystemTest, furrow, main
+from program import SystemTest, furrow, main, start
 
 SCENARIO = {
     "format_version": 1,
@@ -40,6 +40,26 @@ class Bench(SystemTest):
         done = furrow("bench", "tire", "--tire", "none.json", cwd=self.folder)
         self.assertEqual(done.returncode, 2)
         self.assertIn("none.json", done.stderr)
+
+
+    def test_bad_beds(self):
+        bed = self.folder / "bed.csv"
+        bed.write_text("x_m,y_m,z_m\n0.1,0.1,0.006\n0.1,0.101,0.006\n")
+        for more, word in ((("--bed", "none.csv"), "none.csv"), (("--bed", bed), "line 3"), (("--law", "glue"), "--law"),
+                           (("--bed", bed, "--step", "1e-3"), "stable step")):
+            done = furrow("bench", "grains", *more, cwd=self.folder)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(word, done.stderr)
+        bed.write_text("x_m,y_m,z_m\n0.1,-0.1,0.006\n")
+        self.assertIn("line 2", furrow("bench", "grains", "--bed", bed, cwd=self.folder).stderr)
+
+    def test_a_signal_stops_it(self):
+        bench = start("bench", "tire", *COARSE[:4], "--warm", "1000", cwd=self.folder)
+        self.assertIn("touching down", bench.stderr.readline())
+        bench.terminate()
+        _, said = bench.communicate(timeout=60)
+        self.assertEqual(bench.returncode, 75, said)
+        self.assertIn("signal", said)
 
 
 class Press(SystemTest):

@@ -259,13 +259,14 @@ void PressSolver::follow(double top) {
   if (force_ > 0.0) move(Field(q_), linear_->llt.solve(linear_->gather(layout_, pull)), 1.0);
 }
 
-PressPoint PressSolver::press(double deflection) {
+PressPoint PressSolver::press(double deflection, const std::function<void()>& each_step) {
   PressPoint point;
   point.deflection = deflection;
   follow(deflection - start_radius_);
   viscosity_ = 0.0;
   double norm = evaluate();
   for (; point.creep_steps < kMaxSteps && viscosity_ < kMostViscosity; ++point.creep_steps) {
+    if (each_step) each_step();
     const bool definite = factorize();
     if (!definite) ++point.failed_factorizations;
     point.force = force_;

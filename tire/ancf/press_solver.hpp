@@ -12,6 +12,7 @@
 // and falls again afterwards; only an equilibrium at which it succeeds with σ = 0, a stable one, is accepted.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -57,9 +58,9 @@ class PressSolver {
 
   /// Largest radius of the inflated tire: where deflection starts, m.
   double start_radius() const { return start_radius_; }
-  /// Moves the obstacle to a deflection and finds equilibrium. @throws Error(physics) when there is none,
-  /// or when the tire would stand in its rim.
-  PressPoint press(double deflection);
+  /// Moves the obstacle to a deflection and finds equilibrium; `each_step` is called before each step of creep and may
+  /// throw. @throws Error(physics) when there is none, or when the tire would stand in its rim.
+  PressPoint press(double deflection, const std::function<void()>& each_step = {});
   /// Π at the last point, J; its derivative by the deflection is the force.
   double potential() const { return potential_; }
   /// Largest difference of radius around a row of nodes, m: of the tire not pressed, the height of its wrinkles.

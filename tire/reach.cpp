@@ -1,0 +1,19 @@
+#include "tire/reach.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace furrow {
+
+double inflated_reach(Tire& tire, double camber) {
+  tire.place(RimState());
+  SurfaceState inflated;
+  tire.surface(inflated);
+  const double c = std::cos(camber), s = std::sin(camber);
+  double most = 0.0;
+  for (const Vec3& x : inflated.position)
+    most = std::max(most, std::hypot(x.x(), x.z()) * c + std::abs(x.y() * s));
+  return most;
+}
+
+}  // namespace furrow

@@ -1,0 +1,12 @@
+// How much room a tire takes around its axis.
+#pragma once
+
+#include "tire/tire.hpp"
+
+namespace furrow {
+
+/// How far the inflated tire reaches below the rim's centre, whatever its spin angle, m, its wheel leaning by `camber`, rad.
+/// Places the tire at the origin, at rest. @throws Error(physics) when inflation does not converge
+double inflated_reach(Tire& tire, double camber);
+
+}  // namespace furrow

@@ -29,6 +29,7 @@ ROOT = HERE.parents[1]
 RESULTS = ROOT / "results"
 sys.path.insert(0, str(ROOT / "scripts"))
 import plot.style  # noqa: E402, F401  the look of all plots
+from plot.student import student  # noqa: E402
 
 SWEEPS = {"study_slip_angle": "rig.toe_angle", "study_camber": "rig.camber_angle", "study_hard_slip": "rig.slip"}
 COLUMNS = {"Fx_N": "iso_w.force_N.0", "Fy_N": "iso_w.force_N.1", "Fz_N": "iso_w.force_N.2", "Fy_sem_N": "iso_w.force_sem_N.1",
@@ -37,7 +38,6 @@ COLUMNS = {"Fx_N": "iso_w.force_N.0", "Fy_N": "iso_w.force_N.1", "Fz_N": "iso_w.
            "camber_angle_rad": "iso_w.camber_angle_rad", "loaded_radius_m": "iso_w.loaded_radius_m",
            "effective_rolling_radius_m": "effective_rolling_radius_m", "pull_N": "drawbar_pull_N.mean",
            "pull_sem_N": "drawbar_pull_N.sem", "vertical_balance_residual": "vertical_balance_residual"}
-STUDENT = {1: 12.7, 2: 4.30, 3: 3.18, 4: 2.78, 5: 2.57, 6: 2.45, 7: 2.36}  # 97.5 % quantiles of Student's t
 LINEAR = math.radians(1.05)  # slip angles up to here are fitted with a line
 CONTACT = 0.12  # m
 FITTED = ("Fy_N", "iso_force_y_N"), ("Mz_Nm", "iso_moment_z_Nm")
@@ -115,7 +115,7 @@ def line(x, y):
         return coefficients[1], math.nan
     scatter = np.sum((y - design @ coefficients) ** 2) / freedom
     error = math.sqrt(scatter * np.linalg.inv(design.T @ design)[1, 1])
-    return coefficients[1], STUDENT.get(freedom, 2.2) * error
+    return coefficients[1], student(freedom) * error
 
 
 def select(rows, study, tire):
@@ -183,13 +183,14 @@ def figures(rows):
             fits = [relaxation(step, 0.3, 0.01, reach)["sigma"] for reach in (0.9, 1.1, 1.35)]
             add(tire, "relaxation length, step of 1 degree", np.mean(fits), 0.5 * (max(fits) - min(fits)), "m",
                 "fits from 0.12 m to 0.9, 1.1, 1.35 m; half the range")
-        for check, what in (("c_50", "friction scale 50 s/m"), ("half_shear_stiffness", "half the ground's shear stiffness"), ("40x12", "40 x 12 elements"), ("90x24", "90 x 24 elements")):
+        for check, what in (("c_50", "friction scale 50 s/m"), ("half_shear_stiffness", "half the ground's shear stiffness"), ("40x12", "40 x 12 elements"), ("90x24", "90 x 24 elements"),
+                            ("180x48", "180 x 48 elements")):
             series = series_of(f"{tire}_toe_1_{check}")
             if series is not None and series["time_s"][-1] > 0.5:
-                force, moment = (steady(series, source, 0.2)["end"] for _, source in FITTED)
-                add(tire, f"cornering stiffness, 1 degree, {what}", abs(force) / 0.01745, abs(force - steady(series, "iso_force_y_N", 0.28)["end"]) / 0.01745,
+                (force, moment), (later, later_moment) = ([steady(series, source, begin)["end"] for _, source in FITTED] for begin in (0.2, 0.28))
+                add(tire, f"cornering stiffness, 1 degree, {what}", abs(force) / 0.01745, abs(force - later) / 0.01745,
                     "N/rad", "-Fy/alpha")
-                add(tire, f"pneumatic trail, 1 degree, {what}", -moment / force, 0.0, "m", "-Mz/Fy")
+                add(tire, f"pneumatic trail, 1 degree, {what}", -moment / force, abs(moment / force - later_moment / later), "m", "-Mz/Fy")
     return out
 
 

@@ -30,6 +30,7 @@ json bed_json(const Scenario& s, const dem::PreparedBed& prepared, const dem::Be
   j["scenario"] = s.name;
   j["bed"] = text_or_null(o.bed);
   j["bed_generator"] = o.bed.empty() ? json(o.bed_generator) : json(nullptr);
+  j["sides"] = o.periodic_y ? "periodic" : "walls";
   j["size_distribution"] = o.size_spread > 0.0 ? json(o.size_distribution) : json(nullptr);
   j["size_spread"] = o.size_spread;
   j["settling_friction"] = o.settling_friction < 0.0 ? json(nullptr) : json(o.settling_friction);

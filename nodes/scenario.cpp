@@ -230,6 +230,7 @@ void take_terrain(const json& j, Scenario& s) {
   o.layers = j["layers"];
   o.length = j["length"];
   o.width = j["width"];
+  o.periodic_y = j["sides"] == "periodic";
   o.seed = s.run.seed;
   if (j["bed"].is_string()) o.bed = find_file(j["bed"], "terrain.bed", s.file).string();
   o.bed_generator = j["bed_generator"];

@@ -23,7 +23,7 @@ struct TerrainOptions {
   double length = 10.0;                       // bin, x from 0 to length, m
   double width = 0.6;                         // bin, y from −width/2 to width/2, m
   bool periodic_x = false;  // grains that leave at one end of the bin come back at the other; no end walls
-  bool periodic_y = false;  // the same across; no side walls
+  bool periodic_y = false;  // the same across; no side walls (terrain.sides)
   std::uint64_t seed = 1;   // run.seed
   std::string bed;  // file: a settled bed (HDF5), or positions to settle (CSV x_m,y_m,z_m); empty: generate
   std::string bed_generator = "poisson";  // poisson | lattice: where the grains of a new bed start

@@ -17,6 +17,8 @@ namespace {
 
 std::vector<double> geometry(const TerrainOptions& o) { return {o.radius, o.density, o.length, o.width}; }
 
+const char* sides(bool periodic) { return periodic ? "periodic" : "walls"; }
+
 /// A bed from a file must be one of this bin, these grains and this law.
 void check_bed(const Archive& bed, const TerrainOptions& o) {
   const auto& made = bed.get<double>("bed/geometry", 4);
@@ -30,6 +32,11 @@ void check_bed(const Archive& bed, const TerrainOptions& o) {
   if (spread != o.size_spread)
     throw input_error(o.scenario, "terrain.size_spread",
                       fmt::format("is {} but the bed '{}' was made with {}", o.size_spread, o.bed, spread));
+  const bool periodic = bed.has("bed/periodic_sides") && bed.get_int("bed/periodic_sides") != 0;
+  if (periodic != o.periodic_y)
+    throw input_error(o.scenario, "terrain.sides",
+                      fmt::format("is '{}' but the bed '{}' was made with '{}'", sides(o.periodic_y), o.bed,
+                                  sides(periodic)));
   const auto& law = bed.get<std::uint8_t>("bed/law");
   if (std::string(law.begin(), law.end()) != o.law)
     throw input_error(o.scenario, "terrain.law",
@@ -104,6 +111,7 @@ Archive bed_archive(const GrainSolver& solver, const TerrainOptions& options, co
                                              settled.floor_error, settled.time});
   bed.put("bed/geometry", geometry(options));
   bed.put("bed/size_spread", options.size_spread);
+  bed.put("bed/periodic_sides", std::int64_t{options.periodic_y});
   bed.put("bed/law", std::vector<std::uint8_t>(options.law.begin(), options.law.end()));
   return bed;
 }

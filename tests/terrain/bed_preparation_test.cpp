@@ -139,6 +139,33 @@ TEST_F(Beds, smooth_grains_pack_denser_and_are_rough_afterwards) {
   EXPECT_EQ(statistics_of(prepare_bed(options_, {})).depth, rough.depth);
 }
 
+/// No side is left: grains lean on those that stand at the other side, as if the bed went on.
+TEST_F(Beds, periodic_sides_hold_each_other) {
+  const PreparedBed walled = prepare_bed(options_, {});
+  const BedStatistics between_walls = statistics_of(walled);
+  options_.periodic_y = true;
+  const PreparedBed prepared = prepare_bed(options_, {});
+  EXPECT_TRUE(prepared.settled.settled);
+  EXPECT_NEAR(statistics_of(prepared).solid_fraction_bulk, between_walls.solid_fraction_bulk, 0.03);
+  GrainSolver solver(solver_params(options_));
+  solver.restore(prepared.bed);
+  const std::vector<Quad> grains = positions_by_id(solver);
+  int across = 0;
+  for_close_pairs(grains, solver.params().bin, 2.0 * options_.radius,
+                  [&](std::size_t a, std::size_t b, double) {
+                    across += std::abs(grains[a].y - grains[b].y) > 0.5 * options_.width;
+                  });
+  EXPECT_GT(across, 10);
+  int beyond = 0;
+  for (const Quad& p : grains) {
+    EXPECT_LE(std::abs(p.y), 0.5 * options_.width);
+    beyond += std::abs(p.y) > 0.5 * options_.width - 0.5 * options_.radius;
+  }
+  EXPECT_GT(beyond, 3);  // where no centre fits between walls
+  options_.bed = walled.file.string();
+  EXPECT_NE(refusal().find("key 'terrain.sides': is 'periodic' but the bed"), std::string::npos) << refusal();
+}
+
 TEST_F(Beds, radii_of_a_file_are_kept_and_checked) {
   options_.size_spread = 0.3;
   options_.bed = write("sizes.csv", "x_m,y_m,z_m,radius_m\n0.05,0,0.02,0.012\n0.1,0,0.02,0.008\n");

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "protocol/flat.hpp"
+
 namespace furrow {
 namespace {
 
@@ -48,16 +50,12 @@ Vec3 ImpulseLedger::sum() const {
 }
 
 void ImpulseLedger::save(Archive& archive) const {
-  std::vector<double> flat;
-  for (const Vec3& one : owed_) flat.insert(flat.end(), one.data(), one.data() + 3);
-  archive.put("ledger/owed", flat);
+  put_flat(archive, "ledger/owed", owed_);
   archive.put("ledger/norms", std::vector<double>{settled_, largest_});
 }
 
 void ImpulseLedger::restore(const Archive& archive) {
-  const auto& flat = archive.get<double>("ledger/owed", 3 * owed_.size());
-  for (std::size_t v = 0; v < owed_.size(); ++v)
-    owed_[v] = Vec3(flat[3 * v], flat[3 * v + 1], flat[3 * v + 2]);
+  owed_ = get_flat<Vec3>(archive, "ledger/owed", owed_.size());
   const auto& norms = archive.get<double>("ledger/norms", 2);
   settled_ = norms[0], largest_ = norms[1];
 }

@@ -22,6 +22,20 @@ constexpr double kGigabyte = 1e9;
 // Of τ that the step may be, without and with contact tangents: tests/studies/README.md, "Step of the flexible tire".
 constexpr double kLateShare = 0.04, kTangentShare = 0.1;
 
+TireSize size_of(const TireOptions& options, TireFile file) {
+  if (options.elements_circumference > 0) file.elements_circumference = options.elements_circumference;
+  if (options.elements_width > 0) set_elements_width(file, options.elements_width);
+  TireSize size;
+  size.radius = file.radius;
+  for (const ProfileKnot& knot : file.profile) size.width = std::max(size.width, 2.0 * std::abs(knot.y));
+  size.pressure = options.pressure;
+  if (size.pressure.empty()) size.pressure.knots = {{0.0, file.pressure}};
+  size.elements_circumference = file.elements_circumference;
+  size.elements_width = file.elements_width();
+  size.rigid = options.rigid;
+  return size;
+}
+
 class Checks {
  public:
   explicit Checks(Scenario& scenario) : s_(scenario), file_(scenario.file.string()) {}
@@ -106,9 +120,10 @@ void Checks::tires() {
   for (const TireOptions& options : s_.tires) {
     if (options.rigid && options.contact_tangent)
       throw wrong("tire.contact_tangent", "is true, expected false for a rigid tire");
-    tires_.push_back(tire_size(options));
-    const TireFile file = tire_file_of(options);
-    for (const auto& [key, what] : unlikely_values(read_tire_file(options.file)))
+    const TireFile given = read_tire_file(options.file);
+    tires_.push_back(size_of(options, given));
+    const TireFile file = tire_file_of(options, given);
+    for (const auto& [key, what] : unlikely_values(given))
       s_.warnings.push_back(input_error(file.path, key, what).what());
     const double share = options.contact_tangent ? kTangentShare : kLateShare, tau = file.structural_damping;
     if (!options.rigid && s_.run.step > share * tau)
@@ -219,20 +234,7 @@ void Checks::machine() {
 
 }  // namespace
 
-TireSize tire_size(const TireOptions& options) {
-  TireFile file = read_tire_file(options.file);
-  if (options.elements_circumference > 0) file.elements_circumference = options.elements_circumference;
-  if (options.elements_width > 0) set_elements_width(file, options.elements_width);
-  TireSize size;
-  size.radius = file.radius;
-  for (const ProfileKnot& knot : file.profile) size.width = std::max(size.width, 2.0 * std::abs(knot.y));
-  size.pressure = options.pressure;
-  if (size.pressure.empty()) size.pressure.knots = {{0.0, file.pressure}};
-  size.elements_circumference = file.elements_circumference;
-  size.elements_width = file.elements_width();
-  size.rigid = options.rigid;
-  return size;
-}
+TireSize tire_size(const TireOptions& options) { return size_of(options, read_tire_file(options.file)); }
 
 std::filesystem::path find_file(const std::string& name, const std::string& key,
                                 const std::filesystem::path& scenario) {

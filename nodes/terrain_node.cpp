@@ -3,6 +3,7 @@
 
 #include "nodes/frames.hpp"
 #include "nodes/node.hpp"
+#include "protocol/flat.hpp"
 
 namespace furrow {
 namespace {
@@ -14,21 +15,17 @@ void save_tangents(Archive& archive, const std::string& name, const NodalForces&
   if (forces.tangent.empty()) return;
   std::vector<double> flat;
   for (const ContactTangent& t : forces.tangent)
-    for (const auto& [data, size] : {std::pair{t.stiffness.data(), 9},
-                                     {t.damping.data(), 9},
-                                     {t.position.data(), 3},
-                                     {t.velocity.data(), 3}})
-      flat.insert(flat.end(), data, data + size);
+    append_numbers(flat, t.stiffness, t.damping, t.position, t.velocity);
   archive.put(name + "/tangent", flat);
 }
 
 void restore_tangents(const Archive& archive, const std::string& name, NodalForces& forces) {
   forces.tangent.clear();
   if (!archive.has(name + "/tangent")) return;
-  const auto& flat = archive.get<double>(name + "/tangent", 24 * forces.vertex.size());
-  for (std::size_t i = 0; i < flat.size(); i += 24)
-    forces.tangent.push_back({Eigen::Map<const Mat3>(&flat[i]), Eigen::Map<const Mat3>(&flat[i + 9]),
-                              Eigen::Map<const Vec3>(&flat[i + 18]), Eigen::Map<const Vec3>(&flat[i + 21])});
+  forces.tangent.resize(forces.vertex.size());
+  const double* from = archive.get<double>(name + "/tangent", 24 * forces.tangent.size()).data();
+  for (ContactTangent& t : forces.tangent)
+    from = take_numbers(from, t.stiffness, t.damping, t.position, t.velocity);
 }
 
 class TerrainNode : public Node {
@@ -111,11 +108,9 @@ class TerrainNode : public Node {
     terrain_->save(archive);
     for (std::size_t k = 0; k < forces_.size(); ++k) {
       const std::string name = "node/forces" + std::to_string(k);
-      std::vector<double> flat;
-      for (const Vec3& f : forces_[k].force) flat.insert(flat.end(), f.data(), f.data() + 3);
       archive.put(name + "/vertex",
                   std::vector<std::int32_t>(forces_[k].vertex.begin(), forces_[k].vertex.end()));
-      archive.put(name + "/force", flat);
+      put_flat(archive, name + "/force", forces_[k].force);
       save_tangents(archive, name, forces_[k]);
       const ContactSums& c = report_.contact[k];
       archive.put(name + "/sums",
@@ -143,11 +138,8 @@ class TerrainNode : public Node {
     for (std::size_t k = 0; k < forces_.size(); ++k) {
       const std::string name = "node/forces" + std::to_string(k);
       const auto& vertex = archive.get<std::int32_t>(name + "/vertex");
-      const auto& flat = archive.get<double>(name + "/force", 3 * vertex.size());
+      forces_[k].force = get_flat<Vec3>(archive, name + "/force", vertex.size());
       forces_[k].vertex.assign(vertex.begin(), vertex.end());
-      forces_[k].force.clear();
-      for (std::size_t i = 0; i < vertex.size(); ++i)
-        forces_[k].force.emplace_back(flat[3 * i], flat[3 * i + 1], flat[3 * i + 2]);
       restore_tangents(archive, name, forces_[k]);
       const auto& v = archive.get<double>(name + "/sums", 16);
       report_.contact[k] = {{v[0], v[1], v[2]},

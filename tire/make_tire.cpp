@@ -10,7 +10,10 @@
 namespace furrow {
 
 TireFile tire_file_of(const TireOptions& options) {
-  TireFile file = read_tire_file(options.file);
+  return tire_file_of(options, read_tire_file(options.file));
+}
+
+TireFile tire_file_of(const TireOptions& options, TireFile file) {
   if (!options.pressure.empty()) file.pressure = options.pressure.at(0.0);
   if (options.friction >= 0.0) file.contact.friction = options.friction;
   if (options.structural_damping >= 0.0) file.structural_damping = options.structural_damping;

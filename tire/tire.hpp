@@ -92,6 +92,8 @@ struct TireOptions {
 
 /// The tire file with the scenario's choices in place of its own. @throws Error(bad_input)
 struct TireFile tire_file_of(const TireOptions& options);
+/// The same for a file that was read already.
+struct TireFile tire_file_of(const TireOptions& options, struct TireFile file);
 
 /// Reads a tire file (our layout or the public ANCFTire layout) and makes the model it describes.
 /// @throws Error(bad_input) naming file and key; a file of an unknown template lists the valid ones.

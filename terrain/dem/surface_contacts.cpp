@@ -5,6 +5,7 @@
 #include <string>
 
 #include "protocol/error.hpp"
+#include "protocol/flat.hpp"
 #include "terrain/dem/contact_tangent.hpp"
 #include "terrain/dem/size_scale.hpp"
 
@@ -45,12 +46,6 @@ const SurfaceHistory* nearest(const std::vector<SurfaceHistory>& history, std::s
     if (c > cosine) cosine = c, best = &history[k];
   }
   return best;
-}
-
-std::vector<double> flat(const std::vector<Vec3>& points) {
-  std::vector<double> out;
-  for (const Vec3& p : points) out.insert(out.end(), p.data(), p.data() + 3);
-  return out;
 }
 
 }  // namespace
@@ -227,7 +222,7 @@ void SurfaceContacts::save(Archive& archive) const {
     std::vector<std::int32_t> triangles;
     for (const auto& t : s.collider->mesh().triangles) triangles.insert(triangles.end(), t.begin(), t.end());
     archive.put("triangles", triangles);
-    archive.put("position", flat(s.end));
+    put_flat(archive, "position", s.end);
     const ContactMaterial& m = s.material;
     archive.put("material",
                 std::vector<double>{m.young_modulus, m.poisson_ratio, m.friction, m.restitution,
@@ -250,16 +245,14 @@ void SurfaceContacts::restore(const Archive& archive, const Strips& strips) {
   surfaces_.clear();
   for (std::int64_t k = 0; k < count; ++k) {
     Archive::Scope scope(archive, "surface" + std::to_string(k) + "/");
-    const auto& position = archive.get<double>("position");
+    SurfaceState start;
+    start.position = get_flat<Vec3>(archive, "position");
     const auto& triangles = archive.get<std::int32_t>("triangles");
     const auto& m = archive.get<double>("material", 8);
     SurfaceMesh mesh;
-    mesh.vertex_count = static_cast<int>(position.size() / 3);
+    mesh.vertex_count = static_cast<int>(start.position.size());
     for (std::size_t t = 0; t + 2 < triangles.size(); t += 3)
       mesh.triangles.push_back({triangles[t], triangles[t + 1], triangles[t + 2]});
-    SurfaceState start;
-    for (std::size_t a = 0; a + 2 < position.size(); a += 3)
-      start.position.emplace_back(position[a], position[a + 1], position[a + 2]);
     attach(mesh, {m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7]}, {}, start);
   }
   for (SurfaceStrip& strip : strips_) strip = {};

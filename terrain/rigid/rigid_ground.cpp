@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "protocol/flat.hpp"
 #include "terrain/dem/surface_forces.hpp"
 #include "terrain/rigid/ground_friction.hpp"
 #include "terrain/rigid/ground_pressure.hpp"
@@ -34,20 +35,6 @@ struct GroundSurface {
   double elastic_energy = 0.0;  // J
   double floor_force = 0.0;     // N
 };
-
-std::vector<double> flatten(const std::vector<Vec3>& points) {
-  std::vector<double> values;
-  values.reserve(3 * points.size());
-  for (const Vec3& p : points) values.insert(values.end(), {p.x(), p.y(), p.z()});
-  return values;
-}
-
-std::vector<Vec3> unflatten(const std::vector<double>& values) {
-  std::vector<Vec3> points(values.size() / 3);
-  for (std::size_t i = 0; i < points.size(); ++i)
-    points[i] = Vec3(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
-  return points;
-}
 
 Vec3 weighted(const std::array<double, 3>& weight, const std::vector<Vec3>& values,
               const std::array<int, 3>& at) {
@@ -275,8 +262,8 @@ void RigidGround::save(Archive& archive) const {
     archive.put("material",
                 std::vector<double>{m.young_modulus, m.poisson_ratio, m.friction, m.restitution,
                                     m.normal_stiffness, m.normal_damping, m.cohesion, m.area_density});
-    archive.put("last", flatten(surface.last));
-    archive.put("shear", flatten(surface.shear));
+    put_flat(archive, "last", surface.last);
+    put_flat(archive, "shear", surface.shear);
     archive.put("area", surface.area);
     archive.put("floor_force", surface.floor_force);
     archive.put("contacts", surface.contact_count);
@@ -291,7 +278,7 @@ void RigidGround::restore(const Archive& archive) {
   surface_work_ = sums[3];
   for (std::int64_t k = 0; k < count; ++k) {
     const Archive::Scope scope(archive, "ground/surface_" + std::to_string(k) + "/");
-    std::vector<Vec3> last = unflatten(archive.get<double>("last"));
+    std::vector<Vec3> last = get_flat<Vec3>(archive, "last");
     SurfaceMesh mesh;
     mesh.vertex_count = static_cast<int>(last.size());
     const auto& corners = archive.get<std::int32_t>("triangles");
@@ -299,7 +286,7 @@ void RigidGround::restore(const Archive& archive) {
       mesh.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
     const auto& m = archive.get<double>("material", 8);
     add_surface(mesh, {m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7]}, std::move(last));
-    surfaces_.back().shear = unflatten(archive.get<double>("shear"));
+    surfaces_.back().shear = get_flat<Vec3>(archive, "shear", mesh.vertex_count);
     surfaces_.back().area = archive.get<double>("area");
     measure(surfaces_.back());
     surfaces_.back().floor_force = archive.get_double("floor_force");

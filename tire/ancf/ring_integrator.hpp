@@ -18,34 +18,24 @@
 // Forces at the middle: Simo & Tarnow (1992), The discrete energy-momentum method, ZAMP 43,
 // doi:10.1007/BF00913408.
 //
-// The equations are solved by a quasi-Newton method: an old Cholesky factor of the tangent in rim axes, turned to the
-// present orientation, corrected by BFGS pairs [Nocedal & Wright 2006, Alg. 7.4]. The tangent ages where the tire
-// deforms: as τ K/h is some hundred times K, a degree of local rotation matters. So the ring is cut into sectors, and
-// the factor is renewed in those whose shape has changed since it was made: around the contact patch, which travels
-// through the rim's axes, and where the tire sways or wrinkles.
+// The equations are solved by a quasi-Newton method: an old Cholesky factor of the tangent (sector_factor.hpp), corrected
+// by BFGS pairs [Nocedal & Wright 2006, Alg. 7.4].
 #pragma once
 
 #include <cstdint>
 #include <string>
 
 #include "tire/ancf/ring_contact.hpp"
-#include "tire/ancf/ring_factor.hpp"
 #include "tire/ancf/ring_mass.hpp"
+#include "tire/ancf/sector_factor.hpp"
 #include "tire/ancf/shell_ring.hpp"
 #include "tire/tire.hpp"
 
 namespace furrow {
 
-struct RingIntegratorParams {
-  double damping = 0.005;   // τ, s
+struct RingIntegratorParams : SectorFactorParams {
   double tolerance = 1e-4;  // of the free residual, relative to the norm of the pressure forces
   int max_iterations = 40;  // per attempt
-  double age =
-      0.01;  // of a sector at which it is renewed: largest relative change of an edge or a director; 0: always
-  double contact_age =
-      0.5;          // change of a node's contact tangent, relative to its stiffness, that counts as `age`
-  int worth = 30;   // iterations that a renewal may cost
-  int threads = 1;  // of a step; results do not depend on them
 };
 
 class RingIntegrator {
@@ -78,15 +68,15 @@ class RingIntegrator {
   double elastic_energy() const { return elastic_; }   // with what relaxing branches store, J
   double dissipation() const { return dissipation_; }  // J, cumulative
   std::int64_t iterations() const { return iterations_; }
-  std::int64_t factorizations() const { return factorizations_; }  // whole or in part
-  double factor_work() const { return factor_work_; }              // the same, in whole factorizations
+  std::int64_t factorizations() const { return factor_.renewals(); }  // whole or in part
+  double factor_work() const { return factor_.work(); }               // the same, in whole factorizations
   double residual() const { return residual_; }
 
   /// Processor time spent in the parts of a step, s, cumulative; not part of the state.
   struct Times {
     double force = 0.0, jacobian = 0.0, factorize = 0.0, solve = 0.0, other = 0.0;
   };
-  const Times& times() const { return times_; }
+  Times times() const;
 
   void save(Archive& archive) const;
   void restore(const Archive& archive);
@@ -96,16 +86,7 @@ class RingIntegrator {
   void predict(double h, double share);
   void evaluate(double h, const Field& force);
   double free_norm(const Field& f) const;
-  double coefficient(double h) const { return 1.0 + params_.damping / h; }
   void set_reference(double pressure_force);
-  void note_shape(int sector, const RimState& rim);
-  void build(const std::vector<char>& which);
-  void build_sector(int sector);
-  bool renew(const std::vector<char>& which, const RimState& rim);
-  double age(int sector, const Mat3& turn) const;
-  double contact_age(int sector, double h) const;
-  void note_contact(double h, const Mat3& turn);
-  bool prepare_factor(double h, const RimState& rim, int attempt);
   void direction(const Mat3& turn, int pairs);
   bool iterate(double h, const Field& force, const Mat3& turn, bool careful, int& count, double& norm);
   void finish(double h, const Vec3& about, Wrench& on_rim);
@@ -115,26 +96,14 @@ class RingIntegrator {
   RingLayout layout_;
   ShellRing shell_;
   RingMass mass_;
-  RingFactor factor_;
+  SectorFactor factor_;
 
   Field q_, v_;              // state: coordinates (m, –) and velocities
   Field v_before_;           // velocities one step earlier, for the prediction
   double reference_ = 0.0;   // norm of the pressure forces, N
   double unit_force_ = 0.0;  // of the pressure forces of 1 Pa, N/Pa
   double elastic_ = 0.0, dissipation_ = 0.0, residual_ = 0.0;
-  std::int64_t iterations_ = 0, factorizations_ = 0;
-  double factor_work_ = 0.0;
-
-  // What the factor was made from: coordinates in rim axes at the ends of a step, sector beside sector.
-  RingLayout made_layout_;
-  Field made_old_, made_new_;
-  std::vector<char> geometric_;        // sectors made with their geometric stiffness
-  std::vector<double> made_pressure_;  // Pa, by sector
-  // Contact tangents in rim axes, [column * rows + row]: now, and in the factor; empty until there was one.
-  std::vector<Mat3> contact_now_, contact_made_;
-  bool factor_valid_ = false;
-  double factor_h_ = 0.0;  // s
-  int excess_ = 0;         // iterations beyond one per step since the last renewal
+  std::int64_t iterations_ = 0;
 
   RingContact contact_;
   ShellRing::Step shell_step_;                      // from q_
@@ -142,9 +111,7 @@ class RingIntegrator {
   Field q_new_, v_new_, q_force_, change_, r_, d_;  // work
   std::vector<Field> s_, y_;                        // BFGS pairs
   std::vector<double> rho_;
-  std::vector<double> age_;
-  std::vector<char> which_;
-  Times times_;
+  Times times_;  // without those of the factor
 };
 
 }  // namespace furrow

@@ -42,4 +42,13 @@ void RingMass::add(const Field& field, double factor, Field& out) const {
     }
 }
 
+void RingMass::weigh(Field& out) const {
+  Field down(layout_.size(), 0.0);
+  for (int j = 0; j < layout_.rows; ++j)
+    for (int i = 0; i < layout_.columns; ++i) layout_.set(down, i, j, 0, Vec3(0.0, 0.0, -kGravity));
+  layout_.fill_padding(down);
+  out.assign(layout_.size(), 0.0);
+  apply(down, 1.0, out);
+}
+
 }  // namespace furrow

@@ -1,0 +1,116 @@
+// The Cholesky factor of a step's tangent, kept from step to step and renewed where it has aged.
+//
+// For a change of a free node's q', equation (2) of ring_integrator.hpp has the tangent
+//   A = M/h² + c B(q_f)ᵀ D̂ B(q_f) + ½ (geometric and pressure parts) + ½ K + C/h,   c = 1 + τ/h + Σ g_i b_i,
+// in its symmetric form; K and C are those of the contact (ring_contact.hpp). As c is some hundred, a degree of local
+// rotation matters, and A ages where the tire deforms. So the ring is cut into sectors, and the factor is renewed in
+// those whose shape, in rim axes, has changed since it was made: around the contact patch, which travels through the
+// rim's axes, and where the tire sways or wrinkles. A sector's age is the largest relative change of an edge, a director
+// or a contact tangent.
+// The factor of given shapes has the same bits however it came about: what is saved is the shapes.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "protocol/archive.hpp"
+#include "protocol/surface.hpp"
+#include "tire/ancf/ring_contact.hpp"
+#include "tire/ancf/ring_factor.hpp"
+#include "tire/ancf/ring_layout.hpp"
+#include "tire/ancf/ring_mass.hpp"
+#include "tire/ancf/shell_ring.hpp"
+
+namespace furrow {
+
+struct SectorFactorParams {
+  double damping = 0.005;  // τ, s
+  double age =
+      0.01;  // of a sector at which it is renewed: largest relative change of an edge or a director; 0: always
+  double contact_age =
+      0.5;          // change of a node's contact tangent, relative to its stiffness, that counts as `age`
+  int worth = 30;   // iterations that a renewal may cost
+  int threads = 1;  // of a step; results do not depend on them
+
+  /// 1 + τ/h: stress of a step of h by its strains, relative to the static one.
+  double coefficient(double h) const { return 1.0 + damping / h; }
+};
+
+class SectorFactor {
+ public:
+  /// `shell` and `mass` must outlive it.
+  SectorFactor(const RingLayout& layout, const ShellRing& shell, const RingMass& mass,
+               const SectorFactorParams& params);
+  SectorFactor(const SectorFactor&) = delete;
+  SectorFactor& operator=(const SectorFactor&) = delete;
+
+  /// A step as far as the factor depends on it; coordinates with their padding filled.
+  struct Step {
+    double h = 0.0;       // s
+    const RimState& rim;  // at its end
+    const Field& q;       // coordinates at its beginning: m, –
+    const Field& q_new;   // the same at its end, as predicted or corrected so far
+    const RingContact& contact;
+  };
+
+  int unknowns() const { return factor_.unknowns(); }
+
+  /// Starts without a factor and counts from zero.
+  void start();
+  /// Makes the factor fit for a step: young enough everywhere; after a failed attempt (1) renewed wherever it has aged at
+  /// all, then (2 and up) new. @returns false when there is none
+  bool prepare(const Step& step, int attempt);
+  /// x = A⁻¹ rhs on the free rows, in world axes of a rim turned by `turn`; padding of x is zero there.
+  void solve(const Mat3& turn, const Field& rhs, Field& x) { factor_.solve(turn, rhs, x, params_.threads); }
+  /// A step has taken `count` iterations: more than one tell of an old factor.
+  void note_iterations(int count);
+
+  std::int64_t renewals() const { return renewals_; }  // whole or in part
+  double work() const { return work_; }                // the same, in whole factorizations
+
+  /// Processor time spent, s, cumulative; not part of the state.
+  struct Times {
+    double jacobian = 0.0, factorize = 0.0;
+  };
+  const Times& times() const { return times_; }
+
+  /// Everything but the number of renewals, under "factor/".
+  void save(Archive& archive) const;
+  /// Makes the factor from the saved shapes, with the bits it had. @throws Error(io)
+  void restore(const Archive& archive, std::int64_t renewals);
+
+ private:
+  void note_shape(int sector, const Step& step);
+  void build(const std::vector<char>& which);
+  void build_sector(int sector);
+  bool renew(const std::vector<char>& which, const Step& step);
+  double age(int sector, const Field& q_new, const Mat3& turn) const;
+  double contact_age(int sector, double h) const;
+  void note_contact(const Step& step, const Mat3& turn);
+
+  SectorFactorParams params_;
+  RingLayout layout_;
+  const ShellRing& shell_;
+  const RingMass& mass_;
+  std::vector<double> weight_;  // of the nodes, [column * rows + row], N
+  RingFactor factor_;
+
+  // What the factor was made from: coordinates in rim axes at the ends of a step, sector beside sector.
+  RingLayout made_layout_;
+  Field made_old_, made_new_;
+  std::vector<char> geometric_;        // sectors made with their geometric stiffness
+  std::vector<double> made_pressure_;  // Pa, by sector
+  // Contact tangents in rim axes, [column * rows + row], N/m: now, and in the factor; empty until there was one.
+  std::vector<Mat3> contact_now_, contact_made_;
+  bool valid_ = false;
+  double h_ = 0.0;  // s
+  int excess_ = 0;  // iterations beyond one per step since the last renewal
+
+  std::int64_t renewals_ = 0;
+  double work_ = 0.0;  // in whole factorizations
+  std::vector<double> age_;
+  std::vector<char> which_;
+  Times times_;
+};
+
+}  // namespace furrow

@@ -1,0 +1,26 @@
+// Processor time of this thread: what the work costs, whoever else uses the machine.
+#pragma once
+
+#include <ctime>
+
+namespace furrow {
+
+/// Adds the time from its making to its end to a total, s.
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& total) : total_(total), start_(now()) {}
+  ~Stopwatch() { total_ += now() - start_; }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  static double now() {
+    timespec t;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+  }
+  double& total_;
+  double start_;
+};
+
+}  // namespace furrow

@@ -9,6 +9,8 @@
 
 #include "nodes/rank_table.hpp"
 #include "nodes/scenario_checks.hpp"
+#include "tire/ring_mesh.hpp"
+#include "tire/tire_file.hpp"
 
 namespace furrow {
 namespace {
@@ -31,6 +33,13 @@ std::string pressure_text(const PressureSchedule& p) {
 
 double frames(const Scenario& s) {
   return s.output.frame_interval > 0.0 ? 1.0 + std::floor(s.run.end / s.output.frame_interval) : 0.0;
+}
+
+/// Of the undeformed tire about its centre.
+MassProperties tire_mass(const TireOptions& options) {
+  const TireFile file = tire_file_of(options);
+  const RingMesh ring = make_ring_mesh(file);
+  return rigid_mass(ring, element_masses(file, ring));
 }
 
 }  // namespace
@@ -88,6 +97,7 @@ nlohmann::ordered_json validation_report(const Scenario& s) {
   for (std::size_t k = 0; k < s.tires.size(); ++k) {
     const AxlePath path = axle_path(s, k, tire_size(s.tires[k]).radius);
     json["axle_path_m"].push_back({path.from, path.to});
+    json["tire_mass_kg"].push_back(tire_mass(s.tires[k]).mass);
   }
   for (const RankEntry& rank : rank_table(s))
     json["ranks"].push_back({{"rank", rank.rank}, {"node", rank.node}, {"does", rank.does}});
@@ -124,6 +134,8 @@ std::string validation_text(const Scenario& s) {
              : fmt::format("{}, {} × {} elements, {} coordinates, {}, radius {:g} m",
                            options.file.filename().string(), size.elements_circumference, size.elements_width,
                            size.coordinates(), pressure_text(size.pressure), size.radius));
+    const MassProperties mass = tire_mass(options);
+    line("tire mass", fmt::format("{:.2f} kg, spin inertia {:.3g} kg m²", mass.mass, mass.inertia(1, 1)));
     line("axle", fmt::format("from x = {:.3f} m to {:.3f} m", path.from, path.to));
   }
   line("memory", fmt::format("about {:.0f} MB in all", e.memory / kMegabyte));

@@ -46,6 +46,7 @@ class Commands(SystemTest):
         report = json.loads(self.output("validate", ROOT / "rigs" / "drawbar_pull.json", "--json"))
         self.assertAlmostEqual(report["grains"], 382500, delta=0.02 * 382500)
         self.assertEqual(report["tire_coordinates"], 13500)
+        self.assertAlmostEqual(report["tire_mass_kg"][0], 4.8, delta=0.2)
 
     def test_validate_tells_people(self):
         text = self.output("validate", write_scenario(self.folder))

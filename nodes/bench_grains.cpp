@@ -19,6 +19,7 @@ namespace {
 using namespace dem;
 
 constexpr double kReferenceWidth = 0.6;  // m
+constexpr double kLongest = 1000.0;      // m
 
 /// Positions of the bed, and how long it is.
 std::vector<Quad> bed_of(const GrainBench& bench, TerrainOptions& options, const ProgressCall& progress) {
@@ -41,6 +42,9 @@ std::vector<Quad> bed_of(const GrainBench& bench, TerrainOptions& options, const
       throw input_error(bench.bed, fmt::format("line {}", k + 2),
                         fmt::format("the grain is outside the bin, expected x from 0 m on, y 0 to {:g} m",
                                     kReferenceWidth));
+    if (p.x > kLongest)
+      throw input_error(bench.bed, fmt::format("line {}", k + 2),
+                        fmt::format("x is {:g} m, expected at most {:g} m", p.x, kLongest));
     longest = std::max(longest, p.x);
     p.y -= 0.5 * kReferenceWidth;
   }

@@ -175,6 +175,10 @@ ExitCode resume_command(const Typed& typed, int argc, char** argv) {
 
 template <class Bench>
 ExitCode bench_command(std::string (*run)(const Bench&, const ProgressCall&), const Bench& bench) {
+  if (const int cores = static_cast<int>(allowed_cores().size()); bench.threads > cores)
+    print_warning(
+        fmt::format("--threads {}: this program may use {} cores, more threads than that wait for each other",
+                    bench.threads, cores));
   catch_stop_signals();
   ProgressDisplay display;
   const std::string json = run(bench, [&](const std::string& what, double share) {

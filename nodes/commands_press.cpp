@@ -1,5 +1,6 @@
 // `furrow press`: a tire of a scenario against a plate or a cleat.
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 
@@ -22,12 +23,15 @@ PressOptions press_options(const Scenario& scenario, const PressArguments& argum
   const auto require = [](bool ok, const char* key, const std::string& what) {
     if (!ok) throw input_error("command line", key, what);
   };
+  if (scenario.tires.front().rigid)
+    throw input_error(scenario.file.string(), "tire.rigid",
+                      "is true: a rigid tire does not deflect, expected false");
   require(arguments.obstacle == "plate" || arguments.obstacle == "cleat", "--on",
           "is '" + arguments.obstacle + "', expected plate or cleat");
   require(arguments.deflection > 0.0 && arguments.deflection <= 0.2, "--deflection",
           "expected above 0 up to 0.2 m");
   require(arguments.points >= 1 && arguments.points <= 1000, "--points", "expected 1 to 1000");
-  require(arguments.load > 0.0, "--load", "expected above 0 N");
+  require(arguments.load > 0.0 && std::isfinite(arguments.load), "--load", "expected above 0 N");
   require(arguments.cleat_height > 0.0 && arguments.cleat_height <= 0.2, "--cleat-height",
           "expected above 0 up to 0.2 m");
   require(arguments.cleat_width > 0.0 && arguments.cleat_width <= 1.0, "--cleat-width",

@@ -39,9 +39,6 @@ struct Extent {
 }  // namespace
 
 PressResults press_tire(const PressOptions& options, const ProgressCall& progress) {
-  if (options.tire.rigid)
-    throw input_error(options.tire.file.string(), "tire.rigid",
-                      "is true: a rigid tire does not deflect, expected false");
   const TireFile file = tire_file_of(options.tire);
   const RingMesh mesh = make_ring_mesh(file);
   const ShellRing shell(file, mesh);
@@ -54,9 +51,15 @@ PressResults press_tire(const PressOptions& options, const ProgressCall& progres
   const int total = 2 * options.points;
   double share = 0.0;
   const auto press = [&](double deflection) {
-    return solver.press(deflection, [&] {
-      if (progress) progress("pressing", share);
-    });
+    try {
+      return solver.press(deflection, [&] {
+        if (progress) progress("pressing", share);
+      });
+    } catch (const Error& error) {
+      if (error.code() != ExitCode::physics || results.loading.empty()) throw;
+      throw physics_error(fmt::format("{}; up to {:.4g} m it was found: see --deflection", error.what(),
+                                      results.loading.back().deflection));
+    }
   };
   const auto at = [&](int k) {
     share = static_cast<double>(k) / total;

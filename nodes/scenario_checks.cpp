@@ -98,7 +98,7 @@ void Checks::times() {
                 fmt::format("is {} s, expected at most the averaging window of {} s", number_text(first_line),
                             number_text(run.end - run.average_from)));
   const double ramp = s_.rigs.front().ramp;
-  if (ramp + 1e-12 > run.average_from && ramp > 0.0)
+  if (ramp > run.average_from + 1e-12)
     warn("run.average_from",
          fmt::format("the window begins at {} s, while the wheel still speeds up until rig.ramp = {} s",
                      number_text(run.average_from), number_text(ramp)));

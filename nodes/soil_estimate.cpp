@@ -86,6 +86,12 @@ double pull_error(const json& soil, const SoilStrength& s, const RigidWheel& whe
 std::string write_soil_estimate(const std::filesystem::path& run, const std::filesystem::path& soil_file) {
   const std::filesystem::path summary_file = run / "summary.json";
   const json summary = read_object(summary_file, "the summary of a finished run");
+  const std::filesystem::path scenario_file = run / "scenario.json";
+  const json scenario = read_object(scenario_file, "the scenario of a finished run");
+  if (const json engine = scenario.value("terrain", json::object()).value("engine", json());
+      engine == "rigid")
+    throw input_error(scenario_file.string(), "terrain.engine",
+                      "is 'rigid', expected 'dem': theory needs a soil");
   RigidWheel wheel;
   wheel.radius = number(summary, summary_file, "tire_radius_m", 0.0);
   wheel.width = number(summary, summary_file, "tread_width_m", 0.0);

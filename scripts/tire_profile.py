@@ -11,14 +11,31 @@ import math
 import sys
 
 
+def fail(what):
+    sys.exit(f"tire_profile.py: {what}")
+
+
 def read_points(stream):
-    points = [(float(row["height_m"]), abs(float(row["axial_m"]))) for row in csv.DictReader(stream)]
+    table = csv.DictReader(stream, skipinitialspace=True)
+    if not {"height_m", "axial_m"} <= set(table.fieldnames or ()):
+        fail(f"the first line is '{','.join(table.fieldnames or ())}', expected height_m,axial_m")
+    points = []
+    for row in table:
+        try:
+            point = float(row["height_m"]), abs(float(row["axial_m"]))
+        except (TypeError, ValueError):
+            fail(f"line {table.line_num}: expected two numbers, m")
+        if not (-0.2 < point[0] < 1.0 and point[1] < 1.0):
+            fail(f"line {table.line_num}: {point[0]:g}, {point[1]:g} is no place on a tire, expected metres, both below 1")
+        if points and point == points[-1]:
+            fail(f"line {table.line_num}: the point before once more, expected another one")
+        points.append(point)
     if len(points) < 3:
-        sys.exit("tire_profile.py: fewer than three points, expected some from the bead to the crown")
+        fail("fewer than three points, expected some from the bead to the crown")
     if points[-1][1] != 0.0:
-        sys.exit(f"tire_profile.py: the last point has axial_m = {points[-1][1]:g}, expected the crown, 0")
+        fail(f"the last point has axial_m = {points[-1][1]:g}, expected the crown, 0")
     if abs(points[0][0]) > 1e-9:
-        sys.exit(f"tire_profile.py: the first point has height_m = {points[0][0]:g}, expected the bead, 0")
+        fail(f"the first point has height_m = {points[0][0]:g}, expected the bead, 0")
     return points
 
 
@@ -38,8 +55,11 @@ def main():
     if arguments.points == "-":
         points = read_points(sys.stdin)
     else:
-        with open(arguments.points, newline="") as file:
-            points = read_points(file)
+        try:
+            with open(arguments.points, newline="", encoding="utf-8-sig") as file:
+                points = read_points(file)
+        except (OSError, UnicodeDecodeError) as error:
+            fail(f"{arguments.points} cannot be read: {error}")
     rows, length = profile(points)
     print(f"meridian {1e3 * length:.1f} mm long; t, height and axial place of your points:", file=sys.stderr)
     for t, x, y in rows[:len(points)]:

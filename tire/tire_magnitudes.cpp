@@ -14,7 +14,7 @@ struct Range {
 };
 // Textile cord in rubber is the lightest material of a tire, steel the heaviest and stiffest.
 constexpr Range kDensity{100.0, 2e4, "kg/m³"}, kYoungModulus{1e5, 1e12, "Pa"}, kThickness{1e-5, 0.05, "m"},
-    kPressure{1e3, 2e6, "Pa"}, kRimWidth{0.05, 1.5, "m"};
+    kPressure{1e3, 2e6, "Pa"}, kRimWidth{0.05, 1.5, "m"}, kRadius{0.02, 3.0, "m"};
 constexpr double kMostAngle = 95.0;       // degrees
 constexpr double kMostTreadMass = 100.0;  // kg/m²: 8 cm of rubber
 
@@ -30,7 +30,8 @@ std::vector<std::pair<std::string, std::string>> unlikely_values(const TireFile&
   for (const LayerMaterial& m : file.materials) {
     look("materials." + m.name + ".density", m.density, kDensity);
     for (int i = 0; i < 3; ++i)
-      look("materials." + m.name + ".young_modulus", m.young_modulus[i], kYoungModulus);
+      if (i == 0 || m.young_modulus[i] != m.young_modulus[i - 1])
+        look("materials." + m.name + ".young_modulus", m.young_modulus[i], kYoungModulus);
   }
   for (const auto& [name, section] : {std::pair{"bead", &file.bead}, std::pair{"sidewall", &file.sidewall},
                                       std::pair{"tread", &file.tread}})
@@ -41,6 +42,8 @@ std::vector<std::pair<std::string, std::string>> unlikely_values(const TireFile&
           std::abs(angle) > kMostAngle)
         found.emplace_back(key + ".angle_deg", fmt::format("is {:g}°, cords lie within ±90°", angle));
     }
+  look("radius", file.radius, kRadius);
+  look("rim_radius", file.rim_radius, kRadius);
   look("rim_width", file.rim_width, kRimWidth);
   if (file.pressure != 0.0) look("pressure", file.pressure, kPressure);
   if (file.tread_mass_per_area > kMostTreadMass)

@@ -60,6 +60,8 @@ std::vector<Quad> read_positions_h5(const std::filesystem::path& file) {
   const Quiet quiet;
   const Handle in = opened(file);
   if (!in.ok()) throw io_error(file.string(), "not an HDF5 file, or damaged");
+  if (H5Lexists(in, "triangle", H5P_DEFAULT) > 0)
+    throw input_error(file.string(), "dataset 'triangle'", "is of a surface, expected positions of grains");
   const std::vector<double> x = numbers(in, "position", 3, file);
   std::vector<Quad> grains(x.size() / 3);
   for (std::size_t k = 0; k < grains.size(); ++k) grains[k] = {x[3 * k], x[3 * k + 1], x[3 * k + 2], 0.0};

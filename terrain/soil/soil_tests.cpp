@@ -8,7 +8,9 @@
 #include <mutex>
 #include <thread>
 
+#include "terrain/dem/grain_sizes.hpp"
 #include "terrain/dem/loaded_lid.hpp"
+#include "terrain/dem/solver_setup.hpp"
 
 namespace furrow::soil {
 namespace {
@@ -253,6 +255,12 @@ SoilPlan soil_plan(const SoilOptions& o) {
     plan.cone.diameter = 4.0, plan.cone.depth = 4.0;
     plan.cone.index_from = 2.0, plan.cone.index_to = 4.0;
     plan.repose.cut = 20.0;
+  }
+  // Grains must not meet their own images: three cells of the neighbour search between periodic sides.
+  const double least = 6.0001 * (dem::largest_radius(o.material) / o.material.radius + dem::kSkinShare);
+  for (Box* box : {&plan.plate_box, &plan.shear_box, &plan.cone_box, &plan.repose_box}) {
+    if (box->periodic_x) box->length = std::max(box->length, least);
+    if (box->periodic_y) box->width = std::max(box->width, least);
   }
   for (const double width : o.quick ? std::vector{5.0, 10.0} : std::vector{10.0, 20.0}) {
     PlateTest test;

@@ -99,7 +99,7 @@ class Press(SystemTest):
         self.assertLess(cleat["footprint"]["force_N"], plate["footprint"]["force_N"])
 
     def test_bad_input(self):
-        for more, word in ((("--on", "sand"), "--on"), (("--deflection", "-1"), "--deflection"),
+        for more, word in ((("--on", "sand"), "--on"), (("--deflection", "-1"), "--deflection"), (("--load", "inf"), "--load"),
                            (("--set", "tire.rigid=true"), "tire.rigid")):
             done = self.press(*more)
             self.assertEqual(done.returncode, 2, done.stderr)

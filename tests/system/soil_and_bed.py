@@ -109,6 +109,13 @@ class Soil(WithCache):
             self.assertEqual(lines[0], header)
             self.assertTrue(all(math.isfinite(float(value)) for line in lines[1:] for value in line.split(",")), name)
 
+    def test_soil_files_with_grains_of_several_sizes_fit_the_small_boxes(self):
+        path = write_scenario(self.work)
+        for test in ("shear", "repose"):
+            soil, _ = self.run_json("soil", path, "--quick", "--only", test, "--set", "terrain.material=loose_sand.json", "--set",
+                                    "terrain.size_spread=0.5", "--out", test)
+            self.assertIsNotNone(soil["friction_angle_deg" if test == "shear" else "repose_angle_deg"])
+
     def test_one_test_alone_twice_the_same(self):
         path = write_scenario(self.work)
         flags = ["--quick", "--speed", "0.3", "--only", "shear"]
@@ -144,6 +151,10 @@ class Soil(WithCache):
             "janosi_K_m": 0.0209, "standard_error": {"cohesion_Pa": 1.4e3}}))
         done = furrow("report", "run", "--soil", "soil.json", cwd=self.work)
         self.assertRegex(done.stderr, r"furrow: soil theory \(rigid wheel\): drawbar pull 9\d\d ± \d+ N, sinkage \d+.\d mm")
+        (run / "scenario.json").write_text('{"terrain": {"engine": "rigid"}}')
+        refused = furrow("report", "run", "--soil", "soil.json", cwd=self.work)
+        self.assertEqual(refused.returncode, 2, refused.stderr)
+        self.assertIn("terrain.engine", refused.stderr)
         estimate = json.loads((run / "soil_estimate.json").read_text())
         self.assertAlmostEqual(estimate["thrust_N"] - estimate["compaction_resistance_N"], estimate["drawbar_pull_N"], places=6)
         pulls = [point["drawbar_pull_N"] for point in estimate["curve"]]

@@ -5,8 +5,9 @@ import csv
 import json
 import math
 import re
+import subprocess
 
-from program import SystemTest, furrow, main
+from program import ROOT, SystemTest, furrow, main
 
 HARD = {
     "format_version": 1,
@@ -175,6 +176,28 @@ class OtherTires(TireTest):
 
     def test_passenger_205_55r16(self):
         self.check("passenger_205_55r16.json", 400, (120e3, 300e3))
+
+
+class Profile(SystemTest):
+    """scripts/tire_profile.py: a meridian from a drawing."""
+
+    def rows(self, text):
+        return subprocess.run([ROOT / "scripts" / "tire_profile.py", "-"], input=text, text=True, capture_output=True, check=False)
+
+    def test_mirrors_the_points_and_measures_along_them(self):
+        done = self.rows("height_m, axial_m\n0,0.03\n0.04,0.03\n0.04,0\n")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        rows = json.loads("{" + done.stdout + "}")["profile"]
+        self.assertEqual(rows, [[0.0, 0.0, -0.03], [round(2 / 7, 9), 0.04, -0.03], [0.5, 0.04, 0.0], [round(5 / 7, 9), 0.04, 0.03], [1.0, 0.0, 0.03]])
+
+    def test_what_is_no_meridian_is_refused_in_one_line(self):
+        for text, word in (("height_m;axial_m\n0;1\n", "expected height_m,axial_m"), ("height_m,axial_m\n0,76\n", "line 2"),
+                           ("height_m,axial_m\n0,0.1\n0,0.1\n", "line 3"), ("height_m,axial_m\n0,nan\n", "line 2"), ("", "first line"),
+                           ("height_m,axial_m\n0,0.1\n0.1,0.1\n0.1,0.05\n", "crown")):
+            done = self.rows(text)
+            self.assertEqual(done.returncode, 1, text)
+            self.assertIn(word, done.stderr)
+            self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
 
 
 if __name__ == "__main__":

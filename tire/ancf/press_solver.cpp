@@ -25,9 +25,18 @@ constexpr double kMostViscosity = 1e6;
 constexpr double kRounding = 1e-13;  // of the potential, relative to its elastic part and p V
 constexpr int kMaxSteps = 1500;
 constexpr int kMaxCuts = 12;
-constexpr double kShortStep = 0.2;       // share of a step below which σ grows
-constexpr int kAround = 6, kAcross = 4;  // contact points of an element
+constexpr double kShortStep = 0.2;                         // share of a step below which σ grows
+constexpr int kAround = 6, kAcross = 4, kMostAround = 64;  // contact points of an element
 constexpr int kColumn[4] = {0, 1, 1, 0}, kRow[4] = {0, 0, 1, 1};
+
+/// So many that a bar's top, or its edge where that is longer, meets two at least.
+int points_around(const RingMesh& mesh, const PressObstacle& obstacle) {
+  if (obstacle.height <= 0.0) return kAround;
+  double longest = 0.0;
+  for (const Vec3& x : mesh.position) longest = std::max(longest, (mesh.turn(1) * x - x).norm());
+  const double points = std::ceil(2.0 * longest / std::max(obstacle.width, obstacle.edge));
+  return static_cast<int>(std::clamp(points, double{kAround}, double{kMostAround}));
+}
 
 }  // namespace
 
@@ -107,6 +116,7 @@ PressSolver::PressSolver(const TireFile& file, const RingMesh& mesh, const Field
       clearance_(file, mesh),
       q_(inflated),
       r_(layout_.size()),
+      around_(points_around(mesh, obstacle)),
       linear_(std::make_unique<Linear>(layout_)) {
   shell_.strains(q_, strains_);
   for (int j = 0; j < layout_.rows; ++j)
@@ -132,7 +142,7 @@ void PressSolver::contact_points(Visit visit) const {
   for (int j = 0; j + 1 < layout_.rows; ++j) {
     const Vec3 around = 0.5 * ((mesh_.turn(1) * mesh_.position[j] - mesh_.position[j]) +
                                (mesh_.turn(1) * mesh_.position[j + 1] - mesh_.position[j + 1]));
-    const double area = around.cross(mesh_.position[j + 1] - mesh_.position[j]).norm() / (kAround * kAcross);
+    const double area = around.cross(mesh_.position[j + 1] - mesh_.position[j]).norm() / (around_ * kAcross);
     for (int i = 0; i < layout_.columns; ++i) {
       Vec3 corner[4];
       double lowest = 1.0;
@@ -141,9 +151,9 @@ void PressSolver::contact_points(Visit visit) const {
         lowest = std::min(lowest, corner[n].z());
       }
       if (lowest > top_) continue;
-      for (int a = 0; a < kAround; ++a)
+      for (int a = 0; a < around_; ++a)
         for (int b = 0; b < kAcross; ++b) {
-          const double u = (a + 0.5) / kAround, v = (b + 0.5) / kAcross;
+          const double u = (a + 0.5) / around_, v = (b + 0.5) / kAcross;
           const std::array<double, 4> w{(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v};
           visit(i, j, w, w[0] * corner[0] + w[1] * corner[1] + w[2] * corner[2] + w[3] * corner[3], area);
         }

@@ -85,6 +85,7 @@ class PressSolver {
   PressObstacle obstacle_;
   RimClearance clearance_;
   Field q_, strains_, r_;
+  int around_;  // contact points of an element, around
   double start_radius_ = 0.0, top_ = 0.0, pressure_norm_ = 0.0, rounding_ = 0.0;
   double force_ = 0.0, potential_ = 0.0;  // N, J, at q_
   double viscosity_ = 0.0;                // σ

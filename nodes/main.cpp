@@ -3,28 +3,28 @@
 #include <iostream>
 #include <string>
 
-#include "nodes/commands.hpp"
-#include "nodes/thread_setup.hpp"
+#include "nodes/commands/commands.hpp"
+#include "nodes/launch/thread_setup.hpp"
 #include "protocol/mpi_transport.hpp"
 
 int main(int argc, char** argv) {
   // Threads that spin while they wait make a short bed slow as soon as the machine has something else to do.
   const std::string command = argc > 1 ? argv[1] : "";
   const bool settles = command == "bed" || command == "sweep";
-  if (settles || furrow::launched_by_mpi()) furrow::wait_passively(argv);
+  if (settles || furrow::launched_by_mpi()) furrow::launch::wait_passively(argv);
   furrow::ExitCode code = furrow::ExitCode::done;
   try {
-    code = furrow::run_command_line(argc, argv);
+    code = furrow::commands::run_command_line(argc, argv);
     if (!std::cout.flush())
       throw furrow::io_error("standard output", "cannot be written, expected room for the result");
   } catch (const furrow::Error& error) {
     if (!furrow::launched_by_mpi() || furrow::launched_rank() == 0)
-      furrow::print_error(error.what());
+      furrow::commands::print_error(error.what());
     else
-      furrow::let_first_rank_speak();
+      furrow::commands::let_first_rank_speak();
     code = error.code();
   } catch (const std::exception& error) {
-    furrow::print_error(std::string("unexpected: ") + error.what());
+    furrow::commands::print_error(std::string("unexpected: ") + error.what());
     code = furrow::ExitCode::physics;
   }
   return static_cast<int>(code);

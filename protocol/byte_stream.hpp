@@ -9,8 +9,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "protocol/error.hpp"
-#include "protocol/vec.hpp"
+#include "protocol/core/error.hpp"
+#include "protocol/core/vec.hpp"
 
 namespace furrow {
 

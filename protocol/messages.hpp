@@ -12,7 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "protocol/surface.hpp"
+#include "protocol/core/surface.hpp"
+#include "protocol/core/terrain_state.hpp"
 
 namespace furrow {
 
@@ -141,40 +142,11 @@ struct SurfaceMotion {
   Order order = Order::go_on;  // due now: terrain hears of it through the tires
 };
 
-/// Sums over the contacts of one tire, interval means; force = normal + tangential, on the tire by the terrain.
-struct ContactSums {
-  Vec3 force = Vec3::Zero();             // N
-  Vec3 normal = Vec3::Zero();            // N
-  Vec3 tangential = Vec3::Zero();        // N
-  Vec3 moment = Vec3::Zero();            // about the world origin, N m
-  double transfer_force_residual = 0.0;  // |Σ nodal − Σ contact| / Σ|f|, this interval's largest
-  double transfer_moment_residual =
-      0.0;            // |Σ x×nodal − Σ x×contact| / Σ|x×f|, taken about the surface's mean vertex
-  double work = 0.0;  // this interval: Σ_substeps f·Δx̃ of the vertices, J
-  std::int64_t contacts = 0;  // of the last substep
-};
-
 /// terrain → tire k.
 struct TerrainForces {
   static constexpr MessageKind kKind = MessageKind::terrain_forces;
   StepHeader header;
   NodalForces forces;
-};
-
-/// What the terrain measures of itself; cumulative since the run began unless stated.
-struct TerrainState {
-  double kinetic_energy = 0.0;       // J, now
-  double potential_energy = 0.0;     // of gravity, J, now
-  double elastic_energy = 0.0;       // of normal springs, J, now
-  double dissipation = 0.0;          // −∫ contact forces · relative velocity dt − Δ elastic energy, J
-  double energy_removed = 0.0;       // by the activity switch, J
-  Vec3 momentum = Vec3::Zero();      // kg m/s, now
-  Vec3 wall_impulse = Vec3::Zero();  // by walls and floor on the grains, N s
-  Vec3 surface_impulse = Vec3::Zero();  // by tires on the grains, N s
-  double floor_force = 0.0;             // vertical, N, last substep
-  std::int64_t contacts = 0;            // now
-  std::int64_t active = 0;              // grains awake
-  std::int64_t list_rebuilds = 0;
 };
 
 /// terrain → rig.
@@ -183,14 +155,6 @@ struct TerrainReport {
   StepHeader header;
   TerrainState state;
   std::vector<ContactSums> contact;  // one per tire
-};
-
-/// Terrain surface on a regular grid: mean of the highest grain tops per cell; NaN where no grain is.
-struct HeightField {
-  double x0 = 0.0, y0 = 0.0;  // centre of the first cell, m
-  double cell = 0.0;          // m
-  std::int32_t nx = 0, ny = 0;
-  std::vector<double> height;  // m, [ix * ny + iy]
 };
 
 /// rig → every node, before the handshake of a program's run: the folder that takes the results.

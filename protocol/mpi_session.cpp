@@ -13,7 +13,7 @@
 #include <thread>
 #include <utility>
 
-#include "protocol/mpi_transport.hpp"
+#include "protocol/abandon_mpi.hpp"
 #include "protocol/peer_clock.hpp"
 
 namespace furrow {

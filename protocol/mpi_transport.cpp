@@ -1,9 +1,7 @@
 #include "protocol/mpi_transport.hpp"
 
 #include <mpi.h>
-#include <unistd.h>
 
-#include <cstdio>
 #include <cstdlib>
 #include <utility>
 
@@ -72,11 +70,6 @@ int role_communicator(const Transport& transport) {
   const auto* wire = node ? dynamic_cast<const MpiWire*>(&node->wire()) : nullptr;
   if (!wire) throw Error(ExitCode::bad_input, "this run has no MPI communicators");
   return MPI_Comm_c2f(wire->role().get());
-}
-
-void abandon_mpi(int exit_code) {
-  std::fflush(nullptr);
-  _exit(exit_code);
 }
 
 bool launched_by_mpi() {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <ctime>
 
-#include "protocol/error.hpp"
+#include "protocol/core/error.hpp"
 #include "protocol/peer_clock.hpp"
 
 namespace furrow {
@@ -18,7 +18,7 @@ constexpr double kFirstSleep = 20e-6;       // s
 constexpr double kSleepGrowth = 1.5;        // from one sleep to the next
 constexpr double kShortWaitSleep = 200e-6;  // s; longest sleep while the wait is short
 constexpr double kShareOfWait = 1.0 / 40;   // of a long wait, may be lost by sleeping too long
-constexpr double kLongestSleep = 2e-3;      // s
+constexpr double kMaxSleep = 2e-3;          // s
 
 bool receive_any(const Communicator& comm, int& from, int& tag, Bytes& payload) {
   int there = 0;
@@ -119,7 +119,7 @@ void MpiWire::idle(int polls, double waited) {
     sched_yield();
     return;
   }
-  const double longest = std::clamp(kShareOfWait * waited, kShortWaitSleep, kLongestSleep);
+  const double longest = std::clamp(kShareOfWait * waited, kShortWaitSleep, kMaxSleep);
   sleep_for(std::min(kFirstSleep * std::pow(kSleepGrowth, std::min(polls - kYields, 20)), longest));
 }
 

@@ -16,7 +16,7 @@ class PeerClock {
   /// To be asked at every poll.
   bool expired() {
     const double at = now();
-    silent_ += std::min(at - last_, kLongestGap);
+    silent_ += std::min(at - last_, kMaxGap);
     last_ = at;
     return silent_ > timeout_;
   }
@@ -30,7 +30,7 @@ class PeerClock {
   }
 
  private:
-  static constexpr double kLongestGap = 0.25;  // s, counted for one poll at most
+  static constexpr double kMaxGap = 0.25;  // s, counted for one poll at most
   double timeout_, begin_, last_;
   double silent_ = 0.0;
 };

@@ -7,10 +7,10 @@
 #include <numbers>
 #include <optional>
 
-#include "protocol/error.hpp"
+#include "protocol/core/error.hpp"
 #include "vehicle/multibody/system.hpp"
 
-namespace furrow {
+namespace furrow::rigs {
 namespace {
 
 // Guided bodies rotate only as imposed, so their inertia has no effect on any result; it only scales the
@@ -79,7 +79,7 @@ class DrawbarRig final : public Rig {
   void check_built() const;
   void set_speeds();
   void build(double axle_height);
-  BodyState moving(double axle_height) const;
+  vehicle::BodyState moving(double axle_height) const;
   double forward_momentum() const { return forward_.dot(system_->momentum()); }
   double spin_angle() const { return options_.travel_sign * system_->coordinate(spindle_).value; }
   void measure_end();
@@ -91,7 +91,7 @@ class DrawbarRig final : public Rig {
   double spin_speed_ = 0.0;    // after the ramp, forward positive, rad/s
   MassProperties tire_;
 
-  std::optional<System> system_;                            // built by place() or restore()
+  std::optional<vehicle::System> system_;                   // built by place() or restore()
   double placed_height_ = 0.0;                              // axle height in which the joints were defined, m
   int chassis_ = 0, set_toe_ = 0, carrier_ = 0, rim_ = 0;   // bodies
   int rail_ = 0, toe_lock_ = 0, slider_ = 0, spindle_ = 0;  // joints
@@ -130,17 +130,17 @@ void DrawbarRig::set_speeds() {
   }
 }
 
-BodyState DrawbarRig::moving(double axle_height) const {
-  BodyState state;
+vehicle::BodyState DrawbarRig::moving(double axle_height) const {
+  vehicle::BodyState state;
   state.position = Vec3(options_.start, options_.lateral, axle_height);
-  state.velocity = ramped_motion(0.0, travel_speed_, options_.ramp).rate * forward_;
+  state.velocity = vehicle::ramped_motion(0.0, travel_speed_, options_.ramp).rate * forward_;
   return state;
 }
 
 void DrawbarRig::build(double axle_height) {
   system_.emplace();
   placed_height_ = axle_height;
-  BodyState state = moving(axle_height);
+  vehicle::BodyState state = moving(axle_height);
   chassis_ = system_->add_body("chassis", options_.chassis_mass, kGuidedInertia * Mat3::Identity(), state);
   if (!steered()) state.orientation = Quat(Eigen::AngleAxisd(options_.toe_angle, Vec3::UnitZ()));
   set_toe_ = system_->add_body("set-toe", options_.set_toe_mass, kGuidedInertia * Mat3::Identity(), state);
@@ -152,40 +152,42 @@ void DrawbarRig::build(double axle_height) {
   const Vec3 axle = state.orientation * Vec3::UnitY();
   const Vec3 diagonal(options_.rim_diametral_inertia, options_.rim_spin_inertia,
                       options_.rim_diametral_inertia);
-  state.angular_velocity = options_.travel_sign * ramped_motion(0.0, spin_speed_, options_.ramp).rate * axle;
+  state.angular_velocity =
+      options_.travel_sign * vehicle::ramped_motion(0.0, spin_speed_, options_.ramp).rate * axle;
   rim_ = system_->add_body("rim", options_.rim_mass + tire_.mass, Mat3(diagonal.asDiagonal()) + tire_.inertia,
                            state);
 
   const Vec3 centre = state.position;
   const auto place = [&](const Vec3& axis) {
-    JointPlace joint;
+    vehicle::JointPlace joint;
     joint.point = centre;
     joint.axis = axis;
     return joint;
   };
-  rail_ = system_->add_joint(JointKind::prismatic, "rail", kGround, chassis_, place(forward_));
-  toe_lock_ = system_->add_joint(steered() ? JointKind::revolute : JointKind::fixed, "toe lock", chassis_,
-                                 set_toe_, place(Vec3::UnitZ()));
-  slider_ =
-      system_->add_joint(JointKind::prismatic, "vertical slider", set_toe_, carrier_, place(Vec3::UnitZ()));
-  spindle_ = system_->add_joint(JointKind::revolute, "spindle", carrier_, rim_, place(axle));
+  rail_ =
+      system_->add_joint(vehicle::JointKind::prismatic, "rail", vehicle::kGround, chassis_, place(forward_));
+  toe_lock_ = system_->add_joint(steered() ? vehicle::JointKind::revolute : vehicle::JointKind::fixed,
+                                 "toe lock", chassis_, set_toe_, place(Vec3::UnitZ()));
+  slider_ = system_->add_joint(vehicle::JointKind::prismatic, "vertical slider", set_toe_, carrier_,
+                               place(Vec3::UnitZ()));
+  spindle_ = system_->add_joint(vehicle::JointKind::revolute, "spindle", carrier_, rim_, place(axle));
   const double ramp = options_.ramp;
   drive_ = system_->add_motor("longitudinal drive", rail_, [speed = travel_speed_, ramp](double t) {
-    return ramped_motion(t, speed, ramp);
+    return vehicle::ramped_motion(t, speed, ramp);
   });
   if (!free_rolling()) {
     const double spin = options_.travel_sign * spin_speed_;
-    spindle_motor_ = system_->add_motor("spindle motor", spindle_,
-                                        [spin, ramp](double t) { return ramped_motion(t, spin, ramp); });
+    spindle_motor_ = system_->add_motor(
+        "spindle motor", spindle_, [spin, ramp](double t) { return vehicle::ramped_motion(t, spin, ramp); });
   }
   if (steered())
     system_->add_motor("steering", toe_lock_,
                        [angle = options_.toe_angle, from = options_.toe_time, duration = options_.toe_ramp](
-                           double t) { return step_motion(t - from, angle, duration); });
+                           double t) { return vehicle::step_motion(t - from, angle, duration); });
   const double c = options_.touchdown_damping, until = options_.touchdown_time;
   damper_ =
       system_->add_joint_element("touch-down damper", slider_, [c, until](double, double rate, double t) {
-        return t < until ? ElementForce{-c * rate, c} : ElementForce{};
+        return t < until ? vehicle::ElementForce{-c * rate, c} : vehicle::ElementForce{};
       });
 }
 
@@ -197,8 +199,8 @@ void DrawbarRig::place(std::span<const double> axle_height) {
   build(axle_height[0]);
   system_->assemble(0.0);
   report_ = {};
-  report_.speed = ramped_motion(0.0, travel_speed_, options_.ramp).rate;
-  report_.spin = ramped_motion(0.0, spin_speed_, options_.ramp).rate;
+  report_.speed = vehicle::ramped_motion(0.0, travel_speed_, options_.ramp).rate;
+  report_.spin = vehicle::ramped_motion(0.0, spin_speed_, options_.ramp).rate;
   report_.slip = report_.spin == 0.0 ? 0.0 : 1.0 - report_.speed / (report_.spin * radius_);
   measure_end();
 }
@@ -206,7 +208,7 @@ void DrawbarRig::place(std::span<const double> axle_height) {
 RimState DrawbarRig::rim(int wheel) const {
   check_wheel(wheel);
   check_built();
-  const BodyState& state = system_->body(rim_).state;
+  const vehicle::BodyState& state = system_->body(rim_).state;
   return {state.position, state.orientation, state.velocity, state.angular_velocity};
 }
 
@@ -252,7 +254,7 @@ void DrawbarRig::advance(std::span<const Wrench> wrenches, double duration, int 
 }
 
 void DrawbarRig::measure_end() {
-  const BodyState& rim = system_->body(rim_).state;
+  const vehicle::BodyState& rim = system_->body(rim_).state;
   report_.axle_height = rim.position.z();
   report_.axle_position = forward_.dot(rim.position);
   report_.vertical_speed = system_->body(carrier_).state.velocity.z();
@@ -306,4 +308,4 @@ std::unique_ptr<Rig> make_drawbar_rig(const DrawbarRigOptions& options) {
   return std::make_unique<DrawbarRig>(options);
 }
 
-}  // namespace furrow
+}  // namespace furrow::rigs

@@ -7,7 +7,7 @@
 
 #include "rigs/rig.hpp"
 
-namespace furrow {
+namespace furrow::rigs {
 
 /// Every field is the scenario key `rig.<name>`.
 struct DrawbarRigOptions {
@@ -37,4 +37,4 @@ struct DrawbarRigOptions {
 
 std::unique_ptr<Rig> make_drawbar_rig(const DrawbarRigOptions& options);
 
-}  // namespace furrow
+}  // namespace furrow::rigs

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "protocol/archive.hpp"
-#include "protocol/surface.hpp"
+#include "protocol/core/archive.hpp"
+#include "protocol/core/surface.hpp"
 
-namespace furrow {
+namespace furrow::rigs {
 
 /// What a rig measures of wheel k over the last advance. Forces, torques, speed, spin and slip are means over
 /// it; positions, vertical speed and momentum, and drift are those of its end. Frame of travel: e forward, l
@@ -60,4 +60,4 @@ class Rig {
   virtual void restore(const Archive& archive) = 0;
 };
 
-}  // namespace furrow
+}  // namespace furrow::rigs

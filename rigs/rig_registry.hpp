@@ -7,9 +7,9 @@
 #include "rigs/drawbar_rig.hpp"
 #include "rigs/rig.hpp"
 
-namespace furrow {
+namespace furrow::rigs {
 
 /// @throws Error(bad_input) for an unknown type, listing the valid ones.
 std::unique_ptr<Rig> make_rig(const std::string& type, const DrawbarRigOptions& options);
 
-}  // namespace furrow
+}  // namespace furrow::rigs

@@ -2,9 +2,9 @@
 
 #include <utility>
 
-#include "protocol/error.hpp"
+#include "protocol/core/error.hpp"
 
-namespace furrow {
+namespace furrow::rigs {
 namespace {
 
 class RigRow final : public Rig {
@@ -68,4 +68,4 @@ std::unique_ptr<Rig> make_rig_row(std::vector<std::unique_ptr<Rig>> rigs) {
   return std::make_unique<RigRow>(std::move(rigs));
 }
 
-}  // namespace furrow
+}  // namespace furrow::rigs

@@ -6,10 +6,10 @@
 
 #include "rigs/rig.hpp"
 
-namespace furrow {
+namespace furrow::rigs {
 
 /// Wheels are numbered through the rigs in order; all travel in the first rig's direction.
 /// @throws Error(physics) when `rigs` is empty
 std::unique_ptr<Rig> make_rig_row(std::vector<std::unique_ptr<Rig>> rigs);
 
-}  // namespace furrow
+}  // namespace furrow::rigs

@@ -1,9 +1,9 @@
-#include "protocol/error.hpp"
+#include "protocol/core/error.hpp"
 #include "terrain/dem/dem_terrain.hpp"
 #include "terrain/rigid/rigid_ground.hpp"
 #include "terrain/terrain_options.hpp"
 
-namespace furrow {
+namespace furrow::terrain {
 namespace {
 
 Error unknown_engine(const std::string& name) {
@@ -27,4 +27,4 @@ TerrainEstimate estimate_terrain(const TerrainOptions& options) {
   return e;
 }
 
-}  // namespace furrow
+}  // namespace furrow::terrain

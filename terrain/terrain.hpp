@@ -1,19 +1,17 @@
 // The interface of every terrain: something that pushes back on the contact surfaces of tires.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "protocol/archive.hpp"
-#include "protocol/messages.hpp"
+#include "protocol/core/archive.hpp"
+#include "protocol/core/progress_call.hpp"
+#include "protocol/core/surface.hpp"
+#include "protocol/core/terrain_state.hpp"
 
-namespace furrow {
-
-/// Called now and then during long work with (what, share done 0…1); may throw to stop it.
-using ProgressCall = std::function<void(const std::string& what, double share)>;
+namespace furrow::terrain {
 
 struct TerrainStatus {
   bool ok = true;
@@ -62,4 +60,4 @@ class Terrain {
   virtual void restore(const Archive& archive) = 0;
 };
 
-}  // namespace furrow
+}  // namespace furrow::terrain

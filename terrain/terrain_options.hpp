@@ -8,7 +8,7 @@
 
 #include "terrain/terrain.hpp"
 
-namespace furrow {
+namespace furrow::terrain {
 
 struct TerrainOptions {
   std::string scenario = "scenario";  // what messages name: the scenario's file
@@ -73,4 +73,4 @@ struct TerrainEstimate {
 };
 TerrainEstimate estimate_terrain(const TerrainOptions& options);
 
-}  // namespace furrow
+}  // namespace furrow::terrain

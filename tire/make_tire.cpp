@@ -1,13 +1,13 @@
 // Which model a tire file's options give. A new model is one line in make_tire.
 #include <fmt/format.h>
 
-#include "protocol/error.hpp"
+#include "protocol/core/error.hpp"
 #include "tire/ancf/ancf_tire.hpp"
+#include "tire/read_tire_file.hpp"
 #include "tire/rigid/rigid_tire.hpp"
 #include "tire/tire.hpp"
-#include "tire/tire_file.hpp"
 
-namespace furrow {
+namespace furrow::tire {
 
 TireFile tire_file_of(const TireOptions& options) {
   return tire_file_of(options, read_tire_file(options.file));
@@ -33,4 +33,4 @@ std::unique_ptr<Tire> make_tire(const TireOptions& options) {
   return std::make_unique<AncfTire>(file);
 }
 
-}  // namespace furrow
+}  // namespace furrow::tire

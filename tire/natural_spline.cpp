@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace furrow {
+namespace furrow::tire {
 
 NaturalSpline::NaturalSpline(std::vector<double> t, std::vector<double> values)
     : t_(std::move(t)), y_(std::move(values)), second_(t_.size(), 0.0) {
@@ -43,4 +43,4 @@ double NaturalSpline::slope(double t) const {
          ((1.0 - 3.0 * a * a) * second_[k] + (3.0 * b * b - 1.0) * second_[k + 1]) * h / 6.0;
 }
 
-}  // namespace furrow
+}  // namespace furrow::tire

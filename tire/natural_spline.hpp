@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace furrow {
+namespace furrow::tire {
 
 class NaturalSpline {
  public:
@@ -18,4 +18,4 @@ class NaturalSpline {
   std::vector<double> t_, y_, second_;
 };
 
-}  // namespace furrow
+}  // namespace furrow::tire

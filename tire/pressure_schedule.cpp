@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace furrow {
+namespace furrow::tire {
 namespace {
 bool by_pressure(const PressureSchedule::Knot& a, const PressureSchedule::Knot& b) {
   return a.pressure < b.pressure;
@@ -25,4 +25,4 @@ double PressureSchedule::highest() const {
   return std::max_element(knots.begin(), knots.end(), by_pressure)->pressure;
 }
 
-}  // namespace furrow
+}  // namespace furrow::tire

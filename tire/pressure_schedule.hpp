@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace furrow {
+namespace furrow::tire {
 
 struct PressureSchedule {
   struct Knot {
@@ -22,4 +22,4 @@ struct PressureSchedule {
   bool operator==(const PressureSchedule&) const = default;
 };
 
-}  // namespace furrow
+}  // namespace furrow::tire

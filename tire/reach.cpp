@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace furrow {
+namespace furrow::tire {
 
 double inflated_reach(Tire& tire, double camber) {
   tire.place(RimState());
@@ -16,4 +16,4 @@ double inflated_reach(Tire& tire, double camber) {
   return most;
 }
 
-}  // namespace furrow
+}  // namespace furrow::tire

@@ -3,10 +3,10 @@
 
 #include "tire/tire.hpp"
 
-namespace furrow {
+namespace furrow::tire {
 
 /// How far the inflated tire reaches below the rim's centre, whatever its spin angle, m, its wheel leaning by `camber`, rad.
 /// Places the tire at the origin, at rest. @throws Error(physics) when inflation does not converge
 double inflated_reach(Tire& tire, double camber);
 
-}  // namespace furrow
+}  // namespace furrow::tire

@@ -1,6 +1,6 @@
 #include "tire/rim_archive.hpp"
 
-namespace furrow {
+namespace furrow::tire {
 
 void save_rim(Archive& archive, const std::string& name, const RimState& r) {
   const auto& q = r.orientation.coeffs();
@@ -30,4 +30,4 @@ Wrench restore_wrench(const Archive& archive, const std::string& name) {
   return {Vec3(v[0], v[1], v[2]), Vec3(v[3], v[4], v[5])};
 }
 
-}  // namespace furrow
+}  // namespace furrow::tire

@@ -3,14 +3,14 @@
 
 #include <string>
 
-#include "protocol/archive.hpp"
-#include "protocol/surface.hpp"
+#include "protocol/core/archive.hpp"
+#include "protocol/core/surface.hpp"
 
-namespace furrow {
+namespace furrow::tire {
 
 void save_rim(Archive& archive, const std::string& name, const RimState& rim);
 RimState restore_rim(const Archive& archive, const std::string& name);
 void save_wrench(Archive& archive, const std::string& name, const Wrench& wrench);
 Wrench restore_wrench(const Archive& archive, const std::string& name);
 
-}  // namespace furrow
+}  // namespace furrow::tire

@@ -8,7 +8,7 @@
 
 #include "tire/rim_archive.hpp"
 
-namespace furrow {
+namespace furrow::tire {
 namespace {
 
 Quat rotation(const Vec3& turn) {
@@ -84,4 +84,4 @@ void RimTrajectory::restore(const Archive& archive) {
   turn_ = Vec3(t[0], t[1], t[2]);
 }
 
-}  // namespace furrow
+}  // namespace furrow::tire

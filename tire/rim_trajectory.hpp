@@ -4,10 +4,10 @@
 // orientation.
 #pragma once
 
-#include "protocol/archive.hpp"
-#include "protocol/surface.hpp"
+#include "protocol/core/archive.hpp"
+#include "protocol/core/surface.hpp"
 
-namespace furrow {
+namespace furrow::tire {
 
 /// Rim motion with accelerations at one instant, W.
 struct RimKinematics {
@@ -40,4 +40,4 @@ class RimTrajectory {
   Vec3 turn_ = Vec3::Zero();  // rotation vector from start to end orientation, W, rad
 };
 
-}  // namespace furrow
+}  // namespace furrow::tire

@@ -6,12 +6,12 @@
 #include <memory>
 #include <string>
 
-#include "protocol/archive.hpp"
-#include "protocol/surface.hpp"
+#include "protocol/core/archive.hpp"
+#include "protocol/core/surface.hpp"
 #include "tire/pressure_schedule.hpp"
 #include "tire/rim_trajectory.hpp"
 
-namespace furrow {
+namespace furrow::tire {
 
 /// Cumulative account of what a tire did since it was placed.
 struct TireDiagnostics {
@@ -99,4 +99,4 @@ struct TireFile tire_file_of(const TireOptions& options, struct TireFile file);
 /// @throws Error(bad_input) naming file and key; a file of an unknown template lists the valid ones.
 std::unique_ptr<Tire> make_tire(const TireOptions& options);
 
-}  // namespace furrow
+}  // namespace furrow::tire

@@ -3,13 +3,12 @@
 // registered in tire_file.cpp.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
-#include "protocol/surface.hpp"
+#include "protocol/core/surface.hpp"
 
-namespace furrow {
+namespace furrow::tire {
 
 /// Orthotropic linear elastic material; x along the fibre, y across it in the layer, z through the thickness.
 struct LayerMaterial {
@@ -73,9 +72,6 @@ struct TireFile {
   const Section& section(int j) const;
 };
 
-/// @throws Error(bad_input) naming file and key.
-TireFile read_tire_file(const std::filesystem::path& file);
-
 /// Stiffness matrix in material axes; strain order xx, yy, 2xy, zz, 2xz, 2yz.
 /// @throws Error(bad_input) when it is not positive definite.
 Eigen::Matrix<double, 6, 6> stiffness(const LayerMaterial& material, const std::string& file);
@@ -84,4 +80,4 @@ Eigen::Matrix<double, 6, 6> stiffness(const LayerMaterial& material, const std::
 /// @throws Error(bad_input) when `elements` is odd or below six.
 void set_elements_width(TireFile& file, int elements);
 
-}  // namespace furrow
+}  // namespace furrow::tire

@@ -4,7 +4,9 @@
 
 #include <numbers>
 
-namespace furrow {
+#include "tire/tire_profile.hpp"
+
+namespace furrow::tire {
 namespace {
 
 using nlohmann::json;
@@ -120,4 +122,4 @@ TireFile read_chrono(JsonReader& reader) {
   return f;
 }
 
-}  // namespace furrow
+}  // namespace furrow::tire

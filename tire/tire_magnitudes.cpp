@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace furrow {
+namespace furrow::tire {
 namespace {
 
 struct Range {
@@ -15,8 +15,8 @@ struct Range {
 // Textile cord in rubber is the lightest material of a tire, steel the heaviest and stiffest.
 constexpr Range kDensity{100.0, 2e4, "kg/m³"}, kYoungModulus{1e5, 1e12, "Pa"}, kThickness{1e-5, 0.05, "m"},
     kPressure{1e3, 2e6, "Pa"}, kRimWidth{0.05, 1.5, "m"}, kRadius{0.02, 3.0, "m"};
-constexpr double kMostAngle = 95.0;       // degrees
-constexpr double kMostTreadMass = 100.0;  // kg/m²: 8 cm of rubber
+constexpr double kMaxAngle = 95.0;       // degrees
+constexpr double kMaxTreadMass = 100.0;  // kg/m²: 8 cm of rubber
 
 }  // namespace
 
@@ -39,18 +39,18 @@ std::vector<std::pair<std::string, std::string>> unlikely_values(const TireFile&
       const std::string key = fmt::format("sections.{}.layers.{}", name, k);
       look(key + ".thickness", section->layers[k].thickness, kThickness);
       if (const double angle = section->layers[k].angle * 180.0 / std::numbers::pi;
-          std::abs(angle) > kMostAngle)
+          std::abs(angle) > kMaxAngle)
         found.emplace_back(key + ".angle_deg", fmt::format("is {:g}°, cords lie within ±90°", angle));
     }
   look("radius", file.radius, kRadius);
   look("rim_radius", file.rim_radius, kRadius);
   look("rim_width", file.rim_width, kRimWidth);
   if (file.pressure != 0.0) look("pressure", file.pressure, kPressure);
-  if (file.tread_mass_per_area > kMostTreadMass)
+  if (file.tread_mass_per_area > kMaxTreadMass)
     found.emplace_back("tread_mass_per_area",
                        fmt::format("is {:g} kg/m², tires have up to {:g}: another unit?",
-                                   file.tread_mass_per_area, kMostTreadMass));
+                                   file.tread_mass_per_area, kMaxTreadMass));
   return found;
 }
 
-}  // namespace furrow
+}  // namespace furrow::tire

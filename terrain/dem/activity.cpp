@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 
 void Activity::plan(const Strips& strips) {
   const int n = strips.count();
@@ -49,4 +49,4 @@ void Activity::wake_moving(const Resorted& range, Strips& strips, const Grains& 
   }
 }
 
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

@@ -15,7 +15,7 @@
 
 #include "terrain/dem/strips.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 
 // Speeds in units of √(g r), net forces in units of the mean contact force.
 inline constexpr double kSleepMeanSpeed = 5e-3;  // root mean square over the strip
@@ -74,4 +74,4 @@ class Activity {
   std::vector<std::uint8_t> need_;  // per strip
 };
 
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

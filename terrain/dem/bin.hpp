@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "terrain/dem/lanes.hpp"
+#include "terrain/dem/quad.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 
 /// The walls of the bin as n·x ≥ offset, n inward: 0 x=0, 1 x=length, 2 y=−width/2, 3 y=width/2, 4 floor z=0.
 inline constexpr int kWalls = 5;
@@ -51,4 +51,4 @@ struct Bin {
   }
 };
 
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

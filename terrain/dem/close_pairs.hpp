@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "terrain/dem/bin.hpp"
-#include "terrain/dem/lanes.hpp"
+#include "terrain/dem/quad.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 
 /// Shortest vector from a to b in a bin that may be periodic, m.
 inline Quad shortest(const Bin& bin, const Quad& a, const Quad& b) {
@@ -80,4 +80,4 @@ void for_close_pairs(const std::vector<Quad>& points, const Bin& bin, double rea
   }
 }
 
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

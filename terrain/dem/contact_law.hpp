@@ -21,9 +21,10 @@
 //   with the impulse limit F_t ≤ β m_t |v_t| / dt, m_t = m/7 between equal spheres, 2m/7 against a surface.        (6)
 #pragma once
 
-#include "terrain/dem/lanes.hpp"
+#include "terrain/dem/quad.hpp"
+#include "terrain/dem/tanh.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 
 /// Coefficients of one kind of partner (grain, wall, tire), already mixed.
 template <class S>
@@ -189,4 +190,4 @@ inline T power_of(const ContactForce<T>& f, const ContactMotion<T>& at) {
   return f.normal * dot(at.velocity, at.normal) + dot(f.tangential, at.velocity);
 }
 
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

@@ -5,9 +5,9 @@
 #include <limits>
 #include <numbers>
 
-#include "protocol/error.hpp"
+#include "protocol/core/error.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -128,4 +128,4 @@ StableStep stable_step(const ContactCoefficients& pair, const GrainProperties& g
   return out;
 }
 
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

@@ -3,11 +3,11 @@
 
 #include <string>
 
-#include "protocol/surface.hpp"
+#include "protocol/core/surface.hpp"
 #include "terrain/dem/contact_law.hpp"
 #include "terrain/terrain_options.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 
 enum class LawKind { mindlin, coulomb };
 /// @throws Error(bad_input) listing the valid names.
@@ -63,4 +63,4 @@ inline constexpr double kStatedOverlap = 0.10;
 /// β of the impulse limit, Eq. (6) of contact_law.hpp.
 inline constexpr double kImpulseShare = 0.3;
 
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

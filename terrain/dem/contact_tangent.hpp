@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "terrain/dem/contact_law.hpp"
-#include "terrain/dem/surface_forces.hpp"
+#include "terrain/surface/surface_forces.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 
 /// A contact whose friction is above this share of its limit slides.
 inline constexpr double kSlides = 0.999;
@@ -44,4 +44,4 @@ SurfaceContactTangent contact_tangent(const ContactCoefficients& c, const Contac
   return t;
 }
 
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

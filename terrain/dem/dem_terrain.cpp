@@ -8,14 +8,14 @@
 
 #include <fmt/format.h>
 
-#include "protocol/error.hpp"
-#include "terrain/dem/bed_generators.hpp"
-#include "terrain/dem/bed_height.hpp"
-#include "terrain/dem/bed_preparation.hpp"
+#include "protocol/core/error.hpp"
+#include "terrain/dem/beds/bed_generators.hpp"
+#include "terrain/dem/beds/bed_height.hpp"
+#include "terrain/dem/beds/bed_preparation.hpp"
 #include "terrain/dem/grain_sizes.hpp"
 #include "terrain/dem/solver_setup.hpp"
 
-namespace furrow {
+namespace furrow::terrain {
 namespace {
 
 using namespace dem;
@@ -29,8 +29,8 @@ void check(const TerrainOptions& o) {
       throw input_error(o.scenario, std::string("terrain.") + key,
                         fmt::format("{} is out of range, expected {}", value, expected));
   };
-  law_from(o.law);
-  precision_from(o.precision);
+  dem::law_from(o.law);
+  dem::precision_from(o.precision);
   require(o.radius > 0.0 && o.radius < 1.0, "radius", o.radius, "0 < radius < 1 m");
   require(o.density > 0.0 && std::isfinite(o.density), "density", o.density, "a positive number, kg/m³");
   require(o.layers >= 1 && o.layers < 10000, "layers", o.layers, "1 to 9999");
@@ -47,8 +47,8 @@ void check(const TerrainOptions& o) {
   require(o.normal_damping >= 0.0, "normal_damping", o.normal_damping, "0 or more, N s/m^1.5");
   require(o.friction_velocity_scale > 0.0, "friction_velocity_scale", o.friction_velocity_scale,
           "a positive number, s/m");
-  check_sizes(o);
-  check_bed_options(o);
+  dem::check_sizes(o);
+  dem::check_bed_options(o);
   if (!(o.step > 0.0))
     throw input_error(o.scenario, "run.step",
                       fmt::format("{} is out of range, expected a positive number, s", o.step));
@@ -57,18 +57,18 @@ void check(const TerrainOptions& o) {
 class DemTerrain : public Terrain {
  public:
   explicit DemTerrain(const TerrainOptions& options)
-      : options_(options), solver_(solver_params(options)), dt_(options.step) {
+      : options_(options), solver_(dem::solver_params(options)), dt_(options.step) {
     solver_.surfaces().give_tangents(options.contact_tangents);
-    solver_.set_coefficients(run_coefficients(options_, dt_));
+    solver_.set_coefficients(dem::run_coefficients(options_, dt_));
   }
 
   double prepare(const ProgressCall& progress) override {
     const auto begin = std::chrono::steady_clock::now();
-    const PreparedBed prepared = prepare_bed(options_, progress);
+    const dem::PreparedBed prepared = dem::prepare_bed(options_, progress);
     // A run from a cached bed and the run that settled it both start here, from the same archive.
     solver_.restore(prepared.bed);
     solver_.set_threads(std::max(1, options_.threads));
-    solver_.set_coefficients(run_coefficients(options_, dt_));
+    solver_.set_coefficients(dem::run_coefficients(options_, dt_));
     solver_.reset_accounts();
     if (progress && !prepared.settled.settled) progress("bed not settled", 1.0);
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -82,7 +82,7 @@ class DemTerrain : public Terrain {
   }
   double floor_height() const override { return 0.0; }
   HeightField height_field() const override {
-    return bed_height_field(solver_.grains(), solver_.params().bin, 2.0 * options_.radius);
+    return dem::bed_height_field(solver_.grains(), solver_.params().bin, 2.0 * options_.radius);
   }
 
   void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) override {
@@ -102,7 +102,7 @@ class DemTerrain : public Terrain {
                         std::span<NodalForces> forces, std::span<ContactSums> contact) override {
     const double dt = duration / substeps;
     if (dt != dt_) set_step(dt);
-    SurfaceContacts& surfaces = solver_.surfaces();
+    dem::SurfaceContacts& surfaces = solver_.surfaces();
     surfaces.set_targets(targets, duration);
     TerrainStatus status;
     for (int k = 0; k < surfaces.count(); ++k) {
@@ -123,11 +123,11 @@ class DemTerrain : public Terrain {
   }
 
   TerrainState state() const override {
-    const Accounts& a = solver_.accounts();
+    const dem::Accounts& a = solver_.accounts();
     const double mass = solver_.params().grain.mass;
     TerrainState s;
     s.kinetic_energy = a.kinetic;
-    s.potential_energy = mass * kGravity * a.height;
+    s.potential_energy = mass * dem::kGravity * a.height;
     s.elastic_energy = a.elastic;
     s.dissipation = -a.contact_work - (a.elastic - a.elastic_start) + a.slept;
     s.energy_removed = a.slept;
@@ -144,14 +144,14 @@ class DemTerrain : public Terrain {
   std::int64_t size() const override { return solver_.grains().count; }
 
   void frame(TerrainFrame& out) const override {
-    const Grains& grains = solver_.grains();
+    const dem::Grains& grains = solver_.grains();
     const std::size_t n = grains.count;
     out.position.resize(3 * n);
     out.speed.resize(n);
     out.radius.resize(n);
     for (std::size_t g = 0; g < n; ++g) {
       const std::size_t id = grains.id[g];
-      const Quad &x = grains.position[g], &v = grains.velocity[g];
+      const dem::Quad &x = grains.position[g], &v = grains.velocity[g];
       out.position[3 * id] = static_cast<float>(x.x);
       out.position[3 * id + 1] = static_cast<float>(x.y);
       out.position[3 * id + 2] = static_cast<float>(x.z);
@@ -177,16 +177,17 @@ class DemTerrain : public Terrain {
   }
 
  private:
-  ContactCoefficients surface_coefficients(const ContactMaterial& material) const {
-    LawSettings law = law_settings(options_);
+  dem::ContactCoefficients surface_coefficients(const ContactMaterial& material) const {
+    dem::LawSettings law = dem::law_settings(options_);
     law.step = dt_;
     law.rolling_friction = 0.0;  // a couple could not be handed to vertices
-    return mix(grain_material(options_), material, Partner::surface, solver_.params().grain, law);
+    return dem::mix(dem::grain_material(options_), material, dem::Partner::surface, solver_.params().grain,
+                    law);
   }
 
   void set_step(double dt) {
     dt_ = dt;
-    solver_.set_coefficients(run_coefficients(options_, dt));
+    solver_.set_coefficients(dem::run_coefficients(options_, dt));
     for (int k = 0; k < solver_.surfaces().count(); ++k)
       solver_.surfaces().set_coefficients(k, surface_coefficients(solver_.surfaces().material(k)));
   }
@@ -204,13 +205,13 @@ class DemTerrain : public Terrain {
 
   /// All grains now, with room for what they may move in one interval.
   SurfaceBox grain_box() const {
-    const double room = 10.0 * largest_radius(options_);
+    const double room = 10.0 * dem::largest_radius(options_);
     return {Vec3(-room, -0.5 * options_.width - room, -room),
             Vec3(options_.length + room, 0.5 * options_.width + room, solver_.top() + room)};
   }
 
   TerrainStatus lost_grain(int index) const {
-    const Quad& x = solver_.grains().position[index];
+    const dem::Quad& x = solver_.grains().position[index];
     return {
         false,
         fmt::format("grain {} left the bin or is not finite at t = {:.6g} s, x = ({:.6g}, {:.6g}, {:.6g}) m",
@@ -220,9 +221,9 @@ class DemTerrain : public Terrain {
   /// Looks again at the stable step when a larger overlap than ever was met.
   TerrainStatus still_stable() {
     const double overlap = solver_.accounts().max_overlap;
-    if (overlap <= std::max(stable_overlap_, stated_overlap(options_))) return {};
+    if (overlap <= std::max(stable_overlap_, dem::stated_overlap(options_))) return {};
     stable_overlap_ = overlap;
-    const StableStep stable = stable_at(options_, overlap);
+    const dem::StableStep stable = dem::stable_at(options_, overlap);
     if (dt_ <= stable.step || options_.allow_unstable_step) return {};
     return {false, fmt::format("grains overlap by {:.3g} m ({:.1f} % of their diameter), where the stable "
                                "step is {:.3g} s ({}) and the step is {:.3g} s",
@@ -230,7 +231,7 @@ class DemTerrain : public Terrain {
   }
 
   TerrainOptions options_;
-  GrainSolver solver_;
+  dem::GrainSolver solver_;
   double dt_;                    // s
   double time_ = 0.0;            // advanced, s
   double stable_overlap_ = 0.0;  // largest overlap that the step was checked against, m
@@ -240,7 +241,7 @@ class DemTerrain : public Terrain {
 
 std::unique_ptr<Terrain> make_dem_terrain(const TerrainOptions& options) {
   check(options);
-  const StableStep stable = stable_at(options, stated_overlap(options));
+  const dem::StableStep stable = dem::stable_at(options, dem::stated_overlap(options));
   if (options.step > stable.step && !options.allow_unstable_step)
     throw input_error(options.scenario, "run.step",
                       fmt::format("{} s is above the stable step {:.3g} s ({}); expected a smaller step, "
@@ -252,16 +253,16 @@ std::unique_ptr<Terrain> make_dem_terrain(const TerrainOptions& options) {
 TerrainEstimate estimate_dem_terrain(const TerrainOptions& options) {
   check(options);
   TerrainEstimate e;
-  const StableStep stable = stable_at(options, stated_overlap(options));
+  const dem::StableStep stable = dem::stable_at(options, dem::stated_overlap(options));
   e.stable_step = stable.step;
   e.stable_reason = stable.reason;
-  const double grains = expected_grains(options);
+  const double grains = dem::expected_grains(options);
   e.grains = static_cast<std::int64_t>(std::llround(grains));
   e.memory_bytes = kBytesPerGrain * grains;
   const double volume =
-      grains * 4.0 / 3.0 * std::numbers::pi * std::pow(options.radius, 3) * mean_volume_ratio(options);
+      grains * 4.0 / 3.0 * std::numbers::pi * std::pow(options.radius, 3) * dem::mean_volume_ratio(options);
   e.expected_height = volume / (kLooseFraction * options.length * options.width);
   return e;
 }
 
-}  // namespace furrow
+}  // namespace furrow::terrain

@@ -3,11 +3,11 @@
 
 #include "terrain/terrain_options.hpp"
 
-namespace furrow {
+namespace furrow::terrain {
 
 /// @throws Error(bad_input) for values out of range and for a step above the stable one.
 std::unique_ptr<Terrain> make_dem_terrain(const TerrainOptions& options);
 
 TerrainEstimate estimate_dem_terrain(const TerrainOptions& options);
 
-}  // namespace furrow
+}  // namespace furrow::terrain

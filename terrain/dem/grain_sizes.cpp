@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "protocol/error.hpp"
+#include "protocol/core/error.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 namespace {
 
 constexpr double kCut = 2.0;  // normal: the spread is so many standard deviations, beyond it nothing is drawn
@@ -73,4 +73,4 @@ void draw_radii(const TerrainOptions& o, std::vector<Quad>& grains) {
   for (Quad& p : grains) p.w = o.size_spread > 0.0 ? o.radius * (1.0 + o.size_spread * draw()) : o.radius;
 }
 
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

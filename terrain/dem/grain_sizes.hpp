@@ -3,10 +3,10 @@
 
 #include <vector>
 
-#include "terrain/dem/lanes.hpp"
+#include "terrain/dem/quad.hpp"
 #include "terrain/terrain_options.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 
 /// Largest `size_spread`: the largest grains are four times the smallest.
 inline constexpr double kWidestSpread = 0.6;
@@ -27,4 +27,4 @@ double mean_volume_ratio(const TerrainOptions& options);
 /// Gives each grain a radius (its w, m), drawn in order from the seed.
 void draw_radii(const TerrainOptions& options, std::vector<Quad>& grains);
 
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

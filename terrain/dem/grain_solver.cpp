@@ -6,14 +6,14 @@
 #include <fmt/format.h>
 #include <omp.h>
 
-#include "protocol/error.hpp"
+#include "protocol/core/error.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 namespace {
 
-constexpr int kMostChunks = 64;   // enough for any load balance
-constexpr int kMostStrips = 12;   // of a chunk: what its thread keeps in the cache
-constexpr int kFewestStrips = 6;  // of a chunk: its first is moved in the second pass
+constexpr int kMaxChunks = 64;  // enough for any load balance
+constexpr int kMaxStrips = 12;  // of a chunk: what its thread keeps in the cache
+constexpr int kMinStrips = 6;   // of a chunk: its first is moved in the second pass
 
 Strips::Options strip_options(const SolverParams& p) {
   Strips::Options o;
@@ -44,7 +44,7 @@ GrainSolver::GrainSolver(const SolverParams& params)
 
 void GrainSolver::make_chunks() {
   const int n = strips_.count();
-  const int each = std::clamp((n + kMostChunks - 1) / kMostChunks, kFewestStrips, kMostStrips);
+  const int each = std::clamp((n + kMaxChunks - 1) / kMaxChunks, kMinStrips, kMaxStrips);
   for (int from = 0; from < n; from += each) {
     chunks_.emplace_back();
     chunks_.back().from = from, chunks_.back().to = std::min(from + each, n);
@@ -133,8 +133,8 @@ void GrainSolver::gather(Scratch<Real>& s, int strip, int offset) {
   double* const force = flat(s.loads.force.data() + offset);
   double* const torque = flat(s.loads.torque.data() + offset);
   for (int g = 0; g < kQuad * n; g += kQuad) {  // a call of memset would cost more than it saves
-    store_lanes(force + g, Wide{});
-    store_lanes(torque + g, Wide{});
+    store_lanes(force + g, Double4{});
+    store_lanes(torque + g, Double4{});
   }
 }
 
@@ -230,13 +230,13 @@ void GrainSolver::finish_strip(int k, const Loads& loads, double dt, bool measur
 }
 
 void GrainSolver::feel(Strip& strip, const Loads& loads) const {
-  const Wide weight{0.0, 0.0, -params_.gravity * params_.grain.mass, 0.0};
+  const Double4 weight{0.0, 0.0, -params_.gravity * params_.grain.mass, 0.0};
   const double* const force = flat(loads.force);
   const double* const position = flat(grains_.position.data() + strip.first);
   const double per_radius = 1.0 / params_.grain.radius;
-  Wide largest{};
+  Double4 largest{};
   for (int g = 0; g < kQuad * strip.grains(); g += kQuad) {
-    const Wide f = load_lanes<Wide>(force + g) + cube(position[g + 3] * per_radius) * weight;
+    const Double4 f = load_lanes<Double4>(force + g) + cube(position[g + 3] * per_radius) * weight;
     largest = larger(largest, f * f);
   }
   strip.motion.max_net_force = std::sqrt(sum_of(largest));
@@ -249,30 +249,30 @@ void GrainSolver::integrate(Strip& strip, const Loads& loads, double dt, bool me
   double per_mass = 1.0 / mass, per_inertia = 1.0 / inertia;
   double m = 1.0, i = 1.0;  // of a grain, in those of the reference radius
   const double keep = 1.0 / (1.0 + dt * drag_);
-  const Wide gravity{0.0, 0.0, -params_.gravity, 0.0};
+  const Double4 gravity{0.0, 0.0, -params_.gravity, 0.0};
   const int n = strip.grains();
   const double *const force = flat(loads.force), *const torque = flat(loads.torque);
   double* const velocity = flat(grains_.velocity.data() + strip.first);
   double* const spin = flat(grains_.spin.data() + strip.first);
   double* const position = flat(grains_.position.data() + strip.first);
-  Wide moving{}, spinning{}, work{}, momentum{}, height{}, fastest{}, net{};
-  Wide most_pushed{};  // largest squares of the acceleration
+  Double4 moving{}, spinning{}, work{}, momentum{}, height{}, fastest{}, net{};
+  Double4 most_pushed{};  // largest squares of the acceleration
   for (int g = 0; g < kQuad * n; g += kQuad) {
-    const Wide f = load_lanes<Wide>(force + g), t = load_lanes<Wide>(torque + g);
+    const Double4 f = load_lanes<Double4>(force + g), t = load_lanes<Double4>(torque + g);
     if constexpr (kSizes) {
       const double size = position[g + 3] / radius;
       m = cube(size), i = m * size * size;
       per_mass = 1.0 / (mass * m), per_inertia = 1.0 / (inertia * i);
     }
-    const Wide a = f * per_mass + gravity, alpha = t * per_inertia;
-    const Wide v = (load_lanes<Wide>(velocity + g) + dt * a) * keep;
-    const Wide w = (load_lanes<Wide>(spin + g) + dt * alpha) * keep;
-    const Wide x = load_lanes<Wide>(position + g) + dt * v;
+    const Double4 a = f * per_mass + gravity, alpha = t * per_inertia;
+    const Double4 v = (load_lanes<Double4>(velocity + g) + dt * a) * keep;
+    const Double4 w = (load_lanes<Double4>(spin + g) + dt * alpha) * keep;
+    const Double4 x = load_lanes<Double4>(position + g) + dt * v;
     store_lanes(velocity + g, v);
     store_lanes(spin + g, w);
     store_lanes(position + g, x);
-    const Wide v2 = v * v;
-    const auto weighed = [](Wide one, double by) { return kSizes ? by * one : one; };
+    const Double4 v2 = v * v;
+    const auto weighed = [](Double4 one, double by) { return kSizes ? by * one : one; };
     moving += weighed(v2, m);
     spinning += weighed(w * w, i);
     work += f * a + t * alpha;
@@ -402,4 +402,4 @@ int GrainSolver::step(double dt, bool measure) {
   return -1;
 }
 
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

@@ -14,8 +14,9 @@
 #include <string>
 #include <vector>
 
-#include "protocol/archive.hpp"
-#include "protocol/messages.hpp"
+#include "protocol/core/archive.hpp"
+#include "protocol/core/surface.hpp"
+#include "protocol/core/terrain_state.hpp"
 #include "terrain/dem/activity.hpp"
 #include "terrain/dem/contact_mixing.hpp"
 #include "terrain/dem/pair_forces.hpp"
@@ -23,7 +24,7 @@
 #include "terrain/dem/surface_contacts.hpp"
 #include "terrain/dem/wall_forces.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 
 inline constexpr double kGravity = 9.81;  // m/s², along −z
 
@@ -163,4 +164,4 @@ class GrainSolver {
   std::vector<Scratch<double>> full_;
 };
 
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

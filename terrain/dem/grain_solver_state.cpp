@@ -4,7 +4,7 @@
 
 #include "terrain/dem/grain_solver.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 namespace {
 
 constexpr std::size_t kStripValues = 14;
@@ -59,7 +59,7 @@ Accounts accounts_from(const std::vector<double>& v) {
 template <class StripT, class F>
 void each_touching(StripT& strip, F&& f) {
   for (int p = 0; p < strip.pairs; ++p)
-    if (strip.touching[p / kLanes] >> p % kLanes & 1) f(p);
+    if (strip.touching[p / kFloatLanes] >> p % kFloatLanes & 1) f(p);
 }
 
 template <class Real>
@@ -214,4 +214,4 @@ std::size_t GrainSolver::bytes() const {
   return sum;
 }
 
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "terrain/dem/lanes.hpp"
+#include "terrain/dem/quad.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 
 /// Bytes per grain: 3 × 32 + 4. `position` has kBeyond entries more, so that four can be read from any grain on.
 struct Grains {
@@ -35,4 +35,4 @@ struct Loads {
   Loads from(int grain) const { return {force + grain, torque + grain}; }
 };
 
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

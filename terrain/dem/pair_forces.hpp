@@ -13,7 +13,7 @@
 #include "terrain/dem/size_scale.hpp"
 #include "terrain/dem/touching_pairs.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 
 /// Velocity (m/s) and spin (rad/s) of consecutive grains: as floats in one row of 32 bytes, or as doubles in two.
 template <class Real>
@@ -30,13 +30,13 @@ struct MotionRows {
     const double *const x = flat(position), *const from_v = flat(velocity), *const from_w = flat(spin);
     double* const out = flat(v.data() + k);
     const auto velocity_of = [&](int g) {
-      Wide row = load_lanes<Wide>(from_v + g);
-      if constexpr (kSizes) row = __builtin_shufflevector(row, load_lanes<Wide>(x + g), 0, 1, 2, 7);
+      Double4 row = load_lanes<Double4>(from_v + g);
+      if constexpr (kSizes) row = __builtin_shufflevector(row, load_lanes<Double4>(x + g), 0, 1, 2, 7);
       return row;
     };
     for (int g = 0; g < kQuad * n; g += kQuad) {
       if constexpr (std::is_same_v<Real, float>) {
-        store_lanes(out + g, join(narrowed(velocity_of(g)), narrowed(load_lanes<Wide>(from_w + g))));
+        store_lanes(out + g, join(narrowed(velocity_of(g)), narrowed(load_lanes<Double4>(from_w + g))));
       } else {
         store_lanes(out + g, velocity_of(g));
       }
@@ -69,21 +69,21 @@ struct RelativeMotion {
 
 namespace detail {
 template <bool kRoll>
-inline RelativeMotion<kRoll, FloatLanes> relative_motion(const Motion& motion, const std::uint32_t* i,
-                                                         const std::uint32_t* j, FloatLanes) {
-  const FloatLanes sign{-1, -1, -1, -1, 1, 1, 1, 1};
-  const auto row = [&](std::uint32_t g) { return load_lanes<FloatLanes>(motion.v + g); };
-  RelativeMotion<kRoll, FloatLanes> m;
-  FloatLanes r[8];
+inline RelativeMotion<kRoll, Float8> relative_motion(const Motion& motion, const std::uint32_t* i,
+                                                     const std::uint32_t* j, Float8) {
+  const Float8 sign{-1, -1, -1, -1, 1, 1, 1, 1};
+  const auto row = [&](std::uint32_t g) { return load_lanes<Float8>(motion.v + g); };
+  RelativeMotion<kRoll, Float8> m;
+  Float8 r[8];
   for (int k = 0; k < 8; ++k) r[k] = sign * row(j[k]) + row(i[k]);
   transpose(r);
   m.dv = {r[0], r[1], r[2]};
   m.delta = r[3];
   m.turn = {r[4], r[5], r[6]};
   if constexpr (kRoll) {
-    const auto spin_of = [&](std::uint32_t g) { return load_lanes<Narrow>(motion.v + g + 2); };
+    const auto spin_of = [&](std::uint32_t g) { return load_lanes<Float4>(motion.v + g + 2); };
     const auto spin = [&](int k) { return spin_of(i[k]) - spin_of(j[k]); };
-    FloatLanes q[4];
+    Float8 q[4];
     for (int k = 0; k < 4; ++k) q[k] = join(spin(k), spin(k + 4));
     transpose_halves(q);
     m.roll = {q[0], q[1], q[2]};
@@ -92,13 +92,13 @@ inline RelativeMotion<kRoll, FloatLanes> relative_motion(const Motion& motion, c
 }
 
 template <bool kRoll>
-inline RelativeMotion<kRoll, Wide> relative_motion(const Motion& motion, const std::uint32_t* i,
-                                                   const std::uint32_t* j, Wide) {
-  RelativeMotion<kRoll, Wide> m;
-  Wide v[4], w[4], q[4];
+inline RelativeMotion<kRoll, Double4> relative_motion(const Motion& motion, const std::uint32_t* i,
+                                                      const std::uint32_t* j, Double4) {
+  RelativeMotion<kRoll, Double4> m;
+  Double4 v[4], w[4], q[4];
   for (int k = 0; k < 4; ++k) {
-    const Wide w_i = load_lanes<Wide>(motion.w + i[k]), w_j = load_lanes<Wide>(motion.w + j[k]);
-    v[k] = load_lanes<Wide>(motion.v + i[k]) - load_lanes<Wide>(motion.v + j[k]);
+    const Double4 w_i = load_lanes<Double4>(motion.w + i[k]), w_j = load_lanes<Double4>(motion.w + j[k]);
+    v[k] = load_lanes<Double4>(motion.v + i[k]) - load_lanes<Double4>(motion.v + j[k]);
     w[k] = w_i + w_j;
     q[k] = w_i - w_j;
   }
@@ -116,9 +116,9 @@ inline RelativeMotion<kRoll, Wide> relative_motion(const Motion& motion, const s
 
 /// Adds (f, t + q) to grain i and (−f, t − q) to grain j; q is the couple.
 template <bool kCouple>
-inline void add_load(double* force, double* torque, std::uint32_t i, std::uint32_t j, Wide f, Wide t,
-                     Wide q) {
-  const auto increase = [](double* at, Wide by) { store_lanes(at, load_lanes<Wide>(at) + by); };
+inline void add_load(double* force, double* torque, std::uint32_t i, std::uint32_t j, Double4 f, Double4 t,
+                     Double4 q) {
+  const auto increase = [](double* at, Double4 by) { store_lanes(at, load_lanes<Double4>(at) + by); };
   increase(force + i, f);
   increase(torque + i, kCouple ? t + q : t);
   increase(force + j, -f);
@@ -128,16 +128,16 @@ inline void add_load(double* force, double* torque, std::uint32_t i, std::uint32
 /// Adds the loads of the first `valid` lanes.
 template <bool kCouple>
 inline void add_loads(const Loads& loads, const std::uint32_t* i, const std::uint32_t* j, int valid,
-                      const Triple<FloatLanes>& force, const Triple<FloatLanes>& torque,
-                      const Triple<FloatLanes>& couple) {
-  FloatLanes r[8] = {force.x, force.y, force.z, {}, torque.x, torque.y, torque.z, {}};
+                      const Triple<Float8>& force, const Triple<Float8>& torque,
+                      const Triple<Float8>& couple) {
+  Float8 r[8] = {force.x, force.y, force.z, {}, torque.x, torque.y, torque.z, {}};
   transpose(r);
-  FloatLanes c[4] = {couple.x, couple.y, couple.z, {}};
+  Float8 c[4] = {couple.x, couple.y, couple.z, {}};
   if constexpr (kCouple) transpose_halves(c);
   const auto lane = [&](int k) {
-    const Narrow q = k < 4 ? low_half(c[k & 3]) : high_half(c[k & 3]);
-    add_load<kCouple>(flat(loads.force), flat(loads.torque), i[k], j[k], widened(low_half(r[k])),
-                      widened(high_half(r[k])), widened(q));
+    const Float4 q = k < 4 ? low_half(c[k & 3]) : high_half(c[k & 3]);
+    dem::detail::add_load<kCouple>(flat(loads.force), flat(loads.torque), i[k], j[k], widened(low_half(r[k])),
+                                   widened(high_half(r[k])), widened(q));
   };
   if (valid == 8) {
 #pragma GCC unroll 8
@@ -149,45 +149,46 @@ inline void add_loads(const Loads& loads, const std::uint32_t* i, const std::uin
 
 template <bool kCouple>
 inline void add_loads(const Loads& loads, const std::uint32_t* i, const std::uint32_t* j, int valid,
-                      const Triple<Wide>& force, const Triple<Wide>& torque, const Triple<Wide>& couple) {
-  Wide f[4] = {force.x, force.y, force.z, {}}, t[4] = {torque.x, torque.y, torque.z, {}};
-  Wide q[4] = {couple.x, couple.y, couple.z, {}};
+                      const Triple<Double4>& force, const Triple<Double4>& torque,
+                      const Triple<Double4>& couple) {
+  Double4 f[4] = {force.x, force.y, force.z, {}}, t[4] = {torque.x, torque.y, torque.z, {}};
+  Double4 q[4] = {couple.x, couple.y, couple.z, {}};
   transpose(f);
   transpose(t);
   transpose(q);
   for (int k = 0; k < valid; ++k)
-    add_load<kCouple>(flat(loads.force), flat(loads.torque), i[k], j[k], f[k], t[k], q[k]);
+    dem::detail::add_load<kCouple>(flat(loads.force), flat(loads.torque), i[k], j[k], f[k], t[k], q[k]);
 }
 
 /// x, y, z and w of the history of the pairs p[0], p[1], …
-inline void read_history(const HistoryRow<float>* h, const std::uint32_t* p, Triple<FloatLanes>& v,
-                         FloatLanes& w) {
-  const auto row = [&](int k) { return load_lanes<Narrow>(reinterpret_cast<const double*>(h) + p[k]); };
-  FloatLanes r[4];
+inline void read_history(const HistoryRow<float>* h, const std::uint32_t* p, Triple<Float8>& v, Float8& w) {
+  const auto row = [&](int k) { return load_lanes<Float4>(reinterpret_cast<const double*>(h) + p[k]); };
+  Float8 r[4];
   for (int k = 0; k < 4; ++k) r[k] = join(row(k), row(k + 4));
   transpose_halves(r);
   v = {r[0], r[1], r[2]};
   w = r[3];
 }
-inline void read_history(const HistoryRow<double>* h, const std::uint32_t* p, Triple<Wide>& v, Wide& w) {
-  Wide r[4];
-  for (int k = 0; k < 4; ++k) r[k] = load_lanes<Wide>(&h->x + 2 * p[k]);
+inline void read_history(const HistoryRow<double>* h, const std::uint32_t* p, Triple<Double4>& v,
+                         Double4& w) {
+  Double4 r[4];
+  for (int k = 0; k < 4; ++k) r[k] = load_lanes<Double4>(&h->x + 2 * p[k]);
   transpose(r);
   v = {r[0], r[1], r[2]};
   w = r[3];
 }
 
-inline void write_history(HistoryRow<float>* h, const std::uint32_t* p, const Triple<FloatLanes>& v,
-                          FloatLanes w) {
-  FloatLanes r[4] = {v.x, v.y, v.z, w};
+inline void write_history(HistoryRow<float>* h, const std::uint32_t* p, const Triple<Float8>& v, Float8 w) {
+  Float8 r[4] = {v.x, v.y, v.z, w};
   transpose_halves(r);
   for (int k = 0; k < 4; ++k) {
     store_lanes(reinterpret_cast<double*>(h) + p[k], low_half(r[k]));
     store_lanes(reinterpret_cast<double*>(h) + p[k + 4], high_half(r[k]));
   }
 }
-inline void write_history(HistoryRow<double>* h, const std::uint32_t* p, const Triple<Wide>& v, Wide w) {
-  Wide r[4] = {v.x, v.y, v.z, w};
+inline void write_history(HistoryRow<double>* h, const std::uint32_t* p, const Triple<Double4>& v,
+                          Double4 w) {
+  Double4 r[4] = {v.x, v.y, v.z, w};
   transpose(r);
   for (int k = 0; k < 4; ++k) store_lanes(&h->x + 2 * p[k], r[k]);
 }
@@ -363,8 +364,8 @@ class PairForces {
   PairHistory<Real>& histories_;
   Loads loads_;
   Tile t_;
-  Wide power_{}, elastic_{}, force_sum_{};  // W, J, N
-  L overlap_{};                             // largest, m
+  Double4 power_{}, elastic_{}, force_sum_{};  // W, J, N
+  L overlap_{};                                // largest, m
 };
 
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

@@ -7,7 +7,7 @@
 
 #include "terrain/dem/contact_law.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 
 /// Of a contact against the reference contact, all -.
 template <class T>
@@ -60,4 +60,4 @@ inline Coefficients<T> scaled(const Coefficients<S>& c, const SizeScale<T>& s) {
   return out;
 }
 
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "protocol/error.hpp"
+#include "protocol/core/error.hpp"
 #include "terrain/dem/grain_sizes.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 
 Precision precision_from(const std::string& name) {
   if (name == "mixed") return Precision::mixed;
@@ -56,4 +56,4 @@ StableStep stable_at(const TerrainOptions& options, double overlap) {
 
 double stated_overlap(const TerrainOptions& options) { return kStatedOverlap * smallest_radius(options); }
 
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

@@ -4,7 +4,7 @@
 #include "terrain/dem/grain_solver.hpp"
 #include "terrain/terrain_options.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 
 inline constexpr double kSkinShare = 0.2;  // skin of the neighbour list, of the radius
 
@@ -21,4 +21,4 @@ StableStep stable_at(const TerrainOptions& options, double overlap);
 /// The overlap at which scenarios are checked, m.
 double stated_overlap(const TerrainOptions& options);
 
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

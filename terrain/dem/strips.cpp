@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "protocol/error.hpp"
+#include "protocol/core/error.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 namespace {
 
 constexpr int kMaxCellsZ = 512;  // higher grains share the top cell
-constexpr int padded(int n) { return (n + kLanes - 1) / kLanes * kLanes; }
+constexpr int padded(int n) { return (n + kFloatLanes - 1) / kFloatLanes * kFloatLanes; }
 
 /// Cells of at least `size` along a side; three where the side is periodic, so that no two neighbours are the same.
 int cells_along(double length, double size, bool periodic, const char* side) {
@@ -104,7 +104,7 @@ void Strips::size_lists(Strip& strip, int pairs) const {
   strip.j.resize(room);
   std::fill(strip.i.begin() + pairs, strip.i.end(), 0);
   std::fill(strip.j.begin() + pairs, strip.j.end(), 0);
-  strip.touching.assign(room / kLanes, 0);
+  strip.touching.assign(room / kFloatLanes, 0);
   const int histories = options_.history ? room : 0,
             rolling = options_.history && options_.rolling ? room : 0;
   if (options_.single) {
@@ -132,14 +132,14 @@ struct FoundPairs {
 
 /// Bits of the four grains at x, x + 1, … (the first `valid` of them) whose surface is closer to that of the grain at
 /// `at` than `skin`.
-inline unsigned near_four(const Quad* x, int valid, Wide at, double skin, double width) {
+inline unsigned near_four(const Quad* x, int valid, Double4 at, double skin, double width) {
   const auto d = [&](int k) { return load(x[k]) - at; };
-  Wide r[4] = {d(0), d(1), d(2), d(3)};
+  Double4 r[4] = {d(0), d(1), d(2), d(3)};
   transpose(r);
   if (width > 0.0)
     for (int k = 0; k < 4; ++k) r[1][k] -= width * std::round(r[1][k] / width);
-  const Wide reach = r[3] + (2.0 * at[3] + skin);
-  const Wide room = reach * reach - (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
+  const Double4 reach = r[3] + (2.0 * at[3] + skin);
+  const Double4 room = reach * reach - (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
   return positive(room) & ((1u << std::min(valid, 4)) - 1u);
 }
 
@@ -154,7 +154,7 @@ void Strips::list_pairs(const Grains& grains, int k) {
   found.count = 0;
 
   // Lists (i, j) for the grains j in [from, to) of `other`; `base` counts its grains in this strip's terms.
-  const auto scan = [&](int i, Wide at, const Strip& other, int base, int from, int to) {
+  const auto scan = [&](int i, Double4 at, const Strip& other, int base, int from, int to) {
     found.make_room(to - from + 4);
     const Quad* const x = grains.position.data() + other.first;
     for (int j = from; j < to; j += 4) {
@@ -171,8 +171,8 @@ void Strips::list_pairs(const Grains& grains, int k) {
       const int cell = y * nz_ + z;
       const int below = std::max(z - 1, 0), above = std::min(z + 1, nz_ - 1) + 1;
       for (int i = strip.cell_start[cell]; i < strip.cell_start[cell + 1]; ++i) {
-        const Wide at = load(grains.position[strip.first + i]);
-        const auto row = [&](const Strip& other, int base, Wide from, int wanted) {
+        const Double4 at = load(grains.position[strip.first + i]);
+        const auto row = [&](const Strip& other, int base, Double4 from, int wanted) {
           int other_y = wanted;
           if (width > 0.0) {
             other_y = (wanted + ny_) % ny_;
@@ -186,7 +186,7 @@ void Strips::list_pairs(const Grains& grains, int k) {
         row(strip, 0, at, y + 1);
         if (!beside) continue;
         // Seen from grains of the first strip, the last one stands a length before them.
-        Wide seen = at;
+        Double4 seen = at;
         if (after < k) seen[0] -= options_.bin.length;
         for (int dy = -1; dy <= 1; ++dy) row(*beside, strip.grains(), seen, y + dy);
       }
@@ -257,7 +257,8 @@ class OldPairs {
     const int j =
         partner >= strip.first ? partner - strip.first : strip.grains() + partner - old_.front().first;
     for (int p = row_[owner - base_]; p < strip.pairs && strip.grain_i(p) == i; ++p)
-      if (strip.grain_j(p) == j && (strip.touching[p / kLanes] >> p % kLanes & 1)) return {&strip, p, false};
+      if (strip.grain_j(p) == j && (strip.touching[p / kFloatLanes] >> p % kFloatLanes & 1))
+        return {&strip, p, false};
     return {};
   }
 
@@ -291,7 +292,7 @@ void Strips::carry_history(std::span<const Strip> old, int old_from, const Resor
       const int j = partner < strip.grains() ? strip.first + partner : wrap + partner - strip.grains();
       const auto found = pairs.find(before(i), before(j));
       if (!found.strip) continue;
-      strip.touching[p / kLanes] |= static_cast<std::uint8_t>(1 << p % kLanes);
+      strip.touching[p / kFloatLanes] |= static_cast<std::uint8_t>(1 << p % kFloatLanes);
       const PairHistory<Real>& then = found.strip->template history<Real>();
       if (options_.history) now.tangential[p] = turned(then.tangential[found.pair], found.reversed);
       if (!now.rolling.empty()) now.rolling[p] = turned(then.rolling[found.pair], found.reversed);
@@ -400,4 +401,4 @@ std::vector<Resorted> Strips::rebuild_moved(Grains& grains, double dt, int threa
   return ranges;
 }
 
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

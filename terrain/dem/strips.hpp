@@ -18,7 +18,7 @@
 #include "terrain/dem/bin.hpp"
 #include "terrain/dem/grains.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 
 /// A grain near a wall of the bin.
 struct WallContact {
@@ -167,4 +167,4 @@ class Strips {
   } scratch_;
 };
 
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

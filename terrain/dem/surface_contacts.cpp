@@ -4,12 +4,12 @@
 #include <array>
 #include <string>
 
-#include "protocol/error.hpp"
-#include "protocol/flat.hpp"
+#include "protocol/core/error.hpp"
+#include "protocol/core/flat.hpp"
 #include "terrain/dem/contact_tangent.hpp"
 #include "terrain/dem/size_scale.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 namespace {
 
 constexpr double kSameNormal =
@@ -270,4 +270,4 @@ void SurfaceContacts::restore(const Archive& archive, const Strips& strips) {
   }
 }
 
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

@@ -12,10 +12,10 @@
 
 #include "terrain/dem/contact_mixing.hpp"
 #include "terrain/dem/strips.hpp"
-#include "terrain/dem/surface_collider.hpp"
-#include "terrain/dem/surface_forces.hpp"
+#include "terrain/surface/surface_collider.hpp"
+#include "terrain/surface/surface_forces.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 
 struct SurfaceHistory {
   std::int32_t grain = 0;
@@ -108,4 +108,4 @@ class SurfaceContacts {
   std::vector<SurfaceStrip> strips_;
 };
 
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

@@ -13,7 +13,7 @@
 
 #include "terrain/dem/strips.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 
 /// The touching pairs of one strip, one array per quantity, padded with copies of the last to whole lanes.
 template <class Real>
@@ -25,7 +25,7 @@ struct TouchingPairs {
   std::vector<std::uint32_t> pair;    // twice its index in the list
 
   void reserve(int pairs) {
-    const std::size_t room = pairs + 2 * kLanes;
+    const std::size_t room = pairs + 2 * kFloatLanes;
     if (i.size() >= room) return;
     for (auto* array : {&dx, &dy, &dz, &gap, &sum}) array->resize(room);
     for (auto* array : {&i, &j, &pair}) array->resize(room);
@@ -33,8 +33,8 @@ struct TouchingPairs {
   void pad() {
     if (count == 0) return;
     for (auto* array : {&dx, &dy, &dz, &gap, &sum})
-      std::fill_n(array->begin() + count, kLanes, (*array)[count - 1]);
-    for (auto* array : {&i, &j, &pair}) std::fill_n(array->begin() + count, kLanes, (*array)[count - 1]);
+      std::fill_n(array->begin() + count, kFloatLanes, (*array)[count - 1]);
+    for (auto* array : {&i, &j, &pair}) std::fill_n(array->begin() + count, kFloatLanes, (*array)[count - 1]);
   }
 };
 
@@ -42,35 +42,35 @@ namespace detail {
 #ifdef __AVX2__
 /// For each mask of eight lanes: where the k-th set lane stands.
 inline constexpr auto kPacking = [] {
-  std::array<std::array<std::int32_t, kLanes>, 256> table{};
+  std::array<std::array<std::int32_t, kFloatLanes>, 256> table{};
   for (int mask = 0; mask < 256; ++mask)
-    for (int k = 0, n = 0; k < kLanes; ++k)
+    for (int k = 0, n = 0; k < kFloatLanes; ++k)
       if (mask >> k & 1) table[mask][n++] = k;
   return table;
 }();
 #endif
 
 /// Writes the lanes of `v` whose bit is set to `out`, in order; up to eight places are written.
-inline void pack(FloatLanes v, unsigned mask, float* out) {
+inline void pack(Float8 v, unsigned mask, float* out) {
 #ifdef __AVX2__
   const __m256i order = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(kPacking[mask].data()));
   _mm256_storeu_ps(out, _mm256_permutevar8x32_ps(v, order));
 #else
-  for (int k = 0; k < kLanes; ++k) *out = v[k], out += mask >> k & 1;
+  for (int k = 0; k < kFloatLanes; ++k) *out = v[k], out += mask >> k & 1;
 #endif
 }
-inline void pack(IntLanes v, unsigned mask, std::uint32_t* out) {
+inline void pack(Int32x8 v, unsigned mask, std::uint32_t* out) {
 #ifdef __AVX2__
   const __m256i order = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(kPacking[mask].data()));
   _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), _mm256_permutevar8x32_epi32((__m256i)v, order));
 #else
-  for (int k = 0; k < kLanes; ++k) *out = v[k], out += mask >> k & 1;
+  for (int k = 0; k < kFloatLanes; ++k) *out = v[k], out += mask >> k & 1;
 #endif
 }
-inline void pack(Wide low, Wide high, unsigned mask, float* out) {
-  pack(join(narrowed(low), narrowed(high)), mask, out);
+inline void pack(Double4 low, Double4 high, unsigned mask, float* out) {
+  dem::detail::pack(join(narrowed(low), narrowed(high)), mask, out);
 }
-inline void pack(Wide low, Wide high, unsigned mask, double* out) {
+inline void pack(Double4 low, Double4 high, unsigned mask, double* out) {
   for (int k = 0; k < 4; ++k) *out = low[k], out += mask >> k & 1;
   for (int k = 0; k < 4; ++k) *out = high[k], out += mask >> (k + 4) & 1;
 }
@@ -84,8 +84,8 @@ template <bool kSizes, class Real>
 void find_touching(Strip& strip, const Quad* x, double diameter, double width, TouchingPairs<Real>& out) {
   out.reserve(strip.pairs);
   const double diameter2 = diameter * diameter;
-  const Wide partner = {-1.0, -1.0, -1.0, kSizes ? 1.0 : -1.0};  // w: the sum of both radii
-  const IntLanes steps{0, 2, 4, 6, 8, 10, 12, 14};
+  const Double4 partner = {-1.0, -1.0, -1.0, kSizes ? 1.0 : -1.0};  // w: the sum of both radii
+  const Int32x8 steps{0, 2, 4, 6, 8, 10, 12, 14};
   PairHistory<Real>& history = strip.history<Real>();
   const double* const at = flat(x);
   const std::uint32_t *i = strip.i.data(), *j = strip.j.data();
@@ -94,7 +94,7 @@ void find_touching(Strip& strip, const Quad* x, double diameter, double width, T
               *const gap = out.gap.data(), *const sum = out.sum.data();
   std::uint32_t *const out_i = out.i.data(), *const out_j = out.j.data(), *const pair = out.pair.data();
   const auto parted = [&](int p, unsigned ended) {
-    for (int k = 0; k < kLanes; ++k)
+    for (int k = 0; k < kFloatLanes; ++k)
       if (ended >> k & 1) {
         if (!history.tangential.empty()) history.tangential[p + k] = {};
         if (!history.rolling.empty()) history.rolling[p + k] = {};
@@ -102,9 +102,11 @@ void find_touching(Strip& strip, const Quad* x, double diameter, double width, T
   };
   const int pairs = strip.pairs;
   int count = 0;
-  for (int p = 0; p < pairs; p += kLanes, i += kLanes, j += kLanes) {
-    const auto d = [&](int k) { return load_lanes<Wide>(at + i[k]) + partner * load_lanes<Wide>(at + j[k]); };
-    Wide a[4] = {d(0), d(1), d(2), d(3)}, b[4] = {d(4), d(5), d(6), d(7)};
+  for (int p = 0; p < pairs; p += kFloatLanes, i += kFloatLanes, j += kFloatLanes) {
+    const auto d = [&](int k) {
+      return load_lanes<Double4>(at + i[k]) + partner * load_lanes<Double4>(at + j[k]);
+    };
+    Double4 a[4] = {d(0), d(1), d(2), d(3)}, b[4] = {d(4), d(5), d(6), d(7)};
     transpose(a);
     transpose(b);
     if (width > 0.0)
@@ -112,22 +114,22 @@ void find_touching(Strip& strip, const Quad* x, double diameter, double width, T
         a[1][k] -= width * std::round(a[1][k] / width);
         b[1][k] -= width * std::round(b[1][k] / width);
       }
-    const auto reach2 = [&](const Wide& radii) { return kSizes ? radii * radii : Wide{} + diameter2; };
-    const Wide gap_a = reach2(a[3]) - (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
-    const Wide gap_b = reach2(b[3]) - (b[0] * b[0] + b[1] * b[1] + b[2] * b[2]);
+    const auto reach2 = [&](const Double4& radii) { return kSizes ? radii * radii : Double4{} + diameter2; };
+    const Double4 gap_a = reach2(a[3]) - (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+    const Double4 gap_b = reach2(b[3]) - (b[0] * b[0] + b[1] * b[1] + b[2] * b[2]);
     unsigned now = positive(gap_a) | positive(gap_b) << 4;
-    if (p + kLanes > pairs) now &= (1u << (pairs - p)) - 1u;
-    const unsigned before = touching[p / kLanes];
+    if (p + kFloatLanes > pairs) now &= (1u << (pairs - p)) - 1u;
+    const unsigned before = touching[p / kFloatLanes];
     if (const unsigned ended = before & ~now; ended != 0) [[unlikely]]
       parted(p, ended);
-    touching[p / kLanes] = static_cast<std::uint8_t>(now);
+    touching[p / kFloatLanes] = static_cast<std::uint8_t>(now);
     detail::pack(a[0], b[0], now, dx + count);
     detail::pack(a[1], b[1], now, dy + count);
     detail::pack(a[2], b[2], now, dz + count);
     detail::pack(gap_a, gap_b, now, gap + count);
     if constexpr (kSizes) detail::pack(a[3], b[3], now, sum + count);
-    detail::pack(load_lanes<IntLanes>(i), now, out_i + count);
-    detail::pack(load_lanes<IntLanes>(j), now, out_j + count);
+    detail::pack(load_lanes<Int32x8>(i), now, out_i + count);
+    detail::pack(load_lanes<Int32x8>(j), now, out_j + count);
     detail::pack(steps + 2 * p, now, pair + count);
     count += std::popcount(now);
   }
@@ -135,4 +137,4 @@ void find_touching(Strip& strip, const Quad* x, double diameter, double width, T
   out.pad();
 }
 
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

@@ -6,7 +6,7 @@
 #include "terrain/dem/size_scale.hpp"
 #include "terrain/dem/strips.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 
 /// Coefficients per partner, for grains of the reference radius; they hold the step of the impulse limit.
 struct SolverCoefficients {
@@ -47,9 +47,9 @@ void wall_forces(const Grains& grains, Strip& strip, const Bin& bin, double radi
     }
     const Triple<double> force = f.normal * motion.normal + f.tangential;
     const Triple<double> torque = cross(arm, f.tangential) + f.rolling;
-    const Wide push{force.x, force.y, force.z, 0.0};
+    const Double4 push{force.x, force.y, force.z, 0.0};
     add(loads.force[contact.grain], push);
-    add(loads.torque[contact.grain], Wide{torque.x, torque.y, torque.z, 0.0});
+    add(loads.torque[contact.grain], Double4{torque.x, torque.y, torque.z, 0.0});
 
     sums.power += power_of(f, motion) + dot(f.rolling, motion.roll);
     sums.elastic += f.energy;
@@ -61,4 +61,4 @@ void wall_forces(const Grains& grains, Strip& strip, const Bin& bin, double radi
   }
 }
 
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

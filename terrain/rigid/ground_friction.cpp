@@ -2,16 +2,16 @@
 
 #include <cmath>
 
-namespace furrow {
+namespace furrow::terrain {
 namespace {
 
-constexpr int kMostIterations = 60;
+constexpr int kMaxIterations = 60;
 constexpr double kTolerance = 1e-15;  // of the sliding speed
 
 /// Root of g s + limit tanh(c s) = drive. The left side is concave, so Newton's method from 0 rises to it.
 double sliding_speed(double drive, double g, double limit, double c) {
   double s = 0.0;
-  for (int n = 0; n < kMostIterations; ++n) {
+  for (int n = 0; n < kMaxIterations; ++n) {
     const double t = std::tanh(c * s);
     const double change = (drive - g * s - limit * t) / (g + limit * c * (1.0 - t * t));
     s += change;
@@ -47,4 +47,4 @@ Vec3 slide(const GroundLaw& law, double load, double area, const Vec3& velocity,
   return -(size - g * sliding) * direction;
 }
 
-}  // namespace furrow
+}  // namespace furrow::terrain

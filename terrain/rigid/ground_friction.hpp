@@ -11,10 +11,10 @@
 // within the step (as friction is in brush models of tires [Pacejka, Tire and Vehicle Dynamics, 2012, ch. 3]).
 #pragma once
 
-#include "protocol/vec.hpp"
+#include "protocol/core/vec.hpp"
 #include "terrain/rigid/ground_pressure.hpp"
 
-namespace furrow {
+namespace furrow::terrain {
 
 /// Advances the shear ξ (m, z = 0) of a vertex over dt and returns the force on it, N.
 /// @param load N ≥ 0, N; @param area A, m²; @param velocity m/s, its z is ignored
@@ -23,4 +23,4 @@ namespace furrow {
 Vec3 slide(const GroundLaw& law, double load, double area, const Vec3& velocity, double dt, Vec3& shear,
            double* grip = nullptr);
 
-}  // namespace furrow
+}  // namespace furrow::terrain

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace furrow {
+namespace furrow::terrain {
 namespace {
 
 using Weights = std::array<double, 3>;
@@ -72,4 +72,4 @@ double add_ground_force(const GroundLaw& law, int triangle, const GroundPoint& a
   return contact.normal.z();
 }
 
-}  // namespace furrow
+}  // namespace furrow::terrain

@@ -12,10 +12,10 @@
 #include <array>
 #include <vector>
 
-#include "protocol/vec.hpp"
-#include "terrain/dem/surface_forces.hpp"
+#include "protocol/core/vec.hpp"
+#include "terrain/surface/surface_forces.hpp"
 
-namespace furrow {
+namespace furrow::terrain {
 
 struct GroundLaw {
   double stiffness = 0.0;        // κ, N/m³
@@ -43,4 +43,4 @@ int ground_points(const std::array<Vec3, 3>& x, std::array<GroundPoint, kMaxGrou
 double add_ground_force(const GroundLaw& law, int triangle, const GroundPoint& at, const Vec3& position,
                         const Vec3& velocity, std::vector<SurfaceContactForce>& contacts);
 
-}  // namespace furrow
+}  // namespace furrow::terrain

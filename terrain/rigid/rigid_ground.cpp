@@ -5,16 +5,16 @@
 #include <string>
 #include <utility>
 
-#include "protocol/flat.hpp"
-#include "terrain/dem/surface_forces.hpp"
+#include "protocol/core/flat.hpp"
 #include "terrain/rigid/ground_friction.hpp"
 #include "terrain/rigid/ground_pressure.hpp"
+#include "terrain/surface/surface_forces.hpp"
 
-namespace furrow {
+namespace furrow::terrain {
 namespace {
 
 // How deep a surface may stand in the ground when it is attached, m: static contact, not a misplaced tire.
-constexpr double kMostStartDepth = 5e-3;
+constexpr double kMaxStartDepth = 5e-3;
 
 /// One attached surface and the buffers of its substeps.
 struct GroundSurface {
@@ -128,10 +128,10 @@ void RigidGround::attach(const SurfaceMesh& mesh, const ContactMaterial& materia
                               std::to_string(mesh.vertex_count - 1));
   double lowest = 0.0;
   for (const Vec3& x : start.position) lowest = std::min(lowest, x.z());
-  if (lowest < -kMostStartDepth)
+  if (lowest < -kMaxStartDepth)
     throw input_error(who, "",
                       "starts " + std::to_string(-lowest) + " m below the ground, expected at most " +
-                          std::to_string(kMostStartDepth) + " m");
+                          std::to_string(kMaxStartDepth) + " m");
   add_surface(mesh, material, start.position);
 }
 
@@ -300,4 +300,4 @@ std::unique_ptr<Terrain> make_rigid_ground(const TerrainOptions& options) {
   return std::make_unique<RigidGround>(options);
 }
 
-}  // namespace furrow
+}  // namespace furrow::terrain

@@ -6,7 +6,7 @@
 #include "terrain/terrain.hpp"
 #include "terrain/terrain_options.hpp"
 
-namespace furrow {
+namespace furrow::terrain {
 
 /// The plane z = 0 with the contact law of terrain/rigid/ground_pressure.hpp, evaluated at the middle of each substep
 /// so that the work of a linear spring is exact. μ = min(terrain.friction, the surface's friction).
@@ -20,4 +20,4 @@ namespace furrow {
 /// @throws Error(bad_input) when a stiffness, damping, friction or velocity scale is negative or not finite.
 std::unique_ptr<Terrain> make_rigid_ground(const TerrainOptions& options);
 
-}  // namespace furrow
+}  // namespace furrow::terrain

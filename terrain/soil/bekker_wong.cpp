@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-namespace furrow::soil {
+namespace furrow::terrain::soil {
 namespace {
 
-constexpr int kIntervals = 2000;       // of the contact arc on each side of θ_m; midpoint rule
-constexpr double kLargestEntry = 1.5;  // rad: nearly half the wheel
+constexpr int kIntervals = 2000;   // of the contact arc on each side of θ_m; midpoint rule
+constexpr double kMaxEntry = 1.5;  // rad: nearly half the wheel
 
 double modulus(const SoilStrength& s, double width) { return s.k_c / width + s.k_phi; }
 
@@ -46,7 +46,7 @@ Integrals integrate(const SoilStrength& s, const RigidWheel& w, double slip, dou
 
 WheelEstimate rigid_wheel(const SoilStrength& soil, const RigidWheel& wheel, double slip) {
   WheelEstimate e;
-  double low = 0.0, high = kLargestEntry;
+  double low = 0.0, high = kMaxEntry;
   if (integrate(soil, wheel, slip, high).lift < wheel.load) return e;
   for (int k = 0; k < 60; ++k) {
     const double middle = 0.5 * (low + high);
@@ -74,4 +74,4 @@ double compaction_resistance(const SoilStrength& s, double width, double sinkage
   return width * modulus(s, width) * std::pow(sinkage, s.n + 1.0) / (s.n + 1.0);
 }
 
-}  // namespace furrow::soil
+}  // namespace furrow::terrain::soil

@@ -14,7 +14,7 @@
 // [Bekker 1956] Theory of Land Locomotion. [Wong 2008] Theory of Ground Vehicles, 4th ed., §2.5.
 #pragma once
 
-namespace furrow::soil {
+namespace furrow::terrain::soil {
 
 struct SoilStrength {
   double k_c = 0.0;       // N/m^(n+1)
@@ -55,4 +55,4 @@ double bekker_sinkage(const SoilStrength& soil, const RigidWheel& wheel);
 /// Compaction resistance b k z^(n+1)/(n+1), N [Wong 2008].
 double compaction_resistance(const SoilStrength& soil, double width, double sinkage);
 
-}  // namespace furrow::soil
+}  // namespace furrow::terrain::soil

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "protocol/error.hpp"
+#include "protocol/core/error.hpp"
 #include "terrain/soil/tools.hpp"
 
-namespace furrow::soil {
+namespace furrow::terrain::soil {
 
 ConeResult cone_penetration(const Specimen& specimen, const ConeTest& test, const WorkCall& work) {
   const double r = specimen.options().radius, diameter = test.diameter * r;
@@ -42,4 +42,4 @@ ConeResult cone_penetration(const Specimen& specimen, const ConeTest& test, cons
   return result;
 }
 
-}  // namespace furrow::soil
+}  // namespace furrow::terrain::soil

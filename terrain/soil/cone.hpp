@@ -9,7 +9,7 @@
 
 #include "terrain/soil/specimen.hpp"
 
-namespace furrow::soil {
+namespace furrow::terrain::soil {
 
 inline constexpr double kConeAngle = 0.523598775598298873;  // total, rad: 30°
 inline constexpr double kConeShaft = 15.88 / 20.27;         // of the base diameter
@@ -32,4 +32,4 @@ struct ConeResult {
 /// @throws Error(physics) when the grains fail
 ConeResult cone_penetration(const Specimen& specimen, const ConeTest& test, const WorkCall& work);
 
-}  // namespace furrow::soil
+}  // namespace furrow::terrain::soil

@@ -4,21 +4,21 @@
 #include <array>
 #include <cmath>
 
-#include "protocol/error.hpp"
-#include "terrain/dem/loaded_lid.hpp"
+#include "protocol/core/error.hpp"
+#include "terrain/dem/beds/loaded_lid.hpp"
 #include "terrain/soil/tools.hpp"
 
-namespace furrow::soil {
+namespace furrow::terrain::soil {
 namespace {
 
-constexpr double kLift = 0.3;          // radii by which the lower plate lifts the grains off the floor
-constexpr double kClear = 0.5;         // radii between grains and lid at first
-constexpr double kGrowSpeed = 0.05;    // m/s, of the lower teeth
-constexpr double kLoadTime = 15.0;     // s per m of grain radius, in which the load grows
-constexpr double kLongestHold = 60.0;  // s per m of grain radius, for consolidation
-constexpr double kRestSpeed = 2e-3;    // m/s: a slower lid is at rest
-constexpr double kStartShare = 0.01;   // of the travel over which the speed grows
-constexpr double kBulkShare = 0.5;     // solid fraction for the lid's mass
+constexpr double kLift = 0.3;         // radii by which the lower plate lifts the grains off the floor
+constexpr double kClear = 0.5;        // radii between grains and lid at first
+constexpr double kGrowSpeed = 0.05;   // m/s, of the lower teeth
+constexpr double kLoadTime = 15.0;    // s per m of grain radius, in which the load grows
+constexpr double kMaxHold = 60.0;     // s per m of grain radius, for consolidation
+constexpr double kRestSpeed = 2e-3;   // m/s: a slower lid is at rest
+constexpr double kStartShare = 0.01;  // of the travel over which the speed grows
+constexpr double kBulkShare = 0.5;    // solid fraction for the lid's mass
 
 /// The cell with its two plates; lower first.
 class ShearCell {
@@ -65,7 +65,7 @@ class ShearCell {
     const double dt = specimen_.step();
     const auto loading = static_cast<int>(std::ceil(kLoadTime * r_ / dt));
     for (int k = 0; k < loading; ++k) step(0.0, (k + 1.0) / loading);
-    const auto most = static_cast<int>(std::ceil(kLongestHold * r_ / dt));
+    const auto most = static_cast<int>(std::ceil(kMaxHold * r_ / dt));
     int resting = 0;
     for (int k = 0; k < most && resting < loading / 4; ++k) {
       step(0.0, 1.0);
@@ -167,4 +167,4 @@ ShearResult direct_shear(const Specimen& specimen, const ShearTest& test, const 
   return result;
 }
 
-}  // namespace furrow::soil
+}  // namespace furrow::terrain::soil

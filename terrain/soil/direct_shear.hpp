@@ -12,7 +12,7 @@
 #include "terrain/soil/fits.hpp"
 #include "terrain/soil/specimen.hpp"
 
-namespace furrow::soil {
+namespace furrow::terrain::soil {
 
 struct ShearTest {
   double normal_stress = 50e3;  // Pa
@@ -40,4 +40,4 @@ struct ShearResult {
 /// @throws Error(physics) when the grains fail
 ShearResult direct_shear(const Specimen& specimen, const ShearTest& test, const WorkCall& work);
 
-}  // namespace furrow::soil
+}  // namespace furrow::terrain::soil

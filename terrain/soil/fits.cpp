@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace furrow::soil {
+namespace furrow::terrain::soil {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -195,4 +195,4 @@ CoulombFit fit_coulomb(std::span<const double> normal, std::span<const double> s
   return fit;
 }
 
-}  // namespace furrow::soil
+}  // namespace furrow::terrain::soil

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace furrow::soil {
+namespace furrow::terrain::soil {
 
 /// A value with what is known of its error.
 struct Measured {
@@ -73,4 +73,4 @@ struct Line {
 };
 Line fit_line(std::span<const double> x, std::span<const double> y);
 
-}  // namespace furrow::soil
+}  // namespace furrow::terrain::soil

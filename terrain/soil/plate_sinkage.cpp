@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "protocol/error.hpp"
+#include "protocol/core/error.hpp"
 #include "terrain/soil/tools.hpp"
 
-namespace furrow::soil {
+namespace furrow::terrain::soil {
 namespace {
 
 constexpr double kSides = 4.0;  // height of the plate's sides beyond the sinkage, radii
@@ -45,4 +45,4 @@ PlateResult plate_sinkage(const Specimen& specimen, const PlateTest& test, const
   return result;
 }
 
-}  // namespace furrow::soil
+}  // namespace furrow::terrain::soil

@@ -7,7 +7,7 @@
 #include "terrain/soil/fits.hpp"
 #include "terrain/soil/specimen.hpp"
 
-namespace furrow::soil {
+namespace furrow::terrain::soil {
 
 struct PlateTest {
   double width = 10.0;   // b, radii
@@ -25,4 +25,4 @@ struct PlateResult {
 /// @throws Error(physics) when the grains fail
 PlateResult plate_sinkage(const Specimen& specimen, const PlateTest& test, const WorkCall& work);
 
-}  // namespace furrow::soil
+}  // namespace furrow::terrain::soil

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <string>
 
-#include "protocol/error.hpp"
+#include "protocol/core/error.hpp"
 #include "terrain/dem/solver_setup.hpp"
 #include "terrain/soil/fits.hpp"
 
-namespace furrow::soil {
+namespace furrow::terrain::soil {
 namespace {
 
 constexpr double kRestShare = 0.01;   // of √(g r): a slower rms speed counts as rest
@@ -92,4 +92,4 @@ ReposeResult angle_of_repose(const Specimen& specimen, const ReposeTest& test, c
   return result;
 }
 
-}  // namespace furrow::soil
+}  // namespace furrow::terrain::soil

@@ -11,7 +11,7 @@
 
 #include "terrain/soil/specimen.hpp"
 
-namespace furrow::soil {
+namespace furrow::terrain::soil {
 
 struct ReposeTest {
   double cut = 40.0;      // where the bed is cut, radii
@@ -39,4 +39,4 @@ ReposeResult angle_of_repose(const Specimen& specimen, const ReposeTest& test, c
 /// its height above `base`; of the steepest chord where fewer than four points lie there.
 double flank_angle(const std::vector<double>& x, const std::vector<double>& height, double base);
 
-}  // namespace furrow::soil
+}  // namespace furrow::terrain::soil

@@ -8,11 +8,11 @@
 #include <mutex>
 #include <thread>
 
+#include "terrain/dem/beds/loaded_lid.hpp"
 #include "terrain/dem/grain_sizes.hpp"
-#include "terrain/dem/loaded_lid.hpp"
 #include "terrain/dem/solver_setup.hpp"
 
-namespace furrow::soil {
+namespace furrow::terrain::soil {
 namespace {
 
 constexpr double kSettleSteps = 12e3;  // that a bed takes to settle, about
@@ -304,4 +304,4 @@ SoilParameters soil_parameters(const SoilResults& results, const SoilPlan& plan,
   return p;
 }
 
-}  // namespace furrow::soil
+}  // namespace furrow::terrain::soil

@@ -11,7 +11,7 @@
 #include "terrain/soil/plate_sinkage.hpp"
 #include "terrain/soil/repose.hpp"
 
-namespace furrow::soil {
+namespace furrow::terrain::soil {
 
 struct SoilOptions {
   TerrainOptions material;
@@ -75,4 +75,4 @@ struct SoilParameters {
 };
 SoilParameters soil_parameters(const SoilResults& results, const SoilPlan& plan, double radius);
 
-}  // namespace furrow::soil
+}  // namespace furrow::terrain::soil

@@ -6,7 +6,7 @@
 
 #include "terrain/dem/grain_sizes.hpp"
 
-namespace furrow::soil {
+namespace furrow::terrain::soil {
 namespace {
 
 constexpr double kStepShare = 0.5;    // of the stable step: teeth press single grains harder than a bed does
@@ -63,4 +63,4 @@ double Specimen::weight() const {
   return options_.density * 4.0 / 3.0 * std::numbers::pi * cubes * kGravity;
 }
 
-}  // namespace furrow::soil
+}  // namespace furrow::terrain::soil

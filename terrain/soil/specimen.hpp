@@ -6,11 +6,11 @@
 #include <memory>
 #include <vector>
 
-#include "protocol/archive.hpp"
-#include "terrain/dem/lanes.hpp"
+#include "protocol/core/archive.hpp"
+#include "terrain/dem/quad.hpp"
 #include "terrain/terrain_options.hpp"
 
-namespace furrow::soil {
+namespace furrow::terrain::soil {
 
 /// Called now and then with the share done, 0…1, of the work at hand; may throw to stop it.
 using WorkCall = std::function<void(double share)>;
@@ -53,4 +53,4 @@ class Specimen {
   bool settled_ = true;
 };
 
-}  // namespace furrow::soil
+}  // namespace furrow::terrain::soil

@@ -6,7 +6,7 @@
 
 #include "terrain/dem/contact_mixing.hpp"
 
-namespace furrow::soil {
+namespace furrow::terrain::soil {
 namespace {
 
 constexpr int kFacets = 24;             // around the cone
@@ -101,4 +101,4 @@ ContactMaterial smooth_material(const TerrainOptions& grains) {
   return m;
 }
 
-}  // namespace furrow::soil
+}  // namespace furrow::terrain::soil

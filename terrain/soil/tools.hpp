@@ -1,11 +1,11 @@
 // The tools of soil tests: rigid triangulated surfaces, moved as a whole.
 #pragma once
 
-#include "protocol/surface.hpp"
+#include "protocol/core/surface.hpp"
 #include "terrain/terrain.hpp"
 #include "terrain/terrain_options.hpp"
 
-namespace furrow::soil {
+namespace furrow::terrain::soil {
 
 class Tool {
  public:
@@ -51,4 +51,4 @@ ContactMaterial rough_material(const TerrainOptions& grains);
 /// Polished steel: friction as the grains', at most 0.3.
 ContactMaterial smooth_material(const TerrainOptions& grains);
 
-}  // namespace furrow::soil
+}  // namespace furrow::terrain::soil

@@ -1,10 +1,10 @@
 // Checkpoints: the manifest as it comes, once more with a checksum that fits, and the series that it marks.
 #include <nlohmann/json.hpp>
 
-#include "nodes/checkpoint.hpp"
-#include "nodes/series.hpp"
-#include "protocol/error.hpp"
-#include "protocol/hash.hpp"
+#include "nodes/checkpoint/checkpoint.hpp"
+#include "nodes/output/series.hpp"
+#include "protocol/core/error.hpp"
+#include "protocol/core/hash.hpp"
 #include "tests/fuzz/input_file.hpp"
 
 namespace {
@@ -14,7 +14,7 @@ using namespace furrow;
 void read(const std::uint8_t* data, std::size_t size) {
   try {
     const auto file = fuzz::input_file("000000000010/manifest.json", data, size);
-    const CheckpointManifest manifest = read_checkpoint(file.parent_path());
+    const checkpoint::CheckpointManifest manifest = checkpoint::read_checkpoint(file.parent_path());
     manifest.frames.index(manifest.step);
   } catch (const Error&) {
   }
@@ -24,13 +24,15 @@ void read(const std::uint8_t* data, std::size_t size) {
 void read_series(const std::uint8_t* data, std::size_t size) {
   try {
     std::string text;
-    for (const SeriesColumn& column : series_columns()) text += (text.empty() ? "" : ",") + std::string(column.name);
+    for (const output::SeriesColumn& column : output::series_columns())
+      text += (text.empty() ? "" : ",") + std::string(column.name);
     text += '\n' + std::string(reinterpret_cast<const char*>(data), size);
     Hash hash;
     hash.add(text);
-    const auto file = fuzz::input_file("timeseries.csv", reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
-    std::vector<SeriesRow> rows;
-    SeriesWriter(file, {static_cast<std::int64_t>(text.size()), 2, hash.hex()}, rows);
+    const auto file =
+        fuzz::input_file("timeseries.csv", reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+    std::vector<output::SeriesRow> rows;
+    output::SeriesWriter(file, {static_cast<std::int64_t>(text.size()), 2, hash.hex()}, rows);
   } catch (const Error&) {
   }
 }

@@ -1,10 +1,11 @@
 // Scenario files: JSON as people write it, the schema's mistakes, defaults and warnings.
 #include <set>
 
-#include "nodes/json_text.hpp"
-#include "nodes/scenario.hpp"
-#include "nodes/schema.hpp"
-#include "protocol/error.hpp"
+#include "nodes/scenario/scenario.hpp"
+#include "nodes/scenario/schema.hpp"
+#include "protocol/core/error.hpp"
+#include "protocol/files/data_files.hpp"
+#include "protocol/files/json_text.hpp"
 #include "tests/fuzz/input_file.hpp"
 
 namespace furrow {
@@ -13,7 +14,7 @@ std::filesystem::path data_folder() { return FURROW_SOURCE_FOLDER; }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace furrow;
-  static const Schema schema = Schema::load();
+  static const scenario::Schema schema = scenario::Schema::load();
   try {
     const auto file = fuzz::input_file("scenario.json", data, size);
     nlohmann::json document = parse_json(read_text_file(file, "a scenario"), file.string());

@@ -6,8 +6,8 @@
 #include <fstream>
 #include <limits>
 
-#include "nodes/archive_file.hpp"
-#include "nodes/hdf5_file.hpp"
+#include "protocol/files/archive_file.hpp"
+#include "protocol/files/hdf5_file.hpp"
 #include "temporary_folder.hpp"
 
 namespace furrow {
@@ -57,7 +57,7 @@ std::string error_of(const std::filesystem::path& file) {
 }
 
 TEST(ArchiveFile, every_type_comes_back_bit_for_bit) {
-  const TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   const auto file = folder.path() / "rig.h5";
   write_archive(file, example());
   expect_same_bits(example(), read_archive(file));
@@ -66,13 +66,13 @@ TEST(ArchiveFile, every_type_comes_back_bit_for_bit) {
 }
 
 TEST(ArchiveFile, an_empty_archive_comes_back_empty) {
-  const TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   write_archive(folder.path() / "none.h5", {});
   EXPECT_TRUE(read_archive(folder.path() / "none.h5").arrays().empty());
 }
 
 TEST(ArchiveFile, a_file_cut_short_at_any_length_is_refused_by_name) {
-  const TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   const auto whole = folder.path() / "whole.h5", cut = folder.path() / "cut.h5";
   write_archive(whole, example());
   const auto size = std::filesystem::file_size(whole);
@@ -84,7 +84,7 @@ TEST(ArchiveFile, a_file_cut_short_at_any_length_is_refused_by_name) {
 }
 
 TEST(ArchiveFile, one_flipped_bit_in_the_numbers_is_noticed) {
-  const TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   const auto file = folder.path() / "state.h5";
   const double marker = 1234.56789012345;
   Archive archive;
@@ -100,7 +100,7 @@ TEST(ArchiveFile, one_flipped_bit_in_the_numbers_is_noticed) {
 }
 
 TEST(ArchiveFile, missing_files_and_other_kinds_of_file_are_refused) {
-  const TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   EXPECT_NE(error_of(folder.path() / "nothing.h5").find("does not exist"), std::string::npos);
   Hdf5Writer other(folder.path() / "frame.h5");
   other.attribute("time_s", 1.0);
@@ -109,7 +109,7 @@ TEST(ArchiveFile, missing_files_and_other_kinds_of_file_are_refused) {
 }
 
 TEST(Hdf5File, a_newer_format_version_is_refused_by_name) {
-  const TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   const auto file = folder.path() / "newer.h5";
   const hid_t handle = H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   const hid_t space = H5Screate(H5S_SCALAR);
@@ -124,7 +124,7 @@ TEST(Hdf5File, a_newer_format_version_is_refused_by_name) {
 }
 
 TEST(Hdf5File, without_finish_nothing_is_left) {
-  const TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   {
     Hdf5Writer file(folder.path() / "half.h5");
     file.put("x", std::vector<double>{1.0}, {1});

@@ -4,10 +4,11 @@
 #include <fstream>
 #include <iterator>
 
-#include "nodes/archive_file.hpp"
-#include "nodes/checkpoint.hpp"
-#include "nodes/frames.hpp"
-#include "nodes/scenario.hpp"
+#include "nodes/checkpoint/checkpoint.hpp"
+#include "nodes/output/frames.hpp"
+#include "nodes/output/series.hpp"
+#include "nodes/scenario/load_scenario.hpp"
+#include "protocol/files/archive_file.hpp"
 #include "temporary_folder.hpp"
 
 namespace furrow {
@@ -22,8 +23,8 @@ std::string text_of(const fs::path& file) {
 }
 
 /// A checkpoint with two parts, at `step`, in the run's folder.
-CheckpointManifest write_example(const fs::path& run, std::int64_t step, int keep = 10) {
-  CheckpointManifest m;
+checkpoint::CheckpointManifest write_example(const fs::path& run, std::int64_t step, int keep = 10) {
+  checkpoint::CheckpointManifest m;
   m.version = "0.1.0", m.build = "b", m.cpu = "c", m.name = "example";
   m.scenario = R"({"rig":{"slip":0.3,"toe_angle":1e-17},"run":{"seed":1}})";
   m.scenario_digest = "d";
@@ -33,21 +34,21 @@ CheckpointManifest write_example(const fs::path& run, std::int64_t step, int kee
   m.series = {{100, 7, "s"}};
   m.frames = {20, 0, 0};
   m.segments = {{0, 50, 1.25, 2, ""}, {50, step, 0.1, 1, R"({"run.threads":1})"}};
-  const fs::path folder = unfinished_checkpoint(run, step);
+  const fs::path folder = checkpoint::unfinished_checkpoint(run, step);
   fs::create_directories(folder);
   for (const char* name : {"rig.h5", "terrain.h5"}) {
     Archive archive;
     archive.put("x", std::vector<double>{1.0 / 3.0, static_cast<double>(step)});
     write_archive(folder / name, archive);
-    m.parts.push_back({step, name, part_checksum(folder / name), ""});
+    m.parts.push_back({step, name, checkpoint::part_checksum(folder / name), ""});
   }
-  complete_checkpoint(run, m, keep);
+  checkpoint::complete_checkpoint(run, m, keep);
   return m;
 }
 
 std::string error_of(const fs::path& folder) {
   try {
-    read_checkpoint(folder);
+    checkpoint::read_checkpoint(folder);
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ExitCode::io);
     return error.what();
@@ -56,11 +57,11 @@ std::string error_of(const fs::path& folder) {
 }
 
 TEST(Checkpoint, what_was_written_is_read) {
-  const TemporaryFolder folder;
-  const CheckpointManifest written = write_example(folder.path(), 120);
-  const auto found = list_checkpoints(folder.path());
+  const testing::TemporaryFolder folder;
+  const checkpoint::CheckpointManifest written = write_example(folder.path(), 120);
+  const auto found = checkpoint::list_checkpoints(folder.path());
   ASSERT_EQ(found.size(), 1U);
-  const CheckpointManifest read = read_checkpoint(found[0]);
+  const checkpoint::CheckpointManifest read = checkpoint::read_checkpoint(found[0]);
   EXPECT_EQ(read.step, 120);
   EXPECT_EQ(read.time, written.time);
   EXPECT_EQ(read.scenario, written.scenario);
@@ -69,29 +70,30 @@ TEST(Checkpoint, what_was_written_is_read) {
   EXPECT_EQ(read.file_hashes, written.file_hashes);
   ASSERT_EQ(read.segments.size(), 2U);
   EXPECT_EQ(read.segments[1].changed, R"({"run.threads":1})");
-  EXPECT_EQ(std::distance(fs::directory_iterator(checkpoints_folder(folder.path())), {}), 1);
+  EXPECT_EQ(std::distance(fs::directory_iterator(checkpoint::checkpoints_folder(folder.path())), {}), 1);
 }
 
 TEST(Checkpoint, the_newest_are_kept) {
-  const TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   for (const int step : {10, 30, 20, 40}) write_example(folder.path(), step, 2);
-  const auto found = list_checkpoints(folder.path());
+  const auto found = checkpoint::list_checkpoints(folder.path());
   ASSERT_EQ(found.size(), 2U);
-  EXPECT_EQ(read_checkpoint(found[0]).step, 40);
-  EXPECT_EQ(read_checkpoint(found[1]).step, 30);
+  EXPECT_EQ(checkpoint::read_checkpoint(found[0]).step, 40);
+  EXPECT_EQ(checkpoint::read_checkpoint(found[1]).step, 30);
 }
 
 TEST(Checkpoint, one_at_the_same_step_is_replaced) {
-  const TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   write_example(folder.path(), 10);
   write_example(folder.path(), 10);
-  EXPECT_EQ(error_of(list_checkpoints(folder.path()).at(0)), "");
+  EXPECT_EQ(error_of(checkpoint::list_checkpoints(folder.path()).at(0)), "");
 }
 
 TEST(Checkpoint, a_manifest_with_any_byte_changed_or_cut_is_refused) {
-  const TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   write_example(folder.path(), 10);
-  const fs::path checkpoint = list_checkpoints(folder.path()).at(0), file = checkpoint / "manifest.json";
+  const fs::path checkpoint = checkpoint::list_checkpoints(folder.path()).at(0),
+                 file = checkpoint / "manifest.json";
   const std::string whole = text_of(file);
   for (std::size_t i = 0; i < whole.size(); i += 7) {
     if (std::isspace(static_cast<unsigned char>(whole[i]))) continue;
@@ -107,23 +109,24 @@ TEST(Checkpoint, a_manifest_with_any_byte_changed_or_cut_is_refused) {
 }
 
 TEST(Checkpoint, what_was_never_completed_is_no_checkpoint) {
-  const TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   write_example(folder.path(), 10);
-  fs::create_directories(unfinished_checkpoint(folder.path(), 20));
-  fs::create_directories(checkpoints_folder(folder.path()) / "mine");
-  EXPECT_EQ(list_checkpoints(folder.path()).size(), 1U);
+  fs::create_directories(checkpoint::unfinished_checkpoint(folder.path(), 20));
+  fs::create_directories(checkpoint::checkpoints_folder(folder.path()) / "mine");
+  EXPECT_EQ(checkpoint::list_checkpoints(folder.path()).size(), 1U);
   write_example(folder.path(), 30);
-  remove_checkpoints_after(folder.path(), 10);
-  EXPECT_EQ(list_checkpoints(folder.path()).size(), 1U);
-  EXPECT_FALSE(fs::exists(unfinished_checkpoint(folder.path(), 20)));
-  EXPECT_TRUE(fs::exists(checkpoints_folder(folder.path()) / "mine"));
+  checkpoint::remove_checkpoints_after(folder.path(), 10);
+  EXPECT_EQ(checkpoint::list_checkpoints(folder.path()).size(), 1U);
+  EXPECT_FALSE(fs::exists(checkpoint::unfinished_checkpoint(folder.path(), 20)));
+  EXPECT_TRUE(fs::exists(checkpoint::checkpoints_folder(folder.path()) / "mine"));
 }
 
 TEST(FrameClock, numbers_go_on_without_gap_when_the_interval_changes) {
-  const FrameClock first{20, 0, 0};
+  const checkpoint::FrameClock first{20, 0, 0};
   EXPECT_EQ(first.index(0), 0);
   EXPECT_EQ(first.index(100), 5);
-  const FrameClock second = first.continued(110, 50);  // frames of steps 0 … 100 are written: 0 … 5
+  const checkpoint::FrameClock second =
+      first.continued(110, 50);  // frames of steps 0 … 100 are written: 0 … 5
   EXPECT_EQ(second.index(150), 6);
   EXPECT_EQ(second.index(200), 7);
   EXPECT_EQ(second.continued(200, 0).index(999), 7);
@@ -132,14 +135,14 @@ TEST(FrameClock, numbers_go_on_without_gap_when_the_interval_changes) {
 }
 
 TEST(SeriesWriter, goes_on_at_its_mark_bit_for_bit) {
-  const TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   const fs::path file = folder.path() / "timeseries.csv";
-  SeriesRow row;
+  output::SeriesRow row;
   row.time = 0.1, row.slip = 1.0 / 3.0, row.drawbar_pull = -0.0, row.normal_force_travel = 5e-324;
   row.force = {1e300, -2.0, std::nan("")};
-  SeriesMark mark;
+  checkpoint::SeriesMark mark;
   {
-    SeriesWriter writer(file);
+    output::SeriesWriter writer(file);
     writer.add(row);
     writer.add(row);
     mark = writer.mark();
@@ -147,35 +150,35 @@ TEST(SeriesWriter, goes_on_at_its_mark_bit_for_bit) {
   }
   const std::string three = text_of(file);
   std::ofstream(file, std::ios::app) << "0.4,cut sho";
-  std::vector<SeriesRow> rows;
+  std::vector<output::SeriesRow> rows;
   {
-    SeriesWriter writer(file, mark, rows);
+    output::SeriesWriter writer(file, mark, rows);
     ASSERT_EQ(rows.size(), 2U);
-    for (const SeriesColumn& column : series_columns())
+    for (const output::SeriesColumn& column : output::series_columns())
       if (std::string(column.name) != "vertical_force_N" && std::string(column.name) != "force_z_N") {
         EXPECT_EQ(column.value(rows[1]), column.value(row)) << column.name;
       }
     writer.add(rows[1]);
   }
   EXPECT_EQ(text_of(file), three);
-  SeriesMark other = mark;
+  checkpoint::SeriesMark other = mark;
   other.bytes -= 1;
   const auto open_files = [] {
     const std::filesystem::directory_iterator all("/proc/self/fd");
     return std::distance(begin(all), end(all));
   };
   const auto before = open_files();
-  EXPECT_THROW(SeriesWriter(file, other, rows), Error);
+  EXPECT_THROW(output::SeriesWriter(file, other, rows), Error);
   EXPECT_EQ(open_files(), before);
 }
 
 TEST(Resume, what_decides_the_results_may_not_change) {
   for (const char* key :
        {"run.end", "run.threads", "output.frame_interval", "checkpoint.keep", "terrain.cache"})
-    EXPECT_TRUE(may_change_on_resume(key)) << key;
+    EXPECT_TRUE(scenario::may_change_on_resume(key)) << key;
   for (const char* key :
        {"run.step", "run.seed", "rig.slip", "terrain.bed", "tire.file", "run.end_of", "outputs"})
-    EXPECT_FALSE(may_change_on_resume(key)) << key;
+    EXPECT_FALSE(scenario::may_change_on_resume(key)) << key;
 }
 
 }  // namespace

@@ -3,7 +3,9 @@
 
 #include <filesystem>
 
-#include "nodes/series_builder.hpp"
+#include "nodes/output/series_builder.hpp"
+#include "nodes/ranks/run_node.hpp"
+#include "nodes/scenario/load_scenario.hpp"
 #include "tests/nodes/in_process_run.hpp"
 
 namespace furrow {
@@ -15,8 +17,8 @@ std::filesystem::path tire_file(const std::string& name) {
   return std::filesystem::path(FURROW_SOURCE_FOLDER) / "tire" / "data" / name;
 }
 
-Scenario rigid_wheel_on_plane() {
-  Scenario scenario;
+scenario::Scenario rigid_wheel_on_plane() {
+  scenario::Scenario scenario;
   scenario.name = "test";
   scenario.digest = "test";
   scenario.rigs[0].mode = "fixed_angular_speed";
@@ -26,7 +28,7 @@ Scenario rigid_wheel_on_plane() {
   scenario.rigs[0].touchdown_damping = 12e3;
   scenario.rigs[0].touchdown_time = 0.2;
   scenario.rigs[0].start = 1.0;
-  TireOptions tire;
+  tire::TireOptions tire;
   tire.file = tire_file("hmmwv_layered.json");
   tire.rigid = true;
   tire.elements_circumference = 60;
@@ -42,8 +44,8 @@ Scenario rigid_wheel_on_plane() {
   return scenario;
 }
 
-Scenario rigid_wheel_on_grains() {
-  Scenario scenario = rigid_wheel_on_plane();
+scenario::Scenario rigid_wheel_on_grains() {
+  scenario::Scenario scenario = rigid_wheel_on_plane();
   scenario.rigs[0].carrier_mass = 20.0;
   scenario.rigs[0].touchdown_damping = 300.0;
   scenario.rigs[0].start = 0.55;
@@ -58,13 +60,13 @@ Scenario rigid_wheel_on_grains() {
   return scenario;
 }
 
-void expect_same_bits_after_restore(const Scenario& scenario, std::int64_t half, std::int64_t end) {
-  InProcessRun whole(scenario);
+void expect_same_bits_after_restore(const scenario::Scenario& scenario, std::int64_t half, std::int64_t end) {
+  testing::InProcessRun whole(scenario);
   whole.steps(0, half);
   const std::vector<Archive> saved = whole.save();
   whole.steps(half, end);
 
-  InProcessRun resumed(scenario);
+  testing::InProcessRun resumed(scenario);
   resumed.restore(saved);
   resumed.steps(half, end);
   EXPECT_EQ(whole.hashes(), resumed.hashes());
@@ -79,18 +81,18 @@ TEST(Coupling, restored_nodes_continue_bit_for_bit_on_grains) {
 }
 
 TEST(Coupling, restored_flexible_tire_continues_bit_for_bit) {
-  Scenario scenario = rigid_wheel_on_plane();
+  scenario::Scenario scenario = rigid_wheel_on_plane();
   scenario.tires[0].rigid = false;
   scenario.tires[0].elements_circumference = 30;
   expect_same_bits_after_restore(scenario, 60, 120);
 }
 
 TEST(Coupling, momentum_received_equals_momentum_sent_one_interval_before) {
-  InProcessRun run(rigid_wheel_on_grains());
+  testing::InProcessRun run(rigid_wheel_on_grains());
   run.steps(0, 1500);
   run.synchronize(1500);
   const auto saved = run.save();
-  SeriesBuilder builder(0.4673, 0.0, 1e-4);
+  output::SeriesBuilder builder(0.4673, 0.0, 1e-4);
   Archive::Scope scope(saved[0], "wheel0/");
   builder.restore(saved[0]);
   const Vec3 sent = builder.impulse_sent_arrived(), received = builder.now().impulse_received;
@@ -100,8 +102,8 @@ TEST(Coupling, momentum_received_equals_momentum_sent_one_interval_before) {
   EXPECT_LE(builder.now().transfer_moment_residual, 1e-12);
 }
 
-Scenario flexible_tire_on_grains_with_tangents() {
-  Scenario scenario = rigid_wheel_on_grains();
+scenario::Scenario flexible_tire_on_grains_with_tangents() {
+  scenario::Scenario scenario = rigid_wheel_on_grains();
   scenario.rigs[0].carrier_mass = 100.0;
   scenario.tires[0].rigid = false;
   scenario.tires[0].elements_circumference = 30;
@@ -114,12 +116,12 @@ Scenario flexible_tire_on_grains_with_tangents() {
 }
 
 TEST(Coupling, contact_tangents_continue_bit_for_bit_for_any_number_of_threads) {
-  const Scenario scenario = flexible_tire_on_grains_with_tangents();
+  const scenario::Scenario scenario = flexible_tire_on_grains_with_tangents();
   expect_same_bits_after_restore(scenario, 250, 350);
-  RunContext one, two;
+  ranks::RunContext one, two;
   one.threads = 1;
   two.threads = 2;
-  InProcessRun first(scenario, one), second(scenario, two);
+  testing::InProcessRun first(scenario, one), second(scenario, two);
   first.steps(0, 350);
   second.steps(0, 350);
   EXPECT_EQ(first.hashes(), second.hashes());
@@ -127,12 +129,12 @@ TEST(Coupling, contact_tangents_continue_bit_for_bit_for_any_number_of_threads) 
 
 /// Σ impulses on the tire − Σ impulses by the grains = what the ledger holds.
 TEST(Coupling, the_ledger_holds_the_difference_of_the_impulses) {
-  const Scenario scenario = flexible_tire_on_grains_with_tangents();
-  InProcessRun run(scenario);
+  const scenario::Scenario scenario = flexible_tire_on_grains_with_tangents();
+  testing::InProcessRun run(scenario);
   run.steps(0, 600);
   run.synchronize(600);
   const auto saved = run.save();
-  SeriesBuilder builder(0.4673, 0.0, scenario.run.step);
+  output::SeriesBuilder builder(0.4673, 0.0, scenario.run.step);
   const Archive::Scope scope(saved[0], "wheel0/");
   builder.restore(saved[0]);
   Vec3 ahead = Vec3::Zero();
@@ -146,9 +148,9 @@ TEST(Coupling, the_ledger_holds_the_difference_of_the_impulses) {
 }
 
 /// The series of wheel 0 as the rig's node has it now; means are sums since the last line.
-SeriesRow series_now(const InProcessRun& run) {
+output::SeriesRow series_now(const testing::InProcessRun& run) {
   const Archive rig = run.save().front();
-  SeriesBuilder builder(0.4673, 0.0, 1e-4);
+  output::SeriesBuilder builder(0.4673, 0.0, 1e-4);
   Archive::Scope scope(rig, "wheel0/");
   builder.restore(rig);
   return builder.now();
@@ -157,11 +159,11 @@ SeriesRow series_now(const InProcessRun& run) {
 /// Added mass: a lagged wrench that held the tire's own inertia would blow up from a ratio of one on.
 TEST(Coupling, spin_up_and_drop_with_a_tire_three_times_as_heavy_as_its_rim) {
   for (const bool rigid : {true, false}) {
-    Scenario scenario = rigid_wheel_on_plane();
+    scenario::Scenario scenario = rigid_wheel_on_plane();
     scenario.tires[0].rigid = rigid;
     scenario.tires[0].elements_circumference = 30;
-    const MassProperties tire = make_tire(scenario.tires[0])->mass_properties();
-    DrawbarRigOptions& rig = scenario.rigs[0];
+    const MassProperties tire = tire::make_tire(scenario.tires[0])->mass_properties();
+    rigs::DrawbarRigOptions& rig = scenario.rigs[0];
     rig.slip = 1.0;
     rig.ramp = 0.01;
     rig.touchdown_damping = 0.0;
@@ -169,44 +171,45 @@ TEST(Coupling, spin_up_and_drop_with_a_tire_three_times_as_heavy_as_its_rim) {
     rig.rim_mass = tire.mass / 3.0;
     rig.rim_spin_inertia = tire.inertia(1, 1) / 3.0;
     rig.rim_diametral_inertia = tire.inertia(0, 0) / 3.0;
-    InProcessRun run(scenario);
+    testing::InProcessRun run(scenario);
     run.steps(0, 100);
     run.synchronize(100);
-    const SeriesRow row = series_now(run);
+    const output::SeriesRow row = series_now(run);
     const double mass = rig.carrier_mass + rig.rim_mass + tire.mass, spin = rig.angular_speed;
     const double tolerance = rigid ? 1e-9 : 0.2;  // the flexible tire also winds up and swings
     EXPECT_EQ(row.force.norm(), 0.0) << "it must not have landed";
-    EXPECT_NEAR(row.vertical_momentum / (-mass * kGravity * row.time), 1.0, tolerance) << "rigid: " << rigid;
+    EXPECT_NEAR(row.vertical_momentum / (-mass * ranks::kGravity * row.time), 1.0, tolerance)
+        << "rigid: " << rigid;
     EXPECT_NEAR(row.spindle_work / (0.5 * 4.0 / 3.0 * tire.inertia(1, 1) * spin * spin), 1.0, tolerance)
         << "rigid: " << rigid;
   }
 }
 
 TEST(Coupling, one_thread_and_two_threads_give_the_same_bits) {
-  RunContext one, two;
+  ranks::RunContext one, two;
   one.threads = 1;
   two.threads = 2;
-  InProcessRun first(rigid_wheel_on_grains(), one), second(rigid_wheel_on_grains(), two);
+  testing::InProcessRun first(rigid_wheel_on_grains(), one), second(rigid_wheel_on_grains(), two);
   first.steps(0, 200);
   second.steps(0, 200);
   EXPECT_EQ(first.hashes(), second.hashes());
 }
 
 TEST(Coupling, another_seed_gives_another_state) {
-  Scenario other = rigid_wheel_on_grains();
+  scenario::Scenario other = rigid_wheel_on_grains();
   other.terrain.seed = 2;
-  InProcessRun first(rigid_wheel_on_grains()), second(other);
+  testing::InProcessRun first(rigid_wheel_on_grains()), second(other);
   first.steps(0, 10);
   second.steps(0, 10);
   EXPECT_NE(first.hashes(), second.hashes());
 }
 
 /// z impulse that each wheel's tire has sent for up to now, N s.
-std::vector<double> vertical_impulses(const InProcessRun& run, std::size_t wheels) {
+std::vector<double> vertical_impulses(const testing::InProcessRun& run, std::size_t wheels) {
   const Archive rig = run.save().front();
   std::vector<double> impulses;
   for (std::size_t k = 0; k < wheels; ++k) {
-    SeriesBuilder builder(0.4673, 0.0, 1e-4);
+    output::SeriesBuilder builder(0.4673, 0.0, 1e-4);
     Archive::Scope scope(rig, "wheel" + std::to_string(k) + "/");
     builder.restore(rig);
     impulses.push_back(builder.now().impulse_sent.z());
@@ -215,19 +218,19 @@ std::vector<double> vertical_impulses(const InProcessRun& run, std::size_t wheel
 }
 
 TEST(Coupling, each_of_four_wheels_on_one_bed_carries_its_own_weight) {
-  const Scenario scenario = load_scenario(
+  const scenario::Scenario scenario = scenario::load_scenario(
       std::filesystem::path(FURROW_SOURCE_FOLDER) / "rigs" / "four_wheels.json", {{"terrain.radius", "0.03"},
                                                                                   {"terrain.layers", "3"},
                                                                                   {"terrain.cache", "false"},
                                                                                   {"run.step", "2e-4"}});
-  InProcessRun run(scenario);
+  testing::InProcessRun run(scenario);
   run.steps(0, 4500);
   const auto before = vertical_impulses(run, 4);
   run.steps(4500, 6000);
   const auto after = vertical_impulses(run, 4);
   for (std::size_t k = 0; k < 4; ++k) {
-    const double tire = 4.811,
-                 weight = kGravity * (scenario.rigs[k].carrier_mass + scenario.rigs[k].rim_mass + tire);
+    const double tire = 4.811, weight = ranks::kGravity *
+                                        (scenario.rigs[k].carrier_mass + scenario.rigs[k].rim_mass + tire);
     EXPECT_NEAR((after[k] - before[k]) / 0.3, weight, 0.005 * weight) << "wheel " << k;
   }
 }
@@ -238,10 +241,10 @@ TEST(Coupling, a_mismatch_of_digests_stops_every_node) {
   std::vector<std::string> texts(transports.size());
   for (std::size_t i = 0; i < transports.size(); ++i)
     threads.emplace_back([&, i] {
-      Scenario scenario = rigid_wheel_on_plane();
+      scenario::Scenario scenario = rigid_wheel_on_plane();
       if (i == 1) scenario.digest = "other";
       try {
-        run_node(scenario, *transports[i], {});
+        ranks::run_node(scenario, *transports[i], {});
       } catch (const std::exception& error) {
         texts[i] = error.what();
       }

@@ -1,5 +1,5 @@
 // A program built for a richer processor says so before anything else, and ends with code 2.
-#include "nodes/cpu_check.hpp"
+#include "nodes/launch/cpu_check.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -10,7 +10,7 @@
 namespace furrow {
 namespace {
 
-TEST(CpuCheck, this_build_runs_here) { EXPECT_EQ(missing_instruction_set(), nullptr); }
+TEST(CpuCheck, this_build_runs_here) { EXPECT_EQ(launch::missing_instruction_set(), nullptr); }
 
 // cpu_check_elsewhere is linked with the same check, made for a processor that has everything.
 TEST(CpuCheck, a_program_for_another_processor_says_what_it_lacks) {

@@ -1,5 +1,5 @@
 // The account of impulses between a tire that uses contact tangents and its terrain.
-#include "nodes/impulse_ledger.hpp"
+#include "nodes/ranks/impulse_ledger.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@ namespace {
 NodalForces one_force(int vertex, const Vec3& force) { return {{vertex}, {force}, {ContactTangent()}}; }
 
 TEST(ImpulseLedger, holds_what_acted_less_what_was_reported) {
-  ImpulseLedger ledger(3);
+  ranks::ImpulseLedger ledger(3);
   Vec3 on_tire = Vec3::Zero(), on_terrain = Vec3::Zero();
   for (int n = 0; n < 200; ++n) {
     NodalForces forces = one_force(n % 3, Vec3(n % 5, -3.0 + n % 7, 100.0 + n % 11));
@@ -27,7 +27,7 @@ TEST(ImpulseLedger, holds_what_acted_less_what_was_reported) {
 
 /// With forces predicted exactly L falls by the share β each interval.
 TEST(ImpulseLedger, hands_back_a_tenth_each_interval) {
-  ImpulseLedger ledger(1);
+  ranks::ImpulseLedger ledger(1);
   ledger.book(one_force(0, Vec3(0, 0, 2.0)), 1e-4);
   double before = ledger.sum().z();
   for (int n = 0; n < 20; ++n) {
@@ -41,7 +41,7 @@ TEST(ImpulseLedger, hands_back_a_tenth_each_interval) {
 }
 
 TEST(ImpulseLedger, takes_back_at_most_half_of_a_force_and_pays_where_nothing_touches_any_more) {
-  ImpulseLedger ledger(2);
+  ranks::ImpulseLedger ledger(2);
   ledger.book(one_force(1, Vec3(0, 0, 1000.0)), 1e-4);
   NodalForces forces = one_force(1, Vec3(0, 0, 10.0));
   ledger.hand_back(forces, 1e-4);

@@ -7,25 +7,26 @@
 #include <thread>
 #include <vector>
 
-#include "nodes/node.hpp"
+#include "nodes/ranks/node.hpp"
 
 namespace furrow::testing {
 
 class InProcessRun {
  public:
-  explicit InProcessRun(const Scenario& scenario, const RunContext& context = {})
+  explicit InProcessRun(const scenario::Scenario& scenario, const ranks::RunContext& context = {})
       : scenario_(scenario),
         transports_(make_in_process_transports(static_cast<int>(scenario.tires.size()))) {
     nodes_.resize(transports_.size());
     on_all([&](std::size_t i) {
-      nodes_[i] = make_node(scenario_, transports_[i]->self(), context.threads);
+      nodes_[i] = ranks::make_node(scenario_, transports_[i]->self(), context.threads);
       const auto cards = handshake(*transports_[i], nodes_[i]->card());
       nodes_[i]->set_up(*transports_[i], cards, context);
     });
   }
 
   void steps(std::int64_t from, std::int64_t to) {
-    on_all([&](std::size_t i) { run_steps(*nodes_[i], *transports_[i], scenario_.run.step, from, to); });
+    on_all(
+        [&](std::size_t i) { ranks::run_steps(*nodes_[i], *transports_[i], scenario_.run.step, from, to); });
   }
   void synchronize(std::int64_t n) {
     on_all([&](std::size_t i) {
@@ -42,10 +43,10 @@ class InProcessRun {
   }
   std::vector<std::uint64_t> hashes() const {
     std::vector<std::uint64_t> values;
-    for (const auto& node : nodes_) values.push_back(state_hash(*node));
+    for (const auto& node : nodes_) values.push_back(ranks::state_hash(*node));
     return values;
   }
-  Node& node(std::size_t i) { return *nodes_[i]; }
+  ranks::Node& node(std::size_t i) { return *nodes_[i]; }
 
  private:
   /// Runs `work` on every node in a thread of its own; the first error of any is thrown here.
@@ -71,9 +72,9 @@ class InProcessRun {
       if (error) std::rethrow_exception(error);
   }
 
-  Scenario scenario_;
+  scenario::Scenario scenario_;
   std::vector<std::unique_ptr<Transport>> transports_;
-  std::vector<std::unique_ptr<Node>> nodes_;
+  std::vector<std::unique_ptr<ranks::Node>> nodes_;
 };
 
 }  // namespace furrow::testing

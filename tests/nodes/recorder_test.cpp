@@ -5,11 +5,11 @@
 #include <set>
 #include <sstream>
 
-#include "nodes/frames.hpp"
-#include "nodes/hdf5_file.hpp"
-#include "nodes/series.hpp"
-#include "nodes/xdmf.hpp"
-#include "protocol/error.hpp"
+#include "nodes/output/frames.hpp"
+#include "nodes/output/series.hpp"
+#include "nodes/output/xdmf.hpp"
+#include "protocol/core/error.hpp"
+#include "protocol/files/hdf5_file.hpp"
 #include "temporary_folder.hpp"
 
 namespace furrow {
@@ -32,8 +32,8 @@ std::vector<std::string> split(const std::string& line) {
 }
 
 TEST(Series, columns_that_users_script_against_come_first) {
-  const TemporaryFolder folder;
-  SeriesWriter writer(folder.path() / "timeseries.csv");
+  const testing::TemporaryFolder folder;
+  output::SeriesWriter writer(folder.path() / "timeseries.csv");
   writer.flush();
   EXPECT_EQ(
       lines_of(folder.path() / "timeseries.csv")
@@ -45,32 +45,33 @@ TEST(Series, columns_that_users_script_against_come_first) {
       "time_s,slip,drawbar_pull_N,sinkage_m,vertical_force_N,force_x_N,force_y_N,force_z_N,spindle_torque_Nm,"
       "impulse_sent_Ns,impulse_received_Ns,energy_error_J,");
   std::set<std::string> names;
-  for (const SeriesColumn& column : series_columns())
+  for (const output::SeriesColumn& column : output::series_columns())
     EXPECT_TRUE(names.insert(column.name).second) << column.name;
 }
 
 TEST(Series, numbers_come_back_bit_for_bit) {
-  const TemporaryFolder folder;
-  SeriesRow row;
+  const testing::TemporaryFolder folder;
+  output::SeriesRow row;
   row.time = 0.1 + 0.2;
   row.drawbar_pull = 1.0 / 3.0;
   row.impulse_sent = {1e-300, -0.0, 2.0 / 7.0};
   {
-    SeriesWriter writer(folder.path() / "timeseries.csv");
+    output::SeriesWriter writer(folder.path() / "timeseries.csv");
     writer.add(row);
     writer.flush();
   }
   const auto lines = lines_of(folder.path() / "timeseries.csv");
   ASSERT_EQ(lines.size(), 2u);
   const auto cells = split(lines[1]);
-  ASSERT_EQ(cells.size(), series_columns().size());
+  ASSERT_EQ(cells.size(), output::series_columns().size());
   for (std::size_t i = 0; i < cells.size(); ++i)
-    EXPECT_EQ(std::stod(cells[i]), series_columns()[i].value(row)) << series_columns()[i].name;
+    EXPECT_EQ(std::stod(cells[i]), output::series_columns()[i].value(row))
+        << output::series_columns()[i].name;
 }
 
 TEST(Series, a_full_disk_is_an_input_output_error_naming_the_file) {
   try {
-    SeriesWriter writer("/dev/full");
+    output::SeriesWriter writer("/dev/full");
     writer.add({});
     writer.flush();
     FAIL() << "nothing was noticed";
@@ -81,11 +82,11 @@ TEST(Series, a_full_disk_is_an_input_output_error_naming_the_file) {
 }
 
 TEST(Frames, positions_and_forces_come_back_in_single_precision) {
-  const TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   const SurfaceMesh mesh{3, {{0, 1, 2}}};
   const SurfaceState surface{{{0, 0, 0.5}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {0, 0, 2}, {0, 0, 3}}};
   const NodalForces forces{{1}, {{1, 2, 3}}};
-  write_tire_frame(folder.path(), 0, 12, 0.25, mesh, surface, forces);
+  output::write_tire_frame(folder.path(), 0, 12, 0.25, mesh, surface, forces);
   const Hdf5Reader file(folder.path() / "frames" / "tire0_000012.h5");
   EXPECT_EQ(file.number("time_s"), 0.25);
   EXPECT_EQ(file.shape("position"), (std::vector<hsize_t>{3, 3}));
@@ -95,20 +96,20 @@ TEST(Frames, positions_and_forces_come_back_in_single_precision) {
 }
 
 TEST(Frames, a_terrain_without_grains_leaves_no_file) {
-  const TemporaryFolder folder;
-  write_terrain_frame(folder.path(), 0, 0.0, {});
+  const testing::TemporaryFolder folder;
+  output::write_terrain_frame(folder.path(), 0, 0.0, {});
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
 TEST(Xdmf, holds_complete_instants_only) {
-  const TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   const SurfaceMesh mesh{3, {{0, 1, 2}}};
   const SurfaceState surface{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, std::vector<Vec3>(3, Vec3::Zero())};
-  const TerrainFrame grains{{0, 0, 0}, {0.5f}, {0.01f}};
-  for (int i = 0; i < 3; ++i) write_tire_frame(folder.path(), 0, i, 0.1 * i, mesh, surface, {});
-  for (int i = 0; i < 2; ++i) write_terrain_frame(folder.path(), i, 0.1 * i, grains);
+  const terrain::TerrainFrame grains{{0, 0, 0}, {0.5f}, {0.01f}};
+  for (int i = 0; i < 3; ++i) output::write_tire_frame(folder.path(), 0, i, 0.1 * i, mesh, surface, {});
+  for (int i = 0; i < 2; ++i) output::write_terrain_frame(folder.path(), i, 0.1 * i, grains);
   std::ofstream(folder.path() / "frames" / "terrain_000002.h5") << "cut short";
-  write_xdmf_index(folder.path());
+  output::write_xdmf_index(folder.path());
   std::string text;
   for (const std::string& line : lines_of(folder.path() / "results.xdmf")) text += line + "\n";
   EXPECT_NE(text.find("tire0_000001.h5"), std::string::npos);
@@ -117,8 +118,8 @@ TEST(Xdmf, holds_complete_instants_only) {
 }
 
 TEST(Xdmf, is_not_written_without_frames) {
-  const TemporaryFolder folder;
-  write_xdmf_index(folder.path());
+  const testing::TemporaryFolder folder;
+  output::write_xdmf_index(folder.path());
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 

@@ -10,16 +10,16 @@
 #include <numbers>
 #include <vector>
 
-#include "nodes/wheel_axes.hpp"
 #include "tests/nodes/rolling_tire.hpp"
+#include "tire/wheel_axes.hpp"
 
 namespace furrow::test {
 namespace {
 
 constexpr double kStep = 1e-4;  // s
 
-DrawbarRigOptions free_rolling(double speed) {
-  DrawbarRigOptions options;
+rigs::DrawbarRigOptions free_rolling(double speed) {
+  rigs::DrawbarRigOptions options;
   options.mode = "free_rolling";
   options.speed = speed;
   options.ramp = 0.1;
@@ -27,14 +27,14 @@ DrawbarRigOptions free_rolling(double speed) {
   return options;
 }
 
-double load_of(RollingTire& rolling) { return rolling.rig->report(0).carried_mass * kGravity; }
+double load_of(RollingTire& rolling) { return rolling.rig->report(0).carried_mass * ranks::kGravity; }
 
 /// M (0, 0, −g), consistent.
-Field consistent_weight(const AncfTire& tire) {
-  const RingLayout& layout = tire.integrator().layout();
-  Field down(layout.size(), 0.0), weight(layout.size(), 0.0);
+tire::Field consistent_weight(const tire::AncfTire& tire) {
+  const tire::ShellLayout& layout = tire.integrator().layout();
+  tire::Field down(layout.size(), 0.0), weight(layout.size(), 0.0);
   for (int j = 0; j < layout.rows; ++j)
-    for (int i = 0; i < layout.columns; ++i) layout.set(down, i, j, 0, Vec3(0, 0, -kGravity));
+    for (int i = 0; i < layout.columns; ++i) layout.set(down, i, j, 0, Vec3(0, 0, -ranks::kGravity));
   layout.fill_padding(down);
   tire.integrator().mass().apply(down, 1.0, weight);
   return weight;
@@ -42,19 +42,19 @@ Field consistent_weight(const AncfTire& tire) {
 
 TEST(Rolling, spindle_impulse_is_that_of_ground_and_gravity_less_the_tires_momentum_to_1e10_of_the_load) {
   for (const char* name : {"hmmwv_layered.json", "hmmwv_lumped.json"}) {
-    DrawbarRigOptions options = free_rolling(4.0);
+    rigs::DrawbarRigOptions options = free_rolling(4.0);
     options.toe_angle = 0.03;
     options.camber_angle = 0.03;
     RollingTire rolling(small_file(name, 30, 6), options, kStep);
-    const RingLayout& layout = rolling.tire.integrator().layout();
-    const Field weight = consistent_weight(rolling.tire);
+    const tire::ShellLayout& layout = rolling.tire.integrator().layout();
+    const tire::Field weight = consistent_weight(rolling.tire);
     const double load = load_of(rolling);
     double worst = 0.0, worst_moment = 0.0;
     auto [p, l] = momenta(rolling.tire);
     for (int n = 0; n < 5000; ++n) {
-      const Field from = rolling.tire.integrator().q();
+      const tire::Field from = rolling.tire.integrator().q();
       rolling.step();
-      const Field& to = rolling.tire.integrator().q();
+      const tire::Field& to = rolling.tire.integrator().q();
       const Wrench on_rim = rolling.tire.spindle_wrench();
       const Vec3 centre = 0.5 * (rolling.trajectory.start().position + rolling.trajectory.end().position);
       Vec3 force = -on_rim.force, moment = -on_rim.moment - centre.cross(on_rim.force);
@@ -114,7 +114,7 @@ TEST(Rolling, ten_revolutions_gain_no_energy) {
     while (mean.size() < 11) {
       rolling.step();
       angle += kStep * rolling.rig->report(0).spin;
-      const TireDiagnostics d = rolling.tire.diagnostics();
+      const tire::TireDiagnostics d = rolling.tire.diagnostics();
       const double energy = d.kinetic_energy + d.strain_energy;
       sum += energy, most = std::max(most, energy), ++count;
       if (angle < 2.0 * std::numbers::pi) continue;
@@ -135,7 +135,7 @@ TEST(Rolling, ten_revolutions_gain_no_energy) {
 
 /// Mean force and moment in the tire's axes on the ground over the last part of a roll.
 Wrench mean_wrench(double toe, double camber, double& slip_angle) {
-  DrawbarRigOptions options = free_rolling(4.0);
+  rigs::DrawbarRigOptions options = free_rolling(4.0);
   options.toe_angle = toe;
   options.camber_angle = camber;
   RollingTire rolling(small_file("hmmwv_lumped.json", 30, 6), options, kStep);
@@ -147,7 +147,7 @@ Wrench mean_wrench(double toe, double camber, double& slip_angle) {
     if (n < 3000) continue;
     RimState rim = rolling.rig->rim(0);
     rim.position = 0.5 * (from + rim.position);
-    const WheelAxes axes = wheel_axes(rim, Vec3::UnitX(), 0.0);
+    const tire::WheelAxes axes = tire::wheel_axes(rim, Vec3::UnitX(), 0.0);
     const Wrench now = axes.wrench(rolling.contact.force, rolling.contact.moment, Vec3::Zero());
     sum.force += now.force, sum.moment += now.moment, ++count;
     slip_angle = axes.slip_angle;

@@ -4,7 +4,7 @@
 #include <array>
 #include <memory>
 
-#include "nodes/carried_wrench.hpp"
+#include "nodes/ranks/carried_wrench.hpp"
 #include "rigs/drawbar_rig.hpp"
 #include "terrain/rigid/rigid_ground.hpp"
 #include "tests/tire/ancf/small_tire.hpp"
@@ -13,8 +13,8 @@
 namespace furrow::test {
 
 /// Forces come one step late: above 4e-5 s the ground is softened with the step (terrain/rigid/rigid_ground.hpp).
-inline TerrainOptions hard_ground(double step) {
-  TerrainOptions options;
+inline terrain::TerrainOptions hard_ground(double step) {
+  terrain::TerrainOptions options;
   options.engine = "rigid";
   const double slower = std::max(1.0, step / 4e-5);
   options.ground_stiffness /= slower * slower;
@@ -26,23 +26,23 @@ inline TerrainOptions hard_ground(double step) {
 
 class RollingTire {
  public:
-  AncfTire tire;
-  std::unique_ptr<Rig> rig;
-  std::unique_ptr<Terrain> ground;
-  RimTrajectory trajectory;    // of the last interval
-  NodalForces on_tire;         // that acted on the tire over the last interval
-  SurfaceState before, after;  // of the tire, at its ends
-  ContactSums contact;         // of the ground over the last interval
+  tire::AncfTire tire;
+  std::unique_ptr<rigs::Rig> rig;
+  std::unique_ptr<terrain::Terrain> ground;
+  tire::RimTrajectory trajectory;  // of the last interval
+  NodalForces on_tire;             // that acted on the tire over the last interval
+  SurfaceState before, after;      // of the tire, at its ends
+  ContactSums contact;             // of the ground over the last interval
 
-  RollingTire(const TireFile& file, const DrawbarRigOptions& options, double step)
+  RollingTire(const tire::TireFile& file, const rigs::DrawbarRigOptions& options, double step)
       : tire(file),
-        rig(make_drawbar_rig(options)),
-        ground(make_rigid_ground(hard_ground(step))),
+        rig(rigs::make_drawbar_rig(options)),
+        ground(terrain::make_rigid_ground(hard_ground(step))),
         step_(step) {
     rig->add_tire_mass(0, tire.mass_properties(), tire.radius());
-    const std::array<double, 1> height{inflated_reach(tire, options.camber_angle)};
+    const std::array<double, 1> height{tire::inflated_reach(tire, options.camber_angle)};
     rig->place(height);
-    trajectory = RimTrajectory(rig->rim(0));
+    trajectory = tire::RimTrajectory(rig->rim(0));
     tire.place(rig->rim(0));
     tire.surface(after);
     ground->attach(tire.mesh(), tire.material(), after);
@@ -54,13 +54,14 @@ class RollingTire {
     before = after;
     const Wrench sent = sent_;
     const RimState rim = rig->rim(0);
-    const TerrainStatus status = ground->advance({&before, 1}, step_, 1, {&forces_, 1}, {&contact, 1});
+    const terrain::TerrainStatus status =
+        ground->advance({&before, 1}, step_, 1, {&forces_, 1}, {&contact, 1});
     if (!status.ok) throw physics_error(status.message);
     trajectory.extend(rim, step_);
-    const TireStatus done = tire.advance(trajectory, on_tire, 1);
+    const tire::TireStatus done = tire.advance(trajectory, on_tire, 1);
     if (!done.converged) throw physics_error(done.message());
-    sent_ = carried_wrench(tire.spindle_wrench(), tire.mass_properties(), trajectory.start(),
-                           trajectory.end(), step_);
+    sent_ = ranks::carried_wrench(tire.spindle_wrench(), tire.mass_properties(), trajectory.start(),
+                                  trajectory.end(), step_);
     tire.surface(after);
     rig->advance({&sent, 1}, step_, 1);
   }

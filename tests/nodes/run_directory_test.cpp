@@ -1,5 +1,5 @@
 // The folder of a run: one run at a time has it, and results to be overwritten survive a run that never came to be.
-#include "nodes/run_directory.hpp"
+#include "nodes/launch/run_directory.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <fstream>
 #include <optional>
 
-#include "protocol/error.hpp"
+#include "protocol/core/error.hpp"
 #include "tests/nodes/temporary_folder.hpp"
 
 namespace furrow {
@@ -29,23 +29,23 @@ class RunFolderTest : public ::testing::Test {
 };
 
 TEST_F(RunFolderTest, one_run_at_a_time_has_it) {
-  std::optional<RunDirectory> first;
+  std::optional<launch::RunDirectory> first;
   first.emplace("test", run_, false);
   write(run_ / "scenario.json", "first");
-  EXPECT_THROW(RunDirectory("test", run_, true), Error);
+  EXPECT_THROW(launch::RunDirectory("test", run_, true), Error);
   EXPECT_EQ(read(run_ / "scenario.json"), "first");
   first.reset();
-  const RunDirectory second("test", run_, true);
+  const launch::RunDirectory second("test", run_, true);
   EXPECT_FALSE(fs::exists(run_ / "scenario.json"));
 }
 
 TEST_F(RunFolderTest, results_come_back_when_the_run_that_replaces_them_never_came_to_be) {
-  { const RunDirectory first("test", run_, false); }
+  { const launch::RunDirectory first("test", run_, false); }
   write(run_ / "scenario.json", "first");
   write(run_ / "summary_wheel1.json", "first");
   write(run_ / "notes.txt", "mine");
   {
-    RunDirectory second("test", run_, true);
+    launch::RunDirectory second("test", run_, true);
     EXPECT_FALSE(fs::exists(run_ / "summary_wheel1.json"));
     write(run_ / "scenario.json", "second");
     write(run_ / "timeseries.csv", "second");
@@ -60,7 +60,7 @@ TEST_F(RunFolderTest, results_come_back_when_the_run_that_replaces_them_never_ca
 
 TEST_F(RunFolderTest, nothing_is_left_of_a_new_folder_whose_run_never_came_to_be) {
   {
-    RunDirectory run("test", run_, false);
+    launch::RunDirectory run("test", run_, false);
     write(run_ / "scenario.json", "first");
     fs::create_directory(run_ / "frames");
     run.discard();

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "nodes/rut.hpp"
+#include "terrain/rut.hpp"
 
 namespace furrow {
 namespace {
@@ -39,14 +39,14 @@ HeightField pressed(HeightField field, double a, double b, double noise = 0.0) {
   return field;
 }
 
-RutOptions forward() {
+terrain::RutOptions forward() {
   return {.axle = 2.0, .start = 0.5, .lateral = 0.0, .direction = 1.0, .tread_width = kTread};
 }
 
 TEST(Rut, depth_and_width_of_a_pressed_trapezoid) {
   for (const double cell : {0.012, 0.02}) {
     const HeightField before = flat(2.65, cell);
-    const Rut rut = measure_rut(before, pressed(before, 0.5, 2.0), forward());
+    const terrain::Rut rut = terrain::measure_rut(before, pressed(before, 0.5, 2.0), forward());
     ASSERT_TRUE(rut.measured);
     EXPECT_NEAR(rut.depth, kDepth, 1e-12) << "cell " << cell;
     EXPECT_NEAR(rut.width, kTread, 0.25 * cell) << "cell " << cell;
@@ -55,7 +55,7 @@ TEST(Rut, depth_and_width_of_a_pressed_trapezoid) {
 
 TEST(Rut, rough_grains_change_depth_and_width_little) {
   const HeightField before = flat(2.65, 0.02);
-  const Rut rut = measure_rut(before, pressed(before, 0.5, 2.0, 0.01), forward());
+  const terrain::Rut rut = terrain::measure_rut(before, pressed(before, 0.5, 2.0, 0.01), forward());
   EXPECT_NEAR(rut.depth, kDepth, 0.001);
   EXPECT_NEAR(rut.width, kTread, 0.05 * kTread);
 }
@@ -63,11 +63,11 @@ TEST(Rut, rough_grains_change_depth_and_width_little) {
 TEST(Rut, travel_backwards_measures_on_the_other_side_of_the_axle) {
   const HeightField before = flat(2.65, 0.02);
   const HeightField after = pressed(before, 0.6, 2.1);
-  RutOptions options = forward();
+  terrain::RutOptions options = forward();
   options.direction = -1.0;
   options.axle = 0.6;
   options.start = 2.1;
-  const Rut rut = measure_rut(before, after, options);
+  const terrain::Rut rut = terrain::measure_rut(before, after, options);
   ASSERT_TRUE(rut.measured);
   EXPECT_NEAR(rut.depth, kDepth, 1e-12);
 }
@@ -76,7 +76,7 @@ TEST(Rut, one_raised_row_of_cells_inside_the_rut_is_not_its_edge) {
   const HeightField before = flat(2.65, 0.02);
   HeightField after = pressed(before, 0.5, 2.0);
   for (int ix = 0; ix < after.nx; ++ix) after.height[ix * after.ny + after.ny / 2 + 3] = 0.1;
-  const Rut rut = measure_rut(before, after, forward());
+  const terrain::Rut rut = terrain::measure_rut(before, after, forward());
   EXPECT_NEAR(rut.width, kTread, 0.02);
 }
 
@@ -84,23 +84,23 @@ TEST(Rut, cells_without_grains_are_passed_over) {
   HeightField before = flat(2.65, 0.02), after = pressed(before, 0.5, 2.0);
   for (int ix = 0; ix < after.nx; ++ix) after.height[ix * after.ny + after.ny / 2] = NAN;
   for (int iy = 0; iy < after.ny; ++iy) before.height[(after.nx / 2) * after.ny + iy] = NAN;
-  const Rut rut = measure_rut(before, after, forward());
+  const terrain::Rut rut = terrain::measure_rut(before, after, forward());
   ASSERT_TRUE(rut.measured);
   EXPECT_NEAR(rut.depth, kDepth, 1e-12);
   EXPECT_NEAR(rut.width, kTread, 0.02);
 }
 
 TEST(Rut, is_not_measured_without_grains_or_before_the_wheel_has_left_one) {
-  EXPECT_FALSE(measure_rut({}, {}, forward()).measured);
+  EXPECT_FALSE(terrain::measure_rut({}, {}, forward()).measured);
   const HeightField before = flat(2.65, 0.02);
-  RutOptions options = forward();
+  terrain::RutOptions options = forward();
   options.axle = options.start + 0.5;
-  EXPECT_FALSE(measure_rut(before, before, options).measured);
+  EXPECT_FALSE(terrain::measure_rut(before, before, options).measured);
 }
 
 TEST(Rut, an_untouched_bed_has_no_rut_width) {
   const HeightField before = flat(2.65, 0.02);
-  const Rut rut = measure_rut(before, before, forward());
+  const terrain::Rut rut = terrain::measure_rut(before, before, forward());
   EXPECT_EQ(rut.depth, 0.0);
   EXPECT_TRUE(std::isnan(rut.width));
 }

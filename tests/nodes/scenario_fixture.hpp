@@ -5,8 +5,8 @@
 #include <fstream>
 #include <string>
 
-#include "nodes/scenario.hpp"
-#include "protocol/error.hpp"
+#include "nodes/scenario/load_scenario.hpp"
+#include "protocol/core/error.hpp"
 #include "tests/nodes/temporary_folder.hpp"
 
 namespace furrow::testing {
@@ -20,8 +20,8 @@ class ScenarioFile {
     std::ofstream(path_) << text;
   }
   const std::filesystem::path& path() const { return path_; }
-  Scenario load(const std::vector<std::pair<std::string, std::string>>& settings = {}) const {
-    return load_scenario(path_, settings);
+  scenario::Scenario load(const std::vector<std::pair<std::string, std::string>>& settings = {}) const {
+    return scenario::load_scenario(path_, settings);
   }
   /// What load() complains of, without the name of the file complained of (this one); empty when it does not.
   std::string complaint(const std::vector<std::pair<std::string, std::string>>& settings = {},

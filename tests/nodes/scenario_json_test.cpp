@@ -3,8 +3,8 @@
 
 #include <fstream>
 
-#include "nodes/json_text.hpp"
-#include "protocol/error.hpp"
+#include "protocol/core/error.hpp"
+#include "protocol/files/json_text.hpp"
 #include "tests/nodes/temporary_folder.hpp"
 
 namespace furrow {

@@ -1,28 +1,32 @@
 // The supervisor's two ears: lines of the ranks, and mpirun's own words.
 #include <gtest/gtest.h>
 
-#include "nodes/progress.hpp"
-#include "nodes/supervisor_lines.hpp"
-#include "nodes/supervisor_text.hpp"
+#include "nodes/launch/progress.hpp"
+#include "nodes/launch/supervisor_lines.hpp"
+#include "nodes/launch/supervisor_text.hpp"
 
 namespace furrow {
 namespace {
 
 TEST(RankLine, survives_the_way_to_the_supervisor) {
-  RankLine line{RankLine::Kind::error, 2, "a \"quoted\" text\nin two lines, 3 µm", ExitCode::physics, {}};
-  std::string text = encode(line);
+  launch::RankLine line{
+      launch::RankLine::Kind::error, 2, "a \"quoted\" text\nin two lines, 3 µm", ExitCode::physics, {}};
+  std::string text = launch::encode(line);
   ASSERT_EQ(text.find('\n'), text.size() - 1);
   text.pop_back();
-  const auto error = decode(text);
+  const auto error = launch::decode(text);
   ASSERT_TRUE(error);
-  EXPECT_EQ(error->kind, RankLine::Kind::error);
+  EXPECT_EQ(error->kind, launch::RankLine::Kind::error);
   EXPECT_EQ(error->rank, 2);
   EXPECT_EQ(error->text, line.text);
   EXPECT_EQ(error->code, ExitCode::physics);
 
-  line = {
-      RankLine::Kind::progress, 0, {}, ExitCode::done, {"running", 0.25, 0.5, 2.0, 1432.5, 0.031, 1.4, 83.0}};
-  const auto progress = decode(encode(line));
+  line = {launch::RankLine::Kind::progress,
+          0,
+          {},
+          ExitCode::done,
+          {"running", 0.25, 0.5, 2.0, 1432.5, 0.031, 1.4, 83.0}};
+  const auto progress = launch::decode(launch::encode(line));
   ASSERT_TRUE(progress);
   EXPECT_EQ(progress->progress.phase, "running");
   EXPECT_EQ(progress->progress.pull, 1432.5);
@@ -30,19 +34,19 @@ TEST(RankLine, survives_the_way_to_the_supervisor) {
 }
 
 TEST(RankLine, fits_into_one_write_to_a_pipe) {
-  const RankLine line{RankLine::Kind::error, 0, std::string(100000, '"'), ExitCode::io, {}};
-  EXPECT_LE(encode(line).size(), 4096U);  // PIPE_BUF of Linux
+  const launch::RankLine line{launch::RankLine::Kind::error, 0, std::string(100000, '"'), ExitCode::io, {}};
+  EXPECT_LE(launch::encode(line).size(), 4096U);  // PIPE_BUF of Linux
 }
 
 TEST(RankLine, what_is_not_ours_is_left_alone) {
   for (const char* text : {"", "hello", "@furrow", "@furrow {", "@furrow []",
                            "@furrow {\"kind\":\"x\",\"rank\":0}", "@furrow {\"kind\":\"note\"}",
                            "@furrow {\"kind\":\"progress\",\"rank\":0,\"phase\":\"a\",\"values\":[1]}"})
-    EXPECT_FALSE(decode(text)) << text;
+    EXPECT_FALSE(launch::decode(text)) << text;
 }
 
 TEST(LauncherText, names_the_rank_that_died) {
-  LauncherText text;
+  launch::LauncherText text;
   for (const char* line :
        {"--------------------------------------------------------------------------",
         "mpirun noticed that process rank 2 with PID 0 on node the-host exited on signal 9 (Killed).",
@@ -55,7 +59,7 @@ TEST(LauncherText, names_the_rank_that_died) {
 }
 
 TEST(LauncherText, keeps_what_else_was_said_in_one_line) {
-  LauncherText text;
+  launch::LauncherText text;
   for (const char* line :
        {"-----------------------------", "There are not enough slots available", "  in the system  ", ""})
     text.add(line);
@@ -64,11 +68,11 @@ TEST(LauncherText, keeps_what_else_was_said_in_one_line) {
 }
 
 TEST(Progress, tells_time_pull_sinkage_speed_and_what_is_left) {
-  EXPECT_EQ(progress_text({"running", 0.25, 0.5, 2.0, 1432.5, 0.0312, 1.4, 83.0}),
+  EXPECT_EQ(launch::progress_text({"running", 0.25, 0.5, 2.0, 1432.5, 0.0312, 1.4, 83.0}),
             "t 0.500 of 2 s   pull 1432 N   sinkage 31.2 mm   1.40 m/s   1:23 left");
-  EXPECT_EQ(progress_text({"running", 0.0001, 0.0, 2.0, 0.0, 0.0, 0.0, 9e9}),
+  EXPECT_EQ(launch::progress_text({"running", 0.0001, 0.0, 2.0, 0.0, 0.0, 0.0, 9e9}),
             "t 0.000 of 2 s   pull 0 N   sinkage 0.0 mm   0.00 m/s");
-  EXPECT_EQ(progress_text({"settling the bed", 0.42, 0.0, 1.5, 0.0, 0.0, 0.0, -1.0}),
+  EXPECT_EQ(launch::progress_text({"settling the bed", 0.42, 0.0, 1.5, 0.0, 0.0, 0.0, -1.0}),
             "settling the bed 42 %");
 }
 

@@ -5,8 +5,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "nodes/scenario_checks.hpp"
-#include "nodes/schema.hpp"
+#include "nodes/scenario/load_scenario.hpp"
+#include "nodes/scenario/scenario_checks.hpp"
+#include "nodes/scenario/schema.hpp"
+#include "nodes/scenario/wheel_geometry.hpp"
 #include "tests/nodes/scenario_fixture.hpp"
 
 namespace furrow {
@@ -17,8 +19,8 @@ using testing::ScenarioFile;
 
 /// The options as their structs default them; the schema must say the same.
 TEST(Scenario, defaults_of_the_schema_are_those_of_the_options) {
-  const Scenario s = ScenarioFile(kSmallest).load();
-  const DrawbarRigOptions rig;
+  const scenario::Scenario s = testing::ScenarioFile(testing::kSmallest).load();
+  const rigs::DrawbarRigOptions rig;
   EXPECT_EQ(s.rigs[0].mode, rig.mode);
   EXPECT_EQ(s.rigs[0].slip, rig.slip);
   EXPECT_EQ(s.rigs[0].angular_speed, rig.angular_speed);
@@ -34,7 +36,7 @@ TEST(Scenario, defaults_of_the_schema_are_those_of_the_options) {
   EXPECT_EQ(s.rigs[0].rim_mass, rig.rim_mass);
   EXPECT_EQ(s.rigs[0].rim_spin_inertia, rig.rim_spin_inertia);
   EXPECT_EQ(s.rigs[0].rim_diametral_inertia, rig.rim_diametral_inertia);
-  const TerrainOptions terrain;
+  const terrain::TerrainOptions terrain;
   EXPECT_EQ(s.terrain.engine, terrain.engine);
   EXPECT_EQ(s.terrain.law, terrain.law);
   EXPECT_EQ(s.terrain.radius, terrain.radius);
@@ -61,7 +63,7 @@ TEST(Scenario, defaults_of_the_schema_are_those_of_the_options) {
   EXPECT_EQ(s.terrain.allow_unstable_step, terrain.allow_unstable_step);
   EXPECT_EQ(s.terrain.step, terrain.step);
   EXPECT_EQ(s.terrain.seed, terrain.seed);
-  const TireOptions tire;
+  const tire::TireOptions tire;
   ASSERT_EQ(s.tires.size(), 1U);
   EXPECT_EQ(s.tires[0].pressure, tire.pressure);
   EXPECT_EQ(s.tires[0].friction, tire.friction);
@@ -70,7 +72,7 @@ TEST(Scenario, defaults_of_the_schema_are_those_of_the_options) {
   EXPECT_EQ(s.tires[0].structural_damping, tire.structural_damping);
   EXPECT_EQ(s.tires[0].rigid, tire.rigid);
   EXPECT_EQ(s.tires[0].contact_tangent, tire.contact_tangent);
-  const RunOptions run;
+  const scenario::RunOptions run;
   EXPECT_EQ(s.run.step, run.step);
   EXPECT_EQ(s.run.end, run.end);
   EXPECT_EQ(s.run.average_from, run.average_from);
@@ -78,25 +80,26 @@ TEST(Scenario, defaults_of_the_schema_are_those_of_the_options) {
   EXPECT_EQ(s.run.seed, run.seed);
   EXPECT_EQ(s.run.peer_timeout, run.peer_timeout);
   EXPECT_EQ(s.terrain.undisturbed_height, terrain.undisturbed_height);
-  EXPECT_EQ(s.checkpoint.wall_interval, CheckpointOptions().wall_interval);
-  EXPECT_EQ(s.checkpoint.interval, CheckpointOptions().interval);
-  EXPECT_EQ(s.checkpoint.keep, CheckpointOptions().keep);
-  EXPECT_EQ(s.checkpoint.at_end, CheckpointOptions().at_end);
-  EXPECT_EQ(s.output.series_interval, OutputOptions().series_interval);
-  EXPECT_EQ(s.output.frame_interval, OutputOptions().frame_interval);
+  EXPECT_EQ(s.checkpoint.wall_interval, scenario::CheckpointOptions().wall_interval);
+  EXPECT_EQ(s.checkpoint.interval, scenario::CheckpointOptions().interval);
+  EXPECT_EQ(s.checkpoint.keep, scenario::CheckpointOptions().keep);
+  EXPECT_EQ(s.checkpoint.at_end, scenario::CheckpointOptions().at_end);
+  EXPECT_EQ(s.output.series_interval, scenario::OutputOptions().series_interval);
+  EXPECT_EQ(s.output.frame_interval, scenario::OutputOptions().frame_interval);
   EXPECT_FALSE(s.expected.given);
   EXPECT_TRUE(s.warnings.empty());
 }
 
 TEST(Scenario, a_setting_of_every_kind_arrives) {
-  const Scenario s = ScenarioFile(kSmallest).load({{"rig.slip", "0.5"},
-                                                   {"rig.mode", "fixed_speed"},
-                                                   {"tire.rigid", "true"},
-                                                   {"tire.elements_width", "12"},
-                                                   {"terrain.substeps", "2"},
-                                                   {"tire.substeps", "4"},
-                                                   {"run.threads", "3"},
-                                                   {"run.seed", "7"}});
+  const scenario::Scenario s = testing::ScenarioFile(testing::kSmallest)
+                                   .load({{"rig.slip", "0.5"},
+                                          {"rig.mode", "fixed_speed"},
+                                          {"tire.rigid", "true"},
+                                          {"tire.elements_width", "12"},
+                                          {"terrain.substeps", "2"},
+                                          {"tire.substeps", "4"},
+                                          {"run.threads", "3"},
+                                          {"run.seed", "7"}});
   EXPECT_EQ(s.rigs[0].slip, 0.5);
   EXPECT_EQ(s.rigs[0].mode, "fixed_speed");
   EXPECT_TRUE(s.tires[0].rigid);
@@ -108,14 +111,14 @@ TEST(Scenario, a_setting_of_every_kind_arrives) {
 }
 
 TEST(Scenario, completed_text_is_a_scenario_that_gives_the_same_digest) {
-  const Scenario s = ScenarioFile(kSmallest).load({{"rig.slip", "0.2"}});
-  const Scenario again = ScenarioFile(s.completed).load();
+  const scenario::Scenario s = testing::ScenarioFile(testing::kSmallest).load({{"rig.slip", "0.2"}});
+  const scenario::Scenario again = testing::ScenarioFile(s.completed).load();
   EXPECT_EQ(again.digest, s.digest);
   EXPECT_EQ(again.completed, s.completed);
 }
 
 TEST(Scenario, digest_depends_on_what_decides_the_results_alone) {
-  const ScenarioFile file(kSmallest);
+  const testing::ScenarioFile file(testing::kSmallest);
   const std::string digest = file.load().digest;
   EXPECT_EQ(file.load({{"run.threads", "2"}}).digest, digest);
   EXPECT_EQ(file.load({{"run.peer_timeout", "5"}}).digest, digest);
@@ -126,20 +129,21 @@ TEST(Scenario, digest_depends_on_what_decides_the_results_alone) {
 }
 
 TEST(Scenario, axle_starts_clear_of_the_wall_behind_it) {
-  const ScenarioFile file(kSmallest);
+  const testing::ScenarioFile file(testing::kSmallest);
   const double radius = 0.4673;  // m, of the tire
-  const Scenario forward = file.load(), backward = file.load({{"rig.travel_sign", "-1"}});
-  EXPECT_DOUBLE_EQ(forward.rigs[0].start, radius + kWallMargin);
-  EXPECT_DOUBLE_EQ(backward.rigs[0].start, 10.0 - radius - kWallMargin);
+  const scenario::Scenario forward = file.load(), backward = file.load({{"rig.travel_sign", "-1"}});
+  EXPECT_DOUBLE_EQ(forward.rigs[0].start, radius + scenario::kWallMargin);
+  EXPECT_DOUBLE_EQ(backward.rigs[0].start, 10.0 - radius - scenario::kWallMargin);
   EXPECT_DOUBLE_EQ(file.load({{"rig.start", "3"}}).rigs[0].start, 3.0);
   // v = ω R (1 − s) over the run, half of it over the ramp.
-  const AxlePath path = axle_path(forward, 0, radius);
+  const scenario::AxlePath path = scenario::axle_path(forward, 0, radius);
   EXPECT_NEAR(path.to - path.from, 8.56 * radius * 0.7 * (1.5 - 0.075), 1e-12);
-  EXPECT_NEAR(axle_path(backward, 0, radius).to - backward.rigs[0].start, -(path.to - path.from), 1e-12);
+  EXPECT_NEAR(scenario::axle_path(backward, 0, radius).to - backward.rigs[0].start, -(path.to - path.from),
+              1e-12);
 }
 
 TEST(Scenario, expected_result_is_void_once_the_physics_is_changed) {
-  const ScenarioFile file(R"({"tire": {"file": "hmmwv_layered.json"}, "terrain": {},
+  const testing::ScenarioFile file(R"({"tire": {"file": "hmmwv_layered.json"}, "terrain": {},
                               "expected": {"drawbar_pull": 1500, "drawbar_pull_spread": 100}})");
   EXPECT_TRUE(file.load().expected.given);
   EXPECT_TRUE(file.load({{"run.threads", "2"}, {"output.frame_interval", "0"}}).expected.given);
@@ -147,18 +151,20 @@ TEST(Scenario, expected_result_is_void_once_the_physics_is_changed) {
 }
 
 TEST(Scenario, soil_file_gives_values_that_the_scenario_may_replace) {
-  const ScenarioFile soil(R"({"format_version": 1, "terrain": {"friction": 0.4, "size_spread": 0.2}})");
+  const testing::ScenarioFile soil(
+      R"({"format_version": 1, "terrain": {"friction": 0.4, "size_spread": 0.2}})");
   const std::string name = soil.path().string();
-  const ScenarioFile file(R"({"tire": {"file": "hmmwv_layered.json"},
+  const testing::ScenarioFile file(R"({"tire": {"file": "hmmwv_layered.json"},
                               "terrain": {"material": ")" +
-                          name + R"(", "friction": 0.7}})");
-  const Scenario s = file.load();
+                                   name + R"(", "friction": 0.7}})");
+  const scenario::Scenario s = file.load();
   EXPECT_EQ(s.terrain.friction, 0.7);
   EXPECT_EQ(s.terrain.size_spread, 0.2);
-  EXPECT_EQ(ScenarioFile(s.completed).load().digest, s.digest);
+  EXPECT_EQ(testing::ScenarioFile(s.completed).load().digest, s.digest);
   // On the command line what comes later wins.
   const std::string quoted = '"' + name + '"';
-  const ScenarioFile own(R"({"tire": {"file": "hmmwv_layered.json"}, "terrain": {"friction": 0.7}})");
+  const testing::ScenarioFile own(
+      R"({"tire": {"file": "hmmwv_layered.json"}, "terrain": {"friction": 0.7}})");
   EXPECT_EQ(own.load({{"terrain.material", quoted}}).terrain.friction, 0.4);
   EXPECT_EQ(own.load({{"terrain.material", quoted}, {"terrain.friction", "0.6"}}).terrain.friction, 0.6);
   EXPECT_EQ(file.load({{"terrain.material", "null"}}).terrain.size_spread, 0.0);
@@ -166,7 +172,7 @@ TEST(Scenario, soil_file_gives_values_that_the_scenario_may_replace) {
 
 TEST(Scenario, mistakes_in_a_soil_file_are_named_with_that_file) {
   const auto complaint = [](const std::string& text) {
-    const ScenarioFile soil(text), own(kSmallest);
+    const testing::ScenarioFile soil(text), own(testing::kSmallest);
     return own.complaint({{"terrain.material", '"' + soil.path().string() + '"'}}, soil.path());
   };
   EXPECT_EQ(complaint(R"({"format_version": 1, "terrain": {"friction": -1}})"),
@@ -179,7 +185,7 @@ TEST(Scenario, mistakes_in_a_soil_file_are_named_with_that_file) {
 }
 
 TEST(Scenario, mistakes_are_named_with_what_is_expected) {
-  const ScenarioFile file(kSmallest);
+  const testing::ScenarioFile file(testing::kSmallest);
   EXPECT_EQ(file.complaint({{"rig.slipp", "1"}}), ": key 'rig.slipp': is unknown, expected 'rig.slip'?");
   EXPECT_EQ(file.complaint({{"tire.elements_width", "7"}}),
             ": key 'tire.elements_width': is 7, expected a whole number, 6 to 1000, a multiple of 2 or null");
@@ -197,18 +203,18 @@ TEST(Scenario, mistakes_are_named_with_what_is_expected) {
 }
 
 TEST(Scenario, pressure_is_a_number_or_a_table_in_time_and_part_of_the_digest) {
-  const ScenarioFile file(kSmallest);
-  const Scenario constant = file.load({{"tire.pressure", "150e3"}}),
-                 table = file.load({{"tire.pressure", "[[0.5, 2e5], [1, 1e5]]"}}),
-                 other = file.load({{"tire.pressure", "[[0.5, 2e5], [1.5, 1e5]]"}});
-  EXPECT_EQ(constant.tires[0].pressure, (PressureSchedule{{{0.0, 150e3}}}));
-  EXPECT_EQ(table.tires[0].pressure, (PressureSchedule{{{0.5, 2e5}, {1.0, 1e5}}}));
+  const testing::ScenarioFile file(testing::kSmallest);
+  const scenario::Scenario constant = file.load({{"tire.pressure", "150e3"}}),
+                           table = file.load({{"tire.pressure", "[[0.5, 2e5], [1, 1e5]]"}}),
+                           other = file.load({{"tire.pressure", "[[0.5, 2e5], [1.5, 1e5]]"}});
+  EXPECT_EQ(constant.tires[0].pressure, (tire::PressureSchedule{{{0.0, 150e3}}}));
+  EXPECT_EQ(table.tires[0].pressure, (tire::PressureSchedule{{{0.5, 2e5}, {1.0, 1e5}}}));
   EXPECT_NE(table.digest, other.digest);
-  EXPECT_FALSE(may_change_on_resume("tire.pressure.1.0"));
+  EXPECT_FALSE(scenario::may_change_on_resume("tire.pressure.1.0"));
 }
 
 TEST(Scenario, magnitudes_of_another_unit_are_warned_of) {
-  const ScenarioFile file(kSmallest);
+  const testing::ScenarioFile file(testing::kSmallest);
   const auto warnings =
       file.load({{"tire.pressure", "2"}, {"terrain.density", "2.5"}, {"terrain.substeps", "100"}}).warnings;
   ASSERT_EQ(warnings.size(), 2U);
@@ -220,7 +226,7 @@ TEST(Scenario, magnitudes_of_another_unit_are_warned_of) {
 }
 
 TEST(Schema, every_key_of_the_defaults_is_found_and_no_other) {
-  const Schema schema = Schema::load();
+  const scenario::Schema schema = scenario::Schema::load();
   std::set<std::string> unique;
   for (const std::string& key : schema.keys()) {
     EXPECT_NE(schema.find(key), nullptr) << key;
@@ -233,8 +239,8 @@ TEST(Schema, every_key_of_the_defaults_is_found_and_no_other) {
 }
 
 TEST(Schema, defaults_obey_the_schema) {
-  nlohmann::json document = nlohmann::json::parse(kSmallest);
-  const Schema schema = Schema::load();
+  nlohmann::json document = nlohmann::json::parse(testing::kSmallest);
+  const scenario::Schema schema = scenario::Schema::load();
   schema.fill_defaults(document);
   schema.normalize(document);
   EXPECT_TRUE(schema.problems(document).empty());
@@ -243,11 +249,11 @@ TEST(Schema, defaults_obey_the_schema) {
 
 /// Damerau–Levenshtein distance (optimal string alignment) of known pairs.
 TEST(Schema, edit_distance_of_known_pairs) {
-  EXPECT_EQ(edit_distance("", "abc"), 3U);
-  EXPECT_EQ(edit_distance("kitten", "sitting"), 3U);
-  EXPECT_EQ(edit_distance("slip", "SLIP"), 0U);
-  EXPECT_EQ(edit_distance("slip", "slpi"), 1U);
-  EXPECT_EQ(edit_distance("ca", "abc"), 3U);
+  EXPECT_EQ(scenario::edit_distance("", "abc"), 3U);
+  EXPECT_EQ(scenario::edit_distance("kitten", "sitting"), 3U);
+  EXPECT_EQ(scenario::edit_distance("slip", "SLIP"), 0U);
+  EXPECT_EQ(scenario::edit_distance("slip", "slpi"), 1U);
+  EXPECT_EQ(scenario::edit_distance("ca", "abc"), 3U);
 }
 
 }  // namespace

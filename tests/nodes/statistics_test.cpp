@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "nodes/statistics.hpp"
+#include "nodes/output/statistics.hpp"
 
 namespace furrow {
 namespace {
@@ -26,7 +26,7 @@ std::vector<double> autoregressive(double phi, double mean, std::size_t count, s
 TEST(Statistics, effective_number_of_samples_matches_the_autoregressive_closed_form) {
   for (const double phi : {0.0, 0.5, 0.9}) {
     const std::size_t n = 20000;
-    const auto s = statistics(autoregressive(phi, 3.0, n, 11));
+    const auto s = output::statistics(autoregressive(phi, 3.0, n, 11));
     const double expected = static_cast<double>(n) * (1.0 - phi) / (1.0 + phi);
     EXPECT_NEAR(s.n_eff / expected, 1.0, 0.15) << "phi = " << phi;
     EXPECT_NEAR(s.std * std::sqrt(1.0 - phi * phi), 1.0, 0.03) << "phi = " << phi;
@@ -37,7 +37,7 @@ TEST(Statistics, the_true_mean_lies_within_two_standard_errors_nineteen_times_in
   const int trials = 400;
   int inside = 0;
   for (int i = 0; i < trials; ++i) {
-    const auto s = statistics(autoregressive(0.9, 5.0, 900, 100 + i));
+    const auto s = output::statistics(autoregressive(0.9, 5.0, 900, 100 + i));
     inside += std::abs(s.mean - 5.0) <= 1.96 * s.sem;
   }
   // 95 % of 400, less what an estimated standard error of about 47 independent samples loses
@@ -54,45 +54,45 @@ TEST(Statistics, standard_error_matches_means_of_batches_of_ten_autocorrelation_
     for (std::size_t i = 0; i < length; ++i) sum += samples[b * length + i];
     means.push_back(sum / length);
   }
-  const double by_batches = statistics(means).std / std::sqrt(static_cast<double>(batches));
-  EXPECT_NEAR(statistics(samples).sem / by_batches, 1.0, 0.2);
+  const double by_batches = output::statistics(means).std / std::sqrt(static_cast<double>(batches));
+  EXPECT_NEAR(output::statistics(samples).sem / by_batches, 1.0, 0.2);
 }
 
 TEST(Statistics, drift_is_the_slope_of_a_straight_line) {
   std::vector<double> line;
   for (int i = 0; i < 100; ++i) line.push_back(2.0 + 0.25 * i);
-  const auto s = statistics(line);
+  const auto s = output::statistics(line);
   EXPECT_NEAR(s.drift, 0.25, 1e-12);
   EXPECT_NEAR(s.mean, 2.0 + 0.25 * 49.5, 1e-12);
 }
 
 TEST(Statistics, a_constant_has_no_error_and_no_samples_have_no_mean) {
-  const auto constant = statistics(std::vector<double>(50, 7.0));
+  const auto constant = output::statistics(std::vector<double>(50, 7.0));
   EXPECT_EQ(constant.mean, 7.0);
   EXPECT_EQ(constant.sem, 0.0);
   EXPECT_TRUE(constant.halves_agree);
-  EXPECT_TRUE(std::isnan(statistics({}).mean));
-  EXPECT_TRUE(std::isinf(statistics(std::vector<double>(3, 1.0)).sem));
+  EXPECT_TRUE(std::isnan(output::statistics({}).mean));
+  EXPECT_TRUE(std::isinf(output::statistics(std::vector<double>(3, 1.0)).sem));
 }
 
 TEST(Steadiness, every_broken_condition_is_said_in_words) {
-  SeriesStatistics pull;
+  output::SeriesStatistics pull;
   pull.sem = 50.0;
   pull.halves_agree = true;
-  const SteadyWindow good{4609.0, 0.9, 1.9, 0.4673, true};
-  EXPECT_TRUE(unsteady_because(pull, good).empty());
+  const output::SteadyWindow good{4609.0, 0.9, 1.9, 0.4673, true};
+  EXPECT_TRUE(output::unsteady_because(pull, good).empty());
 
-  SteadyWindow bad = good;
+  output::SteadyWindow bad = good;
   bad.duration = 0.7;
-  EXPECT_EQ(unsteady_because(pull, bad).size(), 1u);
+  EXPECT_EQ(output::unsteady_because(pull, bad).size(), 1u);
   bad.travel = 0.9;
-  EXPECT_EQ(unsteady_because(pull, bad).size(), 2u);
+  EXPECT_EQ(output::unsteady_because(pull, bad).size(), 2u);
   bad.whole_facets = false;
-  EXPECT_EQ(unsteady_because(pull, bad).size(), 3u);
+  EXPECT_EQ(output::unsteady_because(pull, bad).size(), 3u);
   pull.sem = 93.0;  // 2 % of the load is 92.18 N
-  EXPECT_EQ(unsteady_because(pull, bad).size(), 4u);
+  EXPECT_EQ(output::unsteady_because(pull, bad).size(), 4u);
   pull.halves_agree = false;
-  EXPECT_EQ(unsteady_because(pull, bad).size(), 5u);
+  EXPECT_EQ(output::unsteady_because(pull, bad).size(), 5u);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // Who gets which cores: the plan is a pure function of the machine; applying it is checked on this machine.
-#include "nodes/thread_setup.hpp"
+#include "nodes/launch/thread_setup.hpp"
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -18,8 +18,8 @@ namespace furrow {
 namespace {
 
 /// Rig, tires and one terrain that may all use the cores 0 … n − 1 of a machine with as many.
-HostView machine(int cores, int tires = 1) {
-  HostView host;
+launch::HostView machine(int cores, int tires = 1) {
+  launch::HostView host;
   host.machine_cores = cores;
   std::vector<int> all(static_cast<std::size_t>(cores));
   std::iota(all.begin(), all.end(), 0);
@@ -29,20 +29,21 @@ HostView machine(int cores, int tires = 1) {
   return host;
 }
 
-std::vector<ThreadPlan> plan_all(const HostView& host, int terrain_threads = 0) {
-  std::vector<ThreadPlan> plans;
-  for (std::size_t i = 0; i < host.nodes.size(); ++i) plans.push_back(plan_threads(host, i, terrain_threads));
+std::vector<launch::ThreadPlan> plan_all(const launch::HostView& host, int terrain_threads = 0) {
+  std::vector<launch::ThreadPlan> plans;
+  for (std::size_t i = 0; i < host.nodes.size(); ++i)
+    plans.push_back(launch::plan_threads(host, i, terrain_threads));
   return plans;
 }
 
-std::vector<int> threads_of(const std::vector<ThreadPlan>& plans) {
+std::vector<int> threads_of(const std::vector<launch::ThreadPlan>& plans) {
   std::vector<int> threads;
-  for (const ThreadPlan& plan : plans) threads.push_back(plan.threads);
+  for (const launch::ThreadPlan& plan : plans) threads.push_back(plan.threads);
   return threads;
 }
 
 /// No two computing threads share a core; the rig's may be shared.
-void expect_disjoint(const std::vector<ThreadPlan>& plans) {
+void expect_disjoint(const std::vector<launch::ThreadPlan>& plans) {
   std::set<int> used;
   for (std::size_t i = 1; i < plans.size(); ++i) {
     EXPECT_TRUE(plans[i].disjoint);
@@ -55,7 +56,7 @@ void expect_disjoint(const std::vector<ThreadPlan>& plans) {
 TEST(ThreadPlan, two_cores_are_left_to_the_system) {
   const auto plans = plan_all(machine(2));
   EXPECT_EQ(threads_of(plans), (std::vector<int>{1, 1, 1}));
-  for (const ThreadPlan& plan : plans) {
+  for (const launch::ThreadPlan& plan : plans) {
     EXPECT_FALSE(plan.disjoint);
     EXPECT_TRUE(plan.cores.empty());
     EXPECT_TRUE(plan.note.empty());
@@ -79,11 +80,11 @@ TEST(ThreadPlan, many_cores_give_the_rig_one_of_its_own) {
 TEST(ThreadPlan, four_tires_on_two_cores_are_left_to_the_system) {
   const auto plans = plan_all(machine(2, 4));
   EXPECT_EQ(threads_of(plans), (std::vector<int>{1, 1, 1, 1, 1, 1}));
-  for (const ThreadPlan& plan : plans) EXPECT_FALSE(plan.disjoint);
+  for (const launch::ThreadPlan& plan : plans) EXPECT_FALSE(plan.disjoint);
 }
 
 TEST(ThreadPlan, the_terrain_takes_no_more_than_pays_by_itself) {
-  EXPECT_EQ(plan_all(machine(128)).back().threads, kMostAutoThreads);
+  EXPECT_EQ(plan_all(machine(128)).back().threads, launch::kMaxAutoThreads);
   EXPECT_EQ(plan_all(machine(128), 100).back().threads, 100);
 }
 
@@ -96,7 +97,7 @@ TEST(ThreadPlan, what_the_user_wants_is_done_even_where_it_does_not_fit) {
 }
 
 TEST(ThreadPlan, a_busy_machine_or_a_limited_container_is_not_bound) {
-  HostView host = machine(8);
+  launch::HostView host = machine(8);
   host.load = 5.0;
   EXPECT_FALSE(plan_all(host).back().disjoint);
   host.load = 0.2;
@@ -107,7 +108,7 @@ TEST(ThreadPlan, a_busy_machine_or_a_limited_container_is_not_bound) {
 }
 
 TEST(ThreadPlan, ranks_that_the_launcher_bound_stay_within_their_cores) {
-  HostView host = machine(8);
+  launch::HostView host = machine(8);
   host.nodes[0].cores = {0};
   host.nodes[1].cores = {1, 2};
   host.nodes[2].cores = {4, 5, 6, 7};
@@ -115,11 +116,11 @@ TEST(ThreadPlan, ranks_that_the_launcher_bound_stay_within_their_cores) {
   EXPECT_EQ(threads_of(plans), (std::vector<int>{1, 1, 4}));
   expect_disjoint(plans);
   EXPECT_EQ(plans[2].cores, (std::vector<int>{4, 5, 6, 7}));
-  for (const ThreadPlan& plan : plans) EXPECT_TRUE(plan.note.empty()) << plan.note;
+  for (const launch::ThreadPlan& plan : plans) EXPECT_TRUE(plan.note.empty()) << plan.note;
 }
 
 TEST(ThreadPlan, a_terrain_pinned_to_one_core_is_warned_about) {
-  HostView host = machine(8);
+  launch::HostView host = machine(8);
   for (int i = 0; i < 3; ++i) host.nodes[static_cast<std::size_t>(i)].cores = {i};
   const auto plans = plan_all(host, 4);
   EXPECT_EQ(plans[2].threads, 4);
@@ -136,10 +137,10 @@ TEST(ThreadPlan, a_terrain_pinned_to_one_core_is_warned_about) {
 TEST(Apply, every_thread_flushes_denormals_and_is_bound) {
   std::thread([] {
     const std::vector<int> cores = allowed_cores();
-    ThreadPlan plan;
+    launch::ThreadPlan plan;
     plan.threads = static_cast<int>(std::min<std::size_t>(cores.size(), 3));
     plan.cores.assign(cores.begin(), cores.begin() + plan.threads);
-    apply(plan);
+    launch::apply(plan);
     EXPECT_EQ(omp_get_max_threads(), plan.threads);
     std::vector<int> core(static_cast<std::size_t>(plan.threads), -1), flushed(core);
 #pragma omp parallel
@@ -161,7 +162,7 @@ TEST(Apply, a_plan_without_cores_leaves_the_process_where_it_may_run) {
   std::thread([] {
     cpu_set_t before, after;
     sched_getaffinity(0, sizeof before, &before);
-    apply({2, {}, false, {}});
+    launch::apply({2, {}, false, {}});
     sched_getaffinity(0, sizeof after, &after);
     EXPECT_TRUE(CPU_EQUAL(&before, &after));
   }).join();
@@ -175,7 +176,7 @@ TEST(WaitPassively, DISABLED_child) {
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
-  wait_passively(argv.data());
+  launch::wait_passively(argv.data());
   std::printf("<%s|%d>\n", std::getenv("OMP_WAIT_POLICY"), static_cast<int>(words.size()));
 }
 

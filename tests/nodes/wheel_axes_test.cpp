@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "nodes/series_builder.hpp"
-#include "nodes/wheel_axes.hpp"
+#include "nodes/output/series_builder.hpp"
+#include "tire/wheel_axes.hpp"
 
 namespace furrow {
 namespace {
@@ -29,7 +29,7 @@ void expect_near(const Vec3& value, const Vec3& reference, double tolerance) {
 }
 
 TEST(WheelAxes, upright_straight_wheel_has_the_world_s_axes_under_its_centre) {
-  const WheelAxes w = wheel_axes(wheel(0.0, 0.0, 1.0), Vec3::UnitX(), kGround);
+  const tire::WheelAxes w = tire::wheel_axes(wheel(0.0, 0.0, 1.0), Vec3::UnitX(), kGround);
   expect_near(w.x, Vec3::UnitX(), 1e-15);
   expect_near(w.y, Vec3::UnitY(), 1e-15);
   expect_near(w.origin, Vec3(3.0, -0.2, kGround), 1e-15);
@@ -42,7 +42,7 @@ TEST(WheelAxes, straight_travel_has_the_toe_angle_as_slip_angle_and_keeps_the_ca
   for (const double travel : {1.0, -1.0})
     for (const double toe : {-0.14, 0.0, 0.3})
       for (const double camber : {-0.2, 0.0, 0.087}) {
-        const WheelAxes w = wheel_axes(wheel(toe, camber, travel), Vec3(travel, 0, 0), kGround);
+        const tire::WheelAxes w = tire::wheel_axes(wheel(toe, camber, travel), Vec3(travel, 0, 0), kGround);
         EXPECT_NEAR(w.slip_angle, -toe, 1e-15);  // the wheel points left, so it moves to its right
         EXPECT_NEAR(w.camber_angle, camber, 1e-15);
         expect_near(w.x, travel * Vec3(std::cos(toe), std::sin(toe), 0.0), 1e-15);
@@ -56,7 +56,7 @@ TEST(WheelAxes, straight_travel_has_the_toe_angle_as_slip_angle_and_keeps_the_ca
 
 TEST(WheelAxes, forces_turn_by_the_toe_angle) {
   const double toe = 0.25, c = std::cos(toe), s = std::sin(toe);
-  const WheelAxes w = wheel_axes(wheel(toe, 0.0, 1.0), Vec3::UnitX(), kGround);
+  const tire::WheelAxes w = tire::wheel_axes(wheel(toe, 0.0, 1.0), Vec3::UnitX(), kGround);
   expect_near(w.turn(Vec3(100.0, 30.0, 4600.0)), Vec3(100.0 * c + 30.0 * s, -100.0 * s + 30.0 * c, 4600.0),
               1e-12);
 }
@@ -67,7 +67,7 @@ TEST(WheelAxes, moment_about_the_contact_centre_is_the_spindles_less_the_arm_tim
   const Vec3 force(250.0, -900.0, 4600.0), moment(40.0, -95.0, 18.0);
   for (const double camber : {0.0, 0.1, -0.2}) {
     const RimState rim = wheel(0.0, camber, 1.0);
-    const WheelAxes w = wheel_axes(rim, Vec3::UnitX(), kGround);
+    const tire::WheelAxes w = tire::wheel_axes(rim, Vec3::UnitX(), kGround);
     const double rho = w.loaded_radius, c = std::cos(camber), s = std::sin(camber);
     const Wrench at_ground = w.wrench(force, moment, rim.position);
     expect_near(at_ground.force, force, 1e-12);
@@ -81,7 +81,7 @@ TEST(WheelAxes, moment_about_the_contact_centre_is_the_spindles_less_the_arm_tim
 
 TEST(WheelAxes, a_force_through_the_contact_centre_has_no_moment_there) {
   const RimState rim = wheel(0.2, 0.1, -1.0);
-  const WheelAxes w = wheel_axes(rim, -Vec3::UnitX(), kGround);
+  const tire::WheelAxes w = tire::wheel_axes(rim, -Vec3::UnitX(), kGround);
   const Vec3 force(-80.0, 400.0, 3000.0);
   const Wrench at_ground = w.wrench(force, w.origin.cross(force), Vec3::Zero());
   EXPECT_LT(at_ground.moment.norm(), 1e-11);
@@ -94,8 +94,8 @@ TEST(WheelAxes, half_a_turn_of_everything_changes_nothing) {
   const RimState there = wheel(0.2, 0.1, 1.0);
   RimState back = wheel(0.2, 0.1, -1.0);
   back.position = half * there.position;
-  const WheelAxes a = wheel_axes(there, Vec3::UnitX(), kGround),
-                  b = wheel_axes(back, -Vec3::UnitX(), kGround);
+  const tire::WheelAxes a = tire::wheel_axes(there, Vec3::UnitX(), kGround),
+                        b = tire::wheel_axes(back, -Vec3::UnitX(), kGround);
   EXPECT_NEAR(a.slip_angle, b.slip_angle, 1e-15);
   EXPECT_NEAR(a.camber_angle, b.camber_angle, 1e-15);
   const Wrench wa = a.wrench(force, moment, Vec3::Zero()),
@@ -106,9 +106,9 @@ TEST(WheelAxes, half_a_turn_of_everything_changes_nothing) {
 
 TEST(SeriesBuilder, columns_in_the_tires_axes_are_those_of_the_middle_of_the_interval) {
   const double step = 1e-3, toe = -0.1, radius = 0.47;
-  SeriesBuilder builder(radius, 0.0, step);
+  output::SeriesBuilder builder(radius, 0.0, step);
   const Vec3 force(-60.0, 700.0, 4500.0);
-  StepReports r;
+  output::StepReports r;
   for (int n = 1; n <= 3; ++n) {
     r.time = n * step;
     r.rim = wheel(toe, 0.0, 1.0);
@@ -126,7 +126,7 @@ TEST(SeriesBuilder, columns_in_the_tires_axes_are_those_of_the_middle_of_the_int
     builder.add(r);
     if (n == 1) builder.take();  // nothing came before it: its middle is not known
   }
-  const SeriesRow row = builder.take();
+  const output::SeriesRow row = builder.take();
   const double c = std::cos(toe), s = std::sin(toe);
   expect_near(row.iso_force, Vec3(c * force.x() + s * force.y(), -s * force.x() + c * force.y(), force.z()),
               1e-11);

@@ -4,16 +4,16 @@
 #include <fstream>
 #include <sstream>
 
-#include "protocol/error.hpp"
+#include "protocol/core/error.hpp"
 #include "terrain/dem/solver_setup.hpp"
 
 namespace furrow::peers {
 namespace {
 
-using namespace dem;
+using namespace terrain::dem;
 
-TerrainOptions options_of(const Job& job) {
-  TerrainOptions o;
+terrain::TerrainOptions options_of(const Job& job) {
+  terrain::TerrainOptions o;
   o.length = job.at("length");
   o.width = job.at("width");
   o.periodic_x = job.at("periodic_x");
@@ -31,11 +31,11 @@ TerrainOptions options_of(const Job& job) {
   return o;
 }
 
-SolverCoefficients coefficients_of(const Job& job, const TerrainOptions& options) {
-  SolverCoefficients all = run_coefficients(options, options.step);
+terrain::dem::SolverCoefficients coefficients_of(const Job& job, const terrain::TerrainOptions& options) {
+  terrain::dem::SolverCoefficients all = terrain::dem::run_coefficients(options, options.step);
   all.floor.cohesion_force = all.side.cohesion_force = 0.0;
   all.floor.friction = all.side.friction = job.at("wall_friction");
-  for (ContactCoefficients* c : {&all.pair, &all.floor, &all.side}) {
+  for (terrain::dem::ContactCoefficients* c : {&all.pair, &all.floor, &all.side}) {
     c->velocity_scale = job.at("switches").get<int>();
     // m* in place of 2/7 m*.
     if (job.at("damper_mass") == "full") c->shear_damping *= std::sqrt(3.5);
@@ -46,15 +46,18 @@ SolverCoefficients coefficients_of(const Job& job, const TerrainOptions& options
 }  // namespace
 
 PeerBed::PeerBed(const Job& job)
-    : options_(options_of(job)), step_(options_.step), params_(solver_params(options_)), solver_(params_) {
+    : options_(options_of(job)),
+      step_(options_.step),
+      params_(terrain::dem::solver_params(options_)),
+      solver_(params_) {
   solver_.set_coefficients(coefficients_of(job, options_));
   const std::string file = job.at("start");
   std::ifstream in(file);
-  std::vector<Quad> at;
+  std::vector<terrain::dem::Quad> at;
   for (std::string line; std::getline(in, line);) {
     if (line.find('x') != std::string::npos) continue;  // header
     std::istringstream fields(line);
-    Quad p;
+    terrain::dem::Quad p;
     int kind = 0;
     char comma;
     if (!(fields >> kind >> comma >> p.x >> comma >> p.y >> comma >> p.z) || kind < kFree || kind > kLid)
@@ -68,12 +71,13 @@ PeerBed::PeerBed(const Job& job)
   // The peers' velocity Verlet stands at whole steps: half a step of free fall lies between.
   if (job.at("half_step_start"))
     for (int g = 0; g < solver_.grains().count; ++g)
-      if (kind_[solver_.grains().id[g]] == kFree) solver_.grains().velocity[g].z = 0.5 * step_ * kGravity;
+      if (kind_[solver_.grains().id[g]] == kFree)
+        solver_.grains().velocity[g].z = 0.5 * step_ * terrain::dem::kGravity;
 }
 
 void PeerBed::step(const std::function<void()>& drive) {
   const int lost = solver_.step(step_);
-  Grains& grains = solver_.grains();
+  terrain::dem::Grains& grains = solver_.grains();
   if (lost >= 0) throw physics_error("grain " + std::to_string(grains.id[lost]) + " was lost");
   const double mass = params_.grain.mass;
   const auto each_driven = [&](const auto& f) {
@@ -82,12 +86,13 @@ void PeerBed::step(const std::function<void()>& drive) {
   };
   for (Plate& plate : plates_) plate.force.setZero();
   each_driven([&](int g, Plate& plate) {
-    const Quad& v = grains.velocity[g];
-    plate.force += mass / step_ * (Vec3(v.x, v.y, v.z) - plate.velocity) + Vec3(0.0, 0.0, mass * kGravity);
+    const terrain::dem::Quad& v = grains.velocity[g];
+    plate.force +=
+        mass / step_ * (Vec3(v.x, v.y, v.z) - plate.velocity) + Vec3(0.0, 0.0, mass * terrain::dem::kGravity);
   });
   if (drive) drive();
   each_driven([&](int g, const Plate& plate) {
-    Quad &v = grains.velocity[g], &x = grains.position[g];
+    terrain::dem::Quad &v = grains.velocity[g], &x = grains.position[g];
     x.x += step_ * (plate.velocity.x() - v.x);
     x.y += step_ * (plate.velocity.y() - v.y);
     x.z += step_ * (plate.velocity.z() - v.z);
@@ -97,11 +102,11 @@ void PeerBed::step(const std::function<void()>& drive) {
 }
 
 void PeerBed::positions(std::vector<double>& out) const {
-  const Grains& grains = solver_.grains();
+  const terrain::dem::Grains& grains = solver_.grains();
   const std::size_t first = out.size();
   out.resize(first + 3 * grains.count);
   for (int g = 0; g < grains.count; ++g) {
-    const Quad& x = grains.position[g];
+    const terrain::dem::Quad& x = grains.position[g];
     double* const to = &out[first + 3 * grains.id[g]];
     to[0] = x.x, to[1] = x.y, to[2] = x.z;
   }

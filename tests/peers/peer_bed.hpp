@@ -39,17 +39,17 @@ class PeerBed {
 
   double dt() const { return step_; }                                     // s
   double area() const { return params_.bin.length * params_.bin.width; }  // m²
-  dem::GrainSolver& solver() { return solver_; }
-  const dem::SolverCoefficients& coefficients() const { return solver_.coefficients(); }
+  terrain::dem::GrainSolver& solver() { return solver_; }
+  const terrain::dem::SolverCoefficients& coefficients() const { return solver_.coefficients(); }
   Plate& plate(Kind kind) { return plates_[kind]; }
   /// x y z per grain in the order of the start file, appended to `out`, m.
   void positions(std::vector<double>& out) const;
 
  private:
-  TerrainOptions options_;
+  terrain::TerrainOptions options_;
   double step_;
-  dem::SolverParams params_;
-  dem::GrainSolver solver_;
+  terrain::dem::SolverParams params_;
+  terrain::dem::GrainSolver solver_;
   std::vector<int> kind_;  // by id
   std::array<Plate, 3> plates_;
 };

@@ -14,7 +14,7 @@
 #include <iomanip>
 #include <iostream>
 
-#include "protocol/error.hpp"
+#include "protocol/core/error.hpp"
 #include "terrain/dem/solver_setup.hpp"
 #include "terrain/soil/tools.hpp"
 #include "tests/peers/peer_bed.hpp"
@@ -54,14 +54,14 @@ void fall(PeerBed& bed, const Job& job, Output& out) {
   for (int k = 1; k <= steps; ++k) {
     bed.step();
     if (k % every != 0) continue;
-    const dem::Accounts& a = bed.solver().accounts();
+    const terrain::dem::Accounts& a = bed.solver().accounts();
     out.row({k * bed.dt(), a.kinetic, a.floor_force, static_cast<double>(a.contacts)});
     out.frame(bed);
   }
 }
 
 /// A closed box, outside outwards.
-soil::Tool box(double middle, double side, double low, double height) {
+terrain::soil::Tool box(double middle, double side, double low, double height) {
   SurfaceMesh mesh;
   std::vector<Vec3> x;
   const double h = 0.5 * side;
@@ -78,9 +78,9 @@ soil::Tool box(double middle, double side, double low, double height) {
 }
 
 void plate(PeerBed& bed, const Job& job, Output& out) {
-  soil::Tool tool = box(0.5 * job.at("length").get<double>(), job.at("plate_side"), job.at("plate_z"),
-                        job.at("plate_height"));
-  dem::SurfaceContacts& surfaces = bed.solver().surfaces();
+  terrain::soil::Tool tool = box(0.5 * job.at("length").get<double>(), job.at("plate_side"),
+                                 job.at("plate_z"), job.at("plate_height"));
+  terrain::dem::SurfaceContacts& surfaces = bed.solver().surfaces();
   surfaces.attach(tool.mesh(), {}, bed.coefficients().side, tool.state());
   const double high = 1.0;  // m
   const int rest = job.at("rest_steps"), steps = job.at("steps"), every = job.at("every");

@@ -7,7 +7,7 @@
 
 #include "terrain/dem/contact_law.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 
 using OwnLaw = MindlinLaw;
 
@@ -68,6 +68,6 @@ struct SwitchedLaw {
   }
 };
 
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem
 
 #define MindlinLaw SwitchedLaw

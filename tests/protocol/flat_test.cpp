@@ -1,4 +1,4 @@
-#include "protocol/flat.hpp"
+#include "protocol/core/flat.hpp"
 
 #include <gtest/gtest.h>
 

@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "protocol/abandon_mpi.hpp"
 #include "protocol/mpi_transport.hpp"
 #include "protocol/transport.hpp"
 

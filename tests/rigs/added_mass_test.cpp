@@ -8,7 +8,7 @@ using namespace furrow;
 using namespace furrow::testing;
 
 TEST(AddedMass, free_spin_up_and_drop_are_exact_with_three_times_the_rims_inertia) {
-  DrawbarRigOptions options = steady_options();
+  rigs::DrawbarRigOptions options = steady_options();
   options.mode = "free_rolling";
   options.speed = 0.0;
   options.carrier_mass = 1.0;
@@ -35,7 +35,7 @@ TEST(AddedMass, free_spin_up_and_drop_are_exact_with_three_times_the_rims_inerti
 // and subtracts its rigid-body part of the same interval, as the exchange does. The difference vanishes for a
 // rigid tire.
 TEST(AddedMass, a_lagged_complete_wrench_less_its_inertia_is_stable) {
-  DrawbarRigOptions options = steady_options();
+  rigs::DrawbarRigOptions options = steady_options();
   options.mode = "free_rolling";
   options.speed = 0.0;
   MassProperties tire = tire_mass(3.0 * options.rim_spin_inertia / kTireSpin);

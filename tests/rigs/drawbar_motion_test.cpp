@@ -3,14 +3,14 @@
 
 #include <cmath>
 
-#include "protocol/error.hpp"
+#include "protocol/core/error.hpp"
 #include "tests/rigs/rig_fixture.hpp"
 
 using namespace furrow;
 using namespace furrow::testing;
 
 TEST(Place, rim_stands_at_height_and_start_with_the_imposed_velocities) {
-  DrawbarRigOptions options = steady_options();
+  rigs::DrawbarRigOptions options = steady_options();
   options.start = 1.7;
   auto rig = placed_rig(options);
   const double speed = options.angular_speed * kRadius * (1.0 - options.slip);
@@ -27,7 +27,7 @@ TEST(Place, rim_stands_at_height_and_start_with_the_imposed_velocities) {
 TEST(Modes, slip_is_what_was_asked_for_during_and_after_the_ramp) {
   for (const char* mode : {"fixed_angular_speed", "fixed_speed"}) {
     for (const double slip : {-0.2, 0.0, 0.3, 0.6}) {
-      DrawbarRigOptions options;
+      rigs::DrawbarRigOptions options;
       options.mode = mode;
       options.slip = slip;
       options.ramp = 0.05;
@@ -38,7 +38,7 @@ TEST(Modes, slip_is_what_was_asked_for_during_and_after_the_ramp) {
           ASSERT_NEAR(rig->report(0).slip, slip, 1e-7) << mode << i;
         }
       }
-      const WheelReport report = rig->report(0);
+      const rigs::WheelReport report = rig->report(0);
       if (std::string(mode) == "fixed_speed") {
         EXPECT_NEAR(report.speed, options.speed, 1e-9);
         EXPECT_NEAR(rig->rim(0).angular_velocity.y(), options.speed / (kRadius * (1.0 - slip)), 1e-12);
@@ -51,7 +51,7 @@ TEST(Modes, slip_is_what_was_asked_for_during_and_after_the_ramp) {
 }
 
 TEST(Modes, imposed_position_and_angle_are_followed_without_drift) {
-  DrawbarRigOptions options;
+  rigs::DrawbarRigOptions options;
   const auto rig = placed_rig(options);
   advance(*rig, wrench(Vec3(1500, 60, carried_mass(options) * kGravity), Vec3(30, -500, 20)), 25000);  // 1 s
   const double time = 1.0 - 0.5 * options.ramp;  // the ramp's integral
@@ -62,7 +62,7 @@ TEST(Modes, imposed_position_and_angle_are_followed_without_drift) {
 }
 
 TEST(FreeRolling, moment_spins_rim_and_tire_up_with_their_sum_of_inertia) {
-  DrawbarRigOptions options = steady_options();
+  rigs::DrawbarRigOptions options = steady_options();
   options.mode = "free_rolling";
   const auto rig = placed_rig(options);
   const double start = options.speed / kRadius, moment = 6.0;
@@ -75,7 +75,7 @@ TEST(FreeRolling, moment_spins_rim_and_tire_up_with_their_sum_of_inertia) {
 }
 
 TEST(FreeRolling, starts_at_rest_under_a_ramp_and_reports_a_bounded_slip) {
-  DrawbarRigOptions options;
+  rigs::DrawbarRigOptions options;
   options.mode = "free_rolling";
   const auto rig = placed_rig(options);
   advance(*rig, Wrench{}, 500);
@@ -84,7 +84,7 @@ TEST(FreeRolling, starts_at_rest_under_a_ramp_and_reports_a_bounded_slip) {
 }
 
 TEST(Vertical, weight_in_balance_keeps_the_height) {
-  const DrawbarRigOptions options = steady_options();
+  const rigs::DrawbarRigOptions options = steady_options();
   const auto rig = placed_rig(options);
   advance(*rig, wrench(Vec3(0, 0, carried_mass(options) * kGravity)), 5000);
   EXPECT_NEAR(rig->report(0).axle_height, 0.5, 1e-12);
@@ -92,7 +92,7 @@ TEST(Vertical, weight_in_balance_keeps_the_height) {
 }
 
 TEST(Vertical, free_fall_and_newtons_law) {
-  const DrawbarRigOptions options = steady_options();
+  const rigs::DrawbarRigOptions options = steady_options();
   const double mass = carried_mass(options);
   for (const double force : {0.0, 7000.0}) {
     const auto rig = placed_rig(options);
@@ -105,7 +105,7 @@ TEST(Vertical, free_fall_and_newtons_law) {
 }
 
 TEST(Vertical, touchdown_damper_acts_for_its_time_only) {
-  DrawbarRigOptions options = steady_options();
+  rigs::DrawbarRigOptions options = steady_options();
   options.touchdown_damping = 12e3;
   options.touchdown_time = 0.04;
   const auto rig = placed_rig(options);
@@ -123,7 +123,7 @@ TEST(Vertical, touchdown_damper_acts_for_its_time_only) {
 }
 
 TEST(Travel, mirrored_travel_mirrors_everything) {
-  DrawbarRigOptions options;
+  rigs::DrawbarRigOptions options;
   options.toe_angle = 0.1;
   const auto forward = placed_rig(options);
   options.travel_sign = -1.0;
@@ -133,7 +133,7 @@ TEST(Travel, mirrored_travel_mirrors_everything) {
   // Mirror in the y–z plane: forces change x, moments (axial) change y and z.
   advance(*forward, wrench(Vec3(900, 120, 4700), Vec3(15, -250, 8)), 5000);
   advance(*backward, wrench(Vec3(-900, 120, 4700), Vec3(15, 250, -8)), 5000);
-  const WheelReport f = forward->report(0), b = backward->report(0);
+  const rigs::WheelReport f = forward->report(0), b = backward->report(0);
   EXPECT_NEAR(f.drawbar_pull, b.drawbar_pull, 1e-6);
   EXPECT_NEAR(f.drawbar_pull_raw, b.drawbar_pull_raw, 1e-6);
   EXPECT_NEAR(f.drive_torque, b.drive_torque, 1e-7);
@@ -148,7 +148,7 @@ TEST(Travel, mirrored_travel_mirrors_everything) {
 }
 
 TEST(Travel, lateral_force_is_positive_to_the_left_of_travel) {
-  DrawbarRigOptions options = steady_options();
+  rigs::DrawbarRigOptions options = steady_options();
   options.travel_sign = -1.0;
   const auto rig = placed_rig(options);
   advance(*rig, wrench(Vec3(0, 100, 4600)), 1);
@@ -157,7 +157,7 @@ TEST(Travel, lateral_force_is_positive_to_the_left_of_travel) {
 
 TEST(Camber, wheel_leans_about_its_forward_axis_and_keeps_to_it) {
   for (const double travel : {1.0, -1.0}) {
-    DrawbarRigOptions options = steady_options();
+    rigs::DrawbarRigOptions options = steady_options();
     options.travel_sign = travel;
     options.camber_angle = 0.08;
     options.toe_angle = -0.05;
@@ -175,7 +175,7 @@ TEST(Camber, wheel_leans_about_its_forward_axis_and_keeps_to_it) {
 }
 
 TEST(Camber, mirrored_camber_and_toe_mirror_everything) {
-  DrawbarRigOptions options;
+  rigs::DrawbarRigOptions options;
   options.toe_angle = 0.1;
   options.camber_angle = -0.07;
   options.toe_time = 0.05;
@@ -186,7 +186,7 @@ TEST(Camber, mirrored_camber_and_toe_mirror_everything) {
   // Mirror in the x–z plane: forces change y, moments (axial) change x and z.
   advance(*one, wrench(Vec3(900, 120, 4700), Vec3(15, -250, 8)), 5000);
   advance(*other, wrench(Vec3(900, -120, 4700), Vec3(-15, -250, -8)), 5000);
-  const WheelReport a = one->report(0), b = other->report(0);
+  const rigs::WheelReport a = one->report(0), b = other->report(0);
   EXPECT_NEAR(a.drawbar_pull, b.drawbar_pull, 1e-6);
   EXPECT_NEAR(a.drive_torque, b.drive_torque, 1e-7);
   EXPECT_NEAR(a.lateral_force, -b.lateral_force, 1e-12);
@@ -198,7 +198,7 @@ TEST(Camber, mirrored_camber_and_toe_mirror_everything) {
 }
 
 TEST(Steering, wheel_runs_straight_until_its_time_then_turns_smoothly_to_the_toe_angle) {
-  DrawbarRigOptions options = steady_options();
+  rigs::DrawbarRigOptions options = steady_options();
   options.toe_angle = 0.06;
   options.toe_time = 0.02;
   options.toe_ramp = 0.01;
@@ -223,16 +223,16 @@ TEST(Steering, wheel_runs_straight_until_its_time_then_turns_smoothly_to_the_toe
 }
 
 TEST(Refusals, bad_options_and_states_name_themselves) {
-  DrawbarRigOptions options;
+  rigs::DrawbarRigOptions options;
   options.mode = "fast";
-  EXPECT_THROW(make_drawbar_rig(options), Error);
+  EXPECT_THROW(rigs::make_drawbar_rig(options), Error);
   options = {};
   options.mode = "fixed_speed";
   options.slip = 1.0;
-  EXPECT_THROW(make_drawbar_rig(options), Error);
+  EXPECT_THROW(rigs::make_drawbar_rig(options), Error);
   options = {};
   options.carrier_mass = -1.0;
-  EXPECT_THROW(make_drawbar_rig(options), Error);
+  EXPECT_THROW(rigs::make_drawbar_rig(options), Error);
   const auto rig = placed_rig({});
   try {
     advance(*rig, wrench(Vec3(std::nan(""), 0, 0)), 1);
@@ -240,5 +240,5 @@ TEST(Refusals, bad_options_and_states_name_themselves) {
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ExitCode::physics);
   }
-  EXPECT_THROW(make_drawbar_rig({})->rim(0), Error);
+  EXPECT_THROW(rigs::make_drawbar_rig({})->rim(0), Error);
 }

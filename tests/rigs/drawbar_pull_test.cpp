@@ -13,7 +13,7 @@ const double kTolerance = 1e-6;  // N, N m: round-off of 470 kg × 4 m/s in one 
 }
 
 TEST(DrawbarPull, equals_the_force_on_the_rim_in_steady_state) {
-  const DrawbarRigOptions options = steady_options();
+  const rigs::DrawbarRigOptions options = steady_options();
   const auto rig = placed_rig(options);
   const double weight = carried_mass(options) * kGravity;
   for (const double force : {1500.0, -400.0, 0.0}) {
@@ -24,7 +24,7 @@ TEST(DrawbarPull, equals_the_force_on_the_rim_in_steady_state) {
 }
 
 TEST(DrawbarPull, without_tire_force_a_ramp_shows_only_in_the_raw_pull) {
-  DrawbarRigOptions options;
+  rigs::DrawbarRigOptions options;
   options.ramp = 0.2;
   const auto rig = placed_rig(options);
   const double speed = options.angular_speed * kRadius * (1.0 - options.slip);
@@ -45,7 +45,7 @@ TEST(DrawbarPull, without_tire_force_a_ramp_shows_only_in_the_raw_pull) {
 }
 
 TEST(DrawbarPull, is_exact_in_the_ramp_with_substeps_and_force) {
-  DrawbarRigOptions options;
+  rigs::DrawbarRigOptions options;
   const auto rig = placed_rig(options);
   for (int i = 0; i < 300; ++i) {
     advance(*rig, wrench(Vec3(-820.0, 30.0, 4000.0), Vec3(10, -200, 5)), 1, 4e-4, 5);
@@ -61,7 +61,7 @@ TEST(DriveTorque, equals_minus_the_moment_on_the_rim_in_steady_state) {
 }
 
 TEST(DriveTorque, carries_the_spin_up_of_rim_and_tire_during_the_ramp) {
-  DrawbarRigOptions options;
+  rigs::DrawbarRigOptions options;
   options.ramp = 0.2;
   const auto rig = placed_rig(options);
   double impulse = 0.0;
@@ -74,7 +74,7 @@ TEST(DriveTorque, carries_the_spin_up_of_rim_and_tire_during_the_ramp) {
 }
 
 TEST(Toe, wheel_points_and_forces_decompose_in_the_frame_of_travel) {
-  DrawbarRigOptions options = steady_options();
+  rigs::DrawbarRigOptions options = steady_options();
   options.toe_angle = 0.15;
   const auto rig = placed_rig(options);
   const Vec3 axle(-std::sin(0.15), std::cos(0.15), 0.0);
@@ -82,7 +82,7 @@ TEST(Toe, wheel_points_and_forces_decompose_in_the_frame_of_travel) {
   EXPECT_LT((rig->rim(0).angular_velocity - options.angular_speed * axle).norm(), 1e-14);
   const Vec3 force(900.0, -350.0, 4600.0), moment = 12.0 * Vec3::UnitX() - 300.0 * axle;
   advance(*rig, wrench(force, moment), 50);
-  const WheelReport report = rig->report(0);
+  const rigs::WheelReport report = rig->report(0);
   EXPECT_NEAR(report.drawbar_pull, 900.0, kTolerance);
   EXPECT_EQ(report.lateral_force, -350.0);
   EXPECT_NEAR(report.drive_torque, -moment.dot(axle), kTolerance);

@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-#include "protocol/error.hpp"
+#include "protocol/core/error.hpp"
 #include "tests/rigs/rig_fixture.hpp"
 
 using namespace furrow;
@@ -15,8 +15,8 @@ Wrench varying(int i) {
   return wrench(Vec3(300.0 + i, 40.0 - 0.3 * i, 4600.0 + 2.0 * i), Vec3(5.0, -100.0 - 0.5 * i, 0.1 * i));
 }
 
-void expect_equal(const Rig& a, const Rig& b) {
-  const WheelReport x = a.report(0), y = b.report(0);
+void expect_equal(const rigs::Rig& a, const rigs::Rig& b) {
+  const rigs::WheelReport x = a.report(0), y = b.report(0);
   EXPECT_EQ(std::memcmp(&x, &y, sizeof x), 0);
   const RimState s = a.rim(0), t = b.rim(0);
   EXPECT_EQ(s.position, t.position);
@@ -29,7 +29,7 @@ void expect_equal(const Rig& a, const Rig& b) {
 
 TEST(Restart, continues_bit_for_bit_whether_placed_before_or_not) {
   for (const char* mode : {"fixed_angular_speed", "fixed_speed", "free_rolling"}) {
-    DrawbarRigOptions options;
+    rigs::DrawbarRigOptions options;
     options.mode = mode;
     options.toe_angle = 0.05;
     options.toe_time = 0.004;
@@ -42,14 +42,15 @@ TEST(Restart, continues_bit_for_bit_whether_placed_before_or_not) {
     Archive archive;
     original->save(archive);
     const auto placed = placed_rig(options);
-    const auto fresh = make_drawbar_rig(options);
+    const auto fresh = rigs::make_drawbar_rig(options);
     fresh->add_tire_mass(0, tire_mass(), kRadius);
     placed->restore(archive);
     fresh->restore(archive);
     expect_equal(*original, *placed);
     expect_equal(*original, *fresh);
     for (; i < 500; ++i)
-      for (Rig* rig : {original.get(), placed.get(), fresh.get()}) advance(*rig, varying(i), 1, 4e-5, 2);
+      for (rigs::Rig* rig : {original.get(), placed.get(), fresh.get()})
+        advance(*rig, varying(i), 1, 4e-5, 2);
     expect_equal(*original, *placed);
     expect_equal(*original, *fresh);
   }

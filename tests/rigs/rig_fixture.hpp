@@ -21,28 +21,28 @@ inline MassProperties tire_mass(double scale = 1.0) {
   return tire;
 }
 
-inline std::unique_ptr<Rig> placed_rig(const DrawbarRigOptions& options,
-                                       const MassProperties& tire = tire_mass()) {
-  auto rig = make_drawbar_rig(options);
+inline std::unique_ptr<rigs::Rig> placed_rig(const rigs::DrawbarRigOptions& options,
+                                             const MassProperties& tire = tire_mass()) {
+  auto rig = rigs::make_drawbar_rig(options);
   rig->add_tire_mass(0, tire, kRadius);
   const std::array<double, 1> height = {0.5};
   rig->place(height);
   return rig;
 }
 
-inline double carried_mass(const DrawbarRigOptions& options) {
+inline double carried_mass(const rigs::DrawbarRigOptions& options) {
   return options.carrier_mass + options.rim_mass + kTireMass;
 }
 
-inline void advance(Rig& rig, const Wrench& wrench, int count, double step = kStep, int substeps = 1) {
+inline void advance(rigs::Rig& rig, const Wrench& wrench, int count, double step = kStep, int substeps = 1) {
   for (int i = 0; i < count; ++i) rig.advance({&wrench, 1}, step, substeps);
 }
 
 inline Wrench wrench(const Vec3& force, const Vec3& moment = Vec3::Zero()) { return {force, moment}; }
 
 /// Full speed from the start, no touch-down damper.
-inline DrawbarRigOptions steady_options() {
-  DrawbarRigOptions options;
+inline rigs::DrawbarRigOptions steady_options() {
+  rigs::DrawbarRigOptions options;
   options.ramp = 0.0;
   options.touchdown_damping = 0.0;
   return options;

@@ -2,15 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include "protocol/error.hpp"
+#include "protocol/core/error.hpp"
 
 using namespace furrow;
 
-TEST(RigRegistry, makes_the_drawbar_rig) { EXPECT_EQ(make_rig("drawbar", {})->kind(), "drawbar"); }
+TEST(RigRegistry, makes_the_drawbar_rig) { EXPECT_EQ(rigs::make_rig("drawbar", {})->kind(), "drawbar"); }
 
 TEST(RigRegistry, unknown_type_lists_the_valid_ones) {
   try {
-    make_rig("sled", {});
+    rigs::make_rig("sled", {});
     FAIL() << "accepted";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ExitCode::bad_input);

@@ -10,7 +10,7 @@
 #include <sstream>
 #include <string>
 
-#include "nodes/fault_point.hpp"
+#include "protocol/files/fault_point.hpp"
 #include "protocol/mpi_transport.hpp"
 
 namespace furrow {

@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "nodes/frames.hpp"
-#include "nodes/xdmf.hpp"
+#include "nodes/output/frames.hpp"
+#include "nodes/output/xdmf.hpp"
 
 namespace {
 
@@ -42,16 +42,16 @@ int main(int count, char** arguments) {
            {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}}};
   for (int i = 0; i < 3; ++i) {
     const double time = 0.1 * i;
-    furrow::write_tire_frame(folder, 0, i, time, mesh, icosahedron(time, 2.0 * time),
-                             {{2, 3}, {{0, 0, 100.0 + i}, {5, 0, 50}}});
-    furrow::TerrainFrame grains;
+    furrow::output::write_tire_frame(folder, 0, i, time, mesh, icosahedron(time, 2.0 * time),
+                                     {{2, 3}, {{0, 0, 100.0 + i}, {5, 0, 50}}});
+    furrow::terrain::TerrainFrame grains;
     for (int g = 0; g < 30; ++g) {
       grains.position.insert(grains.position.end(), {0.1f * g, 0.01f * g, 0.05f - 0.001f * i * g});
       grains.speed.push_back(0.01f * g);
       grains.radius.push_back(0.006f + 0.0001f * g);
     }
-    furrow::write_terrain_frame(folder, i, time, grains);
+    furrow::output::write_terrain_frame(folder, i, time, grains);
   }
-  furrow::write_xdmf_index(folder);
+  furrow::output::write_xdmf_index(folder);
   return 0;
 }

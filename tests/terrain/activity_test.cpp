@@ -4,12 +4,12 @@
 #include <cmath>
 #include <vector>
 
-#include "terrain/dem/bed_layers.hpp"
-#include "terrain/dem/bed_settling.hpp"
+#include "terrain/dem/beds/bed_layers.hpp"
+#include "terrain/dem/beds/bed_settling.hpp"
 #include "terrain/dem/solver_setup.hpp"
 #include "tests/terrain/few_grains.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 namespace {
 
 TerrainOptions bed_options(double cohesion) {
@@ -171,4 +171,4 @@ TEST(Activity, same_bits_for_one_and_two_threads_and_after_a_restart) {
 }
 
 }  // namespace
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

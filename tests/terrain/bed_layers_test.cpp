@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "terrain/dem/bed_layers.hpp"
+#include "terrain/dem/beds/bed_layers.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 namespace {
 
 TEST(BedLayers, samples_keep_their_distance_and_the_walls) {
@@ -39,4 +39,4 @@ TEST(BedLayers, same_seed_same_layers_other_seed_others) {
 }
 
 }  // namespace
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

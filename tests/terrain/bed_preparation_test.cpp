@@ -7,16 +7,16 @@
 #include <fstream>
 #include <numbers>
 
-#include "terrain/dem/bed_cache.hpp"
-#include "terrain/dem/bed_compaction.hpp"
-#include "terrain/dem/bed_generators.hpp"
-#include "terrain/dem/bed_preparation.hpp"
-#include "terrain/dem/bed_statistics.hpp"
+#include "protocol/files/hdf5_handle.hpp"
+#include "terrain/dem/beds/bed_cache.hpp"
+#include "terrain/dem/beds/bed_compaction.hpp"
+#include "terrain/dem/beds/bed_generators.hpp"
+#include "terrain/dem/beds/bed_preparation.hpp"
+#include "terrain/dem/beds/bed_statistics.hpp"
 #include "terrain/dem/close_pairs.hpp"
-#include "terrain/dem/hdf5_handle.hpp"
 #include "terrain/dem/solver_setup.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 namespace {
 
 namespace fs = std::filesystem;
@@ -304,4 +304,4 @@ TEST_F(Beds, digest_knows_every_way_to_make_a_bed) {
 }
 
 }  // namespace
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

@@ -6,7 +6,7 @@
 
 #include "tests/terrain/few_grains.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -18,7 +18,7 @@ ContactMotion<double> touching(double overlap, const Triple<double>& v = {0, 0, 
 TEST(Lanes, tanh_agrees_with_the_standard_library) {
   for (double x : {0.0, 1e-12, 1e-6, 1e-3, 0.1, 0.17, 0.18, 0.5, 1.0, 3.0, 7.0, 19.0, 100.0}) {
     EXPECT_NEAR(tanh_of_positive(x), std::tanh(x), 4e-16) << x;
-    EXPECT_EQ(tanh_of_positive(constant<Wide>(x))[2], tanh_of_positive(x)) << x;
+    EXPECT_EQ(tanh_of_positive(constant<Double4>(x))[2], tanh_of_positive(x)) << x;
     const double scale = x > 0.0 ? 1.0 / std::tanh(x) : 0.0;
     EXPECT_NEAR(tanh_of_positive(x) * scale, std::tanh(x) * scale, 1e-14) << x;
   }
@@ -160,4 +160,4 @@ TEST(StableStep, names_what_limits_it) {
 }
 
 }  // namespace
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

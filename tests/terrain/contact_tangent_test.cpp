@@ -7,7 +7,7 @@
 #include "tests/terrain/few_grains.hpp"
 #include "tests/terrain/surface_meshes.hpp"
 
-namespace furrow {
+namespace furrow::terrain {
 namespace {
 
 using testing::sheet;
@@ -16,13 +16,14 @@ using testing::Surface;
 constexpr double kStep = 1e-5;  // of an interval, s
 
 /// A quad under the plane z = height that looks down.
-Surface plate(double size, double height) {
-  Surface s = sheet(-0.5 * size, -0.5 * size, size, 1, 1, [=](double, double) { return height; });
+testing::Surface plate(double size, double height) {
+  testing::Surface s =
+      testing::sheet(-0.5 * size, -0.5 * size, size, 1, 1, [=](double, double) { return height; });
   for (auto& triangle : s.mesh.triangles) std::swap(triangle[1], triangle[2]);
   return s;
 }
 
-SurfaceState moved(const Surface& surface, const Vec3& shift) {
+SurfaceState moved(const testing::Surface& surface, const Vec3& shift) {
   return {surface.vertex, std::vector<Vec3>(surface.vertex.size(), shift / kStep)};
 }
 
@@ -44,14 +45,14 @@ Answer sum(const NodalForces& forces) {
 }
 
 /// Means of the motion of vertex 0 less where it began.
-std::pair<Vec3, Vec3> motion(const NodalForces& forces, const Surface& surface) {
+std::pair<Vec3, Vec3> motion(const NodalForces& forces, const testing::Surface& surface) {
   return {forces.tangent[0].position - surface.vertex[forces.vertex[0]], forces.tangent[0].velocity};
 }
 
 /// The force that a surface gets which stood still and is then moved by `shift`, less the force standing still; and
 /// what the tangents of standing still make of it.
 template <class Push>
-void expect_difference(const Surface& surface, const Vec3& shift, double tolerance, Push push) {
+void expect_difference(const testing::Surface& surface, const Vec3& shift, double tolerance, Push push) {
   const NodalForces still = push(Vec3::Zero()), after = push(shift);
   ASSERT_FALSE(still.vertex.empty());
   const Answer a = sum(still), b = sum(after);
@@ -64,17 +65,18 @@ void expect_difference(const Surface& surface, const Vec3& shift, double toleran
 }
 
 /// A grain too heavy to move, 0.3 mm deep in a plate above it.
-NodalForces push_grain(const Surface& surface, const Vec3& shift, const std::string& law, double friction) {
+NodalForces push_grain(const testing::Surface& surface, const Vec3& shift, const std::string& law,
+                       double friction) {
   constexpr int kSubsteps = 10;
-  dem::FewGrains few;
+  terrain::dem::FewGrains few;
   few.options.law = law;
   few.options.density = 1e9;
   few.options.friction = friction;
   few.options.friction_impulse_limit = false;
   few.options.step = kStep / kSubsteps;
-  dem::GrainSolver solver = few.make({{0.3, 0.0, 0.3, few.options.radius}});
-  const ContactMaterial material = dem::grain_material(few.options);
-  Surface here = surface;
+  terrain::dem::GrainSolver solver = few.make({{0.3, 0.0, 0.3, few.options.radius}});
+  const ContactMaterial material = terrain::dem::grain_material(few.options);
+  testing::Surface here = surface;
   for (Vec3& x : here.vertex) x += Vec3(0.3, 0.0, 0.3 + few.options.radius - 3e-4);
   solver.surfaces().give_tangents(true);
   const SurfaceState target = moved(here, shift);
@@ -94,7 +96,7 @@ NodalForces push_grain(const Surface& surface, const Vec3& shift, const std::str
 }
 
 TEST(ContactTangent, of_a_grain_is_the_difference_of_its_force) {
-  const Surface surface = plate(0.1, 0.0);
+  const testing::Surface surface = plate(0.1, 0.0);
   for (const char* law : {"mindlin", "coulomb"})
     for (const Vec3& shift : {Vec3(0, 0, -1e-10), Vec3(0, 0, 1e-10), Vec3(1e-10, 2e-10, -1e-10)})
       expect_difference(surface, shift, 1e-3,
@@ -102,7 +104,7 @@ TEST(ContactTangent, of_a_grain_is_the_difference_of_its_force) {
 }
 
 TEST(ContactTangent, of_a_grain_without_friction_is_normal_to_the_surface) {
-  const Surface surface = plate(0.1, 0.0);
+  const testing::Surface surface = plate(0.1, 0.0);
   const Answer a = sum(push_grain(surface, Vec3::Zero(), "mindlin", 0.0));
   EXPECT_GT(a.tangent.stiffness(2, 2), 1e4);
   EXPECT_EQ(a.tangent.stiffness.leftCols<2>().norm(), 0.0);
@@ -112,7 +114,7 @@ TEST(ContactTangent, of_a_grain_without_friction_is_normal_to_the_surface) {
 }
 
 /// A plate that has stood 0.4 mm deep in hard ground.
-NodalForces push_ground(const Surface& surface, const Vec3& shift) {
+NodalForces push_ground(const testing::Surface& surface, const Vec3& shift) {
   TerrainOptions options;
   options.contact_tangents = true;
   const auto ground = make_rigid_ground(options);
@@ -127,7 +129,7 @@ NodalForces push_ground(const Surface& surface, const Vec3& shift) {
 }
 
 TEST(ContactTangent, of_rigid_ground_is_the_difference_of_its_force) {
-  const Surface surface = plate(0.1, -4e-4);
+  const testing::Surface surface = plate(0.1, -4e-4);
   for (const Vec3& shift : {Vec3(0, 0, -1e-9), Vec3(0, 0, 1e-9), Vec3(1e-9, 2e-9, -1e-9)})
     expect_difference(surface, shift, 0.02, [&](const Vec3& d) { return push_ground(surface, d); });
 }
@@ -135,7 +137,7 @@ TEST(ContactTangent, of_rigid_ground_is_the_difference_of_its_force) {
 TEST(ContactTangent, is_not_sent_unless_wanted) {
   TerrainOptions options;
   const auto ground = make_rigid_ground(options);
-  const Surface surface = plate(0.1, -4e-4);
+  const testing::Surface surface = plate(0.1, -4e-4);
   const SurfaceState target = moved(surface, Vec3::Zero());
   ground->attach(surface.mesh, {}, target);
   NodalForces forces;
@@ -146,4 +148,4 @@ TEST(ContactTangent, is_not_sent_unless_wanted) {
 }
 
 }  // namespace
-}  // namespace furrow
+}  // namespace furrow::terrain

@@ -6,13 +6,13 @@
 #include <filesystem>
 #include <fstream>
 
-#include "protocol/hash.hpp"
-#include "terrain/dem/bed_after_run.hpp"
-#include "terrain/dem/bed_cache.hpp"
-#include "terrain/dem/bed_settling.hpp"
+#include "protocol/core/hash.hpp"
+#include "terrain/dem/beds/bed_after_run.hpp"
+#include "terrain/dem/beds/bed_cache.hpp"
+#include "terrain/dem/beds/bed_settling.hpp"
 #include "terrain/terrain_options.hpp"
 
-namespace furrow {
+namespace furrow::terrain {
 namespace {
 
 namespace fs = std::filesystem;
@@ -32,7 +32,7 @@ class DemTerrain : public testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  fs::path cached() const { return dem::bed_cache_file(dem::bed_digest(options_)); }
+  fs::path cached() const { return terrain::dem::bed_cache_file(terrain::dem::bed_digest(options_)); }
 
   fs::path folder_;
   TerrainOptions options_;
@@ -146,28 +146,28 @@ TEST_F(DemTerrain, damaged_cache_is_made_anew) {
     file.seekp(static_cast<std::streamoff>(fs::file_size(cached()) / 2));
     file.write("damage", 6);
   }
-  EXPECT_THROW(dem::read_bed(cached()), Error);
+  EXPECT_THROW(terrain::dem::read_bed(cached()), Error);
   bool settled_again = false;
   const auto second = make_terrain(options_);
   second->prepare([&](const std::string&, double) { settled_again = true; });
   EXPECT_TRUE(settled_again);
   EXPECT_EQ(hash_of(*first), hash_of(*second));
-  EXPECT_NO_THROW(dem::read_bed(cached()));
+  EXPECT_NO_THROW(terrain::dem::read_bed(cached()));
   for (const auto& entry : fs::directory_iterator(cached().parent_path()))
     EXPECT_EQ(entry.path().extension(), ".h5");
 }
 
 TEST_F(DemTerrain, digest_tells_beds_apart) {
-  const std::string digest = dem::bed_digest(options_);
+  const std::string digest = terrain::dem::bed_digest(options_);
   TerrainOptions other = options_;
   other.threads = 7, other.step = 1e-5, other.activity = false;
-  EXPECT_EQ(dem::bed_digest(other), digest);
+  EXPECT_EQ(terrain::dem::bed_digest(other), digest);
   other = options_, other.seed = 2;
-  EXPECT_NE(dem::bed_digest(other), digest);
+  EXPECT_NE(terrain::dem::bed_digest(other), digest);
   other = options_, other.law = "coulomb";
-  EXPECT_NE(dem::bed_digest(other), digest);
+  EXPECT_NE(terrain::dem::bed_digest(other), digest);
   other = options_, other.friction = 0.91;
-  EXPECT_NE(dem::bed_digest(other), digest);
+  EXPECT_NE(terrain::dem::bed_digest(other), digest);
 }
 
 TEST_F(DemTerrain, plate_books_force_momentum_and_energy) {
@@ -244,23 +244,23 @@ TEST_F(DemTerrain, bed_after_a_plate_lies_until_it_rests_and_starts_another_run)
   ASSERT_TRUE(press.run(*a, plate, Vec3(0.0, 0.0, 0.3), 500, 6e-5).ok);
   Archive run;
   a->save(run);
-  dem::RestResult rest;
+  terrain::dem::RestResult rest;
   int told = 0;
-  const Archive bed = dem::bed_after_run(
+  const Archive bed = terrain::dem::bed_after_run(
       run, options_, 0.02, [&](const std::string&, double) { ++told; }, rest);
   EXPECT_TRUE(rest.settled);
   EXPECT_GE(rest.time, 0.02);
-  EXPECT_LT(rest.force_ratio, dem::kSettledForceRatio);
-  EXPECT_LT(rest.speed, dem::kRestSpeed);
+  EXPECT_LT(rest.force_ratio, terrain::dem::kSettledForceRatio);
+  EXPECT_LT(rest.speed, terrain::dem::kRestSpeed);
   EXPECT_GT(told, 0);
   options_.bed = (folder_ / "bed.h5").string();
-  dem::write_bed(options_.bed, bed);
+  terrain::dem::write_bed(options_.bed, bed);
   const auto b = make_terrain(options_);
   b->prepare({});
   EXPECT_EQ(b->size(), a->size());
   EXPECT_LT(b->mean_height(0.12, 0.18, -0.03, 0.03), before - 2e-3) << "the plate's print is gone";
   struct Stop {};
-  EXPECT_THROW(dem::bed_after_run(
+  EXPECT_THROW(terrain::dem::bed_after_run(
                    run, options_, 0.02, [](const std::string&, double) { throw Stop{}; }, rest),
                Stop);
 }
@@ -317,4 +317,4 @@ TEST_F(DemTerrain, bad_values_are_refused_by_key) {
 }
 
 }  // namespace
-}  // namespace furrow
+}  // namespace furrow::terrain

@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "protocol/hash.hpp"
+#include "protocol/core/hash.hpp"
 #include "terrain/dem/grain_solver.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 
 struct FewGrains {
   TerrainOptions options;
@@ -65,4 +65,4 @@ inline void set_velocity(GrainSolver& s, int id, const Vec3& v) {
 }
 inline void set_spin(GrainSolver& s, int id, const Vec3& w) { s.grains().spin[s.index_of(id)] = quad(w); }
 
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

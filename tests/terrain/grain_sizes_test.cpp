@@ -7,15 +7,15 @@
 #include <numbers>
 #include <random>
 
-#include "protocol/error.hpp"
-#include "terrain/dem/bed_preparation.hpp"
-#include "terrain/dem/bed_statistics.hpp"
+#include "protocol/core/error.hpp"
+#include "terrain/dem/beds/bed_preparation.hpp"
+#include "terrain/dem/beds/bed_statistics.hpp"
 #include "terrain/dem/grain_sizes.hpp"
 #include "terrain/dem/size_scale.hpp"
 #include "terrain/dem/solver_setup.hpp"
 #include "tests/terrain/few_grains.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 namespace {
 
 std::array<double, 7> sized_part(const ContactCoefficients& c) {
@@ -337,4 +337,4 @@ TEST(GrainSizes, bed_of_many_sizes_settles) {
 }
 
 }  // namespace
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

@@ -7,7 +7,7 @@
 
 #include "tests/terrain/few_grains.hpp"
 
-namespace furrow::dem {
+namespace furrow::terrain::dem {
 namespace {
 
 constexpr double kRadius = 0.006;
@@ -288,4 +288,4 @@ TEST(GrainSolver, lost_and_invalid_grains_are_named) {
 }
 
 }  // namespace
-}  // namespace furrow::dem
+}  // namespace furrow::terrain::dem

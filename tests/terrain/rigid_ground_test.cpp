@@ -7,7 +7,7 @@
 
 #include "tests/terrain/surface_meshes.hpp"
 
-namespace furrow {
+namespace furrow::terrain {
 namespace {
 
 using testing::box;
@@ -22,8 +22,8 @@ ContactMaterial rubber(double friction = 0.8) {
   return material;
 }
 
-SurfaceState placed(const Surface& surface, const Vec3& shift, const Vec3& velocity, double turn = 0.0,
-                    double spin = 0.0) {
+SurfaceState placed(const testing::Surface& surface, const Vec3& shift, const Vec3& velocity,
+                    double turn = 0.0, double spin = 0.0) {
   const Quat orientation(Eigen::AngleAxisd(turn, Vec3::UnitY()));
   SurfaceState state;
   for (const Vec3& x : surface.vertex) {
@@ -61,7 +61,7 @@ Push slide_steadily(Terrain& ground, SurfaceState state, double duration = 5e-3,
 TEST(RigidGround, presses_a_block_with_stiffness_times_depth_times_area) {
   TerrainOptions options;
   const auto ground = make_rigid_ground(options);
-  const Surface block = box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
+  const testing::Surface block = testing::box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
   const SurfaceState start = placed(block, {3.0, 0.0, -4e-4}, Vec3::Zero());
   ground->attach(block.mesh, rubber(), start);
   const Push one = push(*ground, start);
@@ -77,7 +77,7 @@ TEST(RigidGround, presses_a_tilted_block_with_the_integral_of_its_depth) {
   const auto ground = make_rigid_ground(options);
   // Bottom face tilted about y, its low edge 1 mm deep, its high edge above: a wedge of pressure of length L.
   const double tilt = 0.01, depth = 1e-3, length = depth / std::tan(tilt);
-  const Surface block = box({0.0, -0.05, 0.0}, {0.2, 0.05, 0.1});
+  const testing::Surface block = testing::box({0.0, -0.05, 0.0}, {0.2, 0.05, 0.1});
   const SurfaceState start = placed(block, {0.0, 0.0, -depth}, Vec3::Zero(), -tilt);
   ground->attach(block.mesh, rubber(), start);
   const Push one = push(*ground, start);
@@ -89,8 +89,8 @@ TEST(RigidGround, presses_a_tilted_block_with_the_integral_of_its_depth) {
 
 TEST(RigidGround, does_not_depend_on_how_a_flat_face_is_cut) {
   const auto coarse_ground = make_rigid_ground({}), fine_ground = make_rigid_ground({});
-  const Surface coarse = testing::sheet(-0.1, -0.1, 0.2, 1, 1, [](double, double) { return 0.0; });
-  const Surface fine = testing::sheet(-0.1, -0.1, 0.02, 10, 10, [](double, double) { return 0.0; });
+  const testing::Surface coarse = testing::sheet(-0.1, -0.1, 0.2, 1, 1, [](double, double) { return 0.0; });
+  const testing::Surface fine = testing::sheet(-0.1, -0.1, 0.02, 10, 10, [](double, double) { return 0.0; });
   const double tilt = 4e-3;
   const Vec3 velocity(0.3, 0.1, 0.0);
   const SurfaceState a = placed(coarse, {0.0, 0.0, -1e-4}, velocity, tilt);
@@ -110,7 +110,7 @@ TEST(RigidGround, follows_the_regularised_friction_law) {
       options.friction = 0.7;
       options.friction_velocity_scale = scale;
       const auto ground = make_rigid_ground(options);
-      const Surface block = box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
+      const testing::Surface block = testing::box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
       const Vec3 direction = Vec3(0.6, -0.8, 0.0);
       const SurfaceState start = placed(block, {0.0, 0.0, -4e-4}, speed * direction);
       ground->attach(block.mesh, rubber(0.9), start);  // the smaller coefficient rules
@@ -131,7 +131,7 @@ TEST(RigidGround, sticks_like_a_spring_before_it_slides) {
   options.friction_velocity_scale = 1e6;
   options.ground_damping = 0.0;
   const auto ground = make_rigid_ground(options);
-  const Surface block = box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
+  const testing::Surface block = testing::box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
   const SurfaceState start = placed(block, {0.0, 0.0, -4e-4}, {1e-2, 0.0, 0.0});
   ground->attach(block.mesh, rubber(), start);
   const double at_rest = ground->state().elastic_energy;
@@ -153,7 +153,7 @@ TEST(RigidGround, shears_what_it_touches_from_then_on) {
   for (const double cell : {0.03, 0.01}) {
     const auto ground = make_rigid_ground(options);
     const int across = static_cast<int>(std::lround(width / cell));
-    const Surface tread =
+    const testing::Surface tread =
         testing::sheet(0.0, 0.0, cell, 4 * across, across, [&](double x, double) { return slope * x; });
     SurfaceState state = placed(tread, Vec3::Zero(), {0.0, v, -slope * c});
     ground->attach(tread.mesh, rubber(10.0), state);
@@ -181,7 +181,7 @@ TEST(RigidGround, does_not_let_a_light_vertex_chatter) {
     options.friction = 0.7;
     options.friction_velocity_scale = scale;
     const auto ground = make_rigid_ground(options);
-    Surface patch = box({-0.01, -0.025, 0.0}, {0.01, 0.025, 0.01});
+    testing::Surface patch = testing::box({-0.01, -0.025, 0.0}, {0.01, 0.025, 0.01});
     const double mass = 2e-3, h = 4e-5, drive = 1e5, speed = 0.02;
     Vec3 position(0.0, 0.0, -50.0 / (options.ground_stiffness * 1e-3)), velocity = Vec3::Zero();
     double pulled = 0.0, force = 0.0, last = 0.0, swing = 0.0, mean = 0.0;
@@ -208,7 +208,7 @@ TEST(RigidGround, gives_no_tractive_effort_without_friction) {
   for (double friction : {0.0, 0.5}) {
     TerrainOptions options;
     const auto ground = make_rigid_ground(options);
-    const Surface round = wheel(0.4673, 0.2, 60, 4);
+    const testing::Surface round = testing::wheel(0.4673, 0.2, 60, 4);
     const SurfaceState start = placed(round, {0.0, 0.0, 0.4673 - 1e-3}, {2.0, 0.0, 0.0}, 0.02, 8.56);
     ground->attach(round.mesh, rubber(friction), start);
     const Push first = push(*ground, start, 4e-4, 40);
@@ -226,7 +226,7 @@ TEST(RigidGround, gives_no_tractive_effort_without_friction) {
 }
 
 TEST(RigidGround, mirrors_what_is_mirrored) {
-  const Surface round = wheel(0.4673, 0.2, 60, 4);
+  const testing::Surface round = testing::wheel(0.4673, 0.2, 60, 4);
   Push there, back;
   for (int sign : {1, -1}) {
     const auto ground = make_rigid_ground({});
@@ -243,7 +243,7 @@ TEST(RigidGround, never_pulls) {
   TerrainOptions options;
   options.ground_damping = 1e7;
   const auto ground = make_rigid_ground(options);
-  const Surface block = box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
+  const testing::Surface block = testing::box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
   const SurfaceState start = placed(block, {0.0, 0.0, -4e-4}, {0.0, 0.0, 1.0});
   ground->attach(block.mesh, rubber(), start);
   const Push one = push(*ground, start);
@@ -253,7 +253,7 @@ TEST(RigidGround, never_pulls) {
 
 TEST(RigidGround, evens_out_the_facets_of_a_rolling_wheel) {
   // 60 facets: a vertex stands 0.64 mm farther out than a facet's middle; rigid contact would lift the wheel by that.
-  const Surface round = wheel(0.4673, 0.2, 60, 4);
+  const testing::Surface round = testing::wheel(0.4673, 0.2, 60, 4);
   auto load = [&](double height, double turn) {
     const auto ground = make_rigid_ground({});
     const SurfaceState start = placed(round, {0.0, 0.0, height}, Vec3::Zero(), turn);
@@ -279,7 +279,7 @@ TEST(RigidGround, evens_out_the_facets_of_a_rolling_wheel) {
 /// A block of mass m that falls on the ground, stepped as a partner of the co-simulation: the force of an interval
 /// acts on it during the next.
 struct Faller {
-  Surface surface = box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
+  testing::Surface surface = testing::box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
   double mass = 50.0;             // kg
   double load = 0.0;              // on top of its weight, N
   Vec3 position{0.0, 0.0, 2e-3};  // m
@@ -342,7 +342,7 @@ TEST(RigidGround, holds_a_light_vertex_at_the_usual_step) {
   for (double h : {1e-5, 2e-5, 4e-5}) {
     const auto ground = make_rigid_ground({});
     Faller vertex;
-    vertex.surface = box({-0.01, -0.025, 0.0}, {0.01, 0.025, 0.01});
+    vertex.surface = testing::box({-0.01, -0.025, 0.0}, {0.01, 0.025, 0.01});
     vertex.mass = 2.8e-3;
     vertex.load = 240.0;
     vertex.position.z() = -5e-4;
@@ -357,7 +357,7 @@ TEST(RigidGround, work_of_its_spring_is_its_elastic_energy) {
   options.ground_damping = 0.0;
   options.friction = 0.0;
   const auto ground = make_rigid_ground(options);
-  const Surface block = box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
+  const testing::Surface block = testing::box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
   ground->attach(block.mesh, rubber(), placed(block, {0.0, 0.0, 0.0}, Vec3::Zero()));
   double work = 0.0;
   for (int i = 0; i < 10; ++i)
@@ -369,7 +369,7 @@ TEST(RigidGround, work_of_its_spring_is_its_elastic_energy) {
 
 TEST(RigidGround, carries_several_surfaces_each_with_its_own_force) {
   const auto ground = make_rigid_ground({});
-  const Surface block = box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
+  const testing::Surface block = testing::box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
   std::vector<SurfaceState> state;
   for (int k = 0; k < 4; ++k) {
     state.push_back(placed(block, {1.0 * k, 0.0, -1e-4 * (k + 1)}, Vec3::Zero()));
@@ -383,7 +383,7 @@ TEST(RigidGround, carries_several_surfaces_each_with_its_own_force) {
 
 TEST(RigidGround, continues_a_saved_state_bit_for_bit) {
   const auto ground = make_rigid_ground({});
-  const Surface round = wheel(0.4673, 0.2, 60, 4);
+  const testing::Surface round = testing::wheel(0.4673, 0.2, 60, 4);
   auto at = [&](int i) {
     return placed(round, {1.2e-4 * i, 0.0, 0.4673 - 8e-4}, {3.0, 0.0, -0.01}, 3.4e-4 * i, 8.56);
   };
@@ -412,7 +412,7 @@ TEST(RigidGround, refuses_bad_options_and_surfaces) {
   options.friction = std::nan("");
   EXPECT_THROW(make_rigid_ground(options), Error);
   const auto ground = make_rigid_ground({});
-  const Surface block = box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
+  const testing::Surface block = testing::box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
   EXPECT_THROW(ground->attach(block.mesh, rubber(), placed(block, {0.0, 0.0, -0.02}, Vec3::Zero())), Error);
   ground->attach(block.mesh, rubber(), placed(block, Vec3::Zero(), Vec3::Zero()));
   SurfaceState broken = placed(block, Vec3::Zero(), Vec3::Zero());
@@ -425,4 +425,4 @@ TEST(RigidGround, refuses_bad_options_and_surfaces) {
 }
 
 }  // namespace
-}  // namespace furrow
+}  // namespace furrow::terrain

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <random>
 
-#include "protocol/error.hpp"
+#include "protocol/core/error.hpp"
 #include "tests/terrain/surface_meshes.hpp"
 
-namespace furrow {
+namespace furrow::terrain {
 namespace {
 
 using testing::box;
@@ -36,7 +36,7 @@ PathCheck follow(const SurfaceCollider& surface, const Vec3& from, const Vec3& t
   Vec3 before = Vec3::Zero();
   for (int i = 0; i <= samples; ++i) {
     const Vec3 centre = from + (to - from) * i / samples;
-    const Vec3 force = hertz_force(surface, centre, kRadius) / scale;
+    const Vec3 force = testing::hertz_force(surface, centre, kRadius) / scale;
     if (i > 0) result.largest_jump = std::max(result.largest_jump, (force - before).norm());
     result.largest_force = std::max(result.largest_force, force.norm());
     result.smallest_force = std::min(result.smallest_force, force.norm());
@@ -53,7 +53,7 @@ void expect_continuous(const SurfaceCollider& surface, const Vec3& from, const V
   constexpr int kSamples = 1000, kSuspects = 4;
   const double scale = std::pow(overlap, 1.5);
   auto force = [&](double share) {
-    return Vec3(hertz_force(surface, from + (to - from) * share, kRadius) / scale);
+    return Vec3(testing::hertz_force(surface, from + (to - from) * share, kRadius) / scale);
   };
   std::vector<std::pair<double, int>> change;
   Vec3 before = force(0.0);
@@ -81,7 +81,7 @@ void expect_continuous(const SurfaceCollider& surface, const Vec3& from, const V
 TEST(SurfaceContact, slides_over_a_cut_plane_as_over_a_plane) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> place(-0.02, 0.02);
-  Surface flat = sheet(-0.05, -0.05, 0.01, 10, 10, [](double, double) { return 0.0; });
+  testing::Surface flat = testing::sheet(-0.05, -0.05, 0.01, 10, 10, [](double, double) { return 0.0; });
   const SurfaceCollider surface = flat.collider(kRadius);
   std::array<SurfaceHit, kMaxSurfaceHits> hit;
   for (double share : {0.002, 0.02, 0.2, 0.6}) {
@@ -100,7 +100,7 @@ TEST(SurfaceContact, slides_over_a_cut_plane_as_over_a_plane) {
 }
 
 TEST(SurfaceContact, slides_over_a_tilted_cut_plane_far_from_the_origin_as_over_a_plane) {
-  Surface flat = sheet(-0.05, -0.05, 0.01, 10, 10, [](double, double) { return 0.0; });
+  testing::Surface flat = testing::sheet(-0.05, -0.05, 0.01, 10, 10, [](double, double) { return 0.0; });
   const Quat turn(Eigen::AngleAxisd(0.7, Vec3(0.3, -0.8, 0.5).normalized()));
   const Vec3 shift(9.0, 0.3, 0.4);
   for (Vec3& x : flat.vertex) x = turn * x + shift;
@@ -120,7 +120,7 @@ TEST(SurfaceContact, slides_over_a_tilted_cut_plane_far_from_the_origin_as_over_
 TEST(SurfaceContact, is_one_on_flat_fans_of_any_count) {
   std::array<SurfaceHit, kMaxSurfaceHits> hit;
   for (int count : {3, 4, 5, 6, 8, 12, 24, 40}) {
-    const Surface flat = fan(count, 0.03, [](int) { return 0.0; });
+    const testing::Surface flat = testing::fan(count, 0.03, [](int) { return 0.0; });
     const SurfaceCollider surface = flat.collider(kRadius);
     for (double phi = 0.0; phi < 6.3; phi += 0.03)
       for (double rho : {0.0, 1e-9, 1e-5, 1e-3, 3e-3}) {
@@ -137,7 +137,7 @@ TEST(SurfaceContact, changes_without_a_jump_across_creases_and_tends_to_the_plan
   for (double degrees : {-20.0, -5.0, -1.0, -0.1, -0.01, 0.01, 0.1, 1.0, 5.0, 20.0})
     for (double share : {0.005, 0.05, 0.2}) {
       const double half = 0.5 * degrees * kDegree, overlap = share * kRadius;  // crease angle = 2 × slope
-      const Surface bent = crease(half);
+      const testing::Surface bent = testing::crease(half);
       const SurfaceCollider surface = bent.collider(kRadius);
       const double height = (kRadius - overlap) / std::cos(half);
       const Vec3 from(-4e-3, 1.3e-3, height), to(4e-3, 2.1e-3, height);
@@ -146,7 +146,7 @@ TEST(SurfaceContact, changes_without_a_jump_across_creases_and_tends_to_the_plan
       if (std::abs(degrees) < 6.0) {
         // A level path over a slope changes depth; right above the crease the plane's law holds.
         const double above =
-            hertz_force(surface, {0.0, 1.7e-3, height}, kRadius).norm() / std::pow(overlap, 1.5);
+            testing::hertz_force(surface, {0.0, 1.7e-3, height}, kRadius).norm() / std::pow(overlap, 1.5);
         const double ridge = std::pow((kRadius - height) / overlap, 1.5);
         EXPECT_NEAR(above, degrees > 0.0 ? 1.0 / std::cos(half) : ridge, 1e-6) << what;
       }
@@ -156,7 +156,7 @@ TEST(SurfaceContact, changes_without_a_jump_across_creases_and_tends_to_the_plan
 TEST(SurfaceContact, of_a_nearly_flat_valley_is_not_doubled) {
   for (double degrees : {1e-5, 1e-3, 0.01, 0.1, 1.0, 3.0}) {
     const double half = 0.5 * degrees * kDegree, overlap = 0.02 * kRadius;
-    const SurfaceCollider surface = crease(half).collider(kRadius);
+    const SurfaceCollider surface = testing::crease(half).collider(kRadius);
     const PathCheck path = follow(surface, {-1e-3, 0.0, (kRadius - overlap) / std::cos(half)},
                                   {1e-3, 1e-4, (kRadius - overlap) / std::cos(half)}, 4000, overlap);
     const double deepest = std::pow(1.0 + 1e-3 * std::sin(half) / overlap, 1.5);  // at the path's ends
@@ -167,7 +167,7 @@ TEST(SurfaceContact, of_a_nearly_flat_valley_is_not_doubled) {
 
 TEST(SurfaceContact, counts_both_walls_of_a_right_angle) {
   const double overlap = 0.03 * kRadius;
-  const SurfaceCollider surface = crease(45.0 * kDegree).collider(kRadius);
+  const SurfaceCollider surface = testing::crease(45.0 * kDegree).collider(kRadius);
   std::array<SurfaceHit, kMaxSurfaceHits> hit;
   const double height = (kRadius - overlap) * std::sqrt(2.0);
   ASSERT_EQ(surface.hits({0.0, 1e-3, height}, kRadius, hit), 2);
@@ -185,7 +185,8 @@ TEST(SurfaceContact, changes_without_a_jump_over_warped_quads_and_fans) {
   std::uniform_real_distribution<double> any(-1.0, 1.0);
   const double overlap = 0.05 * kRadius;
   for (double rough : {1e-6, 1e-5, 1e-4, 5e-4}) {  // vertex offsets over 10 mm cells: 0.006 … 5 degrees
-    Surface warped = sheet(-0.05, -0.05, 0.01, 10, 10, [&](double, double) { return rough * any(random); });
+    testing::Surface warped =
+        testing::sheet(-0.05, -0.05, 0.01, 10, 10, [&](double, double) { return rough * any(random); });
     const SurfaceCollider surface = warped.collider(kRadius);
     for (int path = 0; path < 12; ++path) {
       const Vec3 from(0.02 * any(random), 0.02 * any(random), kRadius - overlap);
@@ -201,8 +202,8 @@ TEST(SurfaceContact, changes_without_a_jump_over_warped_quads_and_fans) {
   for (int count : {4, 5, 6, 8})
     for (double slope : {-0.3, -0.01, 1e-4, 0.01, 0.1, 0.3})
       for (int kind = 0; kind < 2; ++kind) {  // cones, and saddles
-        const Surface around =
-            fan(count, 0.03, [&](int k) { return 0.03 * slope * (kind == 0 ? 1.0 : (k % 2 ? 1.0 : -1.0)); });
+        const testing::Surface around = testing::fan(
+            count, 0.03, [&](int k) { return 0.03 * slope * (kind == 0 ? 1.0 : (k % 2 ? 1.0 : -1.0)); });
         const SurfaceCollider surface = around.collider(kRadius);
         const double height =
             (kRadius - overlap) * std::sqrt(1.0 + (kind == 0 && slope > 0 ? slope * slope : 0.0));
@@ -214,7 +215,7 @@ TEST(SurfaceContact, changes_without_a_jump_over_warped_quads_and_fans) {
 }
 
 TEST(SurfaceContact, meets_a_convex_edge_and_corner_at_the_nearest_point) {
-  const SurfaceCollider surface = box({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}).collider(kRadius);
+  const SurfaceCollider surface = testing::box({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}).collider(kRadius);
   std::array<SurfaceHit, kMaxSurfaceHits> hit;
   const double depth = 1e-4;
   const Vec3 edge = Vec3(1.0, 0.0, 2.0).normalized();
@@ -229,7 +230,7 @@ TEST(SurfaceContact, meets_a_convex_edge_and_corner_at_the_nearest_point) {
 }
 
 TEST(SurfaceContact, pushes_a_centre_behind_the_surface_outward) {
-  const SurfaceCollider surface = box({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}).collider(kRadius);
+  const SurfaceCollider surface = testing::box({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}).collider(kRadius);
   std::array<SurfaceHit, kMaxSurfaceHits> hit;
   double before = 0.0;
   for (double height = 0.5 * kRadius; height > -0.99 * kRadius; height -= 0.01 * kRadius) {
@@ -241,7 +242,7 @@ TEST(SurfaceContact, pushes_a_centre_behind_the_surface_outward) {
   }
   EXPECT_EQ(surface.hits({0.0131, 0.027, 0.1 - 1.01 * kRadius}, kRadius, hit), 0);
   // Straight through the diagonal of the cut and through a vertex of a flat fan.
-  const SurfaceCollider flat = fan(6, 0.03, [](int) { return 0.0; }).collider(kRadius);
+  const SurfaceCollider flat = testing::fan(6, 0.03, [](int) { return 0.0; }).collider(kRadius);
   for (double height : {1e-3, 1e-6, 0.0, -1e-6, -1e-3, -5e-3}) {
     ASSERT_EQ(flat.hits({0.0, 0.0, height}, kRadius, hit), 1) << height;
     EXPECT_NEAR(hit[0].overlap, kRadius - height, 1e-14);
@@ -249,7 +250,7 @@ TEST(SurfaceContact, pushes_a_centre_behind_the_surface_outward) {
   }
   // Behind a crease of either sign the push still has an outward part.
   for (double degrees : {-40.0, -5.0, 5.0, 40.0}) {
-    const SurfaceCollider bent = crease(degrees * kDegree).collider(kRadius);
+    const SurfaceCollider bent = testing::crease(degrees * kDegree).collider(kRadius);
     for (double x = -4e-3; x <= 4e-3; x += 1.1e-4) {
       const double ground = std::abs(x) * std::tan(degrees * kDegree);
       ASSERT_EQ(bent.hits({x, 1e-3, ground - 1e-3}, kRadius, hit), 1);
@@ -261,7 +262,7 @@ TEST(SurfaceContact, pushes_a_centre_behind_the_surface_outward) {
 
 TEST(SurfaceContact, catches_a_vertex_that_falls_fast) {
   // A downward spike falls at 12 m/s on a resting grain in steps of 1e-4 s: 1.2 mm each, a fifth of the radius.
-  Surface spike = fan(8, 0.02, [](int) { return 0.02; });
+  testing::Surface spike = testing::fan(8, 0.02, [](int) { return 0.02; });
   for (auto& t : spike.mesh.triangles) std::swap(t[1], t[2]);  // outside down
   std::vector<Vec3> start = spike.vertex, end = spike.vertex;
   for (Vec3& x : start) x.z() += 0.012;
@@ -287,7 +288,7 @@ TEST(SurfaceContact, catches_a_vertex_that_falls_fast) {
 TEST(SurfaceContact, does_not_depend_on_when_the_grid_was_built) {
   std::mt19937 random(23);
   std::uniform_real_distribution<double> any(-1.0, 1.0);
-  Surface start = testing::wheel(0.1, 0.06, 24, 3);
+  testing::Surface start = testing::wheel(0.1, 0.06, 24, 3);
   std::vector<Vec3> end = start.vertex;
   const Quat turn(Eigen::AngleAxisd(0.1, Vec3::UnitY()));
   for (Vec3& x : end) x = turn * x + Vec3(0.01, 0.0, -0.002);
@@ -321,7 +322,7 @@ TEST(SurfaceContact, does_not_depend_on_when_the_grid_was_built) {
 TEST(SurfaceContact, finds_what_a_search_through_all_triangles_finds) {
   std::mt19937 random(29);
   std::uniform_real_distribution<double> any(-1.0, 1.0);
-  const Surface round = testing::wheel(0.1, 0.06, 36, 4);
+  const testing::Surface round = testing::wheel(0.1, 0.06, 36, 4);
   const SurfaceCollider surface = round.collider(kRadius);
   std::array<SurfaceHit, kMaxSurfaceHits> hit;
   for (int i = 0; i < 3000; ++i) {
@@ -351,7 +352,7 @@ TEST(SurfaceContact, finds_what_a_search_through_all_triangles_finds) {
 TEST(SurfaceContact, inside_a_box_is_the_same_when_restricted_to_it) {
   std::mt19937 random(31);
   std::uniform_real_distribution<double> any(-1.0, 1.0);
-  const Surface round = testing::wheel(0.1, 0.06, 36, 4);
+  const testing::Surface round = testing::wheel(0.1, 0.06, 36, 4);
   const SurfaceCollider all = round.collider(kRadius);
   SurfaceCollider part(round.mesh, kRadius);
   std::array<SurfaceHit, kMaxSurfaceHits> a, b;
@@ -383,4 +384,4 @@ TEST(SurfaceContact, refuses_a_mesh_that_names_a_missing_vertex) {
 }
 
 }  // namespace
-}  // namespace furrow
+}  // namespace furrow::terrain

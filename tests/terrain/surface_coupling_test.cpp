@@ -8,7 +8,7 @@
 #include "terrain/terrain_options.hpp"
 #include "tests/terrain/surface_meshes.hpp"
 
-namespace furrow {
+namespace furrow::terrain {
 namespace {
 
 constexpr double kGravity = 9.81;  // m/s²
@@ -158,4 +158,4 @@ TEST(SurfaceCoupling, no_grain_passes_through_a_plate_that_is_rammed_into_the_be
 }
 
 }  // namespace
-}  // namespace furrow
+}  // namespace furrow::terrain

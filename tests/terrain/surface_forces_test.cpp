@@ -1,5 +1,5 @@
 // Contact forces on vertices: force, moment and work are handed over to round-off.
-#include "terrain/dem/surface_forces.hpp"
+#include "terrain/surface/surface_forces.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "tests/terrain/surface_meshes.hpp"
 
-namespace furrow {
+namespace furrow::terrain {
 namespace {
 
 struct Loaded {
@@ -104,4 +104,4 @@ TEST(NodalForceSum, averages_impulses_over_substeps_and_starts_again) {
 }
 
 }  // namespace
-}  // namespace furrow
+}  // namespace furrow::terrain

@@ -1,5 +1,5 @@
 // Closest points of a triangle against brute force and by region; the push-out problem against its own conditions.
-#include "terrain/dem/surface_geometry.hpp"
+#include "terrain/surface/surface_geometry.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace furrow {
+namespace furrow::terrain {
 namespace {
 
 const Vec3 kA(0.0, 0.0, 0.0), kB(1.0, 0.0, 0.0), kC(0.0, 1.0, 0.0);
@@ -130,4 +130,4 @@ TEST(PushOut, shares_the_depth_of_walls_of_one_direction_only) {
 }
 
 }  // namespace
-}  // namespace furrow
+}  // namespace furrow::terrain

@@ -6,8 +6,8 @@
 #include <functional>
 #include <vector>
 
-#include "protocol/surface.hpp"
-#include "terrain/dem/surface_collider.hpp"
+#include "protocol/core/surface.hpp"
+#include "terrain/surface/surface_collider.hpp"
 
 namespace furrow::testing {
 
@@ -16,8 +16,8 @@ struct Surface {
   std::vector<Vec3> vertex;
 
   void add(int a, int b, int c) { mesh.triangles.push_back({a, b, c}); }
-  SurfaceCollider collider(double reach) const {
-    SurfaceCollider result(mesh, reach);
+  terrain::SurfaceCollider collider(double reach) const {
+    terrain::SurfaceCollider result(mesh, reach);
     result.set_motion(vertex, vertex, 1.0);
     return result;
   }
@@ -103,8 +103,8 @@ inline Surface wheel(double radius, double width, int facets, int across) {
 }
 
 /// Σ share · overlap^1.5 · normal: what a Hertz law of unit stiffness makes of the hits.
-inline Vec3 hertz_force(const SurfaceCollider& surface, const Vec3& centre, double radius) {
-  std::array<SurfaceHit, kMaxSurfaceHits> hit;
+inline Vec3 hertz_force(const terrain::SurfaceCollider& surface, const Vec3& centre, double radius) {
+  std::array<terrain::SurfaceHit, terrain::kMaxSurfaceHits> hit;
   const int count = surface.hits(centre, radius, hit);
   Vec3 force = Vec3::Zero();
   for (int i = 0; i < count; ++i) force += hit[i].share * std::pow(hit[i].overlap, 1.5) * hit[i].normal;

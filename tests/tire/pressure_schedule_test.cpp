@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace furrow {
+namespace furrow::tire {
 namespace {
 
 TEST(PressureSchedule, is_linear_between_its_knots_and_constant_outside) {
@@ -28,4 +28,4 @@ TEST(PressureSchedule, of_one_knot_is_constant) {
 }
 
 }  // namespace
-}  // namespace furrow
+}  // namespace furrow::tire

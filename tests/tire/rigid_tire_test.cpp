@@ -1,9 +1,10 @@
 // The rigid tire against Newton's and Euler's equations.
 #include "tire/rigid/rigid_tire.hpp"
+#include "tire/read_tire_file.hpp"
 
 #include <gtest/gtest.h>
 
-namespace furrow {
+namespace furrow::tire {
 namespace {
 
 RigidTire make() {
@@ -92,4 +93,4 @@ TEST(RigidTire, restored_state_is_the_saved_one) {
 }
 
 }  // namespace
-}  // namespace furrow
+}  // namespace furrow::tire

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace furrow {
+namespace furrow::tire {
 namespace {
 
 RimState spinning(double time, const Vec3& omega) {
@@ -57,4 +57,4 @@ TEST(RimTrajectory, rates_are_derivatives_of_the_poses) {
 }
 
 }  // namespace
-}  // namespace furrow
+}  // namespace furrow::tire

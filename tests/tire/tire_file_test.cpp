@@ -1,5 +1,5 @@
 // Tire files: what is read, and that every mistake names file, key and what is allowed.
-#include "tire/tire_file.hpp"
+#include "tire/read_tire_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,12 +7,12 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "protocol/error.hpp"
-#include "tire/json_reader.hpp"
-#include "tire/ring_mesh.hpp"
+#include "protocol/core/error.hpp"
+#include "protocol/files/json_reader.hpp"
+#include "tire/shell_mesh.hpp"
 #include "tire/tire.hpp"
 
-namespace furrow {
+namespace furrow::tire {
 namespace {
 
 using nlohmann::json;
@@ -198,7 +198,7 @@ TEST_F(TireFileTest, public_layout_gives_the_same_tire_as_ours) {
   EXPECT_EQ(theirs.elements_width(), ours.elements_width());
   EXPECT_DOUBLE_EQ(theirs.contact.young_modulus, 2e6);
   const auto mass = [](const TireFile& f) {
-    const RingMesh mesh = make_ring_mesh(f);
+    const ShellMesh mesh = make_shell_mesh(f);
     return rigid_mass(mesh, element_masses(f, mesh)).mass;
   };
   EXPECT_DOUBLE_EQ(mass(theirs), mass(ours));
@@ -230,4 +230,4 @@ TEST(NearestName, suggests_only_what_is_near) {
 }
 
 }  // namespace
-}  // namespace furrow
+}  // namespace furrow::tire

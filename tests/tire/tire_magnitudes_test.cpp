@@ -1,8 +1,9 @@
 #include "tire/tire_magnitudes.hpp"
+#include "tire/read_tire_file.hpp"
 
 #include <gtest/gtest.h>
 
-namespace furrow {
+namespace furrow::tire {
 namespace {
 
 TireFile file(const std::string& name) { return read_tire_file(TIRE_DATA "/" + name); }
@@ -31,4 +32,4 @@ TEST(TireMagnitudes, another_unit_is_named_with_its_key) {
 }
 
 }  // namespace
-}  // namespace furrow
+}  // namespace furrow::tire

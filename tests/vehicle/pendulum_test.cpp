@@ -17,12 +17,13 @@ const double kHingeInertia = kInertia + kMass * kArm * kArm;
 Vec3 hanging(double arm, double angle) { return {-arm * std::sin(angle), 0.0, -arm * std::cos(angle)}; }
 
 struct Pendulum {
-  System system;
+  vehicle::System system;
   int body, joint;
   explicit Pendulum(double angle) {
     body = system.add_body("bob", kMass, Vec3(0.2, kInertia, 0.25).asDiagonal(),
                            bar_state(hanging(kArm, angle), angle));
-    joint = system.add_joint(JointKind::revolute, "hinge", kGround, body, hinge(Vec3::Zero()));
+    joint =
+        system.add_joint(vehicle::JointKind::revolute, "hinge", vehicle::kGround, body, hinge(Vec3::Zero()));
     system.assemble(0.0);
   }
   double angle() const {
@@ -73,7 +74,7 @@ TEST(Pendulum, hinge_carries_weight_and_centripetal_force_at_the_bottom) {
   const double h = quarter_period(1.2) / steps;
   for (int i = 0; i < steps; ++i) pendulum.system.step(h);
   const double omega_sq = 2.0 * kMass * kGravity * kArm * (1.0 - std::cos(1.2)) / kHingeInertia;
-  const Reaction& reaction = pendulum.system.reaction(pendulum.joint);
+  const vehicle::Reaction& reaction = pendulum.system.reaction(pendulum.joint);
   EXPECT_NEAR(reaction.force.norm(), kMass * (kGravity + kArm * omega_sq), 1e-4 * kMass * kGravity);
   EXPECT_LT(reaction.moment.norm(), 1e-9);
 }
@@ -124,15 +125,15 @@ Angles runge_kutta(Angles q, double end, int steps) {
 }
 
 Angles double_pendulum(double first, double second, double end, int steps) {
-  System system;
+  vehicle::System system;
   const Mat3 inertia = Vec3(kBarInertia, kBarInertia, 0.01).asDiagonal();
   const Vec3 knee = hanging(kBarLength, first);
   const int upper =
       system.add_body("upper", kBarMass, inertia, bar_state(hanging(0.5 * kBarLength, first), first));
   const int lower = system.add_body("lower", kBarMass, inertia,
                                     bar_state(knee + hanging(0.5 * kBarLength, second), second));
-  system.add_joint(JointKind::revolute, "shoulder", kGround, upper, hinge(Vec3::Zero()));
-  system.add_joint(JointKind::revolute, "knee", upper, lower, hinge(knee));
+  system.add_joint(vehicle::JointKind::revolute, "shoulder", vehicle::kGround, upper, hinge(Vec3::Zero()));
+  system.add_joint(vehicle::JointKind::revolute, "knee", upper, lower, hinge(knee));
   system.assemble(0.0);
   for (int i = 0; i < steps; ++i) system.step(end / steps);
   const auto angle = [&](int body) {

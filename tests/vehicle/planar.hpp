@@ -10,22 +10,22 @@ namespace furrow::testing {
 inline constexpr double kGravity = 9.81;  // m/s²
 
 /// A bar whose centre lies at `centre`, turned by `angle` about y; its own z axis runs along the bar.
-inline BodyState bar_state(const Vec3& centre, double angle) {
-  BodyState state;
+inline vehicle::BodyState bar_state(const Vec3& centre, double angle) {
+  vehicle::BodyState state;
   state.position = centre;
   state.orientation = Quat(Eigen::AngleAxisd(angle, Vec3::UnitY()));
   return state;
 }
 
-inline JointPlace hinge(const Vec3& point) {
-  JointPlace place;
+inline vehicle::JointPlace hinge(const Vec3& point) {
+  vehicle::JointPlace place;
   place.point = point;
   place.axis = Vec3::UnitY();
   return place;
 }
 
-inline JointPlace slide(const Vec3& point, const Vec3& axis) {
-  JointPlace place;
+inline vehicle::JointPlace slide(const Vec3& point, const Vec3& axis) {
+  vehicle::JointPlace place;
   place.point = point;
   place.axis = axis;
   return place;

@@ -1,7 +1,7 @@
 // More constraints than needed: unique motion, reactions of minimum norm, contradictions named.
 #include <gtest/gtest.h>
 
-#include "protocol/error.hpp"
+#include "protocol/core/error.hpp"
 #include "tests/vehicle/planar.hpp"
 
 using namespace furrow;
@@ -12,12 +12,12 @@ using namespace furrow::testing;
 // m g a / (2 (1 + b²)).
 TEST(Redundancy, door_on_two_hinges_has_minimum_norm_reactions) {
   const double m = 30.0, a = 0.4, b = 0.8;
-  System system;
+  vehicle::System system;
   const int door =
       system.add_body("door", m, Vec3(6.0, 7.0, 2.0).asDiagonal(), bar_state(Vec3(a, 0, 0), 0.0));
-  const int upper = system.add_joint(JointKind::revolute, "upper hinge", kGround, door,
+  const int upper = system.add_joint(vehicle::JointKind::revolute, "upper hinge", vehicle::kGround, door,
                                      slide(Vec3(0, 0, b), Vec3::UnitZ()));
-  const int lower = system.add_joint(JointKind::revolute, "lower hinge", kGround, door,
+  const int lower = system.add_joint(vehicle::JointKind::revolute, "lower hinge", vehicle::kGround, door,
                                      slide(Vec3(0, 0, -b), Vec3::UnitZ()));
   system.assemble(0.0);
   EXPECT_EQ(system.redundant_count(), 5);
@@ -25,7 +25,7 @@ TEST(Redundancy, door_on_two_hinges_has_minimum_norm_reactions) {
   const double c = m * kGravity * a / (2.0 * (1.0 + b * b));
   const auto world = [&](int joint) {
     const Mat3& axes = system.joint(joint).frame_a.axes;
-    return Reaction{axes * system.reaction(joint).force, axes * system.reaction(joint).moment};
+    return vehicle::Reaction{axes * system.reaction(joint).force, axes * system.reaction(joint).moment};
   };
   const double scale = m * kGravity;
   EXPECT_NEAR(world(upper).force.z(), 0.5 * scale, 1e-6 * scale);
@@ -39,21 +39,21 @@ TEST(Redundancy, door_on_two_hinges_has_minimum_norm_reactions) {
 }
 
 TEST(Redundancy, minimal_joints_are_not_flagged) {
-  System system;
+  vehicle::System system;
   const int bar = system.add_body("bar", 1.0, Mat3::Identity(), bar_state(Vec3(0, 0, -1), 0.0));
-  system.add_joint(JointKind::revolute, "hinge", kGround, bar, hinge(Vec3::Zero()));
+  system.add_joint(vehicle::JointKind::revolute, "hinge", vehicle::kGround, bar, hinge(Vec3::Zero()));
   system.assemble(0.0);
   EXPECT_EQ(system.redundant_count(), 0);
   EXPECT_TRUE(system.redundant_names().empty());
 }
 
 TEST(Redundancy, contradicting_motors_are_an_error_that_names_one) {
-  System system;
-  const int cart = system.add_body("cart", 1.0, Mat3::Identity(), BodyState{});
-  const int rail =
-      system.add_joint(JointKind::prismatic, "rail", kGround, cart, slide(Vec3::Zero(), Vec3::UnitX()));
-  system.add_motor("slow motor", rail, [](double t) { return Motion{t, 1.0}; });
-  system.add_motor("fast motor", rail, [](double t) { return Motion{2.0 * t, 2.0}; });
+  vehicle::System system;
+  const int cart = system.add_body("cart", 1.0, Mat3::Identity(), vehicle::BodyState{});
+  const int rail = system.add_joint(vehicle::JointKind::prismatic, "rail", vehicle::kGround, cart,
+                                    slide(Vec3::Zero(), Vec3::UnitX()));
+  system.add_motor("slow motor", rail, [](double t) { return vehicle::Motion{t, 1.0}; });
+  system.add_motor("fast motor", rail, [](double t) { return vehicle::Motion{2.0 * t, 2.0}; });
   try {
     system.assemble(0.0);
     system.step(1e-3);
@@ -65,12 +65,14 @@ TEST(Redundancy, contradicting_motors_are_an_error_that_names_one) {
 }
 
 TEST(Redundancy, joints_that_cannot_be_assembled_are_an_error) {
-  System system;
-  const int block = system.add_body("block", 1.0, Mat3::Identity(), BodyState{});
-  system.add_joint(JointKind::fixed, "here", kGround, block, slide(Vec3::Zero(), Vec3::UnitZ()));
-  BodyState state;
+  vehicle::System system;
+  const int block = system.add_body("block", 1.0, Mat3::Identity(), vehicle::BodyState{});
+  system.add_joint(vehicle::JointKind::fixed, "here", vehicle::kGround, block,
+                   slide(Vec3::Zero(), Vec3::UnitZ()));
+  vehicle::BodyState state;
   state.position = Vec3(1.0, 0.0, 0.0);
   system.set_state(block, state);
-  system.add_joint(JointKind::fixed, "there", kGround, block, slide(Vec3::Zero(), Vec3::UnitZ()));
+  system.add_joint(vehicle::JointKind::fixed, "there", vehicle::kGround, block,
+                   slide(Vec3::Zero(), Vec3::UnitZ()));
   EXPECT_THROW(system.assemble(0.0), Error);
 }

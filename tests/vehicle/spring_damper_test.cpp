@@ -9,15 +9,15 @@ using namespace furrow::testing;
 namespace {
 
 struct Slider {
-  System system;
+  vehicle::System system;
   int body, joint, element;
   Slider(double mass, double k, double rest, double c, double x0, double v0) {
-    BodyState state;
+    vehicle::BodyState state;
     state.velocity = Vec3(0.0, 0.0, v0);
     body = system.add_body("mass", mass, Mat3::Identity(), state);
-    joint =
-        system.add_joint(JointKind::prismatic, "slider", kGround, body, slide(Vec3::Zero(), Vec3::UnitZ()));
-    element = system.add_joint_element("strut", joint, linear_spring_damper(k, rest, c));
+    joint = system.add_joint(vehicle::JointKind::prismatic, "slider", vehicle::kGround, body,
+                             slide(Vec3::Zero(), Vec3::UnitZ()));
+    element = system.add_joint_element("strut", joint, vehicle::linear_spring_damper(k, rest, c));
     state.position = Vec3(0.0, 0.0, x0);
     system.set_state(body, state);
     system.assemble(0.0);
@@ -71,15 +71,15 @@ TEST(SpringDamper, damper_far_stiffer_than_the_step_stays_stable) {
 }
 
 TEST(SpringDamper, line_spring_between_free_bodies_keeps_momentum) {
-  System system(Vec3::Zero());
-  BodyState state;
+  vehicle::System system(Vec3::Zero());
+  vehicle::BodyState state;
   state.angular_velocity = Vec3(0.3, 1.0, -0.4);
   const int a = system.add_body("a", 2.0, Vec3(0.1, 0.2, 0.3).asDiagonal(), state);
   state.position = Vec3(1.0, 0.2, 0.1);
   state.velocity = Vec3(-0.5, 1.0, 0.2);
   const int b = system.add_body("b", 3.0, Vec3(0.2, 0.2, 0.4).asDiagonal(), state);
   system.add_line_element("spring", a, b, Vec3(0.1, 0.1, 0.0), Vec3(0.9, 0.1, 0.1),
-                          linear_spring_damper(500.0, 0.5, 3.0));
+                          vehicle::linear_spring_damper(500.0, 0.5, 3.0));
   system.assemble(0.0);
   const Vec3 momentum = system.momentum(), angular = system.angular_momentum(Vec3::Zero());
   for (int i = 0; i < 2000; ++i) system.step(1e-3);

@@ -7,28 +7,28 @@
 #include <cstring>
 #include <limits>
 
-#include "protocol/error.hpp"
+#include "protocol/core/error.hpp"
 
 using namespace furrow;
 
 namespace {
 
 struct Swing {
-  System system;
+  vehicle::System system;
   int cart, bob;
   Swing() {
-    BodyState state;
+    vehicle::BodyState state;
     cart = system.add_body("cart", 5.0, Mat3::Identity(), state);
     state.position = Vec3(0.2, 0.1, -1.0);
     state.angular_velocity = Vec3(0.1, 0.2, 3.0);
     bob = system.add_body("bob", 2.0, Vec3(0.1, 0.2, 0.3).asDiagonal(), state);
-    JointPlace rail;
+    vehicle::JointPlace rail;
     rail.axis = Vec3::UnitX();
-    const int joint = system.add_joint(JointKind::prismatic, "rail", kGround, cart, rail);
-    system.add_joint(JointKind::spherical, "ball", cart, bob, JointPlace{});
-    system.add_motor("drive", joint, [](double t) { return ramped_motion(t, 1.5, 0.3); });
-    system.add_line_element("strut", kGround, bob, Vec3(0, 1, 0), Vec3(0.2, 0.1, -1.0),
-                            linear_spring_damper(300, 1.2, 20));
+    const int joint = system.add_joint(vehicle::JointKind::prismatic, "rail", vehicle::kGround, cart, rail);
+    system.add_joint(vehicle::JointKind::spherical, "ball", cart, bob, vehicle::JointPlace{});
+    system.add_motor("drive", joint, [](double t) { return vehicle::ramped_motion(t, 1.5, 0.3); });
+    system.add_line_element("strut", vehicle::kGround, bob, Vec3(0, 1, 0), Vec3(0.2, 0.1, -1.0),
+                            vehicle::linear_spring_damper(300, 1.2, 20));
     system.assemble(0.0);
   }
 };
@@ -38,16 +38,17 @@ struct Swing {
 TEST(Motion, ramp_is_the_integral_of_its_speed_and_twice_continuous) {
   const double v = 3.0, T = 0.2, h = 1e-6;
   for (const double t : {0.02, 0.1, 0.19, 0.2, 0.5}) {
-    const double slope = (ramped_motion(t + h, v, T).value - ramped_motion(t - h, v, T).value) / (2 * h);
-    EXPECT_NEAR(slope, ramped_motion(t, v, T).rate, 1e-8);
+    const double slope =
+        (vehicle::ramped_motion(t + h, v, T).value - vehicle::ramped_motion(t - h, v, T).value) / (2 * h);
+    EXPECT_NEAR(slope, vehicle::ramped_motion(t, v, T).rate, 1e-8);
   }
   const auto acceleration = [&](double t) {
-    return (ramped_motion(t + h, v, T).rate - ramped_motion(t - h, v, T).rate) / (2 * h);
+    return (vehicle::ramped_motion(t + h, v, T).rate - vehicle::ramped_motion(t - h, v, T).rate) / (2 * h);
   };
   EXPECT_NEAR(acceleration(1e-5), 0.0, 1e-2);
   EXPECT_NEAR(acceleration(T - 1e-5), 0.0, 1e-2);
-  EXPECT_EQ(ramped_motion(0.0, v, 0.0).rate, v);
-  EXPECT_EQ(ramped_motion(0.0, v, 0.0).value, 0.0);
+  EXPECT_EQ(vehicle::ramped_motion(0.0, v, 0.0).rate, v);
+  EXPECT_EQ(vehicle::ramped_motion(0.0, v, 0.0).value, 0.0);
 }
 
 TEST(System, imposed_motion_is_met_in_position_and_speed_at_every_step) {
@@ -55,7 +56,7 @@ TEST(System, imposed_motion_is_met_in_position_and_speed_at_every_step) {
   for (int i = 1; i <= 500; ++i) {
     swing.system.step(1e-3);
     EXPECT_EQ(swing.system.time(), i * 1e-3);
-    const Motion motion = ramped_motion(i * 1e-3, 1.5, 0.3);
+    const vehicle::Motion motion = vehicle::ramped_motion(i * 1e-3, 1.5, 0.3);
     ASSERT_NEAR(swing.system.body(swing.cart).state.position.x(), motion.value, 1e-12);
     ASSERT_NEAR(swing.system.body(swing.cart).state.velocity.x(), motion.rate, 1e-13);
   }
@@ -88,7 +89,7 @@ TEST(System, not_a_number_is_an_error) {
 }
 
 TEST(System, massless_bodies_are_refused) {
-  System system;
-  EXPECT_THROW(system.add_body("ghost", 0.0, Mat3::Identity(), BodyState{}), Error);
-  EXPECT_THROW(system.add_body("needle", 1.0, Vec3(1, 1, 0).asDiagonal(), BodyState{}), Error);
+  vehicle::System system;
+  EXPECT_THROW(system.add_body("ghost", 0.0, Mat3::Identity(), vehicle::BodyState{}), Error);
+  EXPECT_THROW(system.add_body("needle", 1.0, Vec3(1, 1, 0).asDiagonal(), vehicle::BodyState{}), Error);
 }

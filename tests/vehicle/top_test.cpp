@@ -8,8 +8,8 @@
 using namespace furrow;
 
 TEST(FreeBody, asymmetric_body_keeps_angular_momentum_and_bounded_energy) {
-  System system(Vec3::Zero());
-  BodyState state;
+  vehicle::System system(Vec3::Zero());
+  vehicle::BodyState state;
   state.orientation = Quat(Eigen::AngleAxisd(0.4, Vec3(1, 1, 0).normalized()));
   state.angular_velocity = Vec3(0.1, 6.0, 0.05);  // near the unstable middle axis: it tumbles
   system.add_body("book", 1.0, Vec3(0.5, 1.0, 1.4).asDiagonal(), state);
@@ -28,9 +28,9 @@ TEST(FreeBody, asymmetric_body_keeps_angular_momentum_and_bounded_energy) {
 // The axis of a free symmetric body turns about ℓ at the rate |ℓ|/I_t [Goldstein, Classical Mechanics, §5.6].
 TEST(FreeBody, symmetric_body_precesses_at_the_closed_form_rate) {
   const auto error_of = [](int steps) {
-    System system(Vec3::Zero());
+    vehicle::System system(Vec3::Zero());
     const double axial = 0.2, transverse = 0.5;
-    BodyState state;
+    vehicle::BodyState state;
     state.angular_velocity = Vec3(1.0, 0.0, 8.0);
     system.add_body("disc", 1.0, Vec3(transverse, transverse, axial).asDiagonal(), state);
     system.assemble(0.0);
@@ -53,15 +53,16 @@ TEST(Top, steady_precession_matches_goldstein) {
   const double transverse = central + m * l * l;
   const double spin =
       (m * 9.81 * l + transverse * precession * precession * std::cos(tilt)) / (axial * precession);
-  System system;
-  BodyState state;
+  vehicle::System system;
+  vehicle::BodyState state;
   state.orientation = Quat(Eigen::AngleAxisd(tilt, Vec3::UnitY()));
   const Vec3 axis = state.orientation * Vec3::UnitZ();
   state.position = l * axis;
   state.angular_velocity = precession * (Vec3::UnitZ() - std::cos(tilt) * axis) + spin * axis;
   state.velocity = state.angular_velocity.cross(state.position);
   const int top = system.add_body("top", m, Vec3(central, central, axial).asDiagonal(), state);
-  const int tip = system.add_joint(JointKind::spherical, "tip", kGround, top, JointPlace{});
+  const int tip =
+      system.add_joint(vehicle::JointKind::spherical, "tip", vehicle::kGround, top, vehicle::JointPlace{});
   system.assemble(0.0);
   const int steps = 20000;
   const double end = 1.0;

@@ -6,13 +6,13 @@
 
 #include "tire/rim_archive.hpp"
 
-namespace furrow {
+namespace furrow::tire {
 namespace {
 
-constexpr int kMostHalvings = 4;  // of a step that does not converge
+constexpr int kMaxHalvings = 4;  // of a step that does not converge
 
 /// Area of the shell, m².
-double shell_area(const RingMesh& ring, const SurfaceMesh& surface, const RingLayout& layout) {
+double shell_area(const ShellMesh& ring, const SurfaceMesh& surface, const ShellLayout& layout) {
   const Field shape = undeformed(ring);
   const auto at = [&](int v) { return layout.get(shape, v / ring.rows, v % ring.rows, 0); };
   double area = 0.0;
@@ -23,22 +23,22 @@ double shell_area(const RingMesh& ring, const SurfaceMesh& surface, const RingLa
 
 }  // namespace
 
-AncfTire::AncfTire(const TireFile& file, const RingIntegratorParams& params)
-    : ring_(make_ring_mesh(file)),
+AncfTire::AncfTire(const TireFile& file, const ShellIntegratorParams& params)
+    : ring_(make_shell_mesh(file)),
       surface_mesh_(make_surface_mesh(ring_)),
       material_(file.contact),
-      rigid_mass_(furrow::rigid_mass(ring_, element_masses(file, ring_))),
+      rigid_mass_(furrow::tire::rigid_mass(ring_, element_masses(file, ring_))),
       radius_(file.radius),
-      tread_width_(furrow::tread_width(file, ring_)),
+      tread_width_(furrow::tire::tread_width(file, ring_)),
       clearance_(file, ring_),
       integrator_(file, ring_, [&] {
-        RingIntegratorParams p = params;
+        ShellIntegratorParams p = params;
         p.damping = file.structural_damping;
         return p;
       }()) {
   TireFile bare = file;
   bare.tread_mass_per_area = 0.0;
-  material_.area_density = furrow::rigid_mass(ring_, element_masses(bare, ring_)).mass /
+  material_.area_density = furrow::tire::rigid_mass(ring_, element_masses(bare, ring_)).mass /
                                shell_area(ring_, surface_mesh_, integrator_.layout()) +
                            file.tread_mass_per_area;
   undeformed_volume_ = integrator_.shell().volume(undeformed(ring_), Vec3::Zero());
@@ -55,7 +55,7 @@ void AncfTire::set_pressure(double pressure) {
 }
 
 void AncfTire::place(const RimState& rim) {
-  const RingLayout& layout = integrator_.layout();
+  const ShellLayout& layout = integrator_.layout();
   const Field shape = inflate(integrator_.shell(), ring_, inflation_);
   const Mat3 turn = rim.orientation.toRotationMatrix();
   Field q(layout.size()), v(layout.size());
@@ -77,7 +77,7 @@ void AncfTire::place(const RimState& rim) {
 }
 
 void AncfTire::surface(SurfaceState& out) const {
-  const RingLayout& layout = integrator_.layout();
+  const ShellLayout& layout = integrator_.layout();
   out.position.resize(surface_mesh_.vertex_count);
   out.velocity.resize(surface_mesh_.vertex_count);
   for (int i = 0; i < layout.columns; ++i)
@@ -93,12 +93,12 @@ void AncfTire::surface(SurfaceState& out) const {
 }
 
 TireStatus AncfTire::advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) {
-  const RingLayout& layout = integrator_.layout();
+  const ShellLayout& layout = integrator_.layout();
   about_ = 0.5 * (rim.start().position + rim.end().position);
   spindle_ = {};
   Wrench disc;
   std::fill(force_.begin(), force_.end(), 0.0);
-  RingContact& contact = integrator_.contact();
+  ShellContact& contact = integrator_.contact();
   contact.clear();
   answering_.clear();
   interval_ = rim.duration();
@@ -122,7 +122,7 @@ TireStatus AncfTire::advance(const RimTrajectory& rim, const NodalForces& forces
     disc.moment += (mean * ring_.disc_centre(vertex - ring_.nodes())).cross(forces.force[k]);
   }
   for (int n = 1; n <= substeps; ++n) {
-    const TireStatus status = step(rim, n - 1.0, n, substeps, kMostHalvings);
+    const TireStatus status = step(rim, n - 1.0, n, substeps, kMaxHalvings);
     if (!status.converged) return status;
   }
   rim_ = rim.end();
@@ -154,7 +154,7 @@ TireStatus AncfTire::step(const RimTrajectory& rim, double from, double to, int 
 }
 
 TireDiagnostics AncfTire::diagnostics() const {
-  const RingLayout& layout = integrator_.layout();
+  const ShellLayout& layout = integrator_.layout();
   const Field &q = integrator_.q(), &v = integrator_.v();
   Field p(layout.size());
   integrator_.mass().apply(v, 1.0, p);
@@ -197,4 +197,4 @@ void AncfTire::restore(const Archive& archive) {
   integrator_.restore(archive);
 }
 
-}  // namespace furrow
+}  // namespace furrow::tire

@@ -8,13 +8,13 @@
 
 #include "tire/ancf/inflation.hpp"
 #include "tire/ancf/rim_clearance.hpp"
-#include "tire/ancf/ring_integrator.hpp"
+#include "tire/ancf/shell_integrator.hpp"
 
-namespace furrow {
+namespace furrow::tire {
 
 class AncfTire final : public Tire {
  public:
-  explicit AncfTire(const TireFile& file, const RingIntegratorParams& params = {});
+  explicit AncfTire(const TireFile& file, const ShellIntegratorParams& params = {});
 
   const SurfaceMesh& mesh() const override { return surface_mesh_; }
   ContactMaterial material() const override { return material_; }
@@ -33,13 +33,13 @@ class AncfTire final : public Tire {
   void save(Archive& archive) const override;
   void restore(const Archive& archive) override;
 
-  const RingIntegrator& integrator() const { return integrator_; }
+  const ShellIntegrator& integrator() const { return integrator_; }
   const InflationReport& inflation() const { return inflation_; }
 
  private:
   TireStatus step(const RimTrajectory& rim, double from, double to, int substeps, int halvings);
 
-  RingMesh ring_;
+  ShellMesh ring_;
   SurfaceMesh surface_mesh_;
   ContactMaterial material_;
   MassProperties rigid_mass_;
@@ -47,7 +47,7 @@ class AncfTire final : public Tire {
   double tread_width_ = 0.0;        // m
   double undeformed_volume_ = 0.0;  // m³
   RimClearance clearance_;
-  RingIntegrator integrator_;
+  ShellIntegrator integrator_;
   InflationReport inflation_;
   RimState rim_;    // now
   Wrench spindle_;  // of the last advance
@@ -62,4 +62,4 @@ class AncfTire final : public Tire {
   Vec3 about_ = Vec3::Zero();  // where its moments are taken, m
 };
 
-}  // namespace furrow
+}  // namespace furrow::tire

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 
-namespace furrow {
+namespace furrow::tire {
 namespace {
 
 using Matrix = Eigen::Map<Eigen::MatrixXf>;
@@ -127,4 +127,4 @@ bool FrontalFactor::eliminate(int s, std::span<const float> values, Front& front
   return true;
 }
 
-}  // namespace furrow
+}  // namespace furrow::tire

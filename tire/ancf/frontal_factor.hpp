@@ -15,7 +15,7 @@
 
 #include "tire/ancf/panel_solver.hpp"
 
-namespace furrow {
+namespace furrow::tire {
 
 class FrontalFactor {
  public:
@@ -68,4 +68,4 @@ class FrontalFactor {
   double operations_ = 0.0, all_operations_ = 0.0;
 };
 
-}  // namespace furrow
+}  // namespace furrow::tire

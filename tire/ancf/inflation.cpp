@@ -6,27 +6,27 @@
 #include <cmath>
 #include <memory>
 
-#include "protocol/error.hpp"
+#include "protocol/core/error.hpp"
 #include "tire/ancf/shell_batch.hpp"
 #include "tire/ancf/shell_tangent.hpp"
 
-namespace furrow {
+namespace furrow::tire {
 namespace {
 
-constexpr double kCreepTime = 5e-3;    // τ, s
-constexpr double kFirstStep = 1e-3;    // s
-constexpr double kLargestStep = 10.0;  // s
-constexpr double kTolerance = 1e-8;    // of the static residual, relative to the full pressure's forces
-constexpr double kNewton = 1e-9;       // of a step's residual, likewise
-constexpr double kRounding = 1e-11;    // m, of coordinates: Newton's corrections below it are rounding errors
-constexpr double kAccepted = 1e-2;     // of the static residual, after the last step
+constexpr double kCreepTime = 5e-3;  // τ, s
+constexpr double kFirstStep = 1e-3;  // s
+constexpr double kMaxStep = 10.0;    // s
+constexpr double kTolerance = 1e-8;  // of the static residual, relative to the full pressure's forces
+constexpr double kNewton = 1e-9;     // of a step's residual, likewise
+constexpr double kRounding = 1e-11;  // m, of coordinates: Newton's corrections below it are rounding errors
+constexpr double kAccepted = 1e-2;   // of the static residual, after the last step
 constexpr int kRampSteps = 10;
 constexpr int kMaxSteps = 300;
 constexpr int kMaxNewton = 12;
 
 class ColumnCreep {
  public:
-  ColumnCreep(const ShellRing& shell, const RingMesh& mesh)
+  ColumnCreep(const ShellCarcass& shell, const ShellMesh& mesh)
       : shell_(shell), mesh_(mesh), layout_(shell.layout()) {
     q_ = undeformed(mesh);
     force_.assign(layout_.size(), 0.0);
@@ -75,7 +75,7 @@ class ColumnCreep {
   }
   double pressure_norm() {
     Field with(layout_.size()), without(layout_.size());
-    ShellRing bare = shell_;
+    ShellCarcass bare = shell_;
     bare.set_pressure(0.0);
     shell_.forces(q_, q_, strains_, 0.0, with);
     bare.forces(q_, q_, strains_, 0.0, without);
@@ -98,7 +98,7 @@ class ColumnCreep {
       for (const int s : {0, 3})
         tie.block<3, 3>(6 * n + s, (n < 2 ? 0 : 6) + s) = n == 1 || n == 2 ? mesh_.turn(1) : Mat3::Identity();
     for (int j = 0; j + 1 < layout_.rows; ++j) {
-      Lanes stress[kStrains];
+      Double4 stress[kStrains];
       BatchNodes before, nodes;
       before.read(layout_, before_.data(), 0, j);
       nodes.read(layout_, q_.data(), 0, j);
@@ -112,17 +112,17 @@ class ColumnCreep {
     return k.block(6, 6, unknowns(), unknowns());
   }
 
-  ShellRing shell_;
-  const RingMesh& mesh_;
-  RingLayout layout_;
+  ShellCarcass shell_;
+  const ShellMesh& mesh_;
+  ShellLayout layout_;
   Field q_, before_, strains_, force_;
   double reference_ = 0.0;  // norm of the pressure forces on the undeformed column, N
 };
 
 }  // namespace
 
-Field undeformed(const RingMesh& mesh) {
-  const RingLayout layout{mesh.columns, mesh.rows};
+Field undeformed(const ShellMesh& mesh) {
+  const ShellLayout layout{mesh.columns, mesh.rows};
   Field q(layout.size(), 0.0);
   for (int j = 0; j < mesh.rows; ++j)
     for (int i = 0; i < mesh.columns; ++i) {
@@ -133,7 +133,7 @@ Field undeformed(const RingMesh& mesh) {
   return q;
 }
 
-Field inflate(const ShellRing& shell, const RingMesh& mesh, InflationReport& report) {
+Field inflate(const ShellCarcass& shell, const ShellMesh& mesh, InflationReport& report) {
   report = {};
   if (shell.pressure() == 0.0) return undeformed(mesh);
   ColumnCreep creep(shell, mesh);
@@ -147,7 +147,7 @@ Field inflate(const ShellRing& shell, const RingMesh& mesh, InflationReport& rep
       continue;
     }
     ++report.steps;
-    h = std::min(1.3 * h, kLargestStep);
+    h = std::min(1.3 * h, kMaxStep);
     report.residual = creep.static_residual();
     if (report.steps >= kRampSteps && report.residual < kTolerance) break;
   }
@@ -160,4 +160,4 @@ Field inflate(const ShellRing& shell, const RingMesh& mesh, InflationReport& rep
   return creep.q();
 }
 
-}  // namespace furrow
+}  // namespace furrow::tire

@@ -5,9 +5,9 @@
 // tangent stays positive definite and shrinks when its Cholesky factorization fails.
 #pragma once
 
-#include "tire/ancf/shell_ring.hpp"
+#include "tire/ancf/shell_carcass.hpp"
 
-namespace furrow {
+namespace furrow::tire {
 
 struct InflationReport {
   int steps = 0;
@@ -17,9 +17,9 @@ struct InflationReport {
 
 /// Coordinates in rim axes, padding filled.
 /// @throws Error(physics) when the creep ends far from equilibrium.
-Field inflate(const ShellRing& shell, const RingMesh& mesh, InflationReport& report);
+Field inflate(const ShellCarcass& shell, const ShellMesh& mesh, InflationReport& report);
 
 /// The undeformed ring in rim axes, padding filled.
-Field undeformed(const RingMesh& mesh);
+Field undeformed(const ShellMesh& mesh);
 
-}  // namespace furrow
+}  // namespace furrow::tire

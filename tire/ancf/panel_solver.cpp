@@ -2,18 +2,14 @@
 
 #include <algorithm>
 
-namespace furrow {
+#include "protocol/core/simd.hpp"
+
+namespace furrow::tire {
 namespace {
 
 constexpr int kStrip = 16;  // rows
-constexpr int kHalf = 8;    // lanes of a vector
-
-typedef float Floats __attribute__((vector_size(4 * kHalf)));
-typedef float UnalignedFloats __attribute__((vector_size(4 * kHalf), aligned(4), may_alias));
-
-Floats read(const float* p) { return *reinterpret_cast<const UnalignedFloats*>(p); }
-void write(float* p, Floats v) { *reinterpret_cast<UnalignedFloats*>(p) = v; }
-float sum(Floats v) { return ((v[0] + v[4]) + (v[1] + v[5])) + ((v[2] + v[6]) + (v[3] + v[7])); }
+using simd::Float8;
+using simd::kFloatLanes;
 
 int strips(int rows) { return (rows + kStrip - 1) / kStrip; }
 /// Columns of strip s of the inverse of a diagonal block: it is lower triangular.
@@ -27,25 +23,26 @@ std::size_t triangle_values(int columns) {
 
 /// y (kStrip long) = strip · x
 const float* multiply(const float* a, int columns, const float* x, float* y) {
-  Floats s0 = {}, s1 = {}, t0 = {}, t1 = {};
+  Float8 s0 = {}, s1 = {}, t0 = {}, t1 = {};
   int k = 0;
   for (; k + 1 < columns; k += 2, a += 2 * kStrip) {
-    s0 += x[k] * read(a), s1 += x[k] * read(a + kHalf);
-    t0 += x[k + 1] * read(a + kStrip), t1 += x[k + 1] * read(a + kStrip + kHalf);
+    s0 += x[k] * simd::load(a), s1 += x[k] * simd::load(a + kFloatLanes);
+    t0 += x[k + 1] * simd::load(a + kStrip), t1 += x[k + 1] * simd::load(a + kStrip + kFloatLanes);
   }
   if (k < columns) {
-    s0 += x[k] * read(a), s1 += x[k] * read(a + kHalf);
+    s0 += x[k] * simd::load(a), s1 += x[k] * simd::load(a + kFloatLanes);
     a += kStrip;
   }
-  write(y, s0 + t0), write(y + kHalf, s1 + t1);
+  simd::store(y, s0 + t0), simd::store(y + kFloatLanes, s1 + t1);
   return a;
 }
 
-/// Adds to the kHalf partial sums of each of the columns of y = stripᵀ · x.
+/// Adds to the kFloatLanes partial sums of each of the columns of y = stripᵀ · x.
 const float* multiply_transposed(const float* a, int columns, const float* x, float* y) {
-  const Floats x0 = read(x), x1 = read(x + kHalf);
+  const Float8 x0 = simd::load(x), x1 = simd::load(x + kFloatLanes);
   for (int k = 0; k < columns; ++k, a += kStrip)
-    write(y + kHalf * k, read(y + kHalf * k) + (read(a) * x0 + read(a + kHalf) * x1));
+    simd::store(y + kFloatLanes * k,
+                simd::load(y + kFloatLanes * k) + (simd::load(a) * x0 + simd::load(a + kFloatLanes) * x1));
   return a;
 }
 
@@ -69,7 +66,7 @@ PanelPattern::PanelPattern(int supernodes, const int* super, const int* row_star
   }
   size_ = super[supernodes];
   work_ = kStrip * static_cast<std::size_t>(strips(widest) + strips(tallest)) +
-          kHalf * static_cast<std::size_t>(widest) + 4 * kStrip;
+          kFloatLanes * static_cast<std::size_t>(widest) + 4 * kStrip;
   std::vector<int> panel_of(size_);
   for (int s = 0; s < supernodes; ++s)
     std::fill_n(panel_of.begin() + panels_[s].first, panels_[s].columns, s);
@@ -167,7 +164,7 @@ void PanelPattern::backward(const std::vector<int>& panels, const float* values,
   for (std::size_t n = panels.size(); n-- > 0;) {
     const Panel& p = panels_[panels[n]];
     float* partial = work;
-    std::fill(partial, partial + kHalf * p.columns, 0.0f);
+    std::fill(partial, partial + kFloatLanes * p.columns, 0.0f);
     const float* triangle = values + p.data;
     const float* a = triangle + triangle_values(p.columns);
     const int* row = rows(p);
@@ -176,13 +173,14 @@ void PanelPattern::backward(const std::vector<int>& panels, const float* values,
       for (int r = 0; r < kStrip; ++r) gathered[r] = s + r < p.below ? x[row[s + r]] : 0.0f;
       a = multiply_transposed(a, p.columns, gathered, partial);
     }
-    float* own = work + kHalf * p.columns;
-    for (int k = 0; k < p.columns; ++k) own[k] = x[p.first + k] - sum(read(partial + kHalf * k));
+    float* own = work + kFloatLanes * p.columns;
+    for (int k = 0; k < p.columns; ++k)
+      own[k] = x[p.first + k] - simd::sum(simd::load(partial + kFloatLanes * k));
     std::fill(own + p.columns, own + strips(p.columns) * kStrip, 0.0f);
-    std::fill(partial, partial + kHalf * p.columns, 0.0f);
+    std::fill(partial, partial + kFloatLanes * p.columns, 0.0f);
     for (int s = 0; s < strips(p.columns); ++s)
       triangle = multiply_transposed(triangle, triangle_columns(s, p.columns), own + s * kStrip, partial);
-    for (int k = 0; k < p.columns; ++k) x[p.first + k] = sum(read(partial + kHalf * k));
+    for (int k = 0; k < p.columns; ++k) x[p.first + k] = simd::sum(simd::load(partial + kFloatLanes * k));
   }
 }
 
@@ -203,4 +201,4 @@ void PanelPattern::solve(const std::vector<float>& values, float* x, std::vector
   for (int b = 0; b < kBranches; ++b) backward(branch_[b], values.data(), x, work.data() + b * work_);
 }
 
-}  // namespace furrow
+}  // namespace furrow::tire

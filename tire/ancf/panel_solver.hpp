@@ -14,7 +14,7 @@
 
 #include <vector>
 
-namespace furrow {
+namespace furrow::tire {
 
 /// Which rows and columns the supernodes of a factor have; shared by all factors of one pattern.
 class PanelPattern {
@@ -67,4 +67,4 @@ class PanelPattern {
   int size_ = 0;
 };
 
-}  // namespace furrow
+}  // namespace furrow::tire

@@ -9,33 +9,33 @@
 #include <cmath>
 #include <memory>
 
-#include "protocol/error.hpp"
+#include "protocol/core/error.hpp"
 #include "tire/ancf/inflation.hpp"
 #include "tire/ancf/shell_batch.hpp"
 #include "tire/ancf/shell_tangent.hpp"
 
-namespace furrow {
+namespace furrow::tire {
 namespace {
 
 constexpr double kTolerance = 1e-6;       // of the free residual, relative to the load
 constexpr double kDirectorLength = 0.01;  // m, makes director residuals (N m) comparable with forces
-constexpr double kLeastLoad = 1.0;        // N, below which the residual is relative to the pressure forces
-constexpr double kLeastViscosity = 1e-3;  // σ = τ/h: first tried where the tangent is not positive definite
-constexpr double kMostViscosity = 1e6;
+constexpr double kMinLoad = 1.0;          // N, below which the residual is relative to the pressure forces
+constexpr double kMinViscosity = 1e-3;    // σ = τ/h: first tried where the tangent is not positive definite
+constexpr double kMaxViscosity = 1e6;
 constexpr double kRounding = 1e-13;  // of the potential, relative to its elastic part and p V
 constexpr int kMaxSteps = 1500;
 constexpr int kMaxCuts = 12;
-constexpr double kShortStep = 0.2;                         // share of a step below which σ grows
-constexpr int kAround = 6, kAcross = 4, kMostAround = 64;  // contact points of an element
+constexpr double kShortStep = 0.2;                        // share of a step below which σ grows
+constexpr int kAround = 6, kAcross = 4, kMaxAround = 64;  // contact points of an element
 constexpr int kColumn[4] = {0, 1, 1, 0}, kRow[4] = {0, 0, 1, 1};
 
 /// So many that a bar's top, or its edge where that is longer, meets two at least.
-int points_around(const RingMesh& mesh, const PressObstacle& obstacle) {
+int points_around(const ShellMesh& mesh, const PressObstacle& obstacle) {
   if (obstacle.height <= 0.0) return kAround;
   double longest = 0.0;
   for (const Vec3& x : mesh.position) longest = std::max(longest, (mesh.turn(1) * x - x).norm());
   const double points = std::ceil(2.0 * longest / std::max(obstacle.width, obstacle.edge));
-  return static_cast<int>(std::clamp(points, double{kAround}, double{kMostAround}));
+  return static_cast<int>(std::clamp(points, double{kAround}, double{kMaxAround}));
 }
 
 }  // namespace
@@ -62,7 +62,7 @@ struct PressSolver::Linear {
 
   static int at(int r, int k) { return r >= k ? r * (r + 1) / 2 + k : k * (k + 1) / 2 + r; }
 
-  explicit Linear(const RingLayout& layout) {
+  explicit Linear(const ShellLayout& layout) {
     const int across = layout.rows - 2, n = 6 * across * layout.columns;
     std::vector<Eigen::Triplet<double>> entries;
     std::vector<std::array<int, 24>> unknowns;
@@ -93,11 +93,11 @@ struct PressSolver::Linear {
   }
 
   /// Where unknown k lies in a field.
-  static std::size_t place(const RingLayout& layout, int k) {
+  static std::size_t place(const ShellLayout& layout, int k) {
     const int across = layout.rows - 2;
     return layout.offset(1 + k / 6 % across, k % 6) + k / 6 / across;
   }
-  Eigen::VectorXd gather(const RingLayout& layout, const Field& f) const {
+  Eigen::VectorXd gather(const ShellLayout& layout, const Field& f) const {
     Eigen::VectorXd v(matrix.rows());
     for (int k = 0; k < v.size(); ++k) v[k] = f[place(layout, k)];
     return v;
@@ -107,7 +107,7 @@ struct PressSolver::Linear {
   }
 };
 
-PressSolver::PressSolver(const TireFile& file, const RingMesh& mesh, const Field& inflated,
+PressSolver::PressSolver(const TireFile& file, const ShellMesh& mesh, const Field& inflated,
                          const PressObstacle& obstacle)
     : mesh_(mesh),
       shell_(file, mesh),
@@ -121,7 +121,7 @@ PressSolver::PressSolver(const TireFile& file, const RingMesh& mesh, const Field
   shell_.strains(q_, strains_);
   for (int j = 0; j < layout_.rows; ++j)
     start_radius_ = std::max(start_radius_, layout_.get(q_, 0, j, 0).z());
-  ShellRing bare = shell_;
+  ShellCarcass bare = shell_;
   bare.set_pressure(0.0);
   Field without(layout_.size());
   shell_.forces(q_, q_, strains_, 0.0, r_);
@@ -210,15 +210,15 @@ bool PressSolver::factorize() {
   linear_->matrix.coeffs().setZero();
   for (int j = 0; j + 1 < layout_.rows; ++j)
     for (int b = 0; b < layout_.batches(); ++b) {
-      Lanes stress[kStrains];
+      Double4 stress[kStrains];
       shell_.batch_stress_at(q_, strains_, 1.0, j, b, stress);
       BatchNodes nodes;
-      nodes.read(layout_, q_.data(), b * kLanes, j);
+      nodes.read(layout_, q_.data(), b * kDoubleLanes, j);
       linear_->tangent.compute(shell_.stiffness(j), nodes, stress, 1.0 + viscosity_, 1.0, shell_.pressure());
-      for (int lane = 0; lane < kLanes && b * kLanes + lane < layout_.columns; ++lane)
+      for (int lane = 0; lane < kDoubleLanes && b * kDoubleLanes + lane < layout_.columns; ++lane)
         for (int r = 0; r < 24; ++r)
           for (int k = 0; k <= r; ++k)
-            linear_->add(j * layout_.columns + b * kLanes + lane, r, k, linear_->tangent.k[r][k][lane]);
+            linear_->add(j * layout_.columns + b * kDoubleLanes + lane, r, k, linear_->tangent.k[r][k][lane]);
     }
   contact(true);
   linear_->llt.factorize(linear_->matrix);
@@ -275,12 +275,12 @@ PressPoint PressSolver::press(double deflection, const std::function<void()>& ea
   follow(deflection - start_radius_);
   viscosity_ = 0.0;
   double norm = evaluate();
-  for (; point.creep_steps < kMaxSteps && viscosity_ < kMostViscosity; ++point.creep_steps) {
+  for (; point.creep_steps < kMaxSteps && viscosity_ < kMaxViscosity; ++point.creep_steps) {
     if (each_step) each_step();
     const bool definite = factorize();
     if (!definite) ++point.failed_factorizations;
     point.force = force_;
-    point.residual = norm / (force_ > kLeastLoad ? force_ : pressure_norm_);
+    point.residual = norm / (force_ > kMinLoad ? force_ : pressure_norm_);
     if (definite && viscosity_ == 0.0 && point.residual <= kTolerance) {
       const TireStatus status = clearance_.status(clearance_.measure(layout_, q_, RimState{}));
       if (!status.converged)
@@ -289,12 +289,12 @@ PressPoint PressSolver::press(double deflection, const std::function<void()>& ea
     }
     const double share = definite ? creep(norm) : 0.0;
     if (share < kShortStep)
-      viscosity_ = std::max(4.0 * viscosity_, kLeastViscosity);
+      viscosity_ = std::max(4.0 * viscosity_, kMinViscosity);
     else if (share == 1.0)
-      viscosity_ = viscosity_ > kLeastViscosity ? 0.5 * viscosity_ : 0.0;
+      viscosity_ = viscosity_ > kMinViscosity ? 0.5 * viscosity_ : 0.0;
   }
   const std::string how =
-      viscosity_ < kMostViscosity
+      viscosity_ < kMaxViscosity
           ? fmt::format("residual {:.2g} of the load, allowed {:.0e}", point.residual, kTolerance)
           : std::string("its stiffness is not positive definite there, creep or not");
   throw physics_error(
@@ -327,4 +327,4 @@ std::vector<PressSample> PressSolver::footprint() const {
   return samples;
 }
 
-}  // namespace furrow
+}  // namespace furrow::tire

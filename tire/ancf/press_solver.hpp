@@ -17,9 +17,9 @@
 #include <vector>
 
 #include "tire/ancf/rim_clearance.hpp"
-#include "tire/ancf/shell_ring.hpp"
+#include "tire/ancf/shell_carcass.hpp"
 
-namespace furrow {
+namespace furrow::tire {
 
 /// A flat plate, or a flat-topped bar across the direction of travel with rounded edges.
 struct PressObstacle {
@@ -52,7 +52,7 @@ struct PressSample {
 
 class PressSolver {
  public:
-  PressSolver(const TireFile& file, const RingMesh& mesh, const Field& inflated,
+  PressSolver(const TireFile& file, const ShellMesh& mesh, const Field& inflated,
               const PressObstacle& obstacle);
   ~PressSolver();
 
@@ -79,9 +79,9 @@ class PressSolver {
   template <class Visit>
   void contact_points(Visit visit) const;
 
-  RingMesh mesh_;
-  ShellRing shell_;
-  RingLayout layout_;
+  ShellMesh mesh_;
+  ShellCarcass shell_;
+  ShellLayout layout_;
   PressObstacle obstacle_;
   RimClearance clearance_;
   Field q_, strains_, r_;
@@ -92,4 +92,4 @@ class PressSolver {
   std::unique_ptr<Linear> linear_;
 };
 
-}  // namespace furrow
+}  // namespace furrow::tire

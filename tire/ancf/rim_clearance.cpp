@@ -6,13 +6,13 @@
 #include <cmath>
 #include <limits>
 
-namespace furrow {
+namespace furrow::tire {
 namespace {
-constexpr double kTorn = 2.0;          // undeformed radii: no tire comes so far from its axle
-constexpr double kMostOfHeight = 0.5;  // of a node's undeformed height that its half thickness may take
+constexpr double kTorn = 2.0;         // undeformed radii: no tire comes so far from its axle
+constexpr double kMaxOfHeight = 0.5;  // of a node's undeformed height that its half thickness may take
 }  // namespace
 
-RimClearance::RimClearance(const TireFile& file, const RingMesh& mesh)
+RimClearance::RimClearance(const TireFile& file, const ShellMesh& mesh)
     : radius_(std::max(mesh.position.front().z(), mesh.position.back().z())),
       half_width_(std::max(-mesh.position.front().y(), mesh.position.back().y())),
       limit_(kTorn * file.radius),
@@ -20,11 +20,11 @@ RimClearance::RimClearance(const TireFile& file, const RingMesh& mesh)
   for (int j = 1; j + 1 < mesh.rows; ++j) {
     const double thickness = std::max(file.section(j - 1).thickness(), file.section(j).thickness());
     const double height = std::max(0.0, mesh.position[j].z() - radius_);
-    inside_[j] = std::min(0.5 * thickness, kMostOfHeight * height);
+    inside_[j] = std::min(0.5 * thickness, kMaxOfHeight * height);
   }
 }
 
-RimClearance::Nodes RimClearance::measure(const RingLayout& layout, const Field& q,
+RimClearance::Nodes RimClearance::measure(const ShellLayout& layout, const Field& q,
                                           const RimState& rim) const {
   const Vec3 axle = rim.orientation * Vec3::UnitY();
   Nodes nodes;
@@ -74,4 +74,4 @@ TireStatus RimClearance::status(const Nodes& nodes) const {
   return {};
 }
 
-}  // namespace furrow
+}  // namespace furrow::tire

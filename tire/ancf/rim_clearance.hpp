@@ -5,15 +5,15 @@
 
 #include <vector>
 
-#include "tire/ancf/ring_layout.hpp"
-#include "tire/ring_mesh.hpp"
+#include "tire/ancf/shell_layout.hpp"
+#include "tire/shell_mesh.hpp"
 #include "tire/tire.hpp"
 
-namespace furrow {
+namespace furrow::tire {
 
 class RimClearance {
  public:
-  RimClearance(const TireFile& file, const RingMesh& mesh);
+  RimClearance(const TireFile& file, const ShellMesh& mesh);
 
   /// The node between the beads whose inner surface is nearest to the rim, and the one farthest from the axle's centre.
   struct Nodes {
@@ -22,7 +22,7 @@ class RimClearance {
     double farthest = 0.0;     // m
     int far_column = 0, far_row = 0;
   };
-  Nodes measure(const RingLayout& layout, const Field& q, const RimState& rim) const;
+  Nodes measure(const ShellLayout& layout, const Field& q, const RimState& rim) const;
 
   /// What is wrong with these nodes, with figures and what to try.
   TireStatus status(const Nodes& nodes) const;
@@ -33,4 +33,4 @@ class RimClearance {
   std::vector<double> inside_;              // of the mid-surface, by row: half the thickness, m
 };
 
-}  // namespace furrow
+}  // namespace furrow::tire

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "protocol/flat.hpp"
+#include "protocol/core/flat.hpp"
 #include "tire/ancf/shell_batch.hpp"
 #include "tire/ancf/shell_tangent.hpp"
 #include "tire/ancf/stopwatch.hpp"
 
-namespace furrow {
+namespace furrow::tire {
 namespace {
 
 constexpr double kDirectorWeight = 0.5;  // the age of a director counts less: what it turns is softer
@@ -16,14 +16,14 @@ constexpr double kAlso = 0.4;  // of the age of renewal: sectors as old as this 
 
 }  // namespace
 
-SectorFactor::SectorFactor(const RingLayout& layout, const ShellRing& shell, const RingMass& mass,
+SectorFactor::SectorFactor(const ShellLayout& layout, const ShellCarcass& shell, const ShellMass& mass,
                            const SectorFactorParams& params)
     : params_(params),
       layout_(layout),
       shell_(shell),
       mass_(mass),
       factor_(layout),
-      made_layout_{2 * kLanes * layout.batches(), layout.rows},
+      made_layout_{2 * kDoubleLanes * layout.batches(), layout.rows},
       made_old_(made_layout_.size()),
       made_new_(made_layout_.size()),
       geometric_(layout.batches(), 1),
@@ -50,16 +50,16 @@ void SectorFactor::note_shape(int sector, const Step& step) {
   const Mat3 back = rim.orientation.toRotationMatrix().transpose();
   made_pressure_[sector] = shell_.pressure();
   for (int j = 0; j < layout_.rows; ++j)
-    for (int k = 0; k <= kLanes; ++k) {
-      const int i = sector * kLanes + k, to = 2 * sector * kLanes + k;
+    for (int k = 0; k <= kDoubleLanes; ++k) {
+      const int i = sector * kDoubleLanes + k, to = 2 * sector * kDoubleLanes + k;
       made_layout_.set(made_old_, to, j, 0, back * (layout_.get(step.q, i, j, 0) - rim.position));
       made_layout_.set(made_new_, to, j, 0, back * (layout_.get(step.q_new, i, j, 0) - rim.position));
       made_layout_.set(made_old_, to, j, 3, back * layout_.get(step.q, i, j, 3));
       made_layout_.set(made_new_, to, j, 3, back * layout_.get(step.q_new, i, j, 3));
     }
   if (contact_made_.empty()) return;
-  const int nodes = layout_.rows * std::min(kLanes, layout_.columns - sector * kLanes);
-  const std::size_t first = static_cast<std::size_t>(sector) * kLanes * layout_.rows;
+  const int nodes = layout_.rows * std::min(kDoubleLanes, layout_.columns - sector * kDoubleLanes);
+  const std::size_t first = static_cast<std::size_t>(sector) * kDoubleLanes * layout_.rows;
   std::copy_n(contact_now_.begin() + first, nodes, contact_made_.begin() + first);
 }
 
@@ -90,22 +90,22 @@ void SectorFactor::build_sector(int sector) {
   factor_.clear(sector);
   for (int j = 0; j + 1 < layout_.rows; ++j) {
     BatchNodes before, now, middle;
-    before.read(made_layout_, made_old_.data(), 2 * sector * kLanes, j);
-    now.read(made_layout_, made_new_.data(), 2 * sector * kLanes, j);
+    before.read(made_layout_, made_old_.data(), 2 * sector * kDoubleLanes, j);
+    now.read(made_layout_, made_new_.data(), 2 * sector * kDoubleLanes, j);
     for (int n = 0; n < 4; ++n) {
       middle.r[n] = 0.5 * (before.r[n] + now.r[n]);
       middle.d[n] = 0.5 * (before.d[n] + now.d[n]);
     }
-    Lanes stress[kStrains];
+    Double4 stress[kStrains];
     shell_.batch_stress_between(before, now, c, j, stress);
     tangent.compute(shell_.stiffness(j), middle, stress, c, geometric_[sector] ? 0.5 : 0.0,
                     made_pressure_[sector]);
     factor_.add(tangent, mass_.element(j), inertia, j, sector);
   }
   if (contact_made_.empty()) return;
-  for (int lane = 0; lane < kLanes && sector * kLanes + lane < layout_.columns; ++lane)
+  for (int lane = 0; lane < kDoubleLanes && sector * kDoubleLanes + lane < layout_.columns; ++lane)
     for (int j = 1; j + 1 < layout_.rows; ++j)
-      factor_.add_node(contact_made_[(sector * kLanes + lane) * layout_.rows + j], sector, lane, j);
+      factor_.add_node(contact_made_[(sector * kDoubleLanes + lane) * layout_.rows + j], sector, lane, j);
 }
 
 /// Makes the factor anew in the sectors marked. Without its geometric part the tangent is positive definite.
@@ -128,18 +128,18 @@ bool SectorFactor::renew(const std::vector<char>& which, const Step& step) {
 
 /// Largest relative change of an edge or a director of a sector since the factor was made, in rim axes.
 double SectorFactor::age(int sector, const Field& q_new, const Mat3& turn) const {
-  Lanes most = {};
-  const auto compare = [&](const Lanes3& now, const Lanes3& made, double weight) {
-    const Lanes3 change{turn(0, 0) * now.x + turn(1, 0) * now.y + turn(2, 0) * now.z - made.x,
-                        turn(0, 1) * now.x + turn(1, 1) * now.y + turn(2, 1) * now.z - made.y,
-                        turn(0, 2) * now.x + turn(1, 2) * now.y + turn(2, 2) * now.z - made.z};
-    const Lanes relative = weight * weight * dot(change, change) / dot(made, made);
+  Double4 most = {};
+  const auto compare = [&](const Triple<Double4>& now, const Triple<Double4>& made, double weight) {
+    const Triple<Double4> change{turn(0, 0) * now.x + turn(1, 0) * now.y + turn(2, 0) * now.z - made.x,
+                                 turn(0, 1) * now.x + turn(1, 1) * now.y + turn(2, 1) * now.z - made.y,
+                                 turn(0, 2) * now.x + turn(1, 2) * now.y + turn(2, 2) * now.z - made.z};
+    const Double4 relative = weight * weight * dot(change, change) / dot(made, made);
     most = relative > most ? relative : most;
   };
   for (int j = 0; j + 1 < layout_.rows; ++j) {
     BatchNodes now, made;
-    now.read(layout_, q_new.data(), sector * kLanes, j);
-    made.read(made_layout_, made_new_.data(), 2 * sector * kLanes, j);
+    now.read(layout_, q_new.data(), sector * kDoubleLanes, j);
+    made.read(made_layout_, made_new_.data(), 2 * sector * kDoubleLanes, j);
     compare(now.r[1] - now.r[0], made.r[1] - made.r[0], 1.0);
     compare(now.r[3] - now.r[0], made.r[3] - made.r[0], 1.0);
     compare(now.d[0], made.d[0], kDirectorWeight);
@@ -152,12 +152,12 @@ double SectorFactor::age(int sector, const Field& q_new, const Mat3& turn) const
 double SectorFactor::contact_age(int sector, double h) const {
   if (contact_made_.empty()) return 0.0;
   double most = 0.0;
-  for (int i = sector * kLanes; i < std::min((sector + 1) * kLanes, layout_.columns); ++i)
+  for (int i = sector * kDoubleLanes; i < std::min((sector + 1) * kDoubleLanes, layout_.columns); ++i)
     for (int j = 1; j + 1 < layout_.rows; ++j) {
       const std::size_t node = static_cast<std::size_t>(i) * layout_.rows + j;
       const double change = (contact_now_[node] - contact_made_[node]).norm();
       if (change == 0.0) continue;
-      const double inertia = weight_[node] / (RingMass::kGravity * h * h);
+      const double inertia = weight_[node] / (ShellMass::kGravity * h * h);
       most = std::max(most, change / (contact_made_[node].norm() + inertia));
     }
   return most;
@@ -212,4 +212,4 @@ void SectorFactor::restore(const Archive& archive, std::int64_t renewals) {
   }
 }
 
-}  // namespace furrow
+}  // namespace furrow::tire

@@ -1,8 +1,8 @@
 // The Cholesky factor of a step's tangent, kept from step to step and renewed where it has aged.
 //
-// For a change of a free node's q', equation (2) of ring_integrator.hpp has the tangent
+// For a change of a free node's q', equation (2) of shell_integrator.hpp has the tangent
 //   A = M/h² + c B(q_f)ᵀ D̂ B(q_f) + ½ (geometric and pressure parts) + ½ K + C/h,   c = 1 + τ/h + Σ g_i b_i,
-// in its symmetric form; K and C are those of the contact (ring_contact.hpp). As c is some hundred, a degree of local
+// in its symmetric form; K and C are those of the contact (shell_contact.hpp). As c is some hundred, a degree of local
 // rotation matters, and A ages where the tire deforms. So the ring is cut into sectors, and the factor is renewed in
 // those whose shape, in rim axes, has changed since it was made: around the contact patch, which travels through the
 // rim's axes, and where the tire sways or wrinkles. A sector's age is the largest relative change of an edge, a director
@@ -13,15 +13,15 @@
 #include <cstdint>
 #include <vector>
 
-#include "protocol/archive.hpp"
-#include "protocol/surface.hpp"
-#include "tire/ancf/ring_contact.hpp"
-#include "tire/ancf/ring_factor.hpp"
-#include "tire/ancf/ring_layout.hpp"
-#include "tire/ancf/ring_mass.hpp"
-#include "tire/ancf/shell_ring.hpp"
+#include "protocol/core/archive.hpp"
+#include "protocol/core/surface.hpp"
+#include "tire/ancf/shell_carcass.hpp"
+#include "tire/ancf/shell_contact.hpp"
+#include "tire/ancf/shell_factor.hpp"
+#include "tire/ancf/shell_layout.hpp"
+#include "tire/ancf/shell_mass.hpp"
 
-namespace furrow {
+namespace furrow::tire {
 
 struct SectorFactorParams {
   double damping = 0.005;  // τ, s
@@ -39,7 +39,7 @@ struct SectorFactorParams {
 class SectorFactor {
  public:
   /// `shell` and `mass` must outlive it.
-  SectorFactor(const RingLayout& layout, const ShellRing& shell, const RingMass& mass,
+  SectorFactor(const ShellLayout& layout, const ShellCarcass& shell, const ShellMass& mass,
                const SectorFactorParams& params);
   SectorFactor(const SectorFactor&) = delete;
   SectorFactor& operator=(const SectorFactor&) = delete;
@@ -50,7 +50,7 @@ class SectorFactor {
     const RimState& rim;  // at its end
     const Field& q;       // coordinates at its beginning: m, –
     const Field& q_new;   // the same at its end, as predicted or corrected so far
-    const RingContact& contact;
+    const ShellContact& contact;
   };
 
   int unknowns() const { return factor_.unknowns(); }
@@ -89,14 +89,14 @@ class SectorFactor {
   void note_contact(const Step& step, const Mat3& turn);
 
   SectorFactorParams params_;
-  RingLayout layout_;
-  const ShellRing& shell_;
-  const RingMass& mass_;
+  ShellLayout layout_;
+  const ShellCarcass& shell_;
+  const ShellMass& mass_;
   std::vector<double> weight_;  // of the nodes, [column * rows + row], N
-  RingFactor factor_;
+  ShellFactor factor_;
 
   // What the factor was made from: coordinates in rim axes at the ends of a step, sector beside sector.
-  RingLayout made_layout_;
+  ShellLayout made_layout_;
   Field made_old_, made_new_;
   std::vector<char> geometric_;        // sectors made with their geometric stiffness
   std::vector<double> made_pressure_;  // Pa, by sector
@@ -113,4 +113,4 @@ class SectorFactor {
   Times times_;
 };
 
-}  // namespace furrow
+}  // namespace furrow::tire

@@ -1,17 +1,17 @@
 // The element formulas of shell_strain.hpp, written out for a batch of elements side by side around the ring.
 #pragma once
 
-#include "tire/ancf/ring_layout.hpp"
+#include "tire/ancf/shell_layout.hpp"
 #include "tire/ancf/shell_strain.hpp"
 
-namespace furrow {
+namespace furrow::tire {
 
 /// Position and director derivatives of a batch at the sampling places.
 struct BatchNodes {
-  Lanes3 r[4], d[4];
+  Triple<Double4> r[4], d[4];
 
   /// Elements i…i+3 at width position j.
-  void read(const RingLayout& layout, const double* field, int i, int j) {
+  void read(const ShellLayout& layout, const double* field, int i, int j) {
     const double* low = field + layout.offset(j, 0) + i;
     const double* high = field + layout.offset(j + 1, 0) + i;
     const int s = layout.stride();
@@ -30,8 +30,8 @@ inline constexpr double kNear = 0.5 * (1.0 + kGaussPoint), kFar = 0.5 * (1.0 - k
 
 /// Edge derivatives: b η = −1, t η = +1, l ξ = −1, r ξ = +1; and at the Gauss lines k, l.
 struct BatchSlopes {
-  Lanes3 ab, at, al, ar, db, dt, dl, dr;
-  Lanes3 a1[2], d1[2], a2[2], d2[2];
+  Triple<Double4> ab, at, al, ar, db, dt, dl, dr;
+  Triple<Double4> a1[2], d1[2], a2[2], d2[2];
 
   explicit BatchSlopes(const BatchNodes& n)
       : ab(0.5 * (n.r[1] - n.r[0])),
@@ -49,7 +49,7 @@ struct BatchSlopes {
   }
 };
 
-inline void batch_strains(const BatchNodes& n, Lanes* e) {
+inline void batch_strains(const BatchNodes& n, Double4* e) {
   const BatchSlopes s(n);
   for (int k = 0; k < 2; ++k) {
     e[e11(k)] = 0.5 * dot(s.a1[k], s.a1[k]);
@@ -65,8 +65,8 @@ inline void batch_strains(const BatchNodes& n, Lanes* e) {
     }
   }
   for (int c = 0; c < 4; ++c) e[e33(c)] = 0.5 * dot(n.d[c], n.d[c]);
-  const Lanes3 bottom = 0.5 * (n.d[0] + n.d[1]), top = 0.5 * (n.d[3] + n.d[2]);
-  const Lanes3 left = 0.5 * (n.d[0] + n.d[3]), right = 0.5 * (n.d[1] + n.d[2]);
+  const Triple<Double4> bottom = 0.5 * (n.d[0] + n.d[1]), top = 0.5 * (n.d[3] + n.d[2]);
+  const Triple<Double4> left = 0.5 * (n.d[0] + n.d[3]), right = 0.5 * (n.d[1] + n.d[2]);
   e[e13(0)] = dot(s.ab, bottom), e[e13(0) + 1] = dot(s.db, bottom);
   e[e13(1)] = dot(s.at, top), e[e13(1) + 1] = dot(s.dt, top);
   e[e23(0)] = dot(s.al, left), e[e23(0) + 1] = dot(s.dl, left);
@@ -74,10 +74,10 @@ inline void batch_strains(const BatchNodes& n, Lanes* e) {
 }
 
 /// out = D̂ in, for symmetric D̂ stored by rows.
-inline void batch_stress(const double* d, const Lanes* in, Lanes* out) {
+inline void batch_stress(const double* d, const Double4* in, Double4* out) {
   constexpr int kRows = 6;
   for (int first = 0; first < kStrains; first += kRows) {
-    Lanes sum[kRows] = {};
+    Double4 sum[kRows] = {};
     const double* column = d + first;  // symmetric: column `l` of these rows lies in row `l`
     for (int l = 0; l < kStrains; ++l, column += kStrains)
       for (int r = 0; r < kRows; ++r) sum[r] += column[r] * in[l];
@@ -87,32 +87,33 @@ inline void batch_stress(const double* d, const Lanes* in, Lanes* out) {
 
 /// Nodal forces Σ_k S_k ∂e_k/∂q − p ∂V/∂q at the configuration `n`.
 struct BatchForces {
-  Lanes3 r[4], d[4];
+  Triple<Double4> r[4], d[4];
 
-  BatchForces(const BatchNodes& n, const Lanes* stress, Lanes pressure) {
+  BatchForces(const BatchNodes& n, const Double4* stress, Double4 pressure) {
     const BatchSlopes s(n);
-    Lanes3 fa1[2], fd1[2], fa2[2], fd2[2];
+    Triple<Double4> fa1[2], fd1[2], fa2[2], fd2[2];
     for (int k = 0; k < 2; ++k) {
-      const Lanes *s1 = stress + e11(k), *s2 = stress + e22(k);
+      const Double4 *s1 = stress + e11(k), *s2 = stress + e22(k);
       fa1[k] = s1[0] * s.a1[k] + s1[1] * s.d1[k];
       fd1[k] = s1[1] * s.a1[k] + s1[2] * s.d1[k];
       fa2[k] = s2[0] * s.a2[k] + s2[1] * s.d2[k];
       fd2[k] = s2[1] * s.a2[k] + s2[2] * s.d2[k];
     }
-    for (int c = 0; c < 4; ++c) d[c] = stress[e33(c)] * n.d[c], r[c] = Lanes3{Lanes{}, Lanes{}, Lanes{}};
+    for (int c = 0; c < 4; ++c)
+      d[c] = stress[e33(c)] * n.d[c], r[c] = Triple<Double4>{Double4{}, Double4{}, Double4{}};
     for (int k = 0; k < 2; ++k)
       for (int l = 0; l < 2; ++l) {
-        const Lanes* t = stress + e12(k, l);
+        const Double4* t = stress + e12(k, l);
         fa1[k] += t[0] * s.a2[l] + t[1] * s.d2[l];
         fd1[k] += t[1] * s.a2[l] + t[2] * s.d2[l];
         fa2[l] += t[0] * s.a1[k] + t[1] * s.d1[k];
         fd2[l] += t[1] * s.a1[k] + t[2] * s.d1[k];
         add_pressure(k, l, pressure * cross(s.a1[k], s.a2[l]));
       }
-    Lanes3 fab = kNear * fa1[0] + kFar * fa1[1], fat = kFar * fa1[0] + kNear * fa1[1];
-    Lanes3 fdb = kNear * fd1[0] + kFar * fd1[1], fdt = kFar * fd1[0] + kNear * fd1[1];
-    Lanes3 fal = kNear * fa2[0] + kFar * fa2[1], far = kFar * fa2[0] + kNear * fa2[1];
-    Lanes3 fdl = kNear * fd2[0] + kFar * fd2[1], fdr = kFar * fd2[0] + kNear * fd2[1];
+    Triple<Double4> fab = kNear * fa1[0] + kFar * fa1[1], fat = kFar * fa1[0] + kNear * fa1[1];
+    Triple<Double4> fdb = kNear * fd1[0] + kFar * fd1[1], fdt = kFar * fd1[0] + kNear * fd1[1];
+    Triple<Double4> fal = kNear * fa2[0] + kFar * fa2[1], far = kFar * fa2[0] + kNear * fa2[1];
+    Triple<Double4> fdl = kNear * fd2[0] + kFar * fd2[1], fdr = kFar * fd2[0] + kNear * fd2[1];
     add_shear(stress + e13(0), s.ab, s.db, n.d[0], n.d[1], fab, fdb, d[0], d[1]);
     add_shear(stress + e13(1), s.at, s.dt, n.d[3], n.d[2], fat, fdt, d[3], d[2]);
     add_shear(stress + e23(0), s.al, s.dl, n.d[0], n.d[3], fal, fdl, d[0], d[3]);
@@ -123,7 +124,7 @@ struct BatchForces {
         d[3] += 0.5 * (fdl - fdt);
   }
 
-  void add(const RingLayout& layout, double* field, int i, int j) const {
+  void add(const ShellLayout& layout, double* field, int i, int j) const {
     double* low = field + layout.offset(j, 0) + i;
     double* high = field + layout.offset(j + 1, 0) + i;
     const int s = layout.stride();
@@ -134,11 +135,11 @@ struct BatchForces {
   }
 
  private:
-  static void add_three(double* p, int stride, const Lanes3& f) {
+  static void add_three(double* p, int stride, const Triple<Double4>& f) {
     add_to(p, f.x), add_to(p + stride, f.y), add_to(p + 2 * stride, f.z);
   }
   /// p n at Gauss point (η_k, ξ_l), shared by N_n there.
-  void add_pressure(int k, int l, const Lanes3& pn) {
+  void add_pressure(int k, int l, const Triple<Double4>& pn) {
     const double left = l == 0 ? kNear : kFar, bottom = k == 0 ? kNear : kFar;
     r[0] += -(left * bottom) * pn;
     r[1] += -((1 - left) * bottom) * pn;
@@ -146,15 +147,16 @@ struct BatchForces {
     r[3] += -(left * (1 - bottom)) * pn;
   }
   /// 2E = a·m + z a_d·m with m = ½ (d_first + d_second).
-  static void add_shear(const Lanes* stress, const Lanes3& a, const Lanes3& ad, const Lanes3& first,
-                        const Lanes3& second, Lanes3& fa, Lanes3& fad, Lanes3& f_first, Lanes3& f_second) {
-    const Lanes3 m = 0.5 * (first + second);
+  static void add_shear(const Double4* stress, const Triple<Double4>& a, const Triple<Double4>& ad,
+                        const Triple<Double4>& first, const Triple<Double4>& second, Triple<Double4>& fa,
+                        Triple<Double4>& fad, Triple<Double4>& f_first, Triple<Double4>& f_second) {
+    const Triple<Double4> m = 0.5 * (first + second);
     fa += stress[0] * m;
     fad += stress[1] * m;
-    const Lanes3 half = 0.5 * (stress[0] * a + stress[1] * ad);
+    const Triple<Double4> half = 0.5 * (stress[0] * a + stress[1] * ad);
     f_first += half;
     f_second += half;
   }
 };
 
-}  // namespace furrow
+}  // namespace furrow::tire

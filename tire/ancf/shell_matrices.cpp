@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace furrow {
+namespace furrow::tire {
 namespace {
 
 using Mat6 = Eigen::Matrix<double, 6, 6>;
@@ -120,4 +120,4 @@ std::vector<ShellLayer> shell_layers(const TireFile& file, const Section& sectio
   return layers;
 }
 
-}  // namespace furrow
+}  // namespace furrow::tire

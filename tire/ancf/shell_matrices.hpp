@@ -15,7 +15,7 @@
 #include "tire/ancf/shell_strain.hpp"
 #include "tire/tire_file.hpp"
 
-namespace furrow {
+namespace furrow::tire {
 
 inline constexpr int kEnhanced = 8;
 
@@ -42,4 +42,4 @@ StrainMatrix shell_stiffness(const ElementNodes& reference, const std::vector<Sh
 
 std::vector<ShellLayer> shell_layers(const TireFile& file, const Section& section);
 
-}  // namespace furrow
+}  // namespace furrow::tire

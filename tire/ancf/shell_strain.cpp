@@ -1,6 +1,6 @@
 #include "tire/ancf/shell_strain.hpp"
 
-namespace furrow {
+namespace furrow::tire {
 namespace {
 
 using Row = Eigen::Matrix<double, 8, 1>;  // a linear functional of the nodal scalars
@@ -81,4 +81,4 @@ Eigen::Matrix<double, 6, kStrains> covariant_map(int k, int l, double z) {
   return map;
 }
 
-}  // namespace furrow
+}  // namespace furrow::tire

@@ -17,9 +17,9 @@
 
 #include <array>
 
-#include "protocol/vec.hpp"
+#include "protocol/core/vec.hpp"
 
-namespace furrow {
+namespace furrow::tire {
 
 inline constexpr int kStrains = 36;
 inline constexpr double kGaussPoint = 0.57735026918962576451;  // 1/√3
@@ -47,4 +47,4 @@ StrainVector raw_strains(const ElementNodes& q);
 /// (ξ = ∓1/√3 for l = 0, 1; η likewise for k) and height z.
 Eigen::Matrix<double, 6, kStrains> covariant_map(int k, int l, double z);
 
-}  // namespace furrow
+}  // namespace furrow::tire

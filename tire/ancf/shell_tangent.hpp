@@ -4,18 +4,20 @@
 // the beads they belong to prescribed coordinates. Coordinate order in an element: 6 n + 3 s + x.
 #pragma once
 
-#include "tire/ancf/lanes.hpp"
+#include "protocol/core/simd.hpp"
 #include "tire/ancf/shell_strain.hpp"
 
-namespace furrow {
+namespace furrow::tire {
+
+using namespace simd;
 
 struct BatchNodes;
 
 struct BatchTangent {
-  Lanes k[24][24];  // lower triangle
+  Double4 k[24][24];  // lower triangle
 
-  void compute(const StrainMatrix& d, const BatchNodes& nodes, const Lanes* stress, double material,
+  void compute(const StrainMatrix& d, const BatchNodes& nodes, const Double4* stress, double material,
                double geometric, double pressure);
 };
 
-}  // namespace furrow
+}  // namespace furrow::tire

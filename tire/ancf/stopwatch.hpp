@@ -3,7 +3,7 @@
 
 #include <ctime>
 
-namespace furrow {
+namespace furrow::tire {
 
 /// Adds the time from its making to its end to a total, s.
 class Stopwatch {
@@ -23,4 +23,4 @@ class Stopwatch {
   double start_;
 };
 
-}  // namespace furrow
+}  // namespace furrow::tire

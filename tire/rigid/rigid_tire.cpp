@@ -6,16 +6,16 @@
 
 #include "tire/rim_archive.hpp"
 
-namespace furrow {
+namespace furrow::tire {
 namespace {
 const Vec3 kGravity(0.0, 0.0, -9.81);  // m/s²
 }
 
 RigidTire::RigidTire(const TireFile& file) : material_(file.contact), radius_(file.radius) {
-  const RingMesh ring = make_ring_mesh(file);
+  const ShellMesh ring = make_shell_mesh(file);
   surface_mesh_ = make_surface_mesh(ring);
   mass_ = rigid_mass(ring, element_masses(file, ring));
-  tread_width_ = furrow::tread_width(file, ring);
+  tread_width_ = furrow::tire::tread_width(file, ring);
   for (int i = 0; i < ring.columns; ++i)
     for (int j = 0; j < ring.rows; ++j) vertex_.push_back(ring.node_position(i, j));
   vertex_.push_back(ring.disc_centre(0));
@@ -75,4 +75,4 @@ void RigidTire::restore(const Archive& archive) {
   spindle_ = restore_wrench(archive, "rigid/spindle");
 }
 
-}  // namespace furrow
+}  // namespace furrow::tire

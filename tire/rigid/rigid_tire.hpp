@@ -2,10 +2,10 @@
 // the rim.
 #pragma once
 
-#include "tire/ring_mesh.hpp"
+#include "tire/shell_mesh.hpp"
 #include "tire/tire.hpp"
 
-namespace furrow {
+namespace furrow::tire {
 
 class RigidTire final : public Tire {
  public:
@@ -40,4 +40,4 @@ class RigidTire final : public Tire {
   Wrench spindle_;            // of the last advance
 };
 
-}  // namespace furrow
+}  // namespace furrow::tire

@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "protocol/vec.hpp"
+#include "protocol/core/vec.hpp"
 
-namespace furrow {
+namespace furrow::vehicle {
 
 inline constexpr int kGround = -1;  // index of the fixed world in place of a body
 
@@ -36,4 +36,4 @@ struct Body {
   }
 };
 
-}  // namespace furrow
+}  // namespace furrow::vehicle

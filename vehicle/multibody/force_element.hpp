@@ -6,7 +6,7 @@
 
 #include "vehicle/multibody/row.hpp"
 
-namespace furrow {
+namespace furrow::vehicle {
 
 /// Force in the coordinate (positive pushes the points apart, or B along the axis, or turns B positively), N
 /// or N m, and its damping −∂f/∂rate ≥ 0, N s/m or N m s.
@@ -30,4 +30,4 @@ struct ForceElement {
   double last_force = 0.0;  // mean over the last step, N or N m
 };
 
-}  // namespace furrow
+}  // namespace furrow::vehicle

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "protocol/error.hpp"
+#include "protocol/core/error.hpp"
 
-namespace furrow {
+namespace furrow::vehicle {
 namespace {
 
 JointFrame in_body(const Pose& body, const Vec3& point_W, const Mat3& axes_W) {
@@ -122,4 +122,4 @@ Row free_coordinate(const Joint& joint) {
   }
 }
 
-}  // namespace furrow
+}  // namespace furrow::vehicle

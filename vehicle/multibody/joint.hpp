@@ -6,7 +6,7 @@
 
 #include "vehicle/multibody/row.hpp"
 
-namespace furrow {
+namespace furrow::vehicle {
 
 /// Rows (constrained degrees of freedom): fixed 6, revolute 5, prismatic 5, cylindrical 4, universal 4,
 /// spherical 3, distance 1.
@@ -52,4 +52,4 @@ Mat3 axes_about(const Vec3& z);
 /// @throws Error(physics) for a joint without such a coordinate.
 Row free_coordinate(const Joint& joint);
 
-}  // namespace furrow
+}  // namespace furrow::vehicle

@@ -3,7 +3,7 @@
 
 #include <functional>
 
-namespace furrow {
+namespace furrow::vehicle {
 
 /// Value (m or rad) and rate (m/s or rad/s) of an imposed coordinate at one instant.
 struct Motion {
@@ -33,4 +33,4 @@ inline Motion step_motion(double time, double change, double duration) {
           change / duration * 30.0 * u * u * (1.0 - u) * (1.0 - u)};
 }
 
-}  // namespace furrow
+}  // namespace furrow::vehicle

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "protocol/vec.hpp"
+#include "protocol/core/vec.hpp"
 
-namespace furrow {
+namespace furrow::vehicle {
 
 /// exp([θ]×) as unit quaternion; θ rotation vector, rad.
 inline Quat rotation_exp(const Vec3& theta) {
@@ -53,4 +53,4 @@ inline bool midpoint_angular_velocity(const Mat3& R, const Mat3& inertia_inverse
   return (next - W).cwiseAbs().maxCoeff() <= 1e-13 * W.cwiseAbs().maxCoeff();
 }
 
-}  // namespace furrow
+}  // namespace furrow::vehicle

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace furrow {
+namespace furrow::vehicle {
 
 double row_value(const Row& row, const Pose& A, const Pose& B) {
   switch (row.kind) {
@@ -65,4 +65,4 @@ double row_difference(const Row& row, double value, double target) {
   return row.kind == RowKind::angle ? std::remainder(difference, 2.0 * std::numbers::pi) : difference;
 }
 
-}  // namespace furrow
+}  // namespace furrow::vehicle

@@ -12,7 +12,7 @@
 
 #include "vehicle/multibody/body.hpp"
 
-namespace furrow {
+namespace furrow::vehicle {
 
 enum class RowKind { offset, dot, distance, angle };
 
@@ -44,4 +44,4 @@ RowJacobian row_jacobian(const Row& row, const Pose& A, const Pose& B);
 /// φ − target, wrapped to (−π, π] for angles.
 double row_difference(const Row& row, double value, double target);
 
-}  // namespace furrow
+}  // namespace furrow::vehicle

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace furrow {
+namespace furrow::vehicle {
 namespace {
 
 constexpr double kRegularization = 1e-9;  // ε relative to the largest diagonal entry of S
@@ -80,4 +80,4 @@ void SchurSolver::multiply(const Eigen::VectorXd& P, Eigen::VectorXd& r) const {
 
 void SchurSolver::solve(const Eigen::VectorXd& r, Eigen::VectorXd& P) const { P = ldlt_.solve(r); }
 
-}  // namespace furrow
+}  // namespace furrow::vehicle

@@ -14,7 +14,7 @@
 
 #include "vehicle/multibody/row.hpp"
 
-namespace furrow {
+namespace furrow::vehicle {
 
 class SchurSolver {
  public:
@@ -48,4 +48,4 @@ class SchurSolver {
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> ldlt_;
 };
 
-}  // namespace furrow
+}  // namespace furrow::vehicle

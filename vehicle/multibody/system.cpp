@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "protocol/error.hpp"
+#include "protocol/core/error.hpp"
 
-namespace furrow {
+namespace furrow::vehicle {
 namespace {
 
 const Vec3 kGroundPosition = Vec3::Zero();
@@ -229,4 +229,4 @@ std::string System::row_name(int row) const {
   return "?";
 }
 
-}  // namespace furrow
+}  // namespace furrow::vehicle

@@ -19,14 +19,14 @@
 #include <string>
 #include <vector>
 
-#include "protocol/archive.hpp"
+#include "protocol/core/archive.hpp"
 #include "vehicle/multibody/body.hpp"
 #include "vehicle/multibody/force_element.hpp"
 #include "vehicle/multibody/joint.hpp"
 #include "vehicle/multibody/motion.hpp"
 #include "vehicle/multibody/schur_solver.hpp"
 
-namespace furrow {
+namespace furrow::vehicle {
 
 class System {
  public:
@@ -152,4 +152,4 @@ class System {
   std::vector<std::string> redundant_names_;
 };
 
-}  // namespace furrow
+}  // namespace furrow::vehicle

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "protocol/error.hpp"
+#include "protocol/core/error.hpp"
 #include "vehicle/multibody/rotation.hpp"
 #include "vehicle/multibody/system.hpp"
 
-namespace furrow {
+namespace furrow::vehicle {
 namespace {
 
 constexpr double kPositionTolerance = 1e-12;  // m or rad, at the end of every step
@@ -370,4 +370,4 @@ void System::find_redundancy() {
   }
 }
 
-}  // namespace furrow
+}  // namespace furrow::vehicle

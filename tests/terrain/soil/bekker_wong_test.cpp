@@ -5,7 +5,7 @@
 
 #include "terrain/soil/bekker_wong.hpp"
 
-namespace furrow::soil {
+namespace furrow::terrain::soil {
 namespace {
 
 const RigidWheel kBekkerWheel{0.4673, 0.254, 4609.0, 0.0, 0.0};  // θ_m = 0: pressure as under a plate
@@ -76,4 +76,4 @@ TEST(BekkerWong, soil_that_cannot_carry_is_told) {
 }
 
 }  // namespace
-}  // namespace furrow::soil
+}  // namespace furrow::terrain::soil

@@ -7,7 +7,7 @@
 
 #include "terrain/soil/fits.hpp"
 
-namespace furrow::soil {
+namespace furrow::terrain::soil {
 namespace {
 
 PlateCurve bekker_curve(double width, double k_c, double k_phi, double n, double noise, unsigned seed = 1) {
@@ -122,4 +122,4 @@ TEST(Fits, mean_and_its_error) {
 }
 
 }  // namespace
-}  // namespace furrow::soil
+}  // namespace furrow::terrain::soil

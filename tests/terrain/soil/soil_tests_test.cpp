@@ -12,7 +12,7 @@
 #include "terrain/soil/soil_tests.hpp"
 #include "terrain/soil/tools.hpp"
 
-namespace furrow::soil {
+namespace furrow::terrain::soil {
 namespace {
 
 constexpr Box kShearBox{24.0, 10.0, 12.0};
@@ -187,4 +187,4 @@ TEST(SoilTests, loads_suit_soft_grains) {
 }
 
 }  // namespace
-}  // namespace furrow::soil
+}  // namespace furrow::terrain::soil

@@ -14,7 +14,7 @@
 namespace furrow::verification {
 namespace {
 
-using dem::GrainSolver;
+using terrain::dem::GrainSolver;
 
 constexpr double kRadius = 0.006;   // m
 constexpr double kCohesion = 80e3;  // Pa
@@ -43,16 +43,16 @@ double cohesion_force() { return M_PI * kRadius * kRadius * kCohesion; }
 double rest_overlap(double stiffness, double load) { return std::pow(load / stiffness, 2.0 / 3.0); }
 
 /// Moves a heavy pair apart by one step at the given relative velocity; returns the force on the second grain.
-Vec3 force_while_moving(GrainSolver& s, const Vec3& relative) {
+Vec3 force_while_moving(terrain::dem::GrainSolver& s, const Vec3& relative) {
   for (int id : {0, 1}) {
-    set_velocity(s, id, (id == 0 ? -0.5 : 0.5) * relative);
-    set_spin(s, id, Vec3::Zero());
+    terrain::dem::set_velocity(s, id, (id == 0 ? -0.5 : 0.5) * relative);
+    terrain::dem::set_spin(s, id, Vec3::Zero());
   }
   s.step(kStep);
-  return s.params().grain.mass / kStep * (velocity(s, 1) - 0.5 * relative);
+  return s.params().grain.mass / kStep * (terrain::dem::velocity(s, 1) - 0.5 * relative);
 }
 
-GrainSolver pair(const EngineGrains& few, double overlap) {
+terrain::dem::GrainSolver pair(const EngineGrains& few, double overlap) {
   return few.make({{0.3, 0, 0.3}, {0.3 + 2 * kRadius - overlap, 0, 0.3}});
 }
 
@@ -60,11 +60,12 @@ TEST(Cohesion, pulling_a_pair_apart_takes_the_cohesion_force) {
   for (const char* law : kLaws) {
     const EngineGrains few = heavy(law);
     const double stiffness = few.coefficients().pair.stiffness, start = 1e-5;
-    GrainSolver s = pair(few, start);
+    terrain::dem::GrainSolver s = pair(few, start);
     Worst path(std::string(law) + ", pair", "force on the way to pull-off", 1e-5, "K delta^1.5 - F_c");
     double largest = 0.0;
     for (int step = 0; step < 5000; ++step) {
-      const double overlap = 2 * kRadius - (position(s, 1) - position(s, 0)).norm();
+      const double overlap =
+          2 * kRadius - (terrain::dem::position(s, 1) - terrain::dem::position(s, 0)).norm();
       const double force = force_while_moving(s, {3e-4, 0, 0}).x();
       if (s.accounts().contacts == 0) break;
       path.add(force, stiffness * std::pow(overlap, 1.5) - cohesion_force(), cohesion_force());
@@ -80,12 +81,12 @@ TEST(Cohesion, grain_hangs_from_a_ceiling_if_cohesion_exceeds_its_weight) {
   for (const char* law : kLaws)
     for (const double share : {0.995, 1.005, 3.0}) {
       EngineGrains few = cohesive(law);
-      few.gravity = dem::kGravity;
-      const double weight = dem::grain_properties(kRadius, few.options.density).mass * few.gravity;
+      few.gravity = terrain::dem::kGravity;
+      const double weight = terrain::dem::grain_properties(kRadius, few.options.density).mass * few.gravity;
       few.options.cohesion = share * weight / (M_PI * kRadius * kRadius);
-      const dem::ContactCoefficients k = few.coefficients().floor;
+      const terrain::dem::ContactCoefficients k = few.coefficients().floor;
       const double overlap = rest_overlap(k.stiffness, std::max(share - 1.0, 0.005) * weight);
-      GrainSolver s = few.make({{0.3, 0.0, 0.3 - kRadius + overlap}});
+      terrain::dem::GrainSolver s = few.make({{0.3, 0.0, 0.3 - kRadius + overlap}});
       testing::Surface ceiling =
           testing::sheet(0.2531, -0.0372, 0.02, 4, 4, [](double, double) { return 0.3; });
       for (auto& t : ceiling.mesh.triangles) std::swap(t[1], t[2]);  // outside down
@@ -93,7 +94,7 @@ TEST(Cohesion, grain_hangs_from_a_ceiling_if_cohesion_exceeds_its_weight) {
       s.surfaces().attach(ceiling.mesh, {}, k, start);
       s.surfaces().move_to(0.0);
       for (int step = 0; step < 20000; ++step) s.step(kStep);
-      const double depth = position(s, 0).z() + kRadius - 0.3;
+      const double depth = terrain::dem::position(s, 0).z() + kRadius - 0.3;
       if (share < 1.0) {
         EXPECT_LT(depth, -0.05) << law;
       } else {
@@ -107,11 +108,11 @@ TEST(Cohesion, grain_hangs_from_a_ceiling_if_cohesion_exceeds_its_weight) {
 TEST(Cohesion, pair_without_net_load_slips_at_friction_times_cohesion_force) {
   EngineGrains few = heavy("mindlin");
   few.options.friction = 0.05;  // a short way to slip, on which the line of centres hardly turns
-  const dem::ContactCoefficients k = few.coefficients().pair;
+  const terrain::dem::ContactCoefficients k = few.coefficients().pair;
   const double limit = few.options.friction * cohesion_force();
   const double delta = rest_overlap(k.stiffness, cohesion_force());
   const double at_slip = limit / (k.shear_stiffness * std::sqrt(delta));  // m
-  GrainSolver s = pair(few, delta);
+  terrain::dem::GrainSolver s = pair(few, delta);
   const std::string name = "mindlin, pair, no net load";
   Worst sticking(name, "friction before slip, of mu F_c", 1e-3,
                  "Mindlin 1949, 8 G* sqrt(R* delta) x displacement");
@@ -131,7 +132,8 @@ TEST(Cohesion, coulomb_pair_without_net_load_resists_by_speed) {
   const double limit = few.options.friction * cohesion_force();
   Worst worst("coulomb, pair, no net load", "friction by speed, of mu F_c", 1e-4, "mu F_c tanh(c v)");
   for (const double speed : {0.001, 0.01, 0.1, 1.0}) {
-    GrainSolver s = pair(few, rest_overlap(few.coefficients().pair.stiffness, cohesion_force()));
+    terrain::dem::GrainSolver s =
+        pair(few, rest_overlap(few.coefficients().pair.stiffness, cohesion_force()));
     const double friction = -force_while_moving(s, {0, speed, 0}).y();
     worst.add(friction / limit, std::tanh(few.options.friction_velocity_scale * speed), 0.0,
               brief(speed) + " m/s");

@@ -11,27 +11,27 @@
 namespace furrow::verification {
 namespace {
 
-using dem::GrainSolver;
+using terrain::dem::GrainSolver;
 
 constexpr double kSpacing = 0.0124;  // m, of the grid that grains start from
 
 /// `count` grains in a ball-like clump in the middle of a bin too wide for them to meet its walls, all with random
 /// velocity and spin, drawn towards the middle.
-GrainSolver clump(EngineGrains few, int count, double speed) {
+terrain::dem::GrainSolver clump(EngineGrains few, int count, double speed) {
   few.options.length = few.options.width = 1.2;
   const int side = static_cast<int>(std::ceil(std::cbrt(count)));
   std::mt19937_64 bits(11);
   const auto uniform = [&] { return static_cast<double>(bits() >> 11) * 0x1p-52 - 1.0; };
-  std::vector<dem::Quad> at;
+  std::vector<terrain::dem::Quad> at;
   for (int k = 0; k < count; ++k)
     at.push_back({0.6 + kSpacing * (k % side - 0.5 * side) + 1e-4 * uniform(),
                   kSpacing * (k / side % side - 0.5 * side) + 1e-4 * uniform(),
                   0.6 + kSpacing * (k / side / side - 0.5 * side) + 1e-4 * uniform(), 0.0});
-  GrainSolver s = few.make(at);
+  terrain::dem::GrainSolver s = few.make(at);
   for (int id = 0; id < count; ++id) {
-    const Vec3 inward = (Vec3(0.6, 0.0, 0.6) - position(s, id)) / (kSpacing * side);
-    set_velocity(s, id, speed * (4.0 * inward + Vec3::NullaryExpr(uniform)));
-    set_spin(s, id, 200.0 * Vec3::NullaryExpr(uniform));
+    const Vec3 inward = (Vec3(0.6, 0.0, 0.6) - terrain::dem::position(s, id)) / (kSpacing * side);
+    terrain::dem::set_velocity(s, id, speed * (4.0 * inward + Vec3::NullaryExpr(uniform)));
+    terrain::dem::set_spin(s, id, 200.0 * Vec3::NullaryExpr(uniform));
   }
   s.reset_accounts();
   return s;
@@ -42,12 +42,12 @@ struct Totals {
   double speed = 0.0;                                    // Σ m |v|, kg m/s
 };
 
-Totals totals(const GrainSolver& s) {
+Totals totals(const terrain::dem::GrainSolver& s) {
   Totals t;
   const auto& g = s.params().grain;
   for (int k = 0; k < s.grains().count; ++k) {
-    const Vec3 v = vec(s.grains().velocity[k]), w = vec(s.grains().spin[k]);
-    const Vec3 arm = vec(s.grains().position[k]) - Vec3(0.6, 0.0, 0.6);
+    const Vec3 v = terrain::dem::vec(s.grains().velocity[k]), w = terrain::dem::vec(s.grains().spin[k]);
+    const Vec3 arm = terrain::dem::vec(s.grains().position[k]) - Vec3(0.6, 0.0, 0.6);
     t.momentum += g.mass * v;
     t.angular += g.mass * arm.cross(v) + g.inertia * w;
     t.speed += g.mass * v.norm();
@@ -64,15 +64,15 @@ TEST(Conservation, crowd_keeps_momentum_and_angular_momentum_with_spin) {
         few.options.rolling_friction = rolling;
         few.options.cohesion = 20e3;
         few.options.step = 1e-5;
-        GrainSolver s = clump(few, count, 0.3);
+        terrain::dem::GrainSolver s = clump(few, count, 0.3);
         const Totals before = totals(s);
         std::vector<Vec3> spin_before;
-        for (int id = 0; id < count; ++id) spin_before.push_back(spin(s, id));
+        for (int id = 0; id < count; ++id) spin_before.push_back(terrain::dem::spin(s, id));
         for (int step = 0; step < 600; ++step) ASSERT_EQ(s.step(1e-5), -1);
         const Totals after = totals(s);
         double exchanged = 0.0;
         for (int id = 0; id < count; ++id)
-          exchanged += s.params().grain.inertia * (spin(s, id) - spin_before[id]).norm();
+          exchanged += s.params().grain.inertia * (terrain::dem::spin(s, id) - spin_before[id]).norm();
         const std::string name = std::string(law) + (rolling > 0.0 ? ", rolling resistance" : "") + ", " +
                                  std::to_string(count) + " grains";
         EXPECT_GT(exchanged, 1e-7 * count);
@@ -93,9 +93,9 @@ TEST(Conservation, elastic_collision_keeps_its_energy) {
     few.options.restitution = 1.0;
     few.options.friction = 0.0;
     const double gap = std::sqrt(0.012 * 0.012 - offset * offset) + 1e-6;
-    GrainSolver s = few.make({{0.3, 0, 0.3}, {0.3 + gap, offset, 0.3}});
-    set_velocity(s, 0, {1.0, 0.0, 0.0});
-    set_spin(s, 0, {3.0, 2.0, 1.0});
+    terrain::dem::GrainSolver s = few.make({{0.3, 0, 0.3}, {0.3 + gap, offset, 0.3}});
+    terrain::dem::set_velocity(s, 0, {1.0, 0.0, 0.0});
+    terrain::dem::set_spin(s, 0, {3.0, 2.0, 1.0});
     const auto& g = s.params().grain;
     const double before = 0.5 * g.mass + 0.5 * g.inertia * 14.0;
     bool touched = false;
@@ -106,7 +106,7 @@ TEST(Conservation, elastic_collision_keeps_its_energy) {
       touched = now;
     }
     EXPECT_TRUE(touched);
-    EXPECT_GT(velocity(s, 1).norm(), 0.1);
+    EXPECT_GT(terrain::dem::velocity(s, 1).norm(), 0.1);
     worst.add(s.accounts().kinetic, before, 0.0, brief(offset) + " m");
   }
 }
@@ -122,9 +122,9 @@ TEST(Conservation, no_collision_creates_energy) {
         few.options.restitution = 1.0;
         few.options.friction = friction;
         const double gap = std::sqrt(0.012 * 0.012 - offset * offset) + 1e-6;
-        GrainSolver s = few.make({{0.3, 0, 0.3}, {0.3 + gap, offset, 0.3}});
-        set_velocity(s, 0, {1.0, 0.0, 0.0});
-        set_spin(s, 0, {0.0, 0.0, spin});
+        terrain::dem::GrainSolver s = few.make({{0.3, 0, 0.3}, {0.3 + gap, offset, 0.3}});
+        terrain::dem::set_velocity(s, 0, {1.0, 0.0, 0.0});
+        terrain::dem::set_spin(s, 0, {0.0, 0.0, spin});
         const auto& g = s.params().grain;
         const double before = 0.5 * g.mass + 0.5 * g.inertia * spin * spin;
         bool touched = false;

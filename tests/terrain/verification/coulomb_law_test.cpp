@@ -12,7 +12,7 @@
 namespace furrow::verification {
 namespace {
 
-using dem::GrainSolver;
+using terrain::dem::GrainSolver;
 
 constexpr double kRadius = 0.006;  // m
 
@@ -24,14 +24,14 @@ EngineGrains coulomb() {
 }
 
 double mass_of(const EngineGrains& few) {
-  return dem::grain_properties(few.options.radius, few.options.density).mass;
+  return terrain::dem::grain_properties(few.options.radius, few.options.density).mass;
 }
 
 /// Head-on collision of two grains; ratio of relative speeds after and before.
 double solver_restitution(const EngineGrains& few, double speed, int steps) {
-  GrainSolver s = few.make({{0.3 - kRadius, 0, 0.3}, {0.3 + kRadius, 0, 0.3}});
-  set_velocity(s, 0, {0.5 * speed, 0, 0});
-  set_velocity(s, 1, {-0.5 * speed, 0, 0});
+  terrain::dem::GrainSolver s = few.make({{0.3 - kRadius, 0, 0.3}, {0.3 + kRadius, 0, 0.3}});
+  terrain::dem::set_velocity(s, 0, {0.5 * speed, 0, 0});
+  terrain::dem::set_velocity(s, 1, {-0.5 * speed, 0, 0});
   const double k = few.options.normal_stiffness, m = 0.5 * mass_of(few);
   const double dt = 2.94 * std::pow(5.0 * m * speed * speed / (4.0 * k), 0.4) / speed / steps;
   bool touched = false;
@@ -41,7 +41,7 @@ double solver_restitution(const EngineGrains& few, double speed, int steps) {
     if (touched && !now) break;
     touched = now;
   }
-  return (velocity(s, 1) - velocity(s, 0)).x() / speed;
+  return (terrain::dem::velocity(s, 1) - terrain::dem::velocity(s, 0)).x() / speed;
 }
 
 /// The same by Runge–Kutta integration of m δ̈ = −max(0, √δ (k δ + g δ̇)), m the reduced mass.
@@ -101,14 +101,14 @@ TEST(CoulombLaw, block_creeps_down_an_inclined_mesh_at_the_closed_form_rate) {
     for (const double degrees : {2.0, 10.0, 20.0, 35.0}) {
       EngineGrains few = coulomb();
       few.options.friction_velocity_scale = scale;
-      few.gravity = dem::kGravity;
+      few.gravity = terrain::dem::kGravity;
       const double angle = degrees * M_PI / 180.0;
-      const dem::ContactCoefficients k = few.coefficients().floor;
+      const terrain::dem::ContactCoefficients k = few.coefficients().floor;
       const double load = mass_of(few) * few.gravity * std::cos(angle);
       const Quat turn(Eigen::AngleAxisd(angle, Vec3::UnitY()));  // +x runs downhill
       const Vec3 foot(0.2, 0.0, 0.3);
       const double rest = kRadius - std::pow(load / k.stiffness, 2.0 / 3.0);
-      GrainSolver s = few.make({dem::quad(foot + turn * Vec3(0.0, 0.0, rest))});
+      terrain::dem::GrainSolver s = few.make({terrain::dem::quad(foot + turn * Vec3(0.0, 0.0, rest))});
       testing::Surface slope =
           testing::sheet(-0.0931, -0.0172, 0.02, 20, 2, [](double, double) { return 0.0; });
       for (Vec3& x : slope.vertex) x = foot + turn * x;
@@ -123,9 +123,9 @@ TEST(CoulombLaw, block_creeps_down_an_inclined_mesh_at_the_closed_form_rate) {
       const int steps = static_cast<int>(9.0 * time / dt);
       for (int step = 0; step < steps; ++step) {
         s.step(dt);
-        set_spin(s, 0, Vec3::Zero());  // a block: only sliding
+        terrain::dem::set_spin(s, 0, Vec3::Zero());  // a block: only sliding
       }
-      worst.add(velocity(s, 0).dot(turn * Vec3::UnitX()), creep, 0.0,
+      worst.add(terrain::dem::velocity(s, 0).dot(turn * Vec3::UnitX()), creep, 0.0,
                 brief(degrees) + " degrees, c = " + brief(scale));
     }
 }
@@ -135,12 +135,12 @@ TEST(CoulombLaw, block_creeps_down_an_inclined_mesh_at_the_closed_form_rate) {
 TEST(CoulombLaw, sliding_sphere_follows_its_closed_form_to_five_sevenths) {
   EngineGrains few = coulomb();
   few.options.friction = 0.3;
-  few.gravity = dem::kGravity;
+  few.gravity = terrain::dem::kGravity;
   const double speed = 0.4, c = few.options.friction_velocity_scale;
   const double load = mass_of(few) * few.gravity;
-  GrainSolver s =
+  terrain::dem::GrainSolver s =
       few.make({{0.1, 0, kRadius - std::pow(load / few.coefficients().floor.stiffness, 2.0 / 3.0)}});
-  set_velocity(s, 0, {speed, 0, 0});
+  terrain::dem::set_velocity(s, 0, {speed, 0, 0});
   // The arm is r − δ; δ/r is 1.3e-3.
   Worst path("coulomb, sliding sphere", "speed along the way", 1e-3,
              "sinh(c v_s) = sinh(c u0) exp(-7/2 mu g c t)");
@@ -149,11 +149,11 @@ TEST(CoulombLaw, sliding_sphere_follows_its_closed_form_to_five_sevenths) {
     s.step(dt);
     if (step % 1000 != 0) continue;
     const double left = std::sinh(c * speed) * std::exp(-3.5 * 0.3 * few.gravity * c * step * dt);
-    path.add(velocity(s, 0).x(), (5.0 * speed + 2.0 * std::asinh(left) / c) / 7.0, speed,
+    path.add(terrain::dem::velocity(s, 0).x(), (5.0 * speed + 2.0 * std::asinh(left) / c) / 7.0, speed,
              brief(step * dt) + " s");
   }
-  verify("coulomb, sliding sphere", "final speed, m/s", velocity(s, 0).x(), 5.0 / 7.0 * speed, 1e-3,
-         "5 u0/7");
+  verify("coulomb, sliding sphere", "final speed, m/s", terrain::dem::velocity(s, 0).x(), 5.0 / 7.0 * speed,
+         1e-3, "5 u0/7");
 }
 
 }  // namespace

@@ -19,7 +19,7 @@
 namespace furrow::verification {
 namespace {
 
-using dem::GrainSolver;
+using terrain::dem::GrainSolver;
 
 constexpr double kRadius = 0.006;  // m
 constexpr double kFriction = 0.5;  // -
@@ -38,9 +38,9 @@ EngineGrains carried() {
 std::vector<Vec3> forces_along(const testing::Surface& surface, const std::function<Vec3(double)>& path,
                                int steps) {
   const EngineGrains few = carried();
-  const dem::ContactCoefficients k = few.coefficients().floor;
-  const double mass = dem::grain_properties(kRadius, few.options.density).mass, dt = 1e-5;
-  GrainSolver s = few.make({dem::quad(kPlace + path(0.0))});
+  const terrain::dem::ContactCoefficients k = few.coefficients().floor;
+  const double mass = terrain::dem::grain_properties(kRadius, few.options.density).mass, dt = 1e-5;
+  terrain::dem::GrainSolver s = few.make({terrain::dem::quad(kPlace + path(0.0))});
   SurfaceState start{surface.vertex, std::vector<Vec3>(surface.vertex.size(), Vec3::Zero())};
   for (Vec3& x : start.position) x += kPlace;
   s.surfaces().attach(surface.mesh, {}, k, start);
@@ -49,11 +49,11 @@ std::vector<Vec3> forces_along(const testing::Surface& surface, const std::funct
   std::vector<Vec3> forces;
   for (int step = 0; step < steps; ++step) {
     // Towards the path and not along it: errors of the last step are made good.
-    const Vec3 given = (kPlace + path((step + 1.0) / steps) - position(s, 0)) / dt;
-    s.grains().velocity[0] = dem::quad(given);
+    const Vec3 given = (kPlace + path((step + 1.0) / steps) - terrain::dem::position(s, 0)) / dt;
+    s.grains().velocity[0] = terrain::dem::quad(given);
     s.grains().spin[0] = {};
     s.step(dt);
-    forces.push_back(mass / dt * (velocity(s, 0) - given) / plane);
+    forces.push_back(mass / dt * (terrain::dem::velocity(s, 0) - given) / plane);
   }
   return forces;
 }

@@ -5,8 +5,8 @@
 
 namespace furrow::verification {
 
-struct EngineGrains : dem::FewGrains {
-  EngineGrains() { precision = dem::Precision::mixed; }
+struct EngineGrains : terrain::dem::FewGrains {
+  EngineGrains() { precision = terrain::dem::Precision::mixed; }
 };
 
 }  // namespace furrow::verification

@@ -78,14 +78,15 @@ AtOne hypergeometric_at_one(double a, double b, double c) {
           std::tgamma(c) * half / (std::tgamma(a) * std::tgamma(b))};
 }
 
-dem::ContactCoefficients solver_coefficients(const ImpactCase& c) {
-  const dem::GrainProperties grain = dem::grain_properties(c.radius, c.density);
+terrain::dem::ContactCoefficients solver_coefficients(const ImpactCase& c) {
+  const terrain::dem::GrainProperties grain = terrain::dem::grain_properties(c.radius, c.density);
   ContactMaterial sphere, partner;
   sphere.young_modulus = c.sphere.young, sphere.poisson_ratio = c.sphere.poisson;
   partner.young_modulus = c.partner.young, partner.poisson_ratio = c.partner.poisson;
   sphere.friction = partner.friction = c.friction;
   sphere.restitution = partner.restitution = c.restitution;
-  dem::ContactCoefficients k = dem::mix(sphere, partner, dem::Partner::surface, grain, {});
+  terrain::dem::ContactCoefficients k =
+      terrain::dem::mix(sphere, partner, terrain::dem::Partner::surface, grain, {});
   // The engine's surfaces are flat; a round partner is one with another R*.
   const double share = 1.0 / (1.0 + c.radius / c.partner_radius);
   k.stiffness *= std::sqrt(share), k.shear_stiffness *= std::sqrt(share);
@@ -93,8 +94,8 @@ dem::ContactCoefficients solver_coefficients(const ImpactCase& c) {
   return k;
 }
 
-using dem::quad;
-using dem::vec;
+using terrain::dem::quad;
+using terrain::dem::vec;
 
 }  // namespace
 
@@ -117,19 +118,19 @@ Rebound hertz_impact(double stiffness, double mass, double speed) {
 Rebound solver_impact(const ImpactCase& impact, const Motion& before, Ground ground, int steps,
                       const Watch& watch) {
   const double r = impact.radius;
-  dem::SolverParams params;
-  params.grain = dem::grain_properties(r, impact.density);
+  terrain::dem::SolverParams params;
+  params.grain = terrain::dem::grain_properties(r, impact.density);
   params.bin.length = params.bin.width = 80.0 * r;
   params.gravity = 0.0;
   params.skin = 0.3 * r;
-  dem::GrainSolver solver(params);
-  const dem::ContactCoefficients k = solver_coefficients(impact);
+  terrain::dem::GrainSolver solver(params);
+  const terrain::dem::ContactCoefficients k = solver_coefficients(impact);
   solver.set_coefficients({k, k, k});
 
   const bool mesh = ground == Ground::mesh;
   const Quat turn(Eigen::AngleAxisd(mesh ? 0.7 : 0.0, Vec3(0.3, -0.8, 0.5).normalized()));
   const Vec3 foot(40.0 * r, 0.0, mesh ? 20.0 * r : 0.0), up = turn * Vec3::UnitZ();
-  solver.place({quad(foot + r * up)});
+  solver.place({terrain::dem::quad(foot + r * up)});
   if (mesh) {
     testing::Surface sheet =
         testing::sheet(-4.3 * r, -3.83 * r, 2.0 * r, 4, 4, [](double, double) { return 0.0; });
@@ -140,8 +141,8 @@ Rebound solver_impact(const ImpactCase& impact, const Motion& before, Ground gro
     solver.surfaces().attach(sheet.mesh, {}, k, start);
     solver.surfaces().move_to(0.0);
   }
-  solver.grains().velocity[0] = quad(turn * Vec3(before.tangential, 0.0, -before.normal));
-  solver.grains().spin[0] = quad(turn * Vec3(0.0, before.spin, 0.0));
+  solver.grains().velocity[0] = terrain::dem::quad(turn * Vec3(before.tangential, 0.0, -before.normal));
+  solver.grains().spin[0] = terrain::dem::quad(turn * Vec3(0.0, before.spin, 0.0));
 
   const double hertz = hertz_impact(k.stiffness, params.grain.mass, before.normal).duration;
   const double dt = hertz / steps;
@@ -149,9 +150,9 @@ Rebound solver_impact(const ImpactCase& impact, const Motion& before, Ground gro
   double speed = -before.normal;
   int touched = 0;
   for (int step = 0; step < 20 * steps; ++step) {
-    const double overlap = r - (vec(solver.grains().position[0]) - foot).dot(up);
+    const double overlap = r - (terrain::dem::vec(solver.grains().position[0]) - foot).dot(up);
     solver.step(dt);
-    const double now = vec(solver.grains().velocity[0]).dot(up),
+    const double now = terrain::dem::vec(solver.grains().velocity[0]).dot(up),
                  force = params.grain.mass * (now - speed) / dt;
     speed = now;
     const bool touching = solver.accounts().contacts > 0;
@@ -162,8 +163,8 @@ Rebound solver_impact(const ImpactCase& impact, const Motion& before, Ground gro
     touched += touching;
   }
   out.duration = touched * dt;
-  const Vec3 v = turn.conjugate() * vec(solver.grains().velocity[0]);
-  const Vec3 w = turn.conjugate() * vec(solver.grains().spin[0]);
+  const Vec3 v = turn.conjugate() * terrain::dem::vec(solver.grains().velocity[0]);
+  const Vec3 w = turn.conjugate() * terrain::dem::vec(solver.grains().spin[0]);
   out.after = {v.z(), v.x(), w.y()};
   return out;
 }

@@ -31,30 +31,31 @@ struct Trace {
 
 /// Two equal spheres head on, each at `speed`; force, overlap and duration of the contact.
 Rebound pair_impact(double radius, double density, const Elastic& material, double speed, Trace& trace) {
-  dem::SolverParams params;
-  params.grain = dem::grain_properties(radius, density);
+  terrain::dem::SolverParams params;
+  params.grain = terrain::dem::grain_properties(radius, density);
   params.bin.length = params.bin.width = 80.0 * radius;
   params.gravity = 0.0;
   params.skin = 0.3 * radius;
-  dem::GrainSolver solver(params);
+  terrain::dem::GrainSolver solver(params);
   ContactMaterial sphere;
   sphere.young_modulus = material.young, sphere.poisson_ratio = material.poisson;
   sphere.restitution = 1.0, sphere.friction = 0.35;
-  const auto k = dem::mix(sphere, sphere, dem::Partner::grain, params.grain, {});
+  const auto k = terrain::dem::mix(sphere, sphere, terrain::dem::Partner::grain, params.grain, {});
   solver.set_coefficients({k, k, k});
   // In a direction of no coordinate plane.
   const Vec3 along = Vec3(0.6, -0.64, 0.48).normalized(), middle(40.0 * radius, 0.0, 40.0 * radius);
-  solver.place({dem::quad(middle - radius * along), dem::quad(middle + radius * along)});
-  set_velocity(solver, 0, speed * along);
-  set_velocity(solver, 1, -speed * along);
+  solver.place({terrain::dem::quad(middle - radius * along), terrain::dem::quad(middle + radius * along)});
+  terrain::dem::set_velocity(solver, 0, speed * along);
+  terrain::dem::set_velocity(solver, 1, -speed * along);
   const double dt = hertz_impact(k.stiffness, 0.5 * params.grain.mass, 2.0 * speed).duration / kSteps;
   Rebound out;
   int touched = 0;
   for (int step = 0; step < 2 * kSteps; ++step) {
-    const double overlap = 2.0 * radius - (position(solver, 1) - position(solver, 0)).norm();
-    const Vec3 before = velocity(solver, 1);
+    const double overlap =
+        2.0 * radius - (terrain::dem::position(solver, 1) - terrain::dem::position(solver, 0)).norm();
+    const Vec3 before = terrain::dem::velocity(solver, 1);
     solver.step(dt);
-    const double force = params.grain.mass * (velocity(solver, 1) - before).norm() / dt;
+    const double force = params.grain.mass * (terrain::dem::velocity(solver, 1) - before).norm() / dt;
     const bool touching = solver.accounts().contacts > 0;
     if (touched > 0 && !touching) break;
     touched += touching;
@@ -63,7 +64,7 @@ Rebound pair_impact(double radius, double density, const Elastic& material, doub
     trace.overlap.push_back(overlap), trace.time.push_back(touched * dt), trace.force.push_back(force);
   }
   out.duration = touched * dt;
-  out.after.normal = velocity(solver, 1).dot(along);
+  out.after.normal = terrain::dem::velocity(solver, 1).dot(along);
   return out;
 }
 

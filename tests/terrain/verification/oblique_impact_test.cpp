@@ -62,8 +62,10 @@ class AgainstIntegration {
   Worst normal_, tangential_, spin_;
 };
 
-void test_4(const Material& material, Ground ground, std::span<const Point> restitution,
-            std::span<const Point> spin, std::span<const Point> angle) {
+void test_4(const Material& material, Ground ground,
+            std::span<const verification::chung_ooi::Point> restitution,
+            std::span<const verification::chung_ooi::Point> spin,
+            std::span<const verification::chung_ooi::Point> angle) {
   const std::string name = title(4, ground, material);
   const ImpactCase impact = impact_case(0.0025, material, 0.98, 0.092);
   AgainstIntegration integrated(name, 1e-3);
@@ -76,17 +78,17 @@ void test_4(const Material& material, Ground ground, std::span<const Point> rest
     return std::pair(before, out.after);
   };
   Worst of_restitution(name, "tangential restitution", 0.03, kDigitised);
-  for (const Point& p : restitution) {
+  for (const verification::chung_ooi::Point& p : restitution) {
     const auto [before, after] = rebound(p.x);
     of_restitution.add(after.tangential / before.tangential, p.y, 1.0, brief(p.x) + " degrees");
   }
   Worst of_spin(name, "spin after, rad/s", 0.03, kDigitised);
   Worst of_spin_sticking(name, "spin after, rad/s, sticking", 0.05, kDigitised);
-  for (const Point& p : spin)
+  for (const verification::chung_ooi::Point& p : spin)
     (p.x < 7.0 ? of_spin_sticking : of_spin)
         .add(rebound(p.x).second.spin, p.y, 620.0, brief(p.x) + " degrees");
   Worst of_angle(name, "rebound angle of the contact, degrees", 0.03, kDigitised);
-  for (const Point& p : angle) {
+  for (const verification::chung_ooi::Point& p : angle) {
     const Motion after = rebound(p.x).second;
     of_angle.add(std::atan2(after.sliding(impact.radius), after.normal) / kDegree, p.y, 90.0,
                  brief(p.x) + " degrees");
@@ -105,8 +107,8 @@ TEST(ObliqueImpact, chung_ooi_2011_test_4_constant_speed_and_varied_angle) {
 
 // The published DEM points for 1 < v_s/(μ v_n) < 4 lie far from the finite-element points of the same figure, and
 // from test 4 made dimensionless; only sliding impacts are compared with them.
-void test_5(const Material& material, Ground ground, std::span<const Point> angle,
-            std::span<const Point> spin) {
+void test_5(const Material& material, Ground ground, std::span<const verification::chung_ooi::Point> angle,
+            std::span<const verification::chung_ooi::Point> spin) {
   const std::string name = title(5, ground, material);
   const ImpactCase impact = impact_case(1e-5, material, 1.0, 0.3);
   const double scale = impact.friction * 5.0;  // μ v_n, m/s
@@ -126,14 +128,14 @@ void test_5(const Material& material, Ground ground, std::span<const Point> angl
     return after.sliding(impact.radius) / (impact.friction * after.normal);
   };
   Worst of_angle(name, "v_s'/(mu v_n') sliding throughout", 0.03, kDigitised);
-  for (const Point& p : angle)
+  for (const verification::chung_ooi::Point& p : angle)
     if (p.x >= 5.9) of_angle.add(local(rebound(p.x)), p.y, 10.0, brief(p.x));
   Worst of_spin(name, "-R omega'/(mu v_n) sliding throughout", 0.03, kDigitised);
-  for (const Point& p : spin)
+  for (const verification::chung_ooi::Point& p : spin)
     if (p.x >= 5.9) of_spin.add(-impact.radius * rebound(p.x).spin / scale, p.y, 6.0, brief(p.x));
   if (material.density != 7850.0) return;
   Worst elements(name, "v_s'/(mu v_n')", 0.07, kDigitised + ", finite elements");
-  for (const Point& p : chung_ooi::kTest5AngleFiniteElements)
+  for (const verification::chung_ooi::Point& p : chung_ooi::kTest5AngleFiniteElements)
     elements.add(local(rebound(p.x)), p.y, 10.0, brief(p.x));
 }
 
@@ -148,13 +150,13 @@ TEST(ObliqueImpact, chung_ooi_2011_test_5_constant_normal_speed) {
 
 /// Test 6, and test 8 with its large sphere: spin ω about y, none of the centre; β = −v_s'/v_s.
 void test_6(const std::string& name, const ImpactCase& impact, Ground ground,
-            std::span<const Point> restitution) {
+            std::span<const verification::chung_ooi::Point> restitution) {
   AgainstIntegration integrated(name, 1e-3);
   // At the end of a contact the damper may pull, which friction does not feel: at e = 0.5 its impulse
   // μ ∫ max(F_e, 0) dt is 3 % above the rigid body's μ (1 + e) m v_n.
   Worst slide(name, "-beta sliding throughout", 0.035, kSliding);
   Worst published(name, "beta sliding throughout", 0.04, kDigitised);
-  for (const Point& p : restitution) {
+  for (const verification::chung_ooi::Point& p : restitution) {
     const double sliding = 3.5 * impact.friction * (1.0 + impact.restitution) * 0.2 / p.x;
     const Motion before{0.2, 0.0, -sliding / impact.radius};
     const Rebound out = solver_impact(impact, before, ground, kSteps);
@@ -175,7 +177,7 @@ TEST(ObliqueImpact, chung_ooi_2011_test_6_constant_normal_speed_and_varied_spin)
            chung_ooi::kTest6RestitutionNylon);
     Worst angle(title(6, ground, alloy), "v_s'/v_n'", 0.04, kDigitised);
     const ImpactCase impact = impact_case(0.1, alloy, 0.5, 0.4);
-    for (const Point& p : chung_ooi::kTest6Angle) {
+    for (const verification::chung_ooi::Point& p : chung_ooi::kTest6Angle) {
       const Motion after = solver_impact(impact, {0.2, 0.0, -p.x * 0.2 / 0.1}, ground, kSteps).after;
       angle.add(after.sliding(0.1) / after.normal, p.y, 8.0, brief(p.x));
     }
@@ -200,22 +202,22 @@ TEST(ObliqueImpact, chung_ooi_2011_test_8_on_a_sphere_five_times_larger) {
 /// Two equal spheres head on with spins ω₁, ω₂ about y; motion of the first.
 Motion pair_impact(const ImpactCase& impact, double speed, double spin_1, double spin_2, int steps) {
   const double r = impact.radius;
-  dem::SolverParams params;
-  params.grain = dem::grain_properties(r, impact.density);
+  terrain::dem::SolverParams params;
+  params.grain = terrain::dem::grain_properties(r, impact.density);
   params.bin.length = params.bin.width = 80.0 * r;
   params.gravity = 0.0;
   params.skin = 0.3 * r;
-  dem::GrainSolver solver(params);
+  terrain::dem::GrainSolver solver(params);
   ContactMaterial sphere;
   sphere.young_modulus = impact.sphere.young, sphere.poisson_ratio = impact.sphere.poisson;
   sphere.restitution = impact.restitution, sphere.friction = impact.friction;
-  const auto k = dem::mix(sphere, sphere, dem::Partner::grain, params.grain, {});
+  const auto k = terrain::dem::mix(sphere, sphere, terrain::dem::Partner::grain, params.grain, {});
   solver.set_coefficients({k, k, k});
   solver.place({{39.0 * r, 0.0, 40.0 * r, 0.0}, {41.0 * r, 0.0, 40.0 * r, 0.0}});
-  set_velocity(solver, 0, {speed, 0.0, 0.0});
-  set_velocity(solver, 1, {-speed, 0.0, 0.0});
-  set_spin(solver, 0, {0.0, spin_1, 0.0});
-  set_spin(solver, 1, {0.0, spin_2, 0.0});
+  terrain::dem::set_velocity(solver, 0, {speed, 0.0, 0.0});
+  terrain::dem::set_velocity(solver, 1, {-speed, 0.0, 0.0});
+  terrain::dem::set_spin(solver, 0, {0.0, spin_1, 0.0});
+  terrain::dem::set_spin(solver, 1, {0.0, spin_2, 0.0});
   const double dt = hertz_impact(k.stiffness, 0.5 * params.grain.mass, 2.0 * speed).duration / steps;
   bool touched = false;
   for (int step = 0; step < 20 * steps; ++step) {
@@ -224,8 +226,8 @@ Motion pair_impact(const ImpactCase& impact, double speed, double spin_1, double
     if (touched && !now) break;
     touched = now;
   }
-  const Vec3 v = velocity(solver, 0);
-  return {-v.x(), v.z(), spin(solver, 0).y()};
+  const Vec3 v = terrain::dem::velocity(solver, 0);
+  return {-v.x(), v.z(), terrain::dem::spin(solver, 0).y()};
 }
 
 /// Spins ω and −ω: the surfaces meet at the same velocity, so nothing may happen to spin or path.

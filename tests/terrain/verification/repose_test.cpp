@@ -14,7 +14,7 @@
 namespace furrow::verification {
 namespace {
 
-using dem::GrainSolver;
+using terrain::dem::GrainSolver;
 
 constexpr double kRadius = 0.006;  // m
 constexpr double kWidth = 0.05;    // m, four grains
@@ -22,37 +22,37 @@ constexpr double kStep = 4e-5;     // s
 constexpr int kAlong = 6, kAcross = 4, kUp = 15;
 
 /// A loose column against the wall x = 0.
-GrainSolver column(EngineGrains& few) {
+terrain::dem::GrainSolver column(EngineGrains& few) {
   few.options.length = 1.5;
   few.options.width = kWidth;
   few.options.step = kStep;
-  few.gravity = dem::kGravity;
+  few.gravity = terrain::dem::kGravity;
   std::mt19937_64 bits(7);
   const auto any = [&] { return 2e-4 * (static_cast<double>(bits() >> 11) * 0x1p-52 - 1.0); };
-  std::vector<dem::Quad> at;
+  std::vector<terrain::dem::Quad> at;
   for (int k = 0; k < kUp; ++k)
     for (int i = 0; i < kAlong; ++i)
       for (int j = 0; j < kAcross; ++j)
         at.push_back({0.0064 + 0.0125 * i + any(), 0.0125 * (j - 0.5 * (kAcross - 1)) + any(),
                       0.0064 + 0.0125 * k + any(), 0.0});
-  GrainSolver s = few.make(at);
-  dem::SolverCoefficients k = few.coefficients();
+  terrain::dem::GrainSolver s = few.make(at);
+  terrain::dem::SolverCoefficients k = few.coefficients();
   k.side.friction = k.side.rolling_arm = 0.0;
   s.set_coefficients(k);
   return s;
 }
 
-void run(GrainSolver& s, double time) {
+void run(terrain::dem::GrainSolver& s, double time) {
   const int steps = static_cast<int>(std::lround(time / kStep));
   for (int step = 0; step < steps; ++step) ASSERT_EQ(s.step(kStep), -1);
 }
 
 /// Slope of the line through the highest grains of vertical slices, from 15 to 85 % of the heap's height, degrees.
-double angle_of(const GrainSolver& s) {
+double angle_of(const terrain::dem::GrainSolver& s) {
   constexpr double kSlice = 2.0 * kRadius;
   std::vector<double> top(200, 0.0);
   for (int g = 0; g < s.grains().count; ++g) {
-    const dem::Quad& x = s.grains().position[g];
+    const terrain::dem::Quad& x = s.grains().position[g];
     double& highest = top[std::min<std::size_t>(199, static_cast<std::size_t>(x.x / kSlice))];
     highest = std::max(highest, x.z);
   }
@@ -66,7 +66,7 @@ double angle_of(const GrainSolver& s) {
   return -std::atan((n * sxz - sx * sz) / (n * sxx - sx * sx)) * 180.0 / M_PI;
 }
 
-double mean_height(const GrainSolver& s) { return s.accounts().height / s.grains().count; }
+double mean_height(const terrain::dem::GrainSolver& s) { return s.accounts().height / s.grains().count; }
 
 struct Heap {
   double angle = 0.0;    // degrees
@@ -80,7 +80,7 @@ Heap heap(double friction, double rolling, double young = 2.49e7) {
   few.options.friction = friction;
   few.options.rolling_friction = rolling;
   few.options.young_modulus = young;
-  GrainSolver s = column(few);
+  terrain::dem::GrainSolver s = column(few);
   run(s, 1.6);
   const double before = mean_height(s);
   run(s, 0.2);
@@ -119,7 +119,7 @@ TEST(Repose, coulomb_heap_flows_on) {
   few.options.law = "coulomb";
   few.options.friction = 0.9;
   few.options.rolling_friction = 0.2;
-  GrainSolver s = column(few);
+  terrain::dem::GrainSolver s = column(few);
   run(s, 1.5);
   const double early = mean_height(s), angle = angle_of(s);
   run(s, 1.5);

@@ -11,7 +11,7 @@
 namespace furrow::verification {
 namespace {
 
-using dem::GrainSolver;
+using terrain::dem::GrainSolver;
 
 constexpr double kRadius = 0.006;  // m
 
@@ -22,7 +22,8 @@ testing::Surface plane_at(const Vec3& foot, const Quat& turn) {
   return s;
 }
 
-void attach(GrainSolver& s, const testing::Surface& surface, const dem::ContactCoefficients& k) {
+void attach(terrain::dem::GrainSolver& s, const testing::Surface& surface,
+            const terrain::dem::ContactCoefficients& k) {
   const SurfaceState start{surface.vertex, std::vector<Vec3>(surface.vertex.size(), Vec3::Zero())};
   s.surfaces().attach(surface.mesh, {}, k, start);
   s.surfaces().move_to(0.0);
@@ -34,15 +35,15 @@ TEST(SlidingBlock, feels_no_edge_in_half_a_metre) {
   few.options.friction = 0.4;
   few.options.restitution = 0.3;
   few.options.length = 1.0;
-  const dem::ContactCoefficients k = few.coefficients().floor;
-  const double mass = dem::grain_properties(kRadius, few.options.density).mass;
+  const terrain::dem::ContactCoefficients k = few.coefficients().floor;
+  const double mass = terrain::dem::grain_properties(kRadius, few.options.density).mass;
   constexpr int kGrains = 9;
-  const double weight = kGrains * mass * dem::kGravity, speed = 0.5, dt = 2e-5, height = 0.05;
+  const double weight = kGrains * mass * terrain::dem::kGravity, speed = 0.5, dt = 2e-5, height = 0.05;
   const double rest = kRadius - std::pow(weight / kGrains / k.stiffness, 2.0 / 3.0);
-  std::vector<dem::Quad> at;
+  std::vector<terrain::dem::Quad> at;
   for (int n = 0; n < kGrains; ++n)
     at.push_back({0.1 + 0.0153 * (n % 3), 0.0153 * (n / 3) - 0.0147, height + rest, 0.0});
-  GrainSolver s = few.make(at);
+  terrain::dem::GrainSolver s = few.make(at);
   attach(s, plane_at({0.1, 0.0, height}, Quat::Identity()), k);
   Worst normal("block of 9 grains over a mesh, mindlin", "normal force over 0.5 m, N", 1e-3, "m g");
   Worst friction("block of 9 grains over a mesh, mindlin", "friction over 0.5 m, N", 1e-3, "mu m g");
@@ -64,7 +65,7 @@ TEST(SlidingBlock, feels_no_edge_in_half_a_metre) {
     friction.add(-force.x(), few.options.friction * weight, 0.0, where);
     across.add(force.y(), 0.0, weight, where);
   }
-  EXPECT_GT(position(s, 0).x(), 0.59);
+  EXPECT_GT(terrain::dem::position(s, 0).x(), 0.59);
 }
 
 /// Static friction of 2/7 of the downhill weight must act all the way; history lost at one edge would show.
@@ -72,14 +73,15 @@ TEST(SlidingBlock, sphere_rolls_half_a_metre_down_a_mesh_at_five_sevenths_g) {
   EngineGrains few;
   few.options.friction = 0.6;
   few.options.length = 1.0;
-  few.gravity = dem::kGravity;
-  const dem::ContactCoefficients k = few.coefficients().floor;
-  const double mass = dem::grain_properties(kRadius, few.options.density).mass, angle = 0.2, dt = 1e-5;
+  few.gravity = terrain::dem::kGravity;
+  const terrain::dem::ContactCoefficients k = few.coefficients().floor;
+  const double mass = terrain::dem::grain_properties(kRadius, few.options.density).mass, angle = 0.2,
+               dt = 1e-5;
   const Quat turn(Eigen::AngleAxisd(angle, Vec3::UnitY()));
   const Vec3 foot(0.1, 0.0, 0.3), down = turn * Vec3::UnitX(), up = turn * Vec3::UnitZ();
   const double load = mass * few.gravity * std::cos(angle);
   const double overlap = std::pow(load / k.stiffness, 2.0 / 3.0), arm = kRadius - overlap;
-  GrainSolver s = few.make({dem::quad(foot + arm * up)});
+  terrain::dem::GrainSolver s = few.make({terrain::dem::quad(foot + arm * up)});
   attach(s, plane_at(foot, turn), k);
   // Rolling without slip on the arm r − δ: a = g sin α / (1 + I/(m arm²)), F_t = m g sin α − m a.
   const double pull = few.gravity * std::sin(angle);
@@ -89,18 +91,18 @@ TEST(SlidingBlock, sphere_rolls_half_a_metre_down_a_mesh_at_five_sevenths_g) {
   Worst normal(name, "normal force over 0.5 m, N", 1e-3, "m g cos(a)");
   Vec3 before = s.accounts().surface_impulse;
   int step = 0;
-  for (; (position(s, 0) - foot).dot(down) < 0.5 && step < 200000; ++step) {
+  for (; (terrain::dem::position(s, 0) - foot).dot(down) < 0.5 && step < 200000; ++step) {
     ASSERT_EQ(s.step(dt), -1);
     const Vec3 force = (s.accounts().surface_impulse - before) / dt;
     before = s.accounts().surface_impulse;
     if (step < 5000) continue;  // the spring is drawn and its start-up has died out
-    const std::string where = brief((position(s, 0) - foot).dot(down)) + " m";
+    const std::string where = brief((terrain::dem::position(s, 0) - foot).dot(down)) + " m";
     friction.add(-force.dot(down), mass * (pull - rolling), 0.0, where);
     normal.add(force.dot(up), load, 0.0, where);
   }
   const double time = step * dt;
-  verify(name, "way after its time, m", (position(s, 0) - foot).dot(down), 0.5 * rolling * time * time, 1e-3,
-         "5/7 g sin(a) t^2/2, with the arm r - delta");
+  verify(name, "way after its time, m", (terrain::dem::position(s, 0) - foot).dot(down),
+         0.5 * rolling * time * time, 1e-3, "5/7 g sin(a) t^2/2, with the arm r - delta");
 }
 
 /// A grain of 2000 t that keeps its velocity draws Mindlin's spring while its contact crosses edges and a vertex.
@@ -110,11 +112,12 @@ TEST(SlidingBlock, sticking_contact_keeps_its_spring_across_edges_and_vertices) 
     few.options.friction = 1e3;
     few.options.restitution = 1.0;
     few.options.density = 2.5e12;
-    const dem::ContactCoefficients k = few.coefficients().floor;
-    const double mass = dem::grain_properties(kRadius, few.options.density).mass;
+    const terrain::dem::ContactCoefficients k = few.coefficients().floor;
+    const double mass = terrain::dem::grain_properties(kRadius, few.options.density).mass;
     const double overlap = 1e-4, speed = 0.02, dt = 1e-5, height = 0.05;
     // Cells of 10 mm: the way of 16 mm crosses diagonals and two cell borders, or runs through vertices.
-    GrainSolver s = few.make({{0.296, through_vertex ? 0.0 : 0.0037, height + kRadius - overlap}});
+    terrain::dem::GrainSolver s =
+        few.make({{0.296, through_vertex ? 0.0 : 0.0037, height + kRadius - overlap}});
     testing::Surface mesh = testing::sheet(0.2, -0.05, 0.01, 20, 10, [=](double, double) { return height; });
     attach(s, mesh, k);
     Worst worst(std::string("sticking grain moved over a mesh") +
@@ -122,10 +125,10 @@ TEST(SlidingBlock, sticking_contact_keeps_its_spring_across_edges_and_vertices) 
                 "spring force, N", 1e-6, "Mindlin 1949, 8 G* sqrt(R delta) x displacement");
     const Vec3 way(speed, through_vertex ? 0.0 : 0.1 * speed, 0.0);
     for (int step = 1; step <= 80000; ++step) {
-      s.grains().velocity[0] = dem::quad(way);
+      s.grains().velocity[0] = terrain::dem::quad(way);
       s.grains().spin[0] = {};
       s.step(dt);
-      const Vec3 force = mass / dt * (velocity(s, 0) - way);
+      const Vec3 force = mass / dt * (terrain::dem::velocity(s, 0) - way);
       if (step % 50 != 0) continue;
       const double spring = k.shear_stiffness * std::sqrt(overlap) * step * dt * way.norm();
       worst.add(-force.dot(way) / way.norm(), spring, 0.0, brief(step * dt * speed) + " m");

@@ -13,12 +13,12 @@
 namespace furrow::verification {
 namespace {
 
-using dem::GrainSolver;
+using terrain::dem::GrainSolver;
 
 constexpr double kRadius = 0.006;  // m
 constexpr double kStep = 2e-5;     // s
 
-void attach_ground(GrainSolver& s, const dem::ContactCoefficients& k, double height) {
+void attach_ground(terrain::dem::GrainSolver& s, const terrain::dem::ContactCoefficients& k, double height) {
   const testing::Surface ground =
       testing::sheet(0.2531, -0.0372, 0.02, 4, 4, [=](double, double) { return height; });
   const SurfaceState start{ground.vertex, std::vector<Vec3>(ground.vertex.size(), Vec3::Zero())};
@@ -36,23 +36,23 @@ TEST(Static, column_stands_on_its_exact_overlaps) {
         few.options.law = law;
         few.options.cohesion = cohesion;
         few.options.step = kStep;
-        few.gravity = dem::kGravity;
-        const dem::SolverCoefficients k = few.coefficients();
+        few.gravity = terrain::dem::kGravity;
+        const terrain::dem::SolverCoefficients k = few.coefficients();
         const double bottom = ground == Ground::mesh ? 0.2 : 0.0;
-        const double weight = dem::grain_properties(kRadius, few.options.density).mass * few.gravity;
+        const double weight = terrain::dem::grain_properties(kRadius, few.options.density).mass * few.gravity;
         std::vector<double> overlap(kCount);
         for (int n = 0; n < kCount; ++n) {
-          const dem::ContactCoefficients& c = n == 0 ? k.floor : k.pair;
+          const terrain::dem::ContactCoefficients& c = n == 0 ? k.floor : k.pair;
           overlap[n] = std::pow(((kCount - n) * weight + c.cohesion_force) / c.stiffness, 2.0 / 3.0);
         }
-        std::vector<dem::Quad> at;
+        std::vector<terrain::dem::Quad> at;
         double z = bottom + kRadius;
         for (int n = 0; n < kCount; ++n) {
           at.push_back({0.3, 0.0, z, 0.0});  // not yet overlapping
           z += 2.0 * kRadius - 1e-7;
         }
         at.front().z -= 1e-7;
-        GrainSolver s = few.make(at);
+        terrain::dem::GrainSolver s = few.make(at);
         if (ground == Ground::mesh) attach_ground(s, k.floor, bottom);
         s.set_drag(30.0);
         for (int step = 0; step < 40000; ++step) {
@@ -67,7 +67,7 @@ TEST(Static, column_stands_on_its_exact_overlaps) {
         Worst worst(name, "overlaps, m", 1e-5, "K delta^1.5 = n m g + F_c");
         double below = bottom - kRadius;
         for (int n = 0; n < kCount; ++n) {
-          const Vec3 x = position(s, n);
+          const Vec3 x = terrain::dem::position(s, n);
           worst.add((n == 0 ? kRadius : 2.0 * kRadius) - (x.z() - (n == 0 ? bottom : below)), overlap[n], 0.0,
                     "contact " + std::to_string(n));
           below = x.z();
@@ -87,17 +87,17 @@ TEST(Static, tetrahedron_shares_its_weight_by_symmetry) {
   EngineGrains few;
   few.options.friction = 0.9;
   few.options.step = kStep;
-  few.gravity = dem::kGravity;
+  few.gravity = terrain::dem::kGravity;
   const double a = 2.0 * kRadius, height = a * std::sqrt(2.0 / 3.0);
-  const double weight = dem::grain_properties(kRadius, few.options.density).mass * few.gravity;
-  std::vector<dem::Quad> at;
+  const double weight = terrain::dem::grain_properties(kRadius, few.options.density).mass * few.gravity;
+  std::vector<terrain::dem::Quad> at;
   for (int n = 0; n < 3; ++n) {
     const double phi = 2.0 * M_PI * n / 3.0 + 0.2;
     at.push_back(
         {0.3 + a / std::sqrt(3.0) * std::cos(phi), a / std::sqrt(3.0) * std::sin(phi), kRadius, 0.0});
   }
   at.push_back({0.3, 0.0, kRadius + height, 0.0});
-  GrainSolver s = few.make(at);
+  terrain::dem::GrainSolver s = few.make(at);
   s.set_drag(30.0);
   for (int step = 0; step < 40000; ++step) s.step(kStep);
   verify("tetrahedron, mindlin", "force on the floor, N", s.accounts().floor_force, 4.0 * weight, 1e-5,
@@ -105,9 +105,9 @@ TEST(Static, tetrahedron_shares_its_weight_by_symmetry) {
   Worst share("tetrahedron, mindlin", "overlap of a lower grain with the floor, m", 1e-4,
               "K delta^1.5 = 4/3 m g");
   for (int n = 0; n < 3; ++n)
-    share.add(kRadius - position(s, n).z(),
+    share.add(kRadius - terrain::dem::position(s, n).z(),
               std::pow(4.0 / 3.0 * weight / few.coefficients().floor.stiffness, 2.0 / 3.0));
-  EXPECT_LT(std::hypot(position(s, 3).x() - 0.3, position(s, 3).y()), 1e-6);
+  EXPECT_LT(std::hypot(terrain::dem::position(s, 3).x() - 0.3, terrain::dem::position(s, 3).y()), 1e-6);
   EXPECT_LT(s.accounts().kinetic, 1e-14);
 }
 

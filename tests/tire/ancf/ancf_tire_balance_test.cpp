@@ -9,9 +9,9 @@ namespace {
 constexpr double kStep = 1e-4, kSpeed = 8.0, kDepth = 0.008;
 
 /// M (0, 0, −g): consistent, so directors have a share.
-Field consistent_weight(const AncfTire& tire) {
-  const RingLayout& layout = tire.integrator().layout();
-  Field down(layout.size(), 0.0), weight(layout.size(), 0.0);
+tire::Field consistent_weight(const tire::AncfTire& tire) {
+  const tire::ShellLayout& layout = tire.integrator().layout();
+  tire::Field down(layout.size(), 0.0), weight(layout.size(), 0.0);
   for (int j = 0; j < layout.rows; ++j)
     for (int i = 0; i < layout.columns; ++i) layout.set(down, i, j, 0, Vec3(0, 0, -9.81));
   layout.fill_padding(down);
@@ -21,16 +21,16 @@ Field consistent_weight(const AncfTire& tire) {
 
 TEST(AncfTireBalance,
      momentum_and_angular_momentum_change_by_contact_gravity_and_spindle_impulse_to_round_off) {
-  AncfTire tire(small_file());
-  const RingLayout& layout = tire.integrator().layout();
-  const Field weight = consistent_weight(tire);
+  tire::AncfTire tire(small_file());
+  const tire::ShellLayout& layout = tire.integrator().layout();
+  const tire::Field weight = consistent_weight(tire);
   const RimState rim = rolling_rim(0, tire.radius(), kSpeed, kDepth);
   tire.place(rim);
-  RimTrajectory t(rim);
+  tire::RimTrajectory t(rim);
   SurfaceState start, end;
   for (int n = 0; n < 250; ++n) {
     const auto [p, l] = momenta(tire);
-    const Field before = tire.integrator().q();
+    const tire::Field before = tire.integrator().q();
     tire.surface(start);
     NodalForces f = ground_forces(tire);
     if (n % 7 == 0) {  // something on a bead disc too
@@ -38,10 +38,10 @@ TEST(AncfTireBalance,
       f.force.push_back(Vec3(3, -20, 8));
     }
     t.extend(rolling_rim(n * kStep, tire.radius(), kSpeed, kDepth), kStep);
-    const TireStatus status = tire.advance(t, f, 1);
+    const tire::TireStatus status = tire.advance(t, f, 1);
     ASSERT_TRUE(status.converged) << status.message();
     tire.surface(end);
-    const Field& after = tire.integrator().q();
+    const tire::Field& after = tire.integrator().q();
     const Wrench spindle = tire.spindle_wrench();
     const Vec3 centre = 0.5 * (t.start().position + t.end().position);
     Vec3 force = -spindle.force, moment = -spindle.moment - centre.cross(spindle.force);
@@ -66,11 +66,11 @@ TEST(AncfTireBalance,
 }
 
 TEST(AncfTireBalance, dissipation_grows_and_energy_does_not_appear_from_nothing) {
-  AncfTire tire(small_file());
+  tire::AncfTire tire(small_file());
   RimState rim = rolling_rim(0, tire.radius(), kSpeed, kDepth);
   tire.place(rim);
-  RimTrajectory t(rim);
-  const TireDiagnostics start = tire.diagnostics();
+  tire::RimTrajectory t(rim);
+  const tire::TireDiagnostics start = tire.diagnostics();
   double work = 0.0, dissipation = 0.0;
   SurfaceState before, after;
   for (int n = 0; n < 400; ++n) {
@@ -86,11 +86,11 @@ TEST(AncfTireBalance, dissipation_grows_and_energy_does_not_appear_from_nothing)
     work -= w.force.dot(t.end().position - from.position) +
             w.moment.dot(0.5 * kStep * (t.end().angular_velocity + from.angular_velocity));
     work += tire.mass_properties().mass * -9.81 * (t.end().position.z() - from.position.z());
-    const TireDiagnostics d = tire.diagnostics();
+    const tire::TireDiagnostics d = tire.diagnostics();
     EXPECT_GE(d.dissipation, dissipation);
     dissipation = d.dissipation;
   }
-  const TireDiagnostics end = tire.diagnostics();
+  const tire::TireDiagnostics end = tire.diagnostics();
   const double stored = end.kinetic_energy + end.strain_energy - start.kinetic_energy - start.strain_energy;
   EXPECT_GT(dissipation, 0.1);  // J
   EXPECT_LE(stored + dissipation, work + 0.02 * dissipation);

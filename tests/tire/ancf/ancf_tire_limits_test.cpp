@@ -10,25 +10,25 @@ namespace furrow::test {
 namespace {
 
 /// Radius of the crown over the rim's centre, m.
-double crown(const AncfTire& tire) {
-  const RingLayout& layout = tire.integrator().layout();
+double crown(const tire::AncfTire& tire) {
+  const tire::ShellLayout& layout = tire.integrator().layout();
   return layout.get(tire.integrator().q(), 0, layout.rows / 2, 0).norm();
 }
 
-void hold(AncfTire& tire, RimTrajectory& t, int steps, double h) {
+void hold(tire::AncfTire& tire, tire::RimTrajectory& t, int steps, double h) {
   for (int n = 0; n < steps; ++n) {
     t.extend(t.end(), h);
-    const TireStatus status = tire.advance(t, {}, 1);
+    const tire::TireStatus status = tire.advance(t, {}, 1);
     ASSERT_TRUE(status.converged) << status.message();
   }
 }
 
 TEST(AncfTirePressure, a_tire_let_down_comes_to_the_shape_of_one_inflated_to_that_pressure) {
-  AncfTire down(small_file("hmmwv_lumped.json"));
-  TireFile file = small_file("hmmwv_lumped.json");
+  tire::AncfTire down(small_file("hmmwv_lumped.json"));
+  tire::TireFile file = small_file("hmmwv_lumped.json");
   file.pressure = 60e3;
-  AncfTire low(file);
-  RimTrajectory t, other;
+  tire::AncfTire low(file);
+  tire::RimTrajectory t, other;
   down.place(t.start());
   low.place(other.start());
   const double full = crown(down);
@@ -43,17 +43,17 @@ TEST(AncfTirePressure, a_tire_let_down_comes_to_the_shape_of_one_inflated_to_tha
 }
 
 TEST(AncfTirePressure, energy_balances_while_the_pressure_changes) {
-  AncfTire tire(small_file("hmmwv_lumped.json"));
-  RimTrajectory t;
+  tire::AncfTire tire(small_file("hmmwv_lumped.json"));
+  tire::RimTrajectory t;
   tire.place(t.start());
   hold(tire, t, 200, 2e-4);  // hangs in the rim
-  const TireDiagnostics start = tire.diagnostics();
+  const tire::TireDiagnostics start = tire.diagnostics();
   const double elastic = tire.integrator().elastic_energy();
   for (int n = 0; n < 500; ++n) {
     tire.set_pressure(200e3 - 300.0 * n);
     hold(tire, t, 1, 2e-4);
   }
-  const TireDiagnostics end = tire.diagnostics();
+  const tire::TireDiagnostics end = tire.diagnostics();
   const double given_back = elastic - tire.integrator().elastic_energy();  // to the air
   EXPECT_GT(given_back, 1.0);                                              // J
   EXPECT_NEAR(end.strain_energy + end.kinetic_energy + end.dissipation,
@@ -61,38 +61,39 @@ TEST(AncfTirePressure, energy_balances_while_the_pressure_changes) {
 }
 
 TEST(AncfTirePressure, a_flat_tire_can_be_loaded) {
-  TireFile file = small_file();
+  tire::TireFile file = small_file();
   file.pressure = 0.0;
-  AncfTire tire(file);
+  tire::AncfTire tire(file);
   const double h = 1e-4, depth = 0.008;
-  RimTrajectory t(rolling_rim(0, tire.radius(), 8.0, depth));
+  tire::RimTrajectory t(rolling_rim(0, tire.radius(), 8.0, depth));
   tire.place(t.start());
   for (int n = 0; n < 400; ++n) {
     t.extend(rolling_rim(n * h, tire.radius(), 8.0, depth), h);
-    const TireStatus status = tire.advance(t, ground_forces(tire), 1);
+    const tire::TireStatus status = tire.advance(t, ground_forces(tire), 1);
     ASSERT_TRUE(status.converged) << status.message("", " at step " + std::to_string(n));
   }
   EXPECT_GT(tire.spindle_wrench().force.z(), 20.0);
 }
 
 TEST(RimClearance, of_the_undeformed_torus_is_the_height_of_its_first_row_less_half_its_thickness) {
-  const TireFile file = small_file("toroidal.json", 24, 12);
-  const RingMesh mesh = make_ring_mesh(file);
-  const RingLayout layout{mesh.columns, mesh.rows};
-  const RimClearance::Nodes nodes = RimClearance(file, mesh).measure(layout, undeformed(mesh), RimState{});
+  const tire::TireFile file = small_file("toroidal.json", 24, 12);
+  const tire::ShellMesh mesh = tire::make_shell_mesh(file);
+  const tire::ShellLayout layout{mesh.columns, mesh.rows};
+  const tire::RimClearance::Nodes nodes =
+      tire::RimClearance(file, mesh).measure(layout, tire::undeformed(mesh), RimState{});
   EXPECT_TRUE(nodes.row == 1 || nodes.row == mesh.rows - 2);
   EXPECT_NEAR(nodes.clearance, 0.195 * std::sin(std::numbers::pi / 12) - 0.007, 1e-4);
   EXPECT_NEAR(nodes.farthest, 0.545, 1e-3);
 }
 
 TEST(RimClearance, does_not_depend_on_where_the_rim_is) {
-  AncfTire tire(small_file());
+  tire::AncfTire tire(small_file());
   RimState rim;
   rim.position = Vec3(3, -1, 2);
   rim.orientation = Quat(Eigen::AngleAxisd(0.7, Vec3(1, 2, -1).normalized()));
   tire.place(rim);
-  const RingLayout& layout = tire.integrator().layout();
-  const RimClearance clearance(small_file(), make_ring_mesh(small_file()));
+  const tire::ShellLayout& layout = tire.integrator().layout();
+  const tire::RimClearance clearance(small_file(), tire::make_shell_mesh(small_file()));
   const auto moved = clearance.measure(layout, tire.integrator().q(), rim);
   tire.place(RimState{});
   const auto still = clearance.measure(layout, tire.integrator().q(), RimState{});
@@ -101,15 +102,15 @@ TEST(RimClearance, does_not_depend_on_where_the_rim_is) {
 }
 
 TEST(RimClearance, a_tire_pressed_down_to_its_rim_stops_with_node_and_clearance) {
-  TireFile file = small_file();
+  tire::TireFile file = small_file();
   file.pressure = 30e3;
-  AncfTire tire(file);
+  tire::AncfTire tire(file);
   RimState rim;
   rim.position.z() = tire.radius();
   tire.place(rim);
-  RimTrajectory t(rim);
+  tire::RimTrajectory t(rim);
   const double h = 2e-4;
-  TireStatus status;
+  tire::TireStatus status;
   for (int n = 0; n < 1500 && status.converged; ++n) {
     rim.velocity.z() = -1.0;  // m/s
     t.extend(rim, h);
@@ -124,26 +125,26 @@ TEST(RimClearance, a_tire_pressed_down_to_its_rim_stops_with_node_and_clearance)
 }
 
 TEST(AncfTireLimits, a_force_that_is_not_finite_is_named_and_changes_nothing) {
-  AncfTire tire(small_file());
-  RimTrajectory t;
+  tire::AncfTire tire(small_file());
+  tire::RimTrajectory t;
   tire.place(t.start());
-  const Field before = tire.integrator().q();
+  const tire::Field before = tire.integrator().q();
   NodalForces f;
   f.vertex = {17};
   f.force = {Vec3(0, 0, std::numeric_limits<double>::quiet_NaN())};
   t.extend(t.end(), 1e-4);
-  const TireStatus status = tire.advance(t, f, 1);
+  const tire::TireStatus status = tire.advance(t, f, 1);
   EXPECT_FALSE(status.converged);
   EXPECT_NE(status.message().find("vertex 17"), std::string::npos) << status.message();
   EXPECT_EQ(tire.integrator().q(), before);
 }
 
 TEST(AncfTireLimits, tread_rubber_adds_its_mass_to_tire_weight_and_to_what_a_contact_moves) {
-  TireFile bare = small_file(), heavy = small_file();
+  tire::TireFile bare = small_file(), heavy = small_file();
   heavy.tread_mass_per_area = 20.0;
-  AncfTire light(bare), tire(heavy);
+  tire::AncfTire light(bare), tire(heavy);
   EXPECT_NEAR(tire.material().area_density - light.material().area_density, 20.0, 1e-12);
-  RimTrajectory t;
+  tire::RimTrajectory t;
   tire.place(t.start());
   hold(tire, t, 1500, 2e-4);
   const double mass = tire.mass_properties().mass;

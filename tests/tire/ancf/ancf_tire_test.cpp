@@ -9,13 +9,13 @@ namespace furrow::test {
 namespace {
 
 TEST(AncfTire, free_fall_at_speed_asks_nothing_of_the_spindle_once_the_start_has_died_out) {
-  RingIntegratorParams params;
+  tire::ShellIntegratorParams params;
   params.tolerance = 1e-8;
-  AncfTire tire(small_file(), params);
+  tire::AncfTire tire(small_file(), params);
   RimState rim;
   rim.velocity = Vec3(4, 0, 0);
   tire.place(rim);
-  RimTrajectory t(rim);
+  tire::RimTrajectory t(rim);
   const double h = 1e-4;
   for (int n = 0; n < 400; ++n) {
     t.extend(rim, h);
@@ -29,11 +29,11 @@ TEST(AncfTire, free_fall_at_speed_asks_nothing_of_the_spindle_once_the_start_has
 }
 
 TEST(AncfTire, steady_spin_asks_only_for_the_weight) {
-  AncfTire tire(small_file());
+  tire::AncfTire tire(small_file());
   RimState rim;
   rim.angular_velocity = Vec3(0, 8.56, 0);
   tire.place(rim);
-  RimTrajectory t(rim);
+  tire::RimTrajectory t(rim);
   const double h = 1e-4;
   double drag = 0.0;
   for (int n = 0; n < 400; ++n) {
@@ -48,9 +48,9 @@ TEST(AncfTire, steady_spin_asks_only_for_the_weight) {
 }
 
 TEST(AncfTire, mass_matrix_and_mass_properties_agree_for_rigid_velocity_fields) {
-  TireFile file = small_file();
+  tire::TireFile file = small_file();
   file.pressure = 0.0;  // undeformed
-  AncfTire tire(file);
+  tire::AncfTire tire(file);
   RimState rim;
   rim.position = Vec3(2, 1, 0.5);
   rim.orientation = Quat(Eigen::AngleAxisd(0.4, Vec3(1, 1, 0).normalized()));
@@ -69,10 +69,10 @@ TEST(AncfTire, mass_matrix_and_mass_properties_agree_for_rigid_velocity_fields) 
 }
 
 TEST(AncfTire, inflated_tire_at_rest_hangs_its_weight_on_the_rim) {
-  AncfTire tire(small_file());
+  tire::AncfTire tire(small_file());
   RimState rim;
   tire.place(rim);
-  RimTrajectory t(rim);
+  tire::RimTrajectory t(rim);
   for (int n = 0; n < 600; ++n) {
     t.extend(rim, 2e-4);
     ASSERT_TRUE(tire.advance(t, {}, 1).converged);
@@ -83,29 +83,29 @@ TEST(AncfTire, inflated_tire_at_rest_hangs_its_weight_on_the_rim) {
 }
 
 TEST(AncfTire, restored_tire_continues_bit_for_bit) {
-  AncfTire tire(small_file()), other(small_file());
-  expect_restart_bit_for_bit(tire, other, [](AncfTire&, int) {});
+  tire::AncfTire tire(small_file()), other(small_file());
+  expect_restart_bit_for_bit(tire, other, [](tire::AncfTire&, int) {});
 }
 
 /// Coordinates after rolling into contact.
-Field rolled(const RingIntegratorParams& params, int steps) {
+tire::Field rolled(const tire::ShellIntegratorParams& params, int steps) {
   const double h = 1e-4, speed = 8.0, depth = 0.008;
-  AncfTire tire(small_file(), params);
-  RimTrajectory t(rolling_rim(0, tire.radius(), speed, depth));
+  tire::AncfTire tire(small_file(), params);
+  tire::RimTrajectory t(rolling_rim(0, tire.radius(), speed, depth));
   tire.place(t.start());
   for (int n = 0; n < steps; ++n) {
     t.extend(rolling_rim(n * h, tire.radius(), speed, depth), h);
-    const TireStatus status = tire.advance(t, ground_forces(tire), 1);
+    const tire::TireStatus status = tire.advance(t, ground_forces(tire), 1);
     EXPECT_TRUE(status.converged) << status.message();
   }
   return tire.integrator().q();
 }
 
 TEST(AncfTire, an_old_factor_gives_the_results_of_one_renewed_in_every_step_to_1e8) {
-  RingIntegratorParams old, renewed;
+  tire::ShellIntegratorParams old, renewed;
   old.tolerance = renewed.tolerance = 1e-10;
   renewed.age = 0.0;
-  const Field a = rolled(old, 200), b = rolled(renewed, 200);
+  const tire::Field a = rolled(old, 200), b = rolled(renewed, 200);
   double difference = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) difference = std::max(difference, std::abs(a[k] - b[k]));
   EXPECT_LT(difference, 1e-8);
@@ -113,19 +113,19 @@ TEST(AncfTire, an_old_factor_gives_the_results_of_one_renewed_in_every_step_to_1
 }
 
 TEST(AncfTire, threads_do_not_change_a_bit) {
-  RingIntegratorParams one, three;
+  tire::ShellIntegratorParams one, three;
   three.threads = 3;
   EXPECT_EQ(rolled(one, 150), rolled(three, 150));
 }
 
 TEST(AncfTire, mirrored_forces_give_the_mirrored_wrench) {
-  AncfTire tire(small_file("hmmwv_lumped.json"));
+  tire::AncfTire tire(small_file("hmmwv_lumped.json"));
   const int rows = static_cast<int>(tire.integrator().layout().rows);
   RimState rim;
   Wrench w[2];
   for (int side = 0; side < 2; ++side) {
     tire.place(rim);
-    RimTrajectory t(rim);
+    tire::RimTrajectory t(rim);
     NodalForces f;
     const int j = side == 0 ? 2 : rows - 3;
     f.vertex = {3 * rows + j};
@@ -143,14 +143,14 @@ TEST(AncfTire, mirrored_forces_give_the_mirrored_wrench) {
 }
 
 TEST(AncfTire, a_blow_that_cannot_be_integrated_is_a_status_with_advice) {
-  AncfTire tire(small_file());
+  tire::AncfTire tire(small_file());
   RimState rim;
   tire.place(rim);
-  RimTrajectory t(rim);
+  tire::RimTrajectory t(rim);
   NodalForces f;
   f.vertex = {3};
   f.force = {Vec3(0, 0, 1e12)};
-  TireStatus status;
+  tire::TireStatus status;
   for (int n = 0; n < 5 && status.converged; ++n) {
     t.extend(rim, 1e-3);
     status = tire.advance(t, f, 1);
@@ -162,15 +162,15 @@ TEST(AncfTire, a_blow_that_cannot_be_integrated_is_a_status_with_advice) {
 }
 
 TEST(AncfTire, pressed_on_a_plane_it_carries_350_to_800_newtons_per_millimetre) {
-  TireFile file = small_file("hmmwv_layered.json", 48, 12);
-  AncfTire tire(file);
+  tire::TireFile file = small_file("hmmwv_layered.json", 48, 12);
+  tire::AncfTire tire(file);
   const double h = 2e-4, depth = 0.010;
-  RimTrajectory t(rolling_rim(0, tire.radius(), 0.0, depth));
+  tire::RimTrajectory t(rolling_rim(0, tire.radius(), 0.0, depth));
   tire.place(t.start());
   double deflection = 0.0;
   for (int n = 0; n < 500; ++n) {
     t.extend(rolling_rim(n * h, tire.radius(), 0.0, depth), h);
-    const TireStatus status = tire.advance(t, ground_forces(tire), 1);
+    const tire::TireStatus status = tire.advance(t, ground_forces(tire), 1);
     ASSERT_TRUE(status.converged) << status.message();
   }
   SurfaceState s;

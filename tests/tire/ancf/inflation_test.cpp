@@ -5,30 +5,30 @@
 
 #include <cmath>
 
-#include "protocol/error.hpp"
+#include "protocol/core/error.hpp"
 #include "small_tire.hpp"
 
 namespace furrow::test {
 namespace {
 
 TEST(Inflation, layered_crown_grows_by_four_tenths_of_a_millimetre) {
-  const TireFile file = small_file("hmmwv_layered.json", 60, 24);
-  const RingMesh mesh = make_ring_mesh(file);
-  const ShellRing shell(file, mesh);
-  InflationReport report;
-  const Field q = inflate(shell, mesh, report);
+  const tire::TireFile file = small_file("hmmwv_layered.json", 60, 24);
+  const tire::ShellMesh mesh = tire::make_shell_mesh(file);
+  const tire::ShellCarcass shell(file, mesh);
+  tire::InflationReport report;
+  const tire::Field q = tire::inflate(shell, mesh, report);
   EXPECT_LT(report.residual, 1e-7);
   const double crown = shell.layout().get(q, 0, mesh.rows / 2, 0).norm();
   EXPECT_NEAR(crown - file.radius, 0.4e-3, 0.1e-3);  // m, independent linearised model ± 20 %
 }
 
 TEST(Inflation, shape_is_axisymmetric_and_mirrored) {
-  const TireFile file = small_file("toroidal.json", 24, 12);
-  const RingMesh mesh = make_ring_mesh(file);
-  const ShellRing shell(file, mesh);
-  InflationReport report;
-  const Field q = inflate(shell, mesh, report);
-  const RingLayout& layout = shell.layout();
+  const tire::TireFile file = small_file("toroidal.json", 24, 12);
+  const tire::ShellMesh mesh = tire::make_shell_mesh(file);
+  const tire::ShellCarcass shell(file, mesh);
+  tire::InflationReport report;
+  const tire::Field q = tire::inflate(shell, mesh, report);
+  const tire::ShellLayout& layout = shell.layout();
   for (int j = 0; j < mesh.rows; ++j) {
     const Vec3 here = layout.get(q, 0, j, 0), there = layout.get(q, 0, mesh.rows - 1 - j, 0);
     EXPECT_LT((layout.get(q, 7, j, 0) - mesh.turn(7) * here).norm(), 1e-12);
@@ -38,37 +38,38 @@ TEST(Inflation, shape_is_axisymmetric_and_mirrored) {
 }
 
 TEST(Inflation, pressure_zero_leaves_the_reference) {
-  TireFile file = small_file();
+  tire::TireFile file = small_file();
   file.pressure = 0.0;
-  const RingMesh mesh = make_ring_mesh(file);
-  InflationReport report;
-  EXPECT_EQ(inflate(ShellRing(file, mesh), mesh, report), undeformed(mesh));
+  const tire::ShellMesh mesh = tire::make_shell_mesh(file);
+  tire::InflationReport report;
+  EXPECT_EQ(tire::inflate(tire::ShellCarcass(file, mesh), mesh, report), tire::undeformed(mesh));
 }
 
 TEST(Inflation, at_low_pressure_growth_is_linear_on_fine_meshes_too) {
   double growth[2];
   for (int k = 0; k < 2; ++k) {
-    TireFile file = small_file("hmmwv_layered.json", 180, 48);
+    tire::TireFile file = small_file("hmmwv_layered.json", 180, 48);
     file.pressure = k == 0 ? 2e3 : 4e3;
-    const RingMesh mesh = make_ring_mesh(file);
-    const ShellRing shell(file, mesh);
-    InflationReport report;
-    growth[k] = shell.layout().get(inflate(shell, mesh, report), 0, mesh.rows / 2, 0).norm() - file.radius;
+    const tire::ShellMesh mesh = tire::make_shell_mesh(file);
+    const tire::ShellCarcass shell(file, mesh);
+    tire::InflationReport report;
+    growth[k] =
+        shell.layout().get(tire::inflate(shell, mesh, report), 0, mesh.rows / 2, 0).norm() - file.radius;
     EXPECT_LT(report.residual, 1e-6);
   }
   EXPECT_NEAR(growth[1] / growth[0], 2.0, 0.02);
 }
 
 TEST(Inflation, at_ten_times_the_pressure_it_converges_and_beyond_it_says_how_far_it_came) {
-  TireFile file = small_file();
+  tire::TireFile file = small_file();
   file.pressure = 2e6;
-  const RingMesh mesh = make_ring_mesh(file);
-  InflationReport report;
-  inflate(ShellRing(file, mesh), mesh, report);
+  const tire::ShellMesh mesh = tire::make_shell_mesh(file);
+  tire::InflationReport report;
+  tire::inflate(tire::ShellCarcass(file, mesh), mesh, report);
   EXPECT_LT(report.residual, 1e-6);
   file.pressure = 1e8;
   try {
-    inflate(ShellRing(file, mesh), mesh, report);
+    tire::inflate(tire::ShellCarcass(file, mesh), mesh, report);
     ADD_FAILURE() << "no error";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ExitCode::physics);
@@ -82,11 +83,11 @@ TEST(Inflation, all_shipped_tires_inflate_at_low_and_full_pressure) {
   for (const char* name :
        {"hmmwv_layered.json", "hmmwv_lumped.json", "toroidal.json", "passenger_205_55r16.json"})
     for (const double share : {0.35, 1.0, 1.5}) {
-      TireFile file = small_file(name, 30, 12);
+      tire::TireFile file = small_file(name, 30, 12);
       file.pressure *= share;
-      const RingMesh mesh = make_ring_mesh(file);
-      InflationReport report;
-      inflate(ShellRing(file, mesh), mesh, report);
+      const tire::ShellMesh mesh = tire::make_shell_mesh(file);
+      tire::InflationReport report;
+      tire::inflate(tire::ShellCarcass(file, mesh), mesh, report);
       EXPECT_LT(report.residual, 1e-6) << name << " at " << file.pressure;
     }
 }

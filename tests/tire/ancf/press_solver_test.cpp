@@ -11,43 +11,45 @@
 namespace furrow::test {
 namespace {
 
-std::unique_ptr<PressSolver> solver_of(const TireFile& file, const PressObstacle& obstacle) {
-  const RingMesh mesh = make_ring_mesh(file);
-  InflationReport report;
-  return std::make_unique<PressSolver>(file, mesh, inflate(ShellRing(file, mesh), mesh, report), obstacle);
+std::unique_ptr<tire::PressSolver> solver_of(const tire::TireFile& file,
+                                             const tire::PressObstacle& obstacle) {
+  const tire::ShellMesh mesh = tire::make_shell_mesh(file);
+  tire::InflationReport report;
+  return std::make_unique<tire::PressSolver>(
+      file, mesh, tire::inflate(tire::ShellCarcass(file, mesh), mesh, report), obstacle);
 }
 
-PressObstacle cleat() {
-  PressObstacle bar;
+tire::PressObstacle cleat() {
+  tire::PressObstacle bar;
   bar.height = bar.width = 0.02;
   bar.edge = 0.01;
   return bar;
 }
 
 TEST(PressSolver, force_is_the_derivative_of_the_potential) {
-  for (const PressObstacle& obstacle : {PressObstacle{}, cleat()}) {
+  for (const tire::PressObstacle& obstacle : {tire::PressObstacle{}, cleat()}) {
     const auto solver = solver_of(small_file("hmmwv_lumped.json", 30, 6), obstacle);
     const double d = 0.008, step = 1e-5;  // m
     solver->press(d - step);
     const double before = solver->potential();
-    const PressPoint middle = solver->press(d);
+    const tire::PressPoint middle = solver->press(d);
     solver->press(d + step);
     EXPECT_NEAR((solver->potential() - before) / (2.0 * step) / middle.force, 1.0, 1e-5);
     EXPECT_GT(middle.force, 500.0);
     double sum = 0.0;
     solver->press(d);
-    for (const PressSample& s : solver->footprint()) sum += s.area * s.pressure;
+    for (const tire::PressSample& s : solver->footprint()) sum += s.area * s.pressure;
     EXPECT_NEAR(sum / middle.force, 1.0, 1e-6);
   }
 }
 
 TEST(PressSolver, unloads_along_the_loading_path) {
-  for (const PressObstacle& obstacle : {PressObstacle{}, cleat()}) {
+  for (const tire::PressObstacle& obstacle : {tire::PressObstacle{}, cleat()}) {
     const auto solver = solver_of(small_file("hmmwv_lumped.json", 30, 6), obstacle);
     std::vector<double> up;
     for (int k = 0; k <= 3; ++k) up.push_back(solver->press(0.004 * k).force);
     for (int k = 3; k >= 0; --k) {
-      const PressPoint point = solver->press(0.004 * k);
+      const tire::PressPoint point = solver->press(0.004 * k);
       EXPECT_NEAR(point.force, up[k], 1e-6 * up[3]);
       EXPECT_LE(point.residual, 1e-6);
     }
@@ -60,7 +62,7 @@ TEST(PressSolver, a_wrinkled_tire_comes_to_a_stable_rest) {
   EXPECT_GT(solver->runout(), 1e-4);
   double last = 0.0;
   for (int k = 1; k <= 2; ++k) {
-    const PressPoint point = solver->press(0.003 * k);
+    const tire::PressPoint point = solver->press(0.003 * k);
     EXPECT_LE(point.residual, 1e-6);
     EXPECT_GT(point.force, last);
     last = point.force;

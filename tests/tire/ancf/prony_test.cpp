@@ -11,32 +11,32 @@ namespace {
 
 /// A ring without pressure whose strains are all ½ (λ² − 1) times those of the metric.
 struct Panel {
-  TireFile file = small_file("toroidal.json", 12, 6);
-  RingMesh mesh;
-  ShellRing shell;
-  RingLayout layout;
-  Field start;
-  ShellRing::Step step;
+  tire::TireFile file = small_file("toroidal.json", 12, 6);
+  tire::ShellMesh mesh;
+  tire::ShellCarcass shell;
+  tire::ShellLayout layout;
+  tire::Field start;
+  tire::ShellCarcass::Step step;
 
-  explicit Panel(std::vector<MaxwellBranch> prony)
-      : mesh(make_ring_mesh(file)), shell(with(file, std::move(prony)), mesh), layout(shell.layout()) {
-    start = undeformed(mesh);
+  explicit Panel(std::vector<tire::MaxwellBranch> prony)
+      : mesh(tire::make_shell_mesh(file)), shell(with(file, std::move(prony)), mesh), layout(shell.layout()) {
+    start = tire::undeformed(mesh);
     shell.begin(start, step);
   }
-  static TireFile with(TireFile file, std::vector<MaxwellBranch> prony) {
+  static tire::TireFile with(tire::TireFile file, std::vector<tire::MaxwellBranch> prony) {
     file.pressure = 0.0;
     file.prony = std::move(prony);
     return file;
   }
-  Field stretched(double strain) const {
-    Field q = start;
+  tire::Field stretched(double strain) const {
+    tire::Field q = start;
     for (double& x : q) x *= std::sqrt(1.0 + 2.0 * strain);
     return q;
   }
   /// One step of h to a stretch; forces there, with τ of the Kelvin–Voigt law.
-  Field go(double strain, double h, double damping, ShellRing::Energies& energies) {
-    const Field q = stretched(strain);
-    Field f(layout.size());
+  tire::Field go(double strain, double h, double damping, tire::ShellCarcass::Energies& energies) {
+    const tire::Field q = stretched(strain);
+    tire::Field f(layout.size());
     shell.prepare(step, h);
     shell.forces(q, q, step, 1.0 + damping / h, f, 1);
     energies = shell.accept(step);
@@ -44,18 +44,18 @@ struct Panel {
   }
 };
 
-double norm(const Field& f) {
+double norm(const tire::Field& f) {
   double total = 0.0;
   for (const double x : f) total += x * x;
   return std::sqrt(total);
 }
 
-const std::vector<MaxwellBranch> kTwo{{0.3, 0.01}, {0.2, 0.1}};
+const std::vector<tire::MaxwellBranch> kTwo{{0.3, 0.01}, {0.2, 0.1}};
 
 TEST(Prony, a_stretched_panel_relaxes_as_the_sum_of_exponentials) {
   const double h = 1e-4, strain = 0.01;
   Panel panel(kTwo), elastic({});
-  ShellRing::Energies energies;
+  tire::ShellCarcass::Energies energies;
   const double settled = norm(elastic.go(strain, h, 0.0, energies));
   double lost = 0.0, stored = 0.0;
   for (int n = 0; n < 3000; ++n) {
@@ -70,7 +70,7 @@ TEST(Prony, a_stretched_panel_relaxes_as_the_sum_of_exponentials) {
     EXPECT_GE(energies.relaxed, 0.0);
   }
   // All that the branches took, ½ g D̂ E² each at first, is lost in the end.
-  Field none;
+  tire::Field none;
   elastic.shell.strains(elastic.start, none);
   const double whole = elastic.shell.account(elastic.stretched(strain), none).elastic;
   EXPECT_NEAR(lost + stored, 0.5 * whole, 2e-2 * whole * 0.5);
@@ -83,7 +83,7 @@ TEST(Prony, loss_per_cycle_of_a_harmonic_strain_is_pi_times_the_loss_modulus) {
   const double strain = 0.004, damping = 2e-4;
   for (const double omega : {8.0, 50.0, 100.0, 600.0}) {
     Panel panel(kTwo);
-    Field none;
+    tire::Field none;
     panel.shell.strains(panel.start, none);
     const double twice = 2.0 * panel.shell.account(panel.stretched(strain), none).elastic;  // D̂ : E₁²
     const int steps = 400;
@@ -91,7 +91,7 @@ TEST(Prony, loss_per_cycle_of_a_harmonic_strain_is_pi_times_the_loss_modulus) {
     const int cycles = 3 + static_cast<int>(std::ceil(1.0 / (h * steps)));  // ten longest relaxation times
     double loss = 0.0, change = 0.0;
     for (int n = 1; n <= cycles * steps; ++n) {
-      ShellRing::Energies energies;
+      tire::ShellCarcass::Energies energies;
       panel.go(strain * std::sin(omega * h * n), h, damping, energies);
       if (n <= (cycles - 1) * steps) continue;
       loss += energies.relaxed + damping / h * energies.change;
@@ -106,19 +106,19 @@ TEST(Prony, loss_per_cycle_of_a_harmonic_strain_is_pi_times_the_loss_modulus) {
 }
 
 /// Power lost in the carcass of a tire that rolls, W.
-double rolling_loss(const std::vector<MaxwellBranch>& prony) {
-  TireFile file = small_file();
+double rolling_loss(const std::vector<tire::MaxwellBranch>& prony) {
+  tire::TireFile file = small_file();
   file.structural_damping = 0.002;
   file.prony = prony;
-  AncfTire tire(file);
+  tire::AncfTire tire(file);
   const double h = 1e-4, speed = 8.0, depth = 0.008;
-  RimTrajectory t(rolling_rim(0, tire.radius(), speed, depth));
+  tire::RimTrajectory t(rolling_rim(0, tire.radius(), speed, depth));
   tire.place(t.start());
   double before = 0.0;
   for (int n = 0; n < 1000; ++n) {
     if (n == 400) before = tire.diagnostics().dissipation;
     t.extend(rolling_rim(n * h, tire.radius(), speed, depth), h);
-    const TireStatus status = tire.advance(t, ground_forces(tire), 1);
+    const tire::TireStatus status = tire.advance(t, ground_forces(tire), 1);
     EXPECT_TRUE(status.converged) << status.message();
   }
   return (tire.diagnostics().dissipation - before) / (600 * h);
@@ -133,11 +133,11 @@ TEST(Prony, branches_raise_the_rolling_loss_the_more_the_stiffer_they_are) {
 }
 
 TEST(Prony, restored_tire_with_branches_and_a_changing_pressure_continues_bit_for_bit) {
-  TireFile file = small_file();
+  tire::TireFile file = small_file();
   file.prony = kTwo;
-  AncfTire tire(file), other(file);
+  tire::AncfTire tire(file), other(file);
   expect_restart_bit_for_bit(tire, other,
-                             [](AncfTire& which, int n) { which.set_pressure(2e5 - 400.0 * n); });
+                             [](tire::AncfTire& which, int n) { which.set_pressure(2e5 - 400.0 * n); });
 }
 
 }  // namespace

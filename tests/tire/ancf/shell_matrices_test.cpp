@@ -1,13 +1,14 @@
 // The pre-integrated stiffness against layer-wise quadrature with tensors, on a curved laminated element.
 #include "tire/ancf/shell_matrices.hpp"
+#include "tire/read_tire_file.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 
-#include "tire/ring_mesh.hpp"
+#include "tire/shell_mesh.hpp"
 
-namespace furrow {
+namespace furrow::tire {
 namespace {
 
 using Tensor = Mat3;
@@ -20,7 +21,7 @@ struct Fixture {
   explicit Fixture(int j) {
     file.elements_circumference = 16;
     set_elements_width(file, 12);
-    const RingMesh mesh = make_ring_mesh(file);
+    const ShellMesh mesh = make_shell_mesh(file);
     const Mat3 next = mesh.turn(1);
     const Vec3 r[4] = {mesh.position[j], next * mesh.position[j], next * mesh.position[j + 1],
                        mesh.position[j + 1]};
@@ -158,4 +159,4 @@ TEST(ShellMatrices, stiffness_is_positive_semidefinite_with_rigid_motions_in_its
 }
 
 }  // namespace
-}  // namespace furrow
+}  // namespace furrow::tire

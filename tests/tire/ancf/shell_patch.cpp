@@ -9,22 +9,22 @@
 
 namespace furrow::test {
 
-ShellLayer isotropic_layer(double thickness, double young, double poisson) {
-  LayerMaterial m;
+tire::ShellLayer isotropic_layer(double thickness, double young, double poisson) {
+  tire::LayerMaterial m;
   m.name = "isotropic";
   m.young_modulus = Vec3::Constant(young);
   m.poisson_ratio = Vec3::Constant(poisson);
   m.shear_modulus = Vec3::Constant(0.5 * young / (1 + poisson));
-  return {thickness, 0.0, furrow::stiffness(m, "test")};
+  return {thickness, 0.0, furrow::tire::stiffness(m, "test")};
 }
 
-ShellLayer ply_layer(double thickness, double angle_deg, const Ply& ply) {
-  LayerMaterial m;
+tire::ShellLayer ply_layer(double thickness, double angle_deg, const Ply& ply) {
+  tire::LayerMaterial m;
   m.name = "ply";
   m.young_modulus = Vec3(ply.e_l, ply.e_t, ply.e_t);
   m.poisson_ratio = Vec3(ply.nu_lt, ply.nu_lt, ply.nu_tt);
   m.shear_modulus = Vec3(ply.g_lt, ply.g_lt, ply.g_tt);
-  return {thickness, angle_deg * std::numbers::pi / 180, furrow::stiffness(m, "test")};
+  return {thickness, angle_deg * std::numbers::pi / 180, furrow::tire::stiffness(m, "test")};
 }
 
 // --- meshes
@@ -73,14 +73,14 @@ PatchMesh distorted_mesh() {
 
 // --- elements
 
-ShellPatch::ShellPatch(PatchMesh mesh, std::vector<ShellLayer> layers)
+ShellPatch::ShellPatch(PatchMesh mesh, std::vector<tire::ShellLayer> layers)
     : mesh_(std::move(mesh)), layers_(std::move(layers)) {
   reference_.resize(coordinates());
   for (int n = 0; n < nodes(); ++n) reference_.segment<6>(6 * n) << mesh_.position[n], mesh_.director[n];
   for (std::size_t e = 0; e < mesh_.elements.size(); ++e) {
-    const ElementNodes corners = gather(reference_, static_cast<int>(e));
-    stiffness_.push_back(shell_stiffness(corners, layers_));
-    raw_.push_back(raw_strains(corners));
+    const tire::ElementNodes corners = gather(reference_, static_cast<int>(e));
+    stiffness_.push_back(tire::shell_stiffness(corners, layers_));
+    raw_.push_back(tire::raw_strains(corners));
   }
   make_pattern();
 }
@@ -103,8 +103,8 @@ void ShellPatch::make_pattern() {
       }
 }
 
-ElementNodes ShellPatch::gather(const Vector& q, int e) const {
-  ElementNodes nodes;
+tire::ElementNodes ShellPatch::gather(const Vector& q, int e) const {
+  tire::ElementNodes nodes;
   for (int n = 0; n < 4; ++n) {
     nodes.row(2 * n) = q.segment<3>(6 * mesh_.elements[e][n]);
     nodes.row(2 * n + 1) = q.segment<3>(6 * mesh_.elements[e][n] + 3);
@@ -112,10 +112,10 @@ ElementNodes ShellPatch::gather(const Vector& q, int e) const {
   return nodes;
 }
 
-ShellPatch::Gradient ShellPatch::gradient(const ElementNodes& nodes) {
+ShellPatch::Gradient ShellPatch::gradient(const tire::ElementNodes& nodes) {
   Gradient b;
-  for (int k = 0; k < kStrains; ++k) {
-    const ElementNodes row = strain_forms()[k] * nodes;
+  for (int k = 0; k < tire::kStrains; ++k) {
+    const tire::ElementNodes row = tire::strain_forms()[k] * nodes;
     for (int a = 0; a < 8; ++a) b.block<1, 3>(k, 3 * a) = row.row(a);
   }
   return b;
@@ -123,7 +123,8 @@ ShellPatch::Gradient ShellPatch::gradient(const ElementNodes& nodes) {
 
 ShellPatch::ElementStrains ShellPatch::strains(const Vector& q) const {
   ElementStrains e(raw_.size());
-  for (std::size_t k = 0; k < e.size(); ++k) e[k] = raw_strains(gather(q, static_cast<int>(k))) - raw_[k];
+  for (std::size_t k = 0; k < e.size(); ++k)
+    e[k] = tire::raw_strains(gather(q, static_cast<int>(k))) - raw_[k];
   return e;
 }
 
@@ -158,8 +159,8 @@ Sparse ShellPatch::tangent(const Vector& q, const ElementStrains& stress, double
     const Gradient b = gradient(gather(q, static_cast<int>(k)));
     const Gradient db = material * (stiffness_[k] * b);
     ElementTangent kt = b.transpose() * db;
-    NodeMatrix h = NodeMatrix::Zero();
-    for (int s = 0; s < kStrains; ++s) h += stress[k][s] * strain_forms()[s];
+    tire::NodeMatrix h = tire::NodeMatrix::Zero();
+    for (int s = 0; s < tire::kStrains; ++s) h += stress[k][s] * tire::strain_forms()[s];
     for (int a = 0; a < 8; ++a)
       for (int c = 0; c < 8; ++c)
         for (int x = 0; x < 3; ++x) kt(3 * a + x, 3 * c + x) += geometric * h(a, c);
@@ -171,9 +172,9 @@ Sparse ShellPatch::tangent(const Vector& q, const ElementStrains& stress, double
 ShellPatch::ElementStrains ShellPatch::linear_stresses(const Vector& q, const Vector& change) const {
   ElementStrains s(raw_.size());
   for (std::size_t k = 0; k < raw_.size(); ++k) {
-    const ElementNodes at = gather(q, static_cast<int>(k)), by = gather(change, static_cast<int>(k));
-    StrainVector e = raw_strains(at) - raw_[k];
-    for (int r = 0; r < kStrains; ++r) e[r] += (at.transpose() * strain_forms()[r] * by).trace();
+    const tire::ElementNodes at = gather(q, static_cast<int>(k)), by = gather(change, static_cast<int>(k));
+    tire::StrainVector e = tire::raw_strains(at) - raw_[k];
+    for (int r = 0; r < tire::kStrains; ++r) e[r] += (at.transpose() * tire::strain_forms()[r] * by).trace();
     s[k] = stiffness_[k] * e;
   }
   return s;
@@ -185,15 +186,15 @@ namespace {
 struct Place {
   double xi, eta, z;
 };
-std::vector<Place> point_places(const std::vector<ShellLayer>& layers) {
+std::vector<Place> point_places(const std::vector<tire::ShellLayer>& layers) {
   const double gauss[3] = {-std::sqrt(0.6), 0.0, std::sqrt(0.6)};
   double total = 0.0;
-  for (const ShellLayer& layer : layers) total += layer.thickness;
+  for (const tire::ShellLayer& layer : layers) total += layer.thickness;
   std::vector<Place> places;
-  for (const double eta : {-kGaussPoint, kGaussPoint})
-    for (const double xi : {-kGaussPoint, kGaussPoint}) {
+  for (const double eta : {-tire::kGaussPoint, tire::kGaussPoint})
+    for (const double xi : {-tire::kGaussPoint, tire::kGaussPoint}) {
       double bottom = -0.5 * total;
-      for (const ShellLayer& layer : layers) {
+      for (const tire::ShellLayer& layer : layers) {
         for (const double g : gauss) places.push_back({xi, eta, bottom + 0.5 * layer.thickness * (1 + g)});
         bottom += layer.thickness;
       }
@@ -209,8 +210,8 @@ Sparse ShellPatch::mass(double density) const {
   const std::vector<Place> places = point_places(layers_);
   const int* place = place_.data();
   for (std::size_t k = 0; k < raw_.size(); ++k, place += 576) {
-    const auto points = shell_points(gather(reference_, static_cast<int>(k)), layers_);
-    NodeMatrix m = NodeMatrix::Zero();
+    const auto points = tire::shell_points(gather(reference_, static_cast<int>(k)), layers_);
+    tire::NodeMatrix m = tire::NodeMatrix::Zero();
     for (std::size_t p = 0; p < points.size(); ++p) {
       Eigen::Matrix<double, 8, 1> row;
       for (int n = 0; n < 4; ++n) {
@@ -226,22 +227,23 @@ Sparse ShellPatch::mass(double density) const {
 }
 
 Eigen::Matrix<double, 6, 1> ShellPatch::resultants(const Vector& q, int e) const {
-  const StrainVector strain = raw_strains(gather(q, e)) - raw_[e];
-  const auto points = shell_points(gather(reference_, e), layers_);
+  const tire::StrainVector strain = tire::raw_strains(gather(q, e)) - raw_[e];
+  const auto points = tire::shell_points(gather(reference_, e), layers_);
   const std::vector<Place> places = point_places(layers_);
-  Eigen::Matrix<double, kEnhanced, kEnhanced> k = Eigen::Matrix<double, kEnhanced, kEnhanced>::Zero();
-  Eigen::Matrix<double, kEnhanced, 1> b = Eigen::Matrix<double, kEnhanced, 1>::Zero();
-  for (const ShellPoint& p : points) {
+  Eigen::Matrix<double, tire::kEnhanced, tire::kEnhanced> k =
+      Eigen::Matrix<double, tire::kEnhanced, tire::kEnhanced>::Zero();
+  Eigen::Matrix<double, tire::kEnhanced, 1> b = Eigen::Matrix<double, tire::kEnhanced, 1>::Zero();
+  for (const tire::ShellPoint& p : points) {
     const auto& c = layers_[p.layer].stiffness;
     k += p.volume * p.enhanced_map.transpose() * c * p.enhanced_map;
     b += p.volume * p.enhanced_map.transpose() * c * (p.strain_map * strain);
   }
-  const Eigen::Matrix<double, kEnhanced, 1> alpha = -k.ldlt().solve(b);
+  const Eigen::Matrix<double, tire::kEnhanced, 1> alpha = -k.ldlt().solve(b);
   Eigen::Matrix<double, 6, 1> sum = Eigen::Matrix<double, 6, 1>::Zero();
   double volume = 0.0, thickness = 0.0;
-  for (const ShellLayer& layer : layers_) thickness += layer.thickness;
+  for (const tire::ShellLayer& layer : layers_) thickness += layer.thickness;
   for (std::size_t p = 0; p < points.size(); ++p) {
-    const ShellLayer& layer = layers_[points[p].layer];
+    const tire::ShellLayer& layer = layers_[points[p].layer];
     const Eigen::Matrix<double, 6, 1> s =
         layer.stiffness * (points[p].strain_map * strain + points[p].enhanced_map * alpha);
     const double c = std::cos(layer.angle), n = std::sin(layer.angle);
@@ -299,7 +301,7 @@ void scatter(const Vector& part, const std::vector<int>& free, Vector& v) {
 
 constexpr double kTolerance = 1e-9;  // of the last change, relative to the largest coordinate
 constexpr int kMaxIterations = 25;
-constexpr double kSmallestStep = 1e-5;  // of λ
+constexpr double kMinStep = 1e-5;  // of λ
 
 }  // namespace
 
@@ -342,7 +344,7 @@ bool StaticPath::go_to(double lambda) {
       step *= 2.0;
     } else {
       step = 0.5 * (next - lambda_);
-      if (std::abs(step) < kSmallestStep) return false;
+      if (std::abs(step) < kMinStep) return false;
     }
   }
   return true;

@@ -16,14 +16,14 @@ namespace furrow::test {
 using Vector = Eigen::VectorXd;
 using Sparse = Eigen::SparseMatrix<double>;
 
-ShellLayer isotropic_layer(double thickness, double young, double poisson);
+tire::ShellLayer isotropic_layer(double thickness, double young, double poisson);
 
 /// E_L along the fibre, transversely isotropic elsewhere but for G_TT.
 struct Ply {
   double e_l = 0.0, e_t = 0.0, g_lt = 0.0, g_tt = 0.0;  // Pa
   double nu_lt = 0.0, nu_tt = 0.0;
 };
-ShellLayer ply_layer(double thickness, double angle_deg, const Ply& ply);
+tire::ShellLayer ply_layer(double thickness, double angle_deg, const Ply& ply);
 
 struct PatchMesh {
   std::vector<Vec3> position, director;
@@ -46,9 +46,9 @@ PatchMesh distorted_mesh();
 class ShellPatch {
  public:
   /// One vector of the 36 generalised strains or stresses per element.
-  using ElementStrains = std::vector<StrainVector>;
+  using ElementStrains = std::vector<tire::StrainVector>;
 
-  ShellPatch(PatchMesh mesh, std::vector<ShellLayer> layers);
+  ShellPatch(PatchMesh mesh, std::vector<tire::ShellLayer> layers);
 
   const PatchMesh& mesh() const { return mesh_; }
   const Vector& reference() const { return reference_; }
@@ -76,16 +76,16 @@ class ShellPatch {
   Eigen::Matrix<double, 6, 1> resultants(const Vector& q, int e) const;
 
  private:
-  using Gradient = Eigen::Matrix<double, kStrains, 24>;
+  using Gradient = Eigen::Matrix<double, tire::kStrains, 24>;
   using ElementTangent = Eigen::Matrix<double, 24, 24>;
-  ElementNodes gather(const Vector& q, int e) const;
-  static Gradient gradient(const ElementNodes& nodes);
+  tire::ElementNodes gather(const Vector& q, int e) const;
+  static Gradient gradient(const tire::ElementNodes& nodes);
   void make_pattern();
 
   PatchMesh mesh_;
-  std::vector<ShellLayer> layers_;
+  std::vector<tire::ShellLayer> layers_;
   Vector reference_;
-  std::vector<StrainMatrix> stiffness_;
+  std::vector<tire::StrainMatrix> stiffness_;
   ElementStrains raw_;
   Sparse pattern_;          // with zeros
   std::vector<int> place_;  // of an element's entries in the pattern's values

@@ -4,18 +4,19 @@
 #include <gtest/gtest.h>
 
 #include "tire/ancf/ancf_tire.hpp"
+#include "tire/read_tire_file.hpp"
 
 namespace furrow::test {
 
-inline TireFile small_file(const char* name = "hmmwv_layered.json", int columns = 24, int width = 6) {
-  TireFile file = read_tire_file(std::string(TIRE_DATA "/") + name);
+inline tire::TireFile small_file(const char* name = "hmmwv_layered.json", int columns = 24, int width = 6) {
+  tire::TireFile file = tire::read_tire_file(std::string(TIRE_DATA "/") + name);
   file.elements_circumference = columns;
-  set_elements_width(file, width);
+  tire::set_elements_width(file, width);
   return file;
 }
 
 /// Penalty springs at z = 0 with viscous friction, one interval late like any terrain.
-inline NodalForces ground_forces(const Tire& tire) {
+inline NodalForces ground_forces(const tire::Tire& tire) {
   SurfaceState s;
   tire.surface(s);
   NodalForces f;
@@ -41,10 +42,10 @@ inline RimState rolling_rim(double time, double radius, double speed, double dep
 }
 
 /// Momentum and angular momentum about the origin by the consistent mass.
-inline std::pair<Vec3, Vec3> momenta(const AncfTire& tire) {
-  const RingLayout& layout = tire.integrator().layout();
-  const Field &q = tire.integrator().q(), &v = tire.integrator().v();
-  Field p(layout.size(), 0.0);
+inline std::pair<Vec3, Vec3> momenta(const tire::AncfTire& tire) {
+  const tire::ShellLayout& layout = tire.integrator().layout();
+  const tire::Field &q = tire.integrator().q(), &v = tire.integrator().v();
+  tire::Field p(layout.size(), 0.0);
   tire.integrator().mass().apply(v, 1.0, p);
   Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();
   for (int j = 0; j < layout.rows; ++j)
@@ -58,11 +59,11 @@ inline std::pair<Vec3, Vec3> momenta(const AncfTire& tire) {
 /// Rolls 120 intervals, saves, and goes on for 80 with the tire and with `other`, restored: the same bits.
 /// @param prepare called with a tire and the interval's number before each interval
 template <class Prepare>
-void expect_restart_bit_for_bit(AncfTire& tire, AncfTire& other, Prepare prepare) {
+void expect_restart_bit_for_bit(tire::AncfTire& tire, tire::AncfTire& other, Prepare prepare) {
   const double h = 1e-4, speed = 8.0, depth = 0.008;
-  RimTrajectory t(rolling_rim(0, tire.radius(), speed, depth));
+  tire::RimTrajectory t(rolling_rim(0, tire.radius(), speed, depth));
   tire.place(t.start());
-  const auto advance = [&](AncfTire& which, RimTrajectory& path, int n) {
+  const auto advance = [&](tire::AncfTire& which, tire::RimTrajectory& path, int n) {
     prepare(which, n);
     path.extend(rolling_rim(n * h, which.radius(), speed, depth), h);
     ASSERT_TRUE(which.advance(path, ground_forces(which), 2).converged);
@@ -70,7 +71,7 @@ void expect_restart_bit_for_bit(AncfTire& tire, AncfTire& other, Prepare prepare
   for (int n = 0; n < 120; ++n) advance(tire, t, n);
   Archive archive;
   tire.save(archive);
-  RimTrajectory again = t;
+  tire::RimTrajectory again = t;
   other.restore(archive);
   for (int n = 120; n < 200; ++n) {
     advance(tire, t, n);
@@ -79,7 +80,7 @@ void expect_restart_bit_for_bit(AncfTire& tire, AncfTire& other, Prepare prepare
   EXPECT_EQ(tire.integrator().q(), other.integrator().q());
   EXPECT_EQ(tire.integrator().v(), other.integrator().v());
   EXPECT_EQ(tire.spindle_wrench().moment, other.spindle_wrench().moment);
-  const TireDiagnostics a = tire.diagnostics(), b = other.diagnostics();
+  const tire::TireDiagnostics a = tire.diagnostics(), b = other.diagnostics();
   EXPECT_EQ(a.newton_iterations, b.newton_iterations);
   EXPECT_EQ(a.factorizations, b.factorizations);
   EXPECT_EQ(a.dissipation, b.dissipation);

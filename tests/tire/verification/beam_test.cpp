@@ -37,9 +37,9 @@ TEST(Beam, large_extension) {
   });
   ASSERT_TRUE(path.go_to(1.0));
   const Vector r = path.reactions();
-  verify("strip pulled to 1.2 times its length", "force, N, 4 trapezoids", r[6 * 8] + r[6 * 9],
-         0.5 * young * area * stretch * (stretch * stretch - 1), 1e-9,
-         "F = E A (s^3 - s)/2, linear material of Green-Lagrange strain");
+  verification::verify("strip pulled to 1.2 times its length", "force, N, 4 trapezoids", r[6 * 8] + r[6 * 9],
+                       0.5 * young * area * stretch * (stretch * stretch - 1), 1e-9,
+                       "F = E A (s^3 - s)/2, linear material of Green-Lagrange strain");
 }
 
 TEST(Beam, cantilever_under_an_end_force) {
@@ -54,9 +54,10 @@ TEST(Beam, cantilever_under_an_end_force) {
         Vector load = Vector::Zero(strip.coordinates());
         load[6 * 2 * n + 2] = load[6 * (2 * n + 1) + 2] = 0.5 * force;
         const Vector u = linear_solution(strip, Supports(strip.nodes()).fix({0, 1}, "xyzab"), load);
-        verify("cantilever, end force, L/h = " + verification::brief(1 / height),
-               "tip deflection, m, " + size(n, 1) + (distortion > 0 ? " trapezoids" : ""), u[6 * 2 * n + 2],
-               theory, (distortion > 0 ? 1.6 : 0.5) / (n * n), "Timoshenko beam, factor 1");
+        verification::verify("cantilever, end force, L/h = " + verification::brief(1 / height),
+                             "tip deflection, m, " + size(n, 1) + (distortion > 0 ? " trapezoids" : ""),
+                             u[6 * 2 * n + 2], theory, (distortion > 0 ? 1.6 : 0.5) / (n * n),
+                             "Timoshenko beam, factor 1");
       }
   }
 }
@@ -77,9 +78,11 @@ TEST(Beam, cantilever_under_an_end_moment) {
     const Vector u =
         linear_solution(strip, Supports(strip.nodes()).fix(clamp, "xa").fix({m / 2}, "yzb"), load);
     const std::string name = "cantilever, end moment, nu = 0.45, L/h = " + verification::brief(1 / height);
-    verify(name, "tip deflection, m, " + size(n, m), u[6 * (tip + m / 2) + 2], 0.5e-6, 1e-5, "M L^2/(2 E I)");
-    verify(name, "rise of the edge over the middle, m, " + size(n, m),
-           u[6 * (tip + m / 2) + 2] - u[6 * tip + 2], 0.45 * 0.5e-6 * 0.05 * 0.05, 1e-4, "nu kappa b^2/8");
+    verification::verify(name, "tip deflection, m, " + size(n, m), u[6 * (tip + m / 2) + 2], 0.5e-6, 1e-5,
+                         "M L^2/(2 E I)");
+    verification::verify(name, "rise of the edge over the middle, m, " + size(n, m),
+                         u[6 * (tip + m / 2) + 2] - u[6 * tip + 2], 0.45 * 0.5e-6 * 0.05 * 0.05, 1e-4,
+                         "nu kappa b^2/8");
   }
 }
 
@@ -111,11 +114,11 @@ TEST(Beam, twist_of_a_strip) {
       const int n = 4 * (m + 1) + j;
       torque += (b * j / m - 0.5 * b) * r[6 * n + 2] - r[6 * n + 4];
     }
-    verify("twist of a strip, b/h = 10", "torque, N m, " + size(4, m), torque, mindlin,
-           std::min(0.06, 0.25 / m), "Reissner-Mindlin strip, factor 1");
+    verification::verify("twist of a strip, b/h = 10", "torque, N m, " + size(4, m), torque, mindlin,
+                         std::min(0.06, 0.25 / m), "Reissner-Mindlin strip, factor 1");
     if (m == 64)
-      verify("twist of a strip, b/h = 10", "torque, N m, " + size(4, m), torque, venant, 0.01,
-             "Saint-Venant torsion (Timoshenko & Goodier, sec. 109)");
+      verification::verify("twist of a strip, b/h = 10", "torque, N m, " + size(4, m), torque, venant, 0.01,
+                           "Saint-Venant torsion (Timoshenko & Goodier, sec. 109)");
   }
 }
 

@@ -11,11 +11,12 @@
 namespace furrow::test {
 namespace {
 
+using namespace simd;
 using Complex = std::complex<double>;
 using Tie = Eigen::Matrix<Complex, 24, 12>;
 
 /// Corners 1 and 2 of an element lie one column on: turned, and ahead in phase.
-Tie tie_columns(const RingMesh& mesh, int order) {
+Tie tie_columns(const tire::ShellMesh& mesh, int order) {
   Tie t = Tie::Zero();
   const Complex phase = std::polar(1.0, order * mesh.pitch());
   for (int n = 0; n < 4; ++n)
@@ -33,15 +34,15 @@ Eigen::MatrixXcd between_beads(const Eigen::MatrixXcd& all) {
 
 }  // namespace
 
-Eigen::MatrixXcd InflatedRing::stiffness(int order) const {
+Eigen::MatrixXcd InflatedCarcass::stiffness(int order) const {
   const Tie tie = tie_columns(mesh, order);
   Eigen::MatrixXcd k = Eigen::MatrixXcd::Zero(6 * mesh.rows, 6 * mesh.rows);
-  const auto element = std::make_unique<BatchTangent>();
-  const Field at_rest(shell.strains_size(), 0.0);
+  const auto element = std::make_unique<tire::BatchTangent>();
+  const tire::Field at_rest(shell.strains_size(), 0.0);
   for (int j = 0; j + 1 < mesh.rows; ++j) {
-    Lanes stress[kStrains];
+    Double4 stress[tire::kStrains];
     shell.batch_stress_at(q, at_rest, 1.0, j, 0, stress);
-    BatchNodes nodes;
+    tire::BatchNodes nodes;
     nodes.read(shell.layout(), q.data(), 0, j);
     element->compute(shell.stiffness(j), nodes, stress, 1.0, 1.0, shell.pressure());
     Eigen::Matrix<double, 24, 24> e;
@@ -52,9 +53,9 @@ Eigen::MatrixXcd InflatedRing::stiffness(int order) const {
   return between_beads(k);
 }
 
-Eigen::MatrixXcd InflatedRing::mass(int order) const {
+Eigen::MatrixXcd InflatedCarcass::mass(int order) const {
   const Tie tie = tie_columns(mesh, order);
-  const std::vector<ElementMass> masses = element_masses(file, mesh);
+  const std::vector<tire::ElementMass> masses = tire::element_masses(file, mesh);
   Eigen::MatrixXcd m = Eigen::MatrixXcd::Zero(6 * mesh.rows, 6 * mesh.rows);
   for (int j = 0; j + 1 < mesh.rows; ++j) {
     Eigen::Matrix<Complex, 24, 24> e = Eigen::Matrix<Complex, 24, 24>::Zero();
@@ -66,20 +67,20 @@ Eigen::MatrixXcd InflatedRing::mass(int order) const {
   return between_beads(m);
 }
 
-Vector InflatedRing::frequencies(int order, int count) const {
+Vector InflatedCarcass::frequencies(int order, int count) const {
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXcd> solver(stiffness(order), mass(order),
                                                                           Eigen::EigenvaluesOnly);
   const Vector squares = solver.eigenvalues().head(count);
   return squares.cwiseSign().cwiseProduct(squares.cwiseAbs().cwiseSqrt()) / (2 * std::numbers::pi);
 }
 
-double InflatedRing::smallest_eigenvalue(int order) const {
+double InflatedCarcass::smallest_eigenvalue(int order) const {
   return Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXcd>(stiffness(order), mass(order),
                                                                     Eigen::EigenvaluesOnly)
       .eigenvalues()[0];
 }
 
-PatchMesh ring_patch_mesh(const RingMesh& ring, bool one_column) {
+PatchMesh ring_patch_mesh(const tire::ShellMesh& ring, bool one_column) {
   PatchMesh mesh;
   const int columns = one_column ? 2 : ring.columns;
   for (int i = 0; i < columns; ++i)

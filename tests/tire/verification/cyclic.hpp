@@ -10,15 +10,18 @@
 
 namespace furrow::test {
 
-struct InflatedRing {
-  TireFile file;
-  RingMesh mesh;
-  ShellRing shell;
-  InflationReport report;
-  Field q;  // rim axes
+struct InflatedCarcass {
+  tire::TireFile file;
+  tire::ShellMesh mesh;
+  tire::ShellCarcass shell;
+  tire::InflationReport report;
+  tire::Field q;  // rim axes
 
-  explicit InflatedRing(const TireFile& tire)
-      : file(tire), mesh(make_ring_mesh(file)), shell(file, mesh), q(inflate(shell, mesh, report)) {}
+  explicit InflatedCarcass(const tire::TireFile& tire)
+      : file(tire),
+        mesh(tire::make_shell_mesh(file)),
+        shell(file, mesh),
+        q(tire::inflate(shell, mesh, report)) {}
 
   Eigen::MatrixXcd stiffness(int order) const;  // per column, N/m
   Eigen::MatrixXcd mass(int order) const;       // kg
@@ -29,6 +32,6 @@ struct InflatedRing {
 };
 
 /// The elements of the ring as a patch with the layers of the tread everywhere: all columns, or one.
-PatchMesh ring_patch_mesh(const RingMesh& ring, bool one_column);
+PatchMesh ring_patch_mesh(const tire::ShellMesh& ring, bool one_column);
 
 }  // namespace furrow::test

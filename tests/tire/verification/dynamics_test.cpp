@@ -42,9 +42,10 @@ TEST(Dynamics, frequencies_of_a_simply_supported_plate) {
       const Vector ours = plate_frequencies(height, supports, mesh, 5);
       for (int mode = 0; mode < 5; ++mode)
         if (mode != 2)
-          verify("simply supported square plate, a/h = " + verification::brief(1 / height),
-                 "frequency " + std::to_string(mode + 1) + ", omega a^2 sqrt(rho h/D), " + size(n, n),
-                 ours[mode], kPi * kPi * theory[mode], 12.0 / (n * n) + 2e-3, "pi^2 (m^2 + n^2)");
+          verification::verify(
+              "simply supported square plate, a/h = " + verification::brief(1 / height),
+              "frequency " + std::to_string(mode + 1) + ", omega a^2 sqrt(rho h/D), " + size(n, n),
+              ours[mode], kPi * kPi * theory[mode], 12.0 / (n * n) + 2e-3, "pi^2 (m^2 + n^2)");
     }
 }
 
@@ -57,9 +58,10 @@ TEST(Dynamics, frequencies_of_a_cantilever_plate) {
     supports.fix(mesh.select([](const Vec3& x) { return std::abs(x.x()) < 1e-9; }), "zab");
     const Vector ours = plate_frequencies(0.005, supports, mesh, 6);
     for (int mode = 0; mode < 6; ++mode)
-      verify("cantilever square plate, a/h = 200",
-             "frequency " + std::to_string(mode + 1) + ", omega a^2 sqrt(rho h/D), " + size(n, n), ours[mode],
-             leissa[mode], 6.0 / (n * n) + 7e-3, "Leissa 1973 doi:10.1016/S0022-460X(73)80371-2 (Ritz)");
+      verification::verify(
+          "cantilever square plate, a/h = 200",
+          "frequency " + std::to_string(mode + 1) + ", omega a^2 sqrt(rho h/D), " + size(n, n), ours[mode],
+          leissa[mode], 6.0 / (n * n) + 7e-3, "Leissa 1973 doi:10.1016/S0022-460X(73)80371-2 (Ritz)");
   }
 }
 
@@ -158,18 +160,19 @@ TEST(Dynamics, flexible_pendulum_through_large_rotations) {
       lost[k] = start - run.energy();
       const std::string where = ", h = " + verification::brief(steps[k]) + " s, 4 x 1";
       if (!ours)
-        verify(names[0], "energy change over m g L/2" + where, lost[k] / scale, 0.0, 1e-9,
-               "conserved (Simo & Tarnow 1992 doi:10.1007/BF00913408)", 1.0);
+        verification::verify(names[0], "energy change over m g L/2" + where, lost[k] / scale, 0.0, 1e-9,
+                             "conserved (Simo & Tarnow 1992 doi:10.1007/BF00913408)", 1.0);
       else
-        verify(names[1], "energy lost, J" + where, lost[k], run.removed, 1e-7,
-               "sum of dv M dv/2 + dE D dE/2 over the steps");
+        verification::verify(names[1], "energy lost, J" + where, lost[k], run.removed, 1e-7,
+                             "sum of dv M dv/2 + dE D dE/2 over the steps");
     }
     const double order = std::log2((tip[0] - tip[1]).norm() / (tip[1] - tip[2]).norm());
-    verify(names[ours], "order of the tip's position in the step, 4 x 1", order, ours ? 1.0 : 2.0, 0.15,
-           ours ? "first order: backward Euler velocities" : "second order");
+    verification::verify(names[ours], "order of the tip's position in the step, 4 x 1", order,
+                         ours ? 1.0 : 2.0, 0.15,
+                         ours ? "first order: backward Euler velocities" : "second order");
     if (ours)
-      verify(names[1], "order of the energy lost in the step, 4 x 1", std::log2(lost[1] / lost[2]), 1.0, 0.15,
-             "first order");
+      verification::verify(names[1], "order of the energy lost in the step, 4 x 1",
+                           std::log2(lost[1] / lost[2]), 1.0, 0.15, "first order");
   }
 }
 
@@ -186,25 +189,25 @@ TEST(Dynamics, free_flight_of_a_strip) {
     for (int n = 0; n < 300; ++n) run.step(1e-3);
     const std::string name =
         std::string("free flight with bending, ") + (ours ? "rule of the tire" : "mid-point rule");
-    verify(name, "momentum change after 300 steps, 4 x 1", (run.momentum() - p).norm(), 0.0, 1e-12,
-           "conserved", p.norm());
+    verification::verify(name, "momentum change after 300 steps, 4 x 1", (run.momentum() - p).norm(), 0.0,
+                         1e-12, "conserved", p.norm());
     if (!ours)
-      verify(name, "angular momentum change after 300 steps, 4 x 1", (run.angular_momentum() - l).norm(), 0.0,
-             1e-10, "conserved", l.norm());
+      verification::verify(name, "angular momentum change after 300 steps, 4 x 1",
+                           (run.angular_momentum() - l).norm(), 0.0, 1e-10, "conserved", l.norm());
   }
 }
 
 /// Angular impulse (N m s) on the rim about its pivot while the rim of the inflated toroidal tire swings for 0.06 s.
 double swung_tire(double h) {
-  TireFile file = small_file("toroidal.json", 24, 8);
-  const RingMesh mesh = make_ring_mesh(file);
-  RingIntegratorParams params;
+  tire::TireFile file = small_file("toroidal.json", 24, 8);
+  const tire::ShellMesh mesh = tire::make_shell_mesh(file);
+  tire::ShellIntegratorParams params;
   params.damping = file.structural_damping;
   params.tolerance = 1e-9;
   params.max_iterations = 400;
-  RingIntegrator run(file, mesh, params);
-  InflationReport report;
-  const Field q = inflate(run.shell(), mesh, report);
+  tire::ShellIntegrator run(file, mesh, params);
+  tire::InflationReport report;
+  const tire::Field q = tire::inflate(run.shell(), mesh, report);
   // Swings by 60° about an axis along x, 1 m above, with a half sine of 0.1 s; starts and ends at rest.
   const auto rim = [](double t) {
     const double s = std::min(t / 0.1, 1.0), angle = kPi / 3 * (s - std::sin(2 * kPi * s) / (2 * kPi)),
@@ -216,13 +219,13 @@ double swung_tire(double h) {
     r.velocity = r.angular_velocity.cross(r.orientation * Vec3(0, 0, -1));
     return r;
   };
-  run.start(q, Field(q.size(), 0.0));
-  const Field none(q.size(), 0.0);
+  run.start(q, tire::Field(q.size(), 0.0));
+  const tire::Field none(q.size(), 0.0);
   Wrench on_rim;
   const int count = static_cast<int>(std::lround(0.06 / h));
   double torque = 0.0;
   for (int n = 1; n <= count; ++n) {
-    const TireStatus status = run.step(h, rim(n * h), none, Vec3(0, 0, 1), on_rim);
+    const tire::TireStatus status = run.step(h, rim(n * h), none, Vec3(0, 0, 1), on_rim);
     EXPECT_TRUE(status.converged) << status.message();
     torque += h * on_rim.moment.x();
   }
@@ -235,11 +238,11 @@ TEST(Dynamics, tire_on_a_swinging_rim) {
   for (int k = 0; k < 4; ++k) impulse[k] = swung_tire(steps[k]);
   const double limit = 2 * impulse[3] - impulse[2];
   const double order = std::log2((impulse[1] - impulse[2]) / (impulse[2] - impulse[3]));
-  verify("toroidal tire on a rim swinging through 60 deg",
-         "angular impulse on the rim, N m s, h = 1e-4 s, 24 x 8", impulse[3], limit, 5e-3,
-         "extrapolated in the step");
-  verify("toroidal tire on a rim swinging through 60 deg", "order in the step, 24 x 8",
-         std::max(order, 1.0) - order, 0.0, 0.2, "first order or better", 1.0);
+  verification::verify("toroidal tire on a rim swinging through 60 deg",
+                       "angular impulse on the rim, N m s, h = 1e-4 s, 24 x 8", impulse[3], limit, 5e-3,
+                       "extrapolated in the step");
+  verification::verify("toroidal tire on a rim swinging through 60 deg", "order in the step, 24 x 8",
+                       std::max(order, 1.0) - order, 0.0, 0.2, "first order or better", 1.0);
 }
 
 }  // namespace

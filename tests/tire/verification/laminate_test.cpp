@@ -20,8 +20,8 @@ const char* kLinear = "the same with one linear thickness strain through all lay
 /// Graphite–epoxy in ratios, as in most published plates.
 Ply graphite() { return {25e9, 1e9, 0.5e9, 0.2e9, 0.25, 0.25}; }
 
-std::vector<ShellLayer> layup(const std::vector<double>& angles, double thickness) {
-  std::vector<ShellLayer> layers;
+std::vector<tire::ShellLayer> layup(const std::vector<double>& angles, double thickness) {
+  std::vector<tire::ShellLayer> layers;
   for (const double a : angles)
     layers.push_back(ply_layer(thickness / static_cast<double>(angles.size()), a, graphite()));
   return layers;
@@ -29,7 +29,7 @@ std::vector<ShellLayer> layup(const std::vector<double>& angles, double thicknes
 
 struct Laminate {
   std::string name;
-  std::vector<ShellLayer> layers;
+  std::vector<tire::ShellLayer> layers;
 };
 
 std::vector<Laminate> laminates() {
@@ -37,15 +37,15 @@ std::vector<Laminate> laminates() {
                                 {"laminate [0/90]", layup({0, 90}, 0.01)},
                                 {"laminate [0/90/90/0]", layup({0, 90, 90, 0}, 0.01)},
                                 {"laminate [30/-60/10]", layup({30, -60, 10}, 0.01)}};
-  const TireFile file = small_file();
-  list.push_back({"tire, bead", shell_layers(file, file.bead)});
-  list.push_back({"tire, sidewall", shell_layers(file, file.sidewall)});
-  list.push_back({"tire, tread", shell_layers(file, file.tread)});
+  const tire::TireFile file = small_file();
+  list.push_back({"tire, bead", tire::shell_layers(file, file.bead)});
+  list.push_back({"tire, sidewall", tire::shell_layers(file, file.sidewall)});
+  list.push_back({"tire, tread", tire::shell_layers(file, file.tread)});
   return list;
 }
 
 /// The element's [A B; B D]: energies of uniform strains and curvatures, thickness at rest with them.
-Abd element_abd(const std::vector<ShellLayer>& layers) {
+Abd element_abd(const std::vector<tire::ShellLayer>& layers) {
   const ShellPatch patch(plate_mesh(1, 1, 1.0, 1.0), layers);
   Eigen::MatrixXd modes = Eigen::MatrixXd::Zero(24, 6);
   for (int n = 0; n < 4; ++n) {
@@ -76,15 +76,15 @@ double difference(const Abd& ours, const Abd& reference) {
 TEST(Laminate, stiffness) {
   for (const Laminate& laminate : laminates()) {
     const Abd ours = element_abd(laminate.layers);
-    verify(laminate.name, "A, B, D: largest entry off, one element",
-           difference(ours, linear_thickness_abd(laminate.layers)), 0.0, 1e-9, kLinear, 1.0);
-    verify(laminate.name, "A, B, D: largest entry off, one element",
-           difference(ours, plane_stress_abd(laminate.layers)), 0.0, 0.06, kClassical, 1.0);
+    verification::verify(laminate.name, "A, B, D: largest entry off, one element",
+                         difference(ours, linear_thickness_abd(laminate.layers)), 0.0, 1e-9, kLinear, 1.0);
+    verification::verify(laminate.name, "A, B, D: largest entry off, one element",
+                         difference(ours, plane_stress_abd(laminate.layers)), 0.0, 0.06, kClassical, 1.0);
   }
 }
 
 /// A strip pulled at its ends by N₁ alone, free to twist. @returns κ₁₂ per N₁
-double twist_of_pulled_strip(const std::vector<ShellLayer>& layers, int n, int m) {
+double twist_of_pulled_strip(const std::vector<tire::ShellLayer>& layers, int n, int m) {
   const double length = 1.0, width = 0.2;
   const ShellPatch strip(plate_mesh(n, m, length, width), layers);
   const int end = n * (m + 1);
@@ -100,20 +100,20 @@ double twist_of_pulled_strip(const std::vector<ShellLayer>& layers, int n, int m
 }
 
 TEST(Laminate, extension_twist_coupling) {
-  const std::vector<ShellLayer> layers = layup({45, -45}, 0.01);
+  const std::vector<tire::ShellLayer> layers = layup({45, -45}, 0.01);
   const Vector pull = Eigen::Matrix<double, 6, 1>::Unit(0);
   for (const int n : {1, 8})
     for (const bool plane : {false, true}) {
       const Abd abd = plane ? plane_stress_abd(layers) : linear_thickness_abd(layers);
       const double reference = abd.ldlt().solve(pull)[5], ours = twist_of_pulled_strip(layers, n, n);
-      verify("laminate [45/-45] pulled",
-             "twist per pull, 1/N, " + std::to_string(n) + " x " + std::to_string(n), ours, reference,
-             plane ? 0.01 : 1e-9, plane ? kClassical : kLinear);
+      verification::verify("laminate [45/-45] pulled",
+                           "twist per pull, 1/N, " + std::to_string(n) + " x " + std::to_string(n), ours,
+                           reference, plane ? 0.01 : 1e-9, plane ? kClassical : kLinear);
     }
 }
 
 /// Central deflection over that under the same load by the closed form.
-double plate_deflection(const std::vector<ShellLayer>& layers, int n) {
+double plate_deflection(const std::vector<tire::ShellLayer>& layers, int n) {
   const double k = std::numbers::pi;
   const ShellPatch plate(plate_mesh(n, n, 1.0, 1.0), layers);
   const PatchMesh& mesh = plate.mesh();
@@ -122,7 +122,7 @@ double plate_deflection(const std::vector<ShellLayer>& layers, int n) {
   supports.fix(mesh.select([&](const Vec3& x) { return at(x.x(), 0) || at(x.x(), 1); }), "yzb");
   supports.fix(mesh.select([&](const Vec3& x) { return at(x.y(), 0) || at(x.y(), 1); }), "xza");
   Vector load = Vector::Zero(plate.coordinates());
-  const double g = kGaussPoint;
+  const double g = tire::kGaussPoint;
   for (const auto& e : mesh.elements)
     for (const double xi : {-g, g})
       for (const double eta : {-g, g}) {
@@ -140,7 +140,7 @@ TEST(Laminate, simply_supported_cross_ply_plates) {
   const char* source = "Navier solution, first-order theory, factor 1 (Reddy 2004, sec. 7.3)";
   for (const auto& angles : {std::vector<double>{0, 90}, std::vector<double>{0, 90, 0}})
     for (const double slenderness : {10.0, 100.0}) {
-      const std::vector<ShellLayer> layers = layup(angles, 1.0 / slenderness);
+      const std::vector<tire::ShellLayer> layers = layup(angles, 1.0 / slenderness);
       const std::string name = std::string("plate ") + (angles.size() == 2 ? "[0/90]" : "[0/90/0]") +
                                ", a/h = " + verification::brief(slenderness);
       const auto closed = [&](const Abd& abd, double factor) {
@@ -150,12 +150,13 @@ TEST(Laminate, simply_supported_cross_ply_plates) {
         const double ours = plate_deflection(layers, n);
         const std::string quantity =
             "central deflection per load, m/Pa, " + std::to_string(n) + " x " + std::to_string(n);
-        verify(name, quantity, ours, closed(linear_thickness_abd(layers), 1.0), 1.0 / (n * n),
-               std::string(source) + ", " + kLinear);
+        verification::verify(name, quantity, ours, closed(linear_thickness_abd(layers), 1.0), 1.0 / (n * n),
+                             std::string(source) + ", " + kLinear);
         if (n == 32) {
-          verify(name, quantity, ours, closed(plane_stress_abd(layers), 1.0), 0.02, source);
-          verify(name, quantity, ours, closed(plane_stress_abd(layers), 5.0 / 6.0),
-                 slenderness > 50 ? 0.02 : 0.15, "Navier solution, first-order theory, factor 5/6");
+          verification::verify(name, quantity, ours, closed(plane_stress_abd(layers), 1.0), 0.02, source);
+          verification::verify(name, quantity, ours, closed(plane_stress_abd(layers), 5.0 / 6.0),
+                               slenderness > 50 ? 0.02 : 0.15,
+                               "Navier solution, first-order theory, factor 5/6");
         }
       }
     }

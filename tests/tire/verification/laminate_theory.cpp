@@ -10,7 +10,7 @@ namespace {
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
 /// Stiffness in laminate axes, order 11, 22, 12, 33, 13, 23 (engineering shears).
-Mat6 turned(const ShellLayer& layer) {
+Mat6 turned(const tire::ShellLayer& layer) {
   const double c = std::cos(layer.angle), s = std::sin(layer.angle);
   Mat6 t = Mat6::Zero();  // strains of the material axes from those of the laminate
   t.topLeftCorner<3, 3>() << c * c, s * s, c * s, s * s, c * c, -c * s, -2 * c * s, 2 * c * s, c * c - s * s;
@@ -21,10 +21,10 @@ Mat6 turned(const ShellLayer& layer) {
 
 /// Calls `visit` with each layer's stiffness and ∫ dz, ∫ z dz, ∫ z² dz.
 template <class Visit>
-void for_layers(const std::vector<ShellLayer>& layers, Visit visit) {
+void for_layers(const std::vector<tire::ShellLayer>& layers, Visit visit) {
   double z = 0.0;
-  for (const ShellLayer& layer : layers) z -= 0.5 * layer.thickness;
-  for (const ShellLayer& layer : layers) {
+  for (const tire::ShellLayer& layer : layers) z -= 0.5 * layer.thickness;
+  for (const tire::ShellLayer& layer : layers) {
     const double top = z + layer.thickness;
     visit(turned(layer), top - z, (top * top - z * z) / 2, (top * top * top - z * z * z) / 3);
     z = top;
@@ -33,7 +33,7 @@ void for_layers(const std::vector<ShellLayer>& layers, Visit visit) {
 
 }  // namespace
 
-Abd plane_stress_abd(const std::vector<ShellLayer>& layers) {
+Abd plane_stress_abd(const std::vector<tire::ShellLayer>& layers) {
   Abd abd = Abd::Zero();
   for_layers(layers, [&](const Mat6& c, double i0, double i1, double i2) {
     const Mat3 q = c.topLeftCorner<3, 3>() - c.block<3, 1>(0, 3) * c.block<1, 3>(3, 0) / c(3, 3);
@@ -45,7 +45,7 @@ Abd plane_stress_abd(const std::vector<ShellLayer>& layers) {
   return abd;
 }
 
-Abd linear_thickness_abd(const std::vector<ShellLayer>& layers) {
+Abd linear_thickness_abd(const std::vector<tire::ShellLayer>& layers) {
   Eigen::Matrix<double, 8, 8> all = Eigen::Matrix<double, 8, 8>::Zero();  // ε⁰, a; κ, b
   for_layers(layers, [&](const Mat6& c, double i0, double i1, double i2) {
     const Eigen::Matrix4d d = c.topLeftCorner<4, 4>();
@@ -61,7 +61,7 @@ Abd linear_thickness_abd(const std::vector<ShellLayer>& layers) {
   return all(kept, kept) - mixed * thickness.inverse() * mixed.transpose();
 }
 
-std::pair<double, double> shear_stiffness(const std::vector<ShellLayer>& layers) {
+std::pair<double, double> shear_stiffness(const std::vector<tire::ShellLayer>& layers) {
   double s13 = 0.0, s23 = 0.0;
   for_layers(layers,
              [&](const Mat6& c, double i0, double, double) { s13 += i0 * c(4, 4), s23 += i0 * c(5, 5); });

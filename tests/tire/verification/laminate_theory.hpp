@@ -13,11 +13,11 @@ namespace furrow::test {
 using Abd = Eigen::Matrix<double, 6, 6>;
 
 /// σ₃₃ = 0 in every layer.
-Abd plane_stress_abd(const std::vector<ShellLayer>& layers);
+Abd plane_stress_abd(const std::vector<tire::ShellLayer>& layers);
 /// ε₃₃ = a + b z through all layers with a, b from ∫ σ₃₃ dz = ∫ z σ₃₃ dz = 0.
-Abd linear_thickness_abd(const std::vector<ShellLayer>& layers);
+Abd linear_thickness_abd(const std::vector<tire::ShellLayer>& layers);
 /// ∫ C₁₃₁₃ dz and ∫ C₂₃₂₃ dz, N/m; correction factor 1.
-std::pair<double, double> shear_stiffness(const std::vector<ShellLayer>& layers);
+std::pair<double, double> shear_stiffness(const std::vector<tire::ShellLayer>& layers);
 
 /// Central deflection of a simply supported square cross-ply plate of side `a` under q sin(πx/a) sin(πy/a), first-order
 /// theory with the shear stiffness multiplied by `factor`.

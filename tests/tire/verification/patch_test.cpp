@@ -58,10 +58,10 @@ TEST(Patch, membrane_state) {
     for (int n = 0; n < 8; ++n)
       for (const int s : {0, 3}) exact.segment<3>(6 * n + s) = f * exact.segment<3>(6 * n + s);
     const Vector q = solve(patch, Supports(8).fix(outside(), "xyz"), exact);
-    verify("membrane patch", "largest coordinate off, " + mesh_name(turn), (q - exact).cwiseAbs().maxCoeff(),
-           0.0, 1e-11, kExact, 1.0);
-    verify("membrane patch", "energy, J, " + mesh_name(turn), patch.energy(q), density * 2 * kThickness, 1e-9,
-           "plane stress");
+    verification::verify("membrane patch", "largest coordinate off, " + mesh_name(turn),
+                         (q - exact).cwiseAbs().maxCoeff(), 0.0, 1e-11, kExact, 1.0);
+    verification::verify("membrane patch", "energy, J, " + mesh_name(turn), patch.energy(q),
+                         density * 2 * kThickness, 1e-9, "plane stress");
   }
 }
 
@@ -73,10 +73,10 @@ TEST(Patch, thickness_state) {
     Vector exact = patch.reference();
     for (int n = 0; n < 8; ++n) exact[6 * n + 5] = 1.02;
     const Vector q = solve(patch, Supports(8).fix(outside(), "xyzabc").fix({4, 5, 6, 7}, "abc"), exact);
-    verify("thickness patch", "largest coordinate off, " + mesh_name(turn), (q - exact).cwiseAbs().maxCoeff(),
-           0.0, 1e-11, kExact, 1.0);
-    verify("thickness patch", "energy, J, " + mesh_name(turn), patch.energy(q),
-           0.5 * c33 * e33 * e33 * 2 * kThickness, 1e-9, "c33 of the material");
+    verification::verify("thickness patch", "largest coordinate off, " + mesh_name(turn),
+                         (q - exact).cwiseAbs().maxCoeff(), 0.0, 1e-11, kExact, 1.0);
+    verification::verify("thickness patch", "energy, J, " + mesh_name(turn), patch.energy(q),
+                         0.5 * c33 * e33 * e33 * 2 * kThickness, 1e-9, "c33 of the material");
   }
 }
 
@@ -95,10 +95,10 @@ TEST(Patch, bending_state) {
       exact[6 * n + 4] = -(kyy * y + kxy * x);
     }
     const Vector q = solve(patch, Supports(8).fix(outside(), "xyzabc"), exact);
-    verify("bending patch", "largest deflection off, of the largest, " + mesh_name(turn),
-           (q - exact).cwiseAbs().maxCoeff(), 0.0, 2e-4, kExact, 2e-5);
-    verify("bending patch", "energy, J, " + mesh_name(turn), patch.energy(q), theory, 1e-4,
-           "Kirchhoff plate");
+    verification::verify("bending patch", "largest deflection off, of the largest, " + mesh_name(turn),
+                         (q - exact).cwiseAbs().maxCoeff(), 0.0, 2e-4, kExact, 2e-5);
+    verification::verify("bending patch", "energy, J, " + mesh_name(turn), patch.energy(q), theory, 1e-4,
+                         "Kirchhoff plate");
   }
 }
 
@@ -109,10 +109,10 @@ TEST(Patch, transverse_shear_state) {
     Vector exact = patch.reference();
     for (int n = 0; n < 8; ++n) exact[6 * n + 2] = gamma * exact[6 * n];  // directors stay
     const Vector q = solve(patch, Supports(8).fix(outside(), "xyzabc").fix({4, 5, 6, 7}, "abc"), exact);
-    verify("shear patch", "largest coordinate off, of the largest, " + mesh_name(turn),
-           (q - exact).cwiseAbs().maxCoeff(), 0.0, 1e-3, kExact, 2 * gamma);
-    verify("shear patch", "energy, J, " + mesh_name(turn), patch.energy(q),
-           0.5 * shear * gamma * gamma * 2 * kThickness, 1e-3, "shear correction factor 1");
+    verification::verify("shear patch", "largest coordinate off, of the largest, " + mesh_name(turn),
+                         (q - exact).cwiseAbs().maxCoeff(), 0.0, 1e-3, kExact, 2 * gamma);
+    verification::verify("shear patch", "energy, J, " + mesh_name(turn), patch.energy(q),
+                         0.5 * shear * gamma * gamma * 2 * kThickness, 1e-3, "shear correction factor 1");
   }
 }
 
@@ -150,7 +150,7 @@ TEST(Patch, rigid_motion_through_many_turns) {
     turn = Eigen::Quaterniond(step * turn).normalized().toRotationMatrix();
     const Vector q = moved(patch, patch.reference(), turn, 0.01 * n * Vec3(0.3, 1, -0.2));
     double largest = 0.0;
-    for (const StrainVector& e : patch.strains(q)) largest = std::max(largest, e.cwiseAbs().maxCoeff());
+    for (const tire::StrainVector& e : patch.strains(q)) largest = std::max(largest, e.cwiseAbs().maxCoeff());
     strain.add(largest, 0.0, 1.0);
     force.add(patch.forces(q).cwiseAbs().maxCoeff(), 0.0, 7.56e9 * 5e-3 * 1.0);
   }
@@ -162,8 +162,8 @@ TEST(Patch, stretched_state_turns_with_the_body) {
   const Vector q = patch.reference() + 1e-2 * Vector::Random(patch.coordinates());
   const Mat3 turn = Eigen::AngleAxisd(2.5, Vec3(0.2, 1, 0.4).normalized()).toRotationMatrix();
   const Vector f = patch.forces(q), g = patch.forces(moved(patch, q, turn, Vec3(1, 2, 3)));
-  verify("objectivity", "f(R q) - R f(q), 4 x 4", (g - moved(patch, f, turn, Vec3::Zero())).norm(), 0.0,
-         1e-12, "zero", f.norm());
+  verification::verify("objectivity", "f(R q) - R f(q), 4 x 4",
+                       (g - moved(patch, f, turn, Vec3::Zero())).norm(), 0.0, 1e-12, "zero", f.norm());
 }
 
 TEST(Patch, forces_and_tangent_are_derivatives) {
@@ -187,29 +187,29 @@ TEST(Patch, forces_and_tangent_are_derivatives) {
 }
 
 TEST(Patch, ring_of_the_tire_equals_the_assembly_element_by_element) {
-  TireFile file = small_file("hmmwv_lumped.json", 12, 8);
+  tire::TireFile file = small_file("hmmwv_lumped.json", 12, 8);
   file.bead.layers = file.sidewall.layers = file.tread.layers;  // one layup, as a patch has
   file.pressure = 0.0;
-  const RingMesh ring = make_ring_mesh(file);
-  const ShellRing shell(file, ring);
-  const ShellPatch patch(ring_patch_mesh(ring, false), shell_layers(file, file.tread));
+  const tire::ShellMesh ring = tire::make_shell_mesh(file);
+  const tire::ShellCarcass shell(file, ring);
+  const ShellPatch patch(ring_patch_mesh(ring, false), tire::shell_layers(file, file.tread));
   std::srand(6);
   const Vector q = patch.reference() + 2e-3 * Vector::Random(patch.coordinates());
-  const RingLayout& layout = shell.layout();
-  Field field(layout.size(), 0.0), force(layout.size());
+  const tire::ShellLayout& layout = shell.layout();
+  tire::Field field(layout.size(), 0.0), force(layout.size());
   for (int i = 0; i < ring.columns; ++i)
     for (int j = 0; j < ring.rows; ++j)
       for (const int s : {0, 3}) layout.set(field, i, j, s, q.segment<3>(6 * ring.node(i, j) + s));
   layout.fill_padding(field);
-  shell.forces(field, field, Field(shell.strains_size(), 0.0), 1.0, force);
+  shell.forces(field, field, tire::Field(shell.strains_size(), 0.0), 1.0, force);
   const Vector f = patch.forces(q);
   double off = 0.0;
   for (int i = 0; i < ring.columns; ++i)
     for (int j = 0; j < ring.rows; ++j)
       for (const int s : {0, 3})
         off = std::max(off, (layout.get(force, i, j, s) - f.segment<3>(6 * ring.node(i, j) + s)).norm());
-  verify("vectorised ring", "largest force off, 12 x 8", off, 0.0, 1e-12, "element by element",
-         f.cwiseAbs().maxCoeff());
+  verification::verify("vectorised ring", "largest force off, 12 x 8", off, 0.0, 1e-12, "element by element",
+                       f.cwiseAbs().maxCoeff());
 }
 
 }  // namespace

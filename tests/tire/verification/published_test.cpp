@@ -40,9 +40,10 @@ struct Judge {
     const double value[2] = {ours.first, ours.second}, known[2] = {reference.first, reference.second},
                  largest[2] = {table.back().first, table.back().second};
     for (int k = 0; k < 2; ++k) {
-      curve_point(name, std::string(names[k]) + ", " + mesh, ours.load, value[k], known[k]);
-      verify(name, std::string(names[k]) + " at P/Pmax = " + verification::brief(ours.load) + ", " + mesh,
-             value[k], known[k], tolerance, kSource, largest[k]);
+      verification::curve_point(name, std::string(names[k]) + ", " + mesh, ours.load, value[k], known[k]);
+      verification::verify(
+          name, std::string(names[k]) + " at P/Pmax = " + verification::brief(ours.load) + ", " + mesh,
+          value[k], known[k], tolerance, kSource, largest[k]);
     }
   }
 };
@@ -100,16 +101,16 @@ void hemisphere(int n, double tolerance) {
   Vector load = Vector::Zero(patch.coordinates());
   load[6 * a] = 200, load[6 * b + 1] = -200;
   const Vector small = linear_solution(patch, supports, load / 200);
-  verify("pinched hemisphere, linear", "outward, " + size(n, n), small[6 * a], 0.094, 0.03,
-         "MacNeal & Harder 1985 doi:10.1016/0168-874X(85)90003-4");
+  verification::verify("pinched hemisphere, linear", "outward, " + size(n, n), small[6 * a], 0.094, 0.03,
+                       "MacNeal & Harder 1985 doi:10.1016/0168-874X(85)90003-4");
   StaticPath path(patch, supports, load);
   const Judge judge{"pinched hemisphere", size(n, n), {"outward", "inward"}, tolerance};
   ASSERT_TRUE(path.go_to(0.01));  // where a quartic element has been published, independent of the table
   const char* quartic = "Elmer, Shell_OpenHemisphere_High_Order_Blending, p = 4";
-  verify("pinched hemisphere, 1 % of the load", "outward, " + size(n, n), path.q()[6 * a] - 10, 0.184936,
-         tolerance, quartic);
-  verify("pinched hemisphere, 1 % of the load", "inward, " + size(n, n), 10 - path.q()[6 * b + 1], 0.189022,
-         tolerance, quartic);
+  verification::verify("pinched hemisphere, 1 % of the load", "outward, " + size(n, n), path.q()[6 * a] - 10,
+                       0.184936, tolerance, quartic);
+  verification::verify("pinched hemisphere, 1 % of the load", "inward, " + size(n, n),
+                       10 - path.q()[6 * b + 1], 0.189022, tolerance, quartic);
   for (const Row& row : kHemisphere) {
     ASSERT_TRUE(path.go_to(row.load));
     judge.compare(kHemisphere, {row.load, path.q()[6 * a] - 10, 10 - path.q()[6 * b + 1]}, row);
@@ -186,14 +187,14 @@ TEST(Published, pull_out_of_an_open_cylinder) {
 
 struct Roof {
   const char* name;
-  std::vector<ShellLayer> layers;  // angles from the circumference; the paper's from the generator
+  std::vector<tire::ShellLayer> layers;  // angles from the circumference; the paper's from the generator
   std::vector<std::pair<double, double>> table;  // deflection, P/3000
 };
 
 std::vector<Roof> roofs() {
   constexpr double h = 12.7;
   const Ply ply{3300, 1100, 660, 440, 0.25, 0.25};
-  const ShellLayer along = ply_layer(h / 3, 90, ply), around = ply_layer(h / 3, 0, ply);
+  const tire::ShellLayer along = ply_layer(h / 3, 90, ply), around = ply_layer(h / 3, 0, ply);
   return {{"hinged roof, isotropic",
            {isotropic_layer(h, 3102.75, 0.3)},
            {{0.693, 0.0877},
@@ -253,7 +254,7 @@ void press_roof(const Roof& roof, int n, double tolerance) {
   for (const auto& [w, p] : roof.table) {
     ASSERT_TRUE(path.go_to(w));
     const double ours = -4 * path.reactions()[2] / 3000;
-    curve_point(roof.name, size(n, n), ours, w, p);
+    verification::curve_point(roof.name, size(n, n), ours, w, p);
     worst.add(ours, p, limit, "w = " + verification::brief(w));
   }
 }

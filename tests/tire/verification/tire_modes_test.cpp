@@ -18,16 +18,16 @@ using verification::verify;
 std::string size(int n, int m) { return std::to_string(n) + " x " + std::to_string(m); }
 
 TEST(TireModes, order_by_order_equals_the_whole_ring) {
-  TireFile file = small_file("hmmwv_lumped.json", 12, 8);
+  tire::TireFile file = small_file("hmmwv_lumped.json", 12, 8);
   file.bead.layers = file.sidewall.layers = file.tread.layers;
   file.materials[file.tread.layers[0].material].density = 1000.0;
   file.pressure = 0.0;
-  const InflatedRing ring(file);
+  const InflatedCarcass ring(file);
   std::vector<double> by_order;
   for (int order = -5; order <= 6; ++order)
     for (const double f : ring.frequencies(order, 4)) by_order.push_back(f);
   std::sort(by_order.begin(), by_order.end());
-  const ShellPatch patch(ring_patch_mesh(ring.mesh, false), shell_layers(file, file.tread));
+  const ShellPatch patch(ring_patch_mesh(ring.mesh, false), tire::shell_layers(file, file.tread));
   Supports beads(patch.nodes());
   for (int i = 0; i < ring.mesh.columns; ++i)
     beads.fix({ring.mesh.node(i, 0), ring.mesh.node(i, ring.mesh.rows - 1)}, "xyzabc");
@@ -45,25 +45,25 @@ TEST(TireModes, frequencies_converge_with_the_mesh) {
       double f[3][2];
       const int widths[3] = {12, 24, 48}, columns[3] = {45, 90, 180};
       for (int k = 0; k < 3; ++k) {
-        const Vector two = InflatedRing(small_file(name, columns[k], widths[k])).frequencies(order, 2);
+        const Vector two = InflatedCarcass(small_file(name, columns[k], widths[k])).frequencies(order, 2);
         f[k][0] = two[0], f[k][1] = two[1];
       }
       for (int mode = 0; mode < 2; ++mode) {
         const double limit = f[2][mode] + (f[2][mode] - f[1][mode]) / 3;
         for (int k = 0; k < 3; ++k)
-          verify(std::string("inflated ") + name,
-                 "order " + std::to_string(order) + ", frequency " + std::to_string(mode + 1) + ", Hz, " +
-                     size(columns[k], widths[k]),
-                 f[k][mode], limit, 25.0 / (widths[k] * widths[k]), "extrapolated in the mesh");
+          verification::verify(std::string("inflated ") + name,
+                               "order " + std::to_string(order) + ", frequency " + std::to_string(mode + 1) +
+                                   ", Hz, " + size(columns[k], widths[k]),
+                               f[k][mode], limit, 25.0 / (widths[k] * widths[k]), "extrapolated in the mesh");
       }
     }
 }
 
 /// Orders from 1 to half the columns whose smallest eigenvalue is negative, and the curve over all of them.
 std::vector<int> unstable_orders(int columns, int width, double pressure) {
-  TireFile file = small_file("hmmwv_layered.json", columns, width);
+  tire::TireFile file = small_file("hmmwv_layered.json", columns, width);
   file.pressure = pressure;
-  const InflatedRing ring(file);
+  const InflatedCarcass ring(file);
   std::vector<int> list;
   for (int order = 0; order <= columns / 2; order += columns / 90) {
     const double f = ring.frequencies(order, 1)[0];
@@ -82,20 +82,22 @@ TEST(LayeredTire, is_no_stable_static_body_at_full_pressure) {
   EXPECT_TRUE(unstable_orders(90, 24, 20e3).empty());
   const std::vector<int> at_fifty = unstable_orders(90, 24, 50e3), coarse = unstable_orders(90, 24, 200e3);
   ASSERT_FALSE(coarse.empty());
-  verify("layered tire at 200 kPa", "lowest unstable order, 90 x 24", coarse.front(), 24, 0.05, source);
-  verify("layered tire at 200 kPa", "highest unstable order, 90 x 24", coarse.back(), 44, 0.05, source);
+  verification::verify("layered tire at 200 kPa", "lowest unstable order, 90 x 24", coarse.front(), 24, 0.05,
+                       source);
+  verification::verify("layered tire at 200 kPa", "highest unstable order, 90 x 24", coarse.back(), 44, 0.05,
+                       source);
   ASSERT_FALSE(at_fifty.empty());
-  verify("layered tire at 50 kPa", "lowest unstable order, 90 x 24", at_fifty.front(), 45, 0.05,
-         "directors tilted alternately from column to column");
+  verification::verify("layered tire at 50 kPa", "lowest unstable order, 90 x 24", at_fifty.front(), 45, 0.05,
+                       "directors tilted alternately from column to column");
   // Where the alternating tilt sets in.
   double stable = 20e3, unstable = 50e3;
   while (unstable - stable > 500) {
-    TireFile file = small_file("hmmwv_layered.json", 90, 24);
+    tire::TireFile file = small_file("hmmwv_layered.json", 90, 24);
     file.pressure = 0.5 * (stable + unstable);
-    (InflatedRing(file).smallest_eigenvalue(45) < 0 ? unstable : stable) = file.pressure;
+    (InflatedCarcass(file).smallest_eigenvalue(45) < 0 ? unstable : stable) = file.pressure;
   }
-  verify("layered tire", "pressure at which the alternating tilt sets in, Pa, 90 x 24", unstable, 30e3, 0.3,
-         source);
+  verification::verify("layered tire", "pressure at which the alternating tilt sets in, Pa, 90 x 24",
+                       unstable, 30e3, 0.3, source);
   // On the finer mesh the wrinkles are shorter, and the alternating tilt is gone below them.
   EXPECT_TRUE(unstable_orders(180, 48, 50e3).empty());
   const std::vector<int> fine = unstable_orders(180, 48, 200e3);

@@ -23,7 +23,7 @@ struct TorusPoint {
 constexpr double kTube = 0.195, kRim = 0.35;  // m
 
 /// Coordinates of the first column of elements.
-Vector column_of(const InflatedRing& ring) {
+Vector column_of(const InflatedCarcass& ring) {
   Vector q(12 * ring.mesh.rows);
   for (int i = 0; i < 2; ++i)
     for (int j = 0; j < ring.mesh.rows; ++j)
@@ -33,11 +33,11 @@ Vector column_of(const InflatedRing& ring) {
 }
 
 std::vector<TorusPoint> inflated_torus(int columns, int width, double thickness) {
-  TireFile file = small_file("toroidal.json", columns, width);
-  for (Section* s : {&file.bead, &file.sidewall, &file.tread}) s->layers[0].thickness = thickness;
+  tire::TireFile file = small_file("toroidal.json", columns, width);
+  for (tire::Section* s : {&file.bead, &file.sidewall, &file.tread}) s->layers[0].thickness = thickness;
   file.pressure = 5e5 * thickness;  // strains of 1e-3
-  const InflatedRing ring(file);
-  const ShellPatch column(ring_patch_mesh(ring.mesh, true), shell_layers(file, file.tread));
+  const InflatedCarcass ring(file);
+  const ShellPatch column(ring_patch_mesh(ring.mesh, true), tire::shell_layers(file, file.tread));
   const Vector q = column_of(ring);
   std::vector<TorusPoint> points;
   for (int j = 0; j < width; ++j) {
@@ -74,12 +74,12 @@ TEST(Torus, membrane_forces) {
 
 TEST(Inflated, whole_ring_is_in_axisymmetric_equilibrium) {
   for (const char* name : {"hmmwv_lumped.json", "toroidal.json"}) {
-    const InflatedRing ring(small_file(name, 90, 24));
-    const RingLayout& layout = ring.shell.layout();
-    ShellRing bare = ring.shell;
+    const InflatedCarcass ring(small_file(name, 90, 24));
+    const tire::ShellLayout& layout = ring.shell.layout();
+    tire::ShellCarcass bare = ring.shell;
     bare.set_pressure(0.0);
-    const Field at_rest(ring.shell.strains_size(), 0.0);
-    Field f(layout.size()), elastic(layout.size());
+    const tire::Field at_rest(ring.shell.strains_size(), 0.0);
+    tire::Field f(layout.size()), elastic(layout.size());
     ring.shell.forces(ring.q, ring.q, at_rest, 1.0, f);
     bare.forces(ring.q, ring.q, at_rest, 1.0, elastic);
     double residual = 0.0, pressure = 0.0, asymmetry = 0.0;
@@ -92,9 +92,9 @@ TEST(Inflated, whole_ring_is_in_axisymmetric_equilibrium) {
                      (layout.get(ring.q, i, j, 0) - ring.mesh.turn(i) * layout.get(ring.q, 0, j, 0)).norm());
       }
     const std::string tire = std::string("inflated ") + name;
-    verify(tire, "largest nodal force left, of the largest pressure force, 90 x 24", residual / pressure, 0.0,
-           1e-6, "equilibrium", 1.0);
-    verify(tire, "runout, m, 90 x 24", asymmetry, 0.0, 1e-14, "axisymmetry", 1.0);
+    verification::verify(tire, "largest nodal force left, of the largest pressure force, 90 x 24",
+                         residual / pressure, 0.0, 1e-6, "equilibrium", 1.0);
+    verification::verify(tire, "runout, m, 90 x 24", asymmetry, 0.0, 1e-14, "axisymmetry", 1.0);
     double smallest = 1e300;
     for (int order = 0; order <= 45; ++order) smallest = std::min(smallest, ring.smallest_eigenvalue(order));
     EXPECT_GT(smallest, 0.0) << name << " is unstable";
@@ -106,13 +106,13 @@ TEST(Inflated, growth_converges_with_the_mesh) {
     double crown[3];
     const int widths[3] = {12, 24, 48};
     for (int k = 0; k < 3; ++k) {
-      const InflatedRing ring(small_file(name, 180, widths[k]));
+      const InflatedCarcass ring(small_file(name, 180, widths[k]));
       crown[k] = 1e3 * (ring.shell.layout().get(ring.q, 0, widths[k] / 2, 0).norm() - ring.file.radius);
     }
     const double limit = crown[2] + (crown[2] - crown[1]) / 3;
     for (int k = 0; k < 3; ++k)
-      verify(std::string("inflated ") + name, "crown growth, mm, " + size(180, widths[k]), crown[k], limit,
-             20.0 / (widths[k] * widths[k]), "extrapolated in the mesh");
+      verification::verify(std::string("inflated ") + name, "crown growth, mm, " + size(180, widths[k]),
+                           crown[k], limit, 20.0 / (widths[k] * widths[k]), "extrapolated in the mesh");
   }
 }
 
@@ -121,8 +121,8 @@ TEST(Inflated, crown_of_the_lumped_tire_carries_the_pressure_by_its_hoop_stiffne
   //   (R/R₀)² = 1 + 2 (N_hoop − ν N_meridian)/(E h)       Hooke, S = C E; E, ν of the tread's single layer
   // and by themselves a free ring: growth p R²/(E h) = 7.2 mm.
   for (const int width : {24, 48}) {
-    const InflatedRing ring(small_file("hmmwv_lumped.json", 180, width));
-    const ShellPatch column(ring_patch_mesh(ring.mesh, true), shell_layers(ring.file, ring.file.tread));
+    const InflatedCarcass ring(small_file("hmmwv_lumped.json", 180, width));
+    const ShellPatch column(ring_patch_mesh(ring.mesh, true), tire::shell_layers(ring.file, ring.file.tread));
     const Vector q = column_of(ring);
     const int crown = width / 2;
     Eigen::Matrix<double, 6, 1> n[4];  // elements −2, −1, 1, 2 from the crown
@@ -145,12 +145,14 @@ TEST(Inflated, crown_of_the_lumped_tire_carries_the_pressure_by_its_hoop_stiffne
     // Forces per current length from second Piola–Kirchhoff resultants.
     const double carried =
         hoop * stretch / along / radius + meridian * along / stretch * 2 * sag / (h * h) - shear;
-    verify(tire, "N hoop/R + N meridian kappa - M'' over p, " + mesh, carried / ring.file.pressure, 1.0,
-           0.7 / width, "equilibrium (Flugge 1973, ch. 2, 5)");
+    verification::verify(tire, "N hoop/R + N meridian kappa - M'' over p, " + mesh,
+                         carried / ring.file.pressure, 1.0, 0.7 / width,
+                         "equilibrium (Flugge 1973, ch. 2, 5)");
     const double modulus = 7.522762e8, thickness = 8.1e-3, nu = 0.013982;
     const double strain = (hoop - nu * meridian) / (modulus * thickness);
-    verify(tire, "growth by Hooke's law from N hoop, mm, " + mesh, 1e3 * (radius - radius_0),
-           1e3 * radius_0 * (std::sqrt(1 + 2 * strain) - 1), 5e-3, "plane stress, E of the circumference");
+    verification::verify(tire, "growth by Hooke's law from N hoop, mm, " + mesh, 1e3 * (radius - radius_0),
+                         1e3 * radius_0 * (std::sqrt(1 + 2 * strain) - 1), 5e-3,
+                         "plane stress, E of the circumference");
     const double free_ring = ring.file.pressure * radius_0 * radius_0 / (modulus * thickness);
     EXPECT_LT(radius - radius_0, free_ring);
     EXPECT_GT(radius - radius_0, 0.75 * free_ring);
@@ -161,10 +163,10 @@ TEST(Inflated, growth_with_pressure) {
   for (const char* name : {"hmmwv_layered.json", "hmmwv_lumped.json"}) {
     double before = 0.0;
     for (const double pressure : {25e3, 50e3, 100e3, 150e3, 200e3, 250e3, 300e3}) {
-      TireFile file = small_file(name, 90, 24);
+      tire::TireFile file = small_file(name, 90, 24);
       file.pressure = pressure;
-      const InflatedRing ring(file);
-      const RingLayout& layout = ring.shell.layout();
+      const InflatedCarcass ring(file);
+      const tire::ShellLayout& layout = ring.shell.layout();
       const double crown = layout.get(ring.q, 0, 12, 0).norm() - file.radius;
       double widest = 0.0;
       for (int j = 0; j < layout.rows; ++j)

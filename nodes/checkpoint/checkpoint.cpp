@@ -1,0 +1,220 @@
+#include "nodes/checkpoint/checkpoint.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "nodes/checkpoint/segment.hpp"
+#include "protocol/core/error.hpp"
+#include "protocol/core/hash.hpp"
+#include "protocol/files/fault_point.hpp"
+#include "protocol/files/text_file.hpp"
+
+namespace furrow::checkpoint {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr int kFormatVersion = 1;
+constexpr char kManifest[] = "manifest.json";
+constexpr char kKind[] = "checkpoint";
+
+std::string step_name(std::int64_t step) { return fmt::format("{:012}", step); }
+
+std::string text_hash(const std::string& text) {
+  Hash hash;
+  hash.add(text);
+  return hash.hex();
+}
+
+std::string file_text(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+Json to_json(const CheckpointManifest& m) {
+  Json json{{"format_version", kFormatVersion},
+            {"kind", kKind},
+            {"version", m.version},
+            {"build", m.build},
+            {"cpu", m.cpu},
+            {"name", m.name},
+            {"scenario_digest", m.scenario_digest},
+            {"step", m.step},
+            {"time_s", m.time},
+            {"bytes", m.bytes},
+            {"write_s", m.write_s}};
+  for (const CheckpointPart& part : m.parts)
+    json["parts"].push_back({{"file", part.file}, {"checksum", part.checksum}});
+  for (const SeriesMark& mark : m.series)
+    json["series"].push_back({{"bytes", mark.bytes}, {"lines", mark.lines}, {"checksum", mark.checksum}});
+  json["frames"] = {
+      {"every", m.frames.every}, {"first_step", m.frames.first_step}, {"first_index", m.frames.first_index}};
+  json["segments"] = segments_json(m.segments);
+  json["file_hashes"] = m.file_hashes;
+  json["scenario"] = Json::parse(m.scenario);
+  return json;
+}
+
+CheckpointManifest from_json(const Json& json) {
+  CheckpointManifest m;
+  m.version = json.at("version");
+  m.build = json.at("build");
+  m.cpu = json.at("cpu");
+  m.name = json.at("name");
+  m.scenario_digest = json.at("scenario_digest");
+  m.step = json.at("step");
+  m.time = json.at("time_s");
+  m.bytes = json.at("bytes");
+  m.write_s = json.at("write_s");
+  for (const Json& part : json.at("parts"))
+    m.parts.push_back(
+        {m.step, part.at("file").get<std::string>(), part.at("checksum").get<std::string>(), ""});
+  for (const Json& mark : json.at("series"))
+    m.series.push_back({mark.at("bytes").get<std::int64_t>(), mark.at("lines").get<std::int64_t>(),
+                        mark.at("checksum").get<std::string>()});
+  const Json& frames = json.at("frames");
+  m.frames = {frames.at("every").get<std::int64_t>(), frames.at("first_step").get<std::int64_t>(),
+              frames.at("first_index").get<std::int64_t>()};
+  m.segments = segments_from_json(json.at("segments"));
+  m.file_hashes = json.at("file_hashes").get<std::vector<std::string>>();
+  m.scenario = json.at("scenario").dump();
+  return m;
+}
+
+CheckpointManifest read_manifest(const fs::path& file) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error))
+    throw io_error(file.string(), "is missing: the checkpoint is not complete");
+  Json json = Json::parse(file_text(file), nullptr, false);
+  if (!json.is_object()) throw io_error(file.string(), "is not valid JSON: the checkpoint is damaged");
+  try {
+    if (json.value("kind", "") != kKind) throw io_error(file.string(), "is no checkpoint of furrow");
+    if (json.at("format_version") > kFormatVersion)
+      throw io_error(file.string(),
+                     fmt::format("format_version {} is newer than this program reads, which is {}",
+                                 json.at("format_version").dump(), kFormatVersion));
+    const std::string checksum = json.at("checksum");
+    json.erase("checksum");
+    if (text_hash(json.dump()) != checksum)
+      throw io_error(file.string(), "the checksum does not fit the contents: the file is damaged");
+    return from_json(json);
+  } catch (const Json::exception& problem) {
+    throw io_error(file.string(), std::string("is damaged: ") + problem.what());
+  }
+}
+
+/// The step that a complete checkpoint's folder is named after; negative for anything else.
+std::int64_t step_of(const fs::path& folder) {
+  const std::string name = folder.filename().string();
+  const bool digits = name.size() >= 12 && name.size() < 19 &&
+                      std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isdigit(c); });
+  return digits ? std::stoll(name) : -1;
+}
+
+}  // namespace
+
+std::string part_name(const Address& node) {
+  return node.role == Role::tire ? fmt::format("tire{}.h5", node.index) : to_string(node.role) + ".h5";
+}
+
+fs::path checkpoints_folder(const fs::path& run) { return run / "checkpoints"; }
+
+fs::path unfinished_checkpoint(const fs::path& run, std::int64_t step) {
+  return checkpoints_folder(run) / ("." + step_name(step) + ".part");
+}
+
+void complete_checkpoint(const fs::path& run, const CheckpointManifest& manifest, int keep) {
+  const fs::path part = unfinished_checkpoint(run, manifest.step);
+  const fs::path folder = checkpoints_folder(run) / step_name(manifest.step);
+  Json json = to_json(manifest);
+  json["checksum"] = text_hash(json.dump());
+  write_whole_file(part / kManifest, json.dump(1) + "\n");
+  sync_folder(part);
+  fault_point("checkpoint.rename");
+  std::error_code error;
+  fs::remove_all(folder, error);
+  fs::rename(part, folder, error);
+  if (error) throw io_error(folder.string(), "cannot be given its name: " + error.message());
+  sync_folder(checkpoints_folder(run));
+  sync_folder(run);
+  const std::vector<fs::path> all = list_checkpoints(run);
+  for (std::size_t i = static_cast<std::size_t>(keep); i < all.size(); ++i) fs::remove_all(all[i], error);
+}
+
+CheckpointManifest read_checkpoint(const fs::path& folder) {
+  CheckpointManifest manifest = read_manifest(folder / kManifest);
+  for (const CheckpointPart& part : manifest.parts) {
+    const fs::path file = folder / fs::path(part.file).filename();
+    if (part_checksum(file) != part.checksum)
+      throw io_error(file.string(), "does not fit its checkpoint: it is damaged, or belongs to another");
+  }
+  return manifest;
+}
+
+std::string part_checksum(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file)
+    throw io_error(path.string(), "does not exist or cannot be read: the checkpoint is not complete");
+  Hash hash;
+  std::vector<char> block(1 << 20);
+  while (file) {
+    file.read(block.data(), static_cast<std::streamsize>(block.size()));
+    hash.add(block.data(), static_cast<std::size_t>(file.gcount()));
+  }
+  return hash.hex();
+}
+
+std::vector<fs::path> list_checkpoints(const fs::path& run) {
+  std::vector<fs::path> found;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(checkpoints_folder(run), error))
+    if (step_of(entry.path()) >= 0) found.push_back(entry.path());
+  std::sort(found.begin(), found.end(),
+            [](const fs::path& a, const fs::path& b) { return step_of(a) > step_of(b); });
+  return found;
+}
+
+void remove_checkpoints_after(const fs::path& run, std::int64_t step) noexcept {
+  try {
+    std::error_code error;
+    std::vector<fs::path> doomed;
+    for (const auto& entry : fs::directory_iterator(checkpoints_folder(run), error))
+      if (step_of(entry.path()) > step || entry.path().extension() == ".part") doomed.push_back(entry.path());
+    for (const fs::path& folder : doomed) fs::remove_all(folder, error);
+  } catch (...) {
+    // What stays does no harm: it is replaced when its step comes.
+  }
+}
+
+std::string build_id() { return text_hash(file_text("/proc/self/exe")); }
+
+std::string cpu_model() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);)
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  return "unknown";
+}
+
+std::vector<Segment> segments_until(std::int64_t step, double wall_s, int threads,
+                                    const ResumePoint* resume) {
+  std::vector<Segment> segments;
+  Segment now;
+  if (resume) {
+    segments = resume->manifest.segments;
+    now.from_step = resume->manifest.step;
+    now.changed = resume->changed;
+  }
+  now.to_step = step;
+  now.wall_s = wall_s;
+  now.threads = threads;
+  segments.push_back(now);
+  return segments;
+}
+
+}  // namespace furrow::checkpoint

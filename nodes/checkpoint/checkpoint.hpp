@@ -1,0 +1,76 @@
+// Checkpoints on disk: <run>/checkpoints/<step>/ with one saved state per rank and a manifest that makes them one.
+//
+//   manifest.json  format_version, scenario and its digest, step, checksum of every part, where each series stood,
+//                  frames, segments, and a checksum of itself
+//   rig.h5, tire<k>.h5, terrain.h5   archive_file.hpp
+//
+// All is written into .<step>.part/, flushed to the disk, and that folder renamed: a checkpoint is whole or not there.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "nodes/checkpoint/frame_clock.hpp"
+#include "nodes/checkpoint/segment.hpp"
+#include "nodes/checkpoint/series_mark.hpp"
+#include "protocol/messages.hpp"
+
+namespace furrow::checkpoint {
+
+struct CheckpointManifest {
+  std::string version, build, cpu;  // of the program and the machine that wrote it
+  std::string name;                 // of the scenario
+  std::string scenario;             // completed, JSON
+  std::string scenario_digest;
+  std::vector<std::string> file_hashes;  // Scenario::file_hashes
+  std::int64_t step = 0;
+  double time = 0.0;                  // s
+  std::vector<CheckpointPart> parts;  // rig, tires, terrain
+  std::vector<SeriesMark> series;     // per wheel
+  FrameClock frames;
+  std::vector<Segment> segments;  // the last one ends here
+  std::int64_t bytes = 0;         // of the parts on disk
+  double write_s = 0.0;           // wall time that the run stood still for it, until this was written
+};
+
+/// Where a run goes on.
+struct ResumePoint {
+  std::filesystem::path folder;  // of the checkpoint
+  CheckpointManifest manifest;
+  std::string changed;  // JSON object: keys that are changed from here on
+};
+
+/// The segments before this one, and this one until `step`.
+std::vector<Segment> segments_until(std::int64_t step, double wall_s, int threads, const ResumePoint* resume);
+
+/// "rig.h5", "tire0.h5", "terrain.h5".
+std::string part_name(const Address& node);
+
+std::filesystem::path checkpoints_folder(const std::filesystem::path& run);
+/// Where the parts of a checkpoint are written before it is complete.
+std::filesystem::path unfinished_checkpoint(const std::filesystem::path& run, std::int64_t step);
+
+/// Writes the manifest beside the parts, gives the folder its name and removes all but the newest `keep` checkpoints.
+/// @throws Error(io)
+void complete_checkpoint(const std::filesystem::path& run, const CheckpointManifest& manifest, int keep);
+
+/// @throws Error(io) when the checkpoint is damaged, incomplete or of a newer format; every part is read
+CheckpointManifest read_checkpoint(const std::filesystem::path& folder);
+
+/// Of all bytes of a part: damage is found before anything interprets the file. @throws Error(io)
+std::string part_checksum(const std::filesystem::path& file);
+
+/// Folders of the complete checkpoints, newest first.
+std::vector<std::filesystem::path> list_checkpoints(const std::filesystem::path& run);
+
+/// Removes checkpoints beyond `step`, and what was never completed. Errors are ignored.
+void remove_checkpoints_after(const std::filesystem::path& run, std::int64_t step) noexcept;
+
+/// Tells builds of the program apart: a hash of its file.
+std::string build_id();
+/// "model name" of the processor.
+std::string cpu_model();
+
+}  // namespace furrow::checkpoint

@@ -1,0 +1,29 @@
+// Which steps get a frame, and its number. Numbers go on where a run that is continued left off, also when the interval
+// is another one from there on.
+#pragma once
+
+#include <cstdint>
+
+namespace furrow::checkpoint {
+
+struct FrameClock {
+  std::int64_t every = 0;        // steps; 0: no frames
+  std::int64_t first_step = 0;   // of this segment of the run
+  std::int64_t first_index = 0;  // of its first frame
+
+  bool due(std::int64_t step) const { return every > 0 && step % every == 0; }
+  /// Number of the first frame at `step` or later.
+  std::int64_t index(std::int64_t step) const {
+    return every > 0 ? first_index + before(step) - before(first_step) : first_index;
+  }
+  /// Of the segment that begins at `step`.
+  FrameClock continued(std::int64_t step, std::int64_t new_every) const {
+    return {new_every, step, index(step)};
+  }
+
+ private:
+  /// Multiples of `every` in [0, step).
+  std::int64_t before(std::int64_t step) const { return (step + every - 1) / every; }
+};
+
+}  // namespace furrow::checkpoint

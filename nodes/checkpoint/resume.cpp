@@ -1,0 +1,134 @@
+#include "nodes/checkpoint/resume.hpp"
+#include "nodes/scenario/load_scenario.hpp"
+
+#include <cmath>
+#include <fstream>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "nodes/launch/run_directory.hpp"
+#include "protocol/core/error.hpp"
+#include "protocol/files/json_text.hpp"
+
+namespace furrow::checkpoint {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// "/rig/slip" as "rig.slip".
+std::string dotted(const std::string& pointer) {
+  std::string key = pointer.substr(pointer.empty() ? 0 : 1);
+  for (char& c : key)
+    if (c == '/') c = '.';
+  return key;
+}
+
+json value_at(const json& flat, const std::string& pointer) {
+  return flat.contains(pointer) ? flat.at(pointer) : json();
+}
+
+/// Keys whose values differ, with the new ones. @throws Error(bad_input) at the first that may not.
+json changes(const fs::path& run, const json& before, const json& now) {
+  json changed = json::object(), keys = before.flatten();
+  keys.update(now.flatten());
+  const json old_values = before.flatten(), new_values = now.flatten();
+  for (const auto& [pointer, unused] : keys.items()) {
+    const json was = value_at(old_values, pointer), is = value_at(new_values, pointer);
+    if (was == is) continue;
+    const std::string key = dotted(pointer);
+    if (!scenario::may_change_on_resume(key))
+      throw input_error(
+          run.string(), key,
+          fmt::format("is {} but the run was computed with {}, expected the same: a run that is continued "
+                      "may change run.end, run.average_from, run.threads, run.peer_timeout, output.* and "
+                      "checkpoint.*, not its physics",
+                      value_text(is), value_text(was)));
+    changed[key] = is;
+  }
+  return changed;
+}
+
+void check_files(const scenario::Scenario& scenario, const CheckpointManifest& manifest) {
+  const std::vector<std::string> hashes = scenario.file_hashes();
+  for (std::size_t k = 0; k < scenario.tires.size() && k < manifest.file_hashes.size(); ++k)
+    if (hashes[k] != manifest.file_hashes[k])
+      throw input_error(scenario.file.string(),
+                        scenario.tires.size() == 1 ? "tire.file" : fmt::format("tires.{}.file", k),
+                        "'" + scenario.tires[k].file.string() +
+                            "' was changed since the run began, expected the file that it was computed with");
+}
+
+ResumePoint newest_whole(const fs::path& run, std::vector<std::string>& problems) {
+  for (const fs::path& folder : list_checkpoints(run)) {
+    try {
+      return {folder, read_checkpoint(folder), ""};
+    } catch (const Error& error) {
+      problems.push_back(error.what());
+    }
+  }
+  if (problems.empty())
+    throw input_error(run.string(), "",
+                      "holds no checkpoint, expected one in " + checkpoints_folder(run).string() +
+                          "; start again with furrow run");
+  std::string text;
+  for (const std::string& problem : problems) text += problem + "\n";
+  throw Error(ExitCode::io, text + run.string() + ": no checkpoint is whole, nothing can be continued");
+}
+
+/// Step at which the finished run ended; negative while there is no summary.
+std::int64_t finished_at(const fs::path& run) {
+  std::ifstream in(run / "summary.json");
+  const json summary = json::parse(in, nullptr, false);
+  if (!summary.is_object() || !summary.contains("segments") || summary["segments"].empty()) return -1;
+  return summary["segments"].back().value("to_step", std::int64_t{-1});
+}
+
+}  // namespace
+
+ResumePoint last_checkpoint(const fs::path& run) {
+  std::vector<std::string> problems;
+  return newest_whole(run, problems);
+}
+
+ResumePlan plan_resume(const fs::path& run,
+                       const std::vector<std::pair<std::string, std::string>>& settings) {
+  launch::require_run_directory(run);
+  std::error_code error;
+  const fs::path file = run / "scenario.json";
+  if (!fs::exists(file, error))
+    throw input_error(
+        run.string(), "",
+        "holds a run that never began to step, expected scenario.json in it; start again with furrow run");
+  ResumePlan plan;
+  plan.scenario = scenario::load_scenario(file, settings);
+  const std::int64_t steps = plan.scenario.run.steps(), ended = finished_at(run);
+  if (ended == steps) {
+    changes(run, json::parse(scenario::load_scenario(file, {}).completed),
+            json::parse(plan.scenario.completed));
+    plan.finished = true;
+    return plan;
+  }
+  plan.point = newest_whole(run, plan.warnings);
+  const CheckpointManifest& manifest = plan.point.manifest;
+  plan.scenario.name = manifest.name;
+  const json changed = changes(run, json::parse(manifest.scenario), json::parse(plan.scenario.completed));
+  if (!changed.empty()) plan.point.changed = changed.dump();
+  check_files(plan.scenario, manifest);
+  const std::int64_t reached = std::max(ended, manifest.step);
+  if (steps < reached)
+    throw input_error(run.string(), "run.end",
+                      fmt::format("is {} s, but the run has come to {} s, expected that or later",
+                                  number_text(plan.scenario.run.end),
+                                  number_text(static_cast<double>(reached) * plan.scenario.run.step)));
+  if (manifest.build != build_id())
+    plan.warnings.push_back(run.string() + ": the checkpoint is of another build of furrow (" +
+                            manifest.version + "): the run goes on, but not bit for bit");
+  else if (manifest.cpu != cpu_model())
+    plan.warnings.push_back(run.string() + ": the checkpoint is of another processor (" + manifest.cpu +
+                            "): the run goes on, perhaps not bit for bit");
+  return plan;
+}
+
+}  // namespace furrow::checkpoint

@@ -1,0 +1,92 @@
+// `furrow bed`: prepares the bed of a scenario, keeps it in the cache and says what it is like.
+#include <chrono>
+#include <cmath>
+#include <iostream>
+
+#include <nlohmann/json.hpp>
+
+#include "nodes/commands/commands.hpp"
+#include "nodes/launch/progress.hpp"
+#include "nodes/launch/signals.hpp"
+#include "nodes/scenario/scenario.hpp"
+#include "terrain/dem/beds/bed_compaction.hpp"
+#include "terrain/dem/beds/bed_preparation.hpp"
+#include "terrain/dem/beds/bed_statistics.hpp"
+#include "terrain/dem/solver_setup.hpp"
+
+namespace furrow::commands {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+json bed_json(const scenario::Scenario& s, const terrain::dem::PreparedBed& prepared,
+              const terrain::dem::BedStatistics& bed, double wall_s) {
+  const terrain::TerrainOptions& o = s.terrain;
+  const double mass = o.density * bed.grain_volume;
+  const auto text_or_null = [](const std::string& text) { return text.empty() ? json(nullptr) : json(text); };
+  json j;
+  j["format_version"] = 1;
+  j["version"] = FURROW_VERSION;
+  j["scenario"] = s.name;
+  j["bed"] = text_or_null(o.bed);
+  j["bed_generator"] = o.bed.empty() ? json(o.bed_generator) : json(nullptr);
+  j["sides"] = o.periodic_y ? "periodic" : "walls";
+  j["size_distribution"] = o.size_spread > 0.0 ? json(o.size_distribution) : json(nullptr);
+  j["size_spread"] = o.size_spread;
+  j["settling_friction"] = o.settling_friction < 0.0 ? json(nullptr) : json(o.settling_friction);
+  j["compaction_pressure_Pa"] = o.compaction_pressure;
+  j["grains"] = bed.grains;
+  j["depth_m"] = bed.depth;
+  j["top_m"] = bed.top;
+  j["solid_fraction"] = bed.solid_fraction;
+  j["solid_fraction_bulk"] = bed.solid_fraction_bulk;
+  j["bulk_density_kg_m3"] = mass / (o.length * o.width * bed.depth);
+  j["coordination_number"] = bed.coordination;
+  j["contacts"] = bed.pairs;
+  j["wall_contacts"] = bed.wall_contacts;
+  j["max_overlap_m"] = bed.max_overlap;
+  j["settled"] = prepared.settled.settled;
+  j["force_residual"] = prepared.settled.force_ratio;
+  j["weight_N"] = mass * terrain::dem::kGravity;
+  j["floor_force_error"] = prepared.settled.floor_error;
+  j["settling_time_s"] = prepared.settled.time;
+  j["settling_step_s"] = terrain::dem::settle_step(o);
+  j["wall_s"] = wall_s;
+  j["threads"] = o.settle_threads;
+  j["from_cache"] = prepared.from_cache;
+  j["cache_file"] = text_or_null(terrain::dem::bed_is_settled_anew(o) ? prepared.file.string() : "");
+  return j;
+}
+
+}  // namespace
+
+void require_grains(const scenario::Scenario& scenario, const std::string& what) {
+  if (scenario.terrain.engine != "dem")
+    throw input_error(scenario.file.string(), "terrain.engine",
+                      "is '" + scenario.terrain.engine + "', expected 'dem': " + what);
+}
+
+ExitCode bed_command(const scenario::Scenario& scenario) {
+  require_grains(scenario, "only grains make a bed");
+  launch::catch_stop_signals();
+  launch::ProgressDisplay display;
+  const auto begin = std::chrono::steady_clock::now();
+  const terrain::dem::PreparedBed prepared =
+      terrain::dem::prepare_bed(scenario.terrain, [&](const std::string& what, double share) {
+        if (launch::stop_signalled())
+          throw Error(ExitCode::stopped, "stopped by a signal while the bed was being prepared");
+        display.show({.phase = what, .share = share});
+      });
+  terrain::dem::GrainSolver solver(terrain::dem::solver_params(scenario.terrain));
+  solver.restore(prepared.bed);
+  const terrain::dem::BedStatistics statistics = terrain::dem::bed_statistics(
+      terrain::dem::positions_by_id(solver), solver.params().bin, scenario.terrain.radius);
+  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  display.clear();
+  if (!prepared.settled.settled)
+    print_warning(scenario.file.string() + ": the bed did not come to rest and is used as it is");
+  std::cout << bed_json(scenario, prepared, statistics, wall).dump(2) << "\n";
+  return ExitCode::done;
+}
+
+}  // namespace furrow::commands

@@ -1,0 +1,326 @@
+#include "nodes/commands/commands.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "nodes/commands/bench.hpp"
+#include "nodes/launch/progress.hpp"
+#include "nodes/launch/run_directory.hpp"
+#include "nodes/launch/signals.hpp"
+#include "nodes/scenario/explain.hpp"
+#include "nodes/scenario/load_scenario.hpp"
+#include "nodes/scenario/rank_table.hpp"
+#include "nodes/scenario/schema.hpp"
+#include "nodes/scenario/validate.hpp"
+#include "protocol/mpi_transport.hpp"
+#include "terrain/soil/soil_estimate.hpp"
+
+namespace furrow::commands {
+namespace {
+
+/// What the user typed, as CLI11 fills it in.
+struct Typed {
+  std::string scenario, out, threads, key, directory, soil, until;
+  std::vector<std::string> settings;
+  bool overwrite = false, profile = false, json = false, no_plots = false;
+};
+
+Error usage_error(const std::string& what) { return input_error("command line", "", what); }
+
+void add_settings(CLI::App& command, Typed& typed) {
+  command
+      .add_option("--set", typed.settings,
+                  "key=value: sets a scenario key by its dotted path; may be repeated")
+      ->take_all()
+      ->allow_extra_args(false);
+  command.add_option("--threads", typed.threads, "threads of the terrain: a number or auto (run.threads)");
+}
+
+void add_scenario(CLI::App& command, Typed& typed) {
+  command.add_option("SCENARIO", typed.scenario, "scenario file (JSON)")->required();
+  add_settings(command, typed);
+}
+
+void add_grain_bench(CLI::App& command, GrainBench& bench) {
+  command
+      .add_option("--bed", bench.bed,
+                  "CSV x_m,y_m,z_m of centres of grains of 6 mm, x ≥ 0, y from 0 to 0.6, z ≥ 0; or default: "
+                  "the reference bed")
+      ->capture_default_str();
+  command.add_option("--law", bench.law, "mindlin or coulomb")->capture_default_str();
+  command.add_option("--precision", bench.precision, "of the law: mixed or double")->capture_default_str();
+  command.add_option("--cohesion", bench.cohesion, "cohesion, Pa")->capture_default_str();
+  command.add_option("--rolling-friction", bench.rolling_friction, "rolling resistance coefficient")
+      ->capture_default_str();
+  command.add_option("--threads", bench.threads, "threads")->capture_default_str();
+  command.add_option("--steps", bench.steps, "steps that are timed")->capture_default_str();
+  command.add_option("--warm", bench.warm, "steps before that")->capture_default_str();
+  command.add_option("--settle", bench.settle, "let the bed settle for that long at most first, s")
+      ->capture_default_str();
+  command.add_option("--save-bed", bench.save, "write the positions before the timed steps to this CSV");
+  command.add_option("--step", bench.step, "time step, s")->capture_default_str();
+}
+
+void add_tire_bench(CLI::App& command, TireBench& bench) {
+  command.add_option("--tire", bench.tire, "tire file, or default: the layered tire")->capture_default_str();
+  command.add_option("--threads", bench.threads, "threads")->capture_default_str();
+  command.add_option("--steps", bench.steps, "steps that are timed; 0: one revolution")
+      ->capture_default_str();
+  command.add_option("--step", bench.step, "time step, s")->capture_default_str();
+  command.add_option("--warm", bench.warm, "touch-down and transients before that, s")->capture_default_str();
+  command.add_option("--pressure", bench.pressure, "inflation pressure, gauge, Pa")->capture_default_str();
+  command.add_option("--load", bench.load, "mass that the tire carries, kg")->capture_default_str();
+  command.add_option("--speed", bench.speed, "angular speed, rad/s")->capture_default_str();
+  command
+      .add_option("--tolerance", bench.tolerance,
+                  "of the free residual, relative to the norm of the pressure forces")
+      ->capture_default_str();
+  command
+      .add_option(
+          "--renewal", bench.renewal,
+          "relative change of a sector's shape at which its part of the factor is renewed; 0: every step")
+      ->capture_default_str();
+  command.add_option("--elements-circumference", bench.columns, "elements around; 0: the file's")
+      ->capture_default_str();
+  command.add_option("--elements-width", bench.width, "elements across; 0: the file's")
+      ->capture_default_str();
+}
+
+void add_press_options(CLI::App& command, PressArguments& press) {
+  command.add_option("--out", press.out,
+                     "new folder for the results (default: results/<scenario>-press-NNN here)");
+  command.add_flag("--overwrite", press.overwrite, "let --out replace the results of an earlier run");
+  command.add_option("--on", press.obstacle, "plate or cleat")->capture_default_str();
+  command.add_option("--deflection", press.deflection, "largest deflection, m")->capture_default_str();
+  command.add_option("--points", press.points, "points of the curve up to it")->capture_default_str();
+  command.add_option("--load", press.load, "load of the footprint, N")->capture_default_str();
+  command.add_option("--cleat-height", press.cleat_height, "m")->capture_default_str();
+  command.add_option("--cleat-width", press.cleat_width, "of the cleat's top, along the travel, m")
+      ->capture_default_str();
+}
+
+void add_soil_options(CLI::App& command, SoilArguments& soil) {
+  command.add_option("--out", soil.out,
+                     "new folder for the results (default: results/<scenario>-soil-NNN here)");
+  command.add_flag("--overwrite", soil.overwrite, "let --out replace the results of an earlier run");
+  command.add_option("--seeds", soil.seeds, "beds per test, from run.seed on")->capture_default_str();
+  command.add_option("--speed", soil.speed, "of plate, shear box and cone, m/s")->capture_default_str();
+  command.add_option("--only", soil.only, "this test only: plate, shear, cone or repose; may be repeated")
+      ->take_all()
+      ->allow_extra_args(false);
+  command.add_flag("--quick", soil.quick,
+                   "small boxes and one seed: a look within seconds, no result to quote");
+}
+
+Settings settings_of(const Typed& typed) {
+  Settings settings;
+  for (const std::string& text : typed.settings) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos || equals == 0)
+      throw input_error("command line", "--set", "'" + text + "' is no setting, expected key=value");
+    settings.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+  }
+  if (!typed.threads.empty()) settings.emplace_back("run.threads", typed.threads);
+  if (!typed.until.empty()) settings.emplace_back("run.end", typed.until);
+  return settings;
+}
+
+scenario::Scenario load(const Typed& typed) {
+  scenario::Scenario scenario = scenario::load_scenario(typed.scenario, settings_of(typed));
+  for (const std::string& warning : scenario.warnings) print_warning(warning);
+  return scenario;
+}
+
+ExitCode validate_command(const Typed& typed) {
+  const scenario::Scenario scenario = load(typed);
+  std::cout << (typed.json ? scenario::validation_report(scenario).dump(2) + "\n"
+                           : scenario::validation_text(scenario));
+  return ExitCode::done;
+}
+
+ExitCode ranks_command(const Typed& typed, const std::vector<std::string>& command_line) {
+  const scenario::Scenario scenario = load(typed);
+  std::vector<std::string> arguments = command_line;
+  *std::find(arguments.begin(), arguments.end(), "ranks") = "run";
+  std::cout << scenario::rank_table_text(scenario) << "\n" << scenario::launch_lines(scenario, arguments);
+  return ExitCode::done;
+}
+
+ExitCode report_command(const Typed& typed) {
+  launch::require_run_directory(typed.directory);
+  if (!typed.soil.empty()) {
+    const std::string theory = terrain::soil::write_soil_estimate(typed.directory, typed.soil);
+    std::cerr << "furrow: " << theory << "\n";
+  }
+  std::cerr << "furrow: plotting " << typed.directory << "\n";
+  for (const auto& plot : make_report(typed.directory, false)) std::cout << plot.string() << "\n";
+  return ExitCode::done;
+}
+
+ExitCode run_command(const Typed& typed, int argc, char** argv) {
+  const RunArguments arguments{typed.scenario, settings_of(typed), typed.out, typed.overwrite,
+                               typed.profile,  !typed.no_plots,    false};
+  return launched_by_mpi() ? run_as_rank(arguments, argc, argv) : run_supervised(arguments);
+}
+
+ExitCode resume_command(const Typed& typed, int argc, char** argv) {
+  RunArguments arguments{{},  settings_of(typed), typed.directory, false, typed.profile, !typed.no_plots,
+                         true};
+  return launched_by_mpi() ? run_as_rank(arguments, argc, argv) : resume_supervised(arguments);
+}
+
+template <class Bench>
+ExitCode bench_command(std::string (*run)(const Bench&, const ProgressCall&), const Bench& bench) {
+  if (const int cores = static_cast<int>(allowed_cores().size()); bench.threads > cores)
+    print_warning(
+        fmt::format("--threads {}: this program may use {} cores, more threads than that wait for each other",
+                    bench.threads, cores));
+  launch::catch_stop_signals();
+  launch::ProgressDisplay display;
+  const std::string json = run(bench, [&](const std::string& what, double share) {
+    if (launch::stop_signalled()) throw Error(ExitCode::stopped, "stopped by a signal during " + what);
+    display.show({.phase = what, .share = share});
+  });
+  display.clear();
+  std::cout << json;
+  return ExitCode::done;
+}
+
+/// The command whose help says more, with a blank after it.
+std::string asked_command(const CLI::App& app) {
+  for (const CLI::App* command : app.get_subcommands())
+    return command->get_name() + " " + asked_command(*command);
+  return {};
+}
+
+/// CLI11's words, with a guess at what was meant.
+std::string parse_problem(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+  std::vector<std::string> commands;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    commands.push_back(command->get_name());
+  const std::string first = argc > 1 ? argv[1] : "";
+  if (first.empty())
+    return fmt::format("no command is given, expected one of: {}; see furrow --help",
+                       fmt::join(commands, ", "));
+  if (first[0] != '-' && std::find(commands.begin(), commands.end(), first) == commands.end()) {
+    const std::vector<std::string> similar = scenario::nearest_words(first, commands);
+    return fmt::format("'{}' is no command, expected {}", first,
+                       similar.empty()
+                           ? fmt::format("one of: {}; see furrow --help", fmt::join(commands, ", "))
+                           : "'" + similar.front() + "'?");
+  }
+  return fmt::format("{}, see furrow {}--help", error.what(), asked_command(app));
+}
+
+void print_lines(const char* kind, const std::string& text) {
+  std::size_t from = 0;
+  for (std::size_t end; from <= text.size(); from = end + 1) {
+    end = std::min(text.find('\n', from), text.size());
+    std::fprintf(stderr, "furrow: %s: %s\n", kind, text.substr(from, end - from).c_str());
+  }
+}
+
+}  // namespace
+
+void print_error(const std::string& text) { print_lines("error", text); }
+void print_warning(const std::string& text) { print_lines("warning", text); }
+
+ExitCode run_command_line(int argc, char** argv) {
+  CLI::App app("Furrow: how much a flexible tire pulls on granular soil, and how deep it sinks.", "furrow");
+  app.set_version_flag("--version", "furrow " FURROW_VERSION);
+  app.require_subcommand(1);
+  app.footer(
+      "Exit codes: 0 done, 2 bad input, 3 the physics failed, 4 a rank was lost, 5 input/output, 75 stopped "
+      "by a signal.");
+  Typed typed;
+
+  CLI::App& run = *app.add_subcommand("run", "runs a scenario; prints the folder that holds the results");
+  add_scenario(run, typed);
+  run.add_option("--out", typed.out, "new folder for the results (default: results/<scenario>-NNN here)");
+  run.add_flag("--overwrite", typed.overwrite, "let --out replace the results of an earlier run");
+  run.add_flag("--profile", typed.profile,
+               "also write profile.json: where the time of each step goes (Chrome trace)");
+  run.add_flag("--no-plots", typed.no_plots, "leave the plots to 'furrow report'");
+  CLI::App& resume = *app.add_subcommand(
+      "resume", "goes on with a run from its last checkpoint, bit for bit as if it had not been interrupted");
+  resume.add_option("DIR", typed.directory, "folder of the run")->required();
+  resume.add_option("--until", typed.until, "another end of the run, s (run.end)");
+  add_settings(resume, typed);
+  resume.add_flag("--profile", typed.profile, "also write profile.json, of the steps from here on");
+  resume.add_flag("--no-plots", typed.no_plots, "leave the plots to 'furrow report'");
+  CLI::App& validate =
+      *app.add_subcommand("validate", "checks a scenario and says what a run of it will need");
+  add_scenario(validate, typed);
+  validate.add_flag("--json", typed.json, "print JSON");
+  CLI::App& ranks = *app.add_subcommand("ranks", "which MPI rank does what, and how to start them by hand");
+  add_scenario(ranks, typed);
+  CLI::App& explained =
+      *app.add_subcommand("explain", "what a scenario key means; without KEY lists all keys");
+  explained.add_option("KEY", typed.key, "dotted path, for example terrain.cohesion");
+  CLI::App& bed = *app.add_subcommand(
+      "bed", "prepares and settles the bed of a scenario, keeps it for later runs; prints JSON");
+  add_scenario(bed, typed);
+  SoilArguments soil_arguments;
+  CLI::App& soil =
+      *app.add_subcommand("soil",
+                          "virtual soil tests on a scenario's grains: plate sinkage, direct shear, "
+                          "cone, angle of repose; prints JSON");
+  add_scenario(soil, typed);
+  add_soil_options(soil, soil_arguments);
+  SweepArguments sweep_arguments;
+  CLI::App& sweep = *app.add_subcommand(
+      "sweep", "a table of runs that differ in some keys; goes on where it was interrupted");
+  sweep.add_option("STUDY", sweep_arguments.study, "study file (JSON)")->required();
+  sweep.add_option("--out", sweep_arguments.out, "folder of the study (default: results/<study> here)");
+  sweep.add_option("--jobs", sweep_arguments.jobs, "runs at once, each with its share of the cores")
+      ->capture_default_str();
+  PressArguments press_arguments;
+  CLI::App& press = *app.add_subcommand(
+      "press", "presses the tire of a scenario on a plate or a cleat, statically; prints the folder");
+  add_scenario(press, typed);
+  add_press_options(press, press_arguments);
+  CLI::App& report = *app.add_subcommand("report", "plots of a finished run, as PNG files in its folder");
+  report.add_option("DIR", typed.directory, "folder of the run, or of soil tests")->required();
+  report.add_option("--soil", typed.soil,
+                    "soil.json of 'furrow soil': puts what soil theory expects beside the run's result");
+
+  CLI::App& bench = *app.add_subcommand("bench", "how fast this machine is; prints JSON");
+  bench.require_subcommand(1);
+  GrainBench grains;
+  CLI::App& bench_of_grains =
+      *bench.add_subcommand("grains", "steps a settled bed, every grain in every step");
+  add_grain_bench(bench_of_grains, grains);
+  TireBench tire;
+  CLI::App& bench_of_tire =
+      *bench.add_subcommand("tire", "rolls a loaded tire on hard ground, by parts of a step");
+  add_tire_bench(bench_of_tire, tire);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    app.exit(asked);
+    return ExitCode::done;
+  } catch (const CLI::ParseError& error) {
+    throw usage_error(parse_problem(app, error, argc, argv));
+  }
+  if (run.parsed()) return run_command(typed, argc, argv);
+  if (resume.parsed()) return resume_command(typed, argc, argv);
+  if (validate.parsed()) return validate_command(typed);
+  if (ranks.parsed()) return ranks_command(typed, {argv, argv + argc});
+  if (soil.parsed()) return soil_command(load(typed), soil_arguments);
+  if (press.parsed()) return press_command(load(typed), press_arguments);
+  if (bed.parsed()) return bed_command(load(typed));
+  if (sweep.parsed()) return sweep_command(sweep_arguments);
+  if (report.parsed()) return report_command(typed);
+  if (bench_of_grains.parsed()) return bench_command(bench_grains, grains);
+  if (bench_of_tire.parsed()) return bench_command(bench_tire, tire);
+  std::cout << scenario::explain(typed.key);
+  return ExitCode::done;
+}
+
+}  // namespace furrow::commands

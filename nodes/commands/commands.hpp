@@ -1,0 +1,91 @@
+// The command line of `furrow`. Results for machines go to standard output, everything else to standard
+// error.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "nodes/scenario/scenario.hpp"
+#include "protocol/core/error.hpp"
+
+namespace furrow::commands {
+
+using Settings = std::vector<std::pair<std::string, std::string>>;  // --set key=value
+
+struct RunArguments {
+  std::filesystem::path scenario;
+  Settings settings;
+  std::filesystem::path out;  // empty: a fresh folder under results/
+  bool overwrite = false;
+  bool profile = false;
+  bool plots = true;    // at the end
+  bool resume = false;  // goes on with the run in `out`; `scenario` is not used
+};
+
+/// Everything that `furrow` does. @throws Error
+ExitCode run_command_line(int argc, char** argv);
+
+/// `furrow run` outside MPI (commands_run.cpp) and as one of its ranks (commands_rank.cpp).
+ExitCode run_supervised(const RunArguments& arguments);
+/// `furrow resume` outside MPI.
+ExitCode resume_supervised(const RunArguments& arguments);
+ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv);
+
+/// mpirun ends all ranks as soon as one has failed, even the one that is about to say why: the others wait here.
+void let_first_rank_speak();
+
+/// `furrow report`: makes the plots of a run (commands_report.cpp). @throws Error
+std::vector<std::filesystem::path> make_report(const std::filesystem::path& run, bool quiet);
+/// The same after a command whose results stand without plots: what goes wrong is a warning.
+std::vector<std::filesystem::path> make_report_or_warn(const std::filesystem::path& run);
+
+struct SweepArguments {
+  std::filesystem::path study;
+  std::filesystem::path out;  // empty: results/<study>
+  int jobs = 1;
+};
+
+/// `furrow sweep` (commands_sweep.cpp). @throws Error
+ExitCode sweep_command(const SweepArguments& arguments);
+
+struct SoilArguments {
+  std::filesystem::path out;  // empty: a fresh folder under results/
+  bool overwrite = false;
+  bool quick = false;
+  int seeds = 3;
+  double speed = 0.1;             // of the tools, m/s
+  std::vector<std::string> only;  // plate, shear, cone, repose; empty: all
+};
+
+/// `furrow soil` (commands_soil.cpp). @throws Error
+ExitCode soil_command(const scenario::Scenario& scenario, const SoilArguments& arguments);
+
+struct PressArguments {
+  std::filesystem::path out;  // empty: a fresh folder under results/
+  bool overwrite = false;
+  std::string obstacle = "plate";                    // plate | cleat
+  double deflection = 0.02;                          // largest, m
+  int points = 10;                                   // of the curve up to it
+  double load = 4561.65;                             // of the footprint, N
+  double cleat_height = 0.025, cleat_width = 0.025;  // m
+};
+
+/// `furrow press` (commands_press.cpp). @throws Error
+ExitCode press_command(const scenario::Scenario& scenario, const PressArguments& arguments);
+
+/// `furrow bed` (commands_bed.cpp). @throws Error
+ExitCode bed_command(const scenario::Scenario& scenario);
+
+/// What the end of a run tells people, from summary.json (commands_result.cpp).
+std::string result_text(const std::filesystem::path& run, const scenario::Scenario& scenario);
+
+/// @throws Error(bad_input) unless the terrain is made of grains; `what` says why it must be
+void require_grains(const scenario::Scenario& scenario, const std::string& what);
+
+/// "furrow: error: …", one line for every line of `text`.
+void print_error(const std::string& text);
+void print_warning(const std::string& text);
+
+}  // namespace furrow::commands

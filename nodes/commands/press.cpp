@@ -1,0 +1,90 @@
+// `furrow press`: a tire of a scenario against a plate or a cleat.
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+
+#include <fmt/format.h>
+
+#include "nodes/commands/commands.hpp"
+#include "nodes/launch/progress.hpp"
+#include "nodes/launch/run_directory.hpp"
+#include "nodes/launch/signals.hpp"
+#include "nodes/scenario/scenario.hpp"
+#include "protocol/files/text_file.hpp"
+#include "tire/press.hpp"
+
+namespace furrow::commands {
+namespace {
+
+constexpr int kFormatVersion = 1;
+
+tire::PressOptions press_options(const scenario::Scenario& scenario, const PressArguments& arguments) {
+  const auto require = [](bool ok, const char* key, const std::string& what) {
+    if (!ok) throw input_error("command line", key, what);
+  };
+  if (scenario.tires.front().rigid)
+    throw input_error(scenario.file.string(), "tire.rigid",
+                      "is true: a rigid tire does not deflect, expected false");
+  require(arguments.obstacle == "plate" || arguments.obstacle == "cleat", "--on",
+          "is '" + arguments.obstacle + "', expected plate or cleat");
+  require(arguments.deflection > 0.0 && arguments.deflection <= 0.2, "--deflection",
+          "expected above 0 up to 0.2 m");
+  require(arguments.points >= 1 && arguments.points <= 1000, "--points", "expected 1 to 1000");
+  require(arguments.load > 0.0 && std::isfinite(arguments.load), "--load", "expected above 0 N");
+  require(arguments.cleat_height > 0.0 && arguments.cleat_height <= 0.2, "--cleat-height",
+          "expected above 0 up to 0.2 m");
+  require(arguments.cleat_width > 0.0 && arguments.cleat_width <= 1.0, "--cleat-width",
+          "expected above 0 up to 1 m");
+  tire::PressOptions o;
+  o.tire = scenario.tires.front();
+  if (arguments.obstacle == "cleat")
+    o.obstacle.height = arguments.cleat_height, o.obstacle.width = arguments.cleat_width;
+  o.deflection = arguments.deflection;
+  o.points = arguments.points;
+  o.load = arguments.load;
+  return o;
+}
+
+}  // namespace
+
+ExitCode press_command(const scenario::Scenario& scenario, const PressArguments& arguments) {
+  const tire::PressOptions options = press_options(scenario, arguments);
+  launch::RunDirectory directory(scenario.name + "-press", arguments.out, arguments.overwrite);
+  launch::catch_stop_signals();
+  try {
+    launch::ProgressDisplay display;
+    const auto begin = std::chrono::steady_clock::now();
+    const tire::PressResults results = tire::press_tire(options, [&](const std::string& what, double share) {
+      if (launch::stop_signalled()) throw Error(ExitCode::stopped, "stopped by a signal during pressing");
+      display.show({.phase = what, .share = share});
+    });
+    display.clear();
+    nlohmann::ordered_json summary = {{"format_version", kFormatVersion},
+                                      {"version", FURROW_VERSION},
+                                      {"scenario", scenario.name},
+                                      {"tire", options.tire.file.filename().string()}};
+    summary.update(tire::press_json(options, results));
+    summary["wall_s"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    write_whole_file(directory.path() / "scenario.json", scenario.completed + "\n");
+    tire::write_press_tables(directory.path(), results);
+    write_whole_file(directory.path() / "summary.json", summary.dump(2) + "\n");
+    if (!summary["statically_stable"].get<bool>())
+      print_warning(
+          "this tire wrinkles under its pressure: the equilibrium was reached by creep and need not be the "
+          "only one; see summary.json, loading_unloading_difference");
+    if (summary["deflection_m"].is_null())
+      print_warning(fmt::format(
+          "the load of {:g} N was not reached: the largest force is {:.4g} N; no stiffness is given, and the "
+          "footprint is that of this force; see --load and --deflection",
+          options.load, results.at_load.force));
+    std::cout << directory.path().string() << std::endl;
+  } catch (const Error&) {
+    directory.discard();
+    throw;
+  }
+  make_report_or_warn(directory.path());
+  return ExitCode::done;
+}
+
+}  // namespace furrow::commands

@@ -1,0 +1,190 @@
+// One rank of `furrow run` or `furrow resume`, started by a supervisor or by the user's own mpirun or srun.
+#include <unistd.h>
+#include <csignal>
+#include <cstdlib>
+#include <iostream>
+#include <string>
+
+#include <chrono>
+#include <optional>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "nodes/checkpoint/resume.hpp"
+#include "nodes/commands/commands.hpp"
+#include "nodes/launch/run_directory.hpp"
+#include "nodes/launch/signals.hpp"
+#include "nodes/launch/supervisor_lines.hpp"
+#include "nodes/launch/thread_setup.hpp"
+#include "nodes/ranks/run_node.hpp"
+#include "nodes/scenario/load_scenario.hpp"
+#include "protocol/abandon_mpi.hpp"
+#include "protocol/mpi_transport.hpp"
+
+namespace furrow::commands {
+namespace {
+
+constexpr auto kTimeForNews = std::chrono::milliseconds(300);
+
+/// Speaks to the supervisor, or to the user where there is none.
+class Voice {
+ public:
+  Voice() : supervised_(std::getenv(launch::kSupervisedVariable) != nullptr), rank_(launched_rank()) {}
+
+  bool supervised() const { return supervised_; }
+  int rank() const { return rank_; }
+
+  void started() const {
+    if (supervised_) send({launch::RankLine::Kind::started, rank_, {}, ExitCode::done, {}});
+  }
+  void note(const std::string& text) {
+    if (supervised_)
+      send({launch::RankLine::Kind::note, rank_, text, ExitCode::done, {}});
+    else
+      display_.say("furrow: " + text);
+  }
+  void error(const Error& error) {
+    if (supervised_) return send({launch::RankLine::Kind::error, rank_, error.what(), error.code(), {}});
+    display_.clear();
+    if (error.code() == ExitCode::stopped)
+      display_.say(std::string("furrow: ") + error.what());
+    else
+      print_error(error.what());
+  }
+  void show(const launch::Progress& progress) {
+    if (supervised_)
+      send({launch::RankLine::Kind::progress, rank_, {}, ExitCode::done, progress});
+    else
+      display_.show(progress);
+  }
+  void clear() { display_.clear(); }
+
+ private:
+  /// One write, so that lines of several ranks do not mix.
+  static void send(const launch::RankLine& line) {
+    const std::string text = launch::encode(line);
+    if (write(STDOUT_FILENO, text.data(), text.size()) < 0) return;  // nobody listens: nobody needs it
+  }
+  bool supervised_;
+  int rank_;
+  launch::ProgressDisplay display_;
+};
+
+/// A mistake in the scenario is found by every rank; the first on each machine tells it.
+bool first_on_machine() {
+  for (const char* variable : {"OMPI_COMM_WORLD_LOCAL_RANK", "MPI_LOCALRANKID", "SLURM_LOCALID"})
+    if (const char* value = std::getenv(variable)) return std::atoi(value) == 0;
+  return launched_rank() == 0;
+}
+
+/// True when another node failed of the very same, and tells it.
+bool told_by_another(Transport& transport, const Error& error) {
+  if (transport.self() == Address{Role::rig, 0}) return false;
+  std::this_thread::sleep_for(kTimeForNews);
+  try {
+    transport.check_peers();
+  } catch (const PeerFailure& peer) {
+    return std::string(peer.what()) == error.what();
+  } catch (const Error&) {
+  }
+  return false;
+}
+
+/// The rig's rank makes the folder, unless a supervisor has, and tells the others.
+std::filesystem::path agree_on_directory(Transport& transport, const scenario::Scenario& scenario,
+                                         const RunArguments& arguments, const Voice& voice,
+                                         std::optional<launch::RunDirectory>& made) {
+  if (voice.supervised()) return arguments.out;
+  const Address rig{Role::rig, 0};
+  if (transport.self() != rig) return receive<RunFolder>(transport, rig).path;
+  if (arguments.resume)
+    made.emplace(arguments.out);
+  else
+    made.emplace(scenario.name, arguments.out, arguments.overwrite);
+  const RunFolder folder{std::filesystem::absolute(made->path()).string()};
+  for (int k = 0; k < transport.tire_count(); ++k) send(transport, Address{Role::tire, k}, folder);
+  send(transport, Address{Role::terrain, 0}, folder);
+  return made->path();
+}
+
+ExitCode run_this_node(Transport& transport, const scenario::Scenario& scenario,
+                       const checkpoint::ResumePoint* resume, const RunArguments& arguments, Voice& voice) {
+  std::optional<launch::RunDirectory> made;
+  try {
+    ranks::RunContext context;
+    transport.set_peer_timeout(scenario.run.peer_timeout);
+    try {
+      context.directory = agree_on_directory(transport, scenario, arguments, voice, made);
+    } catch (const PeerFailure&) {
+      throw;
+    } catch (const Error& error) {
+      transport.announce_failure(error.code(), error.what());
+      throw;
+    }
+    const launch::ThreadPlan plan = launch::plan_threads(transport, scenario.run.threads);
+    launch::apply(plan);
+    if (!plan.note.empty()) voice.note(plan.note);
+    context.threads = plan.threads;
+    context.profile = arguments.profile;
+    context.stop_requested = [] { return launch::stop_signalled(); };
+    context.note = [&](const std::string& text) { voice.note(text); };
+    context.resume = resume;
+    context.progress = [&](const launch::Progress& progress) { voice.show(progress); };
+    const ExitCode code = ranks::run_node(scenario, transport, context);
+    voice.clear();
+    if (made && code == ExitCode::done) std::cerr << result_text(made->path(), scenario);
+    if (made) std::cout << made->path().string() << std::endl;
+    return code;
+  } catch (const PeerFailure& failure) {
+    if (made && failure.code() == ExitCode::bad_input) made->discard();
+    return failure.code();  // whoever failed has told the user
+  } catch (const Error& error) {
+    if (made && error.code() == ExitCode::bad_input) made->discard();
+    if (!told_by_another(transport, error)) voice.error(error);
+    if (error.code() == ExitCode::rank_lost) abandon_mpi(static_cast<int>(error.code()));
+    return error.code();
+  } catch (const std::exception& error) {
+    voice.error(physics_error(std::string("unexpected: ") + error.what()));
+    return ExitCode::physics;
+  }
+}
+
+}  // namespace
+
+void let_first_rank_speak() { std::this_thread::sleep_for(std::chrono::seconds(1)); }
+
+ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
+  launch::die_with_parent(SIGKILL, getppid());
+  launch::catch_stop_signals();
+  Voice voice;
+  std::optional<scenario::Scenario> scenario;
+  checkpoint::ResumePlan plan;
+  try {
+    if (arguments.resume) plan = checkpoint::plan_resume(arguments.out, arguments.settings);
+    if (plan.finished) return ExitCode::done;
+    scenario =
+        arguments.resume ? plan.scenario : scenario::load_scenario(arguments.scenario, arguments.settings);
+  } catch (const Error& error) {
+    if (first_on_machine())
+      voice.error(error);
+    else
+      let_first_rank_speak();
+    return error.code();
+  }
+  if (!voice.supervised() && voice.rank() == 0)
+    for (const auto* warnings : {&scenario->warnings, &plan.warnings})
+      for (const std::string& warning : *warnings) print_warning(warning);
+  std::unique_ptr<Transport> transport;
+  try {
+    transport =
+        make_mpi_transport(&argc, &argv, static_cast<int>(scenario->tires.size()), scenario->terrain_ranks);
+  } catch (const Error& error) {
+    if (voice.rank() == 0) voice.error(error);
+    return error.code();
+  }
+  voice.started();
+  return run_this_node(*transport, *scenario, arguments.resume ? &plan.point : nullptr, arguments, voice);
+}
+
+}  // namespace furrow::commands

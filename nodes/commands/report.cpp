@@ -1,0 +1,97 @@
+// The plots of a run, made by scripts/report.py with Debian's own Python, whatever python stands first on
+// PATH.
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <csignal>
+#include <cstdio>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "nodes/commands/commands.hpp"
+#include "nodes/launch/run_directory.hpp"
+#include "nodes/launch/signals.hpp"
+#include "nodes/scenario/scenario.hpp"
+#include "protocol/files/data_files.hpp"
+
+namespace furrow::commands {
+namespace {
+
+constexpr const char* kPython = "/usr/bin/python3";
+
+struct Finished {
+  int status = 0;      // of waitpid
+  std::string output;  // standard output
+};
+
+/// Runs a program to its end; a stop signal ends it.
+Finished run_program(std::vector<std::string> command, bool quiet) {
+  std::vector<char*> arguments;
+  for (std::string& argument : command) arguments.push_back(argument.data());
+  arguments.push_back(nullptr);
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) throw io_error("pipe", std::strerror(errno));
+  const pid_t parent = getpid(), child = fork();
+  if (child < 0) throw io_error(command.front(), std::strerror(errno));
+  if (child == 0) {
+    launch::die_with_parent(SIGKILL, parent);
+    launch::restore_signals();
+    dup2(ends[1], STDOUT_FILENO);
+    if (quiet) dup2(open("/dev/null", O_WRONLY), STDERR_FILENO);
+    execv(arguments.front(), arguments.data());
+    _exit(127);
+  }
+  close(ends[1]);
+  Finished finished;
+  std::array<char, 4096> bytes;
+  for (ssize_t count; (count = read(ends[0], bytes.data(), bytes.size())) != 0;) {
+    if (count > 0)
+      finished.output.append(bytes.data(), static_cast<std::size_t>(count));
+    else if (errno != EINTR)
+      break;
+    if (launch::stop_signalled()) kill(child, SIGTERM);
+  }
+  close(ends[0]);
+  while (waitpid(child, &finished.status, 0) < 0 && errno == EINTR)
+    if (launch::stop_signalled()) kill(child, SIGTERM);
+  return finished;
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> make_report(const std::filesystem::path& run, bool quiet) {
+  launch::require_run_directory(run);
+  const std::filesystem::path script = data_folder() / "scripts" / "report.py";
+  if (access(kPython, X_OK) != 0)
+    throw io_error(kPython, "is missing, expected Debian's python3 with python3-matplotlib and python3-h5py");
+  if (access(script.c_str(), R_OK) != 0)
+    throw io_error(
+        script.string(),
+        "is missing, expected the plotting script (FURROW_HOME names the folder that holds scripts/)");
+  const Finished finished = run_program({kPython, script.string(), run.string()}, quiet);
+  const auto list = nlohmann::json::parse(finished.output, nullptr, false);
+  if (!WIFEXITED(finished.status) || WEXITSTATUS(finished.status) != 0 || !list.is_array())
+    throw io_error(run.string(), launch::stop_signalled() ? "the plots were interrupted"
+                                 : quiet
+                                     ? fmt::format("made no plots; 'furrow report {}' says why", run.string())
+                                     : "made no plots, expected the results of a run");
+  std::vector<std::filesystem::path> plots;
+  for (const auto& name : list) plots.emplace_back(name.get<std::string>());
+  return plots;
+}
+
+std::vector<std::filesystem::path> make_report_or_warn(const std::filesystem::path& run) {
+  try {
+    return make_report(run, true);
+  } catch (const Error& error) {
+    print_warning(std::string("no plots: ") + error.what());
+    return {};
+  }
+}
+
+}  // namespace furrow::commands

@@ -1,0 +1,86 @@
+// The last lines of a run: what it found, from its summary.
+#include <cmath>
+#include <fstream>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "nodes/commands/commands.hpp"
+#include "nodes/scenario/scenario.hpp"
+
+namespace furrow::commands {
+namespace {
+
+using nlohmann::json;
+
+double number(const json& object, const char* key) {
+  return object.is_object() && object.contains(key) && object[key].is_number() ? object[key].get<double>()
+                                                                               : NAN;
+}
+
+json read_summary(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  json summary = json::parse(in, nullptr, false);
+  if (!summary.is_object()) throw io_error(file.string(), "cannot be read, expected the summary of the run");
+  return summary;
+}
+
+std::string pull_line(const json& summary, const scenario::Scenario& scenario) {
+  const json pull = summary.value("drawbar_pull_N", json::object());
+  const double mean = number(pull, "mean"), load = number(summary, "vertical_load_N");
+  const json force = summary.value("net_terrain_force_N", json::array());
+  if (force.size() == 3 && force[2].is_number() && force[2].get<double>() == 0.0)
+    return "furrow: the tire did not touch the terrain in the averaging window: nothing was measured\n";
+  std::string text = fmt::format(
+      "furrow: drawbar pull {:.0f} ± {:.0f} N, {:.1f} % of the load of {:.0f} N, mean over {:.3g} to {:.3g} "
+      "s\n",
+      mean, number(pull, "sem"), 100.0 * mean / load, load, number(pull, "from_s"), number(pull, "to_s"));
+  if (pull.value("steady", false)) {
+    text += "furrow: the pull is steady\n";
+  } else {
+    std::string why;
+    for (const json& reason : pull.value("unsteady_because", json::array()))
+      why += (why.empty() ? "" : "; ") + reason.get<std::string>();
+    text += "furrow: the pull is not steady" + (why.empty() ? "" : ": " + why) + "\n";
+  }
+  if (scenario.expected.given) {
+    const double off = std::abs(mean - scenario.expected.drawbar_pull);
+    text += fmt::format("furrow: expected {:.0f} ± {:.0f} N: {}\n", scenario.expected.drawbar_pull,
+                        scenario.expected.drawbar_pull_spread,
+                        off <= scenario.expected.drawbar_pull_spread ? "within" : "NOT within");
+  }
+  return text;
+}
+
+std::string ranks_line(const json& summary) {
+  std::vector<std::string> parts;
+  for (const json& rank : summary.value("ranks", json::array()))
+    parts.push_back(fmt::format("{} {:.0f} % busy", rank.value("node", std::string("?")),
+                                100.0 * number(rank, "busy_share")));
+  return parts.empty() ? "" : fmt::format(": {}", fmt::join(parts, ", "));
+}
+
+}  // namespace
+
+std::string result_text(const std::filesystem::path& run, const scenario::Scenario& scenario) {
+  const json summary = read_summary(run / "summary.json");
+  std::string text;
+  for (std::size_t k = 0; k < scenario.rigs.size(); ++k) {
+    const json wheel = k == 0 ? summary : read_summary(run / fmt::format("summary_wheel{}.json", k));
+    const auto millimetres = [&](const char* key) { return 1e3 * number(wheel, key); };
+    if (scenario.rigs.size() > 1) text += fmt::format("furrow: wheel {}\n", k);
+    text += pull_line(wheel, scenario);
+    text += fmt::format("furrow: sinkage {:.1f} mm", millimetres("sinkage_m"));
+    if (std::isfinite(millimetres("rut_width_m")))
+      text += fmt::format(", rut {:.1f} mm deep, {:.0f} mm wide", millimetres("rut_depth_m"),
+                          millimetres("rut_width_m"));
+    text += "\n";
+  }
+  text += fmt::format("furrow: {:.1f} s for {:g} simulated s, {:.1f} s to prepare the bed{}\n",
+                      number(summary, "wall_s"), number(summary, "simulated_s"),
+                      number(summary, "settle_wall_s"), ranks_line(summary));
+  return text;
+}
+
+}  // namespace furrow::commands

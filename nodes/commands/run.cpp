@@ -1,0 +1,106 @@
+// `furrow run` and `furrow resume` outside MPI: check first, then have the ranks started and watched, then tell the result.
+#include <cstdio>
+#include <iostream>
+
+#include <fmt/format.h>
+
+#include "nodes/checkpoint/checkpoint.hpp"
+#include "nodes/checkpoint/resume.hpp"
+#include "nodes/commands/commands.hpp"
+#include "nodes/launch/run_directory.hpp"
+#include "nodes/launch/signals.hpp"
+#include "nodes/launch/supervisor.hpp"
+#include "nodes/scenario/load_scenario.hpp"
+
+namespace furrow::commands {
+namespace {
+
+std::vector<std::string> rank_arguments(const RunArguments& arguments,
+                                        const std::filesystem::path& directory) {
+  std::vector<std::string> list{"run", arguments.scenario.string(), "--out", directory.string()};
+  if (arguments.resume) list = {"resume", directory.string()};
+  for (const auto& [key, value] : arguments.settings) {
+    list.push_back("--set");
+    list.push_back(key + "=" + value);
+  }
+  if (arguments.profile) list.push_back("--profile");
+  return list;
+}
+
+void tell_result(const scenario::Scenario& scenario, const std::filesystem::path& directory, bool plots) {
+  std::fputs(result_text(directory, scenario).c_str(), stderr);
+  if (!plots) return;
+  const auto made = make_report_or_warn(directory);
+  if (!made.empty())
+    std::fprintf(stderr, "furrow: plots: %s and %zu more\n", made.front().c_str(), made.size() - 1);
+}
+
+/// What can be done with a run that did not come to its end.
+void tell_how_to_go_on(const std::filesystem::path& directory) {
+  if (checkpoint::list_checkpoints(directory).empty())
+    std::fprintf(stderr, "furrow: there is no checkpoint yet; start again with furrow run\n");
+  else
+    std::fprintf(stderr, "furrow: to go on from the last checkpoint: furrow resume %s\n",
+                 scenario::shell_quoted(directory.string()).c_str());
+}
+
+ExitCode have_it_run(const scenario::Scenario& scenario, launch::RunDirectory& directory,
+                     const RunArguments& arguments) {
+  launch::LaunchResult result;
+  {
+    launch::ProgressDisplay display;
+    result = launch::supervise({rank_arguments(arguments, directory.path()), scenario::rank_table(scenario),
+                                directory.path() / "run.log"},
+                               display);
+  }
+  if (result.code == ExitCode::bad_input) directory.discard();
+  if (result.code == ExitCode::stopped) {
+    std::fprintf(stderr, "furrow: %s; what there is of the results stands in %s\n", result.error.c_str(),
+                 directory.path().c_str());
+    tell_how_to_go_on(directory.path());
+  } else if (result.code != ExitCode::done) {
+    print_error(result.error);
+    if (result.code != ExitCode::bad_input) {
+      std::fprintf(stderr, "furrow: what the ranks said stands in %s\n",
+                   (directory.path() / "run.log").c_str());
+      tell_how_to_go_on(directory.path());
+    }
+    return result.code;
+  } else {
+    tell_result(scenario, directory.path(), arguments.plots);
+  }
+  std::cout << directory.path().string() << "\n";
+  return result.code;
+}
+
+}  // namespace
+
+ExitCode run_supervised(const RunArguments& arguments) {
+  const scenario::Scenario scenario = scenario::load_scenario(arguments.scenario, arguments.settings);
+  for (const std::string& warning : scenario.warnings) print_warning(warning);
+  launch::find_mpirun();
+  launch::RunDirectory directory(scenario.name, arguments.out, arguments.overwrite);
+  launch::catch_stop_signals();
+  std::fprintf(stderr, "furrow: %s, results in %s\n", scenario.name.c_str(), directory.path().c_str());
+  return have_it_run(scenario, directory, arguments);
+}
+
+ExitCode resume_supervised(const RunArguments& arguments) {
+  launch::RunDirectory directory(arguments.out);
+  const checkpoint::ResumePlan plan = checkpoint::plan_resume(directory.path(), arguments.settings);
+  for (const auto* warnings : {&plan.scenario.warnings, &plan.warnings})
+    for (const std::string& warning : *warnings) print_warning(warning);
+  if (plan.finished) {
+    std::fprintf(stderr, "furrow: %s has come to its end at %g s, there is nothing to do\n",
+                 directory.path().c_str(), plan.scenario.run.end);
+    std::cout << directory.path().string() << "\n";
+    return ExitCode::done;
+  }
+  launch::find_mpirun();
+  launch::catch_stop_signals();
+  std::fprintf(stderr, "furrow: %s goes on from t = %g s, results in %s\n", plan.scenario.name.c_str(),
+               plan.point.manifest.time, directory.path().c_str());
+  return have_it_run(plan.scenario, directory, arguments);
+}
+
+}  // namespace furrow::commands

@@ -1,0 +1,92 @@
+// `furrow soil`: virtual soil tests on a scenario's grains.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+
+#include "nodes/commands/commands.hpp"
+#include "nodes/launch/progress.hpp"
+#include "nodes/launch/run_directory.hpp"
+#include "nodes/launch/signals.hpp"
+#include "nodes/scenario/scenario.hpp"
+#include "protocol/files/text_file.hpp"
+#include "terrain/soil/soil_output.hpp"
+
+namespace furrow::commands {
+namespace {
+
+double wall_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+terrain::soil::SoilOptions soil_options(const scenario::Scenario& scenario, const SoilArguments& arguments) {
+  const auto require = [](bool ok, const char* key, const std::string& what) {
+    if (!ok) throw input_error("command line", key, what);
+  };
+  require(arguments.seeds >= 1 && arguments.seeds <= 100, "--seeds",
+          "is " + std::to_string(arguments.seeds) + ", expected 1 to 100");
+  require(arguments.speed > 0.0 && arguments.speed <= 10.0, "--speed", "expected above 0 up to 10 m/s");
+  terrain::soil::SoilOptions o;
+  o.material = scenario.terrain;
+  o.seeds = arguments.quick ? 1 : arguments.seeds;
+  o.speed = arguments.speed;
+  o.quick = arguments.quick;
+  o.threads = scenario.terrain.settle_threads;
+  const auto& only = arguments.only;
+  const auto asked = [&](const char* test) {
+    return only.empty() || std::find(only.begin(), only.end(), test) != only.end();
+  };
+  for (const std::string& test : only)
+    require(test == "plate" || test == "shear" || test == "cone" || test == "repose", "--only",
+            "is '" + test + "', expected plate, shear, cone or repose");
+  o.plate = asked("plate"), o.shear = asked("shear"), o.cone = asked("cone"), o.repose = asked("repose");
+  return o;
+}
+
+/// Shows share and time left; ends the tests when a signal asks for it.
+ProgressCall shown_on(launch::ProgressDisplay& display) {
+  return [&display, begin = wall_s()](const std::string& what, double share) {
+    if (launch::stop_signalled()) throw Error(ExitCode::stopped, "stopped by a signal during the soil tests");
+    launch::Progress progress{.phase = what, .share = share};
+    if (share > 0.0) progress.eta = (wall_s() - begin) * (1.0 - share) / share;
+    display.show(progress);
+  };
+}
+
+}  // namespace
+
+ExitCode soil_command(const scenario::Scenario& scenario, const SoilArguments& arguments) {
+  require_grains(scenario, "only grains can be tested");
+  const terrain::soil::SoilOptions options = soil_options(scenario, arguments);
+  const terrain::soil::SoilPlan plan = terrain::soil::soil_plan(options);
+  if (!scenario.terrain.bed.empty())
+    print_warning(input_error(scenario.file.string(), "terrain.bed",
+                              "is not what is tested: the tests make small beds of the same grains")
+                      .what());
+  launch::RunDirectory directory(scenario.name + "-soil", arguments.out, arguments.overwrite);
+  launch::catch_stop_signals();
+  std::fprintf(stderr, "furrow: soil tests of %s, results in %s\n", scenario.name.c_str(),
+               directory.path().c_str());
+  try {
+    launch::ProgressDisplay display;
+    const double begin = wall_s();
+    const terrain::soil::SoilResults results =
+        terrain::soil::run_soil_tests(options, plan, shown_on(display));
+    display.clear();
+    const terrain::soil::SoilRun run{scenario.name, scenario.digest, options,
+                                     plan,          results,         wall_s() - begin};
+    const nlohmann::ordered_json soil = terrain::soil::soil_json(run);
+    write_whole_file(directory.path() / "scenario.json", scenario.completed + "\n");
+    terrain::soil::write_soil_tables(directory.path(), run);
+    write_whole_file(directory.path() / "soil.json", soil.dump(2) + "\n");
+    std::fputs(terrain::soil::soil_text(soil).c_str(), stderr);
+    std::cout << soil.dump(2) << "\n";
+  } catch (const Error&) {
+    directory.discard();
+    throw;
+  }
+  make_report_or_warn(directory.path());
+  return ExitCode::done;
+}
+
+}  // namespace furrow::commands

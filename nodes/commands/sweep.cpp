@@ -1,0 +1,39 @@
+// `furrow sweep`: the table of runs of a study.
+#include <unistd.h>
+#include <cstdio>
+#include <iostream>
+
+#include "nodes/commands/commands.hpp"
+#include "nodes/launch/run_directory.hpp"
+#include "nodes/launch/signals.hpp"
+#include "nodes/study/sweep.hpp"
+
+namespace furrow::commands {
+
+ExitCode sweep_command(const SweepArguments& arguments) {
+  study::Study study = study::load_study(arguments.study);
+  if (arguments.jobs < 1 || arguments.jobs > 1024)
+    throw input_error("command line", "--jobs",
+                      "is " + std::to_string(arguments.jobs) + ", expected 1 to 1024");
+  const std::filesystem::path folder =
+      arguments.out.empty() ? std::filesystem::path("results") / study.name : arguments.out;
+  const bool to_plot = study.passes > 0 || !study.plot.is_null();
+  study::Sweep sweep(std::move(study), {folder, arguments.jobs});
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || access(folder.c_str(), W_OK | X_OK) != 0)
+    throw input_error(folder.string(), "--out", "cannot be written, expected a place that can be written");
+  const int lock = launch::lock_folder(folder, "--out");
+  launch::catch_stop_signals();
+  const ExitCode code = sweep.run();
+  if (code != ExitCode::stopped) {
+    if (to_plot) make_report_or_warn(folder);
+  } else {
+    std::fprintf(stderr, "furrow: stopped by a signal; the same command goes on\n");
+  }
+  close(lock);
+  std::cout << folder.string() << "\n";
+  return code;
+}
+
+}  // namespace furrow::commands

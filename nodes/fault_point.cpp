@@ -1,7 +1,0 @@
-#include "nodes/fault_point.hpp"
-
-namespace furrow {
-
-void fault_point(const char*) {}
-
-}  // namespace furrow

@@ -1,0 +1,46 @@
+// What the user sees while a run is under way.
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace furrow::launch {
+
+struct Progress {
+  std::string phase;     // "settling", "running", …
+  double share = 0.0;    // of the phase, 0…1
+  double time = 0.0;     // simulated, s
+  double end = 0.0;      // s
+  double pull = 0.0;     // N
+  double sinkage = 0.0;  // m
+  double speed = 0.0;    // m/s
+  double eta = -1.0;     // wall seconds left; negative: unknown
+};
+
+using ProgressSink = std::function<void(const Progress&)>;
+
+/// "t 0.512 of 1.5 s   pull 1432 N   sinkage 31 mm   1.40 m/s   1:23 left".
+std::string progress_text(const Progress& progress);
+
+/// Draws on standard error: one live line on a terminal, otherwise a line every few seconds.
+class ProgressDisplay {
+ public:
+  ProgressDisplay();
+  ~ProgressDisplay() { clear(); }
+  ProgressDisplay(const ProgressDisplay&) = delete;
+  ProgressDisplay& operator=(const ProgressDisplay&) = delete;
+
+  void show(const Progress& progress);
+  /// A line that stays.
+  void say(const std::string& text);
+  /// Takes the live line away.
+  void clear();
+
+ private:
+  bool terminal_;
+  bool drawn_ = false;
+  double last_ = -1e300;  // wall time of the last line, s
+  std::string phase_;
+};
+
+}  // namespace furrow::launch

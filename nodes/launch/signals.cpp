@@ -1,0 +1,54 @@
+#include "nodes/launch/signals.hpp"
+
+#include <sys/prctl.h>
+#include <unistd.h>
+#include <csignal>
+
+#include <atomic>
+
+namespace furrow::launch {
+namespace {
+
+constexpr int kStopSignals[] = {SIGTERM, SIGINT, SIGHUP, SIGUSR1};
+std::atomic<int> stop_count{0};
+static_assert(std::atomic<int>::is_always_lock_free);  // safe in a signal handler
+
+void count_stop(int) { stop_count.fetch_add(1, std::memory_order_relaxed); }
+
+void set_handler(int signal, void (*handler)(int)) {
+  struct sigaction action = {};
+  action.sa_handler = handler;
+  sigemptyset(&action.sa_mask);
+  sigaction(signal, &action, nullptr);  // without SA_RESTART: waiting calls return, and look at the flag
+}
+
+/// Who starts a program with nohup, or in the background of a script, wants it to live on.
+bool ignored(int signal) {
+  struct sigaction action = {};
+  return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+}  // namespace
+
+void catch_stop_signals() {
+  for (const int signal : kStopSignals)
+    if (!ignored(signal)) set_handler(signal, count_stop);
+  set_handler(SIGPIPE, SIG_IGN);
+}
+
+int stop_signals() { return stop_count.load(std::memory_order_relaxed); }
+
+void restore_signals() {
+  for (const int signal : kStopSignals) set_handler(signal, SIG_DFL);
+  set_handler(SIGPIPE, SIG_DFL);
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+}
+
+void die_with_parent(int signal, int parent) {
+  prctl(PR_SET_PDEATHSIG, signal);
+  if (getppid() != parent) raise(signal);
+}
+
+}  // namespace furrow::launch

@@ -1,0 +1,335 @@
+#include "nodes/launch/supervisor.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <csignal>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <optional>
+#include <set>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "nodes/launch/signals.hpp"
+#include "nodes/launch/supervisor_lines.hpp"
+#include "nodes/launch/supervisor_text.hpp"
+#include "nodes/launch/thread_setup.hpp"
+
+namespace furrow::launch {
+namespace {
+
+constexpr double kStopPatience =
+    300.0;  // s from the wish to stop until mpirun is told to end: time for a checkpoint
+constexpr double kStartPatience = 20.0;  // s that a wish to stop waits for ranks that are still starting
+constexpr double kKillPatience = 5.0;    // s from that until it is killed
+constexpr double kDrainPatience = 1.0;   // s to read what is left once mpirun has ended
+constexpr double kLogInterval = 5.0;     // s between lines of progress in the log
+constexpr int kPollInterval = 100;       // ms
+constexpr int kCannotRun = 127;
+
+double wall_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+struct Pipe {
+  int read = -1, write = -1;
+  Pipe() {
+    int ends[2];
+    if (pipe2(ends, O_CLOEXEC) != 0) throw io_error("pipe", std::strerror(errno));
+    read = ends[0];
+    write = ends[1];
+  }
+  ~Pipe() {
+    close_read();
+    close_write();
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+  void close_read() { close_end(read); }
+  void close_write() { close_end(write); }
+
+ private:
+  static void close_end(int& end) {
+    if (end >= 0) ::close(end);
+    end = -1;
+  }
+};
+
+/// Cuts what a pipe delivers into lines.
+class Lines {
+ public:
+  template <class Use>
+  void add(const char* bytes, std::size_t count, const Use& use) {
+    rest_.append(bytes, count);
+    std::size_t from = 0;
+    for (std::size_t end; (end = rest_.find('\n', from)) != std::string::npos; from = end + 1)
+      use(std::string_view(rest_).substr(from, end - from));
+    rest_.erase(0, from);
+  }
+
+ private:
+  std::string rest_;
+};
+
+std::string signal_name(int signal) {
+  const char* name = strsignal(signal);
+  return fmt::format("killed by signal {} ({})", signal, name ? name : "unknown");
+}
+
+std::vector<std::string> mpirun_command(const Launch& launch) {
+  std::vector<std::string> command{find_mpirun().string(),
+                                   "--oversubscribe",
+                                   "--bind-to",
+                                   "none",
+                                   "-n",
+                                   std::to_string(launch.ranks.size())};
+  // Ranks on other machines of an allocation do not inherit the environment.
+  for (const char* variable : {kSupervisedVariable, "OMP_WAIT_POLICY", "OPENBLAS_NUM_THREADS"}) {
+    command.push_back("-x");
+    command.push_back(variable);
+  }
+  std::error_code error;
+  command.push_back(std::filesystem::read_symlink("/proc/self/exe", error).string());
+  command.insert(command.end(), launch.arguments.begin(), launch.arguments.end());
+  return command;
+}
+
+void set_environment() {
+  setenv(kSupervisedVariable, "1", 1);
+  setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
+  setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
+  for (const std::string& pair : passive_environment()) {
+    const std::size_t equals = pair.find('=');
+    setenv(pair.substr(0, equals).c_str(), pair.substr(equals + 1).c_str(), 0);
+  }
+}
+
+class Supervisor {
+ public:
+  Supervisor(const Launch& launch, ProgressDisplay& display)
+      : launch_(launch), display_(display), log_(launch.log, std::ios::app) {
+    if (!log_) throw io_error(launch.log.string(), "cannot be written");
+  }
+  ~Supervisor() {
+    if (!reaped_ && child_ > 0) {
+      kill(-child_, SIGKILL);
+      waitpid(child_, nullptr, 0);
+    }
+  }
+
+  LaunchResult run() {
+    start();
+    while (!(reaped_ && (both_closed() || wall_s() - reaped_at_ > kDrainPatience))) {
+      read_some();
+      reap();
+      if (!reaped_) pass_on_stop();
+    }
+    kill(-child_, SIGKILL);  // whatever is left of its group
+    display_.clear();
+    const LaunchResult result = outcome();
+    if (!result.error.empty()) log_ << result.error << '\n';
+    return result;
+  }
+
+ private:
+  void start();
+  [[noreturn]] void become_mpirun(const std::vector<char*>& arguments);
+  void read_some();
+  void take_output(std::string_view line);
+  void take_error_text(std::string_view line) {
+    log_ << line << '\n';
+    launcher_.add(line);
+  }
+  void reap();
+  void pass_on_stop();
+  LaunchResult outcome() const;
+  LaunchResult lost_rank(int rank, const std::string& how) const;
+  bool both_closed() const { return out_.read < 0 && err_.read < 0; }
+
+  const Launch& launch_;
+  ProgressDisplay& display_;
+  std::ofstream log_;
+  Pipe out_, err_;
+  Lines out_lines_, err_lines_;
+  LauncherText launcher_;
+  std::set<int> started_;
+  std::optional<RankLine> error_;  // the first; one that tells a cause replaces one that tells of a loss
+  pid_t child_ = -1;
+  bool reaped_ = false;
+  int status_ = 0;
+  double logged_ = 0.0;  // wall time of the last progress in the log, s
+  double reaped_at_ = 0.0, stop_seen_ = 0.0, asked_ = 0.0, ended_ = 0.0;  // wall time, s; 0: not yet
+};
+
+void Supervisor::start() {
+  std::vector<std::string> command = mpirun_command(launch_);
+  std::vector<char*> arguments;
+  for (std::string& argument : command) arguments.push_back(argument.data());
+  arguments.push_back(nullptr);
+  const pid_t parent = getpid();
+  child_ = fork();
+  if (child_ < 0) throw io_error(command.front(), std::string("cannot be started: ") + std::strerror(errno));
+  if (child_ == 0) {
+    setpgid(0, 0);
+    die_with_parent(SIGTERM, parent);
+    become_mpirun(arguments);
+  }
+  setpgid(child_, child_);
+  out_.close_write();
+  err_.close_write();
+}
+
+void Supervisor::become_mpirun(const std::vector<char*>& arguments) {
+  restore_signals();
+  const int nothing = open("/dev/null", O_RDONLY);
+  dup2(nothing, STDIN_FILENO);
+  dup2(out_.write, STDOUT_FILENO);
+  dup2(err_.write, STDERR_FILENO);
+  set_environment();
+  execv(arguments.front(), arguments.data());
+  dprintf(STDERR_FILENO, "%s cannot be run: %s\n", arguments.front(), std::strerror(errno));
+  _exit(kCannotRun);
+}
+
+void Supervisor::read_some() {
+  std::array<pollfd, 2> ends{pollfd{out_.read, POLLIN, 0}, pollfd{err_.read, POLLIN, 0}};
+  if (poll(ends.data(), ends.size(), kPollInterval) <= 0) return;
+  std::array<char, 1 << 16> bytes;
+  for (Pipe* pipe : {&out_, &err_}) {
+    if (!(ends[pipe == &err_].revents & (POLLIN | POLLHUP | POLLERR))) continue;
+    const ssize_t count = read(pipe->read, bytes.data(), bytes.size());
+    if (count == 0) pipe->close_read();
+    if (count <= 0) continue;
+    const auto size = static_cast<std::size_t>(count);
+    if (pipe == &out_)
+      out_lines_.add(bytes.data(), size, [this](std::string_view line) { take_output(line); });
+    else
+      err_lines_.add(bytes.data(), size, [this](std::string_view line) { take_error_text(line); });
+  }
+}
+
+void Supervisor::take_output(std::string_view text) {
+  const auto line = decode(text);
+  if (!line) {
+    log_ << text << '\n';
+    return;
+  }
+  switch (line->kind) {
+    case RankLine::Kind::started:
+      started_.insert(line->rank);
+      break;
+    case RankLine::Kind::progress:
+      if (asked_ == 0.0) display_.show(line->progress);
+      if (const double now = wall_s(); now - logged_ >= kLogInterval) {
+        logged_ = now;
+        log_ << progress_text(line->progress) << '\n';
+      }
+      break;
+    case RankLine::Kind::note:
+      display_.say("furrow: " + line->text);
+      log_ << line->text << '\n';
+      break;
+    case RankLine::Kind::error:
+      log_ << fmt::format("rank {}: {}\n", line->rank, line->text);
+      if (!error_ || (error_->code == ExitCode::rank_lost && line->code != ExitCode::rank_lost))
+        error_ = line;
+      break;
+  }
+  log_.flush();
+}
+
+void Supervisor::reap() {
+  if (reaped_ || waitpid(child_, &status_, WNOHANG) != child_) return;
+  reaped_ = true;
+  reaped_at_ = wall_s();
+}
+
+void Supervisor::pass_on_stop() {
+  const int stops = stop_signals();
+  if (stops == 0) return;
+  const double now = wall_s();
+  if (stop_seen_ == 0.0) {
+    stop_seen_ = now;
+    display_.say("furrow: stopping; once more to stop at once");
+  }
+  const bool all_started = started_.size() == launch_.ranks.size();
+  // A rank that has not caught its signals yet would die of USR1.
+  if (asked_ == 0.0 && (all_started || now - stop_seen_ > kStartPatience)) {
+    asked_ = now;
+    kill(child_, all_started ? SIGUSR1 : SIGTERM);
+    if (!all_started) ended_ = now;
+  }
+  const bool impatient = stops > 1 && now - stop_seen_ > 0.5;
+  if (ended_ == 0.0 && (impatient || (asked_ > 0.0 && now - asked_ > kStopPatience))) {
+    ended_ = now;
+    kill(child_, SIGTERM);
+  }
+  if (ended_ > 0.0 && now - ended_ > kKillPatience) kill(-child_, SIGKILL);
+}
+
+LaunchResult Supervisor::lost_rank(int rank, const std::string& how) const {
+  const auto index = static_cast<std::size_t>(rank);
+  const std::string node = index < launch_.ranks.size() ? " (" + launch_.ranks[index].node + ")" : "";
+  return {ExitCode::rank_lost, fmt::format("rank {}{} was lost: {}", rank, node, how)};
+}
+
+LaunchResult Supervisor::outcome() const {
+  const bool exited = WIFEXITED(status_);
+  const int status = exited ? WEXITSTATUS(status_) : -1;
+  if (error_ && error_->code != ExitCode::rank_lost) return {error_->code, error_->text};
+  if (stop_seen_ > 0.0 && (status == static_cast<int>(ExitCode::stopped) || ended_ > 0.0))
+    return {ExitCode::stopped,
+            ended_ > 0.0 ? "stopped by a signal before the ranks could finish" : "stopped by a signal"};
+  if (launcher_.lost()) {
+    const int signal = launcher_.lost()->signal;
+    return lost_rank(
+        launcher_.lost()->rank,
+        signal_name(signal) + (signal == SIGKILL ? "; the system does that when memory runs out" : ""));
+  }
+  if (error_) return {error_->code, error_->text};
+  if (status == 0 && started_.size() == launch_.ranks.size()) return {};
+  const std::string how = exited ? fmt::format("mpirun ended with status {}", status)
+                                 : "mpirun was " + signal_name(WTERMSIG(status_));
+  const std::string words = launcher_.words();
+  const std::string text = words.empty() ? how + " and said nothing" : how + ": " + words;
+  if (!started_.empty()) return {ExitCode::rank_lost, text};
+  return {ExitCode::io,
+          "no rank could be started (are PATH and TMPDIR right, is FURROW_MPIRUN Open MPI's?): " + text};
+}
+
+std::optional<std::filesystem::path> on_path(const std::string& program) {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path ? path : "/usr/bin:/bin");
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const std::filesystem::path candidate = std::filesystem::path(folder.empty() ? "." : folder) / program;
+    if (access(candidate.c_str(), X_OK) == 0) return candidate;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::filesystem::path find_mpirun() {
+  if (const char* wanted = std::getenv("FURROW_MPIRUN"); wanted && *wanted) {
+    if (access(wanted, X_OK) == 0) return wanted;
+    throw io_error(wanted,
+                   "is no program that can be run, but FURROW_MPIRUN names it; expected Open MPI's mpirun");
+  }
+  if (access(FURROW_MPIEXEC, X_OK) == 0) return FURROW_MPIEXEC;
+  if (const auto found = on_path("mpirun")) return *found;
+  throw io_error("mpirun", "is not installed, expected Open MPI's on PATH (Debian package openmpi-bin)");
+}
+
+LaunchResult supervise(const Launch& launch, ProgressDisplay& display) {
+  return Supervisor(launch, display).run();
+}
+
+}  // namespace furrow::launch

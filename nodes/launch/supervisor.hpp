@@ -1,0 +1,36 @@
+// `furrow run` outside MPI: starts mpirun, watches it, shows what the ranks say, passes on a wish to stop,
+// and tells in one message what went wrong. Nothing that it started survives it.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "nodes/launch/progress.hpp"
+#include "nodes/scenario/rank_table.hpp"
+#include "protocol/core/error.hpp"
+
+namespace furrow::launch {
+
+struct Launch {
+  std::vector<std::string> arguments;  // of this program in every rank, without its name
+  std::vector<scenario::RankEntry> ranks;
+  std::filesystem::path log;  // everything that ranks and launcher say
+};
+
+struct LaunchResult {
+  ExitCode code = ExitCode::done;
+  std::string error;  // for the user, unless done
+};
+
+/// The launcher: FURROW_MPIRUN, else the one of the MPI that this program was built with, else the first on
+/// PATH.
+/// @throws Error(io) when there is none
+std::filesystem::path find_mpirun();
+
+/// @pre catch_stop_signals was called
+/// @throws Error(io) when mpirun or the log cannot be opened
+LaunchResult supervise(const Launch& launch, ProgressDisplay& display);
+
+}  // namespace furrow::launch

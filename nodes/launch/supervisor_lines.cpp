@@ -1,0 +1,62 @@
+#include "nodes/launch/supervisor_lines.hpp"
+
+#include <array>
+
+#include <nlohmann/json.hpp>
+
+namespace furrow::launch {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::string_view kMark = "@furrow ";
+constexpr std::array<const char*, 4> kKinds{"started", "progress", "note", "error"};
+constexpr std::size_t kMaxLine = 4096;  // bytes: PIPE_BUF of Linux, what a write keeps together
+
+}  // namespace
+
+std::string encode(const RankLine& line) {
+  json j{{"kind", kKinds[static_cast<std::size_t>(line.kind)]}, {"rank", line.rank}};
+  if (line.kind == RankLine::Kind::error) j["code"] = static_cast<int>(line.code);
+  if (line.kind == RankLine::Kind::progress) {
+    const Progress& p = line.progress;
+    j["phase"] = p.phase;
+    j["values"] = {p.share, p.time, p.end, p.pull, p.sinkage, p.speed, p.eta};
+  }
+  std::string text = line.text, encoded;
+  do {
+    if (!text.empty()) j["text"] = text;
+    encoded = std::string(kMark) + j.dump(-1, ' ', true, json::error_handler_t::replace) + "\n";
+    text.resize(text.size() * 3 / 4);
+  } while (encoded.size() > kMaxLine && !text.empty());
+  return encoded;
+}
+
+std::optional<RankLine> decode(std::string_view text) {
+  if (!text.starts_with(kMark)) return std::nullopt;
+  const json j = json::parse(text.substr(kMark.size()), nullptr, false);
+  if (!j.is_object()) return std::nullopt;
+  RankLine line;
+  try {
+    std::size_t kind = 0;
+    while (kind < kKinds.size() && j.at("kind") != kKinds[kind]) ++kind;
+    if (kind == kKinds.size()) return std::nullopt;
+    line.kind = static_cast<RankLine::Kind>(kind);
+    line.rank = j.at("rank");
+    line.text = j.value("text", std::string());
+    line.code = static_cast<ExitCode>(j.value("code", 0));
+    if (line.kind == RankLine::Kind::progress) {
+      Progress& p = line.progress;
+      p.phase = j.at("phase");
+      const json& v = j.at("values");
+      double* const fields[] = {&p.share, &p.time, &p.end, &p.pull, &p.sinkage, &p.speed, &p.eta};
+      for (std::size_t i = 0; i < std::size(fields); ++i)
+        *fields[i] = v.at(i).is_number() ? v.at(i).get<double>() : 0.0;
+    }
+  } catch (const json::exception&) {
+    return std::nullopt;
+  }
+  return line;
+}
+
+}  // namespace furrow::launch

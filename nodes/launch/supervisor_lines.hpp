@@ -1,0 +1,31 @@
+// What ranks tell their supervisor: one line of JSON each on standard output, which mpirun carries, behind a
+// mark that nothing else prints.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "nodes/launch/progress.hpp"
+#include "protocol/core/error.hpp"
+
+namespace furrow::launch {
+
+struct RankLine {
+  enum class Kind { started, progress, note, error };
+  Kind kind = Kind::started;
+  int rank = 0;
+  std::string text;                // note, error
+  ExitCode code = ExitCode::done;  // error
+  Progress progress;
+};
+
+/// With the line's end; at most 4 kB, which pipes take in one piece.
+std::string encode(const RankLine& line);
+/// Nothing for a line that is not ours.
+std::optional<RankLine> decode(std::string_view line);
+
+/// The environment variable that tells a rank that a supervisor listens.
+inline constexpr const char* kSupervisedVariable = "FURROW_SUPERVISED";
+
+}  // namespace furrow::launch

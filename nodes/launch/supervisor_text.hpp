@@ -1,0 +1,30 @@
+// What mpirun writes on standard error, sorted into what matters and what is its own noise.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace furrow::launch {
+
+/// A rank that ended by a signal, as mpirun saw it.
+struct LostRank {
+  int rank = 0;
+  int signal = 0;
+};
+
+class LauncherText {
+ public:
+  void add(std::string_view line);
+
+  const std::optional<LostRank>& lost() const { return lost_; }
+  /// What else it said, without rules and its usual sentences, in one line; for failures to start.
+  std::string words() const;
+
+ private:
+  std::optional<LostRank> lost_;
+  std::vector<std::string> lines_;
+};
+
+}  // namespace furrow::launch

@@ -1,0 +1,62 @@
+// OpenMP threads of a node: how many, on which cores, and how they wait.
+//
+//   int main(int, char** argv) {
+//     wait_passively(argv);                                   // before anything else
+//     …
+//     auto transport = make_mpi_transport(…);
+//     const ThreadPlan plan = plan_threads(*transport, scenario.run.threads);
+//     apply(plan);
+//     run_node(scenario, *transport, {.threads = plan.threads, …});
+//
+// Rules. The terrain gets the cores that the others leave; a tire computes on one thread; the rig, which hardly
+// computes, has a core of its own only where there are many. When the cores suffice each thread is bound to its own;
+// when they do not, or when the machine is busy with something else, nothing is bound and the system balances.
+// Results do not depend on any of this.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "protocol/host.hpp"
+#include "protocol/transport.hpp"
+
+namespace furrow::launch {
+
+/// One machine as its nodes see it.
+struct HostView {
+  std::vector<HostNode> nodes;  // of this run on this machine, in rank order
+  int machine_cores = 1;        // physical cores, allowed or not
+  double cpu_limit = 0.0;       // CPUs that the control group grants; 0: no limit
+  double load = 0.0;            // runnable tasks of others: load average of the last minute
+};
+
+struct ThreadPlan {
+  int threads = 1;
+  std::vector<int> cores;  // to bind to; empty: leave the process where it may run
+  bool disjoint = false;   // every computing thread of this machine's nodes has a core of its own
+  std::string note;        // advice for the user, or empty
+};
+
+/// Most threads that the terrain takes by itself: a barrier over more costs more than it brings.
+inline constexpr int kMaxAutoThreads = 32;
+
+/// @param node             which of host.nodes
+/// @param terrain_threads  what the user wants for the terrain; 0: decide here
+ThreadPlan plan_threads(const HostView& host, std::size_t node, int terrain_threads);
+
+/// Looks at this machine and plans for the transport's own node.
+ThreadPlan plan_threads(const Transport& transport, int terrain_threads);
+
+/// Sets the thread count, binding, BLAS threads (one) and, in every thread, denormals to zero. A binding that the
+/// user chose by OMP_PROC_BIND, OMP_PLACES or GOMP_CPU_AFFINITY is left alone.
+void apply(const ThreadPlan& plan);
+
+/// OpenMP threads that spin while they wait take the cores of other ranks. How they wait is read from the
+/// environment before main begins, so unless OMP_WAIT_POLICY is set already, this sets it and starts the program anew.
+void wait_passively(char** argv);
+
+/// The variables that wait_passively sets, as NAME=value: for a supervisor to set them for the ranks it starts.
+std::vector<std::string> passive_environment();
+
+}  // namespace furrow::launch

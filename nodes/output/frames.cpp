@@ -1,0 +1,74 @@
+#include "nodes/output/frames.hpp"
+
+#include <fmt/format.h>
+
+#include "protocol/files/fault_point.hpp"
+#include "protocol/files/hdf5_file.hpp"
+
+namespace furrow::output {
+namespace {
+
+std::filesystem::path frame_file(const std::filesystem::path& run, const std::string& what,
+                                 std::int64_t index) {
+  const auto folder = run / "frames";
+  std::error_code ignored;  // if the folder cannot be made, creating the file says so
+  std::filesystem::create_directories(folder, ignored);
+  return folder / fmt::format("{}_{:06d}.h5", what, index);
+}
+
+std::vector<float> flatten(const std::vector<Vec3>& vectors) {
+  std::vector<float> flat;
+  flat.reserve(3 * vectors.size());
+  for (const Vec3& v : vectors)
+    for (int i = 0; i < 3; ++i) flat.push_back(static_cast<float>(v[i]));
+  return flat;
+}
+
+}  // namespace
+
+void write_tire_frame(const std::filesystem::path& run, int tire, std::int64_t index, double time,
+                      const SurfaceMesh& mesh, const SurfaceState& surface, const NodalForces& forces) {
+  const std::size_t count = surface.position.size();
+  std::vector<Vec3> dense(count, Vec3::Zero());
+  for (std::size_t i = 0; i < forces.vertex.size(); ++i) dense[forces.vertex[i]] = forces.force[i];
+  std::vector<std::int32_t> triangles;
+  for (const auto& triangle : mesh.triangles)
+    triangles.insert(triangles.end(), triangle.begin(), triangle.end());
+
+  Hdf5Writer file(frame_file(run, fmt::format("tire{}", tire), index));
+  file.attribute("time_s", time);
+  file.put("position", flatten(surface.position), {count, 3});
+  fault_point("frame");
+  file.put("velocity", flatten(surface.velocity), {count, 3});
+  file.put("force", flatten(dense), {count, 3});
+  file.put("triangle", triangles, {mesh.triangles.size(), 3});
+  file.finish();
+}
+
+void write_terrain_frame(const std::filesystem::path& run, std::int64_t index, double time,
+                         const terrain::TerrainFrame& frame) {
+  const std::size_t count = frame.radius.size();
+  if (count == 0) return;
+  Hdf5Writer file(frame_file(run, "terrain", index));
+  file.attribute("time_s", time);
+  file.put("position", frame.position, {count, 3});
+  fault_point("frame");
+  file.put("speed", frame.speed, {count});
+  file.put("radius", frame.radius, {count});
+  file.finish();
+}
+
+void remove_frames_from(const std::filesystem::path& run, std::int64_t index) {
+  std::vector<std::filesystem::path> doomed;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(run / "frames", error)) {
+    const std::string name = entry.path().stem().string();
+    const std::size_t digits = name.rfind('_') + 1;  // 0 where there is none
+    const bool numbered = digits > 0 && name.find_first_not_of("0123456789", digits) == std::string::npos;
+    if (entry.path().extension() == ".part" || (numbered && std::stoll(name.substr(digits)) >= index))
+      doomed.push_back(entry.path());
+  }
+  for (const auto& file : doomed) std::filesystem::remove(file, error);
+}
+
+}  // namespace furrow::output

@@ -1,0 +1,26 @@
+// Frames: what the tire and the terrain looked like at one instant, one HDF5 file each under <run>/frames/.
+//   tire<k>_<index>.h5     /position (n, 3) m, /velocity (n, 3) m/s, /force (n, 3) N, /triangle (m, 3)
+//   terrain_<index>.h5     /position (n, 3) m, /speed (n) m/s, /radius (n) m
+// Attribute `time_s` on the file.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "protocol/core/surface.hpp"
+#include "terrain/terrain.hpp"
+
+namespace furrow::output {
+
+/// @throws Error(io)
+void write_tire_frame(const std::filesystem::path& run, int tire, std::int64_t index, double time,
+                      const SurfaceMesh& mesh, const SurfaceState& surface, const NodalForces& forces);
+
+/// Nothing is written for a terrain without grains. @throws Error(io)
+void write_terrain_frame(const std::filesystem::path& run, std::int64_t index, double time,
+                         const terrain::TerrainFrame& frame);
+
+/// Removes the frames whose number is `index` or more, and what was never finished. Errors are ignored.
+void remove_frames_from(const std::filesystem::path& run, std::int64_t index);
+
+}  // namespace furrow::output

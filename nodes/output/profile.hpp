@@ -1,0 +1,37 @@
+// Where the wall time of a run goes, step by step: `furrow run --profile` writes profile.json, a Chrome trace
+// (chrome://tracing, ui.perfetto.dev) with one row per rank.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "protocol/messages.hpp"
+
+namespace furrow::output {
+
+/// Wall clock that all processes of one machine share, s.
+double machine_clock();
+
+/// One rank's record of its steps, evenly thinned to at most about 4000.
+class StepProfile {
+ public:
+  /// @param steps of the run; 0: record nothing
+  explicit StepProfile(std::int64_t steps);
+  void begin(std::int64_t step) { start(step, 0); }  // synchronize begins
+  void exchanged(std::int64_t step) { start(step, 1); }
+  void advanced(std::int64_t step) { start(step, 2); }
+  /// Step number and the three times of each recorded step, s of machine_clock().
+  const std::vector<double>& times() const { return times_; }
+
+ private:
+  void start(std::int64_t step, int part);
+  std::int64_t every_ = 0;
+  std::vector<double> times_;
+};
+
+/// @throws Error(io)
+void write_profile(const std::filesystem::path& file, std::span<const FinalReport> reports);
+
+}  // namespace furrow::output

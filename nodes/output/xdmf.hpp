@@ -1,0 +1,12 @@
+// The index by which ParaView opens a run: a time series of tire surfaces and grains, from the frames that exist.
+#pragma once
+
+#include <filesystem>
+
+namespace furrow::output {
+
+/// Writes <run>/results.xdmf for the frames under <run>/frames: the instants at which every tire and the terrain left a
+/// readable file. Nothing when there are no frames. @throws Error(io)
+void write_xdmf_index(const std::filesystem::path& run);
+
+}  // namespace furrow::output

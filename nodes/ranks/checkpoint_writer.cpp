@@ -1,0 +1,130 @@
+#include "nodes/ranks/checkpoint_writer.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "nodes/output/profile.hpp"
+#include "protocol/files/archive_file.hpp"
+#include "protocol/files/fault_point.hpp"
+
+namespace furrow::ranks {
+
+namespace {
+
+constexpr Address kRig{Role::rig, 0};
+constexpr char kCost[] = "run/cost";
+
+}  // namespace
+
+CheckpointWriter::CheckpointWriter(const scenario::Scenario& scenario, Node& node, Transport& transport,
+                                   const RunContext& context, std::span<const NodeCard> cards,
+                                   std::function<NodeCost()> cost)
+    : scenario_(scenario),
+      node_(node),
+      transport_(transport),
+      context_(context),
+      cards_(cards.begin(), cards.end()),
+      cost_(std::move(cost)),
+      frames_(frame_clock(scenario, context)),
+      begin_(output::machine_clock()) {
+  if (transport.self() == kRig) build_ = checkpoint::build_id();
+}
+
+CheckpointPart CheckpointWriter::write_part(std::int64_t step) const {
+  CheckpointPart part{step, checkpoint::part_name(transport_.self()), "", ""};
+  try {
+    Archive archive;
+    node_.save(archive);
+    node_.save_setup(archive);
+    save_cost(archive, cost_());
+    const std::filesystem::path folder = checkpoint::unfinished_checkpoint(context_.directory, step);
+    std::error_code ignored;  // if it cannot be made, the file says so
+    std::filesystem::create_directories(folder, ignored);
+    fault_point("checkpoint.write");
+    write_archive(folder / part.file, archive);
+    part.checksum = checkpoint::part_checksum(folder / part.file);
+    fault_point("checkpoint.written");
+  } catch (const Error& error) {
+    part.problem = error.what();
+  }
+  return part;
+}
+
+void CheckpointWriter::write(std::int64_t step, bool needed) {
+  if (context_.directory.empty()) return;
+  last_step_ = step;
+  write_begin_ = output::machine_clock();
+  transport_.heartbeat();
+  const CheckpointPart own = write_part(step);
+  if (transport_.self() == kRig) {
+    complete(own, needed);
+  } else {
+    send(transport_, kRig, own);
+    transport_.flush();
+  }
+}
+
+checkpoint::CheckpointManifest CheckpointWriter::manifest(std::int64_t step,
+                                                          std::vector<CheckpointPart> parts) const {
+  checkpoint::CheckpointManifest m;
+  m.version = FURROW_VERSION;
+  m.build = build_;
+  m.cpu = checkpoint::cpu_model();
+  m.name = scenario_.name;
+  m.scenario = scenario_.completed;
+  m.scenario_digest = scenario_.digest;
+  m.file_hashes = scenario_.file_hashes();
+  m.step = step;
+  m.time = static_cast<double>(step) * scenario_.run.step;
+  m.parts = std::move(parts);
+  m.series = node_.mark_series();
+  std::error_code ignored;
+  for (const CheckpointPart& part : m.parts)
+    m.bytes += static_cast<std::int64_t>(std::filesystem::file_size(
+        checkpoint::unfinished_checkpoint(context_.directory, step) / part.file, ignored));
+  m.frames = frames_;
+  m.segments = checkpoint::segments_until(step, output::machine_clock() - begin_, cards_.back().threads,
+                                          context_.resume);
+  m.write_s = output::machine_clock() - write_begin_;
+  return m;
+}
+
+void CheckpointWriter::complete(CheckpointPart own, bool needed) {
+  const std::int64_t step = own.step;
+  std::string problem = own.problem;
+  std::vector<CheckpointPart> parts{std::move(own)};
+  for (std::size_t i = 1; i < cards_.size(); ++i) {
+    parts.push_back(receive<CheckpointPart>(transport_, cards_[i].self));
+    if (problem.empty()) problem = parts.back().problem;
+  }
+  if (problem.empty()) {
+    try {
+      fault_point("checkpoint.manifest");
+      checkpoint::complete_checkpoint(context_.directory, manifest(step, std::move(parts)),
+                                      scenario_.checkpoint.keep);
+      fault_point("checkpoint.done");
+      return;
+    } catch (const Error& error) {
+      problem = error.what();
+    }
+  }
+  std::error_code ignored;
+  std::filesystem::remove_all(checkpoint::unfinished_checkpoint(context_.directory, step), ignored);
+  const std::string text = fmt::format("the checkpoint at t = {:.6g} s could not be written: {}",
+                                       static_cast<double>(step) * scenario_.run.step, problem);
+  if (needed) throw Error(ExitCode::io, text);
+  if (context_.note) context_.note("warning: " + text + "; the run goes on");
+}
+
+void save_cost(Archive& archive, const NodeCost& cost) {
+  archive.put(kCost, std::vector<double>{cost.cpu_s, cost.compute_s, cost.wait_s});
+}
+
+NodeCost restore_cost(const Archive& archive) {
+  const auto& v = archive.get<double>(kCost, 3);
+  return {v[0], v[1], v[2]};
+}
+
+}  // namespace furrow::ranks

@@ -1,0 +1,48 @@
+// Writes checkpoints while a run steps: every rank its part, the rig's rank what makes them one.
+#pragma once
+
+#include "nodes/ranks/node.hpp"
+
+namespace furrow::ranks {
+
+/// What a node used so far, summed over the segments of its run.
+struct NodeCost {
+  double cpu_s = 0.0, compute_s = 0.0, wait_s = 0.0;
+};
+
+class CheckpointWriter {
+ public:
+  /// @param cost tells what this node used until now
+  CheckpointWriter(const scenario::Scenario& scenario, Node& node, Transport& transport,
+                   const RunContext& context, std::span<const NodeCard> cards,
+                   std::function<NodeCost()> cost);
+
+  /// All ranks call it at the same step. One that cannot be written leaves those before it in place: the user is told
+  /// and the run goes on.
+  /// @param needed the run ends with it: Error(io) instead
+  void write(std::int64_t step, bool needed);
+
+  std::int64_t last_step() const { return last_step_; }
+
+ private:
+  CheckpointPart write_part(std::int64_t step) const;
+  checkpoint::CheckpointManifest manifest(std::int64_t step, std::vector<CheckpointPart> parts) const;
+  void complete(CheckpointPart own, bool needed);
+
+  const scenario::Scenario& scenario_;
+  Node& node_;
+  Transport& transport_;
+  const RunContext& context_;
+  std::vector<NodeCard> cards_;
+  std::function<NodeCost()> cost_;
+  checkpoint::FrameClock frames_;
+  std::string build_;
+  double begin_;              // wall time, s
+  double write_begin_ = 0.0;  // of the last checkpoint, wall time, s
+  std::int64_t last_step_ = -1;
+};
+
+void save_cost(Archive& archive, const NodeCost& cost);
+NodeCost restore_cost(const Archive& archive);
+
+}  // namespace furrow::ranks

@@ -1,0 +1,63 @@
+#include "nodes/ranks/impulse_ledger.hpp"
+
+#include <algorithm>
+
+#include "protocol/core/flat.hpp"
+
+namespace furrow::ranks {
+namespace {
+
+constexpr double kShare = 0.1;       // β
+constexpr double kMaxOfForce = 0.5;  // of a reported force that is taken back at once
+constexpr double kNothing = 1e-12;   // N s
+
+}  // namespace
+
+void ImpulseLedger::settle(const NodalForces& reported, double duration) {
+  for (std::size_t k = 0; k < reported.vertex.size(); ++k)
+    owed_[reported.vertex[k]] -= duration * reported.force[k];
+  settled_ = sum().norm();
+  largest_ = std::max(largest_, settled_);
+}
+
+void ImpulseLedger::hand_back(NodalForces& forces, double duration) {
+  next_.clear();
+  std::size_t k = 0;
+  for (int v = 0; v < static_cast<int>(owed_.size()); ++v) {
+    const bool touches = k < forces.vertex.size() && forces.vertex[k] == v;
+    Vec3 change = -kShare / duration * owed_[v];
+    if (!touches && owed_[v].norm() < kNothing) continue;
+    if (touches) {
+      const double size = change.norm(), most = kMaxOfForce * forces.force[k].norm();
+      if (size > most) change *= most / size;
+    }
+    next_.vertex.push_back(v);
+    next_.force.push_back(touches ? Vec3(forces.force[k] + change) : change);
+    next_.tangent.push_back(touches ? forces.tangent[k] : ContactTangent());
+    if (touches) ++k;
+  }
+  std::swap(forces, next_);
+}
+
+void ImpulseLedger::book(const NodalForces& acted, double duration) {
+  for (std::size_t k = 0; k < acted.vertex.size(); ++k) owed_[acted.vertex[k]] += duration * acted.force[k];
+}
+
+Vec3 ImpulseLedger::sum() const {
+  Vec3 total = Vec3::Zero();
+  for (const Vec3& one : owed_) total += one;
+  return total;
+}
+
+void ImpulseLedger::save(Archive& archive) const {
+  put_flat(archive, "ledger/owed", owed_);
+  archive.put("ledger/norms", std::vector<double>{settled_, largest_});
+}
+
+void ImpulseLedger::restore(const Archive& archive) {
+  owed_ = get_flat<Vec3>(archive, "ledger/owed", owed_.size());
+  const auto& norms = archive.get<double>("ledger/norms", 2);
+  settled_ = norms[0], largest_ = norms[1];
+}
+
+}  // namespace furrow::ranks

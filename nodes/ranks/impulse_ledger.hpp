@@ -1,0 +1,43 @@
+// What a tire that uses contact tangents owes its terrain: the impulse that acted on each vertex less the impulse that the
+// terrain then reported of the same interval. It is handed back a share at a time,
+//
+//   L ← L + H (F_n − f̄_n),      f_{n+1} = f̄_n − β L/H,
+//
+// so that Σ impulses on the tire − Σ impulses on the terrain is what the ledger holds. β is small: handed back in a hurry,
+// a difference that comes from the vertex's acceleration would act like a negative mass.
+#pragma once
+
+#include <vector>
+
+#include "protocol/core/archive.hpp"
+#include "protocol/core/surface.hpp"
+
+namespace furrow::ranks {
+
+class ImpulseLedger {
+ public:
+  ImpulseLedger() = default;
+  explicit ImpulseLedger(int vertices) : owed_(vertices, Vec3::Zero()) {}
+
+  /// Takes what the terrain reports of the last interval, H = `duration`.
+  void settle(const NodalForces& reported, double duration);
+  /// Changes reported forces into those of the next interval. At most half of a force is taken back; vertices that
+  /// touch nothing any more get their share as well. @pre settled
+  void hand_back(NodalForces& forces, double duration);
+  /// Books what acted over an interval.
+  void book(const NodalForces& acted, double duration);
+
+  Vec3 sum() const;                            // now, N s
+  double settled() const { return settled_; }  // |sum| when last settled, N s
+  double largest() const { return largest_; }  // of these, N s
+
+  void save(Archive& archive) const;
+  void restore(const Archive& archive);
+
+ private:
+  std::vector<Vec3> owed_;  // L of each vertex, N s
+  double settled_ = 0.0, largest_ = 0.0;
+  NodalForces next_;  // work
+};
+
+}  // namespace furrow::ranks

@@ -1,0 +1,47 @@
+#include "nodes/ranks/node.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace furrow::ranks {
+
+NodeCard common_card(const scenario::Scenario& scenario, Address self) {
+  NodeCard card;
+  card.self = self;
+  card.scenario_digest = scenario.digest;
+  card.step = scenario.run.step;
+  card.steps = scenario.run.steps();
+  card.pid = static_cast<std::int32_t>(getpid());
+  char host[256] = {};
+  gethostname(host, sizeof host - 1);
+  card.host = host;
+  return card;
+}
+
+std::int64_t steps_between(double interval, double step) {
+  if (interval <= 0.0) return 0;
+  return std::max<std::int64_t>(1, std::llround(interval / step));
+}
+
+checkpoint::FrameClock frame_clock(const scenario::Scenario& scenario, const RunContext& context) {
+  const std::int64_t every =
+      context.directory.empty() ? 0 : steps_between(scenario.output.frame_interval, scenario.run.step);
+  if (!context.resume) return {every, 0, 0};
+  return context.resume->manifest.frames.continued(context.resume->manifest.step, every);
+}
+
+std::unique_ptr<Node> make_node(const scenario::Scenario& scenario, Address self, int threads) {
+  switch (self.role) {
+    case Role::rig:
+      return make_rig_node(scenario);
+    case Role::tire:
+      return make_tire_node(scenario, self.index);
+    case Role::terrain:
+      return make_terrain_node(scenario, threads);
+  }
+  throw Error(ExitCode::rank_lost, "unknown role");
+}
+
+}  // namespace furrow::ranks

@@ -1,0 +1,83 @@
+// One rank's part of a co-simulation: rig, tire or terrain. The run loop drives all kinds alike:
+//
+//   set_up;  for n = 0 … N:  synchronize(n);  if n < N: advance
+//
+// synchronize sends everything before it receives anything, so that no order of ranks can deadlock. The rig orders
+// checkpoints and stops: at t_n it tells the tires, at t_{n+1} they tell the terrain, and all save at t_{n+2}, before they
+// synchronize there. Between the steps nothing is in flight, so that the nodes' states are all there is.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "nodes/checkpoint/frame_clock.hpp"
+#include "nodes/output/series.hpp"
+#include "nodes/output/profile.hpp"
+#include "nodes/ranks/run_context.hpp"
+#include "nodes/scenario/scenario.hpp"
+#include "protocol/core/archive.hpp"
+#include "protocol/transport.hpp"
+
+namespace furrow::ranks {
+
+class Node {
+ public:
+  virtual ~Node() = default;
+
+  virtual NodeCard card() const = 0;
+
+  /// Exchanges what is said once; `cards` in the order rig, tires, terrain. A run that is continued comes out of it in the
+  /// state of context.saved.
+  virtual void set_up(Transport& transport, std::span<const NodeCard> cards, const RunContext& context) = 0;
+
+  virtual void synchronize(Transport& transport, const StepHeader& header) = 0;
+
+  /// Advances this node by one communication step, from t_n.
+  virtual void advance(const StepHeader& header) = 0;
+
+  /// What falls due once the interval after the synchronization just done has been advanced.
+  virtual Order due() const = 0;
+
+  /// Sends (tire, terrain) or gathers and writes (rig) the results. `stopped`: before the planned end.
+  virtual void finish(Transport& transport, FinalReport own, bool stopped) = 0;
+
+  virtual void save(Archive& archive) const = 0;
+  virtual void restore(const Archive& archive) = 0;
+
+  /// What is no state but must be known to go on: kept in checkpoints beside save().
+  virtual void save_setup(Archive&) const {}
+  /// The rig's: flushes the series to the disk and says where they stand.
+  virtual std::vector<checkpoint::SeriesMark> mark_series() { return {}; }
+};
+
+std::unique_ptr<Node> make_rig_node(const scenario::Scenario& scenario);
+std::unique_ptr<Node> make_tire_node(const scenario::Scenario& scenario, int index);
+std::unique_ptr<Node> make_terrain_node(const scenario::Scenario& scenario, int threads);
+
+/// The node that `self` is in this scenario.
+std::unique_ptr<Node> make_node(const scenario::Scenario& scenario, Address self, int threads);
+
+/// Synchronizes and advances for n = from … to − 1; calls `checkpoint(n)` when one falls due. Ends early when ordered to.
+/// @returns the step it stands at, not yet synchronized there
+std::int64_t run_steps(Node& node, Transport& transport, double step, std::int64_t from, std::int64_t to,
+                       output::StepProfile* profile = nullptr,
+                       const std::function<void(std::int64_t)>& checkpoint = {});
+
+/// Hash of everything that save() holds.
+std::uint64_t state_hash(const Node& node);
+
+/// What all cards of a run share.
+NodeCard common_card(const scenario::Scenario& scenario, Address self);
+
+/// Frames of the segment that begins now.
+checkpoint::FrameClock frame_clock(const scenario::Scenario& scenario, const RunContext& context);
+
+/// Number of communication steps between two outputs that are `interval` seconds apart; 0: never.
+std::int64_t steps_between(double interval, double step);
+
+/// Step number of the messages by which rims and tires are placed, before synchronization 0.
+inline constexpr std::int64_t kPlacement = -1;
+
+inline constexpr double kGravity = 9.81;  // m/s², along −z
+
+}  // namespace furrow::ranks

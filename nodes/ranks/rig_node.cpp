@@ -1,0 +1,186 @@
+// The rig's rank: moves the wheels, gathers what all report, and writes the results.
+#include <algorithm>
+#include <cmath>
+
+#include "nodes/output/profile.hpp"
+#include "nodes/output/results.hpp"
+#include "nodes/output/series_builder.hpp"
+#include "nodes/ranks/node.hpp"
+#include "rigs/rig_row.hpp"
+
+namespace furrow::ranks {
+namespace {
+
+constexpr double kPlacementGap = 1e-3;      // m, between the highest grain and the inflated tire
+constexpr double kProgressInterval = 0.25;  // s of wall time
+
+class RigNode : public Node {
+ public:
+  explicit RigNode(const scenario::Scenario& scenario) : scenario_(scenario), rig_(make_rig(scenario)) {}
+
+  NodeCard card() const override {
+    NodeCard card = common_card(scenario_, kSelf);
+    card.node_kind = rig_->kind();
+    card.substeps = scenario_.rig_substeps;
+    card.wheel_count = rig_->wheel_count();
+    card.tire_count = static_cast<int>(scenario_.tires.size());
+    return card;
+  }
+
+  void set_up(Transport& transport, std::span<const NodeCard> cards, const RunContext& context) override {
+    context_ = context;
+    cards_.assign(cards.begin(), cards.end());
+    const int wheels = rig_->wheel_count();
+    for (int k = 0; k < wheels; ++k) rig_->add_tire_mass(k, cards[1 + k].tire_mass, cards[1 + k].tire_radius);
+    rig_->place(std::vector<double>(wheels, 0.0));
+    for (int k = 0; k < wheels; ++k) send(transport, kTerrain, RimMotion{{kPlacement, 0.0}, rig_->rim(k)});
+    setup_ = receive<TerrainSetup>(transport, kTerrain);
+    std::vector<double> height(wheels);
+    for (int k = 0; k < wheels; ++k)
+      height[k] = setup_.top_height[k] + cards[1 + k].tire_reach + kPlacementGap + scenario_.drop_height;
+    rig_->place(height);
+    // First of all, as the others begin to write frames once they are placed.
+    if (!context.directory.empty())
+      results_ =
+          std::make_unique<output::Results>(scenario_, cards_, setup_, context.directory, context.resume);
+    for (int k = 0; k < wheels; ++k) {
+      send(transport, Address{Role::tire, k}, RimMotion{{kPlacement, 0.0}, rig_->rim(k)});
+      builders_.emplace_back(cards[1 + k].tire_radius, setup_.mean_height[k], scenario_.run.step);
+    }
+    wrenches_.resize(wheels);
+    series_steps_ = steps_between(scenario_.output.series_interval, scenario_.run.step);
+    if (context.saved) restore(*context.saved);
+    wall_start_ = last_checkpoint_ = output::machine_clock();
+    if (context.resume) time_start_ = context.resume->manifest.time;
+  }
+
+  void synchronize(Transport& transport, const StepHeader& header) override {
+    due_ = next_;
+    next_ = order(header.step + 2);
+    const int wheels = rig_->wheel_count();
+    for (int k = 0; k < wheels; ++k)
+      send(transport, Address{Role::tire, k}, RimMotion{header, rig_->rim(k), next_});
+    tires_.resize(wheels);
+    for (int k = 0; k < wheels; ++k) {
+      tires_[k] = receive_step<SpindleReport>(transport, {Role::tire, k}, header.step);
+      wrenches_[k] = tires_[k].wrench;
+    }
+    const auto terrain = receive_step<TerrainReport>(transport, kTerrain, header.step);
+    for (int k = 0; k < wheels && header.step > 0; ++k)
+      builders_[k].add({header.time, rig_->report(k), rig_->rim(k), tires_[k], terrain.contact[k],
+                        terrain.state, setup_.grains, rig_->travel_direction()});
+    const bool line = header.step > 0 && series_steps_ > 0 && header.step % series_steps_ == 0;
+    if (line) record();
+    show_progress(header);
+  }
+
+  void advance(const StepHeader&) override {
+    rig_->advance(wrenches_, scenario_.run.step, scenario_.rig_substeps);
+  }
+
+  Order due() const override { return due_; }
+
+  std::vector<checkpoint::SeriesMark> mark_series() override {
+    return results_ ? results_->mark_series() : std::vector<checkpoint::SeriesMark>();
+  }
+
+  void finish(Transport& transport, FinalReport own, bool stopped) override {
+    std::vector<FinalReport> reports{own};
+    for (std::size_t i = 1; i < cards_.size(); ++i)
+      reports.push_back(receive<FinalReport>(transport, cards_[i].self));
+    if (!results_) return;
+    if (context_.profile) output::write_profile(context_.directory / "profile.json", reports);
+    std::vector<double> carried_mass;
+    for (int k = 0; k < rig_->wheel_count(); ++k) carried_mass.push_back(rig_->report(k).carried_mass);
+    results_->finish(reports, builders_, tires_, carried_mass, output::machine_clock() - wall_start_,
+                     stopped);
+  }
+
+  void save(Archive& archive) const override {
+    rig_->save(archive);
+    for (std::size_t k = 0; k < builders_.size(); ++k) {
+      Archive::Scope scope(archive, "wheel" + std::to_string(k) + "/");
+      builders_[k].save(archive);
+    }
+  }
+
+  void restore(const Archive& archive) override {
+    rig_->restore(archive);
+    for (std::size_t k = 0; k < builders_.size(); ++k) {
+      Archive::Scope scope(archive, "wheel" + std::to_string(k) + "/");
+      builders_[k].restore(archive);
+    }
+  }
+
+ private:
+  static constexpr Address kSelf{Role::rig, 0};
+  static constexpr Address kTerrain{Role::terrain, 0};
+
+  static std::unique_ptr<rigs::Rig> make_rig(const scenario::Scenario& scenario) {
+    if (scenario.rigs.size() == 1) return rigs::make_drawbar_rig(scenario.rigs.front());
+    std::vector<std::unique_ptr<rigs::Rig>> rigs;
+    for (const rigs::DrawbarRigOptions& options : scenario.rigs)
+      rigs.push_back(rigs::make_drawbar_rig(options));
+    return rigs::make_rig_row(std::move(rigs));
+  }
+
+  /// What shall be done when all stand at `step`.
+  Order order(std::int64_t step) {
+    if (next_ == Order::stop) return Order::stop;
+    if (context_.stop_requested && context_.stop_requested()) return Order::stop;
+    const scenario::CheckpointOptions& o = scenario_.checkpoint;
+    const std::int64_t every = steps_between(o.interval, scenario_.run.step);
+    const bool by_wall =
+        o.wall_interval > 0.0 && output::machine_clock() - last_checkpoint_ >= o.wall_interval;
+    if (!by_wall && (every == 0 || step % every != 0)) return Order::go_on;
+    last_checkpoint_ = output::machine_clock();
+    return Order::checkpoint;
+  }
+
+  void record() {
+    for (std::size_t k = 0; k < builders_.size(); ++k) {
+      const output::SeriesRow row = builders_[k].take();
+      if (k == 0) last_ = row;
+      if (results_) results_->add(static_cast<int>(k), row);
+    }
+  }
+
+  void show_progress(const StepHeader& header) {
+    const double now = output::machine_clock();
+    if (!context_.progress || last_.time == 0.0 || now - shown_ < kProgressInterval) return;
+    shown_ = now;
+    launch::Progress p;
+    p.phase = "running";
+    p.time = header.time;
+    p.end = scenario_.run.end;
+    p.share = header.time / scenario_.run.end;
+    p.pull = last_.drawbar_pull;
+    p.sinkage = last_.sinkage;
+    p.speed = last_.speed;
+    p.eta = (now - wall_start_) * (p.end - p.time) / (p.time - time_start_);
+    context_.progress(p);
+  }
+
+  scenario::Scenario scenario_;
+  std::unique_ptr<rigs::Rig> rig_;
+  RunContext context_;
+  std::vector<NodeCard> cards_;
+  TerrainSetup setup_;
+  std::vector<Wrench> wrenches_;
+  std::vector<SpindleReport> tires_;  // the last ones
+  std::vector<output::SeriesBuilder> builders_;
+  std::unique_ptr<output::Results> results_;
+  output::SeriesRow last_;
+  std::int64_t series_steps_ = 0;
+  double wall_start_ = 0.0, shown_ = 0.0, last_checkpoint_ = 0.0;  // wall time, s
+  double time_start_ = 0.0;                                        // simulated, when this segment began, s
+  Order next_ = Order::go_on, due_ = Order::go_on;
+};
+
+}  // namespace
+
+std::unique_ptr<Node> make_rig_node(const scenario::Scenario& scenario) {
+  return std::make_unique<RigNode>(scenario);
+}
+
+}  // namespace furrow::ranks

@@ -1,0 +1,24 @@
+// What a rank is given beside its scenario.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+#include "nodes/checkpoint/checkpoint.hpp"
+#include "nodes/launch/progress.hpp"
+#include "protocol/core/archive.hpp"
+
+namespace furrow::ranks {
+
+struct RunContext {
+  std::filesystem::path directory;                  // existing run directory; empty: write nothing (tests)
+  int threads = 1;                                  // OpenMP threads of this node while stepping
+  bool profile = false;                             // record the time of steps
+  std::function<bool()> stop_requested;             // a signal asked for a stop
+  launch::ProgressSink progress;                    // called by the rig's node
+  std::function<void(const std::string&)> note;     // tells the user something
+  const checkpoint::ResumePoint* resume = nullptr;  // where the run goes on; null: it begins
+  const Archive* saved = nullptr;                   // this node's part of that checkpoint; run_node reads it
+};
+
+}  // namespace furrow::ranks

@@ -1,0 +1,141 @@
+#include "nodes/ranks/run_node.hpp"
+
+#include <ctime>
+
+#include "nodes/output/profile.hpp"
+#include "nodes/ranks/checkpoint_writer.hpp"
+#include "nodes/ranks/node.hpp"
+#include "protocol/core/hash.hpp"
+#include "protocol/files/archive_file.hpp"
+#include "protocol/files/fault_point.hpp"
+
+namespace furrow::ranks {
+namespace {
+
+/// CPU time of all threads of this process, s; in-process tests share it.
+double cpu_s() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+}  // namespace
+
+std::uint64_t state_hash(const Node& node) {
+  Archive archive;
+  node.save(archive);
+  Hash hash;
+  for (const auto& [name, values] : archive.arrays()) {
+    hash.add(name);
+    std::visit([&](const auto& v) { hash.add(v.data(), v.size() * sizeof(v[0])); }, values);
+  }
+  return hash.value();
+}
+
+std::int64_t run_steps(Node& node, Transport& transport, double step, std::int64_t from, std::int64_t to,
+                       output::StepProfile* profile, const std::function<void(std::int64_t)>& checkpoint) {
+  for (std::int64_t n = from; n < to; ++n) {
+    const StepHeader header{n, static_cast<double>(n) * step};
+    if (profile) profile->begin(n);
+    node.synchronize(transport, header);
+    transport.flush();
+    if (profile) profile->exchanged(n);
+    fault_point("step");
+    node.advance(header);
+    if (profile) profile->advanced(n);
+    if (node.due() != Order::go_on && checkpoint) checkpoint(n + 1);
+    if (node.due() == Order::stop) return n + 1;
+  }
+  return to;
+}
+
+namespace {
+
+/// The node's stepping loop, with what it costs.
+class RunLoop {
+ public:
+  RunLoop(const scenario::Scenario& scenario, Transport& transport, const RunContext& context)
+      : scenario_(scenario), transport_(transport), context_(context) {}
+
+  ExitCode run() {
+    transport_.set_peer_timeout(scenario_.run.peer_timeout);
+    Archive saved;
+    if (context_.resume) {
+      saved = read_archive(context_.resume->folder / checkpoint::part_name(transport_.self()));
+      context_.saved = &saved;
+      before_ = restore_cost(saved);
+      from_ = context_.resume->manifest.step;
+    }
+    node_ = make_node(scenario_, transport_.self(), context_.threads);
+    NodeCard card = node_->card();
+    card.threads = context_.threads;
+    card.from_step = from_;
+    const std::vector<NodeCard> cards = handshake(transport_, card);
+    node_->set_up(transport_, cards, context_);
+    context_.saved = nullptr;
+    saved = {};
+    return step(cards);
+  }
+
+ private:
+  ExitCode step(const std::vector<NodeCard>& cards) {
+    const std::int64_t steps = scenario_.run.steps();
+    output::StepProfile profile(context_.profile ? steps : 0);
+    wall_start_ = output::machine_clock(), cpu_start_ = cpu_s(),
+    waited_start_ = transport_.wait_clock().waited_s;
+    CheckpointWriter checkpoints(scenario_, *node_, transport_, context_, cards, [this] { return cost(); });
+    const std::int64_t at =
+        run_steps(*node_, transport_, scenario_.run.step, from_, steps, &profile,
+                  [&](std::int64_t n) { checkpoints.write(n, node_->due() == Order::stop && n < steps); });
+    const bool stopped = at < steps;
+    if (!stopped) {
+      if (scenario_.checkpoint.at_end && checkpoints.last_step() != steps) checkpoints.write(steps, false);
+      node_->synchronize(transport_, {steps, static_cast<double>(steps) * scenario_.run.step});
+      transport_.flush();
+    }
+    FinalReport own;
+    own.self = transport_.self();
+    const NodeCost used = cost();
+    own.wait_s = used.wait_s;
+    own.compute_s = used.compute_s;
+    own.cpu_s = used.cpu_s;
+    own.threads = context_.threads;
+    own.profile = profile.times();
+    own.state_hash = state_hash(*node_);
+    fault_point("results");
+    node_->finish(transport_, own, stopped);
+    return stopped ? ExitCode::stopped : ExitCode::done;
+  }
+
+  NodeCost cost() const {
+    const double wait = transport_.wait_clock().waited_s - waited_start_;
+    return {before_.cpu_s + cpu_s() - cpu_start_,
+            before_.compute_s + output::machine_clock() - wall_start_ - wait, before_.wait_s + wait};
+  }
+
+  const scenario::Scenario& scenario_;
+  Transport& transport_;
+  RunContext context_;
+  std::unique_ptr<Node> node_;
+  NodeCost before_;
+  std::int64_t from_ = 0;
+  double wall_start_ = 0.0, cpu_start_ = 0.0, waited_start_ = 0.0;
+};
+
+}  // namespace
+
+ExitCode run_node(const scenario::Scenario& scenario, Transport& transport, const RunContext& context) {
+  try {
+    return RunLoop(scenario, transport, context).run();
+  } catch (const PeerFailure&) {
+    throw;
+  } catch (const Error& error) {
+    transport.announce_failure(error.code(), error.what());
+    throw;
+  } catch (const std::exception& error) {
+    transport.announce_failure(ExitCode::physics, error.what());
+    throw;
+  }
+}
+
+}  // namespace furrow::ranks

@@ -1,0 +1,202 @@
+// The tire's rank. Its bead follows the rim's extrapolated motion (tire/rim_trajectory.hpp); the terrain's forces of
+// the last interval act over the next one. To the rig goes the spindle wrench without the tire's own rigid-body
+// inertia and weight, which the rig carries as added mass (nodes/carried_wrench.hpp), with v and ω those of the
+// bead's trajectory: nothing is counted twice, and a rigid tire sends its contact alone.
+// With contact tangents the forces answer to the tire's motion; what they differ by from those that the terrain then
+// reports is booked and handed back (nodes/impulse_ledger.hpp).
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "nodes/output/frames.hpp"
+#include "nodes/ranks/carried_wrench.hpp"
+#include "nodes/ranks/impulse_ledger.hpp"
+#include "tire/reach.hpp"
+
+namespace furrow::ranks {
+namespace {
+
+class TireNode : public Node {
+ public:
+  TireNode(const scenario::Scenario& scenario, int index)
+      : scenario_(scenario),
+        index_(index),
+        pressure_(scenario.tires.at(index).pressure),
+        tire_(tire::make_tire(scenario.tires.at(index))),
+        reach_(tire::inflated_reach(*tire_, scenario.rigs.at(index).camber_angle)) {
+    report_.contact_tangent = scenario.tires.at(index).contact_tangent;
+    if (report_.contact_tangent) ledger_ = ImpulseLedger(tire_->mesh().vertex_count);
+  }
+
+  NodeCard card() const override {
+    NodeCard card = common_card(scenario_, {Role::tire, index_});
+    card.node_kind = scenario_.tires[index_].rigid ? "rigid" : "ancf";
+    card.substeps = scenario_.tire_substeps;
+    card.tire_mass = tire_->mass_properties();
+    card.tire_radius = tire_->radius();
+    card.tire_width = tire_->tread_width();
+    card.tire_reach = reach_;
+    card.size = tire_->coordinates();
+    return card;
+  }
+
+  void set_up(Transport& transport, std::span<const NodeCard>, const RunContext& context) override {
+    directory_ = context.directory;
+    frames_ = frame_clock(scenario_, context);
+    send(transport, kTerrain, SurfaceSetup{tire_->mesh(), tire_->material()});
+    const auto start = receive_step<RimMotion>(transport, kRig, kPlacement);
+    trajectory_ = tire::RimTrajectory(start.rim);
+    tire_->place(start.rim);
+    tire_->surface(motion_.surface);
+    motion_.header = {kPlacement, 0.0};
+    send(transport, kTerrain, motion_);
+    describe_state();
+    if (context.saved) restore(*context.saved);
+  }
+
+  void synchronize(Transport& transport, const StepHeader& header) override {
+    report_.header = motion_.header = header;
+    motion_.order = due_ = next_;
+    write_frame(header);
+    send(transport, kRig, report_);
+    send(transport, kTerrain, motion_);
+    rim_ = receive_step<RimMotion>(transport, kRig, header.step);
+    next_ = rim_.order;
+    forces_ = receive_step<TerrainForces>(transport, kTerrain, header.step).forces;
+  }
+
+  void advance(const StepHeader& header) override {
+    const double duration = scenario_.run.step;
+    trajectory_.extend(rim_.rim, duration);
+    if (report_.contact_tangent) {
+      ledger_.settle(forces_, duration);
+      ledger_.hand_back(forces_, duration);
+    } else {
+      forces_.tangent.clear();
+    }
+    if (pressure_.varies()) tire_->set_pressure(pressure_.at(header.time + 0.5 * duration));
+    const tire::TireStatus status = tire_->advance(trajectory_, forces_, scenario_.tire_substeps);
+    if (!status.converged)
+      throw physics_error(status.message(fmt::format("{} ", index_),
+                                         fmt::format(" at t = {:.6g} s, step {}", header.time, header.step)));
+    tire_->acted(forces_);
+    account(duration);
+  }
+
+  Order due() const override { return due_; }
+  void finish(Transport& transport, FinalReport own, bool) override { send(transport, kRig, own); }
+
+  void save(Archive& archive) const override {
+    tire_->save(archive);
+    trajectory_.save(archive);
+    const auto& r = report_;
+    if (r.contact_tangent) ledger_.save(archive);
+    archive.put("node/report",
+                std::vector<double>{r.wrench.force.x(), r.wrench.force.y(), r.wrench.force.z(),
+                                    r.wrench.moment.x(), r.wrench.moment.y(), r.wrench.moment.z(),
+                                    r.spindle.force.x(), r.spindle.force.y(), r.spindle.force.z(),
+                                    r.spindle.moment.x(), r.spindle.moment.y(), r.spindle.moment.z(),
+                                    r.impulse_received.x(), r.impulse_received.y(), r.impulse_received.z(),
+                                    r.impulse_received_abs, r.terrain_work, r.rim_work});
+  }
+
+  void restore(const Archive& archive) override {
+    tire_->restore(archive);
+    trajectory_.restore(archive);
+    const auto& v = archive.get<double>("node/report", 18);
+    report_.wrench = {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
+    report_.spindle = {{v[6], v[7], v[8]}, {v[9], v[10], v[11]}};
+    report_.impulse_received = {v[12], v[13], v[14]};
+    report_.impulse_received_abs = v[15];
+    report_.terrain_work = v[16];
+    report_.rim_work = v[17];
+    if (report_.contact_tangent) {
+      ledger_.restore(archive);
+      report_ledger();
+    }
+    tire_->surface(motion_.surface);
+    describe_state();
+  }
+
+ private:
+  static constexpr Address kRig{Role::rig, 0};
+  static constexpr Address kTerrain{Role::terrain, 0};
+
+  void account(double duration) {
+    const RimState &from = trajectory_.start(), &to = trajectory_.end();
+    report_.spindle = tire_->spindle_wrench();
+    report_.wrench = carried_wrench(report_.spindle, tire_->mass_properties(), from, to, duration);
+    const Vec3 turned = 0.5 * duration * (from.angular_velocity + to.angular_velocity);
+    report_.rim_work -=
+        report_.spindle.force.dot(to.position - from.position) + report_.spindle.moment.dot(turned);
+
+    before_.swap(motion_.surface.position);
+    tire_->surface(motion_.surface);
+    Vec3 impulse = Vec3::Zero();
+    for (std::size_t i = 0; i < forces_.vertex.size(); ++i) {
+      const int vertex = forces_.vertex[i];
+      impulse += duration * forces_.force[i];
+      report_.terrain_work += forces_.force[i].dot(motion_.surface.position[vertex] - before_[vertex]);
+    }
+    report_.impulse_received += impulse;
+    report_.impulse_received_abs += impulse.norm();
+    if (report_.contact_tangent) {
+      ledger_.book(forces_, duration);
+      report_ledger();
+    }
+    describe_state();
+  }
+
+  void report_ledger() {
+    report_.impulse_ahead = ledger_.sum();
+    report_.ledger = ledger_.settled();
+    report_.ledger_largest = ledger_.largest();
+  }
+
+  void describe_state() {
+    const tire::TireDiagnostics d = tire_->diagnostics();
+    report_.kinetic_energy = d.kinetic_energy;
+    report_.strain_energy = d.strain_energy;
+    report_.dissipation = d.dissipation;
+    report_.momentum = d.momentum;
+    report_.newton_iterations = d.newton_iterations;
+    report_.factorizations = d.factorizations;
+    report_.residual = d.residual;
+    report_.lowest_point = motion_.surface.position.front().z();
+    for (const Vec3& x : motion_.surface.position)
+      report_.lowest_point = std::min(report_.lowest_point, x.z());
+    if (!std::isfinite(report_.lowest_point + report_.spindle.force.sum()))
+      throw physics_error(to_string(Address{Role::tire, index_}) + ": the state is not finite");
+  }
+
+  void write_frame(const StepHeader& header) {
+    if (!frames_.due(header.step)) return;
+    output::write_tire_frame(directory_, index_, frames_.index(header.step), header.time, tire_->mesh(),
+                             motion_.surface, forces_);
+  }
+
+  scenario::Scenario scenario_;
+  int index_;
+  tire::PressureSchedule pressure_;
+  std::unique_ptr<tire::Tire> tire_;
+  double reach_;  // m
+  tire::RimTrajectory trajectory_;
+  RimMotion rim_;
+  NodalForces forces_;
+  ImpulseLedger ledger_;
+  SurfaceMotion motion_;
+  SpindleReport report_;
+  std::vector<Vec3> before_;
+  std::filesystem::path directory_;
+  checkpoint::FrameClock frames_;
+  Order next_ = Order::go_on, due_ = Order::go_on;
+};
+
+}  // namespace
+
+std::unique_ptr<Node> make_tire_node(const scenario::Scenario& scenario, int index) {
+  return std::make_unique<TireNode>(scenario, index);
+}
+
+}  // namespace furrow::ranks

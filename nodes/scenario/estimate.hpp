@@ -1,0 +1,27 @@
+// What a run of a scenario will need, before any rank exists, and what this machine has.
+#pragma once
+
+#include <cstdint>
+
+#include "nodes/scenario/scenario.hpp"
+
+namespace furrow::scenario {
+
+struct Estimate {
+  terrain::TerrainEstimate terrain;
+  std::int64_t steps = 0;        // communication steps
+  std::int64_t coordinates = 0;  // of all tires
+  double memory = 0.0;           // of all ranks, bytes
+  double disk = 0.0;             // of the results, bytes
+};
+
+Estimate estimate(const Scenario& scenario);
+
+/// What this machine has to give now; 0 where unknown.
+struct MachineState {
+  double memory_free = 0.0;  // bytes
+  double disk_free = 0.0;    // in the working directory, bytes
+};
+MachineState machine_state();
+
+}  // namespace furrow::scenario

@@ -1,0 +1,22 @@
+// Reads a scenario: the user's JSON file, checked, completed with the schema's defaults, made into a Scenario.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "nodes/scenario/scenario.hpp"
+
+namespace furrow::scenario {
+
+/// Reads, applies `--set key=value` pairs, validates and completes a scenario.
+/// @throws Error(bad_input) naming file, key, what is wrong and what is expected; one line per mistake.
+Scenario load_scenario(const std::filesystem::path& file,
+                       const std::vector<std::pair<std::string, std::string>>& settings);
+
+/// Which keys may differ when a run is continued: they say how long, how it is computed and what is written, and leave
+/// the physics alone.
+bool may_change_on_resume(const std::string& key);
+
+}  // namespace furrow::scenario

@@ -1,0 +1,59 @@
+#include "nodes/scenario/rank_table.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+#include <fmt/format.h>
+
+namespace furrow::scenario {
+
+std::vector<RankEntry> rank_table(const Scenario& s) {
+  std::vector<RankEntry> table;
+  table.push_back({0, "rig",
+                   fmt::format("{} drawbar rig{}, {}; writes the results; 1 thread", s.rigs.size(),
+                               s.rigs.size() > 1 ? "s" : "", s.rigs.front().mode)});
+  for (std::size_t k = 0; k < s.tires.size(); ++k)
+    table.push_back({static_cast<int>(k) + 1, fmt::format("tire {}", k),
+                     fmt::format("{}, {}; 1 thread", s.tires[k].file.filename().string(),
+                                 s.tires[k].rigid ? "rigid" : "layered shell")});
+  const std::string threads = s.run.threads > 0
+                                  ? fmt::format("{} thread{}", s.run.threads, s.run.threads > 1 ? "s" : "")
+                                  : "as many threads as there are cores left";
+  const std::string what = s.terrain.engine == "dem" ? "grains, law " + s.terrain.law : "rigid ground";
+  for (int i = 0; i < s.terrain_ranks; ++i)
+    table.push_back({static_cast<int>(table.size()), "terrain", what + "; " + threads});
+  return table;
+}
+
+std::string rank_table_text(const Scenario& scenario) {
+  std::string text;
+  for (const RankEntry& entry : rank_table(scenario))
+    text += fmt::format("  {:>3}  {:<8} {}\n", entry.rank, entry.node, entry.does);
+  return text;
+}
+
+std::string shell_quoted(const std::string& argument) {
+  const auto plain = [](unsigned char c) {
+    return std::isalnum(c) || std::string("_-./=:,+@%").find(static_cast<char>(c)) != std::string::npos;
+  };
+  if (!argument.empty() && std::all_of(argument.begin(), argument.end(), plain)) return argument;
+  std::string quoted(1, '\'');
+  for (const char c : argument) {
+    if (c == '\'')
+      quoted += "'\\''";
+    else
+      quoted += c;
+  }
+  quoted += '\'';
+  return quoted;
+}
+
+std::string launch_lines(const Scenario& scenario, const std::vector<std::string>& arguments) {
+  const std::size_t ranks = rank_table(scenario).size();
+  std::string tail;
+  for (const std::string& argument : arguments) tail += " " + shell_quoted(argument);
+  return fmt::format("mpirun -n {} --bind-to none{}\nsrun -n {} --mpi=pmix --cpu-bind=none{}\n", ranks, tail,
+                     ranks, tail);
+}
+
+}  // namespace furrow::scenario

@@ -1,0 +1,29 @@
+// Which MPI rank does what.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "nodes/scenario/scenario.hpp"
+
+namespace furrow::scenario {
+
+struct RankEntry {
+  int rank = 0;
+  std::string node;  // "rig", "tire 0", "terrain"
+  std::string does;  // for people
+};
+
+/// World rank 0 is the rig, 1…k the tires, the rest the terrain.
+std::vector<RankEntry> rank_table(const Scenario& scenario);
+
+/// The table as lines for people.
+std::string rank_table_text(const Scenario& scenario);
+
+/// The lines that start the run by hand, without and with a batch system.
+std::string launch_lines(const Scenario& scenario, const std::vector<std::string>& arguments);
+
+/// An argument as a shell takes it.
+std::string shell_quoted(const std::string& argument);
+
+}  // namespace furrow::scenario

@@ -1,0 +1,72 @@
+// A scenario: what the user's JSON file says, validated, completed with the schema's defaults, and made into
+// the options of each room.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "rigs/drawbar_rig.hpp"
+#include "terrain/terrain_options.hpp"
+#include "tire/tire.hpp"
+
+namespace furrow::scenario {
+
+/// `run.*`
+struct RunOptions {
+  double step = 4e-5;         // communication step H, s
+  double end = 1.5;           // s
+  double average_from = 0.8;  // start of the averaging window, s
+  int threads = 0;            // terrain's OpenMP threads; 0: auto
+  std::uint64_t seed = 1;
+  double peer_timeout = 60.0;  // s
+  std::int64_t steps() const;  // round(end / step)
+};
+
+/// `output.*`
+struct OutputOptions {
+  double series_interval = 1e-3;  // s
+  double frame_interval = 0.02;   // s; 0: none
+};
+
+/// `checkpoint.*`
+struct CheckpointOptions {
+  double wall_interval = 600.0;  // s of wall time; 0: none
+  double interval = 0.0;         // s of simulated time; 0: none
+  int keep = 2;
+  bool at_end = true;
+};
+
+/// `expected.*`, optional: what the shipped scenarios print beside their result.
+struct ExpectedResult {
+  bool given = false;
+  double drawbar_pull = 0.0;         // N
+  double drawbar_pull_spread = 0.0;  // ± N
+};
+
+struct Scenario {
+  std::filesystem::path file;
+  std::string name;  // file name without extension
+  std::string
+      completed;       // the whole scenario as JSON text with defaults filled in; can be read from any folder
+  std::string digest;  // hash of all in `completed` that decides the results, and of the tire files
+  std::vector<rigs::DrawbarRigOptions> rigs = std::vector<rigs::DrawbarRigOptions>(1);  // one per wheel
+  int rig_substeps = 1;
+  double drop_height = 0.0;              // of all tires above the ground at t = 0, m
+  std::vector<tire::TireOptions> tires;  // one per wheel
+  int tire_substeps = 1;
+  terrain::TerrainOptions terrain;
+  int terrain_ranks = 1;
+  int terrain_substeps = 1;
+  RunOptions run;
+  OutputOptions output;
+  CheckpointOptions checkpoint;
+  ExpectedResult expected;
+  std::vector<std::string> warnings;  // what looks wrong but is allowed
+
+  /// Of what the tire files and the bed's file hold, in this order.
+  std::vector<std::string> file_hashes() const;
+};
+
+}  // namespace furrow::scenario

@@ -1,0 +1,85 @@
+#include "nodes/scenario/soil_material.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "nodes/scenario/schema.hpp"
+#include "protocol/core/error.hpp"
+#include "protocol/files/data_files.hpp"
+#include "protocol/files/json_text.hpp"
+
+namespace furrow::scenario {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kFormatVersion = 1;
+/// What a soil may say of a terrain; the bin and the size of its grains are the scenario's.
+constexpr std::array<const char*, 13> kKeys{"law",
+                                            "density",
+                                            "young_modulus",
+                                            "poisson_ratio",
+                                            "restitution",
+                                            "friction",
+                                            "cohesion",
+                                            "size_distribution",
+                                            "size_spread",
+                                            "bed_generator",
+                                            "rolling_friction",
+                                            "settling_friction",
+                                            "compaction_pressure"};
+
+/// The soil named in the scenario; null when it names none.
+json named_material(const json& document, const std::filesystem::path& scenario) {
+  const auto terrain = document.find("terrain");
+  if (terrain == document.end() || !terrain->is_object()) return {};
+  const auto name = terrain->find("material");
+  if (name == terrain->end() || name->is_null()) return {};
+  if (!name->is_string())
+    throw input_error(scenario.string(), "terrain.material",
+                      "is " + value_text(*name) + ", expected the name of a soil file or null");
+  return read_soil_material(find_file(*name, "terrain.material", scenario));
+}
+
+}  // namespace
+
+json read_soil_material(const std::filesystem::path& file) {
+  const std::string name = file.string();
+  const json soil = parse_json(read_text_file(name, "a soil in JSON"), name);
+  if (!soil.is_object() || !soil.contains("terrain") || !soil["terrain"].is_object())
+    throw input_error(name, "terrain", "is missing, expected an object { } with the soil's values");
+  for (const auto& [key, value] : soil.items())
+    if (key != "format_version" && key != "description" && key != "terrain" && key != "measured")
+      throw input_error(name, key, "is unknown, expected format_version, description, terrain or measured");
+  if (!soil.contains("format_version"))
+    throw input_error(name, "format_version", fmt::format("is missing, expected {}", kFormatVersion));
+  if (soil.value("format_version", json(0)) != kFormatVersion)
+    throw input_error(
+        name, "format_version",
+        fmt::format("is {}, expected {}", value_text(soil.value("format_version", json())), kFormatVersion));
+  for (const auto& [key, value] : soil["terrain"].items())
+    if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end())
+      throw input_error(name, "terrain." + key,
+                        fmt::format("is not a property of soil, expected one of {}", fmt::join(kKeys, ", ")));
+  json alone{{"terrain", soil["terrain"]}};
+  const Schema schema = Schema::load();
+  schema.normalize(alone);
+  for (const Problem& problem : schema.problems(alone))
+    if (problem.key.starts_with("terrain")) throw input_error(name, problem.key, problem.what);
+  return alone["terrain"];
+}
+
+void apply_soil_material(json& document, const std::filesystem::path& scenario) {
+  const json soil = named_material(document, scenario);
+  for (const auto& [key, value] : soil.items())
+    if (!document["terrain"].contains(key)) document["terrain"][key] = value;
+}
+
+void override_soil_material(json& document, const std::filesystem::path& scenario) {
+  const json soil = named_material(document, scenario);
+  for (const auto& [key, value] : soil.items()) document["terrain"][key] = value;
+}
+
+}  // namespace furrow::scenario

@@ -1,0 +1,24 @@
+// Soil files: sets of values for the section `terrain`, with the strength that `furrow soil` measured for them.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace furrow::scenario {
+
+/// The values of a soil file by their key in `terrain`.
+/// @throws Error(io) when it cannot be read, Error(bad_input) naming file and key.
+nlohmann::json read_soil_material(const std::filesystem::path& file);
+
+/// Puts the values of the soil named by `terrain.material` into a scenario, beneath those the scenario states itself.
+/// `scenario`: its file, for messages and as the first place to look in.
+void apply_soil_material(nlohmann::json& document, const std::filesystem::path& scenario);
+
+/// The same for a soil named on the command line: in place of those the scenario states.
+void override_soil_material(nlohmann::json& document, const std::filesystem::path& scenario);
+
+}  // namespace furrow::scenario

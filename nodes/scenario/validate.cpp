@@ -1,0 +1,100 @@
+#include "nodes/scenario/validate.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "nodes/scenario/estimate.hpp"
+#include "nodes/scenario/rank_table.hpp"
+#include "nodes/scenario/wheel_geometry.hpp"
+#include "tire/shell_mesh.hpp"
+#include "tire/tire_file.hpp"
+
+namespace furrow::scenario {
+namespace {
+
+constexpr double kMegabyte = 1e6;
+
+std::string pressure_text(const tire::PressureSchedule& p) {
+  if (!p.varies()) return fmt::format("{:g} kPa", 1e-3 * p.at(0.0));
+  return fmt::format("{:g} kPa, later {:g} to {:g} kPa", 1e-3 * p.at(0.0), 1e-3 * p.lowest(),
+                     1e-3 * p.highest());
+}
+
+/// Of the undeformed tire about its centre.
+MassProperties tire_mass(const tire::TireOptions& options) {
+  const tire::TireFile file = tire::tire_file_of(options);
+  const tire::ShellMesh ring = tire::make_shell_mesh(file);
+  return tire::rigid_mass(ring, tire::element_masses(file, ring));
+}
+
+}  // namespace
+
+nlohmann::ordered_json validation_report(const Scenario& s) {
+  const Estimate e = estimate(s);
+  const bool grains = s.terrain.engine == "dem";
+  nlohmann::ordered_json json;
+  json["scenario"] = s.name;
+  json["scenario_digest"] = s.digest;
+  json["step_s"] = s.run.step;
+  json["terrain_step_s"] = s.terrain.step;
+  json["stable_step_s"] =
+      grains ? nlohmann::ordered_json(e.terrain.stable_step) : nlohmann::ordered_json(nullptr);
+  json["stable_step_limited_by"] = e.terrain.stable_reason;
+  json["steps"] = e.steps;
+  json["grains"] = e.terrain.grains;
+  json["bed_height_m"] = e.terrain.expected_height;
+  json["tire_coordinates"] = e.coordinates;
+  json["memory_MB"] = std::round(e.memory / kMegabyte);
+  json["disk_MB"] = std::round(e.disk / kMegabyte);
+  for (std::size_t k = 0; k < s.tires.size(); ++k) {
+    const AxlePath path = axle_path(s, k, tire_size(s.tires[k]).radius);
+    json["axle_path_m"].push_back({path.from, path.to});
+    json["tire_mass_kg"].push_back(tire_mass(s.tires[k]).mass);
+  }
+  for (const RankEntry& rank : rank_table(s))
+    json["ranks"].push_back({{"rank", rank.rank}, {"node", rank.node}, {"does", rank.does}});
+  json["warnings"] = s.warnings;
+  return json;
+}
+
+std::string validation_text(const Scenario& s) {
+  const Estimate e = estimate(s);
+  const bool grains = s.terrain.engine == "dem";
+  std::string text;
+  const auto line = [&](const std::string& name, const std::string& value) {
+    text += fmt::format("{:<12} {}\n", name, value);
+  };
+  line("scenario", fmt::format("{} (digest {})", s.file.string(), s.digest));
+  line("run", fmt::format("{:g} s in {} steps of {:g} s, averaged from {:g} s on", s.run.end, e.steps,
+                          s.run.step, s.run.average_from));
+  if (grains)
+    line("terrain step", fmt::format("{:g} s, {:.0f} % of the stable {:.3g} s ({})", s.terrain.step,
+                                     100.0 * s.terrain.step / e.terrain.stable_step, e.terrain.stable_step,
+                                     e.terrain.stable_reason));
+  line("terrain",
+       grains ? fmt::format("about {} grains of {:g} mm, law {}, bed about {:.0f} mm deep, bin {:g} × {:g} m",
+                            e.terrain.grains, 1e3 * s.terrain.radius, s.terrain.law,
+                            1e3 * e.terrain.expected_height, s.terrain.length, s.terrain.width)
+              : std::string("rigid plane z = 0"));
+  for (std::size_t k = 0; k < s.tires.size(); ++k) {
+    const tire::TireOptions& options = s.tires[k];
+    const TireSize size = tire_size(options);
+    const AxlePath path = axle_path(s, k, size.radius);
+    line("tire",
+         size.rigid
+             ? fmt::format("{}, rigid, radius {:g} m", options.file.filename().string(), size.radius)
+             : fmt::format("{}, {} × {} elements, {} coordinates, {}, radius {:g} m",
+                           options.file.filename().string(), size.elements_circumference, size.elements_width,
+                           size.coordinates(), pressure_text(size.pressure), size.radius));
+    const MassProperties mass = tire_mass(options);
+    line("tire mass", fmt::format("{:.2f} kg, spin inertia {:.3g} kg m²", mass.mass, mass.inertia(1, 1)));
+    line("axle", fmt::format("from x = {:.3f} m to {:.3f} m", path.from, path.to));
+  }
+  line("memory", fmt::format("about {:.0f} MB in all", e.memory / kMegabyte));
+  line("disk", fmt::format("about {:.0f} MB of results", e.disk / kMegabyte));
+  return text + "ranks\n" + rank_table_text(s);
+}
+
+}  // namespace furrow::scenario

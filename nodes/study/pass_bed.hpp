@@ -1,0 +1,17 @@
+// The bed of a further pass: the terrain as a run left it, without the tire, after a rest.
+#pragma once
+
+#include <filesystem>
+
+#include "terrain/dem/beds/bed_after_run.hpp"
+
+namespace furrow::study {
+
+/// @param run   folder of a finished run on grains; its last checkpoint is read
+/// @param rest  simulated time that the bed lies before the next pass, s
+/// @param file  receives the bed, for `terrain.bed`
+/// @throws Error
+terrain::dem::RestResult make_pass_bed(const std::filesystem::path& run, double rest,
+                                       const ProgressCall& progress, const std::filesystem::path& file);
+
+}  // namespace furrow::study

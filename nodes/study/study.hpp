@@ -1,0 +1,44 @@
+// A study: a scenario and a table of runs that differ in some keys.
+//
+//   {"scenario": "drawbar_pull_small.json",          relative to the study, then to the data folders
+//    "set": {"run.end": 1.2},                        for all runs
+//    "grid": {"rig.slip": [0, 0.3], "terrain.cohesion": [40e3, 80e3]},   every combination, the last key fastest
+//    "list": [{"rig.slip": 0.1}, …],                 or these
+//    "passes": 3, "rest": 0.2,                       each of these, or the scenario alone, so many times over the same bed
+//    "results": ["drawbar_pull_N.mean", …],          of summary.json; columns of the collected table
+//    "plot": {"x": "rig.slip", "y": "drawbar_pull_N.mean", "error": "drawbar_pull_N.sem", "lines": "terrain.cohesion",
+//             "mean_over": "run.seed"}}                  points are means over these runs, bars their 95 % intervals
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace furrow::study {
+
+struct Study {
+  std::filesystem::path file;
+  std::string name;                          // file name without extension
+  std::filesystem::path scenario;            // resolved
+  nlohmann::ordered_json common;             // keys and values for all runs
+  std::vector<nlohmann::ordered_json> runs;  // keys and values of each
+  std::vector<std::string> results;
+  bool results_chosen = false;  // by the user
+  nlohmann::ordered_json plot;  // null: none
+  int passes = 0;     // of each run, every one on the bed that the one before it left; 0: beds of their own
+  double rest = 0.2;  // s, simulated, that the bed lies between passes
+};
+
+/// @throws Error(bad_input) naming file and key
+Study load_study(const std::filesystem::path& file);
+
+/// As `--set key=value` takes them.
+std::vector<std::pair<std::string, std::string>> settings_of(const nlohmann::ordered_json& values);
+
+/// "rig.slip=0.3, terrain.cohesion=80000".
+std::string text_of(const nlohmann::ordered_json& values);
+
+}  // namespace furrow::study

@@ -1,0 +1,371 @@
+#include "nodes/study/sweep.hpp"
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <csignal>
+#include <cstdio>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "nodes/checkpoint/checkpoint.hpp"
+#include "nodes/launch/progress.hpp"
+#include "nodes/launch/run_directory.hpp"
+#include "nodes/launch/signals.hpp"
+#include "nodes/scenario/load_scenario.hpp"
+#include "nodes/study/pass_bed.hpp"
+#include "protocol/files/text_file.hpp"
+#include "protocol/host.hpp"
+#include "terrain/dem/beds/bed_cache.hpp"
+
+namespace furrow::study {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr int kPoll = 100000;  // µs
+constexpr int kTriesForFolder = 100;
+constexpr double kDeepRut = 0.4;  // of the bed's depth: a tire this deep feels the floor
+
+Json read_summary(const fs::path& run) {
+  std::ifstream in(run / "summary.json");
+  return Json::parse(in, nullptr, false);
+}
+
+/// summary["a"]["b"] for "a.b".
+Json value_at(const Json& summary, const std::string& path) {
+  const Json* at = &summary;
+  for (std::size_t from = 0; from <= path.size();) {
+    const std::size_t to = std::min(path.find('.', from), path.size());
+    const std::string part = path.substr(from, to - from);
+    if (at->is_array() && !part.empty() && part.find_first_not_of("0123456789") == std::string::npos &&
+        std::stoul(part) < at->size())
+      at = &(*at)[std::stoul(part)];
+    else if (at->is_object() && at->contains(part))
+      at = &(*at)[part];
+    else
+      return {};
+    from = to + 1;
+  }
+  return *at;
+}
+
+std::string cell(const Json& value) {
+  if (value.is_null()) return "";
+  const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+/// What the user was told of a failure: the error lines of the log's last part.
+std::string last_error(const fs::path& log) {
+  std::ifstream in(log);
+  std::string found;
+  const std::string mark = "furrow: error: ";
+  for (std::string line; std::getline(in, line);)
+    if (line.starts_with(mark)) found = line.substr(mark.size());
+  return found;
+}
+
+/// As many shares of the cores this process may use, as even as they come; all of them where there are too few.
+std::vector<cpu_set_t> core_shares(int jobs) {
+  const std::vector<int> cores = allowed_cores();
+  const int shares = std::min(jobs, static_cast<int>(cores.size()));
+  std::vector<cpu_set_t> sets(jobs);
+  for (int job = 0; job < jobs; ++job) {
+    CPU_ZERO(&sets[job]);
+    for (int i = 0; i < static_cast<int>(cores.size()); ++i)
+      if (shares < jobs || i * shares / static_cast<int>(cores.size()) == job) CPU_SET(cores[i], &sets[job]);
+  }
+  return sets;
+}
+
+bool readable(const fs::path& bed) try {
+  terrain::dem::read_bed(bed);
+  return true;
+} catch (const Error&) {
+  return false;  // absent or damaged: made anew
+}
+
+/// Ranks outlive a supervisor that was killed by a second or two.
+void wait_until_free(const fs::path& folder) {
+  for (int tries = 0; tries < kTriesForFolder && fs::exists(folder); ++tries, usleep(kPoll)) try {
+      close(launch::lock_folder(folder, ""));
+      return;
+    } catch (const Error&) {
+    }
+}
+
+std::string state_name(int state) {
+  constexpr const char* kNames[] = {"waiting", "running", "done", "failed", "stopped"};
+  return kNames[state];
+}
+
+}  // namespace
+
+Sweep::Sweep(Study study, const SweepOptions& options)
+    : study_(std::move(study)), options_(options), shares_(core_shares(options.jobs)) {
+  for (const Json& keys : study_.runs)
+    for (int pass = study_.passes > 0 ? 1 : 0; pass <= study_.passes; ++pass) {
+      runs_.emplace_back();
+      runs_.back().keys = keys;
+      runs_.back().pass = pass;
+      if (pass <= 1) load(runs_.back());
+    }
+}
+
+void Sweep::load(Run& run) {
+  Json all = study_.common;
+  all.update(run.keys);
+  all.update(run.passes_on);
+  try {
+    const scenario::Scenario scenario = scenario::load_scenario(study_.scenario, settings_of(all));
+    if (study_.passes > 1 && scenario.terrain.engine != "dem")
+      throw input_error(
+          study_.scenario.string(), "terrain.engine",
+          "is '" + scenario.terrain.engine + "', expected 'dem': passes need grains, which keep a rut");
+    if (study_.passes > 1 && !scenario.checkpoint.at_end)
+      throw input_error(study_.scenario.string(), "checkpoint.at_end",
+                        "is false, expected true: the next pass begins on the checkpoint at the end");
+    run.digest = scenario.digest;
+  } catch (const Error& error) {
+    throw Error(error.code(), fmt::format("{}\n{}: in the run with {}", error.what(), study_.file.string(),
+                                          run.keys.empty() ? "these settings" : text_of(run.keys)));
+  }
+  run.loaded = true;
+}
+
+fs::path Sweep::folder_of(const Run& run) const { return options_.folder / "runs" / run.digest; }
+fs::path Sweep::log_of(const Run& run) const { return options_.folder / "runs" / (run.digest + ".log"); }
+
+bool Sweep::finished(const Run& run) const {
+  const Json summary = read_summary(folder_of(run));
+  return summary.is_object() && summary.value("scenario_digest", "") == run.digest;
+}
+
+std::vector<std::string> Sweep::command(const Run& run) const {
+  std::error_code error;
+  const std::string program = fs::read_symlink("/proc/self/exe", error).string();
+  const fs::path folder = folder_of(run);
+  if (!checkpoint::list_checkpoints(folder).empty())
+    return {program, "resume", folder.string(), "--no-plots"};
+  std::vector<std::string> list{program, "run",           study_.scenario.string(),
+                                "--out", folder.string(), "--no-plots"};
+  if (fs::exists(folder, error)) list.emplace_back("--overwrite");
+  Json all = study_.common;
+  all.update(run.keys);
+  all.update(run.passes_on);
+  for (const auto& [key, value] : settings_of(all)) {
+    list.emplace_back("--set");
+    list.push_back(key + "=" + value);
+  }
+  return list;
+}
+
+void Sweep::tell(const Run& run, const std::string& what) const {
+  const auto number = static_cast<std::size_t>(&run - runs_.data()) + 1;
+  std::string keys = text_of(run.keys);
+  if (run.pass > 0) keys += fmt::format("{}pass {}", keys.empty() ? "" : ", ", run.pass);
+  std::fprintf(stderr, "furrow: run %zu of %zu (%s) %s\n", number, runs_.size(), keys.c_str(), what.c_str());
+}
+
+/// The next run to start; null when none can be now.
+Sweep::Run* Sweep::next() {
+  for (std::size_t i = 0; i < runs_.size(); ++i) {
+    Run& run = runs_[i];
+    if (run.state == State::done) continue;
+    if (run.state != State::waiting) continue;
+    if (run.pass > 1 && runs_[i - 1].state != State::done) continue;
+    if (!run.loaded && !take_over_bed(run)) {
+      if (launch::stop_signalled()) return nullptr;
+      continue;
+    }
+    if (!finished(run)) return &run;
+    run.state = State::done;
+    tell(run, "is done already");
+  }
+  return nullptr;
+}
+
+/// The bed of a pass is what the pass before it left, after a rest; sinkage counts from the surface before the first.
+/// @returns false when there is none: stopped by a signal, or the run has failed
+bool Sweep::take_over_bed(Run& run) try {
+  const Run& before = *(&run - 1);
+  const Run& first = *(&run - (run.pass - 1));
+  const fs::path bed = options_.folder / "beds" / fmt::format("{}_rest_{}.h5", before.digest, study_.rest);
+  std::error_code error;
+  if (!readable(bed)) {
+    fs::create_directories(bed.parent_path(), error);
+    launch::ProgressDisplay display;
+    const auto progress = [&](const std::string& what, double share) {
+      if (launch::stop_signalled()) throw Error(ExitCode::stopped, "stopped by a signal while the bed lay");
+      display.show({.phase = what, .share = share});
+    };
+    const terrain::dem::RestResult rest = make_pass_bed(folder_of(before), study_.rest, progress, bed);
+    display.clear();
+    tell(run, fmt::format(
+                  "begins on the bed after {:.2g} s: {}, net force {:.1e} of the contact forces, {:.2g} mm/s",
+                  rest.time, rest.settled ? "settled" : "NOT settled", rest.force_ratio, 1e3 * rest.speed));
+  }
+  run.passes_on["terrain.bed"] = fs::absolute(bed, error).string();
+  run.passes_on["terrain.undisturbed_height"] = value_at(read_summary(folder_of(first)), "surface_height_m");
+  load(run);
+  return true;
+} catch (const Error& error) {
+  if (error.code() == ExitCode::stopped) return false;
+  run.state = State::failed;
+  run.exit_code = static_cast<int>(error.code());
+  run.problem = error.what();
+  tell(run, fmt::format("FAILED with exit code {}: {}", run.exit_code, run.problem));
+  write_table();
+  return false;
+}
+
+void Sweep::start(Run& run, std::size_t share) {
+  std::error_code error;
+  fs::create_directories(folder_of(run).parent_path(), error);
+  wait_until_free(folder_of(run));
+  std::vector<std::string> list = command(run);
+  std::vector<char*> arguments;
+  for (std::string& argument : list) arguments.push_back(argument.data());
+  arguments.push_back(nullptr);
+  const std::string log = log_of(run).string();
+  const pid_t parent = getpid(), child = fork();
+  if (child < 0) throw io_error(list.front(), std::string("cannot be started: ") + std::strerror(errno));
+  if (child == 0) {
+    launch::die_with_parent(SIGTERM, parent);
+    setpgid(0, 0);  // signals of a terminal are passed on by the parent
+    launch::restore_signals();
+    sched_setaffinity(0, sizeof(cpu_set_t), &shares_[share]);
+    const int out = open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0666);
+    dup2(out, STDOUT_FILENO);
+    dup2(out, STDERR_FILENO);
+    execv(arguments.front(), arguments.data());
+    _exit(127);
+  }
+  run.process = child;
+  run.share = share;
+  run.state = State::running;
+  tell(run, list[1] == "resume" ? "goes on" : "begins");
+}
+
+void Sweep::look_at(Run& run) {
+  int status = 0;
+  if (waitpid(run.process, &status, WNOHANG) != run.process) return;
+  run.process = -1;
+  run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : static_cast<int>(ExitCode::rank_lost);
+  if (run.exit_code == static_cast<int>(ExitCode::stopped)) {
+    run.state = State::stopped;
+    tell(run, "was stopped");
+  } else if (run.exit_code == 0 && finished(run)) {
+    run.state = State::done;
+    const Json summary = read_summary(folder_of(run));
+    const auto number = [&](const char* path) {
+      const Json value = value_at(summary, path);
+      return value.is_number() ? value.get<double>() : std::nan("");
+    };
+    for (const std::string& name : study_.results)
+      if (study_.results_chosen && value_at(summary, name).is_null())
+        tell(run, "has no result '" + name + "'");
+    tell(run, fmt::format("is done: pull {:.0f} ± {:.0f} N", number("drawbar_pull_N.mean"),
+                          number("drawbar_pull_N.sem")));
+    if (const double deep = number("sinkage_m") / number("surface_height_m"); run.pass > 0 && deep > kDeepRut)
+      tell(run,
+           fmt::format(
+               "stands {:.0f} % of the bed's depth in it: the floor carries it too; a deeper bed is needed "
+               "for soil without a floor (more terrain.layers)",
+               100.0 * deep));
+  } else {
+    run.state = State::failed;
+    run.problem =
+        run.exit_code == 0
+            ? "holds the results of another scenario: it was resumed with other keys, or files were "
+              "changed meanwhile; remove it to run it again"
+            : last_error(log_of(run));
+    if (run.exit_code == 0) run.exit_code = static_cast<int>(ExitCode::bad_input);
+    tell(run, fmt::format("FAILED with exit code {}: {}; see {}", run.exit_code, run.problem,
+                          log_of(run).string()));
+  }
+  write_table();
+}
+
+void Sweep::stop_all() {
+  if (launch::stop_signals() == told_stops_) return;
+  told_stops_ = launch::stop_signals();
+  for (const Run& run : runs_)
+    if (run.process > 0) kill(run.process, SIGTERM);
+}
+
+ExitCode Sweep::run() {
+  write_whole_file(options_.folder / "sweep.json", Json{{"format_version", 1},
+                                                        {"study", study_.name},
+                                                        {"passes", study_.passes},
+                                                        {"rest_s", study_.rest},
+                                                        {"results", study_.results},
+                                                        {"plot", study_.plot}}
+                                                           .dump(2) +
+                                                       "\n");
+  write_table();
+  std::vector<bool> taken(shares_.size(), false);
+  for (bool running = true; running;) {
+    for (std::size_t share = 0; share < taken.size() && !launch::stop_signalled(); ++share) {
+      if (taken[share]) continue;
+      Run* run = next();
+      if (!run) break;
+      start(*run, share);
+      taken[share] = true;
+    }
+    running = false;
+    for (Run& run : runs_) {
+      if (run.process <= 0) continue;
+      look_at(run);
+      if (run.process <= 0) taken[run.share] = false;
+      running = true;
+    }
+    if (running) usleep(kPoll);
+    stop_all();
+  }
+  write_table();
+  return outcome();
+}
+
+void Sweep::write_table() const {
+  std::vector<std::string> keys;
+  for (const Run& run : runs_)
+    for (const auto& [key, unused] : run.keys.items())
+      if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
+  std::string text = study_.passes > 0 ? "run,folder,state,exit_code,pass" : "run,folder,state,exit_code";
+  for (const std::vector<std::string>* names : {&std::as_const(keys), &study_.results})
+    for (const std::string& name : *names) text += "," + cell(name);
+  text += ",problem\n";
+  for (std::size_t i = 0; i < runs_.size(); ++i) {
+    const Run& run = runs_[i];
+    text += fmt::format(
+        "{},{},{},{}", i + 1, run.loaded ? "runs/" + run.digest : "", state_name(static_cast<int>(run.state)),
+        run.state == State::done || run.state == State::failed ? std::to_string(run.exit_code) : "");
+    if (run.pass > 0) text += fmt::format(",{}", run.pass);
+    for (const std::string& key : keys) text += "," + (run.keys.contains(key) ? cell(run.keys[key]) : "");
+    const Json summary = run.state == State::done ? read_summary(folder_of(run)) : Json();
+    for (const std::string& name : study_.results) text += "," + cell(value_at(summary, name));
+    text += "," + cell(run.problem) + "\n";
+  }
+  write_whole_file(options_.folder / "sweep.csv", text);
+}
+
+ExitCode Sweep::outcome() const {
+  if (launch::stop_signalled()) return ExitCode::stopped;
+  for (const Run& run : runs_)
+    if (run.state == State::failed) return static_cast<ExitCode>(run.exit_code);
+  return ExitCode::done;
+}
+
+}  // namespace furrow::study

@@ -1,0 +1,72 @@
+// The runs of a study, one after another or several at once, each `furrow run` or `furrow resume` in a process of its
+// own. What is finished stays: a sweep that was interrupted goes on where it was.
+//
+//   <folder>/sweep.csv     one line per run: its keys, how it went, its results
+//   <folder>/sweep.json    the study, for the plots
+//   <folder>/runs/<digest> the folder of each run, named after its scenario's digest; <digest>.log: what it said
+//   <folder>/beds/         of passes: the bed that each begins on
+#pragma once
+
+#include <sched.h>
+#include <sys/types.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "nodes/study/study.hpp"
+#include "protocol/core/error.hpp"
+
+namespace furrow::study {
+
+struct SweepOptions {
+  std::filesystem::path folder;
+  int jobs = 1;  // runs at once; each has its own share of the cores
+};
+
+class Sweep {
+ public:
+  /// @throws Error(bad_input) when a run's scenario is wrong; nothing was written then
+  Sweep(Study study, const SweepOptions& options);
+
+  /// @returns done, stopped, or how the first run that failed ended
+  ExitCode run();
+
+ private:
+  enum class State { waiting, running, done, failed, stopped };
+  struct Run {
+    nlohmann::ordered_json keys = nlohmann::ordered_json::object();  // what the user varies
+    nlohmann::ordered_json passes_on =
+        nlohmann::ordered_json::object();  // what a pass takes from those before
+    int pass = 0;                          // 1, 2, …; 0: on a bed of its own
+    State state = State::waiting;
+    bool loaded = false;
+    std::string digest, problem;
+    int exit_code = 0;
+    pid_t process = -1;
+    std::size_t share = 0;  // of the cores
+  };
+
+  void load(Run& run);
+  std::filesystem::path folder_of(const Run& run) const;
+  std::filesystem::path log_of(const Run& run) const;
+  bool finished(const Run& run) const;
+  std::vector<std::string> command(const Run& run) const;
+  Run* next();
+  bool take_over_bed(Run& run);
+  void start(Run& run, std::size_t share);
+  void look_at(Run& run);
+  void ended(Run& run, int status);
+  void stop_all();
+  void tell(const Run& run, const std::string& what) const;
+  void write_table() const;
+  ExitCode outcome() const;
+
+  Study study_;
+  SweepOptions options_;
+  std::vector<Run> runs_;
+  std::vector<cpu_set_t> shares_;
+  int told_stops_ = 0;
+};
+
+}  // namespace furrow::study

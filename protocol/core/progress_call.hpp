@@ -1,0 +1,12 @@
+// How long work tells where it stands, and may be stopped.
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace furrow {
+
+/// Called now and then during long work with (what, share done 0…1); may throw to stop it.
+using ProgressCall = std::function<void(const std::string& what, double share)>;
+
+}  // namespace furrow

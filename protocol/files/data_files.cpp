@@ -1,0 +1,49 @@
+#include "protocol/files/data_files.hpp"
+
+#include <cstdlib>
+#include <vector>
+
+#include "protocol/core/error.hpp"
+
+namespace furrow {
+
+std::filesystem::path data_folder() {
+  if (const char* home = std::getenv("FURROW_HOME"); home && *home) return home;
+  std::error_code error;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  for (std::filesystem::path folder = program.parent_path(); !error && folder.has_relative_path();
+       folder = folder.parent_path()) {
+    if (std::filesystem::exists(folder / "rigs" / "scenario.schema.json", error)) return folder;
+    if (std::filesystem::exists(folder / "share" / "furrow" / "rigs" / "scenario.schema.json", error))
+      return folder / "share" / "furrow";
+  }
+  return FURROW_SOURCE_FOLDER;  // of the build: programs run from another build folder
+}
+
+std::filesystem::path find_file(const std::string& name, const std::string& key,
+                                const std::filesystem::path& scenario) {
+  const std::filesystem::path given(name);
+  std::vector<std::filesystem::path> places;
+  if (given.is_absolute()) {
+    places = {given};
+  } else {
+    const std::filesystem::path data = data_folder();
+    places = {scenario.parent_path() / given, data / "rigs" / given, data / "tire" / "data" / given,
+              data / "terrain" / "data" / given};
+  }
+  std::error_code error;
+  for (const auto& place : places)
+    if (std::filesystem::is_regular_file(place, error)) return place;
+  for (const auto& place : places)
+    if (std::filesystem::exists(place, error))
+      throw input_error(scenario.string(), key,
+                        "'" + place.string() + "' is not a regular file, expected one");
+  std::string looked;
+  for (const auto& place : places)
+    looked +=
+        (looked.empty() ? "" : ", ") + std::filesystem::absolute(place, error).lexically_normal().string();
+  throw input_error(scenario.string(), key,
+                    "'" + name + "' does not exist, expected a file at one of: " + looked);
+}
+
+}  // namespace furrow

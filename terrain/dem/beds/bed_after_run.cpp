@@ -1,0 +1,70 @@
+#include "terrain/dem/beds/bed_after_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include "protocol/core/error.hpp"
+#include "terrain/dem/beds/bed_preparation.hpp"
+#include "terrain/dem/beds/bed_settling.hpp"
+#include "terrain/dem/solver_setup.hpp"
+
+namespace furrow::terrain::dem {
+namespace {
+
+constexpr char kPrefix[] = "terrain/";
+
+/// The solver's part of the state, without surfaces.
+Archive grains_of(const Archive& state) {
+  Archive grains;
+  for (const auto& [name, values] : state.arrays()) {
+    if (!name.starts_with(kPrefix)) continue;
+    const std::string own = name.substr(sizeof kPrefix - 1);
+    if (!own.starts_with("surface")) grains.put_array(own, values);
+  }
+  grains.put("surfaces/count", std::int64_t{0});
+  grains.put("surfaces/keys", std::vector<std::int32_t>());
+  grains.put("surfaces/history", std::vector<double>());
+  return grains;
+}
+
+}  // namespace
+
+Archive bed_after_run(const Archive& state, const TerrainOptions& options, double rest,
+                      const ProgressCall& progress, RestResult& result) {
+  SolverParams params = solver_params(options);
+  params.threads = std::max(1, options.threads);
+  GrainSolver solver(params);
+  solver.restore(grains_of(state));
+  result = {};
+  const double dt = options.step;
+  solver.set_coefficients(run_coefficients(options, dt));
+  const double mass = params.grain.mass * solver.relative_mass(), weight = mass * params.gravity;
+  const auto resting = static_cast<std::int64_t>(std::ceil(rest / dt));
+  const auto most = resting + static_cast<std::int64_t>(kMaxSettleTime / dt);
+  for (std::int64_t n = 0; n < most && !result.settled; ++n) {
+    if (n == resting) solver.set_drag(kRestDrag);
+    const bool check = (n + 1) % kSettleCheckEvery == 0;
+    if (const int lost = solver.step(dt, check); lost >= 0)
+      throw physics_error("grain " + std::to_string(solver.grains().id[lost]) +
+                          " was lost while the bed lay");
+    if (!check) continue;
+    const Accounts& a = solver.accounts();
+    result.time = dt * static_cast<double>(n + 1);
+    result.force_ratio = a.contact_force > 0.0 ? a.net_force / a.contact_force : 1.0;
+    result.floor_error = std::abs(a.floor_force - weight) / weight;
+    result.speed = std::sqrt(2.0 * a.kinetic / mass);
+    result.settled = n >= resting && result.speed < kRestSpeed && result.force_ratio < kSettledForceRatio;
+    if (progress) progress("letting the bed lie", static_cast<double>(n + 1) / static_cast<double>(most));
+  }
+  solver.set_drag(0.0);
+  SettleResult settled;
+  settled.settled = result.settled;
+  settled.force_ratio = result.force_ratio;
+  settled.floor_error = result.floor_error;
+  settled.time = result.time;
+  return bed_archive(solver, options, settled);
+}
+
+}  // namespace furrow::terrain::dem

@@ -1,0 +1,25 @@
+// Settled beds on disk: an Archive as an HDF5 file, found again by a digest of everything that made the bed.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "protocol/core/archive.hpp"
+#include "terrain/terrain_options.hpp"
+
+namespace furrow::terrain::dem {
+
+/// Digest of what decides the bits of a settled bed: geometry, seed, law, material, settling step and format.
+std::string bed_digest(const TerrainOptions& options);
+
+/// ${XDG_CACHE_HOME:-~/.cache}/furrow/beds/<digest>.h5; empty when neither variable names a directory.
+std::filesystem::path bed_cache_file(const std::string& digest);
+
+/// Writes to a temporary name in the same directory, then renames: complete or absent, also with two writers.
+/// @throws Error(io).
+void write_bed(const std::filesystem::path& file, const Archive& archive);
+
+/// @throws Error(io) when the file is missing, not one of ours, damaged (checksum) or of a newer format.
+Archive read_bed(const std::filesystem::path& file);
+
+}  // namespace furrow::terrain::dem

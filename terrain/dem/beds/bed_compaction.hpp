@@ -1,0 +1,21 @@
+// A flat lid pressed on a settled bed and lifted again.
+#pragma once
+
+#include <vector>
+
+#include "terrain/dem/grain_solver.hpp"
+#include "terrain/terrain_options.hpp"
+
+namespace furrow::terrain::dem {
+
+/// Presses a frictionless lid that fills the bin on the settled grains: the load grows to
+/// `compaction_pressure` × area, stays until the lid rests, and goes again. Side walls are without friction as while
+/// settling, so that the pressure reaches the floor. Returns the positions, by grain id; contacts are to be settled
+/// anew. @throws Error(physics) when a grain is lost.
+std::vector<Quad> compacted_positions(GrainSolver& solver, const TerrainOptions& options,
+                                      const ProgressCall& progress);
+
+/// Positions by grain id.
+std::vector<Quad> positions_by_id(const GrainSolver& solver);
+
+}  // namespace furrow::terrain::dem

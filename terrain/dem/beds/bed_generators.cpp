@@ -1,0 +1,177 @@
+#include "terrain/dem/beds/bed_generators.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+
+#include <fmt/format.h>
+
+#include "protocol/core/error.hpp"
+#include "terrain/dem/beds/bed_csv.hpp"
+#include "terrain/dem/beds/bed_layers.hpp"
+#include "terrain/dem/beds/bed_positions_h5.hpp"
+#include "terrain/dem/close_pairs.hpp"
+#include "terrain/dem/grain_sizes.hpp"
+
+namespace furrow::terrain::dem {
+namespace {
+
+constexpr double kMinDistance =
+    1.8;  // mean radii between centres in a user's bed: overlaps of 10 % of the diameter
+constexpr double kSingle = 1e-7;  // relative round-off of a float
+constexpr double kMinWall = 0.8;  // radii between a centre and a wall
+
+Bin bin_of(const TerrainOptions& o) { return {o.length, o.width, o.periodic_x, o.periodic_y}; }
+
+struct Lattice {
+  int nx = 0, ny = 0;
+  double dx = 0.0, dy = 0.0;  // m
+};
+
+/// Fills the bin evenly, leaving room for jitter at the walls and for the shift of every other layer.
+Lattice lattice_of(const Bin& bin, double radius) {
+  const auto along = [&](double size, int& n, double& spacing) {
+    const double room = size - 2.0 * (1.0 + kLatticeJitter) * radius, least = kLatticeSpacing * radius;
+    n = std::max(1, static_cast<int>(std::floor(room / least + 0.5)));
+    spacing = n > 1 ? room / (n - 0.5) : 0.0;
+  };
+  Lattice lattice;
+  along(bin.length, lattice.nx, lattice.dx);
+  along(bin.width, lattice.ny, lattice.dy);
+  return lattice;
+}
+
+std::vector<Quad> lattice_layers(const TerrainOptions& o, const ProgressCall& progress) {
+  std::vector<Quad> all;
+  for (int layer = 0; layer < o.layers; ++layer) {
+    if (progress) progress("placing the grains", static_cast<double>(layer) / o.layers);
+    const auto seed = o.seed * 1000003ULL + static_cast<std::uint64_t>(layer);
+    for (Quad p : lattice_layer(bin_of(o), largest_radius(o), seed, layer % 2 == 1)) {
+      p.z = (layer + 0.5) * kSpacing * largest_radius(o);
+      all.push_back(p);
+    }
+  }
+  return all;
+}
+
+std::vector<Quad> poisson_layers(const TerrainOptions& o, const ProgressCall& progress) {
+  return bed_layers(bin_of(o), largest_radius(o), o.layers, o.seed, progress);
+}
+
+double lattice_count(const TerrainOptions& o) {
+  const Lattice lattice = lattice_of(bin_of(o), largest_radius(o));
+  return static_cast<double>(o.layers) * lattice.nx * lattice.ny;
+}
+
+double poisson_count(const TerrainOptions& o) {
+  return o.layers * expected_layer_count(bin_of(o), largest_radius(o));
+}
+
+struct Generator {
+  const char* name;
+  std::vector<Quad> (*make)(const TerrainOptions&, const ProgressCall&);
+  double (*count)(const TerrainOptions&);
+};
+constexpr std::array<Generator, 2> kGenerators{
+    {{"poisson", poisson_layers, poisson_count}, {"lattice", lattice_layers, lattice_count}}};
+
+const Generator& generator_of(const TerrainOptions& o) {
+  std::string names;
+  for (const Generator& g : kGenerators) {
+    if (o.bed_generator == g.name) return g;
+    names += (names.empty() ? "" : " or ") + std::string(g.name);
+  }
+  throw input_error(o.scenario, "terrain.bed_generator",
+                    "'" + o.bed_generator + "' is unknown, expected " + names);
+}
+
+std::string place_text(const Quad& p) { return fmt::format("({:g}, {:g}, {:g}) m", p.x, p.y, p.z); }
+
+std::vector<Quad> positions_of(const TerrainOptions& o) {
+  std::vector<Quad> grains = is_hdf5(o.bed) ? read_positions_h5(o.bed) : read_positions_csv(o.bed);
+  check_positions(o, o.bed, grains);
+  return grains;
+}
+
+}  // namespace
+
+void check_positions(const TerrainOptions& o, const std::filesystem::path& file, std::vector<Quad>& grains) {
+  const bool hdf5 = is_hdf5(file);
+  const Bin bin = bin_of(o);
+  const auto wrong = [&](std::size_t g, const std::string& what) {
+    return input_error(file.string(), hdf5 ? fmt::format("grain {}", g) : fmt::format("line {}", g + 2),
+                       what);
+  };
+  for (std::size_t g = 0; g < grains.size(); ++g) {
+    double& radius = grains[g].w;
+    if (radius == 0.0) radius = o.radius;
+    // Frames keep radii in single precision.
+    for (const double limit : {smallest_radius(o), largest_radius(o)})
+      if (std::abs(radius - limit) < kSingle * limit) radius = limit;
+    if (!(radius >= smallest_radius(o) && radius <= largest_radius(o)))
+      throw wrong(g, fmt::format("the grain's radius is {:g} m, expected {:g} to {:g} m: terrain.radius and "
+                                 "terrain.size_spread of the scenario",
+                                 radius, smallest_radius(o), largest_radius(o)));
+    const double least = kMinWall * radius * (1.0 - 1e-9);
+    const auto& p = grains[g];
+    if ((o.periodic_x && !(p.x >= 0.0 && p.x <= o.length)) ||
+        (o.periodic_y && !(std::abs(p.y) <= 0.5 * o.width)))
+      throw wrong(g, fmt::format("the grain stands at {}, expected x 0 to {:g} m, y {:g} to {:g} m",
+                                 place_text(p), o.length, -0.5 * o.width, 0.5 * o.width));
+    for (int wall = 0; wall < kWalls; ++wall)
+      if (bin.has_wall(wall) && !(bin.distance(wall, grains[g]) >= least))
+        throw wrong(
+            g, fmt::format(
+                   "the grain stands at {}, expected a centre inside the bin, x {:g} to {:g} m, y {:g} to "
+                   "{:g} m, z from {:g} m",
+                   place_text(grains[g]), least, o.length - least, least - 0.5 * o.width,
+                   0.5 * o.width - least, least));
+  }
+  const double reach = kMinDistance * largest_radius(o);
+  for_close_pairs(grains, bin, reach, [&](std::size_t a, std::size_t b, double distance) {
+    const double mean = 0.5 * (grains[a].w + grains[b].w), least = kMinDistance * mean;
+    if (distance >= least) return;
+    throw wrong(std::max(a, b),
+                fmt::format("the grain at {} is {:.3g} m from that {} {}, expected at "
+                            "least {:g} m for grains of radius {:g} m",
+                            place_text(grains[std::max(a, b)]), distance, hdf5 ? "of number" : "of line",
+                            std::min(a, b) + (hdf5 ? 0 : 2), least, mean));
+  });
+}
+
+std::vector<Quad> lattice_layer(const Bin& bin, double radius, std::uint64_t seed, bool shifted) {
+  const Lattice lattice = lattice_of(bin, radius);
+  std::mt19937_64 bits(seed);
+  const auto jitter = [&] {
+    return kLatticeJitter * radius * (2.0 * static_cast<double>(bits() >> 11) * 0x1p-53 - 1.0);
+  };
+  const double edge = (1.0 + kLatticeJitter) * radius, shift = shifted ? 0.5 : 0.0;
+  std::vector<Quad> grains;
+  for (int ix = 0; ix < lattice.nx; ++ix)
+    for (int iy = 0; iy < lattice.ny; ++iy) {
+      const double x = edge + (ix + shift) * lattice.dx + jitter();
+      const double y = edge + (iy + shift) * lattice.dy + jitter();
+      grains.push_back({x, y - 0.5 * bin.width, 0.0, 0.0});
+    }
+  return grains;
+}
+
+bool is_positions_file(const std::filesystem::path& bed) {
+  return is_hdf5(bed) ? !is_settled_bed(bed) : bed.extension() != ".h5";
+}
+
+std::vector<Quad> starting_positions(const TerrainOptions& options, const ProgressCall& progress) {
+  if (!options.bed.empty()) return positions_of(options);
+  std::vector<Quad> grains = generator_of(options).make(options, progress);
+  draw_radii(options, grains);
+  return grains;
+}
+
+double expected_grains(const TerrainOptions& options) {
+  if (!options.bed.empty() && is_positions_file(options.bed))
+    return static_cast<double>(positions_of(options).size());
+  return generator_of(options).count(options);
+}
+
+}  // namespace furrow::terrain::dem

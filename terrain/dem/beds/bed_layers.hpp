@@ -1,0 +1,27 @@
+// Where the grains of a new bed start: layers of Poisson-disk samples, one above the other.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "terrain/dem/bin.hpp"
+#include "terrain/dem/quad.hpp"
+#include "terrain/terrain.hpp"
+
+namespace furrow::terrain::dem {
+
+/// Spacing of samples and of layers, in grain radii: grains of neighbouring layers never touch.
+inline constexpr double kSpacing = 2.02;
+
+/// Points of one layer, no two nearer than kSpacing · radius, each at least a radius from the bin's walls
+/// [Bridson 2007, Fast Poisson disk sampling in arbitrary dimensions, doi:10.1145/1278780.1278807]. z = 0.
+std::vector<Quad> poisson_layer(const Bin& bin, double radius, std::uint64_t seed);
+
+/// All layers, the lowest one spacing half above the floor; each layer has its own samples. `progress` hears of each.
+std::vector<Quad> bed_layers(const Bin& bin, double radius, int layers, std::uint64_t seed,
+                             const ProgressCall& progress = {});
+
+/// Samples per layer to be expected, from the density that poisson_layer reaches.
+double expected_layer_count(const Bin& bin, double radius);
+
+}  // namespace furrow::terrain::dem

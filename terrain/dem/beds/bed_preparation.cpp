@@ -1,0 +1,153 @@
+#include "terrain/dem/beds/bed_preparation.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "protocol/core/error.hpp"
+#include "terrain/dem/beds/bed_cache.hpp"
+#include "terrain/dem/beds/bed_compaction.hpp"
+#include "terrain/dem/beds/bed_generators.hpp"
+#include "terrain/dem/solver_setup.hpp"
+
+namespace furrow::terrain::dem {
+namespace {
+
+std::vector<double> geometry(const TerrainOptions& o) { return {o.radius, o.density, o.length, o.width}; }
+
+const char* sides(bool periodic) { return periodic ? "periodic" : "walls"; }
+
+/// A bed from a file must be one of this bin, these grains and this law.
+void check_bed(const Archive& bed, const TerrainOptions& o) {
+  const auto& made = bed.get<double>("bed/geometry", 4);
+  constexpr const char* kKey[] = {"radius", "density", "length", "width"};
+  const std::vector<double> wanted = geometry(o);
+  for (int k = 0; k < 4; ++k)
+    if (made[k] != wanted[k])
+      throw input_error(o.scenario, std::string("terrain.") + kKey[k],
+                        fmt::format("is {} but the bed '{}' was made with {}", wanted[k], o.bed, made[k]));
+  const double spread = bed.has("bed/size_spread") ? bed.get_double("bed/size_spread") : 0.0;
+  if (spread != o.size_spread)
+    throw input_error(o.scenario, "terrain.size_spread",
+                      fmt::format("is {} but the bed '{}' was made with {}", o.size_spread, o.bed, spread));
+  const bool periodic = bed.has("bed/periodic_sides") && bed.get_int("bed/periodic_sides") != 0;
+  if (periodic != o.periodic_y)
+    throw input_error(o.scenario, "terrain.sides",
+                      fmt::format("is '{}' but the bed '{}' was made with '{}'", sides(o.periodic_y), o.bed,
+                                  sides(periodic)));
+  const auto& law = bed.get<std::uint8_t>("bed/law");
+  if (std::string(law.begin(), law.end()) != o.law)
+    throw input_error(o.scenario, "terrain.law",
+                      fmt::format("is {} but the bed '{}' was settled with {}", o.law, o.bed,
+                                  std::string(law.begin(), law.end())));
+  if ((o.rolling_friction > 0.0) && bed.get<double>("pairs/rolling").empty() && bed.get_int("count") > 0 &&
+      o.law == "mindlin")
+    throw input_error(o.scenario, "terrain.rolling_friction",
+                      fmt::format("is {} but the bed '{}' was settled without", o.rolling_friction, o.bed));
+}
+
+bool from_cache(const std::filesystem::path& file, const TerrainOptions& options, Archive& bed) {
+  if (file.empty()) return false;
+  try {
+    bed = read_bed(file);
+    check_bed(bed, options);
+    return true;
+  } catch (const Error&) {
+    return false;  // absent or damaged: made anew
+  }
+}
+
+/// Smoother grains come to rest more closely packed [Agnolin & Roux 2007, doi:10.1103/PhysRevE.76.061302].
+TerrainOptions smoothed(TerrainOptions o) {
+  if (o.settling_friction < 0.0 || o.settling_friction >= o.friction) return o;
+  o.rolling_friction *= o.settling_friction / o.friction;
+  o.friction = o.settling_friction;
+  return o;
+}
+
+Archive made_bed(const TerrainOptions& options, const ProgressCall& progress, SettleResult& result) {
+  const TerrainOptions smooth = smoothed(options);
+  GrainSolver solver(settling_params(options));
+  solver.place(starting_positions(options, progress));
+  result = settle(solver, smooth, progress);
+  if (options.compaction_pressure > 0.0 || smooth.friction != options.friction) {
+    const std::vector<Quad> positions = options.compaction_pressure > 0.0
+                                            ? compacted_positions(solver, smooth, progress)
+                                            : positions_by_id(solver);
+    const SettleResult before = result;
+    solver = GrainSolver(settling_params(options));
+    solver.place(positions);
+    result = settle(solver, options, progress);
+    result.time += before.time;
+    result.steps += before.steps;
+  }
+  return bed_archive(solver, options, result);
+}
+
+/// A cache that cannot be written costs time, not the run.
+bool keep(const std::filesystem::path& file, const Archive& bed, const ProgressCall& progress) {
+  if (file.empty()) return false;
+  try {
+    write_bed(file, bed);
+    return true;
+  } catch (const Error& error) {
+    if (progress) progress(std::string("bed not cached: ") + error.what(), 1.0);
+    return false;
+  }
+}
+
+}  // namespace
+
+bool bed_is_settled_anew(const TerrainOptions& options) {
+  return options.bed.empty() || is_positions_file(options.bed);
+}
+
+Archive bed_archive(const GrainSolver& solver, const TerrainOptions& options, const SettleResult& settled) {
+  Archive bed;
+  solver.save(bed);
+  bed.put("bed/settled", std::vector<double>{settled.settled ? 1.0 : 0.0, settled.force_ratio,
+                                             settled.floor_error, settled.time});
+  bed.put("bed/geometry", geometry(options));
+  bed.put("bed/size_spread", options.size_spread);
+  bed.put("bed/periodic_sides", std::int64_t{options.periodic_y});
+  bed.put("bed/law", std::vector<std::uint8_t>(options.law.begin(), options.law.end()));
+  return bed;
+}
+
+void check_bed_options(const TerrainOptions& o) {
+  if (!(o.compaction_pressure >= 0.0) || !(o.compaction_pressure <= 1e9))
+    throw input_error(o.scenario, "terrain.compaction_pressure",
+                      fmt::format("{} is out of range, expected 0 to 1e9 Pa", o.compaction_pressure));
+  if (o.compaction_pressure > 0.0 && !bed_is_settled_anew(o))
+    throw input_error(
+        o.scenario, "terrain.compaction_pressure",
+        fmt::format("is {:g} Pa but the bed '{}' is a settled one and taken as it is, expected 0",
+                    o.compaction_pressure, o.bed));
+}
+
+PreparedBed prepare_bed(const TerrainOptions& options, const ProgressCall& progress) {
+  check_bed_options(options);
+  PreparedBed prepared;
+  if (!bed_is_settled_anew(options)) {
+    prepared.bed = read_bed(options.bed);
+    check_bed(prepared.bed, options);
+    prepared.file = options.bed;
+  } else {
+    prepared.file = options.cache ? bed_cache_file(bed_digest(options)) : std::filesystem::path();
+    prepared.from_cache = from_cache(prepared.file, options, prepared.bed);
+    if (!prepared.from_cache) {
+      prepared.bed = made_bed(options, progress, prepared.settled);
+      if (!keep(prepared.file, prepared.bed, progress)) prepared.file.clear();
+    }
+  }
+  const auto& settled = prepared.bed.get<double>("bed/settled", 4);
+  prepared.settled.settled = settled[0] != 0.0;
+  prepared.settled.force_ratio = settled[1];
+  prepared.settled.floor_error = settled[2];
+  prepared.settled.time = settled[3];
+  return prepared;
+}
+
+}  // namespace furrow::terrain::dem

@@ -1,0 +1,31 @@
+// A bed ready for use: from the cache, from a file, or made: placed, settled, compacted if asked.
+#pragma once
+
+#include <filesystem>
+
+#include "protocol/core/archive.hpp"
+#include "terrain/dem/beds/bed_settling.hpp"
+#include "terrain/terrain_options.hpp"
+
+namespace furrow::terrain::dem {
+
+struct PreparedBed {
+  Archive bed;           // what GrainSolver::restore takes, and how it was made under "bed/"
+  SettleResult settled;  // when it was made; `steps` only if it was made now
+  bool from_cache = false;
+  std::filesystem::path file;  // that holds it: in the cache, or the user's; empty: none
+};
+
+/// @throws Error(bad_input) for what options or the user's file have wrong, Error(physics) when a grain is lost.
+PreparedBed prepare_bed(const TerrainOptions& options, const ProgressCall& progress);
+
+/// False for a settled bed from the user's file, which is taken as it is.
+bool bed_is_settled_anew(const TerrainOptions& options);
+
+/// A bed as prepare_bed reads it from a file.
+Archive bed_archive(const GrainSolver& solver, const TerrainOptions& options, const SettleResult& settled);
+
+/// What can be said against the options of the bed before it is made. @throws Error(bad_input)
+void check_bed_options(const TerrainOptions& options);
+
+}  // namespace furrow::terrain::dem

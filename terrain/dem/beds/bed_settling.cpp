@@ -1,0 +1,75 @@
+#include "terrain/dem/beds/bed_settling.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "protocol/core/error.hpp"
+#include "terrain/dem/solver_setup.hpp"
+
+namespace furrow::terrain::dem {
+namespace {
+
+constexpr double kStepShareMindlin = 0.8;  // of the stable step
+constexpr double kStepShareCoulomb = 0.7;  // grains that fall on each other overlap more without history
+constexpr double kFallDrag = 4.0;          // 1/s, while the layers fall
+constexpr double kLyingSpeed = 0.03;       // rms, m/s: slower counts as lying
+
+TerrainOptions with_impulse_limit(TerrainOptions options) {
+  options.friction_impulse_limit = true;
+  return options;
+}
+
+}  // namespace
+
+double settle_step(const TerrainOptions& options) {
+  const TerrainOptions limited = with_impulse_limit(options);
+  const double share = law_from(options.law) == LawKind::mindlin ? kStepShareMindlin : kStepShareCoulomb;
+  return share * stable_at(limited, stated_overlap(limited)).step;
+}
+
+SolverCoefficients settle_coefficients(const TerrainOptions& options) {
+  SolverCoefficients c = run_coefficients(with_impulse_limit(options), settle_step(options));
+  c.side.friction = c.side.rolling_arm = 0.0;
+  return c;
+}
+
+SettleResult settle(GrainSolver& solver, const TerrainOptions& options, const ProgressCall& progress,
+                    double most_time) {
+  SettleResult result;
+  const double dt = settle_step(options);
+  const GrainProperties& grain = solver.params().grain;
+  const double mass = grain.mass * solver.relative_mass(), weight = mass * solver.params().gravity;
+  solver.set_coefficients(settle_coefficients(options));
+  solver.set_drag(kFallDrag);
+  bool lying = false;
+  double best = 1.0;
+  const auto most = static_cast<std::int64_t>(most_time / dt);
+  while (result.steps < most && !result.settled) {
+    const bool check = ++result.steps % kSettleCheckEvery == 0;
+    if (const int lost = solver.step(dt, check); lost >= 0)
+      throw physics_error("grain " + std::to_string(solver.grains().id[lost]) +
+                          " was lost while the bed settled");
+    if (!check) continue;
+    const Accounts& a = solver.accounts();
+    result.force_ratio = a.contact_force > 0.0 ? a.net_force / a.contact_force : 1.0;
+    result.floor_error = std::abs(a.floor_force - weight) / weight;
+    result.time = dt * static_cast<double>(result.steps);
+    const double speed = std::sqrt(2.0 * a.kinetic / mass);
+    if (!lying && a.contacts > solver.grains().count && speed < kLyingSpeed) {
+      lying = true;
+      solver.set_drag(kRestDrag);
+    }
+    result.settled = lying && speed < kRestSpeed && result.force_ratio < kSettledForceRatio &&
+                     result.floor_error < kSettledFloorError;
+    best = std::min(best, std::max(result.force_ratio, result.floor_error));
+    if (progress) {
+      const double decades = std::log10(1.0 / std::max(best, kSettledForceRatio)) / 3.0;
+      progress("settling the bed", std::clamp(std::max(decades, dt * result.steps / most_time), 0.0, 1.0));
+    }
+  }
+  solver.set_drag(0.0);
+  return result;
+}
+
+}  // namespace furrow::terrain::dem

@@ -1,0 +1,44 @@
+// A rigid lid that is pressed down on grains: its vertical motion.
+//
+//   m v̇ = F − P − c v       v ← (v + dt (F − P)/m) / (1 + dt c/m),   z ← z + dt v
+//
+// F force of the grains (up), P load (down). The lid has the mass of the soil under it and the damper of its
+// impedance, Z = √(ρ M) per area with the modulus M ≈ E^{2/3} P^{1/3} of packed elastic spheres: it comes to rest
+// after about one swing, whatever the load.
+#pragma once
+
+#include <cmath>
+
+#include "terrain/terrain_options.hpp"
+
+namespace furrow::terrain::dem {
+
+/// Young's modulus of the grains; of law coulomb that which gives two grains the stiffness k_n = 4/3 E* √R*, Pa.
+inline double grain_modulus(const TerrainOptions& o) {
+  if (o.law == "mindlin") return o.young_modulus;
+  return 1.5 * (1.0 - o.poisson_ratio * o.poisson_ratio) * o.normal_stiffness / std::sqrt(0.5 * o.radius);
+}
+
+class LoadedLid {
+ public:
+  /// @param area m², @param pressure final one, Pa, @param density of the soil as a whole, kg/m³
+  LoadedLid(double area, double pressure, double density, double depth, double young_modulus)
+      : mass_(density * area * depth),
+        damping_(area * std::sqrt(density * std::cbrt(young_modulus * young_modulus * pressure))) {}
+
+  double velocity() const { return velocity_; }  // m/s, up
+  double mass() const { return mass_; }          // kg
+  double damping() const { return damping_; }    // N s/m
+
+  /// @param force of the grains, up, N; @param load down, N. Returns the velocity for the coming step.
+  double step(double force, double load, double dt) {
+    velocity_ = (velocity_ + dt * (force - load) / mass_) / (1.0 + dt * damping_ / mass_);
+    return velocity_;
+  }
+
+ private:
+  double mass_, damping_;
+  double velocity_ = 0.0;
+};
+
+}  // namespace furrow::terrain::dem

@@ -1,0 +1,28 @@
+// One grain's vector quantity, as a register takes it.
+#pragma once
+
+#include "protocol/core/simd.hpp"
+
+namespace furrow::terrain::dem {
+
+using namespace simd;
+
+/// One grain's vector quantity: w is free for the owner.
+struct alignas(32) Quad {
+  double x = 0.0, y = 0.0, z = 0.0, w = 0.0;
+};
+
+inline Double4 load(const Quad& q) {
+  Double4 v;
+  std::memcpy(&v, static_cast<const void*>(&q), sizeof v);
+  return v;
+}
+inline void store(Quad& q, Double4 v) { std::memcpy(static_cast<void*>(&q), &v, sizeof v); }
+inline void add(Quad& q, Double4 v) { store(q, load(q) + v); }
+
+/// Quads are reached by four times their number: a double's address takes that without a shift.
+inline constexpr int kQuad = 4;
+inline const double* flat(const Quad* quads) { return reinterpret_cast<const double*>(quads); }
+inline double* flat(Quad* quads) { return reinterpret_cast<double*>(quads); }
+
+}  // namespace furrow::terrain::dem

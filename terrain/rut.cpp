@@ -1,0 +1,80 @@
+#include "terrain/rut.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace furrow::terrain {
+namespace {
+
+constexpr double kNearest = 0.3, kFarthest = 0.55;  // m behind the axle
+
+/// Mean of before − after along travel, per y cell.
+std::vector<double> transverse_profile(const HeightField& before, const HeightField& after, double x_min,
+                                       double x_max) {
+  std::vector<double> profile(after.ny, NAN);
+  for (int iy = 0; iy < after.ny; ++iy) {
+    double sum = 0.0;
+    int count = 0;
+    for (int ix = 0; ix < after.nx; ++ix) {
+      const double x = after.x0 + ix * after.cell;
+      const double depth = before.height[ix * after.ny + iy] - after.height[ix * after.ny + iy];
+      if (x < x_min || x > x_max || !std::isfinite(depth)) continue;
+      sum += depth;
+      ++count;
+    }
+    if (count > 0) profile[iy] = sum / count;
+  }
+  return profile;
+}
+
+/// Where the profile falls below `level` for two cells or more, going from cell `from` in steps of `step`; linear
+/// between cells. Cells without grains are passed over; the bin's edge ends the search.
+double crossing(const std::vector<double>& y, const std::vector<double>& profile, int from, int step,
+                double level) {
+  const int count = static_cast<int>(y.size());
+  const auto inside = [count](int i) { return i >= 0 && i < count; };
+  const auto below = [&](int i) { return !inside(i) || !(profile[i] >= level); };
+  int last = from;  // the last cell seen at or above the level
+  for (int i = from; inside(i); i += step) {
+    if (!std::isfinite(profile[i])) continue;
+    if (profile[i] >= level) {
+      last = i;
+    } else if (below(i + step)) {
+      if (!(profile[last] >= level)) return y[i];
+      return y[last] + (y[i] - y[last]) * (profile[last] - level) / (profile[last] - profile[i]);
+    }
+  }
+  return step > 0 ? y.back() : y.front();
+}
+
+}  // namespace
+
+Rut measure_rut(const HeightField& before, const HeightField& after, const RutOptions& o) {
+  Rut rut;
+  const bool same_grid = before.nx == after.nx && before.ny == after.ny && after.nx > 0 && after.ny > 0;
+  const double travelled = o.direction * (o.axle - o.start);
+  if (!same_grid || travelled < kFarthest) return rut;
+  const double a = o.axle - o.direction * kNearest, b = o.axle - o.direction * kFarthest;
+  rut.profile = transverse_profile(before, after, std::min(a, b), std::max(a, b));
+  for (int iy = 0; iy < after.ny; ++iy) rut.y.push_back(after.y0 + iy * after.cell);
+
+  double sum = 0.0;
+  int count = 0, middle = 0;
+  for (int iy = 0; iy < after.ny; ++iy) {
+    const double off = std::abs(rut.y[iy] - o.lateral);
+    if (off < std::abs(rut.y[middle] - o.lateral)) middle = iy;
+    if (off > 0.25 * o.tread_width || !std::isfinite(rut.profile[iy])) continue;
+    sum += rut.profile[iy];
+    ++count;
+  }
+  if (count == 0) return rut;
+  rut.measured = true;
+  rut.depth = sum / count;
+  rut.width = std::nan("");
+  if (rut.depth <= 0.0) return rut;  // the wheel left no rut: it has no width
+  rut.width = crossing(rut.y, rut.profile, middle, 1, 0.5 * rut.depth) -
+              crossing(rut.y, rut.profile, middle, -1, 0.5 * rut.depth);
+  return rut;
+}
+
+}  // namespace furrow::terrain

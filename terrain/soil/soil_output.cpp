@@ -1,0 +1,281 @@
+#include "terrain/soil/soil_output.hpp"
+
+#include <cmath>
+#include <iterator>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "protocol/files/text_file.hpp"
+
+namespace furrow::terrain::soil {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+constexpr double kDegree = std::numbers::pi / 180.0;  // rad
+
+json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+/// The parameters: values flat, errors beside them under the same names.
+class Parameters {
+ public:
+  explicit Parameters(json& target) : target_(target) {}
+  void add(const char* name, const Measured& m, double unit = 1.0) {
+    const bool known = m.samples > 0;
+    target_[name] = known ? number(m.value / unit) : json(nullptr);
+    error_[name] = known ? number(m.standard_error / unit) : json(nullptr);
+    const double half = m.half_interval();
+    interval_[name] = known && std::isfinite(half)
+                          ? json{number((m.value - half) / unit), number((m.value + half) / unit)}
+                          : json(nullptr);
+    samples_[name] = m.samples;
+  }
+  void finish() {
+    target_["standard_error"] = error_;
+    target_["interval_95"] = interval_;
+    target_["samples"] = samples_;
+  }
+
+ private:
+  json& target_;
+  json error_, interval_, samples_;
+};
+
+json box_json(const SpecimenFacts& s, const Box& box) {
+  return {{"length_m", s.length},
+          {"width_m", s.width},
+          {"height_m", s.height},
+          {"grains", s.grains},
+          {"periodic", box.periodic_x   ? box.periodic_y ? "xy" : "x"
+                       : box.periodic_y ? "y"
+                                        : "none"},
+          {"step_s", s.step}};
+}
+
+template <class Tests>
+bool all_settled(const Tests& tests) {
+  for (const auto& t : tests)
+    if (!t.specimen.settled) return false;
+  return true;
+}
+
+json plate_json(const SoilRun& run, double goodness) {
+  const auto& tests = run.results.plate;
+  const PlateTest& test = run.plan.plates.front();
+  json j = {{"what", "rigid rough strip pushed in at constant speed; plane strain"},
+            {"box", box_json(tests.front().specimen, run.plan.plate_box)},
+            {"beds_settled", all_settled(tests)},
+            {"speed_m_s", test.speed},
+            {"sinkage_m", test.sinkage * run.options.material.radius},
+            {"fitted_from_m", run.plan.plate_from * run.options.material.radius},
+            {"r_squared", goodness}};
+  double worst = 0.0;
+  for (const auto& t : tests) worst = std::max(worst, t.result.balance_error);
+  for (const PlateTest& p : run.plan.plates) j["widths_m"].push_back(p.width * run.options.material.radius);
+  j["floor_force_error"] = worst;
+  return j;
+}
+
+json shear_json(const SoilRun& run, double goodness) {
+  const auto& tests = run.results.shear;
+  const double r = run.options.material.radius;
+  const ShearTest& test = run.plan.shears.front();
+  json j = {{"what",
+             "two toothed plates in a cell periodic along and across; lid under constant load, moved at "
+             "constant speed"},
+            {"box", box_json(tests.front().specimen, run.plan.shear_box)},
+            {"beds_settled", all_settled(tests)},
+            {"speed_m_s", test.speed},
+            {"travel_m", test.travel * r},
+            {"tooth_m", test.tooth * r},
+            {"tooth_pitch_m", test.pitch * r},
+            {"r_squared", goodness}};
+  double floor = 0.0, shear = 0.0;
+  for (const auto& t : tests) {
+    floor = std::max(floor, t.result.floor_error), shear = std::max(shear, t.result.shear_error);
+    const double density = run.options.material.density;
+    // I = γ̇ d √(ρ/p)
+    const double rate = test.speed / t.result.height;
+    j["tests"].push_back({{"seed", t.specimen.seed},
+                          {"normal_stress_Pa", t.result.normal_mean},
+                          {"tau_max_Pa", t.result.janosi.tau_max},
+                          {"janosi_K_m", t.result.janosi.K},
+                          {"r_squared", t.result.janosi.goodness},
+                          {"final_shear_stress_Pa", t.result.final_shear},
+                          {"height_m", t.result.height},
+                          {"rise_m", t.result.rise.back()},
+                          {"inertial_number", rate * 2.0 * r * std::sqrt(density / t.result.normal_mean)}});
+  }
+  j["floor_force_error"] = floor;
+  j["shear_force_error"] = shear;
+  return j;
+}
+
+json cone_json(const SoilRun& run) {
+  const double r = run.options.material.radius;
+  const ConeTest& test = run.plan.cone;
+  return {{"what", "30° cone after ASABE S313.3, base diameter in grains, polished (friction at most 0.3)"},
+          {"box", box_json(run.results.cone.front().specimen, run.plan.cone_box)},
+          {"beds_settled", all_settled(run.results.cone)},
+          {"speed_m_s", test.speed},
+          {"base_diameter_m", test.diameter * r},
+          {"base_diameter_grains", 0.5 * test.diameter},
+          {"shaft_diameter_m", soil::kConeShaft * test.diameter * r},
+          {"index_depth_m", {test.index_from * r, test.index_to * r}}};
+}
+
+json repose_json(const SoilRun& run) {
+  const double r = run.options.material.radius;
+  json j = {
+      {"what", "half of a settled bed taken away at once; slope of the flank that remains, on a rough base"},
+      {"box", box_json(run.results.repose.front().specimen, run.plan.repose_box)},
+      {"beds_settled", all_settled(run.results.repose) && all_settled(run.results.dry)},
+      {"cut_m", run.plan.repose.cut * r},
+      {"base_m", run.plan.repose.base * r}};
+  const auto list = [&](const auto& tests, bool dry) {
+    for (const auto& t : tests)
+      j["tests"].push_back({{"seed", t.specimen.seed},
+                            {"cohesion_Pa", dry ? 0.0 : run.options.material.cohesion},
+                            {"angle_deg", t.result.angle / kDegree},
+                            {"cut_height_m", t.result.height},
+                            {"slumped", t.result.slumped},
+                            {"moved_m2", t.result.moved},
+                            {"at_rest", t.result.at_rest},
+                            {"time_s", t.result.time}});
+  };
+  list(run.results.repose, false);
+  list(run.results.dry, true);
+  return j;
+}
+
+}  // namespace
+
+json soil_json(const SoilRun& run) {
+  const TerrainOptions& o = run.options.material;
+  const SoilParameters p = soil::soil_parameters(run.results, run.plan, o.radius);
+  json j;
+  j["format_version"] = 1;
+  j["version"] = FURROW_VERSION;
+  j["scenario"] = run.scenario;
+  j["scenario_digest"] = run.scenario_digest;
+  j["quick"] = run.options.quick;
+  j["seeds"] = run.options.seeds;
+  j["first_seed"] = o.seed;
+  Parameters parameters(j);
+  parameters.add("k_c", p.k_c);
+  parameters.add("k_phi", p.k_phi);
+  parameters.add("n", p.n);
+  parameters.add("cohesion_Pa", p.cohesion);
+  parameters.add("friction_angle_deg", p.phi, kDegree);
+  parameters.add("janosi_K_m", p.K);
+  parameters.add("final_cohesion_Pa", p.final_cohesion);
+  parameters.add("final_friction_angle_deg", p.final_phi, kDegree);
+  parameters.add("cone_index_Pa", p.cone_index);
+  parameters.add("repose_angle_deg", p.repose, kDegree);
+  parameters.add("repose_angle_without_cohesion_deg", p.repose_dry, kDegree);
+  parameters.finish();
+  j["units"] = {{"k_c", "N/m^(n+1)"}, {"k_phi", "N/m^(n+2)"}, {"n", "-"}};
+  j["grains"] = {{"law", o.law},
+                 {"radius_m", o.radius},
+                 {"density_kg_m3", o.density},
+                 {"friction", o.friction},
+                 {"rolling_friction", o.rolling_friction},
+                 {"size_distribution", o.size_distribution},
+                 {"size_spread", o.size_spread},
+                 {"settling_friction", o.settling_friction < 0.0 ? json(nullptr) : json(o.settling_friction)},
+                 {"cohesion_Pa", o.cohesion},
+                 {"young_modulus_Pa", o.young_modulus},
+                 {"bed_generator", o.bed_generator},
+                 {"compaction_pressure_Pa", o.compaction_pressure}};
+  if (run.options.plate) j["plate"] = plate_json(run, p.bekker_goodness);
+  if (run.options.shear) j["shear"] = shear_json(run, p.coulomb_goodness);
+  if (run.options.cone) j["cone"] = cone_json(run);
+  if (run.options.repose) j["repose"] = repose_json(run);
+  j["threads"] = run.options.threads;
+  j["wall_s"] = run.wall_s;
+  return j;
+}
+
+void write_soil_tables(const std::filesystem::path& folder, const SoilRun& run) {
+  using Text = fmt::memory_buffer;
+  const auto write = [&](const char* name, const Text& text) {
+    write_whole_file(folder / name, {text.data(), text.size()});
+  };
+  if (run.options.plate) {
+    Text text;
+    fmt::format_to(std::back_inserter(text), "seed,width_m,sinkage_m,pressure_Pa\n");
+    for (const auto& t : run.results.plate)
+      for (std::size_t k = 0; k < t.result.curve.sinkage.size(); ++k)
+        fmt::format_to(std::back_inserter(text), "{},{:.9g},{:.9g},{:.9g}\n", t.specimen.seed,
+                       t.result.curve.width, t.result.curve.sinkage[k], t.result.curve.pressure[k]);
+    write("plate.csv", text);
+  }
+  if (run.options.shear) {
+    Text text;
+    fmt::format_to(std::back_inserter(text),
+                   "seed,nominal_normal_stress_Pa,travel_m,shear_stress_Pa,normal_stress_Pa,rise_m\n");
+    for (const auto& t : run.results.shear)
+      for (std::size_t k = 0; k < t.result.travel.size(); ++k)
+        fmt::format_to(std::back_inserter(text), "{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", t.specimen.seed,
+                       t.result.normal_nominal, t.result.travel[k], t.result.shear[k], t.result.normal[k],
+                       t.result.rise[k]);
+    write("shear.csv", text);
+  }
+  if (run.options.cone) {
+    Text text;
+    fmt::format_to(std::back_inserter(text), "seed,depth_m,pressure_Pa\n");
+    for (const auto& t : run.results.cone)
+      for (std::size_t k = 0; k < t.result.depth.size(); ++k)
+        fmt::format_to(std::back_inserter(text), "{},{:.9g},{:.9g}\n", t.specimen.seed, t.result.depth[k],
+                       t.result.pressure[k]);
+    write("cone.csv", text);
+  }
+  if (run.options.repose) {
+    Text text;
+    fmt::format_to(std::back_inserter(text), "seed,cohesion_Pa,x_m,height_before_m,height_after_m\n");
+    const auto rows = [&](const auto& tests, double cohesion) {
+      for (const auto& t : tests)
+        for (std::size_t k = 0; k < t.result.x.size(); ++k)
+          fmt::format_to(std::back_inserter(text), "{},{:.9g},{:.9g},{:.9g},{:.9g}\n", t.specimen.seed,
+                         cohesion, t.result.x[k], t.result.before[k], t.result.after[k]);
+    };
+    rows(run.results.repose, run.options.material.cohesion);
+    rows(run.results.dry, 0.0);
+    write("repose.csv", text);
+  }
+}
+
+std::string soil_text(const json& soil) {
+  std::string text;
+  const auto value = [&](const char* name, double factor) {
+    const auto in = [&](const json& from) {
+      return from.contains(name) && from[name].is_number() ? factor * from[name].get<double>() : NAN;
+    };
+    const double error = in(soil["standard_error"]);
+    return std::isfinite(error) ? fmt::format("{:.4g} ± {:.2g}", in(soil), error)
+                                : fmt::format("{:.4g}", in(soil));
+  };
+  if (soil["k_phi"].is_number())
+    text += fmt::format("furrow: plate sinkage: n {}, k_c {} kN/m^(n+1), k_φ {} kN/m^(n+2)\n",
+                        value("n", 1.0), value("k_c", 1e-3), value("k_phi", 1e-3));
+  if (soil["cohesion_Pa"].is_number())
+    text += fmt::format("furrow: direct shear: c {} kPa, φ {}°, K {} mm\n", value("cohesion_Pa", 1e-3),
+                        value("friction_angle_deg", 1.0), value("janosi_K_m", 1e3));
+  if (soil["cone_index_Pa"].is_number())
+    text += fmt::format("furrow: cone index {} kPa\n", value("cone_index_Pa", 1e-3));
+  if (soil["repose_angle_deg"].is_number()) {
+    bool slumped = true;
+    for (const json& test : soil["repose"]["tests"])
+      if (test["cohesion_Pa"] == soil["grains"]["cohesion_Pa"])
+        slumped = slumped && test["slumped"].get<bool>();
+    text += fmt::format("furrow: angle of repose {}°{}", value("repose_angle_deg", 1.0),
+                        slumped ? "" : " (a steep cut stands)");
+    if (soil["repose_angle_without_cohesion_deg"].is_number())
+      text += fmt::format("; without cohesion {}°", value("repose_angle_without_cohesion_deg", 1.0));
+    text += "\n";
+  }
+  return text + "furrow: ± is one standard error\n";
+}
+
+}  // namespace furrow::terrain::soil

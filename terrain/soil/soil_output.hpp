@@ -1,0 +1,29 @@
+// What `furrow soil` leaves behind: soil.json and one CSV per test.
+#pragma once
+
+#include <filesystem>
+
+#include <nlohmann/json.hpp>
+
+#include "terrain/soil/soil_tests.hpp"
+
+namespace furrow::terrain::soil {
+
+struct SoilRun {
+  std::string scenario, scenario_digest;  // name of the scenario, and what identifies it
+  const SoilOptions& options;
+  const SoilPlan& plan;
+  const SoilResults& results;
+  double wall_s = 0.0;
+};
+
+/// soil.json. Numbers under names with their unit; null where a test was not run or an error is not known.
+nlohmann::ordered_json soil_json(const SoilRun& run);
+
+/// plate.csv, shear.csv, cone.csv, repose.csv, of the tests that were run. @throws Error(io)
+void write_soil_tables(const std::filesystem::path& folder, const SoilRun& run);
+
+/// A few lines for people.
+std::string soil_text(const nlohmann::ordered_json& soil);
+
+}  // namespace furrow::terrain::soil

@@ -1,0 +1,93 @@
+// Contact between spheres and a moving triangulated surface (a tire): which points of the surface a grain touches,
+// how deep, and what share of the contact law each of them carries.
+//
+// A triangle i that the sphere (c, r) intersects gives one candidate: its point p_i closest to c (face, edge or
+// vertex region), overlap δ_i = r − |c − p_i| and direction n_i = (c − p_i)/|c − p_i|. On one flat face cut into
+// triangles, and on every convex crease, only the deepest candidate may count; in a sharp corner both walls must.
+// Both follow from one rule: the push-out D is the shortest vector that clears all candidates,
+//
+//   D = argmin |D|²  with  D·n_i ≥ δ_i  for all i,      D = Σ λ_i n_i,  λ_i ≥ 0,                              (1)
+//
+// and candidate i carries the share s_i = λ_i/δ̂_i of the contact law:  F = Σ s_i f(δ̂_i) n_i.                   (2)
+//
+// δ̂_i is δ_i, except that walls of nearly one direction share the depth of the deepest (surface_geometry.hpp).
+// Flat or convex: s = 1 for the deepest, 0 for all others. Valley whose face normals differ by θ, at its middle:
+// s = 1/(1 + cos θ) each, |F| = f(δ)/cos(θ/2): the plane's force as θ → 0, f(δ) on each wall at θ = 90°. D, hence F,
+// is continuous in c and in the vertices because p_i is. The rule needs δ < r/2; deeper (an emergency) the other
+// candidates fade out between δ = 0.4 r and 0.5 r and the nearest point alone counts. A grain whose centre is behind
+// the surface has δ = r + depth, found with the pseudo-normal of the nearest feature [Bærentzen & Aanæs 2005,
+// doi:10.1109/TVCG.2005.49], down to a depth of r.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "protocol/core/surface.hpp"
+
+namespace furrow::terrain {
+
+/// One touched point of the surface. Use: force on the grain = share · law(overlap, normal, relative velocity),
+/// torque on the grain = (point − centre) × force, and the opposite force on the triangle's vertices by `weight`.
+struct SurfaceHit {
+  Vec3 point = Vec3::Zero();   // on the surface, m, W
+  Vec3 normal = Vec3::Zero();  // unit, from the surface towards the outside (the grain), W
+  double overlap = 0.0;        // δ̂ > 0 of Eq. (2), m
+  double share = 1.0;          // s of Eq. (2), in (0, 1]
+  int triangle = -1;
+  std::array<double, 3> weight{};  // barycentric: point = Σ weight · vertex, Σ weight = 1, each ≥ 0
+};
+
+/// Most hits that SurfaceCollider::hits ever returns.
+inline constexpr int kMaxSurfaceHits = 6;
+
+/// Axis-aligned box, m.
+struct SurfaceBox {
+  Vec3 lo = Vec3::Zero();
+  Vec3 hi = Vec3::Zero();
+};
+
+class SurfaceCollider {
+ public:
+  /// `reach`: the greatest grain radius that hits() will be asked about, m.
+  /// @throws Error(bad_input) on an index outside the mesh or a reach that is not positive.
+  SurfaceCollider(const SurfaceMesh& mesh, double reach);
+  ~SurfaceCollider();
+  SurfaceCollider(SurfaceCollider&&) noexcept;
+  SurfaceCollider& operator=(SurfaceCollider&&) noexcept;
+
+  /// Declares the motion of the coming interval: each vertex goes linearly from `start` to `end` (lengths =
+  /// vertex_count) in `duration` (> 0), s. The surface stands at `start` afterwards.
+  void set_motion(std::span<const Vec3> start, std::span<const Vec3> end, double duration);
+
+  /// Moves the vertices to start + share · (end − start); serial, cheap; rebuilds the search grid when some vertex
+  /// went farther than the skin since it was built. Results never depend on when the grid was built.
+  void move_to(double share);
+
+  /// Triangles wholly outside this box (grown by the reach) may be ignored from the next grid on: give the box that
+  /// holds all grains. Default: no limit.
+  void restrict_to(const SurfaceBox& box);
+
+  /// Box of the surface where it is now, and over the whole interval; not grown by any radius.
+  SurfaceBox bounds() const;
+  SurfaceBox swept_bounds() const;
+
+  /// Touched points of the sphere, deepest first; returns how many (0 … min(out.size(), kMaxSurfaceHits)).
+  /// Thread-safe, no allocation. Deterministic: depends on centre, radius and vertices only.
+  int hits(const Vec3& centre, double radius, std::span<SurfaceHit> out) const;
+
+  /// Velocity of the surface at a hit's point: Σ weight · vertex velocity, m/s.
+  Vec3 velocity_at(const SurfaceHit& hit) const;
+
+  const SurfaceMesh& mesh() const;
+  std::span<const Vec3> positions() const;   // now, m
+  std::span<const Vec3> velocities() const;  // (end − start)/duration, m/s
+  std::int64_t grid_rebuilds() const;
+
+ private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
+
+}  // namespace furrow::terrain

@@ -1,0 +1,79 @@
+// From contact forces on a surface to forces on its vertices, and their sums over one communication interval.
+//
+// A force f at p = Σ w_a x_a of a triangle goes to its vertices as w_a f. Then Σ w_a f = f and Σ x_a × w_a f = p × f:
+// force and moment are handed over exactly in the configuration in which f was evaluated.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "protocol/core/surface.hpp"
+#include "protocol/core/terrain_state.hpp"
+#include "terrain/surface/surface_collider.hpp"
+
+namespace furrow::terrain {
+
+/// How one contact's force on the surface answers to the motion of the surface at its point:
+///   df = −[k_n n nᵀ + k_t (I − n nᵀ)] dx − [c_n n nᵀ + c_t (I − n nᵀ)] dv.
+struct SurfaceContactTangent {
+  Vec3 normal = Vec3::Zero();   // n, unit, W
+  double k_n = 0.0, k_t = 0.0;  // N/m
+  double c_n = 0.0, c_t = 0.0;  // N s/m
+
+  Mat3 stiffness() const { return k_t * Mat3::Identity() + (k_n - k_t) * normal * normal.transpose(); }
+  Mat3 damping() const { return c_t * Mat3::Identity() + (c_n - c_t) * normal * normal.transpose(); }
+};
+
+/// One contact's force on the surface (the tire) by the terrain; total force = normal + tangential.
+struct SurfaceContactForce {
+  int triangle = -1;
+  std::array<double, 3> weight{};  // of the hit
+  Vec3 point = Vec3::Zero();       // of the hit, m, W
+  Vec3 normal = Vec3::Zero();      // N, W
+  Vec3 tangential = Vec3::Zero();  // N, W
+  SurfaceContactTangent tangent;   // read only where tangents are wanted
+};
+
+/// A surface as it stands in one substep.
+struct SurfaceNow {
+  std::span<const std::array<int, 3>> triangles;
+  std::span<const Vec3> position;  // m
+  std::span<const Vec3> velocity;  // m/s
+};
+
+class NodalForceSum {
+ public:
+  /// @param tangents whether the vertices' tangents are summed as well: each contact's by the weights of its point,
+  /// so that they are exact for a motion that the three vertices share
+  explicit NodalForceSum(int vertex_count, bool tangents = false);
+
+  /// Adds the forces of one substep of length dt. Serial, in the order given: the caller keeps that order fixed
+  /// (for example by grain), then the bits do not depend on threads. Touches only vertices of touched triangles.
+  void add_substep(std::span<const SurfaceContactForce> contacts, const SurfaceNow& surface, double dt);
+  void add_substep(std::span<const SurfaceContactForce> contacts, const SurfaceCollider& surface, double dt) {
+    add_substep(contacts, {surface.mesh().triangles, surface.positions(), surface.velocities()}, dt);
+  }
+
+  /// Interval means: impulses divided by `duration`; clears the sums for the next interval.
+  void finish(double duration, NodalForces& forces, ContactSums& sums);
+
+  /// Impulse given to the surface since the last finish(), N s.
+  Vec3 impulse() const;
+
+ private:
+  void add_tangents(std::span<const SurfaceContactForce> contacts, const SurfaceNow& surface, double dt);
+  void finish_tangents(double duration, NodalForces& forces);
+
+  std::vector<Vec3> impulse_;  // per vertex, N s
+  std::vector<std::uint8_t> touched_;
+  std::vector<int> touched_list_;    // in order of first touch
+  std::vector<Vec3> substep_force_;  // per vertex, this substep, N
+  std::vector<std::uint8_t> substep_touched_;
+  std::vector<int> substep_list_;
+  ContactSums sums_;                     // impulses (N s, N m s) until finish()
+  std::vector<ContactTangent> tangent_;  // per vertex, times time; empty: not wanted
+};
+
+}  // namespace furrow::terrain

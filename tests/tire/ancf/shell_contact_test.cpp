@@ -1,0 +1,168 @@
+// Contact forces that answer to the tire's motion: stability above the step of forces that come late, restart, equilibrium.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "small_tire.hpp"
+
+namespace furrow::test {
+namespace {
+
+constexpr double kStiffness = 4e5, kDamping = 20.0;  // of the ground under each vertex, N/m, N s/m
+
+/// Springs and dashpots at z = 0 that move the vertices as a terrain does, and answer one interval late.
+class Springs {
+ public:
+  explicit Springs(const tire::Tire& tire) {
+    SurfaceState s;
+    tire.surface(s);
+    at_ = s.position;
+  }
+  NodalForces forces(const tire::Tire& tire, double h, bool tangents) {
+    SurfaceState s;
+    tire.surface(s);
+    NodalForces f;
+    for (int k = 0; k < tire.mesh().vertex_count; ++k) {
+      const Vec3 end = s.position[k] + h * s.velocity[k];
+      ContactTangent t;
+      t.position = 0.5 * (at_[k] + end);
+      t.velocity = (end - at_[k]) / h;
+      at_[k] = end;
+      const double force = -kStiffness * t.position.z() - kDamping * t.velocity.z();
+      if (t.position.z() >= 0.0 || force <= 0.0) continue;
+      t.stiffness(2, 2) = kStiffness;
+      t.damping(2, 2) = kDamping;
+      f.vertex.push_back(k);
+      f.force.emplace_back(0.0, 0.0, force);
+      if (tangents) f.tangent.push_back(t);
+    }
+    return f;
+  }
+
+ private:
+  std::vector<Vec3> at_;  // m
+};
+
+tire::TireFile limp_file() {
+  tire::TireFile file = small_file("hmmwv_layered.json", 48, 12);
+  file.structural_damping = 5e-4;
+  return file;
+}
+
+/// Presses a tire on springs and holds it. @returns the largest change of the spindle's force from one interval to the next
+/// over the last quarter, N; infinite if it did not converge
+double unrest(bool tangents, double h, double& load, double time = 0.04) {
+  tire::AncfTire tire(limp_file());
+  const double depth = 0.010;
+  tire::RimTrajectory t(rolling_rim(0, tire.radius(), 0.0, depth));
+  tire.place(t.start());
+  Springs springs(tire);
+  NodalForces f;
+  double most = 0.0;
+  const int steps = static_cast<int>(time / h);
+  for (int n = 0; n < steps; ++n) {
+    const NodalForces next = springs.forces(tire, h, tangents);
+    t.extend(rolling_rim(n * h, tire.radius(), 0.0, depth), h);
+    if (!tire.advance(t, f, 1).converged) return INFINITY;
+    f = next;
+    const double force = tire.spindle_wrench().force.z();
+    if (n >= 3 * steps / 4) most = std::max(most, std::abs(force - load));
+    load = force;
+  }
+  return most;
+}
+
+TEST(ShellContact, holds_a_tire_at_rest_at_a_step_at_which_late_forces_throw_it) {
+  double load = 0.0, thrown = 0.0;
+  const double calm = unrest(true, 4e-4, load, 0.1), wild = unrest(false, 4e-4, thrown);
+  EXPECT_GT(load, 1000.0);
+  EXPECT_LT(calm, 0.05 * load);
+  EXPECT_GT(wild, load);
+}
+
+TEST(ShellContact, comes_to_the_load_of_small_steps_without_it) {
+  double late = 0.0, answering = 0.0;
+  unrest(false, 4e-5, late);
+  unrest(true, 4e-5, answering);
+  EXPECT_NEAR(answering / late, 1.0, 0.01);
+}
+
+TEST(ShellContact, never_pulls_and_keeps_what_acted) {
+  tire::AncfTire tire(small_file());
+  RimState rim;
+  tire.place(rim);
+  tire::RimTrajectory t(rim);
+  const int vertex = tire.integrator().layout().rows / 2;  // lies still
+  NodalForces f{{vertex}, {Vec3(0, 0, 100.0)}, {{}}};
+  SurfaceState s;
+  tire.surface(s);
+  f.tangent[0].stiffness = 1e5 * Mat3::Identity();
+  for (const double deeper : {0.0, -0.5e-3, 2e-3, 1.0}) {
+    f.tangent[0].position = s.position[vertex] - Vec3(0, 0, deeper);
+    t = tire::RimTrajectory(rim);
+    tire.place(rim);
+    t.extend(rim, 1e-6);
+    NodalForces acted = f;
+    ASSERT_TRUE(tire.advance(t, acted, 1).converged);
+    tire.acted(acted);
+    EXPECT_NEAR(acted.force[0].z(), std::max(0.0, 100.0 - 1e5 * deeper), 0.1) << deeper;
+    EXPECT_NEAR(acted.force[0].head<2>().norm(), 0.0, 0.1);
+  }
+}
+
+TEST(ShellContact, momentum_of_the_tire_changes_by_what_acted) {
+  tire::AncfTire tire(small_file());
+  const double h = 2e-4, depth = 0.008;
+  tire::RimTrajectory t(rolling_rim(0, tire.radius(), 8.0, depth));
+  tire.place(t.start());
+  Springs springs(tire);
+  NodalForces f;
+  const double mass = tire.mass_properties().mass;
+  double pushed = 0.0;
+  for (int n = 0; n < 150; ++n) {
+    const NodalForces next = springs.forces(tire, h, true);
+    const Vec3 before = momenta(tire).first;
+    t.extend(rolling_rim(n * h, tire.radius(), 8.0, depth), h);
+    ASSERT_TRUE(tire.advance(t, f, 2).converged);
+    tire.acted(f);
+    Vec3 impulse = h * (Vec3(0, 0, -9.81 * mass) - tire.spindle_wrench().force);
+    for (const Vec3& force : f.force) impulse += h * force, pushed += h * force.z();
+    EXPECT_LE((momenta(tire).first - before - impulse).norm(), 1e-10);
+    f = next;
+  }
+  EXPECT_GT(pushed, 1.0);
+}
+
+TEST(ShellContact, a_restored_tire_continues_bit_for_bit) {
+  tire::AncfTire tire(small_file()), other(small_file());
+  const double h = 2e-4, depth = 0.008;
+  tire::RimTrajectory t(rolling_rim(0, tire.radius(), 8.0, depth));
+  tire.place(t.start());
+  Springs springs(tire);
+  NodalForces f;
+  const auto advance = [&](tire::AncfTire& which, tire::RimTrajectory& path, Springs& ground,
+                           NodalForces& forces, int n) {
+    const NodalForces next = ground.forces(which, h, true);
+    path.extend(rolling_rim(n * h, which.radius(), 8.0, depth), h);
+    ASSERT_TRUE(which.advance(path, forces, 1).converged);
+    forces = next;
+  };
+  for (int n = 0; n < 100; ++n) advance(tire, t, springs, f, n);
+  Archive archive;
+  tire.save(archive);
+  EXPECT_TRUE(archive.has("ancf/factor/contact"));
+  other.restore(archive);
+  tire::RimTrajectory again = t;
+  Springs ground = springs;
+  NodalForces g = f;
+  for (int n = 100; n < 160; ++n) {
+    advance(tire, t, springs, f, n);
+    advance(other, again, ground, g, n);
+  }
+  EXPECT_EQ(tire.integrator().q(), other.integrator().q());
+  EXPECT_EQ(tire.integrator().v(), other.integrator().v());
+  EXPECT_EQ(tire.diagnostics().newton_iterations, other.diagnostics().newton_iterations);
+}
+
+}  // namespace
+}  // namespace furrow::test

@@ -1,0 +1,117 @@
+// Implicit time integration of the ring of shell elements held by a moving rim.
+//
+// Over a step h from (q, v) to (q', v'), with q_f = ½ (q + q') and E, E' the strains at q, q':
+//   q' − q = h v'                                                                          (1) free nodes
+//   M (v' − v)/h + B(q_f)ᵀ D̂ [E' + τ (E' − E)/h] − p ∂V/∂q(q_f) = F + M g + Q              (2)
+// F are the contact forces, constant over the step or answering to it (shell_contact.hpp), Q the reactions at the beads.
+// q', v' of the beads come from the rim.
+//  - As E is quadratic in q, E' − E = B(q_f) (q' − q): strain rates vanish exactly for a rigid motion between
+//    the step's ends, and the work of the internal forces is Δ(elastic energy) + ½ ΔEᵀ D̂ ΔE + (τ/h) ΔEᵀ D̂ ΔE.
+//    With the ½ Δvᵀ M Δv that (1) removes, energy cannot grow; the numerical damping acts like h of
+//    additional τ, 1 % of the material's.
+//  - Velocities are those of the backward Euler rule: what is stiff through τ K does not ring, as it does with
+//    trapezoidal or HHT velocities, where a contact force that comes one interval late and depends on
+//    velocity would feed it.
+//  - Δp and ΔL over the step are the impulses of F, M g and the spindle to round-off: the identity
+//      x'×p' − x×p = x_f × Δp + Δx × ½ (p + p')
+//    gives the moment impulse; its last term, O(h) for (1), is counted with the spindle.
+// Forces at the middle: Simo & Tarnow (1992), The discrete energy-momentum method, ZAMP 43,
+// doi:10.1007/BF00913408.
+//
+// The equations are solved by a quasi-Newton method: an old Cholesky factor of the tangent (sector_factor.hpp), corrected
+// by BFGS pairs [Nocedal & Wright 2006, Alg. 7.4].
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "tire/ancf/sector_factor.hpp"
+#include "tire/ancf/shell_carcass.hpp"
+#include "tire/ancf/shell_contact.hpp"
+#include "tire/ancf/shell_mass.hpp"
+#include "tire/tire.hpp"
+
+namespace furrow::tire {
+
+struct ShellIntegratorParams : SectorFactorParams {
+  double tolerance = 1e-4;  // of the free residual, relative to the norm of the pressure forces
+  int max_iterations = 40;  // per attempt
+};
+
+class ShellIntegrator {
+ public:
+  ShellIntegrator(const TireFile& file, const ShellMesh& mesh, const ShellIntegratorParams& params);
+
+  /// Starts from the given coordinates and velocities (padding filled).
+  void start(const Field& q, const Field& v);
+
+  /// Gauge pressure from the next step on, Pa.
+  void set_pressure(double pressure);
+
+  /// One step of size h to the rim state `end`. `force`: contact forces, padding zero. `about`: moments are
+  /// taken about this point. The wrench is what the tire exerts on the rim, the step's mean, without forces
+  /// on the bead discs.
+  TireStatus step(double h, const RimState& end, const Field& force, const Vec3& about, Wrench& on_rim);
+
+  /// Forces with tangents, in addition to those that step() is given; to be set before each interval.
+  ShellContact& contact() { return contact_; }
+  const ShellContact& contact() const { return contact_; }
+
+  const Field& q() const { return q_; }
+  const Field& v() const { return v_; }
+  const ShellLayout& layout() const { return layout_; }
+  const ShellCarcass& shell() const { return shell_; }
+  const ShellMass& mass() const { return mass_; }
+  const ShellIntegratorParams& params() const { return params_; }
+  int unknowns() const { return factor_.unknowns(); }
+
+  double elastic_energy() const { return elastic_; }   // with what relaxing branches store, J
+  double dissipation() const { return dissipation_; }  // J, cumulative
+  std::int64_t iterations() const { return iterations_; }
+  std::int64_t factorizations() const { return factor_.renewals(); }  // whole or in part
+  double factor_work() const { return factor_.work(); }               // the same, in whole factorizations
+  double residual() const { return residual_; }
+
+  /// Processor time spent in the parts of a step, s, cumulative; not part of the state.
+  struct Times {
+    double force = 0.0, jacobian = 0.0, factorize = 0.0, solve = 0.0, other = 0.0;
+  };
+  Times times() const;
+
+  void save(Archive& archive) const;
+  void restore(const Archive& archive);
+
+ private:
+  void set_bead(const RimState& rim);
+  void predict(double h, double share);
+  void evaluate(double h, const Field& force);
+  double free_norm(const Field& f) const;
+  void set_reference(double pressure_force);
+  void direction(const Mat3& turn, int pairs);
+  bool iterate(double h, const Field& force, const Mat3& turn, bool careful, int& count, double& norm);
+  void finish(double h, const Vec3& about, Wrench& on_rim);
+
+  ShellIntegratorParams params_;
+  ShellMesh mesh_;
+  ShellLayout layout_;
+  ShellCarcass shell_;
+  ShellMass mass_;
+  SectorFactor factor_;
+
+  Field q_, v_;              // state: coordinates (m, –) and velocities
+  Field v_before_;           // velocities one step earlier, for the prediction
+  double reference_ = 0.0;   // norm of the pressure forces, N
+  double unit_force_ = 0.0;  // of the pressure forces of 1 Pa, N/Pa
+  double elastic_ = 0.0, dissipation_ = 0.0, residual_ = 0.0;
+  std::int64_t iterations_ = 0;
+
+  ShellContact contact_;
+  ShellCarcass::Step shell_step_;                   // from q_
+  Field gravity_;                                   // M g
+  Field q_new_, v_new_, q_force_, change_, r_, d_;  // work
+  std::vector<Field> s_, y_;                        // BFGS pairs
+  std::vector<double> rho_;
+  Times times_;  // without those of the factor
+};
+
+}  // namespace furrow::tire

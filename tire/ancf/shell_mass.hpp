@@ -1,0 +1,32 @@
+// Consistent mass of the ring as a stencil: by rotational symmetry one set of coefficients per node row, the
+// same for every column and Cartesian component.
+#pragma once
+
+#include "tire/ancf/shell_layout.hpp"
+#include "tire/shell_mesh.hpp"
+
+namespace furrow::tire {
+
+class ShellMass {
+ public:
+  ShellMass(const ShellMesh& mesh, std::vector<ElementMass> elements);
+
+  /// out = factor × M field; the padding of `field` must be filled, that of `out` is left alone.
+  void apply(const Field& field, double factor, Field& out) const;
+  /// out += factor × M field.
+  void add(const Field& field, double factor, Field& out) const;
+  static constexpr double kGravity = 9.81;  // m/s², along −z
+  /// out = M g, the weights of the nodes, N; padding zero.
+  void weigh(Field& out) const;
+  const ElementMass& element(int j) const { return elements_[j]; }
+
+ private:
+  struct Row {
+    double c[2][3][3][2] = {};  // [s of the target][dj + 1][di + 1][s of the source]
+  };
+  ShellLayout layout_;
+  std::vector<ElementMass> elements_;
+  std::vector<Row> rows_;
+};
+
+}  // namespace furrow::tire

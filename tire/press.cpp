@@ -1,0 +1,162 @@
+#include "tire/press.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "protocol/core/error.hpp"
+#include "protocol/files/text_file.hpp"
+#include "tire/ancf/inflation.hpp"
+#include "tire/tire_file.hpp"
+
+namespace furrow::tire {
+namespace {
+
+constexpr double kLoadTolerance = 1e-3;  // of the footprint's load
+constexpr int kMaxTrials = 12;
+constexpr double kEdgePressure = 0.02;  // of the largest: where the footprint ends
+
+/// Deflection that carries the load, between two points of the curve; the solver is left there.
+template <class Press>
+PressPoint find_load(Press&& press, PressPoint low, PressPoint high, double load) {
+  PressPoint now = high;
+  for (int n = 0; n < kMaxTrials && std::abs(now.force - load) > kLoadTolerance * load; ++n) {
+    const double share = std::clamp((load - low.force) / (high.force - low.force), 0.02, 0.98);
+    now = press(low.deflection + share * (high.deflection - low.deflection));
+    (now.force < load ? low : high) = now;
+  }
+  return now;
+}
+
+struct Extent {
+  double low = 0.0, high = 0.0;
+  void include(double value) { low = std::min(low, value), high = std::max(high, value); }
+  double size() const { return high - low; }
+};
+
+}  // namespace
+
+PressResults press_tire(const PressOptions& options, const ProgressCall& progress) {
+  const TireFile file = tire_file_of(options.tire);
+  const ShellMesh mesh = make_shell_mesh(file);
+  const ShellCarcass shell(file, mesh);
+  InflationReport inflation;
+  PressSolver solver(file, mesh, inflate(shell, mesh, inflation), options.obstacle);
+  PressResults results;
+  results.pressure = file.pressure;
+  results.mass = rigid_mass(mesh, element_masses(file, mesh));
+  results.inflation_growth = solver.start_radius() - file.radius;
+  const int total = 2 * options.points;
+  double share = 0.0;
+  const auto press = [&](double deflection) {
+    try {
+      return solver.press(deflection, [&] {
+        if (progress) progress("pressing", share);
+      });
+    } catch (const Error& error) {
+      if (error.code() != ExitCode::physics || results.loading.empty()) throw;
+      throw physics_error(fmt::format("{}; up to {:.4g} m it was found: see --deflection", error.what(),
+                                      results.loading.back().deflection));
+    }
+  };
+  const auto at = [&](int k) {
+    share = static_cast<double>(k) / total;
+    const int step = k <= options.points ? k : total - k;
+    return press(options.deflection * step / options.points);
+  };
+  results.loading.push_back(at(0));
+  results.runout = solver.runout();
+  for (int k = 1; k <= options.points; ++k) {
+    const PressPoint before = results.loading.back();
+    results.loading.push_back(at(k));
+    const PressPoint& now = results.loading.back();
+    const bool reached = before.force < options.load && now.force >= options.load;
+    if (reached || (k == options.points && results.footprint.empty())) {
+      results.at_load = reached ? find_load(press, before, now, options.load) : now;
+      results.footprint = solver.footprint();
+    }
+  }
+  for (int k = options.points + 1; k <= total; ++k) results.unloading.push_back(at(k));
+  return results;
+}
+
+nlohmann::ordered_json press_json(const PressOptions& options, const PressResults& results) {
+  nlohmann::ordered_json j;
+  const bool cleat = options.obstacle.height > 0.0;
+  j["obstacle"] = cleat ? "cleat" : "plate";
+  if (cleat) {
+    j["cleat_height_m"] = options.obstacle.height;
+    j["cleat_width_m"] = options.obstacle.width;
+  }
+  j["pressure_Pa"] = results.pressure;
+  j["mass_kg"] = results.mass.mass;
+  j["spin_inertia_kg_m2"] = results.mass.inertia(1, 1);
+  j["inflation_growth_m"] = results.inflation_growth;
+  j["runout_m"] = results.runout;
+  j["load_N"] = options.load;
+  const PressPoint& p = results.at_load;
+  const bool reached = std::abs(p.force - options.load) <= kLoadTolerance * options.load;
+  const auto if_reached = [&](double value) {
+    return reached ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
+  };
+  double tangent = 0.0;
+  for (std::size_t k = 1; k < results.loading.size(); ++k)
+    if (const PressPoint& a = results.loading[k - 1], &b = results.loading[k];
+        a.force < p.force && p.force <= b.force)
+      tangent = (b.force - a.force) / (b.deflection - a.deflection);
+  j["deflection_m"] = if_reached(p.deflection);
+  j["secant_stiffness_N_per_m"] = if_reached(p.force / p.deflection);
+  j["tangent_stiffness_N_per_m"] = if_reached(tangent);
+  double difference = 0.0, residual = 0.0, largest = 0.0;
+  int steps = 0, failed = 0;
+  const auto count = [&](const PressPoint& point) {
+    residual = std::max(residual, point.residual), largest = std::max(largest, point.force);
+    steps += point.creep_steps, failed += point.failed_factorizations;
+  };
+  for (const PressPoint& point : results.loading) count(point);
+  const std::size_t n = results.unloading.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    count(results.unloading[k]);
+    difference =
+        std::max(difference, std::abs(results.unloading[k].force - results.loading[n - 1 - k].force));
+  }
+  j["loading_unloading_difference"] = largest > 0.0 ? difference / largest : 0.0;
+  j["max_residual"] = residual;
+  j["creep_steps"] = steps;
+  j["failed_factorizations"] = failed;
+  j["statically_stable"] = results.loading.front().failed_factorizations == 0;  // inflated and not pressed
+  double area = 0.0, force = 0.0, highest = 0.0;
+  for (const PressSample& s : results.footprint) highest = std::max(highest, s.pressure);
+  Extent length, width;
+  for (const PressSample& s : results.footprint) {
+    force += s.pressure * s.area;
+    if (s.pressure < kEdgePressure * highest) continue;
+    area += s.area;
+    length.include(s.x), width.include(s.y);
+  }
+  j["footprint"] = {{"deflection_m", p.deflection},
+                    {"force_N", p.force},
+                    {"length_m", length.size()},
+                    {"width_m", width.size()},
+                    {"area_m2", area},
+                    {"mean_pressure_Pa", area > 0.0 ? force / area : 0.0},
+                    {"max_pressure_Pa", highest}};
+  return j;
+}
+
+void write_press_tables(const std::filesystem::path& folder, const PressResults& results) {
+  std::string text = "deflection_m,force_N,residual,unloading\n";
+  for (const auto* path : {&results.loading, &results.unloading})
+    for (const PressPoint& p : *path)
+      fmt::format_to(std::back_inserter(text), "{:.9g},{:.12g},{:.3g},{}\n", p.deflection, p.force,
+                     p.residual, path == &results.unloading ? 1 : 0);
+  write_whole_file(folder / "press.csv", text);
+  text = "x_m,y_m,area_m2,pressure_Pa\n";
+  for (const PressSample& s : results.footprint)
+    fmt::format_to(std::back_inserter(text), "{:.6g},{:.6g},{:.6g},{:.6g}\n", s.x, s.y, s.area, s.pressure);
+  write_whole_file(folder / "footprint.csv", text);
+}
+
+}  // namespace furrow::tire

@@ -1,0 +1,36 @@
+// The tire's axes on the ground (ISO-W), in which forces and moments of tires are customarily given:
+//
+//   origin C: the contact centre, where wheel plane, ground plane and the plane through the spin axis that stands on the
+//     ground meet; z up, normal to the ground; x forward, along the line in which wheel and ground plane meet; y = z × x.
+//
+// These are the "tyre axis system" of ISO 8855:2011, the "wheel axis system" of ISO 8855:1991 and the W-axes of TYDEX.
+// The ground plane is horizontal. With a the spin axis towards the left of travel, r the wheel centre, h the ground:
+//
+//   x = a × z/|a × z|,   C = r − ρ (x × a),   loaded radius ρ = (r_z − h)/(x × a)_z
+//
+// Slip angle: from x to the velocity of the wheel centre, about z; a velocity with a part along +y gives a positive angle
+// and a negative lateral force. Camber (inclination) angle: of the wheel plane about x; positive leans the top to −y.
+#pragma once
+
+#include "protocol/core/surface.hpp"
+
+namespace furrow::tire {
+
+struct WheelAxes {
+  Vec3 origin = Vec3::Zero();  // contact centre C, W, m
+  Vec3 x = Vec3::UnitX(), y = Vec3::UnitY(), z = Vec3::UnitZ();
+  double slip_angle = 0.0;     // rad, in (−π/2, π/2); 0 at rest
+  double camber_angle = 0.0;   // rad
+  double loaded_radius = 0.0;  // from wheel centre to contact centre, m
+
+  Vec3 turn(const Vec3& v) const { return {x.dot(v), y.dot(v), z.dot(v)}; }
+  /// Force and moment about the contact centre, in these axes, from a wrench whose moment is taken about `about`, W.
+  Wrench wrench(const Vec3& force, const Vec3& moment, const Vec3& about) const;
+};
+
+/// @param travel unit vector of the direction of travel, W
+/// @param ground height of the ground plane, m
+/// @pre the spin axis is neither vertical nor along `travel`
+WheelAxes wheel_axes(const RimState& rim, const Vec3& travel, double ground);
+
+}  // namespace furrow::tire

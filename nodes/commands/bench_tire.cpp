@@ -13,6 +13,7 @@
 
 #include "nodes/commands/bench.hpp"
 #include "nodes/scenario/scenario.hpp"
+#include "protocol/core/constants.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/core/hash.hpp"
 #include "protocol/files/data_files.hpp"
@@ -23,8 +24,6 @@
 
 namespace furrow::commands {
 namespace {
-
-constexpr double kGravity = 9.81;        // m/s²
 constexpr double kGap = 1e-3;            // m, between ground and undeformed tire at the start
 constexpr double kTouchdown = 20e3;      // N s/m, vertical damper of the carriage during the touch-down
 constexpr double kTouchdownShare = 0.8;  // of the time before the timed steps
@@ -115,7 +114,7 @@ class RollingTire {
     const Vec3 before = wrench_.force;  // as known to the carriage, one step late
     wrench_ = tire_.spindle_wrench();
     rim_.velocity.x() += h * before.x() / bench_.load;
-    rim_.velocity.z() += h * ((before.z() - damper * rim_.velocity.z()) / bench_.load - kGravity);
+    rim_.velocity.z() += h * ((before.z() - damper * rim_.velocity.z()) / bench_.load - kStandardGravity);
     rim_.position += h * rim_.velocity;
     rim_.orientation =
         (Quat(Eigen::AngleAxisd(h * bench_.speed, Vec3::UnitY())) * rim_.orientation).normalized();

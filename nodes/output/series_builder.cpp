@@ -10,13 +10,12 @@
 #include <cstring>
 #include <vector>
 
+#include "protocol/core/constants.hpp"
 #include "tire/wheel_axes.hpp"
 
 namespace furrow::output {
 
 namespace {
-
-constexpr double kGravity = 9.81;  // m/s²
 
 /// Visits the fields that are means over the intervals of a line.
 template <class Visit>
@@ -73,7 +72,7 @@ void SeriesBuilder::add_tire_axes(const StepReports& r) {
   row.camber_angle += axes.camber_angle;
   row.loaded_radius += axes.loaded_radius;
   row.effective_rolling_radius += r.wheel.speed * axes.x.dot(r.travel);  // divided by the spin in take()
-  memory_.load = r.wheel.carried_mass * kGravity;
+  memory_.load = r.wheel.carried_mass * kStandardGravity;
 }
 
 void SeriesBuilder::add_work(const StepReports& r) {
@@ -131,7 +130,7 @@ void SeriesBuilder::set_instants(const StepReports& r) {
   // Vertical motion and height of the carried mass; its imposed horizontal motion exchanges no net energy at
   // constant speed and is in the raw pull's work while it changes.
   const double mass = r.wheel.carried_mass, w = r.wheel.vertical_speed, u = r.wheel.speed;
-  row.carried_energy = 0.5 * mass * (w * w + u * u) + mass * kGravity * r.wheel.axle_height;
+  row.carried_energy = 0.5 * mass * (w * w + u * u) + mass * kStandardGravity * r.wheel.axle_height;
   row.contacts_tire = static_cast<double>(r.contact.contacts);
   row.contacts_terrain = static_cast<double>(r.terrain.contacts);
   row.active_share =

@@ -7,8 +7,8 @@
 #include "nodes/checkpoint/segment.hpp"
 #include "nodes/output/results.hpp"
 #include "nodes/output/statistics.hpp"
-#include "nodes/ranks/node.hpp"
 #include "nodes/scenario/wheel_geometry.hpp"
+#include "protocol/core/constants.hpp"
 #include "protocol/core/hash.hpp"
 #include "terrain/rut.hpp"
 
@@ -155,7 +155,7 @@ void add_rut(const SummaryInput& in, Json& json) {
 }
 
 void add_mobility(const SummaryInput& in, const Window& w, Json& json) {
-  const double load = in.carried_mass * ranks::kGravity, radius = in.cards[1 + in.wheel].tire_radius;
+  const double load = in.carried_mass * kStandardGravity, radius = in.cards[1 + in.wheel].tire_radius;
   json["drawbar_pull_N"] = pull_statistics(in, w, load);
   const auto mean = [&](auto get) { return w.mean(get); };
   const double pull = mean([](const SeriesRow& r) { return r.drawbar_pull; });

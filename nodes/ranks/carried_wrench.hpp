@@ -2,6 +2,7 @@
 #pragma once
 
 #include "nodes/ranks/node.hpp"
+#include "protocol/core/constants.hpp"
 
 namespace furrow::ranks {
 
@@ -17,7 +18,7 @@ inline Wrench carried_wrench(const Wrench& spindle, const MassProperties& mass, 
                              const RimState& to, double duration) {
   Wrench sent;
   sent.force = spindle.force + mass.mass * (to.velocity - from.velocity) / duration +
-               Vec3(0.0, 0.0, mass.mass * kGravity);
+               Vec3(0.0, 0.0, mass.mass * kStandardGravity);
   sent.moment = spindle.moment + (spin_momentum(mass, to) - spin_momentum(mass, from)) / duration;
   return sent;
 }

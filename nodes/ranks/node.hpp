@@ -78,6 +78,4 @@ std::int64_t steps_between(double interval, double step);
 /// Step number of the messages by which rims and tires are placed, before synchronization 0.
 inline constexpr std::int64_t kPlacement = -1;
 
-inline constexpr double kGravity = 9.81;  // m/s², along −z
-
 }  // namespace furrow::ranks

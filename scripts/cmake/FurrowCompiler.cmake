@@ -6,7 +6,7 @@ target_compile_options(furrow_options INTERFACE -Wall -Wextra -Wpedantic -fno-ma
 # the like), and of uninitialized vectors inside its own AVX-512 header (GCC bug 105593); the sanitizers look for real ones.
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   target_compile_options(furrow_options INTERFACE -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow
-    -Wno-stringop-overread -Wno-maybe-uninitialized)
+    -Wno-stringop-overread -Wno-maybe-uninitialized -Wno-uninitialized)
 endif()
 target_compile_definitions(furrow_options INTERFACE EIGEN_DONT_PARALLELIZE)
 # Eigen's alignment, and with it the layout of every class that holds an Eigen type, follows the instruction
@@ -28,7 +28,8 @@ endif()
 # Precompiled headers save a third of the build. Sources include what they use all the same: the audit preset
 # builds without.
 if(FURROW_PCH)
-  set(_headers <Eigen/Core> <Eigen/Geometry> <algorithm> <filesystem> <functional> <memory> <span> <string> <vector>)
+  set(_headers <Eigen/Core> <Eigen/Geometry> <algorithm> <filesystem> <functional> <memory> <span> <string> <vector>
+    <fmt/format.h> <nlohmann/json.hpp>)
   file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/precompiled.cpp CONTENT "// Only there to compile the precompiled headers.\n")
   add_library(furrow_pch OBJECT ${CMAKE_BINARY_DIR}/precompiled.cpp)
   target_link_libraries(furrow_pch PRIVATE furrow_options)
@@ -44,7 +45,7 @@ function(furrow_precompile)
     get_directory_property(targets DIRECTORY ${folder} BUILDSYSTEM_TARGETS)
     foreach(target ${targets})
       get_target_property(type ${target} TYPE)
-      if(type MATCHES "^(STATIC_LIBRARY|EXECUTABLE)$")
+      if(type MATCHES "^(STATIC_LIBRARY|OBJECT_LIBRARY|EXECUTABLE)$" AND NOT target STREQUAL furrow_cpu_check)
         target_precompile_headers(${target} REUSE_FROM furrow_pch)
       endif()
     endforeach()

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "protocol/core/archive.hpp"
+#include "protocol/core/constants.hpp"
 #include "protocol/core/surface.hpp"
 #include "protocol/core/terrain_state.hpp"
 #include "terrain/dem/activity.hpp"
@@ -26,8 +27,6 @@
 
 namespace furrow::terrain::dem {
 
-inline constexpr double kGravity = 9.81;  // m/s², along −z
-
 /// Of the contact law between grains; positions, sums and integration are in double precision with both.
 enum class Precision { mixed, full };
 
@@ -38,7 +37,7 @@ struct SolverParams {
   double smallest = 0.0;  // radius of any grain, m; 0: all have the reference radius
   double largest = 0.0;   // m; 0: as above
   Bin bin;
-  double gravity = kGravity;  // m/s²
+  double gravity = kStandardGravity;  // m/s²
   double skin = 0.0;          // neighbours are listed within the sum of their radii + skin, m
   int threads = 1;
   Precision precision = Precision::mixed;

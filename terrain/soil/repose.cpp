@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "protocol/core/constants.hpp"
 #include "protocol/core/error.hpp"
 #include "terrain/dem/solver_setup.hpp"
 #include "terrain/soil/fits.hpp"
@@ -69,7 +70,7 @@ ReposeResult angle_of_repose(const Specimen& specimen, const ReposeTest& test, c
   ReposeResult result;
   result.before = profile(solver.grains(), specimen, result.x);
   result.height = specimen.height() - base;
-  const double time = std::sqrt(result.height / dem::kGravity);
+  const double time = std::sqrt(result.height / kStandardGravity);
   const auto most = static_cast<std::int64_t>(test.longest * time / dt),
              least = static_cast<std::int64_t>(test.shortest * time / dt);
   const double mass = solver.params().grain.mass * solver.relative_mass();
@@ -80,7 +81,7 @@ ReposeResult angle_of_repose(const Specimen& specimen, const ReposeTest& test, c
       throw physics_error("repose test: grain " + std::to_string(solver.grains().id[lost]) + " was lost");
     if (++steps % kCheckEvery != 0) continue;
     const double speed = std::sqrt(2.0 * solver.accounts().kinetic / mass);
-    result.at_rest = steps > least && speed < kRestShare * std::sqrt(dem::kGravity * r);
+    result.at_rest = steps > least && speed < kRestShare * std::sqrt(kStandardGravity * r);
     work(static_cast<double>(steps) / static_cast<double>(most));
   }
   result.time = static_cast<double>(steps) * dt;

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <string>
 
+#include "protocol/core/constants.hpp"
 #include "terrain/dem/grain_sizes.hpp"
 
 namespace furrow::terrain::soil {
@@ -11,7 +12,6 @@ namespace {
 
 constexpr double kStepShare = 0.5;    // of the stable step: teeth press single grains harder than a bed does
 constexpr double kLayerHeight = 1.2;  // radii of settled bed per layer dropped
-constexpr double kGravity = 9.81;     // m/s²
 
 }  // namespace
 
@@ -60,7 +60,7 @@ std::unique_ptr<Terrain> Specimen::terrain() const {
 double Specimen::weight() const {
   double cubes = 0.0;  // m³
   for (const dem::Quad& p : positions_) cubes += p.w * p.w * p.w;
-  return options_.density * 4.0 / 3.0 * std::numbers::pi * cubes * kGravity;
+  return options_.density * 4.0 / 3.0 * std::numbers::pi * cubes * kStandardGravity;
 }
 
 }  // namespace furrow::terrain::soil

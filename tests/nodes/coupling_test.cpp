@@ -6,6 +6,7 @@
 #include "nodes/output/series_builder.hpp"
 #include "nodes/ranks/run_node.hpp"
 #include "nodes/scenario/load_scenario.hpp"
+#include "protocol/core/constants.hpp"
 #include "tests/nodes/in_process_run.hpp"
 
 namespace furrow {
@@ -178,7 +179,7 @@ TEST(Coupling, spin_up_and_drop_with_a_tire_three_times_as_heavy_as_its_rim) {
     const double mass = rig.carrier_mass + rig.rim_mass + tire.mass, spin = rig.angular_speed;
     const double tolerance = rigid ? 1e-9 : 0.2;  // the flexible tire also winds up and swings
     EXPECT_EQ(row.force.norm(), 0.0) << "it must not have landed";
-    EXPECT_NEAR(row.vertical_momentum / (-mass * ranks::kGravity * row.time), 1.0, tolerance)
+    EXPECT_NEAR(row.vertical_momentum / (-mass * kStandardGravity * row.time), 1.0, tolerance)
         << "rigid: " << rigid;
     EXPECT_NEAR(row.spindle_work / (0.5 * 4.0 / 3.0 * tire.inertia(1, 1) * spin * spin), 1.0, tolerance)
         << "rigid: " << rigid;
@@ -229,7 +230,7 @@ TEST(Coupling, each_of_four_wheels_on_one_bed_carries_its_own_weight) {
   run.steps(4500, 6000);
   const auto after = vertical_impulses(run, 4);
   for (std::size_t k = 0; k < 4; ++k) {
-    const double tire = 4.811, weight = ranks::kGravity *
+    const double tire = 4.811, weight = kStandardGravity *
                                         (scenario.rigs[k].carrier_mass + scenario.rigs[k].rim_mass + tire);
     EXPECT_NEAR((after[k] - before[k]) / 0.3, weight, 0.005 * weight) << "wheel " << k;
   }

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <vector>
 
+#include "protocol/core/constants.hpp"
 #include "tests/nodes/rolling_tire.hpp"
 #include "tire/wheel_axes.hpp"
 
@@ -27,14 +28,14 @@ rigs::DrawbarRigOptions free_rolling(double speed) {
   return options;
 }
 
-double load_of(RollingTire& rolling) { return rolling.rig->report(0).carried_mass * ranks::kGravity; }
+double load_of(RollingTire& rolling) { return rolling.rig->report(0).carried_mass * kStandardGravity; }
 
 /// M (0, 0, −g), consistent.
 tire::Field consistent_weight(const tire::AncfTire& tire) {
   const tire::ShellLayout& layout = tire.integrator().layout();
   tire::Field down(layout.size(), 0.0), weight(layout.size(), 0.0);
   for (int j = 0; j < layout.rows; ++j)
-    for (int i = 0; i < layout.columns; ++i) layout.set(down, i, j, 0, Vec3(0, 0, -ranks::kGravity));
+    for (int i = 0; i < layout.columns; ++i) layout.set(down, i, j, 0, Vec3(0, 0, -kStandardGravity));
   layout.fill_padding(down);
   tire.integrator().mass().apply(down, 1.0, weight);
   return weight;

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "protocol/core/constants.hpp"
 #include "protocol/core/error.hpp"
 #include "terrain/dem/solver_setup.hpp"
 
@@ -72,7 +73,7 @@ PeerBed::PeerBed(const Job& job)
   if (job.at("half_step_start"))
     for (int g = 0; g < solver_.grains().count; ++g)
       if (kind_[solver_.grains().id[g]] == kFree)
-        solver_.grains().velocity[g].z = 0.5 * step_ * terrain::dem::kGravity;
+        solver_.grains().velocity[g].z = 0.5 * step_ * kStandardGravity;
 }
 
 void PeerBed::step(const std::function<void()>& drive) {
@@ -88,7 +89,7 @@ void PeerBed::step(const std::function<void()>& drive) {
   each_driven([&](int g, Plate& plate) {
     const terrain::dem::Quad& v = grains.velocity[g];
     plate.force +=
-        mass / step_ * (Vec3(v.x, v.y, v.z) - plate.velocity) + Vec3(0.0, 0.0, mass * terrain::dem::kGravity);
+        mass / step_ * (Vec3(v.x, v.y, v.z) - plate.velocity) + Vec3(0.0, 0.0, mass * kStandardGravity);
   });
   if (drive) drive();
   each_driven([&](int g, const Plate& plate) {

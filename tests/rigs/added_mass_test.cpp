@@ -2,6 +2,7 @@
 // tire of three times the rim's inertia, free spin-up and drop stay exact.
 #include <gtest/gtest.h>
 
+#include "protocol/core/constants.hpp"
 #include "tests/rigs/rig_fixture.hpp"
 
 using namespace furrow;
@@ -26,9 +27,9 @@ TEST(AddedMass, free_spin_up_and_drop_are_exact_with_three_times_the_rims_inerti
     advance(*rig, wrench(Vec3::Zero(), Vec3(0, moment, 0)), 1);
     const double t = i * kStep;
     ASSERT_NEAR(rig->rim(0).angular_velocity.y(), moment * t / total, 1e-12) << i;
-    ASSERT_NEAR(rig->rim(0).velocity.z(), -kGravity * t, 1e-12) << i;
+    ASSERT_NEAR(rig->rim(0).velocity.z(), -kStandardGravity * t, 1e-12) << i;
   }
-  EXPECT_NEAR(rig->rim(0).position.z(), 0.5 - 0.5 * kGravity * 0.08 * 0.08, 1e-12);
+  EXPECT_NEAR(rig->rim(0).position.z(), 0.5 - 0.5 * kStandardGravity * 0.08 * 0.08, 1e-12);
 }
 
 // The same with a tire that lags: it computes its complete wrench from the rim motion of the interval before
@@ -40,7 +41,7 @@ TEST(AddedMass, a_lagged_complete_wrench_less_its_inertia_is_stable) {
   options.speed = 0.0;
   MassProperties tire = tire_mass(3.0 * options.rim_spin_inertia / kTireSpin);
   const auto rig = placed_rig(options, tire);
-  const Vec3 gravity(0, 0, -kGravity);
+  const Vec3 gravity(0, 0, -kStandardGravity);
   RimState before = rig->rim(0);
   Wrench sent;
   for (int i = 1; i <= 2000; ++i) {
@@ -56,6 +57,6 @@ TEST(AddedMass, a_lagged_complete_wrench_less_its_inertia_is_stable) {
     before = now;
   }
   const double mass = rig->report(0).carried_mass, t = 1999 * kStep;  // the first interval had no wrench
-  EXPECT_NEAR(rig->rim(0).velocity.z(), 1000.0 / mass * t - kGravity * 2000 * kStep, 1e-10);
+  EXPECT_NEAR(rig->rim(0).velocity.z(), 1000.0 / mass * t - kStandardGravity * 2000 * kStep, 1e-10);
   EXPECT_NEAR(rig->rim(0).angular_velocity.y(), 4.0 * t / (4.0 * options.rim_spin_inertia), 1e-10);
 }

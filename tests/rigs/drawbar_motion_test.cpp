@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "protocol/core/constants.hpp"
 #include "protocol/core/error.hpp"
 #include "tests/rigs/rig_fixture.hpp"
 
@@ -53,7 +54,7 @@ TEST(Modes, slip_is_what_was_asked_for_during_and_after_the_ramp) {
 TEST(Modes, imposed_position_and_angle_are_followed_without_drift) {
   rigs::DrawbarRigOptions options;
   const auto rig = placed_rig(options);
-  advance(*rig, wrench(Vec3(1500, 60, carried_mass(options) * kGravity), Vec3(30, -500, 20)), 25000);  // 1 s
+  advance(*rig, wrench(Vec3(1500, 60, carried_mass(options) * kStandardGravity), Vec3(30, -500, 20)), 25000);  // 1 s
   const double time = 1.0 - 0.5 * options.ramp;  // the ramp's integral
   EXPECT_NEAR(rig->report(0).axle_position, options.angular_speed * kRadius * 0.7 * time, 1e-11);
   const Quat turned(Eigen::AngleAxisd(options.angular_speed * time, Vec3::UnitY()));
@@ -86,7 +87,7 @@ TEST(FreeRolling, starts_at_rest_under_a_ramp_and_reports_a_bounded_slip) {
 TEST(Vertical, weight_in_balance_keeps_the_height) {
   const rigs::DrawbarRigOptions options = steady_options();
   const auto rig = placed_rig(options);
-  advance(*rig, wrench(Vec3(0, 0, carried_mass(options) * kGravity)), 5000);
+  advance(*rig, wrench(Vec3(0, 0, carried_mass(options) * kStandardGravity)), 5000);
   EXPECT_NEAR(rig->report(0).axle_height, 0.5, 1e-12);
   EXPECT_NEAR(rig->report(0).carried_mass, 469.8, 1e-12);
 }
@@ -97,7 +98,7 @@ TEST(Vertical, free_fall_and_newtons_law) {
   for (const double force : {0.0, 7000.0}) {
     const auto rig = placed_rig(options);
     advance(*rig, wrench(Vec3(500, 0, force), Vec3(0, -100, 0)), 2500);
-    const double acceleration = force / mass - kGravity, t = 0.1;
+    const double acceleration = force / mass - kStandardGravity, t = 0.1;
     EXPECT_NEAR(rig->report(0).axle_height, 0.5 + 0.5 * acceleration * t * t, 1e-11);
     EXPECT_NEAR(rig->report(0).vertical_speed, acceleration * t, 1e-11);
     EXPECT_NEAR(rig->report(0).vertical_momentum, mass * acceleration * t, 1e-8);
@@ -114,8 +115,8 @@ TEST(Vertical, touchdown_damper_acts_for_its_time_only) {
   for (int i = 0; i < 2000; ++i) {
     const bool active = i < 1000;
     // Implicit midpoint: v₁ = v½ (1 − z) − g h/2, v½ = (v₀ − g h/2)/(1 + z).
-    const double c = active ? z : 0.0, half = (v - 0.5 * kStep * kGravity) / (1.0 + c);
-    v = half * (1.0 - c) - 0.5 * kStep * kGravity;
+    const double c = active ? z : 0.0, half = (v - 0.5 * kStep * kStandardGravity) / (1.0 + c);
+    v = half * (1.0 - c) - 0.5 * kStep * kStandardGravity;
     advance(*rig, Wrench{}, 1);
     ASSERT_NEAR(rig->report(0).vertical_speed, v, 1e-11) << i;
     ASSERT_NEAR(rig->report(0).damper_force, active ? -options.touchdown_damping * half : 0.0, 1e-6) << i;

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "protocol/core/constants.hpp"
 #include "tests/rigs/rig_fixture.hpp"
 
 using namespace furrow;
@@ -15,7 +16,7 @@ const double kTolerance = 1e-6;  // N, N m: round-off of 470 kg × 4 m/s in one 
 TEST(DrawbarPull, equals_the_force_on_the_rim_in_steady_state) {
   const rigs::DrawbarRigOptions options = steady_options();
   const auto rig = placed_rig(options);
-  const double weight = carried_mass(options) * kGravity;
+  const double weight = carried_mass(options) * kStandardGravity;
   for (const double force : {1500.0, -400.0, 0.0}) {
     advance(*rig, wrench(Vec3(force, 0, weight)), 20);
     EXPECT_NEAR(rig->report(0).drawbar_pull, force, kTolerance);

@@ -7,8 +7,6 @@
 #include "rigs/drawbar_rig.hpp"
 
 namespace furrow::testing {
-
-inline constexpr double kGravity = 9.81;   // m/s²
 inline constexpr double kRadius = 0.4673;  // m
 inline constexpr double kTireMass = 4.8;   // kg
 inline constexpr double kTireSpin = 0.78;  // kg m²

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "protocol/core/constants.hpp"
 #include "terrain/dem/beds/bed_layers.hpp"
 #include "terrain/dem/beds/bed_settling.hpp"
 #include "terrain/dem/solver_setup.hpp"
@@ -98,7 +99,7 @@ TEST(Activity, bed_at_rest_falls_asleep_and_stays_where_it_is) {
   EXPECT_EQ(solver.accounts().active, 0);
   EXPECT_EQ(solver.accounts().kinetic, 0.0);
   EXPECT_NEAR(solver.accounts().height / solver.grains().count, height, 0.01 * options.radius);
-  const double weight = solver.params().grain.mass * kGravity * solver.grains().count;
+  const double weight = solver.params().grain.mass * kStandardGravity * solver.grains().count;
   EXPECT_NEAR(solver.accounts().floor_force, weight, 0.02 * weight);
 }
 

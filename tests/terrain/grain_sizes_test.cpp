@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "protocol/core/constants.hpp"
 #include "protocol/core/error.hpp"
 #include "terrain/dem/beds/bed_preparation.hpp"
 #include "terrain/dem/beds/bed_statistics.hpp"
@@ -239,7 +240,7 @@ TEST(GrainSizes, frictionless_elastic_crowd_keeps_its_energy) {
 
 TEST(GrainSizes, list_misses_no_contact) {
   FewGrains few = of_many_sizes();
-  few.gravity = kGravity;
+  few.gravity = kStandardGravity;
   GrainSolver s = crowd(few, 1200, 0.8);
   for (int round = 0; round < 10; ++round) {
     for (int k = 0; k < 60; ++k) s.step(1.5e-5);
@@ -260,7 +261,7 @@ TEST(GrainSizes, same_bits_for_any_threads_and_after_a_restart) {
     FewGrains few = of_many_sizes();
     few.precision = precision;
     few.options.rolling_friction = 0.1;
-    few.gravity = kGravity;
+    few.gravity = kStandardGravity;
     GrainSolver one = crowd(few, 1200, 0.5), two = crowd(few, 1200, 0.5);
     two.set_threads(2);
     for (int k = 0; k < 500; ++k) one.step(1.5e-5);
@@ -330,7 +331,7 @@ TEST(GrainSizes, bed_of_many_sizes_settles) {
   const std::vector<Quad> grains(s.grains().position.begin(), s.grains().position.begin() + s.grains().count);
   const BedStatistics b = bed_statistics(grains, s.params().bin, o.radius);
   EXPECT_NEAR(b.grain_volume * o.density, s.params().grain.mass * s.relative_mass(), 1e-12);
-  const double weight = b.grain_volume * o.density * kGravity;
+  const double weight = b.grain_volume * o.density * kStandardGravity;
   EXPECT_NEAR(s.accounts().floor_force, weight, kSettledFloorError * weight);
   EXPECT_GT(b.solid_fraction_bulk, 0.53);
   EXPECT_LT(b.solid_fraction_bulk, 0.66);

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <random>
 
+#include "protocol/core/constants.hpp"
 #include "tests/terrain/few_grains.hpp"
 
 namespace furrow::terrain::dem {
@@ -90,8 +91,8 @@ TEST(GrainSolver, sliding_sphere_rolls_at_five_sevenths) {
     few.options.law = law;
     few.options.friction = 0.3;
     few.options.friction_velocity_scale = 500.0;
-    few.gravity = kGravity;
-    const double load = grain_properties(kRadius, 2500).mass * kGravity;
+    few.gravity = kStandardGravity;
+    const double load = grain_properties(kRadius, 2500).mass * kStandardGravity;
     const double delta = std::pow(load / few.coefficients().floor.stiffness, 2.0 / 3.0);
     GrainSolver s = few.make({{0.1, 0, kRadius - delta}});
     set_velocity(s, 0, {0.4, 0, 0});
@@ -113,7 +114,7 @@ TEST(GrainSolver, cohesive_grains_rest_at_the_reports_overlap) {
 /// A grain on the floor pulled along x by a tilted gravity; returns its speed at the end.
 double speed_on_incline(const FewGrains& few, double angle, double time) {
   FewGrains tilted = few;
-  tilted.gravity = kGravity * std::cos(angle);
+  tilted.gravity = kStandardGravity * std::cos(angle);
   const double mass = grain_properties(kRadius, 2500).mass;
   GrainSolver s = tilted.make(
       {{0.1, 0,
@@ -122,7 +123,7 @@ double speed_on_incline(const FewGrains& few, double angle, double time) {
   for (double t = 0; t < time; t += dt) {
     s.step(dt);
     Vec3 v = velocity(s, 0);
-    v.x() += dt * kGravity * std::sin(angle);
+    v.x() += dt * kStandardGravity * std::sin(angle);
     set_velocity(s, 0, v);
     set_spin(s, 0, Vec3::Zero());  // a block: only sliding
   }
@@ -144,11 +145,11 @@ TEST(GrainSolver, coulomb_creeps_on_an_incline_at_its_closed_form_rate_and_mindl
 
 TEST(GrainSolver, floor_carries_the_weight) {
   FewGrains few;
-  few.gravity = kGravity;
+  few.gravity = kStandardGravity;
   GrainSolver s = few.make({{0.3, 0, 0.0059}, {0.3, 0.1, 0.006}, {0.3, 0.1, 0.0179}});
   s.set_drag(50.0);
   for (int k = 0; k < 20000; ++k) s.step(2e-5);
-  EXPECT_NEAR(s.accounts().floor_force, 3 * s.params().grain.mass * kGravity, 1e-6);
+  EXPECT_NEAR(s.accounts().floor_force, 3 * s.params().grain.mass * kStandardGravity, 1e-6);
 }
 
 std::vector<Quad> cloud(int n, double spacing, std::uint64_t seed) {
@@ -207,7 +208,7 @@ TEST(GrainSolver, same_bits_for_one_and_two_threads) {
     FewGrains few;
     few.options.law = law;
     few.options.rolling_friction = 0.1;
-    few.gravity = kGravity;
+    few.gravity = kStandardGravity;
     GrainSolver one = random_bed(few, 2500, 0.5), two = random_bed(few, 2500, 0.5);
     two.set_threads(2);
     for (int k = 0; k < 300; ++k) one.step(2e-5);
@@ -222,7 +223,7 @@ TEST(GrainSolver, restored_solver_continues_bit_for_bit) {
   FewGrains few;
   few.options.rolling_friction = 0.1;
   few.options.cohesion = 10e3;
-  few.gravity = kGravity;
+  few.gravity = kStandardGravity;
   GrainSolver s = random_bed(few, 1500, 0.5);
   for (int k = 0; k < 700; ++k) s.step(2e-5);
   Archive archive;
@@ -240,7 +241,7 @@ TEST(GrainSolver, restored_solver_continues_bit_for_bit) {
 
 TEST(GrainSolver, neighbour_list_misses_no_contact) {
   FewGrains few;
-  few.gravity = kGravity;
+  few.gravity = kStandardGravity;
   GrainSolver s = random_bed(few, 1500, 0.8);
   for (int round = 0; round < 10; ++round) {
     for (int k = 0; k < 60; ++k) s.step(2e-5);
@@ -261,7 +262,7 @@ TEST(GrainSolver, a_bed_shifted_along_periodic_sides_moves_the_same) {
     FewGrains few;
     few.options.periodic_x = few.options.periodic_y = true;
     few.options.rolling_friction = 0.1;
-    few.gravity = kGravity;
+    few.gravity = kStandardGravity;
     GrainSolver here = random_bed(few, 2400, 0.5);
     std::vector<Quad> moved(here.grains().count);
     for (int g = 0; g < here.grains().count; ++g)

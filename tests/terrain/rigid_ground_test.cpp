@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "protocol/core/constants.hpp"
 #include "tests/terrain/surface_meshes.hpp"
 
 namespace furrow::terrain {
@@ -13,8 +14,6 @@ namespace {
 using testing::box;
 using testing::Surface;
 using testing::wheel;
-
-constexpr double kGravity = 9.81;  // m/s²
 
 ContactMaterial rubber(double friction = 0.8) {
   ContactMaterial material;
@@ -291,7 +290,7 @@ struct Faller {
     NodalForces forces;
     ContactSums sums;
     ASSERT_TRUE(ground.advance({&before, 1}, h, 2, {&forces, 1}, {&sums, 1}).ok);
-    velocity += h * (force / mass - Vec3(0.0, 0.0, kGravity + load / mass));
+    velocity += h * (force / mass - Vec3(0.0, 0.0, kStandardGravity + load / mass));
     position += h * velocity;
     force = Vec3::Zero();
     for (const Vec3& f : forces.force) force += f;
@@ -306,7 +305,7 @@ TEST(RigidGround, brings_a_dropped_block_to_rest_with_its_weight_balanced) {
   ground->attach(block.surface.mesh, rubber(), block.state());
   const double h = 4e-5;
   for (int i = 0; i < 20000; ++i) block.advance(*ground, h);
-  const double weight = block.mass * kGravity;
+  const double weight = block.mass * kStandardGravity;
   EXPECT_NEAR(block.force.z() / weight, 1.0, 1e-6);
   EXPECT_NEAR(-block.position.z() / (weight / (options.ground_stiffness * 0.02)), 1.0, 1e-6);
   EXPECT_LT(block.velocity.norm(), 1e-8);
@@ -325,11 +324,11 @@ TEST(RigidGround, damps_bouncing_as_a_linear_oscillator_would) {
   options.ground_damping = 2e5;
   const auto ground = make_rigid_ground(options);
   Faller block;
-  block.position.z() = -0.5 * block.mass * kGravity / (options.ground_stiffness * 0.02);
+  block.position.z() = -0.5 * block.mass * kStandardGravity / (options.ground_stiffness * 0.02);
   ground->attach(block.surface.mesh, rubber(), block.state());
   const double omega = std::sqrt(options.ground_stiffness * 0.02 / block.mass);
   const double zeta = 0.5 * options.ground_damping * omega / options.ground_stiffness;
-  const double h = 1e-6, rest = -block.mass * kGravity / (options.ground_stiffness * 0.02);
+  const double h = 1e-6, rest = -block.mass * kStandardGravity / (options.ground_stiffness * 0.02);
   const int period = static_cast<int>(2.0 * M_PI / (omega * std::sqrt(1.0 - zeta * zeta)) / h);
   for (int i = 0; i < period; ++i) block.advance(*ground, h);
   const double expected = (-0.5 - -1.0) * -rest * std::exp(-2.0 * M_PI * zeta / std::sqrt(1.0 - zeta * zeta));
@@ -348,7 +347,7 @@ TEST(RigidGround, holds_a_light_vertex_at_the_usual_step) {
     vertex.position.z() = -5e-4;
     ground->attach(vertex.surface.mesh, rubber(), vertex.state());
     for (int i = 0; i < 2000; ++i) vertex.advance(*ground, h);
-    EXPECT_NEAR(vertex.position.z(), -(240.0 + vertex.mass * kGravity) / 4e5, 1e-9) << h;
+    EXPECT_NEAR(vertex.position.z(), -(240.0 + vertex.mass * kStandardGravity) / 4e5, 1e-9) << h;
   }
 }
 

@@ -5,13 +5,12 @@
 #include <cmath>
 #include <memory>
 
+#include "protocol/core/constants.hpp"
 #include "terrain/terrain_options.hpp"
 #include "tests/terrain/surface_meshes.hpp"
 
 namespace furrow::terrain {
 namespace {
-
-constexpr double kGravity = 9.81;  // m/s²
 constexpr double kStep = 6e-5;     // H, s
 
 TerrainOptions small_bin(double length) {
@@ -53,7 +52,7 @@ struct Block {
     return state;
   }
   void advance(const NodalForces& next) {
-    velocity.z() += kStep * ((force.z() - damper * velocity.z()) / mass - kGravity);
+    velocity.z() += kStep * ((force.z() - damper * velocity.z()) / mass - kStandardGravity);
     position.z() += kStep * velocity.z();
     force = Vec3::Zero();
     for (const Vec3& f : next.force) force += f;
@@ -110,7 +109,7 @@ TEST(SurfaceCoupling, four_blocks_on_one_bed_each_feel_their_own_weight) {
   scene.run(kWindow);
   for (int k = 0; k < 4; ++k) {
     const double mean = (scene.blocks[k].impulse - impulse_before[k]).z() / (kWindow * kStep);
-    EXPECT_NEAR(mean / (masses[k] * kGravity), 1.0, 5e-3) << "block " << k;
+    EXPECT_NEAR(mean / (masses[k] * kStandardGravity), 1.0, 5e-3) << "block " << k;
     EXPECT_LT(std::abs(scene.blocks[k].velocity.z()), 1e-3) << "block " << k;
   }
 
@@ -121,7 +120,7 @@ TEST(SurfaceCoupling, four_blocks_on_one_bed_each_feel_their_own_weight) {
   const double scale = received.norm();
   EXPECT_LT((after.surface_impulse - before.surface_impulse + received).norm() / scale, 1e-12);
   const double grain_mass = 4.0 / 3.0 * M_PI * 1e-6 * 2500.0 * static_cast<double>(scene.terrain->size());
-  const Vec3 gravity(0.0, 0.0, -kGravity * grain_mass * (kFall + kWindow) * kStep);
+  const Vec3 gravity(0.0, 0.0, -kStandardGravity * grain_mass * (kFall + kWindow) * kStep);
   const Vec3 change = after.momentum - before.momentum;
   const Vec3 given =
       gravity + (after.wall_impulse - before.wall_impulse) + (after.surface_impulse - before.surface_impulse);

@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "protocol/core/constants.hpp"
 #include "tests/vehicle/planar.hpp"
 
 using namespace furrow;
@@ -72,7 +73,7 @@ TEST(SliderCrank, driven_crank_gives_exact_kinematics_and_power_balance) {
       [=](double t) {
         return vehicle::Motion{omega * t, omega};
       },
-      Vec3(0, 0, -kGravity));
+      Vec3(0, 0, -kStandardGravity));
   vehicle::System& system = mechanism.system;
   double work = 0.0;
   const double start = system.kinetic_energy() + system.gravity_energy();
@@ -116,12 +117,12 @@ TEST(FourBar, parallelogram_motor_torque_matches_statics_and_redundancy_is_flagg
   for (int i = 0; i < 100; ++i) system.step(1e-3);
   // Virtual work: T δθ_y raises the platform by l sin θ δθ, both bars by half of it; turning about +y lowers
   // +x.
-  const double torque = -(platform_mass + bar_mass) * kGravity * l * std::sin(theta);
+  const double torque = -(platform_mass + bar_mass) * kStandardGravity * l * std::sin(theta);
   EXPECT_NEAR(system.motor_force(motor), torque, 1e-8 * std::abs(torque));
   const auto world = [&](int joint) {
     return Vec3(system.joint(joint).frame_a.axes * system.reaction(joint).force);
   };
-  EXPECT_NEAR(world(left_pin).z() + world(right_pin).z(), platform_mass * kGravity, 1e-8);
+  EXPECT_NEAR(world(left_pin).z() + world(right_pin).z(), platform_mass * kStandardGravity, 1e-8);
   EXPECT_NEAR(world(left_pin).y(), 0.0, 1e-6);
   EXPECT_LT(system.max_violation(), 1e-12);
   EXPECT_LT((system.body(platform).state.position - Vec3(w / 2, 0, 0) - arm).norm(), 1e-11);
@@ -166,7 +167,7 @@ TEST(Joints, distance_joint_is_a_massless_rod) {
   vehicle::System system;
   vehicle::BodyState state;
   state.position = Vec3(l * std::sin(theta), 0.0, -l * std::cos(theta));
-  state.velocity = Vec3(0.0, std::sqrt(kGravity / (l * std::cos(theta))) * state.position.x(), 0.0);
+  state.velocity = Vec3(0.0, std::sqrt(kStandardGravity / (l * std::cos(theta))) * state.position.x(), 0.0);
   const int ball = system.add_body("ball", m, 0.1 * Mat3::Identity(), state);
   vehicle::JointPlace place;
   place.second_point = state.position;
@@ -175,5 +176,5 @@ TEST(Joints, distance_joint_is_a_massless_rod) {
   for (int i = 0; i < 2000; ++i) system.step(1e-3);
   EXPECT_NEAR(system.body(ball).state.position.norm(), l, 1e-12);
   EXPECT_NEAR(system.body(ball).state.position.z(), -l * std::cos(theta), 1e-5);
-  EXPECT_NEAR(system.reaction(rod).force.norm(), m * kGravity / std::cos(theta), 1e-4 * m * kGravity);
+  EXPECT_NEAR(system.reaction(rod).force.norm(), m * kStandardGravity / std::cos(theta), 1e-4 * m * kStandardGravity);
 }

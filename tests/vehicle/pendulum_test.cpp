@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "protocol/core/constants.hpp"
 #include "tests/vehicle/planar.hpp"
 
 using namespace furrow;
@@ -34,7 +35,7 @@ struct Pendulum {
 
 // [Landau & Lifshitz, Mechanics, §11]: T = 4 √(I/(m g a)) K(sin θ₀/2)
 double quarter_period(double amplitude) {
-  return std::sqrt(kHingeInertia / (kMass * kGravity * kArm)) * std::comp_ellint_1(std::sin(0.5 * amplitude));
+  return std::sqrt(kHingeInertia / (kMass * kStandardGravity * kArm)) * std::comp_ellint_1(std::sin(0.5 * amplitude));
 }
 
 double angle_after_quarter(int steps) {
@@ -63,7 +64,7 @@ TEST(Pendulum, energy_stays_bounded_over_many_swings) {
     largest = std::max(largest, error);
     if (i >= 39200) late = std::max(late, error);
   }
-  EXPECT_LT(largest, 1e-4 * kMass * kGravity * kArm);
+  EXPECT_LT(largest, 1e-4 * kMass * kStandardGravity * kArm);
   EXPECT_LT(late, 1.01 * largest);
   EXPECT_LT(pendulum.system.max_violation(), 1e-12);
 }
@@ -73,9 +74,9 @@ TEST(Pendulum, hinge_carries_weight_and_centripetal_force_at_the_bottom) {
   const int steps = 2000;
   const double h = quarter_period(1.2) / steps;
   for (int i = 0; i < steps; ++i) pendulum.system.step(h);
-  const double omega_sq = 2.0 * kMass * kGravity * kArm * (1.0 - std::cos(1.2)) / kHingeInertia;
+  const double omega_sq = 2.0 * kMass * kStandardGravity * kArm * (1.0 - std::cos(1.2)) / kHingeInertia;
   const vehicle::Reaction& reaction = pendulum.system.reaction(pendulum.joint);
-  EXPECT_NEAR(reaction.force.norm(), kMass * (kGravity + kArm * omega_sq), 1e-4 * kMass * kGravity);
+  EXPECT_NEAR(reaction.force.norm(), kMass * (kStandardGravity + kArm * omega_sq), 1e-4 * kMass * kStandardGravity);
   EXPECT_LT(reaction.moment.norm(), 1e-9);
 }
 
@@ -87,8 +88,8 @@ TEST(Pendulum, reaction_times_step_is_the_change_of_momentum) {
     pendulum.system.step(h);
     const Vec3 change = (pendulum.system.momentum() - before) / h;
     const Mat3 axes = pendulum.system.joint(pendulum.joint).frame_a.axes;
-    const Vec3 sum = axes * pendulum.system.reaction(pendulum.joint).force - Vec3(0, 0, kMass * kGravity);
-    EXPECT_LT((sum - change).norm(), 1e-12 * kMass * kGravity * 10) << i;
+    const Vec3 sum = axes * pendulum.system.reaction(pendulum.joint).force - Vec3(0, 0, kMass * kStandardGravity);
+    EXPECT_LT((sum - change).norm(), 1e-12 * kMass * kStandardGravity * 10) << i;
   }
 }
 
@@ -102,7 +103,7 @@ constexpr double kBarInertia = kBarMass * kBarLength * kBarLength / 12.0;
 using Angles = std::array<double, 4>;  // θ₁, θ₂, θ₁', θ₂'
 
 Angles rates(const Angles& q) {
-  const double a = 0.5 * kBarLength, m = kBarMass, l = kBarLength, g = kGravity;
+  const double a = 0.5 * kBarLength, m = kBarMass, l = kBarLength, g = kStandardGravity;
   const double c = std::cos(q[0] - q[1]), s = std::sin(q[0] - q[1]);
   const double M11 = kBarInertia + m * a * a + m * l * l, M22 = kBarInertia + m * a * a, M12 = m * l * a * c;
   const double r1 = -m * l * a * s * q[3] * q[3] - (m * a + m * l) * g * std::sin(q[0]);

@@ -7,8 +7,6 @@
 
 namespace furrow::testing {
 
-inline constexpr double kGravity = 9.81;  // m/s²
-
 /// A bar whose centre lies at `centre`, turned by `angle` about y; its own z axis runs along the bar.
 inline vehicle::BodyState bar_state(const Vec3& centre, double angle) {
   vehicle::BodyState state;

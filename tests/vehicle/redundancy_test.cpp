@@ -1,6 +1,7 @@
 // More constraints than needed: unique motion, reactions of minimum norm, contradictions named.
 #include <gtest/gtest.h>
 
+#include "protocol/core/constants.hpp"
 #include "protocol/core/error.hpp"
 #include "tests/vehicle/planar.hpp"
 
@@ -22,12 +23,12 @@ TEST(Redundancy, door_on_two_hinges_has_minimum_norm_reactions) {
   system.assemble(0.0);
   EXPECT_EQ(system.redundant_count(), 5);
   for (int i = 0; i < 50; ++i) system.step(1e-3);
-  const double c = m * kGravity * a / (2.0 * (1.0 + b * b));
+  const double c = m * kStandardGravity * a / (2.0 * (1.0 + b * b));
   const auto world = [&](int joint) {
     const Mat3& axes = system.joint(joint).frame_a.axes;
     return vehicle::Reaction{axes * system.reaction(joint).force, axes * system.reaction(joint).moment};
   };
-  const double scale = m * kGravity;
+  const double scale = m * kStandardGravity;
   EXPECT_NEAR(world(upper).force.z(), 0.5 * scale, 1e-6 * scale);
   EXPECT_NEAR(world(lower).force.z(), 0.5 * scale, 1e-6 * scale);
   EXPECT_NEAR(world(upper).force.x(), -b * c, 1e-6 * scale);

@@ -1,6 +1,7 @@
 // Springs and dampers against the discrete recurrence of the step, and against the closed form.
 #include <gtest/gtest.h>
 
+#include "protocol/core/constants.hpp"
 #include "tests/vehicle/planar.hpp"
 
 using namespace furrow;
@@ -35,10 +36,10 @@ TEST(SpringDamper, follows_its_discrete_recurrence) {
   for (int i = 0; i < 1000; ++i) {
     // v½ = (v₀ + h/2 (−g − k(x₀−rest)/m)) / (1 + h c/(2m)); x₁ = x₀ + h v½; v₁ = v½ + h/2 (−g − (k(x₁−rest) +
     // c v½)/m)
-    const double half = (v + 0.5 * h * (-kGravity - k * (x - rest) / m)) / (1.0 + 0.5 * h * c / m);
+    const double half = (v + 0.5 * h * (-kStandardGravity - k * (x - rest) / m)) / (1.0 + 0.5 * h * c / m);
     const double force = 0.5 * (-k * (x - rest) - c * half);
     x += h * half;
-    v = half + 0.5 * h * (-kGravity - (k * (x - rest) + c * half) / m);
+    v = half + 0.5 * h * (-kStandardGravity - (k * (x - rest) + c * half) / m);
     slider.system.step(h);
     ASSERT_NEAR(slider.x(), x, 1e-12) << i;
     ASSERT_NEAR(slider.v(), v, 1e-11) << i;
@@ -49,7 +50,7 @@ TEST(SpringDamper, follows_its_discrete_recurrence) {
 
 TEST(SpringDamper, damped_oscillation_matches_closed_form_with_second_order) {
   const double m = 10.0, k = 4000.0, c = 80.0, x0 = 0.2, end = 0.7;
-  const double equilibrium = -m * kGravity / k, decay = 0.5 * c / m, w = std::sqrt(k / m - decay * decay);
+  const double equilibrium = -m * kStandardGravity / k, decay = 0.5 * c / m, w = std::sqrt(k / m - decay * decay);
   const double reference = equilibrium + std::exp(-decay * end) * (x0 - equilibrium) *
                                              (std::cos(w * end) + decay / w * std::sin(w * end));
   const auto error_of = [&](int steps) {

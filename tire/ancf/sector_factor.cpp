@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "protocol/core/constants.hpp"
 #include "protocol/core/flat.hpp"
 #include "tire/ancf/shell_batch.hpp"
 #include "tire/ancf/shell_tangent.hpp"
@@ -157,7 +158,7 @@ double SectorFactor::contact_age(int sector, double h) const {
       const std::size_t node = static_cast<std::size_t>(i) * layout_.rows + j;
       const double change = (contact_now_[node] - contact_made_[node]).norm();
       if (change == 0.0) continue;
-      const double inertia = weight_[node] / (ShellMass::kGravity * h * h);
+      const double inertia = weight_[node] / (kStandardGravity * h * h);
       most = std::max(most, change / (contact_made_[node].norm() + inertia));
     }
   return most;

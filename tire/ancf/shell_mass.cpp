@@ -1,3 +1,4 @@
+#include "protocol/core/constants.hpp"
 #include "tire/ancf/shell_mass.hpp"
 
 namespace furrow::tire {
@@ -45,7 +46,7 @@ void ShellMass::add(const Field& field, double factor, Field& out) const {
 void ShellMass::weigh(Field& out) const {
   Field down(layout_.size(), 0.0);
   for (int j = 0; j < layout_.rows; ++j)
-    for (int i = 0; i < layout_.columns; ++i) layout_.set(down, i, j, 0, Vec3(0.0, 0.0, -kGravity));
+    for (int i = 0; i < layout_.columns; ++i) layout_.set(down, i, j, 0, Vec3(0.0, 0.0, -kStandardGravity));
   layout_.fill_padding(down);
   out.assign(layout_.size(), 0.0);
   apply(down, 1.0, out);

@@ -15,7 +15,6 @@ class ShellMass {
   void apply(const Field& field, double factor, Field& out) const;
   /// out += factor × M field.
   void add(const Field& field, double factor, Field& out) const;
-  static constexpr double kGravity = 9.81;  // m/s², along −z
   /// out = M g, the weights of the nodes, N; padding zero.
   void weigh(Field& out) const;
   const ElementMass& element(int j) const { return elements_[j]; }

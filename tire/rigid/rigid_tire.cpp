@@ -4,11 +4,12 @@
 //   M_spindle = Σ (x − c) × f − Δ(J ω)/H,  x − c the mean of the interval's ends
 #include "tire/rigid/rigid_tire.hpp"
 
+#include "protocol/core/constants.hpp"
 #include "tire/rim_archive.hpp"
 
 namespace furrow::tire {
 namespace {
-const Vec3 kGravity(0.0, 0.0, -9.81);  // m/s²
+const Vec3 kGravity(0.0, 0.0, -kStandardGravity);  // m/s²
 }
 
 RigidTire::RigidTire(const TireFile& file) : material_(file.contact), radius_(file.radius) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 
+#include "protocol/core/constants.hpp"
 #include "tests/terrain/surface_meshes.hpp"
 #include "tests/terrain/verification/engine_grains.hpp"
 #include "tests/verification/record.hpp"
@@ -81,7 +82,7 @@ TEST(Cohesion, grain_hangs_from_a_ceiling_if_cohesion_exceeds_its_weight) {
   for (const char* law : kLaws)
     for (const double share : {0.995, 1.005, 3.0}) {
       EngineGrains few = cohesive(law);
-      few.gravity = terrain::dem::kGravity;
+      few.gravity = kStandardGravity;
       const double weight = terrain::dem::grain_properties(kRadius, few.options.density).mass * few.gravity;
       few.options.cohesion = share * weight / (M_PI * kRadius * kRadius);
       const terrain::dem::ContactCoefficients k = few.coefficients().floor;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "protocol/core/constants.hpp"
 #include "tests/terrain/surface_meshes.hpp"
 #include "tests/terrain/verification/engine_grains.hpp"
 #include "tests/verification/record.hpp"
@@ -101,7 +102,7 @@ TEST(CoulombLaw, block_creeps_down_an_inclined_mesh_at_the_closed_form_rate) {
     for (const double degrees : {2.0, 10.0, 20.0, 35.0}) {
       EngineGrains few = coulomb();
       few.options.friction_velocity_scale = scale;
-      few.gravity = terrain::dem::kGravity;
+      few.gravity = kStandardGravity;
       const double angle = degrees * M_PI / 180.0;
       const terrain::dem::ContactCoefficients k = few.coefficients().floor;
       const double load = mass_of(few) * few.gravity * std::cos(angle);
@@ -135,7 +136,7 @@ TEST(CoulombLaw, block_creeps_down_an_inclined_mesh_at_the_closed_form_rate) {
 TEST(CoulombLaw, sliding_sphere_follows_its_closed_form_to_five_sevenths) {
   EngineGrains few = coulomb();
   few.options.friction = 0.3;
-  few.gravity = terrain::dem::kGravity;
+  few.gravity = kStandardGravity;
   const double speed = 0.4, c = few.options.friction_velocity_scale;
   const double load = mass_of(few) * few.gravity;
   terrain::dem::GrainSolver s =

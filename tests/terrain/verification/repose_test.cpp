@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "protocol/core/constants.hpp"
 #include "tests/terrain/verification/engine_grains.hpp"
 #include "tests/verification/record.hpp"
 
@@ -26,7 +27,7 @@ terrain::dem::GrainSolver column(EngineGrains& few) {
   few.options.length = 1.5;
   few.options.width = kWidth;
   few.options.step = kStep;
-  few.gravity = terrain::dem::kGravity;
+  few.gravity = kStandardGravity;
   std::mt19937_64 bits(7);
   const auto any = [&] { return 2e-4 * (static_cast<double>(bits() >> 11) * 0x1p-52 - 1.0); };
   std::vector<terrain::dem::Quad> at;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "protocol/core/constants.hpp"
 #include "tests/terrain/surface_meshes.hpp"
 #include "tests/terrain/verification/engine_grains.hpp"
 #include "tests/verification/record.hpp"
@@ -38,7 +39,7 @@ TEST(SlidingBlock, feels_no_edge_in_half_a_metre) {
   const terrain::dem::ContactCoefficients k = few.coefficients().floor;
   const double mass = terrain::dem::grain_properties(kRadius, few.options.density).mass;
   constexpr int kGrains = 9;
-  const double weight = kGrains * mass * terrain::dem::kGravity, speed = 0.5, dt = 2e-5, height = 0.05;
+  const double weight = kGrains * mass * kStandardGravity, speed = 0.5, dt = 2e-5, height = 0.05;
   const double rest = kRadius - std::pow(weight / kGrains / k.stiffness, 2.0 / 3.0);
   std::vector<terrain::dem::Quad> at;
   for (int n = 0; n < kGrains; ++n)
@@ -73,7 +74,7 @@ TEST(SlidingBlock, sphere_rolls_half_a_metre_down_a_mesh_at_five_sevenths_g) {
   EngineGrains few;
   few.options.friction = 0.6;
   few.options.length = 1.0;
-  few.gravity = terrain::dem::kGravity;
+  few.gravity = kStandardGravity;
   const terrain::dem::ContactCoefficients k = few.coefficients().floor;
   const double mass = terrain::dem::grain_properties(kRadius, few.options.density).mass, angle = 0.2,
                dt = 1e-5;

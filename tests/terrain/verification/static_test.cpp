@@ -5,6 +5,7 @@
 #include <numeric>
 #include <string>
 
+#include "protocol/core/constants.hpp"
 #include "tests/terrain/surface_meshes.hpp"
 #include "tests/terrain/verification/engine_grains.hpp"
 #include "tests/terrain/verification/impact.hpp"
@@ -36,7 +37,7 @@ TEST(Static, column_stands_on_its_exact_overlaps) {
         few.options.law = law;
         few.options.cohesion = cohesion;
         few.options.step = kStep;
-        few.gravity = terrain::dem::kGravity;
+        few.gravity = kStandardGravity;
         const terrain::dem::SolverCoefficients k = few.coefficients();
         const double bottom = ground == Ground::mesh ? 0.2 : 0.0;
         const double weight = terrain::dem::grain_properties(kRadius, few.options.density).mass * few.gravity;
@@ -87,7 +88,7 @@ TEST(Static, tetrahedron_shares_its_weight_by_symmetry) {
   EngineGrains few;
   few.options.friction = 0.9;
   few.options.step = kStep;
-  few.gravity = terrain::dem::kGravity;
+  few.gravity = kStandardGravity;
   const double a = 2.0 * kRadius, height = a * std::sqrt(2.0 / 3.0);
   const double weight = terrain::dem::grain_properties(kRadius, few.options.density).mass * few.gravity;
   std::vector<terrain::dem::Quad> at;

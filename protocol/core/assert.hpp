@@ -1,0 +1,55 @@
+// Preconditions and invariants that are checked while a program is tested: on in the builds dev, audit and asan (CMake option
+// FURROW_ASSERTS), nothing in others.
+//
+//   FURROW_ASSERT(i < size(), i, size());
+//
+// prints "FILE:LINE: FUNCTION: precondition failed: i < size() [i, size() = 12, 10]" and aborts. It never throws: it may stand
+// inside an OpenMP region. What a user can cause is no assertion but an Error (error.hpp) or an Outcome (outcome.hpp).
+#pragma once
+
+#include <cstdio>
+#include <cstdlib>
+#include <sstream>
+#include <string>
+#include <type_traits>
+
+namespace furrow::detail {
+
+/// The values, separated by commas; those that no stream takes as "…".
+template <class... Values>
+std::string values_text(const Values&... values) {
+  std::ostringstream out;
+  out.precision(17);
+  [[maybe_unused]] const char* separator = "";
+  const auto add = [&](const auto& value) {
+    out << separator;
+    if constexpr (requires { out << value; })
+      out << value;
+    else
+      out << "…";
+    separator = ", ";
+  };
+  (add(values), ...);
+  return out.str();
+}
+
+[[noreturn]] inline void assertion_failed(const char* file, int line, const char* function,
+                                          const char* condition, const char* names,
+                                          const std::string& values) {
+  std::fprintf(stderr, "%s:%d: %s: precondition failed: %s%s%s%s%s%s\n", file, line, function, condition,
+               *names ? " [" : "", names, *names ? " = " : "", values.c_str(), *names ? "]" : "");
+  std::abort();
+}
+
+}  // namespace furrow::detail
+
+#ifndef NDEBUG
+#define FURROW_ASSERT(condition, ...)                                                                            \
+  ((condition) ? void(0)                                                                                         \
+               : ::furrow::detail::assertion_failed(__FILE__, __LINE__, __func__, #condition, "" #__VA_ARGS__, \
+                                                    ::furrow::detail::values_text(__VA_ARGS__)))
+#else
+// Not evaluated, but compiled: what only assertions use is used.
+#define FURROW_ASSERT(condition, ...) \
+  (void)sizeof((condition) ? (void(::furrow::detail::values_text(__VA_ARGS__)), 1) : 0)
+#endif

@@ -21,7 +21,7 @@ std::string values_text(const Values&... values) {
   std::ostringstream out;
   out.precision(17);
   [[maybe_unused]] const char* separator = "";
-  const auto add = [&](const auto& value) {
+  [[maybe_unused]] const auto add = [&](const auto& value) {
     out << separator;
     if constexpr (requires { out << value; })
       out << value;
@@ -44,10 +44,11 @@ std::string values_text(const Values&... values) {
 }  // namespace furrow::detail
 
 #ifndef NDEBUG
-#define FURROW_ASSERT(condition, ...)                                                                            \
-  ((condition) ? void(0)                                                                                         \
-               : ::furrow::detail::assertion_failed(__FILE__, __LINE__, __func__, #condition, "" #__VA_ARGS__, \
-                                                    ::furrow::detail::values_text(__VA_ARGS__)))
+#define FURROW_ASSERT(condition, ...)                                                                  \
+  ((condition)                                                                                         \
+       ? void(0)                                                                                       \
+       : ::furrow::detail::assertion_failed(__FILE__, __LINE__, __func__, #condition, "" #__VA_ARGS__, \
+                                            ::furrow::detail::values_text(__VA_ARGS__)))
 #else
 // Not evaluated, but compiled: what only assertions use is used.
 #define FURROW_ASSERT(condition, ...) \

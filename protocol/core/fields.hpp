@@ -21,16 +21,18 @@ namespace furrow {
 /// What a field is besides a value of its struct; any number of them together.
 namespace role {
 inline constexpr unsigned none = 0;
-inline constexpr unsigned key = 1U << 0U;       // a key of the scenario, by this name in its struct's section
-inline constexpr unsigned bed = 1U << 1U;       // changes a settled bed: part of the bed's digest where it is not the default
-inline constexpr unsigned soil = 1U << 2U;      // a property of soil: soil files may say it
-inline constexpr unsigned harmless = 1U << 3U;  // changes no result: not part of the scenario's digest, free on resume
-inline constexpr unsigned column = 1U << 4U;    // a column of the time series
+inline constexpr unsigned key = 1U << 0U;  // a key of the scenario, by this name in its struct's section
+inline constexpr unsigned bed =
+    1U << 1U;  // changes a settled bed: part of the bed's digest where it is not the default
+inline constexpr unsigned soil = 1U << 2U;  // a property of soil: soil files may say it
+inline constexpr unsigned harmless =
+    1U << 3U;  // changes no result: not part of the scenario's digest, free on resume
+inline constexpr unsigned column = 1U << 4U;  // a column of the time series
 }  // namespace role
 
 struct Field {
-  const char* name;          // snake_case, as users and files know it
-  const char* unit = "-";    // SI; "-" for none, "" for what has no unit at all (text, switches)
+  const char* name;        // snake_case, as users and files know it
+  const char* unit = "-";  // SI; "-" for none, "" for what has no unit at all (text, switches)
   unsigned roles = role::none;
   constexpr bool is(unsigned wanted) const { return (roles & wanted) == wanted; }
 };
@@ -48,6 +50,8 @@ struct IgnoreField {
 
 /// Whether T has a list of fields.
 template <class T>
-concept HasFields = requires(T& t) { visit_fields(detail::IgnoreField{}, t); };
+concept HasFields = requires(T& t) {
+  visit_fields(detail::IgnoreField{}, t);
+};
 
 }  // namespace furrow

@@ -1,0 +1,44 @@
+// Digests of structs with a list of fields: what differs from the default counts, by name, so that a key that is added later
+// changes no digest of those that do not use it.
+#pragma once
+
+#include <string>
+#include <type_traits>
+
+#include "protocol/core/fields.hpp"
+#include "protocol/core/hash.hpp"
+
+namespace furrow {
+
+/// Adds name and value of every field that has all `roles` and is not the default's.
+/// @pre these fields are numbers, enumerations, switches or strings
+template <HasFields T>
+void add_fields(Hash& hash, const T& values, unsigned roles) {
+  const T defaults{};
+  // The same list twice: the second pass knows the default of each field by its place in it.
+  const auto each = [&](auto&& take) {
+    std::size_t place = 0;
+    visit_fields([&](const Field& field, const auto& value) { take(place++, field, value); }, values);
+  };
+  each([&](std::size_t place, const Field& field, const auto& value) {
+    if (!field.is(roles)) return;
+    using Value = std::remove_cvref_t<decltype(value)>;
+    bool same = false;
+    std::size_t other = 0;
+    visit_fields(
+        [&](const Field&, const auto& standard) {
+          if constexpr (std::is_same_v<std::remove_cvref_t<decltype(standard)>, Value>)
+            if (other == place) same = standard == value;
+          ++other;
+        },
+        defaults);
+    if (same) return;
+    hash.add(std::string(field.name));
+    if constexpr (std::is_convertible_v<Value, std::string>)
+      hash.add(std::string(value));
+    else if constexpr (std::is_arithmetic_v<Value> || std::is_enum_v<Value>)
+      hash.add(&value, sizeof value);
+  });
+}
+
+}  // namespace furrow

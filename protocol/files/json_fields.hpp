@@ -1,0 +1,56 @@
+// Reads and writes structs with a list of fields (protocol/core/fields.hpp) as JSON objects: one key per field.
+#pragma once
+
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "protocol/core/fields.hpp"
+
+namespace furrow {
+
+/// Takes every field that has all `roles` and whose key is there and not null; the others keep their values.
+/// @pre the object was checked against the schema: a value of another type throws nlohmann::json::exception
+template <HasFields T>
+void read_fields(const nlohmann::json& object, T& target, unsigned roles = role::key) {
+  visit_fields(
+      [&](const Field& field, auto& value) {
+        using Value = std::remove_reference_t<decltype(value)>;
+        if constexpr (requires { object.begin()->template get<Value>(); }) {
+          if (!field.is(roles)) return;
+          const auto entry = object.find(field.name);
+          if (entry != object.end() && !entry->is_null()) value = entry->template get<Value>();
+        }
+      },
+      target);
+}
+
+/// The fields that have all `roles`, by name; of types that JSON knows.
+template <HasFields T>
+nlohmann::ordered_json fields_json(const T& source, unsigned roles = role::key) {
+  nlohmann::ordered_json object = nlohmann::ordered_json::object();
+  visit_fields(
+      [&](const Field& field, const auto& value) {
+        if constexpr (std::is_constructible_v<nlohmann::ordered_json, decltype(value)>)
+          if (field.is(roles)) object[field.name] = value;
+      },
+      source);
+  return object;
+}
+
+/// Names of the fields that have all `roles`, in order.
+template <HasFields T>
+std::vector<std::string> field_names(unsigned roles) {
+  std::vector<std::string> names;
+  const T defaults{};
+  visit_fields(
+      [&](const Field& field, const auto&) {
+        if (field.is(roles)) names.emplace_back(field.name);
+      },
+      defaults);
+  return names;
+}
+
+}  // namespace furrow

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "vehicle/multibody/system.hpp"
 
@@ -67,7 +68,7 @@ class DrawbarRig final : public Rig {
   void add_tire_mass(int wheel, const MassProperties& tire, double tire_radius) override;
   void place(std::span<const double> axle_height) override;
   RimState rim(int wheel) const override;
-  void advance(std::span<const Wrench> wrenches, double duration, int substeps) override;
+  Outcome advance(std::span<const Wrench> wrenches, double duration, int substeps) override;
   WheelReport report(int wheel) const override;
   void save(Archive& archive) const override;
   void restore(const Archive& archive) override;
@@ -212,14 +213,14 @@ RimState DrawbarRig::rim(int wheel) const {
   return {state.position, state.orientation, state.velocity, state.angular_velocity};
 }
 
-void DrawbarRig::advance(std::span<const Wrench> wrenches, double duration, int substeps) {
+Outcome DrawbarRig::advance(std::span<const Wrench> wrenches, double duration, int substeps) {
   check_built();
-  if (wrenches.size() != 1) throw physics_error("drawbar rig: expected one wrench");
-  if (substeps < 1 || !(duration > 0.0))
-    throw physics_error("drawbar rig: duration and substeps must be positive");
+  FURROW_ASSERT(wrenches.size() == 1, wrenches.size());
+  FURROW_ASSERT(substeps >= 1 && duration > 0.0, substeps, duration);
   const Wrench& wrench = wrenches[0];
   if (!wrench.force.allFinite() || !wrench.moment.allFinite())
-    throw physics_error("drawbar rig: the tire's wrench is not finite");
+    return Outcome::failure("was pulled with a wrench that is not finite",
+                            "it comes from the tire; try a smaller run.step");
   system_->set_load(rim_, wrench.force, wrench.moment);
 
   const double step = duration / substeps;
@@ -227,7 +228,8 @@ void DrawbarRig::advance(std::span<const Wrench> wrenches, double duration, int 
   const double position = forward_.dot(system_->body(rim_).state.position);
   double drive = 0.0, torque = 0.0, damper = 0.0, turn = 0.0, angle = spin_angle();
   for (int i = 0; i < substeps; ++i) {
-    system_->step(step);
+    Outcome outcome = system_->step(step);
+    if (!outcome.ok) return outcome;
     drive += system_->motor_force(drive_);
     if (!free_rolling()) torque += system_->motor_force(spindle_motor_);
     damper += system_->element_force(damper_);
@@ -251,6 +253,7 @@ void DrawbarRig::advance(std::span<const Wrench> wrenches, double duration, int 
   else
     report_.slip = (slid > 0.0) == (rolled > 0.0) ? kSlipLimit : -kSlipLimit;
   measure_end();
+  return {};
 }
 
 void DrawbarRig::measure_end() {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "protocol/core/archive.hpp"
+#include "protocol/core/outcome.hpp"
 #include "protocol/core/surface.hpp"
 
 namespace furrow::rigs {
@@ -51,8 +52,9 @@ class Rig {
 
   /// Advances by `duration` in `substeps` steps with the tires' wrenches (about the rim centres, W) held
   /// constant.
-  /// @throws Error(physics) when the constraints cannot be satisfied or a state is not finite.
-  virtual void advance(std::span<const Wrench> wrenches, double duration, int substeps) = 0;
+  /// @returns failure when the constraints cannot be satisfied, or a wrench or a state is not finite
+  /// @pre placed; one wrench for each wheel; duration > 0, substeps > 0
+  virtual Outcome advance(std::span<const Wrench> wrenches, double duration, int substeps) = 0;
 
   virtual WheelReport report(int wheel) const = 0;
 

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 
 namespace furrow::rigs {
@@ -26,9 +27,16 @@ class RigRow final : public Rig {
     for_each_rig(axle_height, [](Rig& rig, std::span<const double> part) { rig.place(part); });
   }
   RimState rim(int wheel) const override { return rig_of(wheel).rim(wheels_[wheel].second); }
-  void advance(std::span<const Wrench> wrenches, double duration, int substeps) override {
-    for_each_rig(wrenches,
-                 [=](Rig& rig, std::span<const Wrench> part) { rig.advance(part, duration, substeps); });
+  Outcome advance(std::span<const Wrench> wrenches, double duration, int substeps) override {
+    Outcome outcome;
+    int index = 0;
+    for_each_rig(wrenches, [&](Rig& rig, std::span<const Wrench> part) {
+      if (!outcome.ok) return;
+      outcome = rig.advance(part, duration, substeps);
+      if (!outcome.ok) outcome.detail = "rig " + std::to_string(index) + " of the row: " + outcome.detail;
+      ++index;
+    });
+    return outcome;
   }
   WheelReport report(int wheel) const override { return rig_of(wheel).report(wheels_[wheel].second); }
 
@@ -51,7 +59,7 @@ class RigRow final : public Rig {
   /// Gives each rig its own wheels' part of `values`.
   template <class T, class Call>
   void for_each_rig(std::span<const T> values, Call call) {
-    if (values.size() != wheels_.size()) throw physics_error("row of rigs: expected one value per wheel");
+    FURROW_ASSERT(values.size() == wheels_.size(), values.size(), wheels_.size());
     for (auto& rig : rigs_) {
       call(*rig, values.first(rig->wheel_count()));
       values = values.subspan(rig->wheel_count());

@@ -7,16 +7,12 @@
 #include <vector>
 
 #include "protocol/core/archive.hpp"
+#include "protocol/core/outcome.hpp"
 #include "protocol/core/progress_call.hpp"
 #include "protocol/core/surface.hpp"
 #include "protocol/core/terrain_state.hpp"
 
 namespace furrow::terrain {
-
-struct TerrainStatus {
-  bool ok = true;
-  std::string message;  // "grain 17 left the box at t = …, x = (…)"
-};
 
 /// Points for pictures: what a frame file holds.
 struct TerrainFrame {
@@ -41,15 +37,18 @@ class Terrain {
   virtual HeightField height_field() const = 0;
 
   /// Declares the surface of tire `k` (k = 0, 1, … in order) before the first advance.
-  /// @throws Error(bad_input) when the surface starts inside the terrain's solid boundary.
+  /// @throws Error(bad_input) when mesh and positions do not belong together (terrain/surface/surface_check.hpp), or the
+  /// surface starts inside the terrain's solid boundary.
   virtual void attach(const SurfaceMesh& mesh, const ContactMaterial& material,
                       const SurfaceState& start) = 0;
 
   /// Advances by `duration` in `substeps` equal steps. Each vertex moves linearly from where the terrain last had it
   /// to x + v·duration of targets[k], and its contact velocity is that motion's.
   /// forces[k] and contact[k] receive the interval's means.
-  virtual TerrainStatus advance(std::span<const SurfaceState> targets, double duration, int substeps,
-                                std::span<NodalForces> forces, std::span<ContactSums> contact) = 0;
+  /// @returns failure when a grain is lost, a surface leaves the terrain or is not finite, or the step is not stable
+  /// @pre targets, forces and contact have one entry for each attached surface; duration > 0, substeps > 0
+  virtual Outcome advance(std::span<const SurfaceState> targets, double duration, int substeps,
+                          std::span<NodalForces> forces, std::span<ContactSums> contact) = 0;
 
   virtual TerrainState state() const = 0;
   virtual std::int64_t size() const = 0;  // grains

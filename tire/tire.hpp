@@ -7,6 +7,7 @@
 #include <string>
 
 #include "protocol/core/archive.hpp"
+#include "protocol/core/outcome.hpp"
 #include "protocol/core/surface.hpp"
 #include "tire/pressure_schedule.hpp"
 #include "tire/rim_trajectory.hpp"
@@ -22,17 +23,6 @@ struct TireDiagnostics {
   std::int64_t newton_iterations = 0;  // cumulative
   std::int64_t factorizations = 0;     // cumulative
   double residual = 0.0;               // free residual / reference at the last step's end
-};
-
-/// Outcome of an advance; a failure names itself and what to try.
-struct TireStatus {
-  bool converged = true;  // and the state can be used
-  std::string what;       // "did not converge", "reached its rim"
-  std::string detail;     // figures, and what to try
-  /// "tire WHO WHAT WHERE: DETAIL", the caller's words for which tire and when.
-  std::string message(const std::string& who = "", const std::string& where = "") const {
-    return "tire " + who + what + where + ": " + detail;
-  }
 };
 
 class Tire {
@@ -59,7 +49,9 @@ class Tire {
   /// Integrates from the trajectory's start to its end in `substeps` equal steps. `forces` act constantly; those that
   /// come with tangents answer to the motion, where the model can (TireOptions::contact_tangent).
   /// Gravity (0, 0, −9.81 m/s²) acts.
-  virtual TireStatus advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) = 0;
+  /// @returns failure when the equations have no solution, a force is not finite, or the tire left the model's range
+  /// @pre placed; substeps > 0; one force for each vertex, vertices of the mesh
+  virtual Outcome advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) = 0;
 
   /// Force and moment about the rim centre that the tire exerts on the rim, averaged over the last advance;
   /// complete, with the tire's inertia and weight, so that impulse = Δ momentum holds to round-off for the

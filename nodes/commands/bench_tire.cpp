@@ -91,16 +91,14 @@ class RollingTire {
   /// @returns what the tire took
   Spent step(double damper) {
     const NodalForces forces = forces_;  // the ground's of the last step
-    if (const terrain::TerrainStatus status =
-            ground_->advance({&surface_, 1}, bench_.step, 1, {&forces_, 1}, {&contact_, 1});
-        !status.ok)
-      throw physics_error(status.message);
+    const Outcome pushed = ground_->advance({&surface_, 1}, bench_.step, 1, {&forces_, 1}, {&contact_, 1});
+    if (!pushed.ok) throw physics_error(pushed, "ground");
     trajectory_.extend(rim_, bench_.step);
     const double begin = now(), begin_processor = processor_time();
-    const tire::TireStatus status = tire_.advance(trajectory_, forces, 1);
+    const Outcome moved = tire_.advance(trajectory_, forces, 1);
     tire_.surface(surface_);
     const Spent spent{now() - begin, processor_time() - begin_processor};
-    if (!status.converged) throw physics_error(status.message());
+    if (!moved.ok) throw physics_error(moved, "tire");
     move_carriage(damper);
     return spent;
   }

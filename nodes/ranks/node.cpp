@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 namespace furrow::ranks {
 
 NodeCard common_card(const scenario::Scenario& scenario, Address self) {
@@ -18,6 +20,10 @@ NodeCard common_card(const scenario::Scenario& scenario, Address self) {
   gethostname(host, sizeof host - 1);
   card.host = host;
   return card;
+}
+
+std::string when(const StepHeader& header) {
+  return fmt::format(" at t = {:.6g} s, step {}", header.time, header.step);
 }
 
 std::int64_t steps_between(double interval, double step) {

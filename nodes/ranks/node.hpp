@@ -11,8 +11,8 @@
 #include <span>
 
 #include "nodes/checkpoint/frame_clock.hpp"
-#include "nodes/output/series.hpp"
 #include "nodes/output/profile.hpp"
+#include "nodes/output/series.hpp"
 #include "nodes/ranks/run_context.hpp"
 #include "nodes/scenario/scenario.hpp"
 #include "protocol/core/archive.hpp"
@@ -71,6 +71,9 @@ NodeCard common_card(const scenario::Scenario& scenario, Address self);
 
 /// Frames of the segment that begins now.
 checkpoint::FrameClock frame_clock(const scenario::Scenario& scenario, const RunContext& context);
+
+/// " at t = 0.1 s, step 7": where a step that failed began, for physics_error(outcome, who, where).
+std::string when(const StepHeader& header);
 
 /// Number of communication steps between two outputs that are `interval` seconds apart; 0: never.
 std::int64_t steps_between(double interval, double step);

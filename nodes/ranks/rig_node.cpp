@@ -74,8 +74,9 @@ class RigNode : public Node {
     show_progress(header);
   }
 
-  void advance(const StepHeader&) override {
-    rig_->advance(wrenches_, scenario_.run.step, scenario_.rig_substeps);
+  void advance(const StepHeader& header) override {
+    const Outcome outcome = rig_->advance(wrenches_, scenario_.run.step, scenario_.rig_substeps);
+    if (!outcome.ok) throw physics_error(outcome, to_string(kSelf), when(header));
   }
 
   Order due() const override { return due_; }

@@ -88,11 +88,9 @@ class TerrainNode : public Node {
   }
 
   void advance(const StepHeader& header) override {
-    const terrain::TerrainStatus status =
+    const Outcome outcome =
         terrain_->advance(targets_, scenario_.run.step, scenario_.terrain_substeps, forces_, report_.contact);
-    if (!status.ok)
-      throw physics_error("terrain at t = " + std::to_string(header.time) + " s, step " +
-                          std::to_string(header.step) + ": " + status.message);
+    if (!outcome.ok) throw physics_error(outcome, "terrain", when(header));
     report_.state = terrain_->state();
   }
 

@@ -76,10 +76,8 @@ class TireNode : public Node {
       forces_.tangent.clear();
     }
     if (pressure_.varies()) tire_->set_pressure(pressure_.at(header.time + 0.5 * duration));
-    const tire::TireStatus status = tire_->advance(trajectory_, forces_, scenario_.tire_substeps);
-    if (!status.converged)
-      throw physics_error(status.message(fmt::format("{} ", index_),
-                                         fmt::format(" at t = {:.6g} s, step {}", header.time, header.step)));
+    const Outcome outcome = tire_->advance(trajectory_, forces_, scenario_.tire_substeps);
+    if (!outcome.ok) throw physics_error(outcome, to_string(Address{Role::tire, index_}), when(header));
     tire_->acted(forces_);
     account(duration);
   }

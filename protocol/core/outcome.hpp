@@ -1,9 +1,13 @@
 // How an advance of a tire, a terrain or a rig ended: the one way in which partners report that physics or numerics failed.
-// Errors of the user are thrown (error.hpp); what may happen in any step is returned.
+// Errors of the user are thrown (error.hpp); what may happen in any step is returned, and becomes an Error(physics) only where
+// the caller knows which partner it was, and when: physics_error(outcome, who, where).
 #pragma once
 
 #include <string>
 #include <utility>
+
+#include "protocol/core/assert.hpp"
+#include "protocol/core/error.hpp"
 
 namespace furrow {
 
@@ -20,5 +24,11 @@ struct [[nodiscard]] Outcome {
     return who + " " + what + where + (detail.empty() ? "" : ": " + detail);
   }
 };
+
+/// The failed outcome as an error, in the words of Outcome::message. @pre not ok
+inline Error physics_error(const Outcome& outcome, const std::string& who, const std::string& where = "") {
+  FURROW_ASSERT(!outcome.ok, who, where);
+  return physics_error(outcome.message(who, where));
+}
 
 }  // namespace furrow

@@ -15,6 +15,7 @@
 #include "terrain/dem/beds/bed_preparation.hpp"
 #include "terrain/dem/grain_sizes.hpp"
 #include "terrain/dem/solver_setup.hpp"
+#include "terrain/surface/surface_check.hpp"
 
 namespace furrow::terrain {
 namespace {
@@ -87,9 +88,7 @@ class DemTerrain : public Terrain {
   }
 
   void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) override {
-    if (static_cast<int>(start.position.size()) != mesh.vertex_count)
-      throw Error(ExitCode::bad_input,
-                  "a tire's contact surface has another number of vertices than positions");
+    check_surface(mesh, start, solver_.surfaces().count());
     for (const Vec3& x : start.position)
       if (const char* wall = beyond(x, x))
         throw input_error(options_.scenario, "terrain",
@@ -99,17 +98,16 @@ class DemTerrain : public Terrain {
     solver_.surfaces().attach(mesh, material, surface_coefficients(material), start);
   }
 
-  TerrainStatus advance(std::span<const SurfaceState> targets, double duration, int substeps,
-                        std::span<NodalForces> forces, std::span<ContactSums> contact) override {
+  Outcome advance(std::span<const SurfaceState> targets, double duration, int substeps,
+                  std::span<NodalForces> forces, std::span<ContactSums> contact) override {
     const double dt = duration / substeps;
     if (dt != dt_) set_step(dt);
     dem::SurfaceContacts& surfaces = solver_.surfaces();
     surfaces.set_targets(targets, duration);
-    TerrainStatus status;
     for (int k = 0; k < surfaces.count(); ++k) {
       const SurfaceBox box = surfaces.swept_bounds(k);
       if (const char* wall = beyond(box.lo, box.hi))
-        return {false, fmt::format("tire {} reached {} of the bin", k, wall)};
+        return Outcome::failure("is too small", fmt::format("tire {} reached {} of the bin", k, wall));
     }
     if (surfaces.any()) surfaces.restrict_to(grain_box());
     for (int s = 0; s < substeps; ++s) {
@@ -211,24 +209,25 @@ class DemTerrain : public Terrain {
             Vec3(options_.length + room, 0.5 * options_.width + room, solver_.top() + room)};
   }
 
-  TerrainStatus lost_grain(int index) const {
+  Outcome lost_grain(int index) const {
     const dem::Quad& x = solver_.grains().position[index];
-    return {
-        false,
-        fmt::format("grain {} left the bin or is not finite at t = {:.6g} s, x = ({:.6g}, {:.6g}, {:.6g}) m",
-                    solver_.grains().id[index], time_, x.x, x.y, x.z)};
+    return Outcome::failure(
+        fmt::format("lost grain {}", solver_.grains().id[index]),
+        fmt::format("it left the bin or is not finite, x = ({:.6g}, {:.6g}, {:.6g}) m", x.x, x.y, x.z));
   }
 
   /// Looks again at the stable step when a larger overlap than ever was met.
-  TerrainStatus still_stable() {
+  Outcome still_stable() {
     const double overlap = solver_.accounts().max_overlap;
     if (overlap <= std::max(stable_overlap_, dem::stated_overlap(options_))) return {};
     stable_overlap_ = overlap;
     const dem::StableStep stable = dem::stable_at(options_, overlap);
     if (dt_ <= stable.step || options_.allow_unstable_step) return {};
-    return {false, fmt::format("grains overlap by {:.3g} m ({:.1f} % of their diameter), where the stable "
-                               "step is {:.3g} s ({}) and the step is {:.3g} s",
-                               overlap, 50.0 * overlap / options_.radius, stable.step, stable.reason, dt_)};
+    return Outcome::failure(
+        "needs a smaller step",
+        fmt::format("grains overlap by {:.3g} m ({:.1f} % of their diameter), where the stable "
+                    "step is {:.3g} s ({}) and the step is {:.3g} s",
+                    overlap, 50.0 * overlap / options_.radius, stable.step, stable.reason, dt_));
   }
 
   TerrainOptions options_;

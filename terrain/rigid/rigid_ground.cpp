@@ -5,9 +5,11 @@
 #include <string>
 #include <utility>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/flat.hpp"
 #include "terrain/rigid/ground_friction.hpp"
 #include "terrain/rigid/ground_pressure.hpp"
+#include "terrain/surface/surface_check.hpp"
 #include "terrain/surface/surface_forces.hpp"
 
 namespace furrow::terrain {
@@ -63,8 +65,8 @@ class RigidGround final : public Terrain {
   double floor_height() const override { return 0.0; }
   HeightField height_field() const override;
   void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) override;
-  TerrainStatus advance(std::span<const SurfaceState> targets, double duration, int substeps,
-                        std::span<NodalForces> forces, std::span<ContactSums> contact) override;
+  Outcome advance(std::span<const SurfaceState> targets, double duration, int substeps,
+                  std::span<NodalForces> forces, std::span<ContactSums> contact) override;
   TerrainState state() const override;
   std::int64_t size() const override { return 0; }
   void frame(TerrainFrame& out) const override { out = TerrainFrame{}; }
@@ -115,21 +117,11 @@ void RigidGround::add_surface(const SurfaceMesh& mesh, const ContactMaterial& ma
 
 void RigidGround::attach(const SurfaceMesh& mesh, const ContactMaterial& material,
                          const SurfaceState& start) {
-  const std::string who = "surface " + std::to_string(surfaces_.size());
-  if (start.position.size() != static_cast<std::size_t>(mesh.vertex_count))
-    throw input_error(
-        who, "",
-        std::to_string(start.position.size()) + " positions, expected " + std::to_string(mesh.vertex_count));
-  for (const auto& triangle : mesh.triangles)
-    for (int v : triangle)
-      if (v < 0 || v >= mesh.vertex_count)
-        throw input_error(who, "",
-                          "a triangle names vertex " + std::to_string(v) + ", expected 0 to " +
-                              std::to_string(mesh.vertex_count - 1));
+  check_surface(mesh, start, static_cast<int>(surfaces_.size()));
   double lowest = 0.0;
   for (const Vec3& x : start.position) lowest = std::min(lowest, x.z());
   if (lowest < -kMaxStartDepth)
-    throw input_error(who, "",
+    throw input_error("surface " + std::to_string(surfaces_.size()), "",
                       "starts " + std::to_string(-lowest) + " m below the ground, expected at most " +
                           std::to_string(kMaxStartDepth) + " m");
   add_surface(mesh, material, start.position);
@@ -198,24 +190,25 @@ void RigidGround::measure(GroundSurface& surface) const {
   }
 }
 
-TerrainStatus RigidGround::advance(std::span<const SurfaceState> targets, double duration, int substeps,
-                                   std::span<NodalForces> forces, std::span<ContactSums> contact) {
-  if (targets.size() != surfaces_.size() || forces.size() != surfaces_.size() ||
-      contact.size() != surfaces_.size())
-    return {false, "the ground carries " + std::to_string(surfaces_.size()) + " surfaces, but " +
-                       std::to_string(targets.size()) + " were moved"};
+Outcome RigidGround::advance(std::span<const SurfaceState> targets, double duration, int substeps,
+                             std::span<NodalForces> forces, std::span<ContactSums> contact) {
+  FURROW_ASSERT(targets.size() == surfaces_.size(), targets.size(), surfaces_.size());
+  FURROW_ASSERT(forces.size() == surfaces_.size(), forces.size(), surfaces_.size());
+  FURROW_ASSERT(contact.size() == surfaces_.size(), contact.size(), surfaces_.size());
+  FURROW_ASSERT(duration > 0.0 && substeps > 0, duration, substeps);
   const double dt = duration / substeps;
   for (std::size_t k = 0; k < surfaces_.size(); ++k) {
     GroundSurface& surface = surfaces_[k];
     const std::size_t count = surface.last.size();
-    if (targets[k].position.size() != count || targets[k].velocity.size() != count)
-      return {false, "surface " + std::to_string(k) + " has " + std::to_string(count) + " vertices, but " +
-                         std::to_string(targets[k].position.size()) + " were moved"};
+    FURROW_ASSERT(targets[k].position.size() == count, k, targets[k].position.size(), count);
+    FURROW_ASSERT(targets[k].velocity.size() == count, k, targets[k].velocity.size(), count);
     std::vector<Vec3> end(count);
     for (std::size_t v = 0; v < count; ++v) {
       end[v] = targets[k].position[v] + duration * targets[k].velocity[v];
       if (!end[v].allFinite())
-        return {false, "vertex " + std::to_string(v) + " of surface " + std::to_string(k) + " is not finite"};
+        return Outcome::failure(
+            "was given a surface that is not finite",
+            "vertex " + std::to_string(v) + " of surface " + std::to_string(k) + "; try a smaller run.step");
       surface.velocity[v] = (end[v] - surface.last[v]) / duration;
     }
     for (int s = 0; s < substeps; ++s) {

@@ -27,8 +27,8 @@ ConeResult cone_penetration(const Specimen& specimen, const ConeTest& test, cons
   ConeResult result;
   int counted = 0;
   for (int k = 0; k < test.samples; ++k) {
-    const TerrainStatus status = terrain->advance({&tool.state(), 1}, interval, steps, forces, sums);
-    if (!status.ok) throw physics_error("cone penetration test: " + status.message);
+    const Outcome outcome = terrain->advance({&tool.state(), 1}, interval, steps, forces, sums);
+    if (!outcome.ok) throw physics_error(outcome, "cone penetration test: terrain");
     tool.moved(interval);
     work(static_cast<double>(k + 1) / test.samples);
     const double depth = (k + 0.5) * interval * test.speed - (top - surface) - cone;

@@ -43,8 +43,8 @@ class ShearCell {
     const double vertical = share < 0.0 ? 0.0 : lid_.step(sums_[1].force.z(), share * load_, dt);
     tools_[1].set_velocity(Vec3(speed, 0.0, vertical));
     for (int k = 0; k < 2; ++k) targets_[k] = tools_[k].state();
-    const TerrainStatus status = terrain_->advance(targets_, dt, 1, forces_, sums_);
-    if (!status.ok) throw physics_error("direct shear test: " + status.message);
+    const Outcome outcome = terrain_->advance(targets_, dt, 1, forces_, sums_);
+    if (!outcome.ok) throw physics_error(outcome, "direct shear test: terrain");
     for (Tool& tool : tools_) tool.moved(dt);
     height_ += dt * vertical;
   }

@@ -31,8 +31,8 @@ PlateResult plate_sinkage(const Specimen& specimen, const PlateTest& test, const
   result.curve.width = width;
   double off = 0.0;
   for (int k = 0; k < test.samples; ++k) {
-    const TerrainStatus status = terrain->advance({&plate.state(), 1}, interval, steps, forces, sums);
-    if (!status.ok) throw physics_error("plate sinkage test: " + status.message);
+    const Outcome outcome = terrain->advance({&plate.state(), 1}, interval, steps, forces, sums);
+    if (!outcome.ok) throw physics_error(outcome, "plate sinkage test: terrain");
     plate.moved(interval);
     work(static_cast<double>(k + 1) / test.samples);
     const double force = sums[0].force.z();

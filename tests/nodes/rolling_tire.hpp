@@ -54,16 +54,16 @@ class RollingTire {
     before = after;
     const Wrench sent = sent_;
     const RimState rim = rig->rim(0);
-    const terrain::TerrainStatus status =
-        ground->advance({&before, 1}, step_, 1, {&forces_, 1}, {&contact, 1});
-    if (!status.ok) throw physics_error(status.message);
+    const Outcome pushed = ground->advance({&before, 1}, step_, 1, {&forces_, 1}, {&contact, 1});
+    if (!pushed.ok) throw physics_error(pushed, "ground");
     trajectory.extend(rim, step_);
-    const tire::TireStatus done = tire.advance(trajectory, on_tire, 1);
-    if (!done.converged) throw physics_error(done.message());
+    const Outcome moved = tire.advance(trajectory, on_tire, 1);
+    if (!moved.ok) throw physics_error(moved, "tire");
     sent_ = ranks::carried_wrench(tire.spindle_wrench(), tire.mass_properties(), trajectory.start(),
                                   trajectory.end(), step_);
     tire.surface(after);
-    rig->advance({&sent, 1}, step_, 1);
+    const Outcome driven = rig->advance({&sent, 1}, step_, 1);
+    if (!driven.ok) throw physics_error(driven, "rig");
   }
 
  private:

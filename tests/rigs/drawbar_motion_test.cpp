@@ -54,7 +54,8 @@ TEST(Modes, slip_is_what_was_asked_for_during_and_after_the_ramp) {
 TEST(Modes, imposed_position_and_angle_are_followed_without_drift) {
   rigs::DrawbarRigOptions options;
   const auto rig = placed_rig(options);
-  advance(*rig, wrench(Vec3(1500, 60, carried_mass(options) * kStandardGravity), Vec3(30, -500, 20)), 25000);  // 1 s
+  advance(*rig, wrench(Vec3(1500, 60, carried_mass(options) * kStandardGravity), Vec3(30, -500, 20)),
+          25000);                                // 1 s
   const double time = 1.0 - 0.5 * options.ramp;  // the ramp's integral
   EXPECT_NEAR(rig->report(0).axle_position, options.angular_speed * kRadius * 0.7 * time, 1e-11);
   const Quat turned(Eigen::AngleAxisd(options.angular_speed * time, Vec3::UnitY()));
@@ -235,11 +236,7 @@ TEST(Refusals, bad_options_and_states_name_themselves) {
   options.carrier_mass = -1.0;
   EXPECT_THROW(rigs::make_drawbar_rig(options), Error);
   const auto rig = placed_rig({});
-  try {
-    advance(*rig, wrench(Vec3(std::nan(""), 0, 0)), 1);
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::physics);
-  }
+  const Wrench broken = wrench(Vec3(std::nan(""), 0, 0));
+  EXPECT_EQ(rig->advance({&broken, 1}, kStep, 1).what, "was pulled with a wrench that is not finite");
   EXPECT_THROW(rigs::make_drawbar_rig({})->rim(0), Error);
 }

@@ -33,7 +33,10 @@ inline double carried_mass(const rigs::DrawbarRigOptions& options) {
 }
 
 inline void advance(rigs::Rig& rig, const Wrench& wrench, int count, double step = kStep, int substeps = 1) {
-  for (int i = 0; i < count; ++i) rig.advance({&wrench, 1}, step, substeps);
+  for (int i = 0; i < count; ++i) {
+    const Outcome outcome = rig.advance({&wrench, 1}, step, substeps);
+    if (!outcome.ok) throw physics_error(outcome, "rig");
+  }
 }
 
 inline Wrench wrench(const Vec3& force, const Vec3& moment = Vec3::Zero()) { return {force, moment}; }

@@ -82,10 +82,10 @@ struct Press {
   double work = 0.0;
   Vec3 impulse = Vec3::Zero();
 
-  TerrainStatus run(Terrain& terrain, Plate& plate, const Vec3& v, int steps, double dt, int substeps = 1) {
+  Outcome run(Terrain& terrain, Plate& plate, const Vec3& v, int steps, double dt, int substeps = 1) {
     for (int k = 0; k < steps; ++k) {
       plate.move(v, dt);
-      const TerrainStatus status = terrain.advance({&plate.state, 1}, dt, substeps, forces, sums);
+      const Outcome status = terrain.advance({&plate.state, 1}, dt, substeps, forces, sums);
       if (!status.ok) return status;
       work += sums[0].work;
       impulse += dt * sums[0].force;
@@ -183,8 +183,8 @@ TEST_F(DemTerrain, plate_books_force_momentum_and_energy) {
     const TerrainState before = terrain->state();
     Press press;
     const double dt = 6e-5;
-    const TerrainStatus status = press.run(*terrain, plate, Vec3(0.1, 0.0, -0.2), 1000, dt, 2);
-    ASSERT_TRUE(status.ok) << status.message;
+    const Outcome status = press.run(*terrain, plate, Vec3(0.1, 0.0, -0.2), 1000, dt, 2);
+    ASSERT_TRUE(status.ok) << status.message("terrain");
     const TerrainState after = terrain->state();
     const ContactSums& sums = press.sums[0];
 
@@ -271,9 +271,9 @@ TEST_F(DemTerrain, tire_that_reaches_the_floor_stops_the_run_with_a_message) {
   Plate plate(0.1, -0.05, 0.1, 2, 0.2);
   terrain->attach(plate.mesh, kRubber, plate.state);
   Press press;
-  const TerrainStatus status = press.run(*terrain, plate, Vec3(0, 0, -4000), 1, 6e-5);
+  const Outcome status = press.run(*terrain, plate, Vec3(0, 0, -4000), 1, 6e-5);
   EXPECT_FALSE(status.ok);
-  EXPECT_NE(status.message.find("floor"), std::string::npos);
+  EXPECT_NE(status.detail.find("floor"), std::string::npos);
   Plate outside(-0.05, -0.05, 0.1, 2, 0.2);
   EXPECT_THROW(terrain->attach(outside.mesh, kRubber, outside.state), Error);
 }

@@ -41,9 +41,9 @@ struct Push {
 /// One interval of a surface that moves with constant velocity and begins at `start`.
 Push push(Terrain& ground, const SurfaceState& start, double duration = 1e-6, int substeps = 1) {
   Push result;
-  const TerrainStatus status =
+  const Outcome status =
       ground.advance({&start, 1}, duration, substeps, {&result.forces, 1}, {&result.sums, 1});
-  EXPECT_TRUE(status.ok) << status.message;
+  EXPECT_TRUE(status.ok) << status.message("terrain");
   return result;
 }
 
@@ -418,9 +418,9 @@ TEST(RigidGround, refuses_bad_options_and_surfaces) {
   broken.position[3].x() = std::nan("");
   NodalForces forces;
   ContactSums sums;
-  const TerrainStatus status = ground->advance({&broken, 1}, 4e-5, 1, {&forces, 1}, {&sums, 1});
+  const Outcome status = ground->advance({&broken, 1}, 4e-5, 1, {&forces, 1}, {&sums, 1});
   EXPECT_FALSE(status.ok);
-  EXPECT_NE(status.message.find("vertex 3"), std::string::npos) << status.message;
+  EXPECT_NE(status.detail.find("vertex 3"), std::string::npos) << status.message("terrain");
 }
 
 }  // namespace

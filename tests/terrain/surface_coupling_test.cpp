@@ -11,7 +11,7 @@
 
 namespace furrow::terrain {
 namespace {
-constexpr double kStep = 6e-5;     // H, s
+constexpr double kStep = 6e-5;  // H, s
 
 TerrainOptions small_bin(double length) {
   TerrainOptions options;
@@ -83,8 +83,8 @@ struct Scene {
     for (int i = 0; i < steps; ++i) {
       std::vector<SurfaceState> targets;
       for (const Block& block : blocks) targets.push_back(block.state());
-      const TerrainStatus status = terrain->advance(targets, kStep, 1, forces, sums);
-      ASSERT_TRUE(status.ok) << status.message;
+      const Outcome status = terrain->advance(targets, kStep, 1, forces, sums);
+      ASSERT_TRUE(status.ok) << status.message("terrain");
       for (std::size_t k = 0; k < blocks.size(); ++k) {
         blocks[k].advance(forces[k]);
         worst_force_residual = std::max(worst_force_residual, sums[k].transfer_force_residual);
@@ -141,8 +141,8 @@ TEST(SurfaceCoupling, no_grain_passes_through_a_plate_that_is_rammed_into_the_be
     const SurfaceState target = block.state();
     NodalForces forces;
     ContactSums sums;
-    const TerrainStatus status = scene.terrain->advance({&target, 1}, kStep, 1, {&forces, 1}, {&sums, 1});
-    ASSERT_TRUE(status.ok) << status.message;
+    const Outcome status = scene.terrain->advance({&target, 1}, kStep, 1, {&forces, 1}, {&sums, 1});
+    ASSERT_TRUE(status.ok) << status.message("terrain");
     block.position += kStep * block.velocity;
   }
   TerrainFrame frame;

@@ -52,7 +52,7 @@ TEST(SliderCrank, held_crank_carries_the_piston_force_by_virtual_work) {
     SliderCrank mechanism(
         phi, [](double) { return vehicle::Motion{}; }, Vec3::Zero());
     mechanism.system.set_load(mechanism.slider, Vec3(force, 0, 0), Vec3::Zero());
-    mechanism.system.step(1e-3);
+    EXPECT_TRUE(mechanism.system.step(1e-3).ok);
     // T δφ + F δx = 0
     EXPECT_NEAR(mechanism.system.motor_force(mechanism.motor), -force * SliderCrank::slider_slope(phi), 1e-9);
     // The rod is a two-force member: the guide carries F tan β across.
@@ -79,7 +79,7 @@ TEST(SliderCrank, driven_crank_gives_exact_kinematics_and_power_balance) {
   const double start = system.kinetic_energy() + system.gravity_energy();
   const int steps = 1500;  // about 1.4 revolutions
   for (int i = 0; i < steps; ++i) {
-    system.step(h);
+    EXPECT_TRUE(system.step(h).ok);
     work += system.motor_force(mechanism.motor) * omega * h;
   }
   const double phi = 0.3 + omega * system.time();
@@ -114,7 +114,7 @@ TEST(FourBar, parallelogram_motor_torque_matches_statics_and_redundancy_is_flagg
   system.assemble(0.0);
   EXPECT_EQ(system.redundant_count(), 3);
   EXPECT_FALSE(system.redundant_names().empty());
-  for (int i = 0; i < 100; ++i) system.step(1e-3);
+  for (int i = 0; i < 100; ++i) EXPECT_TRUE(system.step(1e-3).ok);
   // Virtual work: T δθ_y raises the platform by l sin θ δθ, both bars by half of it; turning about +y lowers
   // +x.
   const double torque = -(platform_mass + bar_mass) * kStandardGravity * l * std::sin(theta);
@@ -151,7 +151,7 @@ TEST(Joints, universal_joint_turns_shafts_by_the_hooke_relation) {
   system.assemble(0.0);
   double worst = 0.0;
   for (int i = 0; i < 3000; ++i) {
-    system.step(h);
+    EXPECT_TRUE(system.step(h).ok);
     const double phi = omega * system.time();
     // Rate of the output: cos β / (1 − sin²β cos²φ), φ measured from the fork lying across the plane of the
     // shafts.
@@ -173,8 +173,9 @@ TEST(Joints, distance_joint_is_a_massless_rod) {
   place.second_point = state.position;
   const int rod = system.add_joint(vehicle::JointKind::distance, "rod", vehicle::kGround, ball, place);
   system.assemble(0.0);
-  for (int i = 0; i < 2000; ++i) system.step(1e-3);
+  for (int i = 0; i < 2000; ++i) EXPECT_TRUE(system.step(1e-3).ok);
   EXPECT_NEAR(system.body(ball).state.position.norm(), l, 1e-12);
   EXPECT_NEAR(system.body(ball).state.position.z(), -l * std::cos(theta), 1e-5);
-  EXPECT_NEAR(system.reaction(rod).force.norm(), m * kStandardGravity / std::cos(theta), 1e-4 * m * kStandardGravity);
+  EXPECT_NEAR(system.reaction(rod).force.norm(), m * kStandardGravity / std::cos(theta),
+              1e-4 * m * kStandardGravity);
 }

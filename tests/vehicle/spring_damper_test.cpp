@@ -40,7 +40,7 @@ TEST(SpringDamper, follows_its_discrete_recurrence) {
     const double force = 0.5 * (-k * (x - rest) - c * half);
     x += h * half;
     v = half + 0.5 * h * (-kStandardGravity - (k * (x - rest) + c * half) / m);
-    slider.system.step(h);
+    EXPECT_TRUE(slider.system.step(h).ok);
     ASSERT_NEAR(slider.x(), x, 1e-12) << i;
     ASSERT_NEAR(slider.v(), v, 1e-11) << i;
     ASSERT_NEAR(slider.system.element_force(slider.element), force + 0.5 * (-k * (x - rest) - c * half), 1e-6)
@@ -50,12 +50,13 @@ TEST(SpringDamper, follows_its_discrete_recurrence) {
 
 TEST(SpringDamper, damped_oscillation_matches_closed_form_with_second_order) {
   const double m = 10.0, k = 4000.0, c = 80.0, x0 = 0.2, end = 0.7;
-  const double equilibrium = -m * kStandardGravity / k, decay = 0.5 * c / m, w = std::sqrt(k / m - decay * decay);
+  const double equilibrium = -m * kStandardGravity / k, decay = 0.5 * c / m,
+               w = std::sqrt(k / m - decay * decay);
   const double reference = equilibrium + std::exp(-decay * end) * (x0 - equilibrium) *
                                              (std::cos(w * end) + decay / w * std::sin(w * end));
   const auto error_of = [&](int steps) {
     Slider slider(m, k, 0.0, c, x0, 0.0);
-    for (int i = 0; i < steps; ++i) slider.system.step(end / steps);
+    for (int i = 0; i < steps; ++i) EXPECT_TRUE(slider.system.step(end / steps).ok);
     return std::abs(slider.x() - reference);
   };
   const double coarse = error_of(200), fine = error_of(400);
@@ -66,7 +67,7 @@ TEST(SpringDamper, damped_oscillation_matches_closed_form_with_second_order) {
 TEST(SpringDamper, damper_far_stiffer_than_the_step_stays_stable) {
   const double m = 1.0, c = 1e7, h = 1e-3;  // h c/m = 1e4
   Slider slider(m, 0.0, 0.0, c, 0.0, 1.0);
-  for (int i = 0; i < 1000; ++i) slider.system.step(h);
+  for (int i = 0; i < 1000; ++i) EXPECT_TRUE(slider.system.step(h).ok);
   EXPECT_LT(std::abs(slider.v()), 1.0);
   EXPECT_LT(std::abs(slider.x()), 1e-2);
 }
@@ -83,7 +84,7 @@ TEST(SpringDamper, line_spring_between_free_bodies_keeps_momentum) {
                           vehicle::linear_spring_damper(500.0, 0.5, 3.0));
   system.assemble(0.0);
   const Vec3 momentum = system.momentum(), angular = system.angular_momentum(Vec3::Zero());
-  for (int i = 0; i < 2000; ++i) system.step(1e-3);
+  for (int i = 0; i < 2000; ++i) EXPECT_TRUE(system.step(1e-3).ok);
   EXPECT_LT((system.momentum() - momentum).norm(), 1e-12);
   EXPECT_LT((system.angular_momentum(Vec3::Zero()) - angular).norm(), 1e-4 * angular.norm());
 }

@@ -92,7 +92,7 @@ void AncfTire::surface(SurfaceState& out) const {
   }
 }
 
-TireStatus AncfTire::advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) {
+Outcome AncfTire::advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) {
   const ShellLayout& layout = integrator_.layout();
   about_ = 0.5 * (rim.start().position + rim.end().position);
   spindle_ = {};
@@ -105,8 +105,8 @@ TireStatus AncfTire::advance(const RimTrajectory& rim, const NodalForces& forces
   for (std::size_t k = 0; k < forces.vertex.size(); ++k) {
     const int vertex = forces.vertex[k];
     if (!forces.force[k].allFinite())
-      return {false, "was pushed with a force that is not finite",
-              fmt::format("at vertex {} of its surface; try a smaller run.step", vertex)};
+      return Outcome::failure("was pushed with a force that is not finite",
+                              fmt::format("at vertex {} of its surface; try a smaller run.step", vertex));
     if (vertex < ring_.nodes()) {
       const int i = vertex / ring_.rows, j = vertex % ring_.rows;
       layout.set(force_, i, j, 0, forces.force[k]);
@@ -122,13 +122,13 @@ TireStatus AncfTire::advance(const RimTrajectory& rim, const NodalForces& forces
     disc.moment += (mean * ring_.disc_centre(vertex - ring_.nodes())).cross(forces.force[k]);
   }
   for (int n = 1; n <= substeps; ++n) {
-    const TireStatus status = step(rim, n - 1.0, n, substeps, kMaxHalvings);
-    if (!status.converged) return status;
+    Outcome outcome = step(rim, n - 1.0, n, substeps, kMaxHalvings);
+    if (!outcome.ok) return outcome;
   }
   rim_ = rim.end();
   spindle_.force += disc.force;
   spindle_.moment += disc.moment;
-  return clearance_.status(clearance_.measure(layout, integrator_.q(), rim_));
+  return clearance_.outcome(clearance_.measure(layout, integrator_.q(), rim_));
 }
 
 void AncfTire::acted(NodalForces& forces) const {
@@ -137,20 +137,20 @@ void AncfTire::acted(NodalForces& forces) const {
 }
 
 /// The step from `from` to `to`, counted in substeps; in halves of it where the iteration does not converge.
-TireStatus AncfTire::step(const RimTrajectory& rim, double from, double to, int substeps, int halvings) {
+Outcome AncfTire::step(const RimTrajectory& rim, double from, double to, int substeps, int halvings) {
   const double share = (to - from) / substeps;
   const RimState end = to == substeps ? rim.end() : rim.at(to / substeps).state;
   Wrench part;
-  TireStatus status = integrator_.step(share * rim.duration(), end, force_, about_, part);
-  if (status.converged) {
+  Outcome outcome = integrator_.step(share * rim.duration(), end, force_, about_, part);
+  if (outcome.ok) {
     spindle_.force += share * part.force;
     spindle_.moment += share * part.moment;
-    return status;
+    return outcome;
   }
-  if (halvings == 0) return status;
+  if (halvings == 0) return outcome;
   const double middle = 0.5 * (from + to);
-  status = step(rim, from, middle, substeps, halvings - 1);
-  return status.converged ? step(rim, middle, to, substeps, halvings - 1) : status;
+  outcome = step(rim, from, middle, substeps, halvings - 1);
+  return outcome.ok ? step(rim, middle, to, substeps, halvings - 1) : outcome;
 }
 
 TireDiagnostics AncfTire::diagnostics() const {

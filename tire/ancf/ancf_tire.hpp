@@ -26,7 +26,7 @@ class AncfTire final : public Tire {
   void set_pressure(double pressure) override;
   void place(const RimState& rim) override;
   void surface(SurfaceState& out) const override;
-  TireStatus advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) override;
+  Outcome advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) override;
   Wrench spindle_wrench() const override { return spindle_; }
   void acted(NodalForces& forces) const override;
   TireDiagnostics diagnostics() const override;
@@ -37,7 +37,7 @@ class AncfTire final : public Tire {
   const InflationReport& inflation() const { return inflation_; }
 
  private:
-  TireStatus step(const RimTrajectory& rim, double from, double to, int substeps, int halvings);
+  Outcome step(const RimTrajectory& rim, double from, double to, int substeps, int halvings);
 
   ShellMesh ring_;
   SurfaceMesh surface_mesh_;

@@ -282,9 +282,9 @@ PressPoint PressSolver::press(double deflection, const std::function<void()>& ea
     point.force = force_;
     point.residual = norm / (force_ > kMinLoad ? force_ : pressure_norm_);
     if (definite && viscosity_ == 0.0 && point.residual <= kTolerance) {
-      const TireStatus status = clearance_.status(clearance_.measure(layout_, q_, RimState{}));
-      if (!status.converged)
-        throw physics_error(status.message("", fmt::format(" at a deflection of {:.4g} m", deflection)));
+      const Outcome outcome = clearance_.outcome(clearance_.measure(layout_, q_, RimState{}));
+      if (!outcome.ok)
+        throw physics_error(outcome, "tire", fmt::format(" at a deflection of {:.4g} m", deflection));
       return point;
     }
     const double share = definite ? creep(norm) : 0.0;

@@ -54,23 +54,23 @@ RimClearance::Nodes RimClearance::measure(const ShellLayout& layout, const Field
   return nodes;
 }
 
-TireStatus RimClearance::status(const Nodes& nodes) const {
+Outcome RimClearance::outcome(const Nodes& nodes) const {
   if (!(nodes.farthest < limit_))
-    return {
-        false, "lost its shape",
+    return Outcome::failure(
+        "lost its shape",
         fmt::format(
             "its node at column {}, row {} is {:.3g} m from the rim's centre, expected below {:.3g} m; try a "
             "smaller run.step, a lower pressure or less load",
-            nodes.far_column, nodes.far_row, nodes.farthest, limit_)};
+            nodes.far_column, nodes.far_row, nodes.farthest, limit_));
   if (nodes.clearance < 0.0)
-    return {
-        false, "reached its rim",
+    return Outcome::failure(
+        "reached its rim",
         fmt::format(
             "clearance {:.2g} m at the node of column {}, row {} (from the left bead), to the rim's cylinder "
             "of "
             "{:.4g} m radius; contact of tire and rim is not modelled: try a higher pressure, less load or a "
             "smaller drop",
-            nodes.clearance, nodes.column, nodes.row, radius_)};
+            nodes.clearance, nodes.column, nodes.row, radius_));
   return {};
 }
 

@@ -25,7 +25,7 @@ class RimClearance {
   Nodes measure(const ShellLayout& layout, const Field& q, const RimState& rim) const;
 
   /// What is wrong with these nodes, with figures and what to try.
-  TireStatus status(const Nodes& nodes) const;
+  Outcome outcome(const Nodes& nodes) const;
 
  private:
   double radius_ = 0.0, half_width_ = 0.0;  // of the cylinder, m

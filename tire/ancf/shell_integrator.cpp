@@ -180,8 +180,8 @@ bool ShellIntegrator::iterate(double h, const Field& force, const Mat3& turn, bo
   return false;
 }
 
-TireStatus ShellIntegrator::step(double h, const RimState& end, const Field& force, const Vec3& about,
-                                 Wrench& on_rim) {
+Outcome ShellIntegrator::step(double h, const RimState& end, const Field& force, const Vec3& about,
+                              Wrench& on_rim) {
   set_bead(end);
   shell_.prepare(shell_step_, h);
   layout_.fill_padding(v_new_);
@@ -211,11 +211,12 @@ TireStatus ShellIntegrator::step(double h, const RimState& end, const Field& for
       return {};
     }
   }
-  return {false, "did not converge",
-          fmt::format("residual {:.3g} of the pressure force, allowed {:.3g}, after {} iterations and a new "
-                      "factorization with a step of {:.3g} s; try a smaller run.step or a larger "
-                      "tire.structural_damping",
-                      norm / reference_, params_.tolerance, count, h)};
+  return Outcome::failure(
+      "did not converge",
+      fmt::format("residual {:.3g} of the pressure force, allowed {:.3g}, after {} iterations and a new "
+                  "factorization with a step of {:.3g} s; try a smaller run.step or a larger "
+                  "tire.structural_damping",
+                  norm / reference_, params_.tolerance, count, h));
 }
 
 /// Spindle wrench from (2): −Σ Q − pressure resultant, moments at q_f, and the term Δx × ½ (p + p')/h. What

@@ -51,7 +51,7 @@ class ShellIntegrator {
   /// One step of size h to the rim state `end`. `force`: contact forces, padding zero. `about`: moments are
   /// taken about this point. The wrench is what the tire exerts on the rim, the step's mean, without forces
   /// on the bead discs.
-  TireStatus step(double h, const RimState& end, const Field& force, const Vec3& about, Wrench& on_rim);
+  Outcome step(double h, const RimState& end, const Field& force, const Vec3& about, Wrench& on_rim);
 
   /// Forces with tangents, in addition to those that step() is given; to be set before each interval.
   ShellContact& contact() { return contact_; }

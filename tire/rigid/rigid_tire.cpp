@@ -44,7 +44,7 @@ Vec3 RigidTire::angular_momentum(const RimState& rim) const {
   return turn * (mass_.inertia * (turn.transpose() * rim.angular_velocity));
 }
 
-TireStatus RigidTire::advance(const RimTrajectory& rim, const NodalForces& forces, int) {
+Outcome RigidTire::advance(const RimTrajectory& rim, const NodalForces& forces, int) {
   const RimState &start = rim.start(), &end = rim.end();
   const double duration = rim.duration();
   spindle_.force = mass_.mass * (kGravity - (end.velocity - start.velocity) / duration);

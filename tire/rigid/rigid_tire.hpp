@@ -21,7 +21,7 @@ class RigidTire final : public Tire {
   void set_pressure(double) override {}
   void place(const RimState& rim) override;
   void surface(SurfaceState& out) const override;
-  TireStatus advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) override;
+  Outcome advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) override;
   Wrench spindle_wrench() const override { return spindle_; }
   TireDiagnostics diagnostics() const override;
   void save(Archive& archive) const override;

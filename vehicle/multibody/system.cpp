@@ -216,7 +216,8 @@ void System::restore(const Archive& archive) {
   for (ForceElement& element : elements_) element.last_force = *p++;
   prepare();
   update_jacobians();
-  factorize(false);
+  if (const Outcome outcome = factorize(false); !outcome.ok)
+    throw physics_error(outcome, "restored multibody system");
   find_redundancy();
   redundant_count_ = static_cast<int>(archive.get_int("redundant"));
 }

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "protocol/core/archive.hpp"
+#include "protocol/core/outcome.hpp"
 #include "vehicle/multibody/body.hpp"
 #include "vehicle/multibody/force_element.hpp"
 #include "vehicle/multibody/joint.hpp"
@@ -56,8 +57,9 @@ class System {
   void set_load(int body, const Vec3& force, const Vec3& moment);
 
   /// Advances by h, in integer steps: t = t₀ + i h while h stays the same.
-  /// @throws Error(physics) when constraints cannot be satisfied or the state is not finite.
-  void step(double h);
+  /// @returns failure when constraints cannot be satisfied or the state is not finite
+  /// @pre assembled; h > 0
+  Outcome step(double h);
 
   double time() const { return start_time_ + static_cast<double>(count_) * step_; }
   int body_count() const { return static_cast<int>(bodies_.size()); }
@@ -103,21 +105,22 @@ class System {
   double rate(int row) const;  // G v of a row with the present velocities
   void prepare();              // symbolic analysis and storage, when the topology changed
   void update_jacobians();     // of all rows, at the present poses
-  void factorize(bool with_dampers);
+  Outcome factorize(bool with_dampers);
   void begin_velocities(double h);  // base velocities ← present velocities + h/2 M⁻¹ f
   void apply_impulses();            // velocities, momenta ← base + M⁻¹ Gᵀ P
   void set_angular_velocities();    // ω ← R J⁻¹ Rᵀ ℓ
-  void solve_positions(double h, double end_time);
-  void solve_velocities(double end_time);
-  void move(double h);  // poses ← start poses moved by h v½
+  Outcome solve_positions(double h, double end_time);
+  Outcome solve_velocities(double end_time);
+  Outcome move(double h);  // poses ← start poses moved by h v½
   void element_forces(double h, bool implicit);
   void collect_reactions(double h, bool first_half);
-  void project_positions(double time);
+  Outcome satisfy_constraints(double time);  // at the present poses and velocities, mass-weighted
+  Outcome project_positions(double time);
   void find_redundancy();
   void remove_null_impulses();
-  void check_finite() const;
+  Outcome check_finite() const;
   std::string row_name(int row) const;
-  [[noreturn]] void fail(const std::string& what, int row, double residual) const;
+  Outcome failure(const std::string& what, int row, double residual) const;
 
   Vec3 gravity_;
   std::vector<Body> bodies_;

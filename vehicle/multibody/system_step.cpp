@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "protocol/core/error.hpp"
+#include "protocol/core/assert.hpp"
 #include "vehicle/multibody/rotation.hpp"
 #include "vehicle/multibody/system.hpp"
 
@@ -24,9 +24,8 @@ std::string scientific(double value) {
 
 }  // namespace
 
-void System::fail(const std::string& what, int row, double residual) const {
-  throw physics_error("multibody: " + what + " at t = " + scientific(time()) + " s; worst is '" +
-                      row_name(row) + "' with " + scientific(residual));
+Outcome System::failure(const std::string& what, int row, double residual) const {
+  return Outcome::failure(what, "worst is '" + row_name(row) + "' with " + scientific(residual));
 }
 
 void System::prepare() {
@@ -51,14 +50,14 @@ void System::update_jacobians() {
 }
 
 // Compliance of a damper row: p = −(h c/2) g·v½ is a constraint row g·v½ + p · 2/(h c) = 0.
-void System::factorize(bool with_dampers) {
+Outcome System::factorize(bool with_dampers) {
   const std::size_t first = constraint_rows_.size();
   for (std::size_t e = 0; e < elements_.size(); ++e)
     compliance_[first + e] = with_dampers && damping_[e] > 0.0 ? 2.0 / (step_ * damping_[e]) : -1.0;
   dampers_factored_ = with_dampers;
   if (!solver_.factorize(jacobians_, bodies_, compliance_))
-    throw physics_error("multibody: the constraint matrix cannot be factored at t = " + scientific(time()) +
-                        " s");
+    return Outcome::failure("has a constraint matrix that cannot be factored", "");
+  return {};
 }
 
 double System::rate(int i) const {
@@ -134,22 +133,23 @@ void System::set_angular_velocities() {
   for (Body& body : bodies_) body.state.angular_velocity = body.inertia_inverse_W * body.angular_momentum;
 }
 
-void System::move(double h) {
+Outcome System::move(double h) {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     Body& body = bodies_[i];
     if (!midpoint_angular_velocity(base_[i].R, body.inertia_inverse, body.angular_momentum, h,
                                    body.state.angular_velocity))
-      throw physics_error("multibody: body '" + body.name + "' turns too fast for a step of " +
-                          scientific(h) + " s");
+      return Outcome::failure("has a body that turns too fast",
+                              "'" + body.name + "', for a step of " + scientific(h) + " s");
     body.state.position = base_[i].position + h * body.state.velocity;
     body.state.orientation = rotated(base_[i].orientation, body.state.angular_velocity, h);
     body.R = body.state.orientation.toRotationMatrix();
   }
+  return {};
 }
 
 // Quasi-Newton for φ(x₁(P), t₁) = 0: ∂φ/∂P = h G₁ M⁻¹ G₀ᵀ ≈ h S₀; the factor stays, each iteration gains
 // h|ω|.
-void System::solve_positions(double h, double end_time) {
+Outcome System::solve_positions(double h, double end_time) {
   const int constraints = static_cast<int>(constraint_rows_.size());
   const int count = static_cast<int>(rows_.size());
   for (int i = 0; i < constraints; ++i) targets_[i] = target(i, end_time);
@@ -159,7 +159,7 @@ void System::solve_positions(double h, double end_time) {
   for (const Base& base : base_) scale = std::max(scale, base.velocity.cwiseAbs().maxCoeff());
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     apply_impulses();
-    move(h);
+    if (Outcome outcome = move(h); !outcome.ok) return outcome;
     worst = 0.0;
     bool done = true;
     for (int i = 0; i < constraints; ++i) {
@@ -178,16 +178,16 @@ void System::solve_positions(double h, double end_time) {
       residual_[i] = -(speed + flow);
       done = done && std::abs(residual_[i]) <= 1e-13 * (std::abs(speed) + std::abs(flow)) + 1e-14 * scale;
     }
-    if (done) return;
+    if (done) return {};
     if (!std::isfinite(worst)) break;
     solver_.solve(residual_, correction_);
     impulses_ += correction_;
   }
-  fail("constraints cannot be satisfied", worst_row, worst);
+  return failure("cannot satisfy its constraints", worst_row, worst);
 }
 
 // Linear: P += S⁻¹ (∂φ/∂t target − G₁ v₁) until round-off; the repetition also removes the regularization.
-void System::solve_velocities(double end_time) {
+Outcome System::solve_velocities(double end_time) {
   const int constraints = static_cast<int>(constraint_rows_.size());
   for (int i = 0; i < constraints; ++i) targets_[i] = target(i, end_time);
   impulses_.setZero();
@@ -206,17 +206,18 @@ void System::solve_velocities(double end_time) {
       scale = std::max(scale, std::abs(targets_[i].rate));
       if (!(std::abs(residual_[i]) <= worst)) worst = std::abs(residual_[i]), worst_row = i;
     }
-    if (worst <= kVelocityTolerance * scale) return;
+    if (worst <= kVelocityTolerance * scale) return {};
     // No longer falling: round-off reached, or the rates contradict each other.
     if (!std::isfinite(worst) || (iteration > 1 && worst > 0.25 * before)) {
-      if (worst <= kVelocityLimit * std::max(scale, 1e-6)) return;
+      if (worst <= kVelocityLimit * std::max(scale, 1e-6)) return {};
       if (!std::isfinite(worst) || worst > 0.9 * before)
-        fail("constraint rates cannot be satisfied", worst_row, worst);
+        return failure("cannot satisfy the rates of its constraints", worst_row, worst);
     }
     before = worst;
     solver_.solve(residual_, correction_);
     impulses_ += correction_;
   }
+  return {};
 }
 
 // Redundant rows leave P free by any N with Gᵀ N = 0, and round-off in the residuals feeds it. The motion does not
@@ -260,8 +261,9 @@ void System::collect_reactions(double h, bool first_half) {
     elements_[e].last_force += impulses_[constraint_rows_.size() + e] / h;
 }
 
-void System::step(double h) {
-  if (!(h > 0.0)) throw physics_error("multibody: the step must be positive");
+Outcome System::step(double h) {
+  FURROW_ASSERT(h > 0.0, h);
+  FURROW_ASSERT(prepared_, h);
   if (h != step_) {
     start_time_ = time();
     step_ = h;
@@ -270,8 +272,9 @@ void System::step(double h) {
   const double end_time = start_time_ + static_cast<double>(count_ + 1) * step_;
   begin_velocities(h);
   element_forces(h, true);
-  if (std::any_of(damping_.begin(), damping_.end(), [](double c) { return c > 0.0; })) factorize(true);
-  solve_positions(h, end_time);
+  if (std::any_of(damping_.begin(), damping_.end(), [](double c) { return c > 0.0; }))
+    if (Outcome outcome = factorize(true); !outcome.ok) return outcome;
+  if (Outcome outcome = solve_positions(h, end_time); !outcome.ok) return outcome;
   remove_null_impulses();
   collect_reactions(h, true);
 
@@ -279,38 +282,44 @@ void System::step(double h) {
   update_jacobians();
   begin_velocities(h);
   element_forces(h, false);
-  factorize(false);
-  solve_velocities(end_time);
+  if (Outcome outcome = factorize(false); !outcome.ok) return outcome;
+  if (Outcome outcome = solve_velocities(end_time); !outcome.ok) return outcome;
   remove_null_impulses();
   collect_reactions(h, false);
   ++count_;
-  check_finite();
+  return check_finite();
 }
 
-void System::check_finite() const {
+Outcome System::check_finite() const {
   for (const Body& body : bodies_) {
     const double sum = body.state.position.sum() + body.state.velocity.sum() + body.angular_momentum.sum() +
                        body.state.orientation.coeffs().sum();
     if (!std::isfinite(sum))
-      throw physics_error("multibody: the state of body '" + body.name +
-                          "' is not finite at t = " + scientific(time()) + " s");
+      return Outcome::failure("has a state that is not finite",
+                              "body '" + body.name + "'; try a smaller run.step");
   }
+  return {};
 }
 
 void System::assemble(double time) {
   start_time_ = time;
   count_ = 0;
   prepare();
-  project_positions(time);
-  begin_velocities(0.0);
-  factorize(false);
-  solve_velocities(time);
+  const Outcome outcome = satisfy_constraints(time);
+  if (!outcome.ok) throw physics_error(outcome, "multibody system", " at t = " + scientific(time) + " s");
   find_redundancy();
-  check_finite();
+}
+
+Outcome System::satisfy_constraints(double time) {
+  if (Outcome outcome = project_positions(time); !outcome.ok) return outcome;
+  begin_velocities(0.0);
+  if (Outcome outcome = factorize(false); !outcome.ok) return outcome;
+  if (Outcome outcome = solve_velocities(time); !outcome.ok) return outcome;
+  return check_finite();
 }
 
 // Mass-weighted Newton: x ← x + M⁻¹ Gᵀ P with G M⁻¹ Gᵀ P = −φ.
-void System::project_positions(double time) {
+Outcome System::project_positions(double time) {
   const int constraints = static_cast<int>(constraint_rows_.size());
   double worst = 0.0;
   int worst_row = 0;
@@ -323,8 +332,8 @@ void System::project_positions(double time) {
       residual_[i] = -row_difference(row, row_value(row, pose(row.a), pose(row.b)), target(i, time).value);
       if (!(std::abs(residual_[i]) <= worst)) worst = std::abs(residual_[i]), worst_row = i;
     }
-    if (worst <= kPositionTolerance) return;
-    factorize(false);
+    if (worst <= kPositionTolerance) return {};
+    if (Outcome outcome = factorize(false); !outcome.ok) return outcome;
     solver_.solve(residual_, impulses_);
     for (int i = 0; i < constraints; ++i) {
       const RowJacobian& J = jacobians_[i];
@@ -339,7 +348,7 @@ void System::project_positions(double time) {
     }
     for (int i = 0; i < body_count(); ++i) set_state(i, bodies_[i].state);
   }
-  fail("the joints cannot be assembled", worst_row, worst);
+  return failure("cannot be assembled", worst_row, worst);
 }
 
 // Rank of G by a column-pivoted QR of its transpose; the columns left over name the redundant rows.

@@ -38,8 +38,8 @@ TEST(AncfTireBalance,
       f.force.push_back(Vec3(3, -20, 8));
     }
     t.extend(rolling_rim(n * kStep, tire.radius(), kSpeed, kDepth), kStep);
-    const tire::TireStatus status = tire.advance(t, f, 1);
-    ASSERT_TRUE(status.converged) << status.message();
+    const Outcome status = tire.advance(t, f, 1);
+    ASSERT_TRUE(status.ok) << status.message("tire");
     tire.surface(end);
     const tire::Field& after = tire.integrator().q();
     const Wrench spindle = tire.spindle_wrench();
@@ -78,7 +78,7 @@ TEST(AncfTireBalance, dissipation_grows_and_energy_does_not_appear_from_nothing)
     tire.surface(before);
     const RimState from = t.end();
     t.extend(rolling_rim(n * kStep, tire.radius(), kSpeed, kDepth), kStep);
-    ASSERT_TRUE(tire.advance(t, f, 1).converged);
+    ASSERT_TRUE(tire.advance(t, f, 1).ok);
     tire.surface(after);
     for (std::size_t k = 0; k < f.vertex.size(); ++k)
       work += f.force[k].dot(after.position[f.vertex[k]] - before.position[f.vertex[k]]);

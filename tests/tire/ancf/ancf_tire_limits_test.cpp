@@ -18,8 +18,8 @@ double crown(const tire::AncfTire& tire) {
 void hold(tire::AncfTire& tire, tire::RimTrajectory& t, int steps, double h) {
   for (int n = 0; n < steps; ++n) {
     t.extend(t.end(), h);
-    const tire::TireStatus status = tire.advance(t, {}, 1);
-    ASSERT_TRUE(status.converged) << status.message();
+    const Outcome status = tire.advance(t, {}, 1);
+    ASSERT_TRUE(status.ok) << status.message("tire");
   }
 }
 
@@ -69,8 +69,8 @@ TEST(AncfTirePressure, a_flat_tire_can_be_loaded) {
   tire.place(t.start());
   for (int n = 0; n < 400; ++n) {
     t.extend(rolling_rim(n * h, tire.radius(), 8.0, depth), h);
-    const tire::TireStatus status = tire.advance(t, ground_forces(tire), 1);
-    ASSERT_TRUE(status.converged) << status.message("", " at step " + std::to_string(n));
+    const Outcome status = tire.advance(t, ground_forces(tire), 1);
+    ASSERT_TRUE(status.ok) << status.message("tire", " at step " + std::to_string(n));
   }
   EXPECT_GT(tire.spindle_wrench().force.z(), 20.0);
 }
@@ -110,14 +110,14 @@ TEST(RimClearance, a_tire_pressed_down_to_its_rim_stops_with_node_and_clearance)
   tire.place(rim);
   tire::RimTrajectory t(rim);
   const double h = 2e-4;
-  tire::TireStatus status;
-  for (int n = 0; n < 1500 && status.converged; ++n) {
+  Outcome status;
+  for (int n = 0; n < 1500 && status.ok; ++n) {
     rim.velocity.z() = -1.0;  // m/s
     t.extend(rim, h);
     rim.position.z() -= h;
     status = tire.advance(t, ground_forces(tire), 1);
   }
-  EXPECT_EQ(status.what, "reached its rim") << status.message();
+  EXPECT_EQ(status.what, "reached its rim") << status.message("tire");
   EXPECT_NE(status.detail.find("clearance -"), std::string::npos) << status.detail;
   EXPECT_NE(status.detail.find("column"), std::string::npos) << status.detail;
   EXPECT_LT(rim.position.z(), file.rim_radius + 0.06);  // the crown buckles upwards, off the ground
@@ -133,9 +133,9 @@ TEST(AncfTireLimits, a_force_that_is_not_finite_is_named_and_changes_nothing) {
   f.vertex = {17};
   f.force = {Vec3(0, 0, std::numeric_limits<double>::quiet_NaN())};
   t.extend(t.end(), 1e-4);
-  const tire::TireStatus status = tire.advance(t, f, 1);
-  EXPECT_FALSE(status.converged);
-  EXPECT_NE(status.message().find("vertex 17"), std::string::npos) << status.message();
+  const Outcome status = tire.advance(t, f, 1);
+  EXPECT_FALSE(status.ok);
+  EXPECT_NE(status.message("tire").find("vertex 17"), std::string::npos) << status.message("tire");
   EXPECT_EQ(tire.integrator().q(), before);
 }
 

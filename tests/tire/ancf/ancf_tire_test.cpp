@@ -19,7 +19,7 @@ TEST(AncfTire, free_fall_at_speed_asks_nothing_of_the_spindle_once_the_start_has
   const double h = 1e-4;
   for (int n = 0; n < 400; ++n) {
     t.extend(rim, h);
-    ASSERT_TRUE(tire.advance(t, {}, 1).converged);
+    ASSERT_TRUE(tire.advance(t, {}, 1).ok);
     rim.velocity.z() -= 9.81 * h;
     rim.position += h * rim.velocity;
   }
@@ -38,7 +38,7 @@ TEST(AncfTire, steady_spin_asks_only_for_the_weight) {
   double drag = 0.0;
   for (int n = 0; n < 400; ++n) {
     t.extend(rim, h);
-    ASSERT_TRUE(tire.advance(t, {}, 1).converged);
+    ASSERT_TRUE(tire.advance(t, {}, 1).ok);
     rim.orientation = (Quat(Eigen::AngleAxisd(8.56 * h, Vec3::UnitY())) * rim.orientation).normalized();
     if (n >= 200) drag += tire.spindle_wrench().moment.y() / 200;
   }
@@ -75,7 +75,7 @@ TEST(AncfTire, inflated_tire_at_rest_hangs_its_weight_on_the_rim) {
   tire::RimTrajectory t(rim);
   for (int n = 0; n < 600; ++n) {
     t.extend(rim, 2e-4);
-    ASSERT_TRUE(tire.advance(t, {}, 1).converged);
+    ASSERT_TRUE(tire.advance(t, {}, 1).ok);
   }
   const Wrench w = tire.spindle_wrench();
   EXPECT_NEAR(w.force.z(), -9.81 * tire.mass_properties().mass, 0.3);  // N
@@ -95,8 +95,8 @@ tire::Field rolled(const tire::ShellIntegratorParams& params, int steps) {
   tire.place(t.start());
   for (int n = 0; n < steps; ++n) {
     t.extend(rolling_rim(n * h, tire.radius(), speed, depth), h);
-    const tire::TireStatus status = tire.advance(t, ground_forces(tire), 1);
-    EXPECT_TRUE(status.converged) << status.message();
+    const Outcome status = tire.advance(t, ground_forces(tire), 1);
+    EXPECT_TRUE(status.ok) << status.message("tire");
   }
   return tire.integrator().q();
 }
@@ -132,7 +132,7 @@ TEST(AncfTire, mirrored_forces_give_the_mirrored_wrench) {
     f.force = {Vec3(100, side == 0 ? 40 : -40, 300)};
     for (int n = 0; n < 40; ++n) {
       t.extend(rim, 1e-4);
-      ASSERT_TRUE(tire.advance(t, f, 1).converged);
+      ASSERT_TRUE(tire.advance(t, f, 1).ok);
     }
     w[side] = tire.spindle_wrench();
   }
@@ -150,13 +150,13 @@ TEST(AncfTire, a_blow_that_cannot_be_integrated_is_a_status_with_advice) {
   NodalForces f;
   f.vertex = {3};
   f.force = {Vec3(0, 0, 1e12)};
-  tire::TireStatus status;
-  for (int n = 0; n < 5 && status.converged; ++n) {
+  Outcome status;
+  for (int n = 0; n < 5 && status.ok; ++n) {
     t.extend(rim, 1e-3);
     status = tire.advance(t, f, 1);
   }
-  EXPECT_FALSE(status.converged);
-  const std::string message = status.message("0 ", " at t = 0.1 s, step 7");
+  EXPECT_FALSE(status.ok);
+  const std::string message = status.message("tire 0", " at t = 0.1 s, step 7");
   EXPECT_EQ(message.rfind("tire 0 did not converge at t = 0.1 s, step 7: residual ", 0), 0u) << message;
   EXPECT_NE(message.find("; try "), std::string::npos) << message;
 }
@@ -170,8 +170,8 @@ TEST(AncfTire, pressed_on_a_plane_it_carries_350_to_800_newtons_per_millimetre) 
   double deflection = 0.0;
   for (int n = 0; n < 500; ++n) {
     t.extend(rolling_rim(n * h, tire.radius(), 0.0, depth), h);
-    const tire::TireStatus status = tire.advance(t, ground_forces(tire), 1);
-    ASSERT_TRUE(status.converged) << status.message();
+    const Outcome status = tire.advance(t, ground_forces(tire), 1);
+    ASSERT_TRUE(status.ok) << status.message("tire");
   }
   SurfaceState s;
   tire.surface(s);

@@ -118,8 +118,8 @@ double rolling_loss(const std::vector<tire::MaxwellBranch>& prony) {
   for (int n = 0; n < 1000; ++n) {
     if (n == 400) before = tire.diagnostics().dissipation;
     t.extend(rolling_rim(n * h, tire.radius(), speed, depth), h);
-    const tire::TireStatus status = tire.advance(t, ground_forces(tire), 1);
-    EXPECT_TRUE(status.converged) << status.message();
+    const Outcome status = tire.advance(t, ground_forces(tire), 1);
+    EXPECT_TRUE(status.ok) << status.message("tire");
   }
   return (tire.diagnostics().dissipation - before) / (600 * h);
 }

@@ -66,7 +66,7 @@ void expect_restart_bit_for_bit(tire::AncfTire& tire, tire::AncfTire& other, Pre
   const auto advance = [&](tire::AncfTire& which, tire::RimTrajectory& path, int n) {
     prepare(which, n);
     path.extend(rolling_rim(n * h, which.radius(), speed, depth), h);
-    ASSERT_TRUE(which.advance(path, ground_forces(which), 2).converged);
+    ASSERT_TRUE(which.advance(path, ground_forces(which), 2).ok);
   };
   for (int n = 0; n < 120; ++n) advance(tire, t, n);
   Archive archive;

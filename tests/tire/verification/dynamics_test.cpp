@@ -225,8 +225,8 @@ double swung_tire(double h) {
   const int count = static_cast<int>(std::lround(0.06 / h));
   double torque = 0.0;
   for (int n = 1; n <= count; ++n) {
-    const tire::TireStatus status = run.step(h, rim(n * h), none, Vec3(0, 0, 1), on_rim);
-    EXPECT_TRUE(status.converged) << status.message();
+    const Outcome status = run.step(h, rim(n * h), none, Vec3(0, 0, 1), on_rim);
+    EXPECT_TRUE(status.ok) << status.message("tire");
     torque += h * on_rim.moment.x();
   }
   return torque;

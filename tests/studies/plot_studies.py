@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """Charts of the studies' CSV files, beside them: step_size.png, tire_step.png, rigid_ground.png."""
-import csv
 import pathlib
 import re
 import sys
@@ -13,11 +12,11 @@ import matplotlib.pyplot as plt
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "scripts"))
 import plot.style  # noqa: E402, F401  the look of all plots
+import provenance  # noqa: E402
 
 
 def table(name):
-    with open(HERE / f"{name}.csv") as file:
-        return list(csv.DictReader(file))
+    return provenance.read_table(HERE / f"{name}.csv")
 
 
 def step_size():

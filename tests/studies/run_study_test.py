@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""run_study.py uses a finished case again only where program and scenario are those that made it."""
+"""run_study.py uses a finished case again only where program and scenario are those that made it, and its tables say who made them."""
 import json
 import os
 import pathlib
@@ -91,6 +91,24 @@ class RunStudy(unittest.TestCase):
         self.assertIn("second: left out of the table", self.run_study("--only", "first"))
         self.assertEqual(self.pulls(), {"first": "2"})
         self.assertEqual(self.runs(), {"first": 2, "second": 1})
+
+    def test_tables_name_commit_compiler_processor_and_command(self):
+        self.run_study()
+        made = provenance.read_origin(self.folder / "small.csv")
+        self.assertEqual(made["compiler"], "g++ 12.2.0")
+        self.assertEqual(made["processor"], "a processor, 2.5 GHz")
+        self.assertEqual(made["commit"], provenance.commit())
+        self.assertTrue(made["command"].startswith("run_study.py "), made["command"])
+
+
+class Tables(unittest.TestCase):
+    def test_tables_of_the_studies_name_their_program_and_can_be_read(self):
+        for path in sorted(HERE.glob("*.csv")):
+            self.assertIn("commit", provenance.read_origin(path), path.name)
+            rows = provenance.read_table(path)
+            self.assertTrue(rows, path.name)
+            for row in rows:
+                self.assertNotIn(None, row, path.name)
 
 
 if __name__ == "__main__":

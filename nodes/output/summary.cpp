@@ -213,7 +213,8 @@ void add_accounts(const SummaryInput& in, const Window& w, Json& json) {
   json["interface_energy_error_J"] = number(end.energy_error);
   json["interface_energy_error_abs_J"] = number(end.energy_error_abs);
   json["rim_energy_error_J"] = number(end.rim_energy_error);
-  json["interface_work_J"] = number(end.spindle_work);
+  json["interface_work_J"] = number(in.tire.terrain_work);  // Σ f·Δx, on the tire by the terrain
+  json["spindle_work_J"] = number(end.spindle_work);
   json["momentum_residual"] = number(
       sent > 0.0
           ? (in.builder.impulse_sent_arrived() - (end.impulse_received - in.tire.impulse_ahead)).norm() / sent

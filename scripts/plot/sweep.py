@@ -20,7 +20,7 @@ class Sweep:
         self.directory = directory
         self.values = json.loads((directory / "sweep.json").read_text(encoding="utf-8"))
         with open(directory / "sweep.csv", newline="", encoding="utf-8") as file:
-            self.rows = [row for row in csv.DictReader(file) if row["state"] == "done"]
+            self.rows = [row for row in csv.DictReader(line for line in file if not line.startswith("#")) if row["state"] == "done"]
         self.plot = self.values.get("plot") or {}
 
     def summary(self, row):

@@ -8,12 +8,13 @@ On the screen, in grain radii: root mean square of the difference with and witho
 between seeds without sleep as the yardstick, and of the difference of the profiles' means over the seeds.
 """
 import argparse
-import csv
 import itertools
 import pathlib
 
 import h5py
 import numpy as np
+
+import provenance
 
 RUNS = pathlib.Path(__file__).resolve().parents[2] / "results" / "studies" / "activity"
 WINDOW = (0.3, 0.55)  # behind the axle, m
@@ -52,10 +53,8 @@ def main():
         print(f"seed {seed}, on against off: {rms(asleep_all[-1] - awake_all[-1]):.2f}")
     print("between seeds, off:", *(f"{rms(a - b):.2f}" for a, b in itertools.combinations(awake_all, 2)))
     print(f"means over seeds, on against off: {rms(np.mean(asleep_all, axis=0) - np.mean(awake_all, axis=0)):.2f}")
-    with open(arguments.out, "w", newline="") as file:
-        writer = csv.DictWriter(file, rows[0])
-        writer.writeheader()
-        writer.writerows(rows)
+    runs = [folder for folder in RUNS.glob("seed_*") if (folder / "summary.json").exists()]
+    provenance.write_table(arguments.out, list(rows[0]), rows, provenance.origin_of_runs(runs))
 
 
 if __name__ == "__main__":

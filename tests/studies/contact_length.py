@@ -2,12 +2,13 @@
 """Length of the contact patch of the tires of a study's runs on rigid ground, from their frames: where the middle of the
 tread crosses the plane z = 0. Adds the column contact_length_m to the study's CSV file."""
 import argparse
-import csv
 import json
 import pathlib
 
 import h5py
 import numpy as np
+
+import provenance
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
@@ -45,15 +46,12 @@ def main():
     study = json.loads(arguments.study.read_text())
     rows_across = study["set"]["tire.elements_width"] + 1
     table = arguments.study.with_suffix(".csv")
-    with open(table) as file:
-        rows = list(csv.DictReader(file))
+    rows, made = provenance.read_table(table), provenance.read_origin(table)
     for row in rows:
         run = ROOT / "results" / "studies" / arguments.study.stem / row["case"]
         row["contact_length_m"] = contact_length(run, rows_across)
-    with open(table, "w", newline="") as file:
-        writer = csv.DictWriter(file, rows[0].keys())
-        writer.writeheader()
-        writer.writerows(rows)
+    made["command"] += f"; {provenance.command()}"
+    provenance.write_table(table, list(rows[0]), rows, made)
 
 
 if __name__ == "__main__":

@@ -12,7 +12,6 @@ travelled, fitted from 0.2 s on; the interval is the difference from a fit that 
     FURROW_ROLLING_MESH=60x12 FURROW_ROLLING_CSV=tests/studies/revolutions.csv build/tests_nodes_rolling --gtest_filter='*ten*'
     /usr/bin/python3 tests/studies/cornering.py
 """
-import csv
 import json
 import math
 import pathlib
@@ -29,6 +28,7 @@ ROOT = HERE.parents[1]
 RESULTS = ROOT / "results"
 sys.path.insert(0, str(ROOT / "scripts"))
 import plot.style  # noqa: E402, F401  the look of all plots
+import provenance  # noqa: E402
 from plot.student import student  # noqa: E402
 
 SWEEPS = {"study_slip_angle": "rig.toe_angle", "study_camber": "rig.camber_angle", "study_hard_slip": "rig.slip"}
@@ -199,18 +199,16 @@ def energies(tire):
     file = HERE / "revolutions.csv"
     if not file.exists():
         return []
-    with open(file, newline="", encoding="utf-8") as stream:
-        rows = [row for row in csv.DictReader(stream) if tire_of(row["tire"]) == tire and row["mesh"] == "60x12" and int(row["revolution"]) > 0]
+    rows = [row for row in provenance.read_table(file)
+            if tire_of(row["tire"]) == tire and row["mesh"] == "60x12" and int(row["revolution"]) > 0]
     return [(int(row["revolution"]), float(row["energy_mean_J"])) for row in rows]
 
 
 def write(name, rows):
     if not rows:
         return
-    with open(HERE / name, "w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, rows[0].keys())
-        writer.writeheader()
-        writer.writerows(rows)
+    runs = [summary.parent for study in SWEEPS for summary in (RESULTS / study / "runs").glob("*/summary.json")]
+    provenance.write_table(HERE / name, list(rows[0]), rows, provenance.origin_of_runs(runs))
 
 
 def draw(rows):

@@ -7,7 +7,6 @@ footprints.csv (one line a case), footprints_curves.csv, footprints_pressure.csv
         --set tire.elements_width=24 --on plate --out results/press/lumped_90x24_plate
     /usr/bin/python3 tests/studies/footprints.py
 """
-import csv
 import json
 import pathlib
 import sys
@@ -23,6 +22,7 @@ ROOT = HERE.parents[1]
 RESULTS = ROOT / "results" / "press"
 sys.path.insert(0, str(ROOT / "scripts"))
 import plot.style  # noqa: E402, F401  the look of all plots
+import provenance  # noqa: E402
 
 KEYS = ("obstacle", "inflation_growth_m", "runout_m", "load_N", "deflection_m", "secant_stiffness_N_per_m", "tangent_stiffness_N_per_m",
         "loading_unloading_difference", "max_residual", "creep_steps", "failed_factorizations", "statically_stable", "wall_s")
@@ -91,27 +91,22 @@ def draw_convergence(axis, cases, tire):
     axis.legend(fontsize=7)
 
 
+def write(name, made, columns, rows):
+    provenance.write_table(HERE / name, columns, [dict(zip(columns, row)) for row in rows], made)
+
+
 def main():
     cases = {folder.name: json.loads((folder / "summary.json").read_text())
              for folder in sorted(RESULTS.iterdir()) if (folder / "summary.json").exists()}
     plates = [name for name in cases if name.endswith("plate")]
-    with open(HERE / "footprints.csv", "w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(["case", *KEYS, *(f"footprint_{key}" for key in FOOT)])
-        for name, s in cases.items():
-            writer.writerow([name, *(s.get(key) for key in KEYS), *(s["footprint"][key] for key in FOOT)])
-    with open(HERE / "footprints_curves.csv", "w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(["case", "deflection_m", "force_N", "residual", "unloading"])
-        for name in cases:
-            for row in table(RESULTS / name / "press.csv"):
-                writer.writerow([name, *(f"{value:.9g}" for value in row)])
-    with open(HERE / "footprints_pressure.csv", "w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(["case", "along_mm", "across_mm", "pressure_kPa"])
-        for name in plates:
-            for x, y, p in coarse(table(RESULTS / name / "footprint.csv")):
-                writer.writerow([name, f"{x:.0f}", f"{y:.0f}", f"{p:.1f}"])
+    made = provenance.origin_of_runs([RESULTS / name for name in cases])
+    write("footprints.csv", made, ["case", *KEYS, *(f"footprint_{key}" for key in FOOT)],
+          ([name, *(s.get(key) for key in KEYS), *(s["footprint"][key] for key in FOOT)] for name, s in cases.items()))
+    write("footprints_curves.csv", made, ["case", "deflection_m", "force_N", "residual", "unloading"],
+          ([name, *(f"{value:.9g}" for value in row)] for name in cases for row in table(RESULTS / name / "press.csv")))
+    write("footprints_pressure.csv", made, ["case", "along_mm", "across_mm", "pressure_kPa"],
+          ([name, f"{x:.0f}", f"{y:.0f}", f"{p:.1f}"]
+           for name in plates for x, y, p in coarse(table(RESULTS / name / "footprint.csv"))))
     shown = [name for name in MAPS if name in cases]
     figure = plt.figure(figsize=(15.0, 8.0), layout="constrained")
     grid = figure.add_gridspec(2, 4)

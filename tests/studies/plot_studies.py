@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """Charts of the studies' CSV files, beside them: step_size.png, tire_step.png, rigid_ground.png."""
-import csv
 import pathlib
 import re
 import sys
@@ -13,11 +12,11 @@ import matplotlib.pyplot as plt
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "scripts"))
 import plot.style  # noqa: E402, F401  the look of all plots
+import provenance  # noqa: E402
 
 
 def table(name):
-    with open(HERE / f"{name}.csv") as file:
-        return list(csv.DictReader(file))
+    return provenance.read_table(HERE / f"{name}.csv")
 
 
 def step_size():
@@ -50,7 +49,7 @@ def tire_step():
             tau, step, seed = found.groups()
             lines.setdefault((float(tau), seed), []).append(
                 (1e6 * float(step), float(row["drawbar_pull_N.mean"]), 2.0 * float(row["drawbar_pull_N.sem"]),
-                 100.0 * float(row["interface_energy_error_abs_J"]) / float(row["interface_work_J"])))
+                 100.0 * float(row["interface_energy_error_abs_J"]) / float(row["spindle_work_J"])))
     figure, (pull, error) = plt.subplots(1, 2, figsize=(9.6, 4.0))
     markers = {2.5: "v", 5.0: "o", 10.0: "s", 20.0: "D"}
     for (tau, seed), points in sorted(lines.items()):
@@ -59,7 +58,7 @@ def tire_step():
         pull.errorbar(step, mean, bar, marker=markers[tau], capsize=3, label=label)
         error.plot(step, share, marker=markers[tau], label=label)
     pull.set(xlabel="step in µs", ylabel="drawbar pull in N", title="Small rig, slip 0.3, 4.6 kN")
-    error.set(xlabel="step in µs", ylabel="Σ|energy error| / work in %", yscale="log", title="Interface of tire and soil")
+    error.set(xlabel="step in µs", ylabel="Σ|energy error| / spindle work in %", yscale="log", title="Interface of tire and soil")
     for axes in (pull, error):
         axes.set(xscale="log")
         axes.set_xticks([40, 100, 200, 400], ["40", "100", "200", "400"])

@@ -1,16 +1,16 @@
 #!/usr/bin/python3
-"""Runs the cases of a study one after another and collects their summaries in one CSV file."""
+"""Runs the cases of a study one after another and collects their summaries in one CSV file.
+
+A finished case is used again only if this build of the program made it from the same scenario; otherwise it is run again."""
 import argparse
-import csv
 import json
-import os
 import pathlib
 import subprocess
 import sys
 import time
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-
+import provenance
+from provenance import RECORD, ROOT, read_json
 
 def settings(*groups):
     """--set flags for the given {key: value} groups; later groups win."""
@@ -20,20 +20,41 @@ def settings(*groups):
     return [flag for key, value in merged.items() for flag in ("--set", f"{key}={json.dumps(value)}")]
 
 
-def run_case(study, name, case, out, force):
-    """Runs one case unless its summary is there already; returns the summary."""
-    summary = out / "summary.json"
-    if force or not summary.exists():
-        scenario = ROOT / case.get("scenario", study["scenario"])
-        command = [os.environ.get("FURROW", str(ROOT / "build" / "furrow")), "run", str(scenario), "--out", str(out), "--overwrite", "--no-plots"]
-        command += settings(study.get("set", {}), case.get("set", {}))
-        begin = time.time()
-        done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-        print(f"{name}: exit {done.returncode}, {time.time() - begin:.0f} s", file=sys.stderr, flush=True)
-        if done.returncode != 0:
-            print(done.stderr[-2000:], file=sys.stderr)
-            return None
-    return json.loads(summary.read_text())
+def scenario_of(study, case):
+    """The words of a command line that name the scenario of a case."""
+    return [str(ROOT / case.get("scenario", study["scenario"])), *settings(study.get("set", {}), case.get("set", {}))]
+
+
+def digest_of(scenario):
+    """Of the scenario as this program reads it; None where the program refuses it."""
+    done = subprocess.run([provenance.program(), "validate", *scenario, "--json"], capture_output=True, text=True)
+    return json.loads(done.stdout)["scenario_digest"] if done.returncode == 0 else None
+
+
+def stale_because(scenario, out):
+    """Why the results in `out` are not those that this program would get now; None if they are."""
+    summary, record = read_json(out / "summary.json"), read_json(out / RECORD)
+    if not summary:
+        return "it has no summary"
+    if record.get("build") != provenance.build_of(provenance.program()):
+        return "another build of the program made it"
+    if summary.get("scenario_digest") != digest_of(scenario):
+        return "its scenario has changed"
+    return None
+
+
+def run_case(name, scenario, out):
+    """Returns whether the run was done."""
+    (out / RECORD).unlink(missing_ok=True)
+    begin = time.time()
+    done = subprocess.run([provenance.program(), "run", *scenario, "--out", str(out), "--overwrite", "--no-plots"],
+                          stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    print(f"{name}: exit {done.returncode}, {time.time() - begin:.0f} s", file=sys.stderr, flush=True)
+    if done.returncode != 0:
+        print(done.stderr[-2000:], file=sys.stderr)
+        return False
+    provenance.record_run(out)
+    return True
 
 
 def value_of(summary, path):
@@ -44,32 +65,42 @@ def value_of(summary, path):
     return value
 
 
+def collect(study, done, table):
+    """Writes the table of the cases {name: folder} that are done."""
+    rows = []
+    for name, out in done.items():
+        summary = read_json(out / "summary.json")
+        rows.append({"case": name, **{path: value_of(summary, path) for path in study["columns"]}})
+    provenance.write_table(table, ["case", *study["columns"]], rows, provenance.origin_of_runs(done.values()))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("study", type=pathlib.Path)
     parser.add_argument("--only", nargs="*", help="names of the cases to run")
     parser.add_argument("--force", action="store_true", help="run finished cases again")
+    parser.add_argument("--results", type=pathlib.Path, default=ROOT / "results" / "studies", help="where the folders of studies are")
     arguments = parser.parse_args()
     study = json.loads(arguments.study.read_text())
-    results = ROOT / "results" / "studies" / arguments.study.stem
+    results = arguments.results / arguments.study.stem
     results.mkdir(parents=True, exist_ok=True)
 
-    failed = []
-    rows = []
+    done, failed = {}, []
     for name, case in study["cases"].items():
-        out = results / name
-        if arguments.only and name not in arguments.only and not (out / "summary.json").exists():
+        out, scenario = results / name, scenario_of(study, case)
+        chosen = not arguments.only or name in arguments.only
+        stale = stale_because(scenario, out)
+        if stale and not chosen:
+            if (out / "summary.json").exists():
+                print(f"{name}: left out of the table: {stale}", file=sys.stderr)
             continue
-        summary = run_case(study, name, case, out, arguments.force and (not arguments.only or name in arguments.only))
-        if summary is None:
+        if stale and (out / "summary.json").exists():
+            print(f"{name}: run again: {stale}", file=sys.stderr)
+        if (stale or (chosen and arguments.force)) and not run_case(name, scenario, out):
             failed.append(name)
             continue
-        rows.append({"case": name, **{path: value_of(summary, path) for path in study["columns"]}})
-        target = arguments.study.with_suffix(".csv")
-        with open(target, "w", newline="") as file:
-            writer = csv.DictWriter(file, ["case", *study["columns"]])
-            writer.writeheader()
-            writer.writerows(rows)
+        done[name] = out
+        collect(study, done, arguments.study.with_suffix(".csv"))
     if failed:
         sys.exit(f"failed: {', '.join(failed)}")
 

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """`furrow run` for real: what it leaves behind, and what it does when ranks die, stop, or it is told to stop."""
+import csv
 import json
 import os
 import pathlib
@@ -28,6 +29,7 @@ class Run(SystemTest):
         self.assertAlmostEqual(summary["simulated_s"], 0.3)
         self.assertGreater(summary["grains"], 1000)
         self.assertEqual([rank["node"] for rank in summary["ranks"]], ["rig", "tire 0", "terrain"])
+        self.check_works(run, summary)
         for word in ("drawbar pull", "% of the load", "sinkage", "not steady", "busy"):
             self.assertIn(word, done.stderr)
         self.assertNotIn("mpirun", done.stderr)
@@ -37,6 +39,18 @@ class Run(SystemTest):
         again = furrow("run", FIRST_LOOK, *SHORT, cwd=self.folder)
         self.assertEqual(again.stdout, "results/first_look-002\n")
         self.assertIn("the tire did not touch the terrain", again.stderr)
+
+    def check_works(self, run, summary):
+        """A tire that starts at rest holds what rim, terrain and gravity did on it; the series' last line is the summary's."""
+        with open(run / "timeseries.csv", newline="") as file:
+            rows = [{name: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
+        rig = json.loads((run / "scenario.json").read_text())["rig"]
+        tire_mass = summary["vertical_load_N"] / 9.81 - rig["carrier_mass"] - rig["rim_mass"]
+        weight_work = -9.81 * tire_mass * (rows[-1]["axle_height_m"] - rows[0]["axle_height_m"])
+        on_tire = summary["interface_work_J"] + rows[-1]["rim_work_J"] + weight_work
+        self.assertLess(summary["interface_work_J"], 0.0)
+        self.assertAlmostEqual(on_tire, rows[-1]["tire_energy_J"], delta=0.01 * abs(summary["interface_work_J"]))
+        self.assertEqual(summary["spindle_work_J"], rows[-1]["spindle_work_J"])
 
     def test_threads_do_not_change_the_result_and_the_seed_does(self):
         path = write_scenario(self.folder)

@@ -50,7 +50,7 @@ Worst::Worst(std::string test_case, std::string quantity, double tolerance, std:
 void Worst::add(double value, double reference, double scale, const std::string& where) {
   const double error = relative_error(value, reference, scale);
   ++points_;
-  if (error <= error_) return;
+  if (std::isnan(error_) || error <= error_) return;  // a NaN is worse than any number, whenever it comes
   value_ = value, reference_ = reference, scale_ = scale, error_ = error, where_ = where;
 }
 

@@ -57,7 +57,8 @@ void check(const GrainBench& bench) {
   const auto require = [](bool ok, const char* key, const char* expected) {
     if (!ok) throw input_error("command line", key, std::string("expected ") + expected);
   };
-  require(bench.law == "mindlin" || bench.law == "coulomb", "--law", "mindlin or coulomb");
+  require(bench.law == "mindlin" || bench.law == "hertz_tanh" || bench.law == "coulomb", "--law",
+          "mindlin or hertz_tanh");
   require(bench.precision == "mixed" || bench.precision == "double", "--precision", "mixed or double");
   require(bench.threads >= 1 && bench.threads <= 1024, "--threads", "1 to 1024");
   require(bench.steps >= 1, "--steps", "1 or more");
@@ -74,7 +75,7 @@ void check(const GrainBench& bench) {
 std::string bench_grains(const GrainBench& bench, const ProgressCall& progress) {
   check(bench);
   terrain::TerrainOptions options;
-  options.law = bench.law;
+  options.law = terrain::dem::law_name(terrain::dem::law_from(bench.law));
   options.cohesion = bench.cohesion;
   options.rolling_friction = bench.rolling_friction;
   options.step = bench.step;
@@ -138,7 +139,7 @@ std::string bench_grains(const GrainBench& bench, const ProgressCall& progress) 
       {"bytes_per_grain", static_cast<double>(solver.bytes()) / n},
       {"steps", bench.steps},
       {"threads", bench.threads},
-      {"law", bench.law},
+      {"law", options.law},
       {"precision", bench.precision},
       {"cohesion_Pa", bench.cohesion},
       {"rolling_friction", bench.rolling_friction},

@@ -52,7 +52,7 @@ void add_grain_bench(CLI::App& command, GrainBench& bench) {
                   "CSV x_m,y_m,z_m of centres of grains of 6 mm, x ≥ 0, y from 0 to 0.6, z ≥ 0; or default: "
                   "the reference bed")
       ->capture_default_str();
-  command.add_option("--law", bench.law, "mindlin or coulomb")->capture_default_str();
+  command.add_option("--law", bench.law, "contact law: mindlin or hertz_tanh")->capture_default_str();
   command.add_option("--precision", bench.precision, "of the law: mixed or double")->capture_default_str();
   command.add_option("--cohesion", bench.cohesion, "cohesion, Pa")->capture_default_str();
   command.add_option("--rolling-friction", bench.rolling_friction, "rolling resistance coefficient")

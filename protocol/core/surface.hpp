@@ -69,8 +69,8 @@ struct ContactMaterial {
   double poisson_ratio = 0.0;     // -
   double friction = 0.0;          // Coulomb coefficient, -
   double restitution = 0.0;       // -, law mindlin
-  double normal_stiffness = 0.0;  // N/m^1.5, law coulomb
-  double normal_damping = 0.0;    // N s/m^1.5, law coulomb
+  double normal_stiffness = 0.0;  // N/m^1.5, law hertz_tanh
+  double normal_damping = 0.0;    // N s/m^1.5, law hertz_tanh
   double cohesion = 0.0;          // Pa; the tire's is zero
   double area_density = 0.0;      // mass of the surface that a contact moves, kg/m²; 0: a rigid, heavy one
 };

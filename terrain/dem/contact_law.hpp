@@ -3,7 +3,8 @@
 // A contact has a unit normal n that pushes grain i, overlap δ > 0, and one common point at which the relative
 // velocity v of i against its partner is taken; v_n = v·n > 0 separating, v_t = v − v_n n.
 //
-// Normal, both laws, with F_c = π r² c_t constant while in contact [Recuero et al. 2016, Wheeled vehicle mobility studies in Chrono, SBEL technical report]:
+// Normal, both laws, with F_c = π r² c_t constant while in contact
+// [Recuero et al. 2016, Wheeled vehicle mobility studies in Chrono, SBEL technical report]:
 //   F_n = F_e − F_c,   Coulomb limit μ max(F_e, 0): cohesion gives shear strength.                               (1)
 //
 // mindlin: Hertz–Mindlin
@@ -16,7 +17,7 @@
 //   Rolling resistance: elastic–plastic spring–dashpot, k_r = k_t R*², cut at μ_r R* F_e
 //   [Ai et al. 2011, doi:10.1016/j.powtec.2010.09.030]                                                            (4)
 //
-// coulomb: the law of the report
+// hertz_tanh: Hertz with friction regularised by tanh, the law of the report
 //   F_e = max(0, √δ (k_n δ − g_n v_n)),   F_t = μ F_e tanh(c |v_t|) against v_t; no history, no static friction     (5)
 //   with the impulse limit F_t ≤ β m_t |v_t| / dt, m_t = m/7 between equal spheres, 2m/7 against a surface.        (6)
 #pragma once
@@ -30,7 +31,7 @@ namespace furrow::terrain::dem {
 template <class S>
 struct Coefficients {
   S stiffness{};        // K or k_n, N/m^1.5
-  S damping{};          // mindlin: c_n, N s/m^1.25; coulomb: g_n, N s/m^1.5
+  S damping{};          // mindlin: c_n, N s/m^1.25; hertz_tanh: g_n, N s/m^1.5
   S shear_stiffness{};  // 8 G* √R*, N/m^1.5
   S shear_damping{};    // N s/m^1.25
   S friction{};         // μ, -
@@ -40,7 +41,7 @@ struct Coefficients {
   S rolling_arm{};      // μ_r R*, m
   S rolling_radius{};   // R*, m
   S rolling_damping{};  // N m s/m^0.25
-  S roll_limit{};       // β I / dt, N m s, law coulomb; infinite: no limit
+  S roll_limit{};       // β I / dt, N m s, law hertz_tanh; infinite: no limit
 };
 using ContactCoefficients = Coefficients<double>;
 
@@ -152,7 +153,7 @@ struct MindlinLaw {
   }
 };
 
-struct CoulombLaw {
+struct HertzTanhLaw {
   static constexpr bool kHistory = false;
 
   template <bool kRolling, class C, class S, class T>

@@ -39,9 +39,11 @@ double surface_mass(const ContactMaterial& surface, double radius) {
 
 LawKind law_from(const std::string& name) {
   if (name == "mindlin") return LawKind::mindlin;
-  if (name == "coulomb") return LawKind::coulomb;
-  throw input_error("scenario", "terrain.law", "'" + name + "' is unknown, expected mindlin or coulomb");
+  if (name == "hertz_tanh" || name == "coulomb") return LawKind::hertz_tanh;
+  throw input_error("scenario", "terrain.law", "'" + name + "' is unknown, expected mindlin or hertz_tanh");
 }
+
+const char* law_name(LawKind law) { return law == LawKind::mindlin ? "mindlin" : "hertz_tanh"; }
 
 GrainProperties grain_properties(double radius, double density) {
   const double mass = density * 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
@@ -74,7 +76,7 @@ ContactCoefficients mix(const ContactMaterial& grain, const ContactMaterial& oth
   c.rolling_arm = law.rolling_friction * r_star;
   c.rolling_radius = r_star;
   c.slip_limit = c.roll_limit = kInfinite;
-  if (law.kind == LawKind::coulomb) {
+  if (law.kind == LawKind::hertz_tanh) {
     c.stiffness = 0.5 * (grain.normal_stiffness + other.normal_stiffness);
     c.damping = 0.5 * (grain.normal_damping + other.normal_damping);
     if (law.friction_impulse_limit) {
@@ -103,7 +105,7 @@ double mass_share(const GrainProperties& grain, const ContactMaterial& surface) 
 // neighbours in antiphase the stiffest modes of translation and of rotation (I = 2/5 m r²) are
 //   ω² = 2 z/3 (k_n + 2 k_t)/m   and   ω² = 2 z (2/3) (5/2) k_t/m,     likewise γ with the dashpots;
 // the larger of each is taken. v ← v − dt (γ v + ω² x), x ← x + dt v is stable for ω² dt² + 2 γ dt < 4.
-// The impulse limit of law coulomb makes friction a dashpot c_t = β m/(7 dt), which takes its part of the 4.
+// The impulse limit of law hertz_tanh makes friction a dashpot c_t = β m/(7 dt), which takes its part of the 4.
 // Friction without history or limit is a dashpot c μ F_e at small |v_t|: 7 c μ F_e dt / m < 2 between equal spheres.
 StableStep stable_step(const ContactCoefficients& pair, const GrainProperties& grain, const LawSettings& law,
                        double overlap) {

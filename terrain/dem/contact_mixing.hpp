@@ -9,9 +9,11 @@
 
 namespace furrow::terrain::dem {
 
-enum class LawKind { mindlin, coulomb };
-/// @throws Error(bad_input) listing the valid names.
+enum class LawKind { mindlin, hertz_tanh };
+/// `coulomb`, as hertz_tanh was called before, is accepted. @throws Error(bad_input) listing the valid names.
 LawKind law_from(const std::string& name);
+/// The name by which digests and files know the law.
+const char* law_name(LawKind law);
 
 /// A grain.
 struct GrainProperties {

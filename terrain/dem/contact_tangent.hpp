@@ -12,11 +12,11 @@ namespace furrow::terrain::dem {
 
 /// A contact whose friction is above this share of its limit slides.
 inline constexpr double kSlides = 0.999;
-/// Law coulomb: c |v_t| below which tanh is still nearly a dashpot.
+/// Law hertz_tanh: c |v_t| below which tanh is still nearly a dashpot.
 inline constexpr double kViscous = 0.5;
 
 /// Mindlin: k_n = dF/dδ = 3/2 K √δ, c_n = c_n δ^{1/4}; where friction holds k_t = 8 G* √(R*δ) and its damping. The
-/// change of the dampers with δ is left out. Coulomb: k_n = 3/2 k_n √δ, c_n = g_n √δ, while friction is
+/// change of the dampers with δ is left out. hertz_tanh: k_n = 3/2 k_n √δ, c_n = g_n √δ, while friction is
 /// a dashpot c_t = F_t/|v_t|; without its limit it has no stiffness.
 template <class Law>
 SurfaceContactTangent contact_tangent(const ContactCoefficients& c, const ContactMotion<double>& at,

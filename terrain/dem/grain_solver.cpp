@@ -357,9 +357,9 @@ void GrainSolver::evaluate(double dt, bool measure) {
 
 template <class Real>
 void GrainSolver::evaluate(double dt, bool measure) {
-  if (params_.law == LawKind::coulomb) {
-    params_.rolling ? evaluate<Real, CoulombLaw, true, false>(dt, measure)
-                    : evaluate<Real, CoulombLaw, false, false>(dt, measure);
+  if (params_.law == LawKind::hertz_tanh) {
+    params_.rolling ? evaluate<Real, HertzTanhLaw, true, false>(dt, measure)
+                    : evaluate<Real, HertzTanhLaw, false, false>(dt, measure);
   } else if (params_.sizes()) {
     params_.rolling ? evaluate<Real, MindlinLaw, true, true>(dt, measure)
                     : evaluate<Real, MindlinLaw, false, true>(dt, measure);

@@ -39,7 +39,7 @@ inline SizeScale<double> surface_scale(double a, double share) {
   return {a, (1.0 + share) / (heavy + light), (3.5 + share) / (3.5 * heavy + light), a * a * a * a * a, a};
 }
 
-/// The coefficients of law mindlin for another size; T may hold several contacts. Law coulomb has none: its stiffness
+/// The coefficients of law mindlin for another size; T may hold several contacts. Law hertz_tanh has none: its stiffness
 /// is stated for one size.
 template <class T, class S>
 inline Coefficients<T> scaled(const Coefficients<S>& c, const SizeScale<T>& s) {

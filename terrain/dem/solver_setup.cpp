@@ -24,7 +24,7 @@ SolverParams solver_params(const TerrainOptions& o) {
   p.bin.width = o.width;
   p.bin.periodic_x = o.periodic_x;
   p.bin.periodic_y = o.periodic_y;
-  // Friction of law coulomb without its limiter chatters: such a bed never rests.
+  // Friction of law hertz_tanh without its limiter chatters: such a bed never rests.
   p.activity = o.activity && (p.law == LawKind::mindlin || o.friction_impulse_limit);
   p.skin = kSkinShare * o.radius;
   p.threads = std::max(1, o.threads);

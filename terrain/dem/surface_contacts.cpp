@@ -194,7 +194,7 @@ void SurfaceContacts::evaluate(const Grains& grains, Strip& strip, int s, double
 }
 
 template void SurfaceContacts::evaluate<MindlinLaw>(const Grains&, Strip&, int, double, const Loads&);
-template void SurfaceContacts::evaluate<CoulombLaw>(const Grains&, Strip&, int, double, const Loads&);
+template void SurfaceContacts::evaluate<HertzTanhLaw>(const Grains&, Strip&, int, double, const Loads&);
 
 Vec3 SurfaceContacts::hand_over(double dt) {
   Vec3 on_grains = Vec3::Zero();

@@ -119,11 +119,11 @@ def main():
         folder = pathlib.Path(name)
         write_data(positions, folder / "bed.data", False)
         n, steps = arguments.threads, arguments.steps
-        coulomb, mindlin = folder / "coulomb.csv", folder / "mindlin.csv"
-        run_furrow("coulomb", 80e3, "mixed", arguments.bed, n, 1, "--settle", "0.3", "--save-bed", coulomb)
+        hertz_tanh, mindlin = folder / "hertz_tanh.csv", folder / "mindlin.csv"
+        run_furrow("hertz_tanh", 80e3, "mixed", arguments.bed, n, 1, "--settle", "0.3", "--save-bed", hertz_tanh)
         run_furrow("mindlin", 0.0, "mixed", arguments.bed, n, 1, "--settle", "0.3", "--save-bed", mindlin)
         cases = {
-            "furrow coulomb, cohesion 80 kPa": lambda: run_furrow("coulomb", 80e3, "mixed", coulomb, n, steps),
+            "furrow hertz_tanh, cohesion 80 kPa": lambda: run_furrow("hertz_tanh", 80e3, "mixed", hertz_tanh, n, steps),
             "LIGGGHTS hertz/no_history": lambda: run_peer("liggghts", "no_history", folder / "bed.data", n, steps, folder),
             "furrow mindlin": lambda: run_furrow("mindlin", 0.0, "mixed", mindlin, n, steps),
             "LAMMPS gran/hertz/history": lambda: run_peer("lmp", "", folder / "bed.data", n, steps, folder),

@@ -51,7 +51,7 @@ def main():
             bed = pathlib.Path(folder) / "bed.csv"
             write_bed(part, metres, bed)
             steps = max(50, arguments.steps * len(grains) * 10 // max(len(part) * metres, len(grains) * 10))
-            cases = [(law, threads) for law in ("coulomb", "mindlin") for threads in (1, 2)]
+            cases = [(law, threads) for law in ("hertz_tanh", "mindlin") for threads in (1, 2)]
             results = {case: [] for case in cases}
             for _ in range(arguments.rounds):
                 for case in cases:

@@ -26,8 +26,8 @@ def step_size():
         law, share = re.fullmatch(r"(.*)_step_1(?:_(\d+))?", row["case"]).groups()
         lines.setdefault(law, []).append((60.0 / int(share or 1), float(row["drawbar_pull_N.mean"]),
                                           2.0 * float(row["drawbar_pull_N.sem"])))
-    names = {"mindlin": "Hertz–Mindlin with history", "coulomb_limited": "tanh friction, impulse limit on",
-             "coulomb_unlimited": "tanh friction as in the report"}
+    names = {"mindlin": "Hertz–Mindlin with history", "hertz_tanh_limited": "tanh friction, impulse limit on",
+             "hertz_tanh_unlimited": "tanh friction as in the report"}
     figure, axes = plt.subplots(figsize=(6.4, 4.0))
     for (law, points), marker in zip(lines.items(), "os^"):
         step, pull, bar = zip(*sorted(points))

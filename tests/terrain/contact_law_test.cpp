@@ -88,38 +88,38 @@ TEST(MindlinLaw, history_turns_with_normal_and_spin) {
   EXPECT_NEAR(std::hypot(t.y, t.z), 1.0, 1e-12);
 }
 
-TEST(CoulombLaw, force_is_the_reports) {
+TEST(HertzTanhLaw, force_is_the_reports) {
   FewGrains few;
-  few.options.law = "coulomb";
+  few.options.law = "hertz_tanh";
   few.options.friction_impulse_limit = false;
   few.options.cohesion = 80e3;
   const ContactCoefficients c = few.coefficients().pair;
   ContactHistory<double> history{};
   const double delta = 4e-4, v_n = 0.02, v_t = 0.1;
-  const auto f = CoulombLaw::force<false>(c, 1e-6, touching(delta, {v_n, 0, v_t}), history);
+  const auto f = HertzTanhLaw::force<false>(c, 1e-6, touching(delta, {v_n, 0, v_t}), history);
   const double elastic = std::sqrt(delta) * (1e6 * delta - 60.0 * v_n);
   EXPECT_NEAR(f.normal, elastic - kPi * 36e-6 * 80e3, 1e-12);
   EXPECT_NEAR(f.tangential.z, -0.9 * elastic * std::tanh(0.5), 1e-12);
-  EXPECT_EQ(CoulombLaw::force<false>(c, 1e-6, touching(1e-6, {10.0, 0, 0}), history).elastic, 0.0);
+  EXPECT_EQ(HertzTanhLaw::force<false>(c, 1e-6, touching(1e-6, {10.0, 0, 0}), history).elastic, 0.0);
 }
 
-TEST(CoulombLaw, impulse_limit_caps_friction_at_three_tenths) {
+TEST(HertzTanhLaw, impulse_limit_caps_friction_at_three_tenths) {
   FewGrains few;
-  few.options.law = "coulomb";
+  few.options.law = "hertz_tanh";
   few.options.step = 4e-5;
   const SolverCoefficients c = few.coefficients();
   const double m = grain_properties(0.006, 2500).mass;
   ContactHistory<double> history{};
   const double v_t = 1e-4;
-  const auto pair = CoulombLaw::force<false>(c.pair, 4e-5, touching(4.34e-4, {0, v_t, 0}), history);
+  const auto pair = HertzTanhLaw::force<false>(c.pair, 4e-5, touching(4.34e-4, {0, v_t, 0}), history);
   EXPECT_NEAR(pair.tangential.y, -0.3 * m / 7.0 * v_t / 4e-5, 1e-15);
-  const auto wall = CoulombLaw::force<false>(c.floor, 4e-5, touching(4.34e-4, {0, v_t, 0}), history);
+  const auto wall = HertzTanhLaw::force<false>(c.floor, 4e-5, touching(4.34e-4, {0, v_t, 0}), history);
   EXPECT_NEAR(wall.tangential.y, -0.3 * 2.0 * m / 7.0 * v_t / 4e-5, 1e-15);
 }
 
 TEST(Mixing, follows_the_stated_rules) {
   FewGrains few;
-  few.options.law = "coulomb";
+  few.options.law = "hertz_tanh";
   few.options.cohesion = 80e3;
   ContactMaterial tire{2e7, 0.4, 0.8, 0.1, 2e6, 13.0, 0.0};
   const GrainProperties grain = grain_properties(0.006, 2500);
@@ -149,7 +149,7 @@ TEST(StableStep, names_what_limits_it) {
   const StableStep mindlin = stable_step(few.coefficients().pair, grain, law, 6e-4);
   EXPECT_GT(mindlin.step, 4e-5);
   EXPECT_LT(mindlin.step, 1.5e-4);
-  few.options.law = "coulomb";
+  few.options.law = "hertz_tanh";
   few.options.friction_impulse_limit = false;
   few.options.cohesion = 80e3;
   law = law_settings(few.options);

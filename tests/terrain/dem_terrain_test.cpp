@@ -164,8 +164,11 @@ TEST_F(DemTerrain, digest_tells_beds_apart) {
   EXPECT_EQ(terrain::dem::bed_digest(other), digest);
   other = options_, other.seed = 2;
   EXPECT_NE(terrain::dem::bed_digest(other), digest);
-  other = options_, other.law = "coulomb";
+  other = options_, other.law = "hertz_tanh";
   EXPECT_NE(terrain::dem::bed_digest(other), digest);
+  TerrainOptions former = options_;
+  former.law = "coulomb";
+  EXPECT_EQ(terrain::dem::bed_digest(former), terrain::dem::bed_digest(other));
   other = options_, other.friction = 0.91;
   EXPECT_NE(terrain::dem::bed_digest(other), digest);
 }
@@ -173,7 +176,7 @@ TEST_F(DemTerrain, digest_tells_beds_apart) {
 TEST_F(DemTerrain, plate_books_force_momentum_and_energy) {
   options_.activity =
       false;  // what is taken from grains that fall asleep is booked as energy, not as impulse
-  for (const char* law : {"mindlin", "coulomb"}) {
+  for (const char* law : {"mindlin", "hertz_tanh"}) {
     options_.law = law;
     const auto terrain = make_terrain(options_);
     terrain->prepare({});
@@ -291,7 +294,7 @@ TEST_F(DemTerrain, unstable_step_is_refused_by_number_unless_allowed) {
   EXPECT_NO_THROW(make_terrain(options_));
   options_.step = 6e-5;
   options_.allow_unstable_step = false;
-  options_.law = "coulomb";
+  options_.law = "hertz_tanh";
   options_.friction_impulse_limit = false;
   EXPECT_THROW(make_terrain(options_), Error);
   EXPECT_EQ(estimate_terrain(options_).stable_reason, "friction viscosity");

@@ -311,8 +311,9 @@ TEST(GrainSizes, sizes_that_cannot_be_are_refused_with_their_key) {
   };
   EXPECT_NE(refusal([](auto& o) { o.size_spread = 0.7; }).find("size_spread': 0.7 is out of range"),
             std::string::npos);
-  EXPECT_NE(refusal([](auto& o) { o.size_spread = 0.3, o.law = "coulomb"; }).find("expected law 'mindlin'"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal([](auto& o) { o.size_spread = 0.3, o.law = "hertz_tanh"; }).find("expected law 'mindlin'"),
+      std::string::npos);
   EXPECT_NE(refusal([](auto& o) { o.size_distribution = "gamma"; }).find("expected uniform or normal"),
             std::string::npos);
 }

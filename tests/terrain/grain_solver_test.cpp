@@ -55,7 +55,7 @@ TEST(GrainSolver, wall_restitution_is_the_one_asked_for) {
 }
 
 TEST(GrainSolver, oblique_collision_conserves_momentum_and_angular_momentum) {
-  for (const char* law : {"mindlin", "coulomb"})
+  for (const char* law : {"mindlin", "hertz_tanh"})
     for (double rolling : {0.0, 0.2}) {
       FewGrains few;
       few.options.law = law;
@@ -86,7 +86,7 @@ TEST(GrainSolver, oblique_collision_conserves_momentum_and_angular_momentum) {
 }
 
 TEST(GrainSolver, sliding_sphere_rolls_at_five_sevenths) {
-  for (const char* law : {"mindlin", "coulomb"}) {
+  for (const char* law : {"mindlin", "hertz_tanh"}) {
     FewGrains few;
     few.options.law = law;
     few.options.friction = 0.3;
@@ -104,7 +104,7 @@ TEST(GrainSolver, sliding_sphere_rolls_at_five_sevenths) {
 
 TEST(GrainSolver, cohesive_grains_rest_at_the_reports_overlap) {
   FewGrains few;
-  few.options.law = "coulomb";
+  few.options.law = "hertz_tanh";
   few.options.cohesion = 80e3;
   GrainSolver s = few.make({{0.3, 0, 0.3}, {0.3 + 0.01185, 0, 0.3}});
   for (int k = 0; k < 20000; ++k) s.step(1e-5);
@@ -130,13 +130,13 @@ double speed_on_incline(const FewGrains& few, double angle, double time) {
   return velocity(s, 0).x();
 }
 
-TEST(GrainSolver, coulomb_creeps_on_an_incline_at_its_closed_form_rate_and_mindlin_holds) {
+TEST(GrainSolver, hertz_tanh_creeps_on_an_incline_at_its_closed_form_rate_and_mindlin_holds) {
   FewGrains few;
   few.options.friction = 0.9;
   few.options.step = 1e-5;
   const double angle = 0.3;
   EXPECT_LT(std::abs(speed_on_incline(few, angle, 0.3)), 1e-4);
-  few.options.law = "coulomb";
+  few.options.law = "hertz_tanh";
   few.options.friction_impulse_limit = false;
   // m g sin = μ m g cos tanh(c v)
   const double creep = std::atanh(std::tan(angle) / 0.9) / 5.0;
@@ -175,7 +175,7 @@ GrainSolver random_bed(FewGrains& few, int n, double speed) {
 }
 
 TEST(GrainSolver, crowd_keeps_momentum_and_books_its_energy) {
-  for (const char* law : {"mindlin", "coulomb"}) {
+  for (const char* law : {"mindlin", "hertz_tanh"}) {
     FewGrains few;
     few.options.law = law;
     few.options.cohesion = 20e3;
@@ -204,7 +204,7 @@ TEST(GrainSolver, frictionless_elastic_crowd_keeps_its_energy) {
 }
 
 TEST(GrainSolver, same_bits_for_one_and_two_threads) {
-  for (const char* law : {"mindlin", "coulomb"}) {
+  for (const char* law : {"mindlin", "hertz_tanh"}) {
     FewGrains few;
     few.options.law = law;
     few.options.rolling_friction = 0.1;

@@ -13,6 +13,7 @@
 #include "protocol/core/hash.hpp"
 #include "protocol/files/hdf5_handle.hpp"
 #include "terrain/dem/beds/bed_settling.hpp"
+#include "terrain/dem/contact_mixing.hpp"
 #include "terrain/dem/solver_setup.hpp"
 
 namespace furrow::terrain::dem {
@@ -91,7 +92,7 @@ std::string file_bytes(const std::filesystem::path& file) {
 
 std::string bed_digest(const TerrainOptions& o) {
   Hash hash;
-  hash.add(o.law);
+  hash.add(std::string(law_name(law_from(o.law))));
   hash.add(o.precision);
   const std::array<double, 19> numbers{static_cast<double>(kBedFormat),
                                        o.radius,

@@ -38,7 +38,7 @@ void check_bed(const Archive& bed, const TerrainOptions& o) {
                       fmt::format("is '{}' but the bed '{}' was made with '{}'", sides(o.periodic_y), o.bed,
                                   sides(periodic)));
   const auto& law = bed.get<std::uint8_t>("bed/law");
-  if (std::string(law.begin(), law.end()) != o.law)
+  if (law_from(std::string(law.begin(), law.end())) != law_from(o.law))
     throw input_error(o.scenario, "terrain.law",
                       fmt::format("is {} but the bed '{}' was settled with {}", o.law, o.bed,
                                   std::string(law.begin(), law.end())));
@@ -112,7 +112,8 @@ Archive bed_archive(const GrainSolver& solver, const TerrainOptions& options, co
   bed.put("bed/geometry", geometry(options));
   bed.put("bed/size_spread", options.size_spread);
   bed.put("bed/periodic_sides", std::int64_t{options.periodic_y});
-  bed.put("bed/law", std::vector<std::uint8_t>(options.law.begin(), options.law.end()));
+  const std::string law = law_name(law_from(options.law));
+  bed.put("bed/law", std::vector<std::uint8_t>(law.begin(), law.end()));
   return bed;
 }
 

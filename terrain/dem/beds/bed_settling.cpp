@@ -10,10 +10,10 @@
 namespace furrow::terrain::dem {
 namespace {
 
-constexpr double kStepShareMindlin = 0.8;  // of the stable step
-constexpr double kStepShareCoulomb = 0.7;  // grains that fall on each other overlap more without history
-constexpr double kFallDrag = 4.0;          // 1/s, while the layers fall
-constexpr double kLyingSpeed = 0.03;       // rms, m/s: slower counts as lying
+constexpr double kStepShareMindlin = 0.8;    // of the stable step
+constexpr double kStepShareHertzTanh = 0.7;  // grains that fall on each other overlap more without history
+constexpr double kFallDrag = 4.0;            // 1/s, while the layers fall
+constexpr double kLyingSpeed = 0.03;         // rms, m/s: slower counts as lying
 
 TerrainOptions with_impulse_limit(TerrainOptions options) {
   options.friction_impulse_limit = true;
@@ -24,7 +24,7 @@ TerrainOptions with_impulse_limit(TerrainOptions options) {
 
 double settle_step(const TerrainOptions& options) {
   const TerrainOptions limited = with_impulse_limit(options);
-  const double share = law_from(options.law) == LawKind::mindlin ? kStepShareMindlin : kStepShareCoulomb;
+  const double share = law_from(options.law) == LawKind::mindlin ? kStepShareMindlin : kStepShareHertzTanh;
   return share * stable_at(limited, stated_overlap(limited)).step;
 }
 

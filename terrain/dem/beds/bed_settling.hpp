@@ -22,7 +22,7 @@ struct SettleResult {
 double settle_step(const TerrainOptions& options);
 
 /// Coefficients while the bed settles: side walls without friction, so that the floor carries the whole weight; the
-/// impulse limit of law coulomb is on.
+/// impulse limit of law hertz_tanh is on.
 SolverCoefficients settle_coefficients(const TerrainOptions& options);
 
 inline constexpr double kMaxSettleTime = 4.0;  // s

@@ -20,7 +20,7 @@ using terrain::dem::GrainSolver;
 constexpr double kRadius = 0.006;   // m
 constexpr double kCohesion = 80e3;  // Pa
 constexpr double kStep = 1e-5;      // s
-constexpr const char* kLaws[] = {"mindlin", "coulomb"};
+constexpr const char* kLaws[] = {"mindlin", "hertz_tanh"};
 
 EngineGrains cohesive(const char* law) {
   EngineGrains few;
@@ -127,11 +127,11 @@ TEST(Cohesion, pair_without_net_load_slips_at_friction_times_cohesion_force) {
   }
 }
 
-/// Law coulomb slides at any load: F_t = μ F_c tanh(c v).
-TEST(Cohesion, coulomb_pair_without_net_load_resists_by_speed) {
-  const EngineGrains few = heavy("coulomb");
+/// Law hertz_tanh slides at any load: F_t = μ F_c tanh(c v).
+TEST(Cohesion, hertz_tanh_pair_without_net_load_resists_by_speed) {
+  const EngineGrains few = heavy("hertz_tanh");
   const double limit = few.options.friction * cohesion_force();
-  Worst worst("coulomb, pair, no net load", "friction by speed, of mu F_c", 1e-4, "mu F_c tanh(c v)");
+  Worst worst("hertz_tanh, pair, no net load", "friction by speed, of mu F_c", 1e-4, "mu F_c tanh(c v)");
   for (const double speed : {0.001, 0.01, 0.1, 1.0}) {
     terrain::dem::GrainSolver s =
         pair(few, rest_overlap(few.coefficients().pair.stiffness, cohesion_force()));

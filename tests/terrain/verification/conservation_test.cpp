@@ -56,7 +56,7 @@ Totals totals(const terrain::dem::GrainSolver& s) {
 }
 
 TEST(Conservation, crowd_keeps_momentum_and_angular_momentum_with_spin) {
-  for (const char* law : {"mindlin", "coulomb"})
+  for (const char* law : {"mindlin", "hertz_tanh"})
     for (const double rolling : {0.0, 0.1})
       for (const int count : {2, 60, 1500}) {  // 1500: pairs within and between the solver's blocks
         EngineGrains few;

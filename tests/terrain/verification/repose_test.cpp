@@ -1,5 +1,5 @@
 // Heaps: a column of grains between frictionless side walls collapses along a rough floor. Law mindlin comes to rest at
-// an angle that grows with rolling resistance and with friction; law coulomb has no rest.
+// an angle that grows with rolling resistance and with friction; law hertz_tanh has no rest.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -115,9 +115,9 @@ TEST(Repose, angle_grows_with_rolling_and_sliding_friction_as_zhou_2001_found) {
          kZhou + ": hardly any influence of the modulus");
 }
 
-TEST(Repose, coulomb_heap_flows_on) {
+TEST(Repose, hertz_tanh_heap_flows_on) {
   EngineGrains few;
-  few.options.law = "coulomb";
+  few.options.law = "hertz_tanh";
   few.options.friction = 0.9;
   few.options.rolling_friction = 0.2;
   terrain::dem::GrainSolver s = column(few);
@@ -127,7 +127,7 @@ TEST(Repose, coulomb_heap_flows_on) {
   // It would take all day to see it flat; a tenth in as long again is not rest.
   EXPECT_LT(angle_of(s), angle);
   EXPECT_LT(mean_height(s), 0.9 * early);
-  verify("collapsed column, coulomb", "mean height sinks by over 10 % from 1.5 to 3 s",
+  verify("collapsed column, hertz_tanh", "mean height sinks by over 10 % from 1.5 to 3 s",
          mean_height(s) < 0.9 * early, 1.0, 0.0, "no static friction: creep at any slope");
 }
 

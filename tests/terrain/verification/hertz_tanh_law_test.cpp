@@ -1,4 +1,4 @@
-// Law coulomb, F_e = max(0, √δ (k δ − g v_n)), F_t = μ F_e tanh(c v_s), against its own closed forms.
+// Law hertz_tanh, F_e = max(0, √δ (k δ − g v_n)), F_t = μ F_e tanh(c v_s), against its own closed forms.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,9 +17,9 @@ using terrain::dem::GrainSolver;
 
 constexpr double kRadius = 0.006;  // m
 
-EngineGrains coulomb() {
+EngineGrains hertz_tanh() {
   EngineGrains few;
-  few.options.law = "coulomb";
+  few.options.law = "hertz_tanh";
   few.options.friction_impulse_limit = false;
   return few;
 }
@@ -63,12 +63,12 @@ double integrated_restitution(double k, double g, double m, double speed) {
   return -u / speed;
 }
 
-TEST(CoulombLaw, restitution_falls_with_speed_as_the_integrated_equation_says) {
-  Worst worst("coulomb, restitution of a pair", "restitution, 1 mm/s to 3 m/s", 1e-3,
+TEST(HertzTanhLaw, restitution_falls_with_speed_as_the_integrated_equation_says) {
+  Worst worst("hertz_tanh, restitution of a pair", "restitution, 1 mm/s to 3 m/s", 1e-3,
               "Runge-Kutta integration of the same equation");
   double before = 1.0;
   for (const double speed : {0.001, 0.01, 0.1, 0.3, 1.0, 3.0}) {
-    const EngineGrains few = coulomb();
+    const EngineGrains few = hertz_tanh();
     const double truth = integrated_restitution(1e6, 60.0, 0.5 * mass_of(few), speed);
     worst.add(solver_restitution(few, speed, 10000), truth, 0.0, brief(speed) + " m/s");
     EXPECT_LT(truth, before);
@@ -79,12 +79,12 @@ TEST(CoulombLaw, restitution_falls_with_speed_as_the_integrated_equation_says) {
 // Weak damping is the viscoelastic sphere of Kuwabara & Kono, F = k δ^{3/2} + 3/2 A k √δ δ̇ with g = 3/2 A k. The loss
 // along the elastic path, twice g ∫ √δ δ̇ dδ, gives
 //   e = 1 − ζ + 3/5 ζ² + O(ζ³),    ζ = 4/5 B(3/5, 3/2) g δ_m^{3/2} / (m v),  δ_m^{5/2} = 5 m v²/(4 k):  ζ ∝ v^{1/5}.
-TEST(CoulombLaw, weak_damping_matches_kuwabara_kono_1987_and_ramirez_1999) {
+TEST(HertzTanhLaw, weak_damping_matches_kuwabara_kono_1987_and_ramirez_1999) {
   Worst worst(
-      "coulomb, weak damping", "(1 - e)/v^(1/5) by zeta, 1 cm/s to 1 m/s", 1e-3,
+      "hertz_tanh, weak damping", "(1 - e)/v^(1/5) by zeta, 1 cm/s to 1 m/s", 1e-3,
       "Kuwabara & Kono 1987 doi:10.1143/JJAP.26.1230, Ramirez et al. 1999 doi:10.1103/PhysRevE.60.4465");
   for (const double speed : {0.01, 0.1, 1.0}) {
-    EngineGrains few = coulomb();
+    EngineGrains few = hertz_tanh();
     few.options.normal_damping = 3.0;
     const double k = few.options.normal_stiffness, m = 0.5 * mass_of(few);
     const double depth = std::pow(5.0 * m * speed * speed / (4.0 * k), 0.6);  // δ_m^{3/2}
@@ -95,12 +95,12 @@ TEST(CoulombLaw, weak_damping_matches_kuwabara_kono_1987_and_ramirez_1999) {
 }
 
 /// Friction grows with speed until it balances the slope: m g sin α = μ m g cos α tanh(c v).
-TEST(CoulombLaw, block_creeps_down_an_inclined_mesh_at_the_closed_form_rate) {
-  Worst worst("coulomb, block on an inclined mesh", "creep speed, slopes 2 to 35 degrees", 2e-3,
+TEST(HertzTanhLaw, block_creeps_down_an_inclined_mesh_at_the_closed_form_rate) {
+  Worst worst("hertz_tanh, block on an inclined mesh", "creep speed, slopes 2 to 35 degrees", 2e-3,
               "v = artanh(tan a/mu)/c");
   for (const double scale : {5.0, 50.0})
     for (const double degrees : {2.0, 10.0, 20.0, 35.0}) {
-      EngineGrains few = coulomb();
+      EngineGrains few = hertz_tanh();
       few.options.friction_velocity_scale = scale;
       few.gravity = kStandardGravity;
       const double angle = degrees * M_PI / 180.0;
@@ -133,8 +133,8 @@ TEST(CoulombLaw, block_creeps_down_an_inclined_mesh_at_the_closed_form_rate) {
 
 // A sphere put down sliding: I ω̇ = R F, m v̇ = −F, so v̇_s = −7/2 μ g tanh(c v_s) and
 //   sinh(c v_s) = sinh(c u₀) exp(−7/2 μ g c t),     v = (5 u₀ + 2 v_s)/7 → 5 u₀/7.
-TEST(CoulombLaw, sliding_sphere_follows_its_closed_form_to_five_sevenths) {
-  EngineGrains few = coulomb();
+TEST(HertzTanhLaw, sliding_sphere_follows_its_closed_form_to_five_sevenths) {
+  EngineGrains few = hertz_tanh();
   few.options.friction = 0.3;
   few.gravity = kStandardGravity;
   const double speed = 0.4, c = few.options.friction_velocity_scale;
@@ -143,7 +143,7 @@ TEST(CoulombLaw, sliding_sphere_follows_its_closed_form_to_five_sevenths) {
       few.make({{0.1, 0, kRadius - std::pow(load / few.coefficients().floor.stiffness, 2.0 / 3.0)}});
   terrain::dem::set_velocity(s, 0, {speed, 0, 0});
   // The arm is r − δ; δ/r is 1.3e-3.
-  Worst path("coulomb, sliding sphere", "speed along the way", 1e-3,
+  Worst path("hertz_tanh, sliding sphere", "speed along the way", 1e-3,
              "sinh(c v_s) = sinh(c u0) exp(-7/2 mu g c t)");
   const double dt = 1e-5;
   for (int step = 1; step <= 60000; ++step) {
@@ -153,8 +153,8 @@ TEST(CoulombLaw, sliding_sphere_follows_its_closed_form_to_five_sevenths) {
     path.add(terrain::dem::velocity(s, 0).x(), (5.0 * speed + 2.0 * std::asinh(left) / c) / 7.0, speed,
              brief(step * dt) + " s");
   }
-  verify("coulomb, sliding sphere", "final speed, m/s", terrain::dem::velocity(s, 0).x(), 5.0 / 7.0 * speed,
-         1e-3, "5 u0/7");
+  verify("hertz_tanh, sliding sphere", "final speed, m/s", terrain::dem::velocity(s, 0).x(),
+         5.0 / 7.0 * speed, 1e-3, "5 u0/7");
 }
 
 }  // namespace

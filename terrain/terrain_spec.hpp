@@ -1,4 +1,4 @@
-// What a scenario says of its terrain, read and checked but not yet made: what programs ask of any terrain before it exists.
+// What a scenario says of its terrain, read but not yet made: what programs ask of any terrain before it exists.
 // The engines are listed in terrain/terrains.hpp.
 #pragma once
 

@@ -14,6 +14,7 @@
 #include "terrain/dem/beds/bed_preparation.hpp"
 #include "terrain/dem/beds/bed_statistics.hpp"
 #include "terrain/dem/close_pairs.hpp"
+#include "terrain/dem/dem_terrain.hpp"
 #include "terrain/dem/solver_setup.hpp"
 
 namespace furrow::terrain::dem {

@@ -11,6 +11,7 @@
 #include "protocol/core/error.hpp"
 #include "terrain/dem/beds/bed_preparation.hpp"
 #include "terrain/dem/beds/bed_statistics.hpp"
+#include "terrain/dem/dem_terrain.hpp"
 #include "terrain/dem/grain_sizes.hpp"
 #include "terrain/dem/size_scale.hpp"
 #include "terrain/dem/solver_setup.hpp"

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "nodes/launch/run_directory.hpp"
+#include "nodes/scenario/engine_keys.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_text.hpp"
 
@@ -113,7 +114,9 @@ ResumePlan plan_resume(const fs::path& run,
   plan.point = newest_whole(run, plan.warnings);
   const CheckpointManifest& manifest = plan.point.manifest;
   plan.scenario.name = manifest.name;
-  const json changed = changes(run, json::parse(manifest.scenario), json::parse(plan.scenario.completed));
+  json before = json::parse(manifest.scenario);
+  scenario::remove_keys_of_other_engines(before);  // of a run that began with an earlier version
+  const json changed = changes(run, before, json::parse(plan.scenario.completed));
   if (!changed.empty()) plan.point.changed = changed.dump();
   check_files(plan.scenario, manifest);
   const std::int64_t reached = std::max(ended, manifest.step);

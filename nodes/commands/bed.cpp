@@ -20,9 +20,9 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-json bed_json(const scenario::Scenario& s, const terrain::dem::PreparedBed& prepared,
-              const terrain::dem::BedStatistics& bed, double wall_s) {
-  const terrain::TerrainOptions& o = s.terrain;
+json bed_json(const scenario::Scenario& s, const terrain::dem::DemOptions& o,
+              const terrain::dem::PreparedBed& prepared, const terrain::dem::BedStatistics& bed,
+              double wall_s) {
   const double mass = o.density * bed.grain_volume;
   const auto text_or_null = [](const std::string& text) { return text.empty() ? json(nullptr) : json(text); };
   json j;
@@ -31,7 +31,7 @@ json bed_json(const scenario::Scenario& s, const terrain::dem::PreparedBed& prep
   j["scenario"] = s.name;
   j["bed"] = text_or_null(o.bed);
   j["bed_generator"] = o.bed.empty() ? json(o.bed_generator) : json(nullptr);
-  j["sides"] = o.periodic_y ? "periodic" : "walls";
+  j["sides"] = o.sides;
   j["size_distribution"] = o.size_spread > 0.0 ? json(o.size_distribution) : json(nullptr);
   j["size_spread"] = o.size_spread;
   j["settling_friction"] = o.settling_friction < 0.0 ? json(nullptr) : json(o.settling_friction);
@@ -61,32 +61,26 @@ json bed_json(const scenario::Scenario& s, const terrain::dem::PreparedBed& prep
 
 }  // namespace
 
-void require_grains(const scenario::Scenario& scenario, const std::string& what) {
-  if (scenario.terrain.engine != "dem")
-    throw input_error(scenario.file.string(), "terrain.engine",
-                      "is '" + scenario.terrain.engine + "', expected 'dem': " + what);
-}
-
 ExitCode bed_command(const scenario::Scenario& scenario) {
-  require_grains(scenario, "only grains make a bed");
+  const terrain::dem::DemOptions grains = scenario.grains("only grains make a bed");
   launch::catch_stop_signals();
   launch::ProgressDisplay display;
   const auto begin = std::chrono::steady_clock::now();
   const terrain::dem::PreparedBed prepared =
-      terrain::dem::prepare_bed(scenario.terrain, [&](const std::string& what, double share) {
+      terrain::dem::prepare_bed(grains, [&](const std::string& what, double share) {
         if (launch::stop_signalled())
           throw Error(ExitCode::stopped, "stopped by a signal while the bed was being prepared");
         display.show({.phase = what, .share = share});
       });
-  terrain::dem::GrainSolver solver(terrain::dem::solver_params(scenario.terrain));
+  terrain::dem::GrainSolver solver(terrain::dem::solver_params(grains));
   solver.restore(prepared.bed);
-  const terrain::dem::BedStatistics statistics = terrain::dem::bed_statistics(
-      terrain::dem::positions_by_id(solver), solver.params().bin, scenario.terrain.radius);
+  const terrain::dem::BedStatistics statistics =
+      terrain::dem::bed_statistics(terrain::dem::positions_by_id(solver), solver.params().bin, grains.radius);
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   display.clear();
   if (!prepared.settled.settled)
     print_warning(scenario.file.string() + ": the bed did not come to rest and is used as it is");
-  std::cout << bed_json(scenario, prepared, statistics, wall).dump(2) << "\n";
+  std::cout << bed_json(scenario, grains, prepared, statistics, wall).dump(2) << "\n";
   return ExitCode::done;
 }
 

@@ -1,57 +1,14 @@
-#include <chrono>
-#include <cmath>
-
+// `furrow bench grains`: what the command line says, and the result as JSON.
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "nodes/commands/bench.hpp"
 #include "protocol/core/error.hpp"
-#include "protocol/core/hash.hpp"
-#include "terrain/dem/beds/bed_csv.hpp"
-#include "terrain/dem/beds/bed_generators.hpp"
-#include "terrain/dem/beds/bed_settling.hpp"
-#include "terrain/dem/dem_terrain.hpp"
+#include "terrain/dem/grain_bench.hpp"
 #include "terrain/dem/solver_setup.hpp"
 
 namespace furrow::commands {
 namespace {
-
-constexpr double kReferenceWidth = 0.6;  // m
-constexpr double kLongest = 1000.0;      // m
-
-/// Positions of the bed, and how long it is.
-std::vector<terrain::dem::Quad> bed_of(const GrainBench& bench, terrain::TerrainOptions& options,
-                                       const ProgressCall& progress) {
-  std::vector<terrain::dem::Quad> grains;
-  options.width = kReferenceWidth;
-  if (bench.bed == "default") {
-    const auto terrain = terrain::make_dem_terrain(options);
-    terrain->prepare(progress);
-    Archive archive;
-    terrain->save(archive);
-    const auto& x = archive.get<double>("terrain/position");
-    for (std::size_t k = 0; k + 3 < x.size(); k += 4) grains.push_back({x[k], x[k + 1], x[k + 2], x[k + 3]});
-    return grains;
-  }
-  grains = terrain::dem::read_positions_csv(bench.bed);
-  double longest = 0.0;
-  for (std::size_t k = 0; k < grains.size(); ++k) {
-    terrain::dem::Quad& p = grains[k];
-    if (!(p.x >= 0.0 && p.y >= 0.0 && p.y <= kReferenceWidth))
-      throw input_error(bench.bed, fmt::format("line {}", k + 2),
-                        fmt::format("the grain is outside the bin, expected x from 0 m on, y 0 to {:g} m",
-                                    kReferenceWidth));
-    if (p.x > kLongest)
-      throw input_error(bench.bed, fmt::format("line {}", k + 2),
-                        fmt::format("x is {:g} m, expected at most {:g} m", p.x, kLongest));
-    longest = std::max(longest, p.x);
-    p.y -= 0.5 * kReferenceWidth;
-  }
-  options.length = std::max(1.0, std::ceil(longest));
-  options.periodic_x = true;
-  terrain::dem::check_positions(options, bench.bed, grains);
-  return grains;
-}
 
 void check(const GrainBench& bench) {
   const auto require = [](bool ok, const char* key, const char* expected) {
@@ -70,80 +27,51 @@ void check(const GrainBench& bench) {
   require(bench.settle >= 0.0, "--settle", "0 or more, s");
 }
 
-}  // namespace
-
-std::string bench_grains(const GrainBench& bench, const ProgressCall& progress) {
-  check(bench);
-  terrain::TerrainOptions options;
+terrain::dem::DemOptions grain_options(const GrainBench& bench) {
+  terrain::dem::DemOptions options;
   options.law = terrain::dem::law_name(terrain::dem::law_from(bench.law));
   options.cohesion = bench.cohesion;
   options.rolling_friction = bench.rolling_friction;
+  options.precision = bench.precision;
   options.step = bench.step;
   options.threads = options.settle_threads = bench.threads;
-  options.precision = bench.precision;
-  options.activity = false;
   const terrain::dem::StableStep stable =
       terrain::dem::stable_at(options, terrain::dem::stated_overlap(options));
   if (bench.step > stable.step)
     throw input_error("command line", "--step",
                       fmt::format("is {:g} s, expected at most the stable step of {:.3g} s ({})", bench.step,
                                   stable.step, stable.reason));
-  const std::vector<terrain::dem::Quad> bed = bed_of(bench, options, progress);
-  options.periodic_x = true;
+  return options;
+}
 
-  const terrain::dem::SolverParams params = terrain::dem::solver_params(options);
-  terrain::dem::GrainSolver solver(params);
-  solver.place(bed);
-  terrain::dem::SettleResult settled;
-  if (bench.settle > 0.0) settled = terrain::dem::settle(solver, options, progress, bench.settle);
-  solver.set_coefficients(terrain::dem::run_coefficients(options, bench.step));
+}  // namespace
 
-  const auto steps = [&](const char* what, int count) {
-    for (int k = 0; k < count; ++k) {
-      progress(what, static_cast<double>(k) / count);
-      if (solver.step(bench.step, k + 1 == count) >= 0)
-        throw physics_error("a grain left the bin: the bed is not at rest with this law");
-    }
-  };
-  steps("warming up", bench.warm);
-  if (!bench.save.empty())
-    terrain::dem::write_positions_csv(
-        bench.save, std::span(solver.grains().position).first(solver.grains().count), 0.5 * kReferenceWidth);
-  solver.reset_accounts();
-  const auto begin = std::chrono::steady_clock::now();
-  steps("stepping", bench.steps);
-  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-
-  const terrain::dem::Accounts& a = solver.accounts();
-  const terrain::dem::Grains& grains = solver.grains();
-  const double n = grains.count, contacts = static_cast<double>(a.contacts);
-  std::int64_t listed = 0;
-  for (int k = 0; k < solver.strips().count(); ++k) listed += solver.strips()[k].pairs;
-  Hash hash;
-  for (const auto* array : {&grains.position, &grains.velocity, &grains.spin})
-    hash.add(std::span<const terrain::dem::Quad>(*array).first(grains.count));
-  const nlohmann::ordered_json json = {
-      {"grain_steps_per_s", n * bench.steps / wall},
-      {"ms_per_step", 1e3 * wall / bench.steps},
-      {"ns_per_contact", 1e9 * wall / bench.steps / contacts},
-      {"grains", grains.count},
-      {"contacts", a.contacts},
-      {"coordination", 2.0 * contacts / n},
-      {"pairs_listed_per_grain", static_cast<double>(listed) / n},
-      {"floor_force_N", a.floor_force},
-      {"weight_N", solver.relative_mass() * params.grain.mass * params.gravity},
-      {"kinetic_energy_J", a.kinetic},
-      {"force_residual", a.contact_force > 0.0 ? a.net_force / a.contact_force : 0.0},
-      {"settled_s", settled.time},
-      {"list_rebuilds", solver.rebuilds()},
-      {"bytes_per_grain", static_cast<double>(solver.bytes()) / n},
-      {"steps", bench.steps},
-      {"threads", bench.threads},
-      {"law", options.law},
-      {"precision", bench.precision},
-      {"cohesion_Pa", bench.cohesion},
-      {"rolling_friction", bench.rolling_friction},
-      {"state_hash", hash.hex()}};
+std::string bench_grains(const GrainBench& bench, const ProgressCall& progress) {
+  check(bench);
+  const terrain::dem::GrainBenchResult r = terrain::dem::run_grain_bench(
+      {grain_options(bench), bench.bed, bench.steps, bench.warm, bench.settle, bench.save}, progress);
+  const double n = r.grains, contacts = static_cast<double>(r.contacts);
+  const nlohmann::ordered_json json = {{"grain_steps_per_s", n * bench.steps / r.wall},
+                                       {"ms_per_step", 1e3 * r.wall / bench.steps},
+                                       {"ns_per_contact", 1e9 * r.wall / bench.steps / contacts},
+                                       {"grains", r.grains},
+                                       {"contacts", r.contacts},
+                                       {"coordination", 2.0 * contacts / n},
+                                       {"pairs_listed_per_grain", static_cast<double>(r.pairs_listed) / n},
+                                       {"floor_force_N", r.floor_force},
+                                       {"weight_N", r.weight},
+                                       {"kinetic_energy_J", r.kinetic_energy},
+                                       {"force_residual", r.force_residual},
+                                       {"settled_s", r.settled},
+                                       {"list_rebuilds", r.list_rebuilds},
+                                       {"bytes_per_grain", r.bytes / n},
+                                       {"steps", bench.steps},
+                                       {"threads", bench.threads},
+                                       {"law", terrain::dem::law_name(terrain::dem::law_from(bench.law))},
+                                       {"precision", bench.precision},
+                                       {"cohesion_Pa", bench.cohesion},
+                                       {"rolling_friction", bench.rolling_friction},
+                                       {"state_hash", r.state_hash}};
   return json.dump(2) + "\n";
 }
 

@@ -69,8 +69,7 @@ void check(const TireBench& bench) {
 class RollingTire {
  public:
   RollingTire(tire::AncfTire& tire, const TireBench& bench) : tire_(tire), bench_(bench) {
-    terrain::TerrainOptions options;
-    options.engine = "rigid";
+    terrain::GroundOptions options;
     // Forces come one step late: the ground is softened with the step (terrain/rigid/rigid_ground.hpp).
     const double slower = std::max(1.0, bench.step / kGroundStep);
     options.ground_stiffness /= slower * slower;

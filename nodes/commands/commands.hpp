@@ -81,9 +81,6 @@ ExitCode bed_command(const scenario::Scenario& scenario);
 /// What the end of a run tells people, from summary.json (commands_result.cpp).
 std::string result_text(const std::filesystem::path& run, const scenario::Scenario& scenario);
 
-/// @throws Error(bad_input) unless the terrain is made of grains; `what` says why it must be
-void require_grains(const scenario::Scenario& scenario, const std::string& what);
-
 /// "furrow: error: …", one line for every line of `text`.
 void print_error(const std::string& text);
 void print_warning(const std::string& text);

@@ -19,7 +19,8 @@ double wall_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-terrain::soil::SoilOptions soil_options(const scenario::Scenario& scenario, const SoilArguments& arguments) {
+terrain::soil::SoilOptions soil_options(const terrain::dem::DemOptions& grains,
+                                        const SoilArguments& arguments) {
   const auto require = [](bool ok, const char* key, const std::string& what) {
     if (!ok) throw input_error("command line", key, what);
   };
@@ -27,11 +28,11 @@ terrain::soil::SoilOptions soil_options(const scenario::Scenario& scenario, cons
           "is " + std::to_string(arguments.seeds) + ", expected 1 to 100");
   require(arguments.speed > 0.0 && arguments.speed <= 10.0, "--speed", "expected above 0 up to 10 m/s");
   terrain::soil::SoilOptions o;
-  o.material = scenario.terrain;
+  o.material = grains;
   o.seeds = arguments.quick ? 1 : arguments.seeds;
   o.speed = arguments.speed;
   o.quick = arguments.quick;
-  o.threads = scenario.terrain.settle_threads;
+  o.threads = grains.settle_threads;
   const auto& only = arguments.only;
   const auto asked = [&](const char* test) {
     return only.empty() || std::find(only.begin(), only.end(), test) != only.end();
@@ -56,10 +57,10 @@ ProgressCall shown_on(launch::ProgressDisplay& display) {
 }  // namespace
 
 ExitCode soil_command(const scenario::Scenario& scenario, const SoilArguments& arguments) {
-  require_grains(scenario, "only grains can be tested");
-  const terrain::soil::SoilOptions options = soil_options(scenario, arguments);
+  const terrain::dem::DemOptions grains = scenario.grains("only grains can be tested");
+  const terrain::soil::SoilOptions options = soil_options(grains, arguments);
   const terrain::soil::SoilPlan plan = terrain::soil::soil_plan(options);
-  if (!scenario.terrain.bed.empty())
+  if (!grains.bed.empty())
     print_warning(input_error(scenario.file.string(), "terrain.bed",
                               "is not what is tested: the tests make small beds of the same grains")
                       .what());

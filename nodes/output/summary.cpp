@@ -265,8 +265,9 @@ std::string summary_text(const SummaryInput& in) {
   json["scenario"] = in.scenario.name;
   json["scenario_digest"] = in.scenario.digest;
   json["state_hash"] = state.hex();
-  json["terrain_engine"] = in.scenario.terrain.engine;
-  json["law"] = in.scenario.terrain.law;
+  const terrain::TerrainDescription terrain = in.scenario.terrain->describe();
+  json["terrain_engine"] = terrain.engine;
+  if (!terrain.law.empty()) json["law"] = terrain.law;
   json["slip"] = in.scenario.rigs[in.wheel].slip;
   json["travel_sign"] = in.scenario.rigs[in.wheel].travel_sign;
   json["wheel"] = in.wheel;

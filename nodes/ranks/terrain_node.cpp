@@ -31,14 +31,14 @@ void restore_tangents(const Archive& archive, const std::string& name, NodalForc
 class TerrainNode : public Node {
  public:
   TerrainNode(const scenario::Scenario& scenario, int threads) : scenario_(scenario), threads_(threads) {
-    terrain::TerrainOptions options = scenario.terrain;
-    options.threads = threads;
-    terrain_ = terrain::make_terrain(options);
+    terrain::TerrainContext context = scenario.terrain_context();
+    context.threads = threads;
+    terrain_ = scenario.terrain->make(context);
   }
 
   NodeCard card() const override {
     NodeCard card = common_card(scenario_, kSelf);
-    card.node_kind = scenario_.terrain.engine;
+    card.node_kind = scenario_.terrain->describe().engine;
     card.substeps = scenario_.terrain_substeps;
     card.tire_count = static_cast<int>(scenario_.tires.size());
     card.threads = threads_;
@@ -175,15 +175,17 @@ class TerrainNode : public Node {
 
   /// Heights under the tires' footprints.
   void measure(std::span<const Vec3> rims, std::span<const NodeCard> cards) {
+    const terrain::TerrainDescription terrain = scenario_.terrain->describe();
+    const double length = terrain.bounds ? terrain.bounds->length : 0.0;
     for (std::size_t k = 0; k < rims.size(); ++k) {
       const Vec3& at = rims[k];
       const double reach = kFootprintShare * cards[1 + k].tire_radius, half = 0.5 * cards[1 + k].tire_width;
       setup_.top_height.push_back(
           terrain_->top_height(at.x() - reach, at.x() + reach, at.y() - 1.5 * half, at.y() + 1.5 * half));
-      const double length = scenario_.terrain.length, known = scenario_.terrain.undisturbed_height;
       setup_.mean_height.push_back(
-          known >= 0.0 ? known
-                       : terrain_->mean_height(0.1 * length, 0.9 * length, at.y() - half, at.y() + half));
+          terrain.undisturbed_height
+              ? *terrain.undisturbed_height
+              : terrain_->mean_height(0.1 * length, 0.9 * length, at.y() - half, at.y() + half));
     }
   }
 

@@ -6,6 +6,7 @@
 #include "nodes/scenario/schema.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_text.hpp"
+#include "terrain/terrains.hpp"
 
 namespace furrow::scenario {
 namespace {
@@ -32,6 +33,10 @@ std::string value_help(const std::string& key, const json& node) {
     line("usual",
          number_text(node["usual"][0].get<double>()) + " to " + number_text(node["usual"][1].get<double>()));
   line("default", node.contains("default") ? value_text(node["default"]) : std::string("none"));
+  const std::string section = "terrain.";
+  if (key.starts_with(section))
+    if (const auto engines = terrain::engines_of_key(key.substr(section.size())); !engines.empty())
+      line("engine", fmt::format("{}", fmt::join(engines, ", ")));
   return text;
 }
 

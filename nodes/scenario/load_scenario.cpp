@@ -11,12 +11,14 @@
 
 #include <fmt/format.h>
 
+#include "nodes/scenario/engine_keys.hpp"
 #include "nodes/scenario/scenario_checks.hpp"
 #include "nodes/scenario/schema.hpp"
 #include "nodes/scenario/soil_material.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/core/hash.hpp"
 #include "protocol/files/data_files.hpp"
+#include "protocol/files/json_fields.hpp"
 #include "protocol/files/json_text.hpp"
 #include "protocol/host.hpp"
 
@@ -97,7 +99,8 @@ json read_document(const std::string& file, const Settings& settings) {
   return document;
 }
 
-void complete(json& document, const std::string& file) {
+/// Returns a warning of keys that were set aside; empty if none were.
+std::string complete(json& document, const std::string& file, const Settings& settings) {
   const Schema schema = Schema::load();
   schema.normalize(document);
   if (const auto problems = schema.problems(document); !problems.empty()) throw all_problems(file, problems);
@@ -105,8 +108,11 @@ void complete(json& document, const std::string& file) {
     throw input_error(file, "tires", "is given beside 'tire', expected one of the two");
   if (!document.contains("tire") && !document.contains("tires"))
     throw input_error(file, "tire", "is missing, expected an object { } with the tire's file");
+  const std::string set_aside = set_aside_keys(document, schema, file, settings);
   schema.fill_defaults(document);
   schema.normalize(document);
+  remove_keys_of_other_engines(document);
+  return set_aside;
 }
 
 double number_or(const json& value, double absent) { return value.is_null() ? absent : value.get<double>(); }
@@ -220,45 +226,13 @@ int settle_threads(int wanted) {
 }
 
 void take_terrain(const json& j, Scenario& s) {
-  terrain::TerrainOptions& o = s.terrain;
-  o.scenario = s.file.string();
-  o.engine = j["engine"];
-  o.law = j["law"];
-  o.radius = j["radius"];
-  o.size_distribution = j["size_distribution"];
-  o.size_spread = j["size_spread"];
-  o.density = j["density"];
-  o.layers = j["layers"];
-  o.length = j["length"];
-  o.width = j["width"];
-  o.periodic_y = j["sides"] == "periodic";
-  o.seed = s.run.seed;
-  if (j["bed"].is_string()) o.bed = find_file(j["bed"], "terrain.bed", s.file).string();
-  o.bed_generator = j["bed_generator"];
-  o.undisturbed_height = number_or(j["undisturbed_height"], -1.0);
-  o.compaction_pressure = j["compaction_pressure"];
-  o.settling_friction = number_or(j["settling_friction"], -1.0);
-  o.cache = j["cache"];
-  o.young_modulus = j["young_modulus"];
-  o.poisson_ratio = j["poisson_ratio"];
-  o.restitution = j["restitution"];
-  o.friction = j["friction"];
-  o.rolling_friction = j["rolling_friction"];
-  o.cohesion = j["cohesion"];
-  o.normal_stiffness = j["normal_stiffness"];
-  o.normal_damping = j["normal_damping"];
-  o.friction_velocity_scale = j["friction_velocity_scale"];
-  o.friction_impulse_limit = j["friction_impulse_limit"];
-  o.activity = j["activity"];
-  o.precision = j["precision"];
-  o.ground_stiffness = j["ground_stiffness"];
-  o.ground_damping = j["ground_damping"];
-  o.ground_shear_stiffness = j["ground_shear_stiffness"];
-  o.allow_unstable_step = j["allow_unstable_step"];
-  o.settle_threads = settle_threads(s.run.threads);
-  s.terrain_ranks = j["ranks"];
-  s.terrain_substeps = j["substeps"];
-  o.step = s.run.step / s.terrain_substeps;
+  const ReadContext context{s.file.string(), "terrain"};
+  terrain::CommonOptions common;
+  read_fields(j, common);
+  s.terrain_ranks = common.ranks;
+  s.terrain_substeps = common.substeps;
+  s.settle_threads = settle_threads(s.run.threads);
+  s.terrain = terrain::find_terrain(common.engine, context).read(j, context);
 }
 
 /// The expected result holds for the scenario as shipped; a setting that changes the physics makes it void.
@@ -272,9 +246,9 @@ bool changes_results(const std::string& key) {
 std::string digest_of(json completed, const Scenario& s) {
   for (const char* harmless : {"description", "$schema", "expected", "checkpoint"}) completed.erase(harmless);
   for (const char* harmless : {"threads", "peer_timeout"}) completed["run"].erase(harmless);
-  completed["terrain"].erase("cache");
+  for (const std::string& key : terrain::terrain_keys(role::harmless)) completed["terrain"].erase(key);
   // Files count by what they hold, wherever they stand.
-  completed["terrain"].erase("bed");
+  for (const terrain::TerrainFile& file : s.terrain->files()) completed["terrain"].erase(file.key);
   if (completed.contains("tire")) completed["tire"].erase("file");
   if (completed.contains("tires"))
     for (json& tire : completed["tires"]) tire.erase("file");
@@ -293,7 +267,7 @@ void make_movable(json& document, const Scenario& s) {
     if (std::filesystem::is_regular_file(beside, error))
       name = std::filesystem::absolute(beside, error).lexically_normal().string();
   };
-  full(document["terrain"]["bed"]);
+  for (const terrain::TerrainFile& file : s.terrain->files()) full(document["terrain"][file.key]);
   if (document.contains("tire")) full(document["tire"]["file"]);
   if (document.contains("tires"))
     for (json& tire : document["tires"]) full(tire["file"]);
@@ -306,7 +280,8 @@ Scenario load_scenario(const std::filesystem::path& file, const Settings& settin
   s.file = file;
   s.name = file.stem().string();
   json document = read_document(file.string(), settings);
-  complete(document, file.string());
+  if (const std::string set_aside = complete(document, file.string(), settings); !set_aside.empty())
+    s.warnings.push_back(set_aside);
   take_run(document["run"], document["output"], s);
   take_checkpoint(document["checkpoint"], s);
   take_rig(document["rig"], s);
@@ -316,7 +291,6 @@ Scenario load_scenario(const std::filesystem::path& file, const Settings& settin
     for (std::size_t k = 0; k < document["tires"].size(); ++k)
       take_tire(document["tires"][k], fmt::format("tires.{}", k), s);
   take_terrain(document["terrain"], s);
-  for (const tire::TireOptions& tire : s.tires) s.terrain.contact_tangents |= tire.contact_tangent;
   if (document.contains("expected")) {
     s.expected.drawbar_pull = document["expected"]["drawbar_pull"];
     s.expected.drawbar_pull_spread = document["expected"]["drawbar_pull_spread"];
@@ -348,10 +322,12 @@ Scenario load_scenario(const std::filesystem::path& file, const Settings& settin
 bool may_change_on_resume(const std::string& key) {
   for (const char* section : {"output.", "checkpoint.", "expected."})
     if (key.starts_with(section)) return true;
-  for (const char* name : {"run.end", "run.average_from", "run.threads", "run.peer_timeout", "terrain.cache",
-                           "description", "$schema"})
+  for (const char* name :
+       {"run.end", "run.average_from", "run.threads", "run.peer_timeout", "description", "$schema"})
     if (key == name) return true;
-  return false;
+  const std::vector<std::string> harmless = terrain::terrain_keys(role::harmless);
+  return std::any_of(harmless.begin(), harmless.end(),
+                     [&](const std::string& name) { return key == "terrain." + name; });
 }
 
 }  // namespace furrow::scenario

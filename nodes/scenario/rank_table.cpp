@@ -19,7 +19,7 @@ std::vector<RankEntry> rank_table(const Scenario& s) {
   const std::string threads = s.run.threads > 0
                                   ? fmt::format("{} thread{}", s.run.threads, s.run.threads > 1 ? "s" : "")
                                   : "as many threads as there are cores left";
-  const std::string what = s.terrain.engine == "dem" ? "grains, law " + s.terrain.law : "rigid ground";
+  const std::string what = s.terrain->describe().name;
   for (int i = 0; i < s.terrain_ranks; ++i)
     table.push_back({static_cast<int>(table.size()), "terrain", what + "; " + threads});
   return table;

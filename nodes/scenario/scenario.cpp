@@ -4,8 +4,10 @@
 #include <fstream>
 #include <iterator>
 
+#include "protocol/core/error.hpp"
 #include "protocol/core/hash.hpp"
 #include "protocol/files/json_text.hpp"
+#include "terrain/dem/dem_options.hpp"
 
 namespace furrow::scenario {
 namespace {
@@ -25,8 +27,25 @@ std::vector<std::string> Scenario::file_hashes() const {
     hashes.push_back(hash.hex());
   };
   for (const tire::TireOptions& tire : tires) add(read_text_file(tire.file, "a tire file in JSON"));
-  if (!terrain.bed.empty()) add(file_bytes(terrain.bed));
+  for (const terrain::TerrainFile& file : terrain->files()) add(file_bytes(file.path.string()));
   return hashes;
+}
+
+terrain::TerrainContext Scenario::terrain_context() const {
+  terrain::TerrainContext context;
+  context.step = terrain_step();
+  context.seed = run.seed;
+  context.threads = context.settle_threads = settle_threads;
+  for (const tire::TireOptions& tire : tires) context.contact_tangents |= tire.contact_tangent;
+  return context;
+}
+
+terrain::dem::DemOptions Scenario::grains(const std::string& what) const {
+  if (const terrain::dem::DemOptions* options = terrain->grains())
+    return terrain::dem::with_context(*options, terrain_context());
+  throw input_error(
+      file.string(), "terrain.engine",
+      "is '" + terrain->describe().engine + "', expected " + terrain::engines_with_grains() + ": " + what);
 }
 
 std::int64_t RunOptions::steps() const { return std::llround(end / step); }

@@ -4,11 +4,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "rigs/drawbar_rig.hpp"
-#include "terrain/terrain_options.hpp"
+#include "terrain/terrains.hpp"
 #include "tire/tire.hpp"
 
 namespace furrow::scenario {
@@ -56,16 +57,24 @@ struct Scenario {
   double drop_height = 0.0;              // of all tires above the ground at t = 0, m
   std::vector<tire::TireOptions> tires;  // one per wheel
   int tire_substeps = 1;
-  terrain::TerrainOptions terrain;
+  std::shared_ptr<const terrain::TerrainSpec> terrain = terrain::default_terrain();
   int terrain_ranks = 1;
   int terrain_substeps = 1;
+  int settle_threads = 1;  // OpenMP threads of the terrain while a bed settles
   RunOptions run;
   OutputOptions output;
   CheckpointOptions checkpoint;
   ExpectedResult expected;
   std::vector<std::string> warnings;  // what looks wrong but is allowed
 
-  /// Of what the tire files and the bed's file hold, in this order.
+  double terrain_step() const { return run.step / terrain_substeps; }  // s
+  /// What the run supplies to its terrain, with as many threads as a bed settles with.
+  terrain::TerrainContext terrain_context() const;
+  /// The options of the terrain's grains, with what the run supplies.
+  /// @throws Error(bad_input) unless the terrain is made of grains; `what` says why it must be
+  terrain::dem::DemOptions grains(const std::string& what) const;
+
+  /// Of what the tire files and the terrain's files hold, in this order.
   std::vector<std::string> file_hashes() const;
 };
 

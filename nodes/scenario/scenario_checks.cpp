@@ -25,7 +25,8 @@ constexpr double kLateShare = 0.04, kTangentShare = 0.1;
 
 class Checks {
  public:
-  explicit Checks(Scenario& scenario) : s_(scenario), file_(scenario.file.string()) {}
+  explicit Checks(Scenario& scenario)
+      : s_(scenario), file_(scenario.file.string()), terrain_(scenario.terrain->describe()) {}
 
   Error wrong(const std::string& key, const std::string& what) const { return input_error(file_, key, what); }
   void warn(const std::string& key, const std::string& what) {
@@ -55,7 +56,6 @@ class Checks {
     const double along = tire.radius * c + half * s;
     return {rig.toe_time > 0.0 ? std::max(along, tire.radius) : along, half * c + tire.radius * s};
   }
-  bool grains() const { return s_.terrain.engine == "dem"; }
   /// The key of a wheel's value: the rig's own while there is no list of wheels.
   std::string wheel_key(std::size_t wheel, const std::string& name) const {
     return s_.rigs.size() == 1 ? "rig." + name : fmt::format("rig.wheels.{}.{}", wheel, name);
@@ -63,6 +63,7 @@ class Checks {
 
   Scenario& s_;
   std::string file_;
+  terrain::TerrainDescription terrain_;
   std::vector<TireSize> tires_;
 };
 
@@ -121,32 +122,32 @@ void Checks::tires() {
                        number_text(s_.run.step), share, number_text(tau), number_text(0.5 * share * tau),
                        options.contact_tangent ? "" : ", or tire.contact_tangent"));
   }
-  if (!grains()) return;
+  if (!terrain_.bounds) return;
   for (std::size_t k = 0; k < tires_.size(); ++k) {
     const TireSize& tire = tires_[k];
     const double off = std::abs(s_.rigs[k].lateral);
     const Footprint foot = footprint(k);
     const double width = 2.0 * (foot.across + off + kWallMargin), length = 2.0 * (foot.along + kWallMargin);
-    if (width > s_.terrain.width)
+    if (width > terrain_.bounds->width)
       throw wrong("terrain.width",
                   fmt::format("is {} m, expected at least {:.2f} m: the tire is {:.2f} m wide{}",
-                              number_text(s_.terrain.width), width, tire.width,
+                              number_text(terrain_.bounds->width), width, tire.width,
                               off > 0.0 ? fmt::format(", {} m off the middle", number_text(off)) : ""));
-    if (length > s_.terrain.length)
+    if (length > terrain_.bounds->length)
       throw wrong("terrain.length",
                   fmt::format("is {} m, expected at least {:.2f} m: the tire is {:.2f} m long",
-                              number_text(s_.terrain.length), length, 2.0 * tire.radius));
-    if (s_.terrain.radius > kCoarseGrain * tire.radius)
+                              number_text(terrain_.bounds->length), length, 2.0 * tire.radius));
+    if (terrain_.grain_radius > kCoarseGrain * tire.radius)
       warn("terrain.radius", fmt::format("grains of {} m are coarse under a tire of radius {} m",
-                                         number_text(s_.terrain.radius), number_text(tire.radius)));
+                                         number_text(terrain_.grain_radius), number_text(tire.radius)));
   }
 }
 
 void Checks::bin() {
-  if (!grains()) return;
-  const double least = kMinGrains * s_.terrain.radius;
+  if (!terrain_.bounds) return;
+  const double least = kMinGrains * terrain_.grain_radius;
   for (const auto& [key, size] :
-       {std::pair{"terrain.length", s_.terrain.length}, {"terrain.width", s_.terrain.width}})
+       {std::pair{"terrain.length", terrain_.bounds->length}, {"terrain.width", terrain_.bounds->width}})
     if (size < least)
       throw wrong(key, fmt::format("is {} m, expected at least {} m, two grains", number_text(size),
                                    number_text(least)));
@@ -155,13 +156,14 @@ void Checks::bin() {
 void Checks::start(const std::vector<bool>& use_default) {
   for (std::size_t k = 0; k < tires_.size(); ++k) {
     rigs::DrawbarRigOptions& rig = s_.rigs[k];
-    const double length = s_.terrain.length, radius = footprint(k).along, reach = radius + kWallMargin;
+    const double length = terrain_.bounds ? terrain_.bounds->length : 0.0, radius = footprint(k).along,
+                 reach = radius + kWallMargin;
     if (use_default[k]) {
       const AxlePath path = axle_path(s_, k, tires_[k].radius);
       const bool forward = path.to - rig.start >= 0.0;
-      rig.start = !grains() ? 0.0 : forward ? reach : length - reach;
+      rig.start = !terrain_.bounds ? 0.0 : forward ? reach : length - reach;
     }
-    if (!grains()) continue;
+    if (!terrain_.bounds) continue;
     const AxlePath path = axle_path(s_, k, tires_[k].radius);
     if (path.from - radius < 0.0 || path.from + radius > length)
       throw wrong(wheel_key(k, "start"),
@@ -197,12 +199,12 @@ void Checks::overlaps() {
 }
 
 void Checks::step() {
-  const terrain::TerrainEstimate estimate = terrain::estimate_terrain(s_.terrain);
-  if (s_.terrain.step <= estimate.stable_step) return;
+  const terrain::TerrainEstimate estimate = s_.terrain->estimate(s_.terrain_context());
+  if (s_.terrain_step() <= estimate.stable_step) return;
   const std::string what =
-      fmt::format("{} s is above the stable step of {:.3g} s ({})", number_text(s_.terrain.step),
+      fmt::format("{} s is above the stable step of {:.3g} s ({})", number_text(s_.terrain_step()),
                   estimate.stable_step, estimate.stable_reason);
-  if (s_.terrain.allow_unstable_step)
+  if (terrain_.unstable_step_allowed)
     return warn("run.step", what + ", allowed by terrain.allow_unstable_step");
   throw wrong("run.step", what + ", expected a smaller step, more terrain.substeps or softer grains");
 }

@@ -1,7 +1,6 @@
 #include "nodes/scenario/soil_material.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include <fmt/format.h>
 
@@ -9,6 +8,7 @@
 #include "protocol/core/error.hpp"
 #include "protocol/files/data_files.hpp"
 #include "protocol/files/json_text.hpp"
+#include "terrain/terrains.hpp"
 
 namespace furrow::scenario {
 namespace {
@@ -16,20 +16,6 @@ namespace {
 using nlohmann::json;
 
 constexpr int kFormatVersion = 1;
-/// What a soil may say of a terrain; the bin and the size of its grains are the scenario's.
-constexpr std::array<const char*, 13> kKeys{"law",
-                                            "density",
-                                            "young_modulus",
-                                            "poisson_ratio",
-                                            "restitution",
-                                            "friction",
-                                            "cohesion",
-                                            "size_distribution",
-                                            "size_spread",
-                                            "bed_generator",
-                                            "rolling_friction",
-                                            "settling_friction",
-                                            "compaction_pressure"};
 
 /// The soil named in the scenario; null when it names none.
 json named_material(const json& document, const std::filesystem::path& scenario) {
@@ -59,10 +45,13 @@ json read_soil_material(const std::filesystem::path& file) {
     throw input_error(
         name, "format_version",
         fmt::format("is {}, expected {}", value_text(soil.value("format_version", json())), kFormatVersion));
+  // The bin and the size of its grains are the scenario's.
+  const std::vector<std::string> of_soil = terrain::terrain_keys(role::soil);
   for (const auto& [key, value] : soil["terrain"].items())
-    if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end())
-      throw input_error(name, "terrain." + key,
-                        fmt::format("is not a property of soil, expected one of {}", fmt::join(kKeys, ", ")));
+    if (std::find(of_soil.begin(), of_soil.end(), key) == of_soil.end())
+      throw input_error(
+          name, "terrain." + key,
+          fmt::format("is not a property of soil, expected one of {}", fmt::join(of_soil, ", ")));
   json alone{{"terrain", soil["terrain"]}};
   const Schema schema = Schema::load();
   schema.normalize(alone);

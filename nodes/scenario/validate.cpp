@@ -33,14 +33,15 @@ MassProperties tire_mass(const tire::TireOptions& options) {
 
 nlohmann::ordered_json validation_report(const Scenario& s) {
   const Estimate e = estimate(s);
-  const bool grains = s.terrain.engine == "dem";
   nlohmann::ordered_json json;
   json["scenario"] = s.name;
   json["scenario_digest"] = s.digest;
   json["step_s"] = s.run.step;
-  json["terrain_step_s"] = s.terrain.step;
+  json["exact_restart"] = s.terrain->describe().exact_restart;
+  json["terrain_step_s"] = s.terrain_step();
+  const bool limited = std::isfinite(e.terrain.stable_step);
   json["stable_step_s"] =
-      grains ? nlohmann::ordered_json(e.terrain.stable_step) : nlohmann::ordered_json(nullptr);
+      limited ? nlohmann::ordered_json(e.terrain.stable_step) : nlohmann::ordered_json(nullptr);
   json["stable_step_limited_by"] = e.terrain.stable_reason;
   json["steps"] = e.steps;
   json["grains"] = e.terrain.grains;
@@ -61,7 +62,6 @@ nlohmann::ordered_json validation_report(const Scenario& s) {
 
 std::string validation_text(const Scenario& s) {
   const Estimate e = estimate(s);
-  const bool grains = s.terrain.engine == "dem";
   std::string text;
   const auto line = [&](const std::string& name, const std::string& value) {
     text += fmt::format("{:<12} {}\n", name, value);
@@ -69,15 +69,11 @@ std::string validation_text(const Scenario& s) {
   line("scenario", fmt::format("{} (digest {})", s.file.string(), s.digest));
   line("run", fmt::format("{:g} s in {} steps of {:g} s, averaged from {:g} s on", s.run.end, e.steps,
                           s.run.step, s.run.average_from));
-  if (grains)
-    line("terrain step", fmt::format("{:g} s, {:.0f} % of the stable {:.3g} s ({})", s.terrain.step,
-                                     100.0 * s.terrain.step / e.terrain.stable_step, e.terrain.stable_step,
+  if (std::isfinite(e.terrain.stable_step))
+    line("terrain step", fmt::format("{:g} s, {:.0f} % of the stable {:.3g} s ({})", s.terrain_step(),
+                                     100.0 * s.terrain_step() / e.terrain.stable_step, e.terrain.stable_step,
                                      e.terrain.stable_reason));
-  line("terrain",
-       grains ? fmt::format("about {} grains of {:g} mm, law {}, bed about {:.0f} mm deep, bin {:g} × {:g} m",
-                            e.terrain.grains, 1e3 * s.terrain.radius, s.terrain.law,
-                            1e3 * e.terrain.expected_height, s.terrain.length, s.terrain.width)
-              : std::string("rigid plane z = 0"));
+  line("terrain", e.terrain.text);
   for (std::size_t k = 0; k < s.tires.size(); ++k) {
     const tire::TireOptions& options = s.tires[k];
     const TireSize size = tire_size(options);

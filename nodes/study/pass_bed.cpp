@@ -12,16 +12,13 @@ namespace furrow::study {
 terrain::dem::RestResult make_pass_bed(const std::filesystem::path& run, double rest,
                                        const ProgressCall& progress, const std::filesystem::path& file) {
   const checkpoint::ResumePoint point = checkpoint::last_checkpoint(run);
-  scenario::Scenario scenario = scenario::load_scenario(run / "scenario.json", {});
-  if (scenario.terrain.engine != "dem")
-    throw input_error(run.string(), "terrain.engine",
-                      "is '" + scenario.terrain.engine + "', expected 'dem': only grains keep a rut");
+  const scenario::Scenario scenario = scenario::load_scenario(run / "scenario.json", {});
+  const terrain::dem::DemOptions grains = scenario.grains("only grains keep a rut");
   if (point.manifest.step != scenario.run.steps())
     throw input_error(run.string(), "", "has no checkpoint of its end, expected checkpoint.at_end");
-  scenario.terrain.threads = scenario.terrain.settle_threads;
   terrain::dem::RestResult result;
   const Archive state = read_archive(point.folder / checkpoint::part_name({Role::terrain, 0}));
-  terrain::dem::write_bed(file, terrain::dem::bed_after_run(state, scenario.terrain, rest, progress, result));
+  terrain::dem::write_bed(file, terrain::dem::bed_after_run(state, grains, rest, progress, result));
   return result;
 }
 

@@ -129,10 +129,7 @@ void Sweep::load(Run& run) {
   all.update(run.passes_on);
   try {
     const scenario::Scenario scenario = scenario::load_scenario(study_.scenario, settings_of(all));
-    if (study_.passes > 1 && scenario.terrain.engine != "dem")
-      throw input_error(
-          study_.scenario.string(), "terrain.engine",
-          "is '" + scenario.terrain.engine + "', expected 'dem': passes need grains, which keep a rut");
+    if (study_.passes > 1) (void)scenario.grains("passes need grains, which keep a rut");
     if (study_.passes > 1 && !scenario.checkpoint.at_end)
       throw input_error(study_.scenario.string(), "checkpoint.at_end",
                         "is false, expected true: the next pass begins on the checkpoint at the end");

@@ -50,12 +50,12 @@ GrainProperties grain_properties(double radius, double density) {
   return {radius, mass, 0.4 * mass * radius * radius};
 }
 
-ContactMaterial grain_material(const TerrainOptions& o) {
+ContactMaterial grain_material(const DemOptions& o) {
   return {o.young_modulus,    o.poisson_ratio,  o.friction, o.restitution,
           o.normal_stiffness, o.normal_damping, o.cohesion};
 }
 
-LawSettings law_settings(const TerrainOptions& o) {
+LawSettings law_settings(const DemOptions& o) {
   return {law_from(o.law), o.rolling_friction, o.friction_velocity_scale, o.friction_impulse_limit, o.step};
 }
 

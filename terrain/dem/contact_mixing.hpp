@@ -5,7 +5,7 @@
 
 #include "protocol/core/surface.hpp"
 #include "terrain/dem/contact_law.hpp"
-#include "terrain/terrain_options.hpp"
+#include "terrain/dem/dem_options.hpp"
 
 namespace furrow::terrain::dem {
 
@@ -24,7 +24,7 @@ struct GrainProperties {
 GrainProperties grain_properties(double radius, double density);
 
 /// The grains' own material as options state it.
-ContactMaterial grain_material(const TerrainOptions& options);
+ContactMaterial grain_material(const DemOptions& options);
 
 /// What a law needs beyond the two materials.
 struct LawSettings {
@@ -34,7 +34,7 @@ struct LawSettings {
   bool friction_impulse_limit = true;
   double step = 0.0;  // s, for the impulse limit
 };
-LawSettings law_settings(const TerrainOptions& options);
+LawSettings law_settings(const DemOptions& options);
 
 enum class Partner {
   grain,

@@ -22,10 +22,12 @@ namespace {
 
 using namespace dem;
 
-constexpr double kLooseFraction = 0.50;   // solid fraction of a bed that settled with cohesion, estimate
-constexpr double kBytesPerGrain = 900.0;  // state, list with history, and what a rebuild holds twice
+constexpr double kLooseFraction = 0.50;        // solid fraction of a bed that settled with cohesion, estimate
+constexpr double kBytesPerGrain = 900.0;       // state, list with history, and what a rebuild holds twice
+constexpr double kBytesPerFrameGrain = 20.0;   // position, speed, radius in single precision
+constexpr double kBytesPerSavedGrain = 300.0;  // in a checkpoint: state, pair list, contact history
 
-void check(const TerrainOptions& o) {
+void check(const DemOptions& o) {
   const auto require = [&](bool ok, const char* key, double value, const char* expected) {
     if (!ok)
       throw input_error(o.scenario, std::string("terrain.") + key,
@@ -58,7 +60,7 @@ void check(const TerrainOptions& o) {
 
 class DemTerrain : public Terrain {
  public:
-  explicit DemTerrain(const TerrainOptions& options)
+  explicit DemTerrain(const DemOptions& options)
       : options_(options), solver_(dem::solver_params(options)), dt_(options.step) {
     solver_.surfaces().give_tangents(options.contact_tangents);
     solver_.set_coefficients(dem::run_coefficients(options_, dt_));
@@ -196,8 +198,8 @@ class DemTerrain : public Terrain {
   const char* beyond(const Vec3& lo, const Vec3& hi) const {
     if (!options_.periodic_x && !(lo.x() >= 0.0)) return "the wall x = 0";
     if (!options_.periodic_x && !(hi.x() <= options_.length)) return "the wall x = length";
-    if (!options_.periodic_y && !(lo.y() >= -0.5 * options_.width)) return "the wall y = -width/2";
-    if (!options_.periodic_y && !(hi.y() <= 0.5 * options_.width)) return "the wall y = width/2";
+    if (!options_.periodic_y() && !(lo.y() >= -0.5 * options_.width)) return "the wall y = -width/2";
+    if (!options_.periodic_y() && !(hi.y() <= 0.5 * options_.width)) return "the wall y = width/2";
     if (!(lo.z() >= 0.0)) return "the floor";
     return nullptr;
   }
@@ -230,7 +232,7 @@ class DemTerrain : public Terrain {
                     overlap, 50.0 * overlap / options_.radius, stable.step, stable.reason, dt_));
   }
 
-  TerrainOptions options_;
+  dem::DemOptions options_;
   dem::GrainSolver solver_;
   double dt_;                    // s
   double time_ = 0.0;            // advanced, s
@@ -239,7 +241,7 @@ class DemTerrain : public Terrain {
 
 }  // namespace
 
-std::unique_ptr<Terrain> make_dem_terrain(const TerrainOptions& options) {
+std::unique_ptr<Terrain> make_dem_terrain(const DemOptions& options) {
   check(options);
   const dem::StableStep stable = dem::stable_at(options, dem::stated_overlap(options));
   if (options.step > stable.step && !options.allow_unstable_step)
@@ -250,7 +252,7 @@ std::unique_ptr<Terrain> make_dem_terrain(const TerrainOptions& options) {
   return std::make_unique<DemTerrain>(options);
 }
 
-TerrainEstimate estimate_dem_terrain(const TerrainOptions& options) {
+TerrainEstimate estimate_dem_terrain(const dem::DemOptions& options) {
   check(options);
   TerrainEstimate e;
   const dem::StableStep stable = dem::stable_at(options, dem::stated_overlap(options));
@@ -259,9 +261,14 @@ TerrainEstimate estimate_dem_terrain(const TerrainOptions& options) {
   const double grains = dem::expected_grains(options);
   e.grains = static_cast<std::int64_t>(std::llround(grains));
   e.memory_bytes = kBytesPerGrain * grains;
+  e.frame_bytes = kBytesPerFrameGrain * static_cast<double>(e.grains);
+  e.checkpoint_bytes = kBytesPerSavedGrain * static_cast<double>(e.grains);
   const double volume =
       grains * 4.0 / 3.0 * std::numbers::pi * std::pow(options.radius, 3) * dem::mean_volume_ratio(options);
   e.expected_height = volume / (kLooseFraction * options.length * options.width);
+  e.text =
+      fmt::format("about {} grains of {:g} mm, law {}, bed about {:.0f} mm deep, bin {:g} × {:g} m", e.grains,
+                  1e3 * options.radius, options.law, 1e3 * e.expected_height, options.length, options.width);
   return e;
 }
 

@@ -14,7 +14,7 @@ namespace {
 constexpr double kCut = 2.0;  // normal: the spread is so many standard deviations, beyond it nothing is drawn
 
 /// Variance of the radius over that of the whole spread squared.
-double relative_variance(const TerrainOptions& o) {
+double relative_variance(const DemOptions& o) {
   if (o.size_distribution == "uniform") return 1.0 / 3.0;
   // A normal distribution cut at ± kCut [Johnson, Kotz & Balakrishnan 1994, Continuous univariate distributions 1, §10.1].
   const double density = std::exp(-0.5 * kCut * kCut) / std::sqrt(2.0 * std::numbers::pi);
@@ -23,7 +23,7 @@ double relative_variance(const TerrainOptions& o) {
 
 class Draw {
  public:
-  Draw(const TerrainOptions& o, std::uint64_t seed) : bits_(seed), normal_(o.size_distribution == "normal") {}
+  Draw(const DemOptions& o, std::uint64_t seed) : bits_(seed), normal_(o.size_distribution == "normal") {}
   /// In [−1, 1).
   double operator()() {
     for (;;) {
@@ -40,7 +40,7 @@ class Draw {
 
 }  // namespace
 
-void check_sizes(const TerrainOptions& o) {
+void check_sizes(const DemOptions& o) {
   if (o.size_distribution != "uniform" && o.size_distribution != "normal")
     throw input_error(o.scenario, "terrain.size_distribution",
                       "'" + o.size_distribution + "' is unknown, expected uniform or normal");
@@ -54,21 +54,21 @@ void check_sizes(const TerrainOptions& o) {
                                   o.size_spread, o.law));
 }
 
-double smallest_radius(const TerrainOptions& o) { return o.radius * (1.0 - o.size_spread); }
-double largest_radius(const TerrainOptions& o) { return o.radius * (1.0 + o.size_spread); }
+double smallest_radius(const DemOptions& o) { return o.radius * (1.0 - o.size_spread); }
+double largest_radius(const DemOptions& o) { return o.radius * (1.0 + o.size_spread); }
 
-TerrainOptions of_one_size(TerrainOptions options, double radius) {
+DemOptions of_one_size(DemOptions options, double radius) {
   options.radius = radius;
   options.size_spread = 0.0;
   return options;
 }
 
 // Both distributions are symmetric: the mean of (1 + s x)³ is 1 + 3 s² var(x).
-double mean_volume_ratio(const TerrainOptions& o) {
+double mean_volume_ratio(const DemOptions& o) {
   return 1.0 + 3.0 * o.size_spread * o.size_spread * relative_variance(o);
 }
 
-void draw_radii(const TerrainOptions& o, std::vector<Quad>& grains) {
+void draw_radii(const DemOptions& o, std::vector<Quad>& grains) {
   Draw draw(o, o.seed * 1000003ULL + 0x9e3779b9ULL);
   for (Quad& p : grains) p.w = o.size_spread > 0.0 ? o.radius * (1.0 + o.size_spread * draw()) : o.radius;
 }

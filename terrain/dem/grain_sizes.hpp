@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "terrain/dem/dem_options.hpp"
 #include "terrain/dem/quad.hpp"
-#include "terrain/terrain_options.hpp"
 
 namespace furrow::terrain::dem {
 
@@ -12,19 +12,19 @@ namespace furrow::terrain::dem {
 inline constexpr double kWidestSpread = 0.6;
 
 /// @throws Error(bad_input) naming the key.
-void check_sizes(const TerrainOptions& options);
+void check_sizes(const DemOptions& options);
 
 /// Radii of the smallest and the largest grain that the options allow, m.
-double smallest_radius(const TerrainOptions& options);
-double largest_radius(const TerrainOptions& options);
+double smallest_radius(const DemOptions& options);
+double largest_radius(const DemOptions& options);
 
 /// The same bed with all grains of another size.
-TerrainOptions of_one_size(TerrainOptions options, double radius);
+DemOptions of_one_size(DemOptions options, double radius);
 
 /// Mean volume of a drawn grain over that of a grain of `radius`.
-double mean_volume_ratio(const TerrainOptions& options);
+double mean_volume_ratio(const DemOptions& options);
 
 /// Gives each grain a radius (its w, m), drawn in order from the seed.
-void draw_radii(const TerrainOptions& options, std::vector<Quad>& grains);
+void draw_radii(const DemOptions& options, std::vector<Quad>& grains);
 
 }  // namespace furrow::terrain::dem

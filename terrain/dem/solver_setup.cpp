@@ -13,7 +13,7 @@ Precision precision_from(const std::string& name) {
   throw input_error("scenario", "terrain.precision", "'" + name + "' is unknown, expected mixed or double");
 }
 
-SolverParams solver_params(const TerrainOptions& o) {
+SolverParams solver_params(const DemOptions& o) {
   SolverParams p;
   p.law = law_from(o.law);
   p.rolling = o.rolling_friction > 0.0;
@@ -23,7 +23,7 @@ SolverParams solver_params(const TerrainOptions& o) {
   p.bin.length = o.length;
   p.bin.width = o.width;
   p.bin.periodic_x = o.periodic_x;
-  p.bin.periodic_y = o.periodic_y;
+  p.bin.periodic_y = o.periodic_y();
   // Friction of law hertz_tanh without its limiter chatters: such a bed never rests.
   p.activity = o.activity && (p.law == LawKind::mindlin || o.friction_impulse_limit);
   p.skin = kSkinShare * o.radius;
@@ -31,14 +31,14 @@ SolverParams solver_params(const TerrainOptions& o) {
   return p;
 }
 
-SolverParams settling_params(const TerrainOptions& options) {
+SolverParams settling_params(const DemOptions& options) {
   SolverParams p = solver_params(options);
   p.threads = std::max(1, options.settle_threads);
   p.activity = false;
   return p;
 }
 
-SolverCoefficients run_coefficients(const TerrainOptions& options, double step) {
+SolverCoefficients run_coefficients(const DemOptions& options, double step) {
   LawSettings law = law_settings(options);
   law.step = step;
   const GrainProperties grain = grain_properties(options.radius, options.density);
@@ -48,12 +48,12 @@ SolverCoefficients run_coefficients(const TerrainOptions& options, double step) 
 }
 
 /// The smallest grains are the least stable: K ∝ r^½ against m ∝ r³, and their neighbours are no stiffer than theirs.
-StableStep stable_at(const TerrainOptions& options, double overlap) {
+StableStep stable_at(const DemOptions& options, double overlap) {
   const double radius = smallest_radius(options);
   return stable_step(run_coefficients(of_one_size(options, radius), options.step).pair,
                      grain_properties(radius, options.density), law_settings(options), overlap);
 }
 
-double stated_overlap(const TerrainOptions& options) { return kStatedOverlap * smallest_radius(options); }
+double stated_overlap(const DemOptions& options) { return kStatedOverlap * smallest_radius(options); }
 
 }  // namespace furrow::terrain::dem

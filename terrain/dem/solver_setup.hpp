@@ -1,8 +1,8 @@
 // From the options of a scenario to the parameters and coefficients of the grain solver.
 #pragma once
 
+#include "terrain/dem/dem_options.hpp"
 #include "terrain/dem/grain_solver.hpp"
-#include "terrain/terrain_options.hpp"
 
 namespace furrow::terrain::dem {
 
@@ -11,14 +11,14 @@ inline constexpr double kSkinShare = 0.2;  // skin of the neighbour list, of the
 /// @throws Error(bad_input) listing the valid names.
 Precision precision_from(const std::string& name);
 
-SolverParams solver_params(const TerrainOptions& options);
+SolverParams solver_params(const DemOptions& options);
 /// The same for making a bed: with its own number of threads, and no grain sleeps.
-SolverParams settling_params(const TerrainOptions& options);
+SolverParams settling_params(const DemOptions& options);
 /// Coefficients of a run with this step, s: walls are of the grains' material.
-SolverCoefficients run_coefficients(const TerrainOptions& options, double step);
+SolverCoefficients run_coefficients(const DemOptions& options, double step);
 /// Of a bed of these grains whose contacts have overlap `overlap`, m.
-StableStep stable_at(const TerrainOptions& options, double overlap);
+StableStep stable_at(const DemOptions& options, double overlap);
 /// The overlap at which scenarios are checked, m.
-double stated_overlap(const TerrainOptions& options);
+double stated_overlap(const DemOptions& options);
 
 }  // namespace furrow::terrain::dem

@@ -17,6 +17,8 @@ namespace {
 
 // How deep a surface may stand in the ground when it is attached, m: static contact, not a misplaced tire.
 constexpr double kMaxStartDepth = 5e-3;
+// The plane has no end; one cell of this size stands for it in pictures of heights, m.
+constexpr double kFieldCell = 10.0;
 
 /// One attached surface and the buffers of its substeps.
 struct GroundSurface {
@@ -43,20 +45,20 @@ Vec3 weighted(const std::array<double, 3>& weight, const std::vector<Vec3>& valu
   return weight[0] * values[at[0]] + weight[1] * values[at[1]] + weight[2] * values[at[2]];
 }
 
-void require(const char* key, double value) {
+void require(const std::string& file, const char* key, double value) {
   if (!(value >= 0.0) || !std::isfinite(value))
-    throw input_error("terrain", std::string("terrain.") + key,
+    throw input_error(file, std::string("terrain.") + key,
                       std::to_string(value) + ", expected a finite number of at least 0");
 }
 
 class RigidGround final : public Terrain {
  public:
-  explicit RigidGround(const TerrainOptions& options) : options_(options) {
-    require("ground_stiffness", options.ground_stiffness);
-    require("ground_damping", options.ground_damping);
-    require("ground_shear_stiffness", options.ground_shear_stiffness);
-    require("friction", options.friction);
-    require("friction_velocity_scale", options.friction_velocity_scale);
+  explicit RigidGround(const GroundOptions& options) : options_(options) {
+    require(options.scenario, "ground_stiffness", options.ground_stiffness);
+    require(options.scenario, "ground_damping", options.ground_damping);
+    require(options.scenario, "ground_shear_stiffness", options.ground_shear_stiffness);
+    require(options.scenario, "friction", options.friction);
+    require(options.scenario, "friction_velocity_scale", options.friction_velocity_scale);
   }
 
   double prepare(const ProgressCall&) override { return 0.0; }
@@ -78,7 +80,7 @@ class RigidGround final : public Terrain {
   void press(GroundSurface& surface, double dt) const;
   void measure(GroundSurface& surface) const;
 
-  TerrainOptions options_;
+  GroundOptions options_;
   std::vector<GroundSurface> surfaces_;
   Vec3 surface_impulse_ = Vec3::Zero();  // by surfaces on the ground, N s
   double surface_work_ = 0.0;            // by the ground on surfaces, J
@@ -86,8 +88,8 @@ class RigidGround final : public Terrain {
 
 HeightField RigidGround::height_field() const {
   HeightField field;
-  field.cell = options_.length;
-  field.x0 = 0.5 * options_.length;
+  field.cell = kFieldCell;
+  field.x0 = 0.5 * kFieldCell;
   field.nx = field.ny = 1;
   field.height = {0.0};
   return field;
@@ -289,7 +291,7 @@ void RigidGround::restore(const Archive& archive) {
 
 }  // namespace
 
-std::unique_ptr<Terrain> make_rigid_ground(const TerrainOptions& options) {
+std::unique_ptr<Terrain> make_rigid_ground(const GroundOptions& options) {
   return std::make_unique<RigidGround>(options);
 }
 

@@ -3,8 +3,8 @@
 
 #include <memory>
 
+#include "terrain/rigid/ground_options.hpp"
 #include "terrain/terrain.hpp"
-#include "terrain/terrain_options.hpp"
 
 namespace furrow::terrain {
 
@@ -18,6 +18,6 @@ namespace furrow::terrain {
 /// The ground does not know the masses of what it carries and limits nothing.
 ///
 /// @throws Error(bad_input) when a stiffness, damping, friction or velocity scale is negative or not finite.
-std::unique_ptr<Terrain> make_rigid_ground(const TerrainOptions& options);
+std::unique_ptr<Terrain> make_rigid_ground(const GroundOptions& options);
 
 }  // namespace furrow::terrain

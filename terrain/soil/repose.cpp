@@ -58,7 +58,7 @@ double flank_angle(const std::vector<double>& x, const std::vector<double>& heig
 }
 
 ReposeResult angle_of_repose(const Specimen& specimen, const ReposeTest& test, const WorkCall& work) {
-  const TerrainOptions& o = specimen.options();
+  const dem::DemOptions& o = specimen.options();
   const double r = o.radius, dt = o.step, cut = test.cut * r, base = test.base * r;
   std::vector<dem::Quad> kept;
   for (const dem::Quad& p : specimen.positions())

@@ -10,6 +10,7 @@
 #include "protocol/files/json_text.hpp"
 #include "protocol/files/text_file.hpp"
 #include "terrain/soil/bekker_wong.hpp"
+#include "terrain/terrains.hpp"
 
 namespace furrow::terrain::soil {
 namespace {
@@ -79,6 +80,16 @@ double pull_error(const json& soil, const SoilStrength& s, const RigidWheel& whe
   return std::sqrt(sum);
 }
 
+void require_grains(const json& scenario, const std::filesystem::path& file) {
+  const ReadContext context{file.string(), "terrain"};
+  const json section = scenario.value("terrain", json::object());
+  const json engine = section.is_object() ? section.value("engine", json()) : json();
+  const std::string name = engine.is_string() ? engine.get<std::string>() : CommonOptions().engine;
+  if (find_terrain(name, context).read(json::object(), context)->grains()) return;
+  throw input_error(context.file, context.key("engine"),
+                    "is '" + name + "', expected " + engines_with_grains() + ": theory needs a soil");
+}
+
 }  // namespace
 
 std::string write_soil_estimate(const std::filesystem::path& run, const std::filesystem::path& soil_file) {
@@ -86,10 +97,7 @@ std::string write_soil_estimate(const std::filesystem::path& run, const std::fil
   const json summary = read_object(summary_file, "the summary of a finished run");
   const std::filesystem::path scenario_file = run / "scenario.json";
   const json scenario = read_object(scenario_file, "the scenario of a finished run");
-  if (const json engine = scenario.value("terrain", json::object()).value("engine", json());
-      engine == "rigid")
-    throw input_error(scenario_file.string(), "terrain.engine",
-                      "is 'rigid', expected 'dem': theory needs a soil");
+  require_grains(scenario, scenario_file);
   RigidWheel wheel;
   wheel.radius = number(summary, summary_file, "tire_radius_m", 0.0);
   wheel.width = number(summary, summary_file, "tread_width_m", 0.0);

@@ -152,7 +152,7 @@ json repose_json(const SoilRun& run) {
 }  // namespace
 
 json soil_json(const SoilRun& run) {
-  const TerrainOptions& o = run.options.material;
+  const dem::DemOptions& o = run.options.material;
   const SoilParameters p = soil::soil_parameters(run.results, run.plan, o.radius);
   json j;
   j["format_version"] = 1;

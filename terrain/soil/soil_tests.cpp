@@ -128,7 +128,7 @@ class Planner {
       if (o_.shear) add_shear(s);
       if (o_.repose) add_repose(s, o_.material, out_.repose);
       if (o_.repose && cohesive) {
-        TerrainOptions dry = o_.material;
+        dem::DemOptions dry = o_.material;
         dry.cohesion = 0.0;
         add_repose(s, dry, out_.dry);
       }
@@ -185,7 +185,7 @@ class Planner {
       out_.cone[s] = {facts(specimen), cone_penetration(specimen, plan_.cone, job.test_call(call, 0.0, 1.0))};
     };
   }
-  void add_repose(int s, const TerrainOptions& material, std::vector<Tested<ReposeResult>>& to) {
+  void add_repose(int s, const dem::DemOptions& material, std::vector<Tested<ReposeResult>>& to) {
     add(plan_.repose_box, kReposeSteps).run = [this, s, material, &to](const Job& job, const WorkCall& call) {
       const Specimen specimen(material, plan_.repose_box, seed(s), job.settle_call(call));
       to[s] = {facts(specimen), angle_of_repose(specimen, plan_.repose, job.test_call(call, 0.0, 1.0))};

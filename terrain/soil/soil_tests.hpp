@@ -14,7 +14,7 @@
 namespace furrow::terrain::soil {
 
 struct SoilOptions {
-  TerrainOptions material;
+  dem::DemOptions material;
   int seeds = 3;       // beds per test: material.seed, seed + 1, …
   double speed = 0.1;  // of plate, shear and cone, m/s
   bool quick = false;  // small boxes, short ways: a look, no result to quote

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "protocol/core/constants.hpp"
+#include "terrain/dem/dem_terrain.hpp"
 #include "terrain/dem/grain_sizes.hpp"
 
 namespace furrow::terrain::soil {
@@ -15,11 +16,12 @@ constexpr double kLayerHeight = 1.2;  // radii of settled bed per layer dropped
 
 }  // namespace
 
-double test_step(const TerrainOptions& material) {
-  return material.allow_unstable_step ? material.step : kStepShare * estimate_terrain(material).stable_step;
+double test_step(const dem::DemOptions& material) {
+  return material.allow_unstable_step ? material.step
+                                      : kStepShare * estimate_dem_terrain(material).stable_step;
 }
 
-Specimen::Specimen(const TerrainOptions& material, const Box& box, std::uint64_t seed, const WorkCall& work)
+Specimen::Specimen(const dem::DemOptions& material, const Box& box, std::uint64_t seed, const WorkCall& work)
     : options_(material) {
   const double r = material.radius;
   options_.bed.clear();
@@ -32,11 +34,11 @@ Specimen::Specimen(const TerrainOptions& material, const Box& box, std::uint64_t
   const double layer = kLayerHeight * dem::mean_volume_ratio(material) / (widest * widest);
   options_.layers = static_cast<int>(std::ceil(box.depth / layer));
   options_.periodic_x = box.periodic_x;
-  options_.periodic_y = box.periodic_y;
+  options_.sides = box.periodic_y ? "periodic" : "walls";
   options_.threads = options_.settle_threads = 1;
   options_.activity = false;  // small beds, sheared throughout
   options_.step = test_step(options_);
-  const auto made = make_terrain(options_);
+  const auto made = make_dem_terrain(options_);
   made->prepare([&](const std::string& what, double share) {
     if (what == "bed not settled") settled_ = false;
     work(what == "settling the bed" ? share : 0.0);
@@ -52,7 +54,7 @@ Specimen::Specimen(const TerrainOptions& material, const Box& box, std::uint64_t
 }
 
 std::unique_ptr<Terrain> Specimen::terrain() const {
-  auto copy = make_terrain(options_);
+  auto copy = make_dem_terrain(options_);
   copy->restore(bed_);
   return copy;
 }

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "protocol/core/archive.hpp"
+#include "terrain/dem/dem_options.hpp"
 #include "terrain/dem/quad.hpp"
-#include "terrain/terrain_options.hpp"
 
 namespace furrow::terrain::soil {
 
@@ -22,17 +22,17 @@ struct Box {
 
 /// The step that tests of these grains take: a fixed share of the stable one, s; the scenario's own where unstable
 /// steps are allowed.
-double test_step(const TerrainOptions& material);
+double test_step(const dem::DemOptions& material);
 
 class Specimen {
  public:
   /// Fills the box and lets it settle, with the generator and the compaction of `material`; never from a file.
-  Specimen(const TerrainOptions& material, const Box& box, std::uint64_t seed, const WorkCall& work);
+  Specimen(const dem::DemOptions& material, const Box& box, std::uint64_t seed, const WorkCall& work);
 
   /// The settled bed, ready for tools. Each call gives a new one in the same state.
   std::unique_ptr<Terrain> terrain() const;
 
-  const TerrainOptions& options() const { return options_; }
+  const dem::DemOptions& options() const { return options_; }
   double length() const { return options_.length; }  // m
   double width() const { return options_.width; }    // m
   double height() const { return height_; }          // mean surface height, m
@@ -45,7 +45,7 @@ class Specimen {
   const std::vector<dem::Quad>& positions() const { return positions_; }
 
  private:
-  TerrainOptions options_;
+  dem::DemOptions options_;
   Archive bed_;
   std::vector<dem::Quad> positions_;
   double height_ = 0.0, top_ = 0.0;

@@ -89,13 +89,13 @@ Tool cone_on_shaft(const Vec3& point, double diameter, double angle, double shaf
   return {std::move(mesh), std::move(x)};
 }
 
-ContactMaterial rough_material(const TerrainOptions& grains) {
+ContactMaterial rough_material(const dem::DemOptions& grains) {
   ContactMaterial m = dem::grain_material(grains);
   m.cohesion = 0.0;
   return m;
 }
 
-ContactMaterial smooth_material(const TerrainOptions& grains) {
+ContactMaterial smooth_material(const dem::DemOptions& grains) {
   ContactMaterial m = rough_material(grains);
   m.friction = std::min(m.friction, kSteelFriction);
   return m;

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "protocol/core/surface.hpp"
+#include "terrain/dem/dem_options.hpp"
 #include "terrain/terrain.hpp"
-#include "terrain/terrain_options.hpp"
 
 namespace furrow::terrain::soil {
 
@@ -47,8 +47,8 @@ double cone_height(double diameter, double angle);
 double cone_base_area(double diameter);
 
 /// As rough as the grains, without cohesion.
-ContactMaterial rough_material(const TerrainOptions& grains);
+ContactMaterial rough_material(const dem::DemOptions& grains);
 /// Polished steel: friction as the grains', at most 0.3.
-ContactMaterial smooth_material(const TerrainOptions& grains);
+ContactMaterial smooth_material(const dem::DemOptions& grains);
 
 }  // namespace furrow::terrain::soil

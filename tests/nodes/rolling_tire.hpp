@@ -13,9 +13,8 @@
 namespace furrow::test {
 
 /// Forces come one step late: above 4e-5 s the ground is softened with the step (terrain/rigid/rigid_ground.hpp).
-inline terrain::TerrainOptions hard_ground(double step) {
-  terrain::TerrainOptions options;
-  options.engine = "rigid";
+inline terrain::GroundOptions hard_ground(double step) {
+  terrain::GroundOptions options;
   const double slower = std::max(1.0, step / 4e-5);
   options.ground_stiffness /= slower * slower;
   options.ground_shear_stiffness /= slower * slower;

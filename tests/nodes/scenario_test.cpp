@@ -9,6 +9,7 @@
 #include "nodes/scenario/scenario_checks.hpp"
 #include "nodes/scenario/schema.hpp"
 #include "nodes/scenario/wheel_geometry.hpp"
+#include "terrain/dem/dem_options.hpp"
 #include "tests/nodes/scenario_fixture.hpp"
 
 namespace furrow {
@@ -36,33 +37,8 @@ TEST(Scenario, defaults_of_the_schema_are_those_of_the_options) {
   EXPECT_EQ(s.rigs[0].rim_mass, rig.rim_mass);
   EXPECT_EQ(s.rigs[0].rim_spin_inertia, rig.rim_spin_inertia);
   EXPECT_EQ(s.rigs[0].rim_diametral_inertia, rig.rim_diametral_inertia);
-  const terrain::TerrainOptions terrain;
-  EXPECT_EQ(s.terrain.engine, terrain.engine);
-  EXPECT_EQ(s.terrain.law, terrain.law);
-  EXPECT_EQ(s.terrain.radius, terrain.radius);
-  EXPECT_EQ(s.terrain.density, terrain.density);
-  EXPECT_EQ(s.terrain.layers, terrain.layers);
-  EXPECT_EQ(s.terrain.length, terrain.length);
-  EXPECT_EQ(s.terrain.width, terrain.width);
-  EXPECT_EQ(s.terrain.bed, terrain.bed);
-  EXPECT_EQ(s.terrain.cache, terrain.cache);
-  EXPECT_EQ(s.terrain.young_modulus, terrain.young_modulus);
-  EXPECT_EQ(s.terrain.poisson_ratio, terrain.poisson_ratio);
-  EXPECT_EQ(s.terrain.restitution, terrain.restitution);
-  EXPECT_EQ(s.terrain.friction, terrain.friction);
-  EXPECT_EQ(s.terrain.rolling_friction, terrain.rolling_friction);
-  EXPECT_EQ(s.terrain.cohesion, terrain.cohesion);
-  EXPECT_EQ(s.terrain.normal_stiffness, terrain.normal_stiffness);
-  EXPECT_EQ(s.terrain.normal_damping, terrain.normal_damping);
-  EXPECT_EQ(s.terrain.friction_velocity_scale, terrain.friction_velocity_scale);
-  EXPECT_EQ(s.terrain.friction_impulse_limit, terrain.friction_impulse_limit);
-  EXPECT_EQ(s.terrain.activity, terrain.activity);
-  EXPECT_EQ(s.terrain.ground_stiffness, terrain.ground_stiffness);
-  EXPECT_EQ(s.terrain.ground_damping, terrain.ground_damping);
-  EXPECT_EQ(s.terrain.ground_shear_stiffness, terrain.ground_shear_stiffness);
-  EXPECT_EQ(s.terrain.allow_unstable_step, terrain.allow_unstable_step);
-  EXPECT_EQ(s.terrain.step, terrain.step);
-  EXPECT_EQ(s.terrain.seed, terrain.seed);
+  EXPECT_EQ(s.terrain_context().step, terrain::TerrainContext().step);
+  EXPECT_EQ(s.terrain_context().seed, terrain::TerrainContext().seed);
   const tire::TireOptions tire;
   ASSERT_EQ(s.tires.size(), 1U);
   EXPECT_EQ(s.tires[0].pressure, tire.pressure);
@@ -79,7 +55,6 @@ TEST(Scenario, defaults_of_the_schema_are_those_of_the_options) {
   EXPECT_EQ(s.run.threads, run.threads);
   EXPECT_EQ(s.run.seed, run.seed);
   EXPECT_EQ(s.run.peer_timeout, run.peer_timeout);
-  EXPECT_EQ(s.terrain.undisturbed_height, terrain.undisturbed_height);
   EXPECT_EQ(s.checkpoint.wall_interval, scenario::CheckpointOptions().wall_interval);
   EXPECT_EQ(s.checkpoint.interval, scenario::CheckpointOptions().interval);
   EXPECT_EQ(s.checkpoint.keep, scenario::CheckpointOptions().keep);
@@ -104,10 +79,10 @@ TEST(Scenario, a_setting_of_every_kind_arrives) {
   EXPECT_EQ(s.rigs[0].mode, "fixed_speed");
   EXPECT_TRUE(s.tires[0].rigid);
   EXPECT_EQ(s.tires[0].elements_width, 12);
-  EXPECT_EQ(s.terrain.step, 2e-5);
+  EXPECT_EQ(s.terrain_context().step, 2e-5);
   EXPECT_EQ(s.tires[0].substep, 1e-5);
   EXPECT_EQ(s.run.threads, 3);
-  EXPECT_EQ(s.terrain.seed, 7U);
+  EXPECT_EQ(s.terrain_context().seed, 7U);
 }
 
 TEST(Scenario, completed_text_is_a_scenario_that_gives_the_same_digest) {
@@ -169,16 +144,17 @@ TEST(Scenario, soil_file_gives_values_that_the_scenario_may_replace) {
                               "terrain": {"material": ")" +
                                    name + R"(", "friction": 0.7}})");
   const scenario::Scenario s = file.load();
-  EXPECT_EQ(s.terrain.friction, 0.7);
-  EXPECT_EQ(s.terrain.size_spread, 0.2);
+  EXPECT_EQ(s.terrain->grains()->friction, 0.7);
+  EXPECT_EQ(s.terrain->grains()->size_spread, 0.2);
   EXPECT_EQ(testing::ScenarioFile(s.completed).load().digest, s.digest);
   // On the command line what comes later wins.
   const std::string quoted = '"' + name + '"';
   const testing::ScenarioFile own(
       R"({"tire": {"file": "hmmwv_layered.json"}, "terrain": {"friction": 0.7}})");
-  EXPECT_EQ(own.load({{"terrain.material", quoted}}).terrain.friction, 0.4);
-  EXPECT_EQ(own.load({{"terrain.material", quoted}, {"terrain.friction", "0.6"}}).terrain.friction, 0.6);
-  EXPECT_EQ(file.load({{"terrain.material", "null"}}).terrain.size_spread, 0.0);
+  EXPECT_EQ(own.load({{"terrain.material", quoted}}).terrain->grains()->friction, 0.4);
+  EXPECT_EQ(own.load({{"terrain.material", quoted}, {"terrain.friction", "0.6"}}).terrain->grains()->friction,
+            0.6);
+  EXPECT_EQ(file.load({{"terrain.material", "null"}}).terrain->grains()->size_spread, 0.0);
 }
 
 TEST(Scenario, mistakes_in_a_soil_file_are_named_with_that_file) {
@@ -204,7 +180,7 @@ TEST(Scenario, mistakes_are_named_with_what_is_expected) {
             ": key 'terrain.layers': is 'many', expected a whole number, 1 to 9999");
   EXPECT_EQ(file.complaint({{"tire.rigid", "true"}, {"tire.contact_tangent", "true"}}),
             ": key 'tire.contact_tangent': is true, expected false for a rigid tire");
-  EXPECT_TRUE(file.load({{"tire.contact_tangent", "true"}}).terrain.contact_tangents);
+  EXPECT_TRUE(file.load({{"tire.contact_tangent", "true"}}).terrain_context().contact_tangents);
   EXPECT_EQ(file.complaint({{"run.step", "1e-3"}}).substr(0, 66),
             ": key 'run.step': 0.001 s is above the stable step of 6.35e-05 s (");
   EXPECT_EQ(file.complaint({{"run.step", "1e-3"},

@@ -13,12 +13,12 @@ namespace {
 
 using namespace terrain::dem;
 
-terrain::TerrainOptions options_of(const Job& job) {
-  terrain::TerrainOptions o;
+terrain::dem::DemOptions options_of(const Job& job) {
+  terrain::dem::DemOptions o;
   o.length = job.at("length");
   o.width = job.at("width");
   o.periodic_x = job.at("periodic_x");
-  o.periodic_y = job.at("periodic_y");
+  o.sides = job.at("periodic_y").get<bool>() ? "periodic" : "walls";
   o.radius = job.at("radius");
   o.density = job.at("density");
   o.young_modulus = job.at("young_modulus");
@@ -32,7 +32,7 @@ terrain::TerrainOptions options_of(const Job& job) {
   return o;
 }
 
-terrain::dem::SolverCoefficients coefficients_of(const Job& job, const terrain::TerrainOptions& options) {
+terrain::dem::SolverCoefficients coefficients_of(const Job& job, const terrain::dem::DemOptions& options) {
   terrain::dem::SolverCoefficients all = terrain::dem::run_coefficients(options, options.step);
   all.floor.cohesion_force = all.side.cohesion_force = 0.0;
   all.floor.friction = all.side.friction = job.at("wall_friction");

@@ -9,8 +9,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "terrain/dem/dem_options.hpp"
 #include "terrain/dem/grain_solver.hpp"
-#include "terrain/terrain_options.hpp"
 
 namespace furrow::peers {
 
@@ -46,7 +46,7 @@ class PeerBed {
   void positions(std::vector<double>& out) const;
 
  private:
-  terrain::TerrainOptions options_;
+  terrain::dem::DemOptions options_;
   double step_;
   terrain::dem::SolverParams params_;
   terrain::dem::GrainSolver solver_;

@@ -244,9 +244,14 @@ class BadFile(SystemTest):
         self.assertIn("small.json: key 'terrain.compaction_pressure': is 10000 Pa but the bed", self.error_of("validate", path))
 
     def test_beds_and_soil_tests_need_grains(self):
-        path = write_scenario(self.folder, changed(terrain={"engine": "rigid"}))
+        path = write_scenario(self.folder, {**changed(), "terrain": {"engine": "rigid"}})
         for command in ("bed", "soil"):
             self.assertIn("small.json: key 'terrain.engine': is 'rigid', expected 'dem'", self.error_of(command, path))
+
+    def test_keys_of_another_engine(self):
+        path = write_scenario(self.folder, {**changed(), "terrain": {"engine": "rigid", "friction": 0.5, "radius": 0.02}})
+        self.assertIn("small.json: key 'terrain.radius': is a key of engine 'dem', but terrain.engine is 'rigid'",
+                      self.error_of("validate", path))
 
     def test_soil_options(self):
         path = write_scenario(self.folder)

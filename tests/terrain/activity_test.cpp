@@ -13,8 +13,8 @@
 namespace furrow::terrain::dem {
 namespace {
 
-TerrainOptions bed_options(double cohesion) {
-  TerrainOptions options;
+DemOptions bed_options(double cohesion) {
+  DemOptions options;
   options.radius = 0.01;
   options.layers = 4;
   options.length = 1.2;
@@ -25,7 +25,7 @@ TerrainOptions bed_options(double cohesion) {
 }
 
 /// A settled bed, without activity so far.
-Archive settled(const TerrainOptions& options) {
+Archive settled(const DemOptions& options) {
   SolverParams params = solver_params(options);
   params.activity = false;
   GrainSolver solver(params);
@@ -36,7 +36,7 @@ Archive settled(const TerrainOptions& options) {
   return archive;
 }
 
-GrainSolver bed(const TerrainOptions& options, const Archive& archive, bool activity) {
+GrainSolver bed(const DemOptions& options, const Archive& archive, bool activity) {
   SolverParams params = solver_params(options);
   params.activity = activity;
   GrainSolver solver(params);
@@ -61,7 +61,7 @@ struct Plate {
 };
 
 /// Mean vertical force on the plate over each interval of `every` steps while it goes down from z = `from`, N.
-std::vector<double> press(GrainSolver& solver, const TerrainOptions& options, double from, double speed,
+std::vector<double> press(GrainSolver& solver, const DemOptions& options, double from, double speed,
                           int intervals, int every) {
   Plate plate(from);
   const ContactMaterial rubber{2e7, 0.4, 0.9, 0.2, 2e6, 13.0, 0.0};
@@ -92,7 +92,7 @@ std::vector<double> press(GrainSolver& solver, const TerrainOptions& options, do
 }
 
 TEST(Activity, bed_at_rest_falls_asleep_and_stays_where_it_is) {
-  const TerrainOptions options = bed_options(20e3);
+  const DemOptions options = bed_options(20e3);
   GrainSolver solver = bed(options, settled(options), true);
   const double height = solver.accounts().height / solver.grains().count;
   for (int k = 0; k < 4000; ++k) ASSERT_EQ(solver.step(options.step), -1);
@@ -105,7 +105,7 @@ TEST(Activity, bed_at_rest_falls_asleep_and_stays_where_it_is) {
 
 TEST(Activity, pressed_sleeping_bed_pushes_back_like_one_that_is_all_awake) {
   for (double cohesion : {0.0, 40e3}) {
-    const TerrainOptions options = bed_options(cohesion);
+    const DemOptions options = bed_options(cohesion);
     const Archive archive = settled(options);
     GrainSolver asleep = bed(options, archive, true), awake = bed(options, archive, false);
     const int few = asleep.grains().count / 10;  // a grain without cohesion may roll for long
@@ -130,7 +130,7 @@ TEST(Activity, pressed_sleeping_bed_pushes_back_like_one_that_is_all_awake) {
 }
 
 TEST(Activity, falling_grain_wakes_what_it_hits) {
-  const TerrainOptions options = bed_options(5e3);
+  const DemOptions options = bed_options(5e3);
   GrainSolver solver = bed(options, settled(options), true);
   for (int k = 0; k < 4000; ++k) solver.step(options.step);
   ASSERT_EQ(solver.accounts().active, 0);
@@ -155,7 +155,7 @@ TEST(Activity, falling_grain_wakes_what_it_hits) {
 }
 
 TEST(Activity, same_bits_for_one_and_two_threads_and_after_a_restart) {
-  const TerrainOptions options = bed_options(0.0);
+  const DemOptions options = bed_options(0.0);
   const Archive archive = settled(options);
   GrainSolver one = bed(options, archive, true), two = bed(options, archive, true);
   two.set_threads(2);

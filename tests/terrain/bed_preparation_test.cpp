@@ -14,6 +14,7 @@
 #include "terrain/dem/beds/bed_preparation.hpp"
 #include "terrain/dem/beds/bed_statistics.hpp"
 #include "terrain/dem/close_pairs.hpp"
+#include "terrain/dem/dem_terrain.hpp"
 #include "terrain/dem/solver_setup.hpp"
 
 namespace furrow::terrain::dem {
@@ -56,7 +57,7 @@ class Beds : public testing::Test {
   }
 
   fs::path folder_;
-  TerrainOptions options_;
+  DemOptions options_;
 };
 
 TEST(BedStatistics, two_touching_spheres_by_hand) {
@@ -143,7 +144,7 @@ TEST_F(Beds, smooth_grains_pack_denser_and_are_rough_afterwards) {
 TEST_F(Beds, periodic_sides_hold_each_other) {
   const PreparedBed walled = prepare_bed(options_, {});
   const BedStatistics between_walls = statistics_of(walled);
-  options_.periodic_y = true;
+  options_.sides = "periodic";
   const PreparedBed prepared = prepare_bed(options_, {});
   EXPECT_TRUE(prepared.settled.settled);
   EXPECT_NEAR(statistics_of(prepared).solid_fraction_bulk, between_walls.solid_fraction_bulk, 0.03);
@@ -224,7 +225,7 @@ TEST_F(Beds, positions_of_a_file_are_settled_and_kept) {
   EXPECT_EQ(first.bed.arrays(), second.bed.arrays());
   EXPECT_TRUE(first.settled.settled);
   EXPECT_EQ(statistics_of(first).grains, 4 * 13 * 8);
-  EXPECT_EQ(estimate_terrain(options_).grains, 4 * 13 * 8);
+  EXPECT_EQ(estimate_dem_terrain(options_).grains, 4 * 13 * 8);
   // Another file of that name is another bed.
   const std::string digest = bed_digest(options_);
   write("mine.csv", text + "0.15,0,0.12\n");
@@ -292,7 +293,7 @@ TEST_F(Beds, beds_of_another_format_are_refused_by_version) {
 
 TEST_F(Beds, digest_knows_every_way_to_make_a_bed) {
   const std::string plain = bed_digest(options_);
-  TerrainOptions other = options_;
+  DemOptions other = options_;
   other.bed_generator = "lattice";
   EXPECT_NE(bed_digest(other), plain);
   other = options_, other.compaction_pressure = 1e4;

@@ -115,7 +115,7 @@ TEST(ContactTangent, of_a_grain_without_friction_is_normal_to_the_surface) {
 
 /// A plate that has stood 0.4 mm deep in hard ground.
 NodalForces push_ground(const testing::Surface& surface, const Vec3& shift) {
-  TerrainOptions options;
+  GroundOptions options;
   options.contact_tangents = true;
   const auto ground = make_rigid_ground(options);
   ContactMaterial material;
@@ -135,7 +135,7 @@ TEST(ContactTangent, of_rigid_ground_is_the_difference_of_its_force) {
 }
 
 TEST(ContactTangent, is_not_sent_unless_wanted) {
-  TerrainOptions options;
+  GroundOptions options;
   const auto ground = make_rigid_ground(options);
   const testing::Surface surface = plate(0.1, -4e-4);
   const SurfaceState target = moved(surface, Vec3::Zero());

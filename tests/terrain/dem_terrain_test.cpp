@@ -6,11 +6,13 @@
 #include <filesystem>
 #include <fstream>
 
+#include "protocol/core/field_hash.hpp"
 #include "protocol/core/hash.hpp"
+#include "protocol/files/json_fields.hpp"
 #include "terrain/dem/beds/bed_after_run.hpp"
 #include "terrain/dem/beds/bed_cache.hpp"
 #include "terrain/dem/beds/bed_settling.hpp"
-#include "terrain/terrain_options.hpp"
+#include "terrain/dem/dem_terrain.hpp"
 
 namespace furrow::terrain {
 namespace {
@@ -35,7 +37,7 @@ class DemTerrain : public testing::Test {
   fs::path cached() const { return terrain::dem::bed_cache_file(terrain::dem::bed_digest(options_)); }
 
   fs::path folder_;
-  TerrainOptions options_;
+  dem::DemOptions options_;
 };
 
 std::uint64_t hash_of(const Terrain& terrain) {
@@ -95,7 +97,7 @@ struct Press {
 };
 
 TEST_F(DemTerrain, bed_settles_and_stands_at_a_plausible_height) {
-  const auto terrain = make_terrain(options_);
+  const auto terrain = make_dem_terrain(options_);
   std::string said;
   terrain->prepare([&](const std::string& what, double) { said = what; });
   EXPECT_EQ(said, "settling the bed");
@@ -109,17 +111,17 @@ TEST_F(DemTerrain, bed_settles_and_stands_at_a_plausible_height) {
   EXPECT_LT(solid, 0.64);
   EXPECT_GT(top, height);
   EXPECT_LT(top, height + 0.03);
-  const TerrainEstimate e = estimate_terrain(options_);
+  const TerrainEstimate e = estimate_dem_terrain(options_);
   EXPECT_NEAR(static_cast<double>(e.grains), static_cast<double>(terrain->size()),
               0.1 * static_cast<double>(e.grains));
 }
 
 TEST_F(DemTerrain, run_from_cached_bed_equals_the_run_that_settled_it) {
-  const auto first = make_terrain(options_);
+  const auto first = make_dem_terrain(options_);
   first->prepare({});
   ASSERT_TRUE(fs::exists(cached()));
   bool settled_again = false;
-  const auto second = make_terrain(options_);
+  const auto second = make_dem_terrain(options_);
   second->prepare([&](const std::string&, double) { settled_again = true; });
   EXPECT_FALSE(settled_again);
   EXPECT_EQ(hash_of(*first), hash_of(*second));
@@ -130,16 +132,16 @@ TEST_F(DemTerrain, run_from_cached_bed_equals_the_run_that_settled_it) {
   EXPECT_EQ(hash_of(*first), hash_of(*second));
 
   options_.bed = cached().string();
-  const auto named = make_terrain(options_);
+  const auto named = make_dem_terrain(options_);
   named->prepare({});
   for (int k = 0; k < 200; ++k) ASSERT_TRUE(named->advance({}, 6e-5, 1, {}, {}).ok);
   EXPECT_EQ(hash_of(*first), hash_of(*named));
   options_.radius = 0.011;
-  EXPECT_THROW(make_terrain(options_)->prepare({}), Error);
+  EXPECT_THROW(make_dem_terrain(options_)->prepare({}), Error);
 }
 
 TEST_F(DemTerrain, damaged_cache_is_made_anew) {
-  const auto first = make_terrain(options_);
+  const auto first = make_dem_terrain(options_);
   first->prepare({});
   {
     std::fstream file(cached(), std::ios::in | std::ios::out | std::ios::binary);
@@ -148,7 +150,7 @@ TEST_F(DemTerrain, damaged_cache_is_made_anew) {
   }
   EXPECT_THROW(terrain::dem::read_bed(cached()), Error);
   bool settled_again = false;
-  const auto second = make_terrain(options_);
+  const auto second = make_dem_terrain(options_);
   second->prepare([&](const std::string&, double) { settled_again = true; });
   EXPECT_TRUE(settled_again);
   EXPECT_EQ(hash_of(*first), hash_of(*second));
@@ -157,20 +159,52 @@ TEST_F(DemTerrain, damaged_cache_is_made_anew) {
     EXPECT_EQ(entry.path().extension(), ".h5");
 }
 
-TEST_F(DemTerrain, digest_tells_beds_apart) {
-  const std::string digest = terrain::dem::bed_digest(options_);
-  TerrainOptions other = options_;
-  other.threads = 7, other.step = 1e-5, other.activity = false;
-  EXPECT_EQ(terrain::dem::bed_digest(other), digest);
+/// Something else than the value.
+void change(std::string& value) { value = value == "walls" ? "periodic" : value + "_other"; }
+void change(bool& value) { value = !value; }
+void change(int& value) { value += 1; }
+void change(double& value) { value = 1.25 * value + 0.125; }
+
+TEST_F(DemTerrain, digest_changes_with_every_key_that_decides_the_bits_of_a_bed_and_with_no_other) {
+  const std::string digest = dem::bed_digest(options_);
+  dem::DemOptions other = options_;
+  other.threads = 7, other.settle_threads = 3, other.step = 1e-5, other.contact_tangents = true;
+  EXPECT_EQ(dem::bed_digest(other), digest);
   other = options_, other.seed = 2;
-  EXPECT_NE(terrain::dem::bed_digest(other), digest);
+  EXPECT_NE(dem::bed_digest(other), digest);
+  // Two of the laws' names are known, and the digest asks for them: the settling step depends on the law.
   other = options_, other.law = "hertz_tanh";
-  EXPECT_NE(terrain::dem::bed_digest(other), digest);
-  TerrainOptions former = options_;
+  EXPECT_NE(dem::bed_digest(other), digest);
+  dem::DemOptions former = options_;
   former.law = "coulomb";
-  EXPECT_EQ(terrain::dem::bed_digest(former), terrain::dem::bed_digest(other));
-  other = options_, other.friction = 0.91;
-  EXPECT_NE(terrain::dem::bed_digest(other), digest);
+  EXPECT_EQ(dem::bed_digest(former), dem::bed_digest(other));
+  const std::size_t count = field_names<dem::DemOptions>(role::none).size();
+  for (std::size_t place = 0; place < count; ++place) {
+    other = options_;
+    std::size_t here = 0;
+    Field changed{""};
+    visit_fields(
+        [&](const Field& field, auto& value) {
+          if (here++ != place || std::string(field.name) == "law" || std::string(field.name) == "bed") return;
+          changed = field;
+          change(value);
+        },
+        other);
+    EXPECT_EQ(dem::bed_digest(other) != digest, changed.is(role::bed)) << changed.name;
+  }
+}
+
+TEST_F(DemTerrain, digest_does_not_know_of_keys_that_are_the_default) {
+  // Hash of an object whose fields are all the default: no field counts.
+  Hash plain, with;
+  with.add("before");
+  plain.add("before");
+  add_fields(with, dem::DemOptions(), role::bed);
+  EXPECT_EQ(with.value(), plain.value());
+  dem::DemOptions other;
+  other.radius = 0.01;
+  add_fields(with, other, role::bed);
+  EXPECT_NE(with.value(), plain.value());
 }
 
 TEST_F(DemTerrain, plate_books_force_momentum_and_energy) {
@@ -178,7 +212,7 @@ TEST_F(DemTerrain, plate_books_force_momentum_and_energy) {
       false;  // what is taken from grains that fall asleep is booked as energy, not as impulse
   for (const char* law : {"mindlin", "hertz_tanh"}) {
     options_.law = law;
-    const auto terrain = make_terrain(options_);
+    const auto terrain = make_dem_terrain(options_);
     terrain->prepare({});
     const double top = terrain->top_height(0.1, 0.2, -0.05, 0.05);
     Plate plate(0.1, -0.05, 0.1, 4, top + 1e-4);
@@ -215,7 +249,7 @@ TEST_F(DemTerrain, plate_books_force_momentum_and_energy) {
 
 TEST_F(DemTerrain, restored_terrain_with_a_tire_continues_bit_for_bit) {
   options_.rolling_friction = 0.1;
-  const auto a = make_terrain(options_);
+  const auto a = make_dem_terrain(options_);
   a->prepare({});
   Plate plate(0.1, -0.05, 0.1, 4, a->top_height(0.1, 0.2, -0.05, 0.05));
   a->attach(plate.mesh, kRubber, plate.state);
@@ -224,7 +258,7 @@ TEST_F(DemTerrain, restored_terrain_with_a_tire_continues_bit_for_bit) {
   Archive archive;
   a->save(archive);
   options_.threads = 2;
-  const auto b = make_terrain(options_);
+  const auto b = make_dem_terrain(options_);
   b->restore(archive);
   Plate other = plate;
   Press again;
@@ -237,7 +271,7 @@ TEST_F(DemTerrain, restored_terrain_with_a_tire_continues_bit_for_bit) {
 }
 
 TEST_F(DemTerrain, bed_after_a_plate_lies_until_it_rests_and_starts_another_run) {
-  const auto a = make_terrain(options_);
+  const auto a = make_dem_terrain(options_);
   a->prepare({});
   const double before = a->mean_height(0.12, 0.18, -0.03, 0.03);
   Plate plate(0.1, -0.05, 0.1, 4, a->top_height(0.1, 0.2, -0.05, 0.05));
@@ -258,7 +292,7 @@ TEST_F(DemTerrain, bed_after_a_plate_lies_until_it_rests_and_starts_another_run)
   EXPECT_GT(told, 0);
   options_.bed = (folder_ / "bed.h5").string();
   terrain::dem::write_bed(options_.bed, bed);
-  const auto b = make_terrain(options_);
+  const auto b = make_dem_terrain(options_);
   b->prepare({});
   EXPECT_EQ(b->size(), a->size());
   EXPECT_LT(b->mean_height(0.12, 0.18, -0.03, 0.03), before - 2e-3) << "the plate's print is gone";
@@ -269,7 +303,7 @@ TEST_F(DemTerrain, bed_after_a_plate_lies_until_it_rests_and_starts_another_run)
 }
 
 TEST_F(DemTerrain, tire_that_reaches_the_floor_stops_the_run_with_a_message) {
-  const auto terrain = make_terrain(options_);
+  const auto terrain = make_dem_terrain(options_);
   terrain->prepare({});
   Plate plate(0.1, -0.05, 0.1, 2, 0.2);
   terrain->attach(plate.mesh, kRubber, plate.state);
@@ -284,34 +318,33 @@ TEST_F(DemTerrain, tire_that_reaches_the_floor_stops_the_run_with_a_message) {
 TEST_F(DemTerrain, unstable_step_is_refused_by_number_unless_allowed) {
   options_.step = 5e-4;
   try {
-    make_terrain(options_);
+    make_dem_terrain(options_);
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ExitCode::bad_input);
     EXPECT_NE(std::string(error.what()).find("run.step"), std::string::npos) << error.what();
   }
   options_.allow_unstable_step = true;
-  EXPECT_NO_THROW(make_terrain(options_));
+  EXPECT_NO_THROW(make_dem_terrain(options_));
   options_.step = 6e-5;
   options_.allow_unstable_step = false;
   options_.law = "hertz_tanh";
   options_.friction_impulse_limit = false;
-  EXPECT_THROW(make_terrain(options_), Error);
-  EXPECT_EQ(estimate_terrain(options_).stable_reason, "friction viscosity");
+  EXPECT_THROW(make_dem_terrain(options_), Error);
+  EXPECT_EQ(estimate_dem_terrain(options_).stable_reason, "friction viscosity");
 }
 
 TEST_F(DemTerrain, bad_values_are_refused_by_key) {
-  for (const auto& [key, spoil] : std::initializer_list<std::pair<const char*, void (*)(TerrainOptions&)>>{
-           {"terrain.radius", [](TerrainOptions& o) { o.radius = -1; }},
-           {"terrain.density", [](TerrainOptions& o) { o.density = std::nan(""); }},
-           {"terrain.layers", [](TerrainOptions& o) { o.layers = 0; }},
-           {"terrain.width", [](TerrainOptions& o) { o.width = 0.01; }},
-           {"terrain.law", [](TerrainOptions& o) { o.law = "hooke"; }},
-           {"terrain.engine", [](TerrainOptions& o) { o.engine = "clay"; }}}) {
-    TerrainOptions bad = options_;
+  for (const auto& [key, spoil] : std::initializer_list<std::pair<const char*, void (*)(dem::DemOptions&)>>{
+           {"terrain.radius", [](dem::DemOptions& o) { o.radius = -1; }},
+           {"terrain.density", [](dem::DemOptions& o) { o.density = std::nan(""); }},
+           {"terrain.layers", [](dem::DemOptions& o) { o.layers = 0; }},
+           {"terrain.width", [](dem::DemOptions& o) { o.width = 0.01; }},
+           {"terrain.law", [](dem::DemOptions& o) { o.law = "hooke"; }}}) {
+    dem::DemOptions bad = options_;
     spoil(bad);
     try {
-      make_terrain(bad);
+      make_dem_terrain(bad);
       ADD_FAILURE() << key;
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what()).find(key), std::string::npos) << error.what();

@@ -10,7 +10,7 @@
 namespace furrow::terrain::dem {
 
 struct FewGrains {
-  TerrainOptions options;
+  DemOptions options;
   double gravity = 0.0;  // m/s²
   Precision precision = Precision::full;
   double smallest = 0.0, largest = 0.0;  // m; 0: all have options.radius
@@ -29,7 +29,7 @@ struct FewGrains {
     params.bin.length = options.length;
     params.bin.width = options.width;
     params.bin.periodic_x = options.periodic_x;
-    params.bin.periodic_y = options.periodic_y;
+    params.bin.periodic_y = options.periodic_y();
     params.gravity = gravity;
     params.precision = precision;
     params.smallest = smallest, params.largest = largest;

@@ -11,6 +11,7 @@
 #include "protocol/core/error.hpp"
 #include "terrain/dem/beds/bed_preparation.hpp"
 #include "terrain/dem/beds/bed_statistics.hpp"
+#include "terrain/dem/dem_terrain.hpp"
 #include "terrain/dem/grain_sizes.hpp"
 #include "terrain/dem/size_scale.hpp"
 #include "terrain/dem/solver_setup.hpp"
@@ -31,7 +32,7 @@ void expect_same(const ContactCoefficients& a, const ContactCoefficients& b) {
 }
 
 TEST(GrainSizes, scaled_coefficients_are_those_mixed_for_that_size) {
-  TerrainOptions o;
+  DemOptions o;
   o.cohesion = 50e3;
   o.rolling_friction = 0.1;
   const ContactMaterial material = grain_material(o);
@@ -53,7 +54,7 @@ TEST(GrainSizes, scaled_coefficients_are_those_mixed_for_that_size) {
 
 /// A large partner is a wall: R* → r, m* → m.
 TEST(GrainSizes, against_a_giant_the_pair_is_a_contact_with_a_wall) {
-  TerrainOptions o;
+  DemOptions o;
   o.cohesion = 50e3;
   o.rolling_friction = 0.1;
   const ContactMaterial material = grain_material(o);
@@ -280,7 +281,7 @@ TEST(GrainSizes, same_bits_for_any_threads_and_after_a_restart) {
 /// The spread's mean volume, 1 + s² for uniform radii; and that the draw stays within the limits.
 TEST(GrainSizes, drawn_radii_have_the_stated_mean_volume) {
   for (const char* distribution : {"uniform", "normal"}) {
-    TerrainOptions o;
+    DemOptions o;
     o.size_spread = 0.5;
     o.size_distribution = distribution;
     std::vector<Quad> grains(200000);
@@ -293,17 +294,17 @@ TEST(GrainSizes, drawn_radii_have_the_stated_mean_volume) {
     }
     EXPECT_NEAR(volume, mean_volume_ratio(o), 0.006) << distribution;
   }
-  TerrainOptions uniform;
+  DemOptions uniform;
   uniform.size_spread = 0.5;
   EXPECT_NEAR(mean_volume_ratio(uniform), 1.25, 1e-15);
 }
 
 TEST(GrainSizes, sizes_that_cannot_be_are_refused_with_their_key) {
-  const auto refusal = [](const std::function<void(TerrainOptions&)>& change) -> std::string {
-    TerrainOptions o;
+  const auto refusal = [](const std::function<void(DemOptions&)>& change) -> std::string {
+    DemOptions o;
     change(o);
     try {
-      make_terrain(o);
+      make_dem_terrain(o);
     } catch (const Error& error) {
       return error.what();
     }
@@ -320,7 +321,7 @@ TEST(GrainSizes, sizes_that_cannot_be_are_refused_with_their_key) {
 
 /// The floor carries the weight, which follows from the volumes; solid fraction is that of a random packing.
 TEST(GrainSizes, bed_of_many_sizes_settles) {
-  TerrainOptions o;
+  DemOptions o;
   o.size_spread = 0.4;
   o.length = 0.2, o.width = 0.15, o.layers = 8;
   o.cache = false;

@@ -260,7 +260,8 @@ TEST(GrainSolver, neighbour_list_misses_no_contact) {
 TEST(GrainSolver, a_bed_shifted_along_periodic_sides_moves_the_same) {
   for (const Vec3& shift : {Vec3(0.15, 0, 0), Vec3(0, 0.12, 0), Vec3(0.07, 0.1, 0)}) {
     FewGrains few;
-    few.options.periodic_x = few.options.periodic_y = true;
+    few.options.periodic_x = true;
+    few.options.sides = "periodic";
     few.options.rolling_friction = 0.1;
     few.gravity = kStandardGravity;
     GrainSolver here = random_bed(few, 2400, 0.5);

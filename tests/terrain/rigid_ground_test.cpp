@@ -58,7 +58,7 @@ Push slide_steadily(Terrain& ground, SurfaceState state, double duration = 5e-3,
 }
 
 TEST(RigidGround, presses_a_block_with_stiffness_times_depth_times_area) {
-  TerrainOptions options;
+  GroundOptions options;
   const auto ground = make_rigid_ground(options);
   const testing::Surface block = testing::box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
   const SurfaceState start = placed(block, {3.0, 0.0, -4e-4}, Vec3::Zero());
@@ -72,7 +72,7 @@ TEST(RigidGround, presses_a_block_with_stiffness_times_depth_times_area) {
 }
 
 TEST(RigidGround, presses_a_tilted_block_with_the_integral_of_its_depth) {
-  TerrainOptions options;
+  GroundOptions options;
   const auto ground = make_rigid_ground(options);
   // Bottom face tilted about y, its low edge 1 mm deep, its high edge above: a wedge of pressure of length L.
   const double tilt = 0.01, depth = 1e-3, length = depth / std::tan(tilt);
@@ -105,7 +105,7 @@ TEST(RigidGround, does_not_depend_on_how_a_flat_face_is_cut) {
 TEST(RigidGround, follows_the_regularised_friction_law) {
   for (double scale : {5.0, 50.0})
     for (double speed : {1e-4, 0.01, 0.1, 0.3, 3.0}) {
-      TerrainOptions options;
+      GroundOptions options;
       options.friction = 0.7;
       options.friction_velocity_scale = scale;
       const auto ground = make_rigid_ground(options);
@@ -125,7 +125,7 @@ TEST(RigidGround, follows_the_regularised_friction_law) {
 
 TEST(RigidGround, sticks_like_a_spring_before_it_slides) {
   // A block pushed sideways by less than μ N: κ A ξ holds it, and gives the work back.
-  TerrainOptions options;
+  GroundOptions options;
   options.friction = 0.7;
   options.friction_velocity_scale = 1e6;
   options.ground_damping = 0.0;
@@ -144,7 +144,7 @@ TEST(RigidGround, sticks_like_a_spring_before_it_slides) {
 TEST(RigidGround, shears_what_it_touches_from_then_on) {
   // A sheet rolls out along x with the speed c while it drifts sideways with v: what touches at x has been sheared by
   // v (t − x/c), so F = ½ κ_t W c v t² with its centre at x = c t/3, on any mesh.
-  TerrainOptions options;
+  GroundOptions options;
   options.ground_damping = 0.0;
   options.friction_velocity_scale = 1e6;
   options.friction = 10.0;
@@ -176,7 +176,7 @@ TEST(RigidGround, does_not_let_a_light_vertex_chatter) {
   // A tread vertex of 2 g under 50 N is driven along by 5 N through its spring of 1e5 N/m; forces come one step late.
   // The bare law, a dashpot of c μ N = 1750 N s/m, would throw it back and forth by (c μ N h/m) v.
   for (double scale : {5.0, 50.0}) {
-    TerrainOptions options;
+    GroundOptions options;
     options.friction = 0.7;
     options.friction_velocity_scale = scale;
     const auto ground = make_rigid_ground(options);
@@ -205,7 +205,7 @@ TEST(RigidGround, does_not_let_a_light_vertex_chatter) {
 
 TEST(RigidGround, gives_no_tractive_effort_without_friction) {
   for (double friction : {0.0, 0.5}) {
-    TerrainOptions options;
+    GroundOptions options;
     const auto ground = make_rigid_ground(options);
     const testing::Surface round = testing::wheel(0.4673, 0.2, 60, 4);
     const SurfaceState start = placed(round, {0.0, 0.0, 0.4673 - 1e-3}, {2.0, 0.0, 0.0}, 0.02, 8.56);
@@ -239,7 +239,7 @@ TEST(RigidGround, mirrors_what_is_mirrored) {
 }
 
 TEST(RigidGround, never_pulls) {
-  TerrainOptions options;
+  GroundOptions options;
   options.ground_damping = 1e7;
   const auto ground = make_rigid_ground(options);
   const testing::Surface block = testing::box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
@@ -298,7 +298,7 @@ struct Faller {
 };
 
 TEST(RigidGround, brings_a_dropped_block_to_rest_with_its_weight_balanced) {
-  TerrainOptions options;
+  GroundOptions options;
   options.ground_damping = 1e6;
   const auto ground = make_rigid_ground(options);
   Faller block;
@@ -320,7 +320,7 @@ TEST(RigidGround, brings_a_dropped_block_to_rest_with_its_weight_balanced) {
 }
 
 TEST(RigidGround, damps_bouncing_as_a_linear_oscillator_would) {
-  TerrainOptions options;
+  GroundOptions options;
   options.ground_damping = 2e5;
   const auto ground = make_rigid_ground(options);
   Faller block;
@@ -352,7 +352,7 @@ TEST(RigidGround, holds_a_light_vertex_at_the_usual_step) {
 }
 
 TEST(RigidGround, work_of_its_spring_is_its_elastic_energy) {
-  TerrainOptions options;
+  GroundOptions options;
   options.ground_damping = 0.0;
   options.friction = 0.0;
   const auto ground = make_rigid_ground(options);
@@ -404,7 +404,7 @@ TEST(RigidGround, continues_a_saved_state_bit_for_bit) {
 }
 
 TEST(RigidGround, refuses_bad_options_and_surfaces) {
-  TerrainOptions options;
+  GroundOptions options;
   options.ground_stiffness = -1.0;
   EXPECT_THROW(make_rigid_ground(options), Error);
   options = {};

@@ -6,15 +6,15 @@
 #include <memory>
 
 #include "protocol/core/constants.hpp"
-#include "terrain/terrain_options.hpp"
+#include "terrain/dem/dem_terrain.hpp"
 #include "tests/terrain/surface_meshes.hpp"
 
 namespace furrow::terrain {
 namespace {
 constexpr double kStep = 6e-5;  // H, s
 
-TerrainOptions small_bin(double length) {
-  TerrainOptions options;
+dem::DemOptions small_bin(double length) {
+  dem::DemOptions options;
   options.radius = 0.01;
   options.layers = 5;
   options.length = length;
@@ -67,7 +67,9 @@ struct Scene {
   std::vector<ContactSums> sums;
   double worst_force_residual = 0.0, worst_moment_residual = 0.0;
 
-  explicit Scene(const TerrainOptions& options) : terrain(make_terrain(options)) { terrain->prepare({}); }
+  explicit Scene(const dem::DemOptions& options) : terrain(make_dem_terrain(options)) {
+    terrain->prepare({});
+  }
 
   void put(double x, double mass) {
     Block block;
@@ -96,7 +98,7 @@ struct Scene {
 };
 
 TEST(SurfaceCoupling, four_blocks_on_one_bed_each_feel_their_own_weight) {
-  TerrainOptions options = small_bin(0.84);
+  dem::DemOptions options = small_bin(0.84);
   options.cohesion = 20e3;  // a bed that carries the blocks after a few millimetres
   Scene scene(options);
   const double masses[] = {10.0, 15.0, 20.0, 25.0};

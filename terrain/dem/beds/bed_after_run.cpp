@@ -31,7 +31,7 @@ Archive grains_of(const Archive& state) {
 
 }  // namespace
 
-Archive bed_after_run(const Archive& state, const TerrainOptions& options, double rest,
+Archive bed_after_run(const Archive& state, const DemOptions& options, double rest,
                       const ProgressCall& progress, RestResult& result) {
   SolverParams params = solver_params(options);
   params.threads = std::max(1, options.threads);

@@ -1,7 +1,7 @@
 // A bed that a tire has been over, as the start of another run.
 #pragma once
 
-#include "terrain/terrain_options.hpp"
+#include "terrain/dem/dem_options.hpp"
 
 namespace furrow::terrain::dem {
 
@@ -18,7 +18,7 @@ struct RestResult {
 /// @param state what Terrain::save wrote
 /// @returns a bed as prepare_bed reads it
 /// @throws Error(physics) when a grain is lost, Error(io) when the state is of another kind
-Archive bed_after_run(const Archive& state, const TerrainOptions& options, double rest,
+Archive bed_after_run(const Archive& state, const DemOptions& options, double rest,
                       const ProgressCall& progress, RestResult& result);
 
 }  // namespace furrow::terrain::dem

@@ -2,7 +2,6 @@
 
 #include <unistd.h>
 
-#include <array>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -10,6 +9,7 @@
 #include <span>
 #include <variant>
 
+#include "protocol/core/field_hash.hpp"
 #include "protocol/core/hash.hpp"
 #include "protocol/files/hdf5_handle.hpp"
 #include "terrain/dem/beds/bed_settling.hpp"
@@ -19,7 +19,8 @@
 namespace furrow::terrain::dem {
 namespace {
 
-constexpr std::int64_t kBedFormat = 4;  // raise when the bits of a bed may change
+constexpr std::int64_t kBedFormat = 5;        // raise when the bits of a bed or its digest may change
+constexpr std::int64_t kOldestBedFormat = 4;  // that can be read
 
 template <class T>
 hid_t native_type() {
@@ -90,37 +91,17 @@ std::string file_bytes(const std::filesystem::path& file) {
 
 }  // namespace
 
-std::string bed_digest(const TerrainOptions& o) {
+std::string bed_digest(const DemOptions& o) {
   Hash hash;
-  hash.add(std::string(law_name(law_from(o.law))));
-  hash.add(o.precision);
-  const std::array<double, 19> numbers{static_cast<double>(kBedFormat),
-                                       o.radius,
-                                       o.size_spread,
-                                       o.density,
-                                       static_cast<double>(o.layers),
-                                       o.length,
-                                       o.width,
-                                       kSkinShare,
-                                       o.periodic_x ? 1.0 : 0.0,
-                                       o.periodic_y ? 1.0 : 0.0,
-                                       o.young_modulus,
-                                       o.poisson_ratio,
-                                       o.restitution,
-                                       o.friction,
-                                       o.rolling_friction,
-                                       o.cohesion,
-                                       o.normal_stiffness,
-                                       o.normal_damping,
-                                       o.friction_velocity_scale};
-  hash.add(std::span<const double>(numbers));
-  const double step = settle_step(o);
-  hash.add(&step, sizeof step);
-  hash.add(&o.seed, sizeof o.seed);
-  hash.add(o.size_distribution);
-  hash.add(o.bed_generator);
-  hash.add(&o.compaction_pressure, sizeof o.compaction_pressure);
-  hash.add(&o.settling_friction, sizeof o.settling_friction);
+  const auto add = [&](const auto& value) { hash.add(&value, sizeof value); };
+  add(kBedFormat);
+  add(kSkinShare);
+  DemOptions named = o;
+  named.law = law_name(law_from(o.law));  // the law has a former name
+  add_fields(hash, named, role::bed);
+  add(o.periodic_x);
+  add(o.seed);
+  add(settle_step(o));
   if (!o.bed.empty()) hash.add(file_bytes(o.bed));
   return hash.hex();
 }
@@ -177,9 +158,9 @@ Archive read_bed(const std::filesystem::path& file) {
   if (all.get_int("format_version") > kBedFormat)
     throw io_error(file.string(), "format_version " + std::to_string(all.get_int("format_version")) +
                                       " is newer than this program's " + std::to_string(kBedFormat));
-  if (all.get_int("format_version") < kBedFormat)
+  if (all.get_int("format_version") < kOldestBedFormat)
     throw io_error(file.string(), "format_version " + std::to_string(all.get_int("format_version")) +
-                                      " is older than this program's " + std::to_string(kBedFormat) +
+                                      " is older than " + std::to_string(kOldestBedFormat) +
                                       ", expected a bed made by this version: make it anew");
   Archive archive;
   for (const auto& [name, array] : all.arrays())

@@ -5,12 +5,12 @@
 #include <string>
 
 #include "protocol/core/archive.hpp"
-#include "terrain/terrain_options.hpp"
+#include "terrain/dem/dem_options.hpp"
 
 namespace furrow::terrain::dem {
 
 /// Digest of what decides the bits of a settled bed: geometry, seed, law, material, settling step and format.
-std::string bed_digest(const TerrainOptions& options);
+std::string bed_digest(const DemOptions& options);
 
 /// ${XDG_CACHE_HOME:-~/.cache}/furrow/beds/<digest>.h5; empty when neither variable names a directory.
 std::filesystem::path bed_cache_file(const std::string& digest);

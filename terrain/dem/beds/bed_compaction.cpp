@@ -49,7 +49,7 @@ std::vector<Quad> positions_by_id(const GrainSolver& solver) {
   return positions;
 }
 
-std::vector<Quad> compacted_positions(GrainSolver& solver, const TerrainOptions& options,
+std::vector<Quad> compacted_positions(GrainSolver& solver, const DemOptions& options,
                                       const ProgressCall& progress) {
   const Bin& bin = solver.params().bin;
   const double dt = settle_step(options), depth = top_of(solver), area = bin.length * bin.width;

@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "terrain/dem/dem_options.hpp"
 #include "terrain/dem/grain_solver.hpp"
-#include "terrain/terrain_options.hpp"
 
 namespace furrow::terrain::dem {
 
@@ -12,7 +12,7 @@ namespace furrow::terrain::dem {
 /// `compaction_pressure` × area, stays until the lid rests, and goes again. Side walls are without friction as while
 /// settling, so that the pressure reaches the floor. Returns the positions, by grain id; contacts are to be settled
 /// anew. @throws Error(physics) when a grain is lost.
-std::vector<Quad> compacted_positions(GrainSolver& solver, const TerrainOptions& options,
+std::vector<Quad> compacted_positions(GrainSolver& solver, const DemOptions& options,
                                       const ProgressCall& progress);
 
 /// Positions by grain id.

@@ -22,7 +22,7 @@ constexpr double kMinDistance =
 constexpr double kSingle = 1e-7;  // relative round-off of a float
 constexpr double kMinWall = 0.8;  // radii between a centre and a wall
 
-Bin bin_of(const TerrainOptions& o) { return {o.length, o.width, o.periodic_x, o.periodic_y}; }
+Bin bin_of(const DemOptions& o) { return {o.length, o.width, o.periodic_x, o.periodic_y()}; }
 
 struct Lattice {
   int nx = 0, ny = 0;
@@ -42,7 +42,7 @@ Lattice lattice_of(const Bin& bin, double radius) {
   return lattice;
 }
 
-std::vector<Quad> lattice_layers(const TerrainOptions& o, const ProgressCall& progress) {
+std::vector<Quad> lattice_layers(const DemOptions& o, const ProgressCall& progress) {
   std::vector<Quad> all;
   for (int layer = 0; layer < o.layers; ++layer) {
     if (progress) progress("placing the grains", static_cast<double>(layer) / o.layers);
@@ -55,28 +55,28 @@ std::vector<Quad> lattice_layers(const TerrainOptions& o, const ProgressCall& pr
   return all;
 }
 
-std::vector<Quad> poisson_layers(const TerrainOptions& o, const ProgressCall& progress) {
+std::vector<Quad> poisson_layers(const DemOptions& o, const ProgressCall& progress) {
   return bed_layers(bin_of(o), largest_radius(o), o.layers, o.seed, progress);
 }
 
-double lattice_count(const TerrainOptions& o) {
+double lattice_count(const DemOptions& o) {
   const Lattice lattice = lattice_of(bin_of(o), largest_radius(o));
   return static_cast<double>(o.layers) * lattice.nx * lattice.ny;
 }
 
-double poisson_count(const TerrainOptions& o) {
+double poisson_count(const DemOptions& o) {
   return o.layers * expected_layer_count(bin_of(o), largest_radius(o));
 }
 
 struct Generator {
   const char* name;
-  std::vector<Quad> (*make)(const TerrainOptions&, const ProgressCall&);
-  double (*count)(const TerrainOptions&);
+  std::vector<Quad> (*make)(const DemOptions&, const ProgressCall&);
+  double (*count)(const DemOptions&);
 };
 constexpr std::array<Generator, 2> kGenerators{
     {{"poisson", poisson_layers, poisson_count}, {"lattice", lattice_layers, lattice_count}}};
 
-const Generator& generator_of(const TerrainOptions& o) {
+const Generator& generator_of(const DemOptions& o) {
   std::string names;
   for (const Generator& g : kGenerators) {
     if (o.bed_generator == g.name) return g;
@@ -88,7 +88,7 @@ const Generator& generator_of(const TerrainOptions& o) {
 
 std::string place_text(const Quad& p) { return fmt::format("({:g}, {:g}, {:g}) m", p.x, p.y, p.z); }
 
-std::vector<Quad> positions_of(const TerrainOptions& o) {
+std::vector<Quad> positions_of(const DemOptions& o) {
   std::vector<Quad> grains = is_hdf5(o.bed) ? read_positions_h5(o.bed) : read_positions_csv(o.bed);
   check_positions(o, o.bed, grains);
   return grains;
@@ -96,7 +96,7 @@ std::vector<Quad> positions_of(const TerrainOptions& o) {
 
 }  // namespace
 
-void check_positions(const TerrainOptions& o, const std::filesystem::path& file, std::vector<Quad>& grains) {
+void check_positions(const DemOptions& o, const std::filesystem::path& file, std::vector<Quad>& grains) {
   const bool hdf5 = is_hdf5(file);
   const Bin bin = bin_of(o);
   const auto wrong = [&](std::size_t g, const std::string& what) {
@@ -116,7 +116,7 @@ void check_positions(const TerrainOptions& o, const std::filesystem::path& file,
     const double least = kMinWall * radius * (1.0 - 1e-9);
     const auto& p = grains[g];
     if ((o.periodic_x && !(p.x >= 0.0 && p.x <= o.length)) ||
-        (o.periodic_y && !(std::abs(p.y) <= 0.5 * o.width)))
+        (o.periodic_y() && !(std::abs(p.y) <= 0.5 * o.width)))
       throw wrong(g, fmt::format("the grain stands at {}, expected x 0 to {:g} m, y {:g} to {:g} m",
                                  place_text(p), o.length, -0.5 * o.width, 0.5 * o.width));
     for (int wall = 0; wall < kWalls; ++wall)
@@ -161,14 +161,14 @@ bool is_positions_file(const std::filesystem::path& bed) {
   return is_hdf5(bed) ? !is_settled_bed(bed) : bed.extension() != ".h5";
 }
 
-std::vector<Quad> starting_positions(const TerrainOptions& options, const ProgressCall& progress) {
+std::vector<Quad> starting_positions(const DemOptions& options, const ProgressCall& progress) {
   if (!options.bed.empty()) return positions_of(options);
   std::vector<Quad> grains = generator_of(options).make(options, progress);
   draw_radii(options, grains);
   return grains;
 }
 
-double expected_grains(const TerrainOptions& options) {
+double expected_grains(const DemOptions& options) {
   if (!options.bed.empty() && is_positions_file(options.bed))
     return static_cast<double>(positions_of(options).size());
   return generator_of(options).count(options);

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "terrain/dem/bin.hpp"
+#include "terrain/dem/dem_options.hpp"
 #include "terrain/dem/quad.hpp"
-#include "terrain/terrain_options.hpp"
 
 namespace furrow::terrain::dem {
 
@@ -21,15 +21,14 @@ std::vector<Quad> lattice_layer(const Bin& bin, double radius, std::uint64_t see
 
 /// Grains before they settle: layers by `bed_generator`, or those of the CSV file `bed`.
 /// @throws Error(bad_input) listing the valid generators, or what is wrong with the file and in which line.
-std::vector<Quad> starting_positions(const TerrainOptions& options, const ProgressCall& progress);
+std::vector<Quad> starting_positions(const DemOptions& options, const ProgressCall& progress);
 
 /// The grains of a user's `file` must stand in the bin and not in each other; radii that it does not give become
 /// `radius`. Lines are counted as if none were blank. @throws Error(bad_input) naming file and line, or grain
-void check_positions(const TerrainOptions& options, const std::filesystem::path& file,
-                     std::vector<Quad>& grains);
+void check_positions(const DemOptions& options, const std::filesystem::path& file, std::vector<Quad>& grains);
 
 /// How many grains starting_positions will give, without making them. @throws Error as starting_positions
-double expected_grains(const TerrainOptions& options);
+double expected_grains(const DemOptions& options);
 
 /// True when `bed` names a file that is not HDF5: positions that are settled before use.
 bool is_positions_file(const std::filesystem::path& bed);

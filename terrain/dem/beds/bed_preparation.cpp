@@ -15,12 +15,12 @@
 namespace furrow::terrain::dem {
 namespace {
 
-std::vector<double> geometry(const TerrainOptions& o) { return {o.radius, o.density, o.length, o.width}; }
+std::vector<double> geometry(const DemOptions& o) { return {o.radius, o.density, o.length, o.width}; }
 
 const char* sides(bool periodic) { return periodic ? "periodic" : "walls"; }
 
 /// A bed from a file must be one of this bin, these grains and this law.
-void check_bed(const Archive& bed, const TerrainOptions& o) {
+void check_bed(const Archive& bed, const DemOptions& o) {
   const auto& made = bed.get<double>("bed/geometry", 4);
   constexpr const char* kKey[] = {"radius", "density", "length", "width"};
   const std::vector<double> wanted = geometry(o);
@@ -33,9 +33,9 @@ void check_bed(const Archive& bed, const TerrainOptions& o) {
     throw input_error(o.scenario, "terrain.size_spread",
                       fmt::format("is {} but the bed '{}' was made with {}", o.size_spread, o.bed, spread));
   const bool periodic = bed.has("bed/periodic_sides") && bed.get_int("bed/periodic_sides") != 0;
-  if (periodic != o.periodic_y)
+  if (periodic != o.periodic_y())
     throw input_error(o.scenario, "terrain.sides",
-                      fmt::format("is '{}' but the bed '{}' was made with '{}'", sides(o.periodic_y), o.bed,
+                      fmt::format("is '{}' but the bed '{}' was made with '{}'", sides(o.periodic_y()), o.bed,
                                   sides(periodic)));
   const auto& law = bed.get<std::uint8_t>("bed/law");
   if (law_from(std::string(law.begin(), law.end())) != law_from(o.law))
@@ -48,7 +48,7 @@ void check_bed(const Archive& bed, const TerrainOptions& o) {
                       fmt::format("is {} but the bed '{}' was settled without", o.rolling_friction, o.bed));
 }
 
-bool from_cache(const std::filesystem::path& file, const TerrainOptions& options, Archive& bed) {
+bool from_cache(const std::filesystem::path& file, const DemOptions& options, Archive& bed) {
   if (file.empty()) return false;
   try {
     bed = read_bed(file);
@@ -60,15 +60,15 @@ bool from_cache(const std::filesystem::path& file, const TerrainOptions& options
 }
 
 /// Smoother grains come to rest more closely packed [Agnolin & Roux 2007, doi:10.1103/PhysRevE.76.061302].
-TerrainOptions smoothed(TerrainOptions o) {
+DemOptions smoothed(DemOptions o) {
   if (o.settling_friction < 0.0 || o.settling_friction >= o.friction) return o;
   o.rolling_friction *= o.settling_friction / o.friction;
   o.friction = o.settling_friction;
   return o;
 }
 
-Archive made_bed(const TerrainOptions& options, const ProgressCall& progress, SettleResult& result) {
-  const TerrainOptions smooth = smoothed(options);
+Archive made_bed(const DemOptions& options, const ProgressCall& progress, SettleResult& result) {
+  const DemOptions smooth = smoothed(options);
   GrainSolver solver(settling_params(options));
   solver.place(starting_positions(options, progress));
   result = settle(solver, smooth, progress);
@@ -100,24 +100,24 @@ bool keep(const std::filesystem::path& file, const Archive& bed, const ProgressC
 
 }  // namespace
 
-bool bed_is_settled_anew(const TerrainOptions& options) {
+bool bed_is_settled_anew(const DemOptions& options) {
   return options.bed.empty() || is_positions_file(options.bed);
 }
 
-Archive bed_archive(const GrainSolver& solver, const TerrainOptions& options, const SettleResult& settled) {
+Archive bed_archive(const GrainSolver& solver, const DemOptions& options, const SettleResult& settled) {
   Archive bed;
   solver.save(bed);
   bed.put("bed/settled", std::vector<double>{settled.settled ? 1.0 : 0.0, settled.force_ratio,
                                              settled.floor_error, settled.time});
   bed.put("bed/geometry", geometry(options));
   bed.put("bed/size_spread", options.size_spread);
-  bed.put("bed/periodic_sides", std::int64_t{options.periodic_y});
+  bed.put("bed/periodic_sides", std::int64_t{options.periodic_y()});
   const std::string law = law_name(law_from(options.law));
   bed.put("bed/law", std::vector<std::uint8_t>(law.begin(), law.end()));
   return bed;
 }
 
-void check_bed_options(const TerrainOptions& o) {
+void check_bed_options(const DemOptions& o) {
   if (!(o.compaction_pressure >= 0.0) || !(o.compaction_pressure <= 1e9))
     throw input_error(o.scenario, "terrain.compaction_pressure",
                       fmt::format("{} is out of range, expected 0 to 1e9 Pa", o.compaction_pressure));
@@ -128,7 +128,7 @@ void check_bed_options(const TerrainOptions& o) {
                     o.compaction_pressure, o.bed));
 }
 
-PreparedBed prepare_bed(const TerrainOptions& options, const ProgressCall& progress) {
+PreparedBed prepare_bed(const DemOptions& options, const ProgressCall& progress) {
   check_bed_options(options);
   PreparedBed prepared;
   if (!bed_is_settled_anew(options)) {

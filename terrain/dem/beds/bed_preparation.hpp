@@ -5,7 +5,7 @@
 
 #include "protocol/core/archive.hpp"
 #include "terrain/dem/beds/bed_settling.hpp"
-#include "terrain/terrain_options.hpp"
+#include "terrain/dem/dem_options.hpp"
 
 namespace furrow::terrain::dem {
 
@@ -17,15 +17,15 @@ struct PreparedBed {
 };
 
 /// @throws Error(bad_input) for what options or the user's file have wrong, Error(physics) when a grain is lost.
-PreparedBed prepare_bed(const TerrainOptions& options, const ProgressCall& progress);
+PreparedBed prepare_bed(const DemOptions& options, const ProgressCall& progress);
 
 /// False for a settled bed from the user's file, which is taken as it is.
-bool bed_is_settled_anew(const TerrainOptions& options);
+bool bed_is_settled_anew(const DemOptions& options);
 
 /// A bed as prepare_bed reads it from a file.
-Archive bed_archive(const GrainSolver& solver, const TerrainOptions& options, const SettleResult& settled);
+Archive bed_archive(const GrainSolver& solver, const DemOptions& options, const SettleResult& settled);
 
 /// What can be said against the options of the bed before it is made. @throws Error(bad_input)
-void check_bed_options(const TerrainOptions& options);
+void check_bed_options(const DemOptions& options);
 
 }  // namespace furrow::terrain::dem

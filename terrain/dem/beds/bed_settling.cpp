@@ -15,26 +15,26 @@ constexpr double kStepShareHertzTanh = 0.7;  // grains that fall on each other o
 constexpr double kFallDrag = 4.0;            // 1/s, while the layers fall
 constexpr double kLyingSpeed = 0.03;         // rms, m/s: slower counts as lying
 
-TerrainOptions with_impulse_limit(TerrainOptions options) {
+DemOptions with_impulse_limit(DemOptions options) {
   options.friction_impulse_limit = true;
   return options;
 }
 
 }  // namespace
 
-double settle_step(const TerrainOptions& options) {
-  const TerrainOptions limited = with_impulse_limit(options);
+double settle_step(const DemOptions& options) {
+  const DemOptions limited = with_impulse_limit(options);
   const double share = law_from(options.law) == LawKind::mindlin ? kStepShareMindlin : kStepShareHertzTanh;
   return share * stable_at(limited, stated_overlap(limited)).step;
 }
 
-SolverCoefficients settle_coefficients(const TerrainOptions& options) {
+SolverCoefficients settle_coefficients(const DemOptions& options) {
   SolverCoefficients c = run_coefficients(with_impulse_limit(options), settle_step(options));
   c.side.friction = c.side.rolling_arm = 0.0;
   return c;
 }
 
-SettleResult settle(GrainSolver& solver, const TerrainOptions& options, const ProgressCall& progress,
+SettleResult settle(GrainSolver& solver, const DemOptions& options, const ProgressCall& progress,
                     double most_time) {
   SettleResult result;
   const double dt = settle_step(options);

@@ -1,8 +1,8 @@
 // Lets a new bed fall and come to rest.
 #pragma once
 
+#include "terrain/dem/dem_options.hpp"
 #include "terrain/dem/grain_solver.hpp"
-#include "terrain/terrain_options.hpp"
 
 namespace furrow::terrain::dem {
 
@@ -19,11 +19,11 @@ struct SettleResult {
 };
 
 /// Step used for settling, s: a fixed share of the stable one, independent of the run's step.
-double settle_step(const TerrainOptions& options);
+double settle_step(const DemOptions& options);
 
 /// Coefficients while the bed settles: side walls without friction, so that the floor carries the whole weight; the
 /// impulse limit of law hertz_tanh is on.
-SolverCoefficients settle_coefficients(const TerrainOptions& options);
+SolverCoefficients settle_coefficients(const DemOptions& options);
 
 inline constexpr double kMaxSettleTime = 4.0;  // s
 inline constexpr double kRestDrag =
@@ -33,7 +33,7 @@ inline constexpr int kSettleCheckEvery = 40;  // steps
 
 /// Runs the solver until the bed is settled or `most` seconds have passed. May throw what `progress` throws.
 /// @throws Error(physics) when a grain is lost.
-SettleResult settle(GrainSolver& solver, const TerrainOptions& options, const ProgressCall& progress,
+SettleResult settle(GrainSolver& solver, const DemOptions& options, const ProgressCall& progress,
                     double most = kMaxSettleTime);
 
 }  // namespace furrow::terrain::dem

@@ -9,12 +9,12 @@
 
 #include <cmath>
 
-#include "terrain/terrain_options.hpp"
+#include "terrain/dem/dem_options.hpp"
 
 namespace furrow::terrain::dem {
 
 /// Young's modulus of the grains; of law hertz_tanh that which gives two grains the stiffness k_n = 4/3 E* √R*, Pa.
-inline double grain_modulus(const TerrainOptions& o) {
+inline double grain_modulus(const DemOptions& o) {
   if (o.law == "mindlin") return o.young_modulus;
   return 1.5 * (1.0 - o.poisson_ratio * o.poisson_ratio) * o.normal_stiffness / std::sqrt(0.5 * o.radius);
 }

@@ -17,8 +17,8 @@ namespace {
 
 constexpr Box kShearBox{24.0, 10.0, 12.0};
 
-TerrainOptions coarse(double cohesion = 80e3) {
-  TerrainOptions o;
+dem::DemOptions coarse(double cohesion = 80e3) {
+  dem::DemOptions o;
   o.radius = 0.01;
   o.cohesion = cohesion;
   return o;
@@ -26,7 +26,7 @@ TerrainOptions coarse(double cohesion = 80e3) {
 
 void ignore(double) {}
 
-ShearResult sheared(const TerrainOptions& material, double normal_stress, double travel = 6.0) {
+ShearResult sheared(const dem::DemOptions& material, double normal_stress, double travel = 6.0) {
   ShearTest test;
   test.normal_stress = normal_stress;
   test.travel = travel;
@@ -87,7 +87,7 @@ TEST(DirectShear, lid_bears_its_load_and_the_floor_bears_lid_and_soil) {
 TEST(DirectShear, strength_vanishes_for_frictionless_grains_without_cohesion) {
   // What is left is the geometric resistance of frictionless spheres, tan φ = 0.1 [Peyneau & Roux 2008, φ = 5.76°,
   // doi:10.1103/PhysRevE.78.011307].
-  TerrainOptions smooth = coarse(0.0);
+  dem::DemOptions smooth = coarse(0.0);
   smooth.friction = 0.0;
   const ShearResult r = sheared(smooth, 50e3);
   EXPECT_LT(std::abs(r.final_shear) / r.normal_mean, 0.2);

@@ -1,0 +1,29 @@
+// The keys of the section `terrain` with engine rigid, hard ground: each field is the key of its name.
+#pragma once
+
+#include <string>
+
+#include "protocol/core/fields.hpp"
+#include "terrain/terrain_spec.hpp"
+
+namespace furrow::terrain {
+
+/// A stiff elastic layer: pressure = stiffness × depth + damping × its rate. The keys, and what the run supplies.
+struct GroundOptions : TerrainContext {
+  std::string scenario = "scenario";     // what messages name: the scenario's file
+  double friction = 0.9;                 // -, at most the tire's
+  double friction_velocity_scale = 5.0;  // c in F_t = μ N tanh(c |v_t|), s/m
+  double ground_stiffness = 4e8;  // N/m³: 0.6 mm under 240 kPa; 4e5 N/m on a vertex that carries 10 cm²
+  double ground_shear_stiffness = 1e8;  // N/m³: a tread of 1 MPa shear modulus, 10 mm thick
+  double ground_damping = 2.5e4;        // N s/m³: holds such a vertex of 2.8 g by itself up to H = 4e-5 s
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<GroundOptions> auto& s) {
+  visit(Field{"friction", "-", role::key}, s.friction);
+  visit(Field{"friction_velocity_scale", "s/m", role::key}, s.friction_velocity_scale);
+  visit(Field{"ground_stiffness", "N/m³", role::key}, s.ground_stiffness);
+  visit(Field{"ground_shear_stiffness", "N/m³", role::key}, s.ground_shear_stiffness);
+  visit(Field{"ground_damping", "N s/m³", role::key}, s.ground_damping);
+}
+
+}  // namespace furrow::terrain

@@ -1,0 +1,94 @@
+// What a scenario says of its terrain, read but not yet made: what programs ask of any terrain before it exists.
+// The engines are listed in terrain/terrains.hpp.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "protocol/core/fields.hpp"
+#include "terrain/terrain.hpp"
+
+namespace furrow::terrain {
+
+namespace dem {
+struct DemOptions;
+}
+
+/// What a run supplies to its terrain beside the keys of the scenario.
+struct TerrainContext {
+  double step = 4e-5;             // run.step / terrain.substeps, s: the terrain will be advanced with it
+  std::uint64_t seed = 1;         // run.seed
+  int threads = 1;                // OpenMP threads while stepping
+  int settle_threads = 1;         // OpenMP threads while a bed settles
+  bool contact_tangents = false;  // tire.contact_tangent of any tire: send them beside the forces
+};
+
+/// The keys that every engine shares.
+struct CommonOptions {
+  std::string engine = "dem";
+  int ranks = 1;     // MPI ranks
+  int substeps = 1;  // of the terrain in one communication step
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<CommonOptions> auto& s) {
+  visit(Field{"engine", "", role::key}, s.engine);
+  visit(Field{"ranks", "-", role::key}, s.ranks);
+  visit(Field{"substeps", "-", role::key}, s.substeps);
+}
+
+/// A terrain ends at the walls of a bin: x from 0 to length, y from −width/2 to width/2.
+struct TerrainBounds {
+  double length = 0.0, width = 0.0;  // m
+};
+
+/// What the keys alone say.
+struct TerrainDescription {
+  std::string engine;                        // terrain.engine
+  std::string name;                          // for people: "grains, law mindlin"
+  std::string law;                           // of contact between grains; empty: there are none
+  double grain_radius = 0.0;                 // m; 0: there are none
+  bool exact_restart = true;                 // a run continued from a checkpoint has the same bits
+  bool unstable_step_allowed = false;        // a step above the stable one is warned of, not refused
+  std::optional<TerrainBounds> bounds;       // none: unbounded
+  std::optional<double> undisturbed_height;  // of the surface that sinkage counts from, m; none: measured
+};
+
+/// What a run will need, before any grain exists.
+struct TerrainEstimate {
+  std::string text;  // for people: "about 25260 grains of 6 mm, …"
+  double stable_step = std::numeric_limits<double>::infinity();  // s
+  std::string stable_reason;                                     // what limits it: "stiffness", "damping"
+  std::int64_t grains = 0;
+  double memory_bytes = 0.0;      // of the terrain's rank
+  double frame_bytes = 0.0;       // on disk, of one frame
+  double checkpoint_bytes = 0.0;  // on disk, of one checkpoint
+  double expected_height = 0.0;   // of the surface, m
+};
+
+/// A file that a terrain reads: it counts by what it holds, wherever it stands.
+struct TerrainFile {
+  std::string key;  // in the section
+  std::filesystem::path path;
+};
+
+class TerrainSpec {
+ public:
+  virtual ~TerrainSpec() = default;
+
+  virtual TerrainDescription describe() const = 0;
+  /// @throws Error(bad_input) for values out of range.
+  virtual TerrainEstimate estimate(const TerrainContext& context) const = 0;
+  /// @throws Error(bad_input) for values out of range and for a step above the stable one.
+  virtual std::unique_ptr<Terrain> make(const TerrainContext& context) const = 0;
+  virtual std::vector<TerrainFile> files() const { return {}; }
+
+  /// What tools that need our grains (beds, soil tests, passes) work on; null: this terrain has none.
+  virtual const dem::DemOptions* grains() const { return nullptr; }
+};
+
+}  // namespace furrow::terrain

@@ -1,0 +1,79 @@
+#include "terrain/terrains.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include <nlohmann/json.hpp>
+
+#include "protocol/core/error.hpp"
+#include "terrain/dem/dem_options.hpp"
+#include "terrain/dem/dem_spec.hpp"
+#include "terrain/rigid/ground_options.hpp"
+#include "terrain/rigid/ground_spec.hpp"
+
+namespace furrow::terrain {
+namespace {
+
+template <HasFields T>
+std::vector<Field> fields_of() {
+  std::vector<Field> fields;
+  const T options{};
+  visit_fields([&](const Field& field, const auto&) { fields.push_back(field); }, options);
+  return fields;
+}
+
+constexpr std::array<TerrainEntry, 2> kTerrains{{
+    {"dem", fields_of<dem::DemOptions>, dem::read_dem_spec},
+    {"rigid", fields_of<GroundOptions>, read_ground_spec},
+}};
+
+/// "'dem' or 'rigid'", of the engines that `wanted` takes.
+template <class Wanted>
+std::string names_of(const Wanted& wanted) {
+  std::string names;
+  for (const TerrainEntry& entry : kTerrains)
+    if (wanted(entry)) names += (names.empty() ? "'" : " or '") + std::string(entry.name) + "'";
+  return names;
+}
+
+}  // namespace
+
+std::span<const TerrainEntry> terrains() { return kTerrains; }
+
+const TerrainEntry& find_terrain(const std::string& engine, const ReadContext& context) {
+  for (const TerrainEntry& entry : kTerrains)
+    if (engine == entry.name) return entry;
+  const std::string names = names_of([](const TerrainEntry&) { return true; });
+  throw input_error(context.file, context.key("engine"), "is '" + engine + "', expected " + names);
+}
+
+std::vector<Field> common_terrain_fields() { return fields_of<CommonOptions>(); }
+
+std::vector<std::string> engines_of_key(const std::string& key) {
+  std::vector<std::string> engines;
+  for (const TerrainEntry& entry : kTerrains)
+    for (const Field& field : entry.fields())
+      if (field.is(role::key) && key == field.name) engines.emplace_back(entry.name);
+  return engines;
+}
+
+std::vector<std::string> terrain_keys(unsigned roles) {
+  std::vector<std::string> keys;
+  for (const TerrainEntry& entry : kTerrains)
+    for (const Field& field : entry.fields())
+      if (field.is(role::key | roles) && std::find(keys.begin(), keys.end(), field.name) == keys.end())
+        keys.emplace_back(field.name);
+  return keys;
+}
+
+std::string engines_with_grains() {
+  return names_of([](const TerrainEntry& entry) {
+    return entry.read(nlohmann::json::object(), {})->grains() != nullptr;
+  });
+}
+
+std::shared_ptr<const TerrainSpec> default_terrain() {
+  return find_terrain(CommonOptions().engine, {}).read(nlohmann::json::object(), {});
+}
+
+}  // namespace furrow::terrain

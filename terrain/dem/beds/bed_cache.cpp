@@ -12,13 +12,16 @@
 
 #include "protocol/core/hash.hpp"
 #include "protocol/files/hdf5_handle.hpp"
+#include "terrain/dem/beds/bed_format_4.hpp"
 #include "terrain/dem/beds/bed_settling.hpp"
 #include "terrain/dem/solver_setup.hpp"
 
 namespace furrow::terrain::dem {
 namespace {
 
-constexpr std::int64_t kBedFormat = 4;  // raise when the bits of a bed may change
+constexpr std::int64_t kBedFormat = 4;   // raise when the bits of a bed may change
+constexpr std::int64_t kFileFormat = 5;  // of the arrays of a file; raise when their names or contents change
+constexpr std::int64_t kOldestFormat = 4;  // that is still read
 
 template <class T>
 hid_t native_type() {
@@ -148,7 +151,7 @@ void write_bed(const std::filesystem::path& file, const Archive& archive) {
   {
     Handle out(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
     if (out.ok()) {
-      good = write_array(out, "format_version", std::vector<std::int64_t>{kBedFormat}) &&
+      good = write_array(out, "format_version", std::vector<std::int64_t>{kFileFormat}) &&
              write_array(out, "checksum", std::vector<std::uint64_t>{checksum(archive)});
       for (const auto& [name, array] : archive.arrays()) good = good && write_array(out, name, array);
       good = good && H5Fflush(out, H5F_SCOPE_GLOBAL) >= 0;
@@ -173,19 +176,20 @@ Archive read_bed(const std::filesystem::path& file) {
     throw io_error(file.string(), "damaged");
   if (!all.has("format_version") || !all.has("checksum"))
     throw io_error(file.string(), "not a bed of furrow");
-  if (all.get_int("format_version") > kBedFormat)
-    throw io_error(file.string(), "format_version " + std::to_string(all.get_int("format_version")) +
-                                      " is newer than this program's " + std::to_string(kBedFormat));
-  if (all.get_int("format_version") < kBedFormat)
-    throw io_error(file.string(), "format_version " + std::to_string(all.get_int("format_version")) +
-                                      " is older than this program's " + std::to_string(kBedFormat) +
-                                      ", expected a bed made by this version: make it anew");
+  const std::int64_t format = all.get_int("format_version");
+  if (format > kFileFormat)
+    throw io_error(file.string(), "format_version " + std::to_string(format) +
+                                      " is newer than this program's " + std::to_string(kFileFormat));
+  if (format < kOldestFormat)
+    throw io_error(file.string(), "format_version " + std::to_string(format) +
+                                      " is older than this program reads, expected " +
+                                      std::to_string(kOldestFormat) + " or later: make it anew");
   Archive archive;
   for (const auto& [name, array] : all.arrays())
     if (name != "format_version" && name != "checksum") archive.put_array(name, array);
   if (checksum(archive) != all.get<std::uint64_t>("checksum", 1).front())
     throw io_error(file.string(), "damaged: its checksum does not fit");
-  return archive;
+  return format == kFileFormat ? archive : from_format_4(archive);
 }
 
 }  // namespace furrow::terrain::dem

@@ -1,7 +1,8 @@
-// Writing and reading message payloads: plain values and vectors of plain values, in the machine's own byte order
-// (all ranks of a run are of one build).
+// Writing and reading message payloads: plain values, text, vectors, and structs with a list of fields (core/fields.hpp) in the
+// order of the list, in the machine's own byte order (all ranks of a run are of one build).
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "protocol/core/error.hpp"
+#include "protocol/core/fields.hpp"
 #include "protocol/core/vec.hpp"
 
 namespace furrow {
@@ -35,8 +37,12 @@ class ByteWriter {
     if constexpr (kIsPlain<T>) {
       append(values.data(), values.size() * sizeof(T));
     } else {
-      for (const T& value : values) visit_fields(*this, value);
+      for (const T& value : values) (*this)(value);
     }
+  }
+  template <HasFields T>
+  void operator()(const T& values) {
+    visit_fields([this](const Field&, const auto& value) { (*this)(value); }, values);
   }
 
   std::vector<std::byte> take() { return std::move(bytes_); }
@@ -67,8 +73,12 @@ class ByteReader {
     if constexpr (kIsPlain<T>) {
       copy(values.data(), values.size() * sizeof(T));
     } else {
-      for (T& value : values) visit_fields(*this, value);
+      for (T& value : values) (*this)(value);
     }
+  }
+  template <HasFields T>
+  void operator()(T& values) {
+    visit_fields([this](const Field&, auto& value) { (*this)(value); }, values);
   }
   /// @throws Error(rank_lost) when bytes are left over.
   void finish() const {

@@ -6,18 +6,21 @@
 //   tire k → terrain  SurfaceMotion   vertices at t_n
 //   terrain → tire k  TerrainForces   nodal forces over the last interval
 //   terrain → rig     TerrainReport   sums of the same forces, and the terrain's own measurements
+//
+// What a message holds is said once, in the list of fields beside each struct: it is packed and saved by that list.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "protocol/core/fields.hpp"
 #include "protocol/core/surface.hpp"
 #include "protocol/core/terrain_state.hpp"
 
 namespace furrow {
 
-inline constexpr std::int32_t kProtocolVersion = 3;
+inline constexpr std::int32_t kProtocolVersion = 4;
 
 enum class Role : std::int32_t { rig = 0, tire = 1, terrain = 2 };
 /// "rig", "tire", "terrain".
@@ -29,6 +32,11 @@ struct Address {
   std::int32_t index = 0;  // which tire; 0 for the others
   bool operator==(const Address&) const = default;
 };
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<Address> auto& s) {
+  visit(Field{"role", ""}, s.role);
+  visit(Field{"index"}, s.index);
+}
 /// "rig", "terrain", "tire 0".
 std::string to_string(const Address& address);
 
@@ -72,6 +80,27 @@ struct NodeCard {
       0.0;  // tire: how far it reaches below the rim centre, inflated, with the camber of the rig, m
   std::int64_t size = 0;  // grains or coordinates, for the reports
 };
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<NodeCard> auto& s) {
+  visit(Field{"protocol_version"}, s.protocol_version);
+  visit(Field{"self", ""}, s.self);
+  visit(Field{"node_kind", ""}, s.node_kind);
+  visit(Field{"scenario_digest", ""}, s.scenario_digest);
+  visit(Field{"step", "s"}, s.step);
+  visit(Field{"steps"}, s.steps);
+  visit(Field{"from_step"}, s.from_step);
+  visit(Field{"substeps"}, s.substeps);
+  visit(Field{"wheel_count"}, s.wheel_count);
+  visit(Field{"tire_count"}, s.tire_count);
+  visit(Field{"threads"}, s.threads);
+  visit(Field{"pid"}, s.pid);
+  visit(Field{"host", ""}, s.host);
+  visit(Field{"tire_mass", ""}, s.tire_mass);
+  visit(Field{"tire_radius", "m"}, s.tire_radius);
+  visit(Field{"tire_width", "m"}, s.tire_width);
+  visit(Field{"tire_reach", "m"}, s.tire_reach);
+  visit(Field{"size"}, s.size);
+}
 
 /// tire k → terrain, once: connectivity and material of its contact surface.
 struct SurfaceSetup {
@@ -79,6 +108,11 @@ struct SurfaceSetup {
   SurfaceMesh mesh;
   ContactMaterial material;
 };
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<SurfaceSetup> auto& s) {
+  visit(Field{"mesh", ""}, s.mesh);
+  visit(Field{"material", ""}, s.material);
+}
 
 /// terrain → rig, once, after settling.
 struct TerrainSetup {
@@ -89,12 +123,25 @@ struct TerrainSetup {
   double settle_wall_s = 0.0;
   std::int64_t grains = 0;
 };
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<TerrainSetup> auto& s) {
+  visit(Field{"top_height", "m"}, s.top_height);
+  visit(Field{"mean_height", "m"}, s.mean_height);
+  visit(Field{"floor_height", "m"}, s.floor_height);
+  visit(Field{"settle_wall_s", "s"}, s.settle_wall_s);
+  visit(Field{"grains"}, s.grains);
+}
 
 /// Header that every message of the run loop carries, checked on receipt.
 struct StepHeader {
   std::int64_t step = 0;  // n
   double time = 0.0;      // t_n, s
 };
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<StepHeader> auto& s) {
+  visit(Field{"step"}, s.step);
+  visit(Field{"time", "s"}, s.time);
+}
 
 /// What all nodes do at the same step, once the interval that follows the synchronization they all know it by is done.
 enum class Order : std::int32_t {
@@ -109,6 +156,12 @@ struct RimMotion {
   RimState rim;
   Order order = Order::go_on;  // due at synchronization n + 1
 };
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<RimMotion> auto& s) {
+  visit(Field{"header", ""}, s.header);
+  visit(Field{"rim", ""}, s.rim);
+  visit(Field{"order", ""}, s.order);
+}
 
 /// tire k → rig.
 struct SpindleReport {
@@ -134,6 +187,28 @@ struct SpindleReport {
   double ledger = 0.0;                // |Σ| of the differences when last settled, N s
   double ledger_largest = 0.0;        // until now, N s
 };
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<SpindleReport> auto& s) {
+  visit(Field{"header", ""}, s.header);
+  visit(Field{"wrench", ""}, s.wrench);
+  visit(Field{"spindle", ""}, s.spindle);
+  visit(Field{"lowest_point", "m"}, s.lowest_point);
+  visit(Field{"momentum", "kg m/s"}, s.momentum);
+  visit(Field{"impulse_received", "N s"}, s.impulse_received);
+  visit(Field{"impulse_received_abs", "N s"}, s.impulse_received_abs);
+  visit(Field{"terrain_work", "J"}, s.terrain_work);
+  visit(Field{"rim_work", "J"}, s.rim_work);
+  visit(Field{"dissipation", "J"}, s.dissipation);
+  visit(Field{"kinetic_energy", "J"}, s.kinetic_energy);
+  visit(Field{"strain_energy", "J"}, s.strain_energy);
+  visit(Field{"newton_iterations"}, s.newton_iterations);
+  visit(Field{"factorizations"}, s.factorizations);
+  visit(Field{"residual"}, s.residual);
+  visit(Field{"contact_tangent", ""}, s.contact_tangent);
+  visit(Field{"impulse_ahead", "N s"}, s.impulse_ahead);
+  visit(Field{"ledger", "N s"}, s.ledger);
+  visit(Field{"ledger_largest", "N s"}, s.ledger_largest);
+}
 
 struct SurfaceMotion {
   static constexpr MessageKind kKind = MessageKind::surface_motion;
@@ -141,6 +216,12 @@ struct SurfaceMotion {
   SurfaceState surface;
   Order order = Order::go_on;  // due now: terrain hears of it through the tires
 };
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<SurfaceMotion> auto& s) {
+  visit(Field{"header", ""}, s.header);
+  visit(Field{"surface", ""}, s.surface);
+  visit(Field{"order", ""}, s.order);
+}
 
 /// terrain → tire k.
 struct TerrainForces {
@@ -148,6 +229,11 @@ struct TerrainForces {
   StepHeader header;
   NodalForces forces;
 };
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<TerrainForces> auto& s) {
+  visit(Field{"header", ""}, s.header);
+  visit(Field{"forces", ""}, s.forces);
+}
 
 /// terrain → rig.
 struct TerrainReport {
@@ -156,12 +242,22 @@ struct TerrainReport {
   TerrainState state;
   std::vector<ContactSums> contact;  // one per tire
 };
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<TerrainReport> auto& s) {
+  visit(Field{"header", ""}, s.header);
+  visit(Field{"state", ""}, s.state);
+  visit(Field{"contact", ""}, s.contact);
+}
 
 /// rig → every node, before the handshake of a program's run: the folder that takes the results.
 struct RunFolder {
   static constexpr MessageKind kKind = MessageKind::run_folder;
   std::string path;
 };
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<RunFolder> auto& s) {
+  visit(Field{"path", ""}, s.path);
+}
 
 /// Every node → rig once it has written its part of a checkpoint, or failed to.
 struct CheckpointPart {
@@ -171,6 +267,13 @@ struct CheckpointPart {
   std::string checksum;  // of the state it holds
   std::string problem;   // why it could not be written; empty: it was
 };
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<CheckpointPart> auto& s) {
+  visit(Field{"step"}, s.step);
+  visit(Field{"file", ""}, s.file);
+  visit(Field{"checksum", ""}, s.checksum);
+  visit(Field{"problem", ""}, s.problem);
+}
 
 /// Every node → rig at the end.
 struct FinalReport {
@@ -182,5 +285,17 @@ struct FinalReport {
   std::vector<double> profile;              // what StepProfile::times() holds; empty unless asked for
   HeightField height_before, height_after;  // terrain
 };
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<FinalReport> auto& s) {
+  visit(Field{"self", ""}, s.self);
+  visit(Field{"state_hash"}, s.state_hash);
+  visit(Field{"cpu_s", "s"}, s.cpu_s);
+  visit(Field{"compute_s", "s"}, s.compute_s);
+  visit(Field{"wait_s", "s"}, s.wait_s);
+  visit(Field{"threads"}, s.threads);
+  visit(Field{"profile", "s"}, s.profile);
+  visit(Field{"height_before", ""}, s.height_before);
+  visit(Field{"height_after", ""}, s.height_after);
+}
 
 }  // namespace furrow

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 
+#include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "vehicle/multibody/system.hpp"
@@ -277,10 +278,7 @@ void DrawbarRig::save(Archive& archive) const {
   check_built();
   const Archive::Scope scope(archive, "rig/");
   system_->save(archive);
-  const WheelReport& r = report_;
-  archive.put("report",
-              std::vector<double>{r.slip, r.speed, r.spin, r.drawbar_pull_raw, r.drawbar_pull, r.drive_torque,
-                                  r.lateral_force, r.aligning_moment, r.damper_force});
+  save_fields(archive, "report", report_);
   archive.put("mass", system_->body(rim_).mass);
   archive.put("radius", radius_);
   archive.put("placed_height", placed_height_);
@@ -292,16 +290,7 @@ void DrawbarRig::restore(const Archive& archive) {
   if (archive.get_double("mass") != system_->body(rim_).mass || archive.get_double("radius") != radius_)
     throw Error(ExitCode::io, "saved rig state belongs to another tire (mass or radius differ)");
   system_->restore(archive);
-  const auto& r = archive.get<double>("report", 9);
-  report_.slip = r[0];
-  report_.speed = r[1];
-  report_.spin = r[2];
-  report_.drawbar_pull_raw = r[3];
-  report_.drawbar_pull = r[4];
-  report_.drive_torque = r[5];
-  report_.lateral_force = r[6];
-  report_.aligning_moment = r[7];
-  report_.damper_force = r[8];
+  restore_fields(archive, "report", report_);
   measure_end();
 }
 

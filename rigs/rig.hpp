@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "protocol/core/archive.hpp"
+#include "protocol/core/fields.hpp"
 #include "protocol/core/outcome.hpp"
 #include "protocol/core/surface.hpp"
 
@@ -33,6 +34,24 @@ struct WheelReport {
   double joint_drift = 0.0;        // largest constraint violation, m or rad
   double damper_force = 0.0;       // touch-down damper on the slider, N
 };
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<WheelReport> auto& s) {
+  visit(Field{"slip"}, s.slip);
+  visit(Field{"speed", "m/s"}, s.speed);
+  visit(Field{"spin", "rad/s"}, s.spin);
+  visit(Field{"drawbar_pull_raw", "N"}, s.drawbar_pull_raw);
+  visit(Field{"drawbar_pull", "N"}, s.drawbar_pull);
+  visit(Field{"drive_torque", "N m"}, s.drive_torque);
+  visit(Field{"lateral_force", "N"}, s.lateral_force);
+  visit(Field{"aligning_moment", "N m"}, s.aligning_moment);
+  visit(Field{"axle_height", "m"}, s.axle_height);
+  visit(Field{"axle_position", "m"}, s.axle_position);
+  visit(Field{"vertical_speed", "m/s"}, s.vertical_speed);
+  visit(Field{"vertical_momentum", "kg m/s"}, s.vertical_momentum);
+  visit(Field{"carried_mass", "kg"}, s.carried_mass);
+  visit(Field{"joint_drift", "m or rad"}, s.joint_drift);
+  visit(Field{"damper_force", "N"}, s.damper_force);
+}
 
 class Rig {
  public:

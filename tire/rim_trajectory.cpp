@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "tire/rim_archive.hpp"
+#include "protocol/core/archive_fields.hpp"
 
 namespace furrow::tire {
 namespace {
@@ -69,19 +69,8 @@ RimKinematics RimTrajectory::at(double s) const {
   return k;
 }
 
-void RimTrajectory::save(Archive& archive) const {
-  save_rim(archive, "trajectory/start", start_);
-  save_rim(archive, "trajectory/end", end_);
-  archive.put("trajectory/duration", duration_);
-  archive.put("trajectory/turn", std::vector<double>{turn_.x(), turn_.y(), turn_.z()});
-}
+void RimTrajectory::save(Archive& archive) const { save_fields(archive, "trajectory", *this); }
 
-void RimTrajectory::restore(const Archive& archive) {
-  start_ = restore_rim(archive, "trajectory/start");
-  end_ = restore_rim(archive, "trajectory/end");
-  duration_ = archive.get_double("trajectory/duration");
-  const auto& t = archive.get<double>("trajectory/turn", 3);
-  turn_ = Vec3(t[0], t[1], t[2]);
-}
+void RimTrajectory::restore(const Archive& archive) { restore_fields(archive, "trajectory", *this); }
 
 }  // namespace furrow::tire

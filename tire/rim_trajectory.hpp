@@ -5,6 +5,7 @@
 #pragma once
 
 #include "protocol/core/archive.hpp"
+#include "protocol/core/fields.hpp"
 #include "protocol/core/surface.hpp"
 
 namespace furrow::tire {
@@ -35,6 +36,14 @@ class RimTrajectory {
   void restore(const Archive& archive);
 
  private:
+  template <class Visit>
+  friend void visit_fields(Visit&& visit, FieldsOf<RimTrajectory> auto& s) {
+    visit(furrow::Field{"start", ""}, s.start_);
+    visit(furrow::Field{"end", ""}, s.end_);
+    visit(furrow::Field{"duration", "s"}, s.duration_);
+    visit(furrow::Field{"turn", "rad"}, s.turn_);
+  }
+
   RimState start_, end_;
   double duration_ = 0.0;
   Vec3 turn_ = Vec3::Zero();  // rotation vector from start to end orientation, W, rad

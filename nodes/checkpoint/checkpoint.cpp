@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr int kFormatVersion = 1;
+constexpr int kFormatVersion = 2;  // 1 held the states of nodes as lists of numbers without names
 constexpr char kManifest[] = "manifest.json";
 constexpr char kKind[] = "checkpoint";
 
@@ -95,10 +95,17 @@ CheckpointManifest read_manifest(const fs::path& file) {
   if (!json.is_object()) throw io_error(file.string(), "is not valid JSON: the checkpoint is damaged");
   try {
     if (json.value("kind", "") != kKind) throw io_error(file.string(), "is no checkpoint of furrow");
-    if (json.at("format_version") > kFormatVersion)
+    const Json& format = json.at("format_version");
+    if (format > kFormatVersion)
       throw io_error(file.string(),
                      fmt::format("format_version {} is newer than this program reads, which is {}",
-                                 json.at("format_version").dump(), kFormatVersion));
+                                 format.dump(), kFormatVersion));
+    if (format < kFormatVersion)
+      throw io_error(
+          file.string(),
+          fmt::format("was written by an older version of furrow, format {}; this program reads format {}: "
+                      "continue the run with that version, or start it again with furrow run",
+                      format.dump(), kFormatVersion));
     const std::string checksum = json.at("checksum");
     json.erase("checksum");
     if (text_hash(json.dump()) != checksum)

@@ -56,7 +56,7 @@ std::filesystem::path unfinished_checkpoint(const std::filesystem::path& run, st
 /// @throws Error(io)
 void complete_checkpoint(const std::filesystem::path& run, const CheckpointManifest& manifest, int keep);
 
-/// @throws Error(io) when the checkpoint is damaged, incomplete or of a newer format; every part is read
+/// @throws Error(io) when the checkpoint is damaged, incomplete or of another format; every part is read
 CheckpointManifest read_checkpoint(const std::filesystem::path& folder);
 
 /// Of all bytes of a part: damage is found before anything interprets the file. @throws Error(io)

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "nodes/output/profile.hpp"
+#include "protocol/core/archive_fields.hpp"
 #include "protocol/files/archive_file.hpp"
 #include "protocol/files/fault_point.hpp"
 
@@ -118,13 +119,12 @@ void CheckpointWriter::complete(CheckpointPart own, bool needed) {
   if (context_.note) context_.note("warning: " + text + "; the run goes on");
 }
 
-void save_cost(Archive& archive, const NodeCost& cost) {
-  archive.put(kCost, std::vector<double>{cost.cpu_s, cost.compute_s, cost.wait_s});
-}
+void save_cost(Archive& archive, const NodeCost& cost) { save_fields(archive, kCost, cost); }
 
 NodeCost restore_cost(const Archive& archive) {
-  const auto& v = archive.get<double>(kCost, 3);
-  return {v[0], v[1], v[2]};
+  NodeCost cost;
+  restore_fields(archive, kCost, cost);
+  return cost;
 }
 
 }  // namespace furrow::ranks

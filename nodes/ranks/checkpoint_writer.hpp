@@ -2,6 +2,7 @@
 #pragma once
 
 #include "nodes/ranks/node.hpp"
+#include "protocol/core/fields.hpp"
 
 namespace furrow::ranks {
 
@@ -9,6 +10,12 @@ namespace furrow::ranks {
 struct NodeCost {
   double cpu_s = 0.0, compute_s = 0.0, wait_s = 0.0;
 };
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<NodeCost> auto& s) {
+  visit(Field{"cpu_s", "s"}, s.cpu_s);
+  visit(Field{"compute_s", "s"}, s.compute_s);
+  visit(Field{"wait_s", "s"}, s.wait_s);
+}
 
 class CheckpointWriter {
  public:

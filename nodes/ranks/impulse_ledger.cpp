@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "protocol/core/flat.hpp"
+#include "protocol/core/archive_fields.hpp"
 
 namespace furrow::ranks {
 namespace {
@@ -50,14 +50,13 @@ Vec3 ImpulseLedger::sum() const {
 }
 
 void ImpulseLedger::save(Archive& archive) const {
-  put_flat(archive, "ledger/owed", owed_);
-  archive.put("ledger/norms", std::vector<double>{settled_, largest_});
+  save_value(archive, "ledger/owed", owed_);
+  save_fields(archive, "ledger", *this);
 }
 
 void ImpulseLedger::restore(const Archive& archive) {
-  owed_ = get_flat<Vec3>(archive, "ledger/owed", owed_.size());
-  const auto& norms = archive.get<double>("ledger/norms", 2);
-  settled_ = norms[0], largest_ = norms[1];
+  restore_value(archive, "ledger/owed", owed_, owed_.size());
+  restore_fields(archive, "ledger", *this);
 }
 
 }  // namespace furrow::ranks

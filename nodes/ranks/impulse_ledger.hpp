@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "protocol/core/archive.hpp"
+#include "protocol/core/fields.hpp"
 #include "protocol/core/surface.hpp"
 
 namespace furrow::ranks {
@@ -35,6 +36,12 @@ class ImpulseLedger {
   void restore(const Archive& archive);
 
  private:
+  template <class Visit>
+  friend void visit_fields(Visit&& visit, FieldsOf<ImpulseLedger> auto& s) {
+    visit(Field{"settled", "N s"}, s.settled_);
+    visit(Field{"largest", "N s"}, s.largest_);
+  }
+
   std::vector<Vec3> owed_;  // L of each vertex, N s
   double settled_ = 0.0, largest_ = 0.0;
   NodalForces next_;  // work

@@ -1,9 +1,9 @@
 // The terrain's rank: prepares the bed, says how high it stands under each tire, then pushes back.
-#include <algorithm>
+#include <fmt/format.h>
 
 #include "nodes/output/frames.hpp"
 #include "nodes/ranks/node.hpp"
-#include "protocol/core/flat.hpp"
+#include "protocol/core/archive_fields.hpp"
 
 namespace furrow::ranks {
 namespace {
@@ -11,21 +11,17 @@ namespace {
 constexpr double kFootprintShare =
     0.6;  // of the tire radius ahead and behind: where a grain can touch it at rest
 
-void save_tangents(Archive& archive, const std::string& name, const NodalForces& forces) {
-  if (forces.tangent.empty()) return;
-  std::vector<double> flat;
-  for (const ContactTangent& t : forces.tangent)
-    append_numbers(flat, t.stiffness, t.damping, t.position, t.velocity);
-  archive.put(name + "/tangent", flat);
-}
+std::string forces_name(std::size_t tire) { return "node/forces" + std::to_string(tire); }
+std::string contact_name(std::size_t tire) { return "node/contact" + std::to_string(tire); }
 
-void restore_tangents(const Archive& archive, const std::string& name, NodalForces& forces) {
-  forces.tangent.clear();
-  if (!archive.has(name + "/tangent")) return;
-  forces.tangent.resize(forces.vertex.size());
-  const double* from = archive.get<double>(name + "/tangent", 24 * forces.tangent.size()).data();
-  for (ContactTangent& t : forces.tangent)
-    from = take_numbers(from, t.stiffness, t.damping, t.position, t.velocity);
+/// @throws Error(io) unless every force has its vertex, and its tangent where there are any
+void restore_forces(const Archive& archive, const std::string& name, NodalForces& forces) {
+  restore_fields(archive, name, forces);
+  const std::size_t count = forces.vertex.size();
+  if (forces.force.size() != count || (!forces.tangent.empty() && forces.tangent.size() != count))
+    throw Error(ExitCode::io,
+                fmt::format("saved state '{}' has {} forces and {} tangents, expected {} of each", name,
+                            forces.force.size(), forces.tangent.size(), count));
 }
 
 class TerrainNode : public Node {
@@ -105,49 +101,21 @@ class TerrainNode : public Node {
   void save(Archive& archive) const override {
     terrain_->save(archive);
     for (std::size_t k = 0; k < forces_.size(); ++k) {
-      const std::string name = "node/forces" + std::to_string(k);
-      archive.put(name + "/vertex",
-                  std::vector<std::int32_t>(forces_[k].vertex.begin(), forces_[k].vertex.end()));
-      put_flat(archive, name + "/force", forces_[k].force);
-      save_tangents(archive, name, forces_[k]);
-      const ContactSums& c = report_.contact[k];
-      archive.put(name + "/sums",
-                  std::vector<double>{c.force.x(), c.force.y(), c.force.z(), c.normal.x(), c.normal.y(),
-                                      c.normal.z(), c.tangential.x(), c.tangential.y(), c.tangential.z(),
-                                      c.moment.x(), c.moment.y(), c.moment.z(), c.transfer_force_residual,
-                                      c.transfer_moment_residual, c.work, static_cast<double>(c.contacts)});
+      save_fields(archive, forces_name(k), forces_[k]);
+      save_fields(archive, contact_name(k), report_.contact[k]);
     }
   }
 
   void save_setup(Archive& archive) const override {
-    const Archive::Scope scope(archive, "setup/");
-    archive.put("top_height", setup_.top_height);
-    archive.put("mean_height", setup_.mean_height);
-    archive.put("floor_height", setup_.floor_height);
-    archive.put("settle_wall_s", setup_.settle_wall_s);
-    archive.put("grains", setup_.grains);
-    archive.put("before", before_.height);
-    archive.put("before_grid", std::vector<double>{before_.x0, before_.y0, before_.cell, double(before_.nx),
-                                                   double(before_.ny)});
+    save_fields(archive, kSetup, setup_);
+    save_fields(archive, kBefore, before_);
   }
 
   void restore(const Archive& archive) override {
     terrain_->restore(archive);
     for (std::size_t k = 0; k < forces_.size(); ++k) {
-      const std::string name = "node/forces" + std::to_string(k);
-      const auto& vertex = archive.get<std::int32_t>(name + "/vertex");
-      forces_[k].force = get_flat<Vec3>(archive, name + "/force", vertex.size());
-      forces_[k].vertex.assign(vertex.begin(), vertex.end());
-      restore_tangents(archive, name, forces_[k]);
-      const auto& v = archive.get<double>(name + "/sums", 16);
-      report_.contact[k] = {{v[0], v[1], v[2]},
-                            {v[3], v[4], v[5]},
-                            {v[6], v[7], v[8]},
-                            {v[9], v[10], v[11]},
-                            v[12],
-                            v[13],
-                            v[14],
-                            std::int64_t(v[15])};
+      restore_forces(archive, forces_name(k), forces_[k]);
+      restore_fields(archive, contact_name(k), report_.contact[k]);
     }
     report_.state = terrain_->state();
   }
@@ -155,6 +123,7 @@ class TerrainNode : public Node {
  private:
   static constexpr Address kSelf{Role::terrain, 0};
   static constexpr Address kRig{Role::rig, 0};
+  static constexpr char kSetup[] = "setup", kBefore[] = "setup/height_before";  // in the saved state
 
   void prepare(Transport& transport, const RunContext& context) {
     setup_.settle_wall_s = terrain_->prepare([&](const std::string& what, double share) {
@@ -190,16 +159,8 @@ class TerrainNode : public Node {
   }
 
   void restore_setup(const Archive& archive) {
-    const Archive::Scope scope(archive, "setup/");
-    setup_.top_height = archive.get<double>("top_height");
-    setup_.mean_height = archive.get<double>("mean_height");
-    setup_.floor_height = archive.get_double("floor_height");
-    setup_.settle_wall_s = archive.get_double("settle_wall_s");
-    setup_.grains = archive.get_int("grains");
-    before_.height = archive.get<double>("before");
-    const auto& grid = archive.get<double>("before_grid", 5);
-    before_.x0 = grid[0], before_.y0 = grid[1], before_.cell = grid[2];
-    before_.nx = static_cast<std::int32_t>(grid[3]), before_.ny = static_cast<std::int32_t>(grid[4]);
+    restore_fields(archive, kSetup, setup_);
+    restore_fields(archive, kBefore, before_);
   }
 
   void write_frame(const StepHeader& header) {

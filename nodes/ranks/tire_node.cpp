@@ -12,6 +12,7 @@
 #include "nodes/output/frames.hpp"
 #include "nodes/ranks/carried_wrench.hpp"
 #include "nodes/ranks/impulse_ledger.hpp"
+#include "protocol/core/archive_fields.hpp"
 #include "tire/reach.hpp"
 
 namespace furrow::ranks {
@@ -88,27 +89,14 @@ class TireNode : public Node {
   void save(Archive& archive) const override {
     tire_->save(archive);
     trajectory_.save(archive);
-    const auto& r = report_;
-    if (r.contact_tangent) ledger_.save(archive);
-    archive.put("node/report",
-                std::vector<double>{r.wrench.force.x(), r.wrench.force.y(), r.wrench.force.z(),
-                                    r.wrench.moment.x(), r.wrench.moment.y(), r.wrench.moment.z(),
-                                    r.spindle.force.x(), r.spindle.force.y(), r.spindle.force.z(),
-                                    r.spindle.moment.x(), r.spindle.moment.y(), r.spindle.moment.z(),
-                                    r.impulse_received.x(), r.impulse_received.y(), r.impulse_received.z(),
-                                    r.impulse_received_abs, r.terrain_work, r.rim_work});
+    if (report_.contact_tangent) ledger_.save(archive);
+    save_fields(archive, kReport, report_);
   }
 
   void restore(const Archive& archive) override {
     tire_->restore(archive);
     trajectory_.restore(archive);
-    const auto& v = archive.get<double>("node/report", 18);
-    report_.wrench = {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
-    report_.spindle = {{v[6], v[7], v[8]}, {v[9], v[10], v[11]}};
-    report_.impulse_received = {v[12], v[13], v[14]};
-    report_.impulse_received_abs = v[15];
-    report_.terrain_work = v[16];
-    report_.rim_work = v[17];
+    restore_fields(archive, kReport, report_);
     if (report_.contact_tangent) {
       ledger_.restore(archive);
       report_ledger();
@@ -120,6 +108,7 @@ class TireNode : public Node {
  private:
   static constexpr Address kRig{Role::rig, 0};
   static constexpr Address kTerrain{Role::terrain, 0};
+  static constexpr char kReport[] = "node/report";  // in the saved state
 
   void account(double duration) {
     const RimState &from = trajectory_.start(), &to = trajectory_.end();

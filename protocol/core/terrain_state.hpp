@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "protocol/core/fields.hpp"
 #include "protocol/core/vec.hpp"
 
 namespace furrow {
@@ -20,6 +21,17 @@ struct ContactSums {
   double work = 0.0;  // this interval: Σ_substeps f·Δx̃ of the vertices, J
   std::int64_t contacts = 0;  // of the last substep
 };
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<ContactSums> auto& s) {
+  visit(Field{"force", "N"}, s.force);
+  visit(Field{"normal", "N"}, s.normal);
+  visit(Field{"tangential", "N"}, s.tangential);
+  visit(Field{"moment", "N m"}, s.moment);
+  visit(Field{"transfer_force_residual"}, s.transfer_force_residual);
+  visit(Field{"transfer_moment_residual"}, s.transfer_moment_residual);
+  visit(Field{"work", "J"}, s.work);
+  visit(Field{"contacts"}, s.contacts);
+}
 
 /// What the terrain measures of itself; cumulative since the run began unless stated.
 struct TerrainState {
@@ -36,6 +48,21 @@ struct TerrainState {
   std::int64_t active = 0;              // grains awake
   std::int64_t list_rebuilds = 0;
 };
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<TerrainState> auto& s) {
+  visit(Field{"kinetic_energy", "J"}, s.kinetic_energy);
+  visit(Field{"potential_energy", "J"}, s.potential_energy);
+  visit(Field{"elastic_energy", "J"}, s.elastic_energy);
+  visit(Field{"dissipation", "J"}, s.dissipation);
+  visit(Field{"energy_removed", "J"}, s.energy_removed);
+  visit(Field{"momentum", "kg m/s"}, s.momentum);
+  visit(Field{"wall_impulse", "N s"}, s.wall_impulse);
+  visit(Field{"surface_impulse", "N s"}, s.surface_impulse);
+  visit(Field{"floor_force", "N"}, s.floor_force);
+  visit(Field{"contacts"}, s.contacts);
+  visit(Field{"active"}, s.active);
+  visit(Field{"list_rebuilds"}, s.list_rebuilds);
+}
 
 /// Terrain surface on a regular grid: mean of the highest grain tops per cell; NaN where no grain is.
 struct HeightField {
@@ -44,5 +71,14 @@ struct HeightField {
   std::int32_t nx = 0, ny = 0;
   std::vector<double> height;  // m, [ix * ny + iy]
 };
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<HeightField> auto& s) {
+  visit(Field{"x0", "m"}, s.x0);
+  visit(Field{"y0", "m"}, s.y0);
+  visit(Field{"cell", "m"}, s.cell);
+  visit(Field{"nx"}, s.nx);
+  visit(Field{"ny"}, s.ny);
+  visit(Field{"height", "m"}, s.height);
+}
 
 }  // namespace furrow

@@ -48,10 +48,20 @@ using ContactCoefficients = Coefficients<double>;
 /// The same coefficients as another scalar type.
 template <class S>
 Coefficients<S> rounded(const ContactCoefficients& c) {
-  const auto r = [](double a) { return static_cast<S>(a); };
-  return {r(c.stiffness),   r(c.damping),        r(c.shear_stiffness), r(c.shear_damping),
-          r(c.friction),    r(c.cohesion_force), r(c.velocity_scale),  r(c.slip_limit),
-          r(c.rolling_arm), r(c.rolling_radius), r(c.rolling_damping), r(c.roll_limit)};
+  Coefficients<S> out;
+  out.stiffness = static_cast<S>(c.stiffness);
+  out.damping = static_cast<S>(c.damping);
+  out.shear_stiffness = static_cast<S>(c.shear_stiffness);
+  out.shear_damping = static_cast<S>(c.shear_damping);
+  out.friction = static_cast<S>(c.friction);
+  out.cohesion_force = static_cast<S>(c.cohesion_force);
+  out.velocity_scale = static_cast<S>(c.velocity_scale);
+  out.slip_limit = static_cast<S>(c.slip_limit);
+  out.rolling_arm = static_cast<S>(c.rolling_arm);
+  out.rolling_radius = static_cast<S>(c.rolling_radius);
+  out.rolling_damping = static_cast<S>(c.rolling_damping);
+  out.roll_limit = static_cast<S>(c.roll_limit);
+  return out;
 }
 
 /// Share of critical damping in the rolling spring [Ai et al. 2011, §4.2].

@@ -47,16 +47,26 @@ const char* law_name(LawKind law) { return law == LawKind::mindlin ? "mindlin" :
 
 GrainProperties grain_properties(double radius, double density) {
   const double mass = density * 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
-  return {radius, mass, 0.4 * mass * radius * radius};
+  return {.radius = radius, .mass = mass, .inertia = 0.4 * mass * radius * radius};
 }
 
 ContactMaterial grain_material(const DemOptions& o) {
-  return {o.young_modulus,    o.poisson_ratio,  o.friction, o.restitution,
-          o.normal_stiffness, o.normal_damping, o.cohesion};
+  return {.young_modulus = o.young_modulus,
+          .poisson_ratio = o.poisson_ratio,
+          .friction = o.friction,
+          .restitution = o.restitution,
+          .normal_stiffness = o.normal_stiffness,
+          .normal_damping = o.normal_damping,
+          .cohesion = o.cohesion,
+          .area_density = 0.0};
 }
 
 LawSettings law_settings(const DemOptions& o) {
-  return {law_from(o.law), o.rolling_friction, o.friction_velocity_scale, o.friction_impulse_limit, o.step};
+  return {.kind = law_from(o.law),
+          .rolling_friction = o.rolling_friction,
+          .velocity_scale = o.friction_velocity_scale,
+          .friction_impulse_limit = o.friction_impulse_limit,
+          .step = o.step};
 }
 
 ContactCoefficients mix(const ContactMaterial& grain, const ContactMaterial& other, Partner partner,

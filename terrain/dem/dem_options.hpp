@@ -12,7 +12,7 @@ namespace furrow::terrain::dem {
 struct DemOptions : TerrainContext {
   std::string scenario = "scenario";  // what messages name: the scenario's file
   bool periodic_x = false;  // grains that leave at one end of the bin come back at the other; no end walls
-  std::string law = "mindlin";  // mindlin | coulomb
+  std::string law = "mindlin";  // mindlin | hertz_tanh
   std::string material;         // soil file whose values the other keys hold already; empty: none
   // Bed.
   double radius = 0.006;                      // grain radius, m
@@ -37,10 +37,10 @@ struct DemOptions : TerrainContext {
   double friction = 0.9;                 // -
   double rolling_friction = 0.0;         // -, rolling resistance torque / (normal force × effective radius)
   double cohesion = 0.0;                 // c_t, Pa: F_c = π r² c_t
-  double normal_stiffness = 1e6;         // k_n, N/m^1.5, law coulomb
-  double normal_damping = 60.0;          // g_n, N s/m^1.5, law coulomb
-  double friction_velocity_scale = 5.0;  // c in F_t = μ F_e tanh(c |v_t|), s/m, law coulomb
-  bool friction_impulse_limit = true;    // law coulomb: caps F_t at β m_t |v_t| / dt
+  double normal_stiffness = 1e6;         // k_n, N/m^1.5, law hertz_tanh
+  double normal_damping = 60.0;          // g_n, N s/m^1.5, law hertz_tanh
+  double friction_velocity_scale = 5.0;  // c in F_t = μ F_e tanh(c |v_t|), s/m, law hertz_tanh
+  bool friction_impulse_limit = true;    // law hertz_tanh: caps F_t at β m_t |v_t| / dt
   bool activity = true;                  // let resting grains sleep
   std::string precision =
       "mixed";  // of the contact law between grains: mixed (single, sums in double) | double

@@ -16,6 +16,7 @@
 
 #include "protocol/core/archive.hpp"
 #include "protocol/core/constants.hpp"
+#include "protocol/core/fields.hpp"
 #include "protocol/core/surface.hpp"
 #include "protocol/core/terrain_state.hpp"
 #include "terrain/dem/activity.hpp"
@@ -38,7 +39,7 @@ struct SolverParams {
   double largest = 0.0;   // m; 0: as above
   Bin bin;
   double gravity = kStandardGravity;  // m/s²
-  double skin = 0.0;          // neighbours are listed within the sum of their radii + skin, m
+  double skin = 0.0;                  // neighbours are listed within the sum of their radii + skin, m
   int threads = 1;
   Precision precision = Precision::mixed;
   bool activity = false;  // let resting grains sleep
@@ -66,6 +67,24 @@ struct Accounts {
   double slept = 0.0;                   // kinetic energy of grains when they fell asleep, J
   std::int64_t active = 0;              // grains awake, last step
 };
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<Accounts> auto& s) {
+  visit(Field{"contact_work", "J"}, s.contact_work);
+  visit(Field{"elastic", "J"}, s.elastic);
+  visit(Field{"elastic_start", "J"}, s.elastic_start);
+  visit(Field{"wall_impulse", "N s"}, s.wall_impulse);
+  visit(Field{"surface_impulse", "N s"}, s.surface_impulse);
+  visit(Field{"floor_force", "N"}, s.floor_force);
+  visit(Field{"kinetic", "J"}, s.kinetic);
+  visit(Field{"height", "m"}, s.height);
+  visit(Field{"velocity", "m/s"}, s.velocity);
+  visit(Field{"contacts"}, s.contacts);
+  visit(Field{"max_overlap", "m"}, s.max_overlap);
+  visit(Field{"contact_force", "N"}, s.contact_force);
+  visit(Field{"net_force", "N"}, s.net_force);
+  visit(Field{"slept", "J"}, s.slept);
+  visit(Field{"active"}, s.active);
+}
 
 class GrainSolver {
  public:

@@ -1,6 +1,7 @@
 // One grain's vector quantity, as a register takes it.
 #pragma once
 
+#include "protocol/core/fields.hpp"
 #include "protocol/core/simd.hpp"
 
 namespace furrow::terrain::dem {
@@ -11,6 +12,13 @@ using namespace simd;
 struct alignas(32) Quad {
   double x = 0.0, y = 0.0, z = 0.0, w = 0.0;
 };
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<Quad> auto& s) {
+  visit(Field{"x", ""}, s.x);
+  visit(Field{"y", ""}, s.y);
+  visit(Field{"z", ""}, s.z);
+  visit(Field{"w", ""}, s.w);
+}
 
 inline Double4 load(const Quad& q) {
   Double4 v;

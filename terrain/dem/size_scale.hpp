@@ -36,7 +36,11 @@ inline SizeScale<T> pair_scale(T a, T b) {
 /// moves, 0 for a wall; that piece grows as r².
 inline SizeScale<double> surface_scale(double a, double share) {
   const double light = share / (a * a), heavy = 1.0 / (a * a * a);
-  return {a, (1.0 + share) / (heavy + light), (3.5 + share) / (3.5 * heavy + light), a * a * a * a * a, a};
+  return {.radius = a,
+          .mass = (1.0 + share) / (heavy + light),
+          .slide_mass = (3.5 + share) / (3.5 * heavy + light),
+          .inertia = a * a * a * a * a,
+          .smaller = a};
 }
 
 /// The coefficients of law mindlin for another size; T may hold several contacts. Law hertz_tanh has none: its stiffness

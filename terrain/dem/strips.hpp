@@ -15,6 +15,7 @@
 #include <span>
 #include <vector>
 
+#include "protocol/core/fields.hpp"
 #include "terrain/dem/bin.hpp"
 #include "terrain/dem/grains.hpp"
 
@@ -27,6 +28,13 @@ struct WallContact {
   Quad tangential;  // history: spring force, N; w = √δ of the step before, 0 when apart
   Quad rolling;     // history: rolling spring, N m
 };
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<WallContact> auto& s) {
+  visit(Field{"grain"}, s.grain);
+  visit(Field{"wall"}, s.wall);
+  visit(Field{"tangential", "N"}, s.tangential);
+  visit(Field{"rolling", "N m"}, s.rolling);
+}
 
 /// History of one pair: x y z of the spring on i; w = √δ of the step before (tangential only).
 template <class Real>
@@ -98,6 +106,25 @@ struct Strip {
     return const_cast<Strip*>(this)->history<Real>();
   }
 };
+/// What a saved state keeps of a strip besides its lists. Sums too: those of strips that sleep stay.
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<Strip> auto& s) {
+  visit(Field{"first"}, s.first);
+  visit(Field{"last"}, s.last);
+  visit(Field{"pairs"}, s.pairs);
+  visit(Field{"travel", "m"}, s.travel);
+  visit(Field{"x_min", "m"}, s.x_min);
+  visit(Field{"x_max", "m"}, s.x_max);
+  visit(Field{"z_max", "m"}, s.z_max);
+  visit(Field{"asleep", ""}, s.asleep);
+  visit(Field{"calm"}, s.calm);
+  visit(Field{"elastic", "J"}, s.contact.elastic);
+  visit(Field{"max_overlap", "m"}, s.contact.max_overlap);
+  visit(Field{"wall_force", "N"}, s.contact.wall_force);
+  visit(Field{"floor_force", "N"}, s.contact.floor_force);
+  visit(Field{"contacts"}, s.contact.contacts);
+  visit(Field{"height", "m"}, s.motion.height);
+}
 
 /// A range of strips that was sorted again: order[k] is the old index of grain first + k.
 struct Resorted {

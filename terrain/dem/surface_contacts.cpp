@@ -4,8 +4,8 @@
 #include <array>
 #include <string>
 
+#include "protocol/core/archive_fields.hpp"
 #include "protocol/core/error.hpp"
-#include "protocol/core/flat.hpp"
 #include "terrain/dem/contact_tangent.hpp"
 #include "terrain/dem/size_scale.hpp"
 
@@ -219,25 +219,14 @@ void SurfaceContacts::save(Archive& archive) const {
   for (std::size_t k = 0; k < surfaces_.size(); ++k) {
     const Surface& s = surfaces_[k];
     Archive::Scope scope(archive, "surface" + std::to_string(k) + "/");
-    std::vector<std::int32_t> triangles;
-    for (const auto& t : s.collider->mesh().triangles) triangles.insert(triangles.end(), t.begin(), t.end());
-    archive.put("triangles", triangles);
-    put_flat(archive, "position", s.end);
-    const ContactMaterial& m = s.material;
-    archive.put("material",
-                std::vector<double>{m.young_modulus, m.poisson_ratio, m.friction, m.restitution,
-                                    m.normal_stiffness, m.normal_damping, m.cohesion, m.area_density});
+    save_fields(archive, "mesh", s.collider->mesh());
+    save_value(archive, "position", s.end);
+    save_fields(archive, "material", s.material);
   }
-  std::vector<std::int32_t> keys;
-  std::vector<double> values;
+  ColumnWriter<SurfaceHistory> history;
   for (const SurfaceStrip& strip : strips_)
-    for (const SurfaceHistory& h : strip.history) {
-      keys.insert(keys.end(), {h.grain, h.surface});
-      for (const Quad* q : {&h.normal, &h.tangential, &h.rolling})
-        values.insert(values.end(), {q->x, q->y, q->z, q->w});
-    }
-  archive.put("surfaces/keys", keys);
-  archive.put("surfaces/history", values);
+    for (const SurfaceHistory& one : strip.history) history.add(one);
+  history.put(archive, "surfaces/history");
 }
 
 void SurfaceContacts::restore(const Archive& archive, const Strips& strips) {
@@ -245,28 +234,21 @@ void SurfaceContacts::restore(const Archive& archive, const Strips& strips) {
   surfaces_.clear();
   for (std::int64_t k = 0; k < count; ++k) {
     Archive::Scope scope(archive, "surface" + std::to_string(k) + "/");
-    SurfaceState start;
-    start.position = get_flat<Vec3>(archive, "position");
-    const auto& triangles = archive.get<std::int32_t>("triangles");
-    const auto& m = archive.get<double>("material", 8);
     SurfaceMesh mesh;
-    mesh.vertex_count = static_cast<int>(start.position.size());
-    for (std::size_t t = 0; t + 2 < triangles.size(); t += 3)
-      mesh.triangles.push_back({triangles[t], triangles[t + 1], triangles[t + 2]});
-    attach(mesh, {m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7]}, {}, start);
+    SurfaceState start;
+    ContactMaterial material;
+    restore_fields(archive, "mesh", mesh);
+    restore_value(archive, "position", start.position, mesh.vertex_count);
+    restore_fields(archive, "material", material);
+    attach(mesh, material, {}, start);
   }
   for (SurfaceStrip& strip : strips_) strip = {};
-  const auto& keys = archive.get<std::int32_t>("surfaces/keys");
-  const auto& v = archive.get<double>("surfaces/history", 6 * keys.size());
+  std::vector<SurfaceHistory> history;
+  restore_value(archive, "surfaces/history", history);
   int s = 0;
-  for (std::size_t h = 0; 2 * h < keys.size(); ++h) {
-    const double* q = &v[12 * h];
-    while (keys[2 * h] >= strips[s].last) ++s;
-    strips_[s].history.push_back({keys[2 * h],
-                                  keys[2 * h + 1],
-                                  {q[0], q[1], q[2], q[3]},
-                                  {q[4], q[5], q[6], q[7]},
-                                  {q[8], q[9], q[10], q[11]}});
+  for (const SurfaceHistory& one : history) {
+    while (one.grain >= strips[s].last) ++s;
+    strips_[s].history.push_back(one);
   }
 }
 

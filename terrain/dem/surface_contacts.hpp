@@ -24,6 +24,14 @@ struct SurfaceHistory {
   Quad tangential;  // spring force on the grain, N; w = √δ
   Quad rolling;     // N m
 };
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<SurfaceHistory> auto& s) {
+  visit(Field{"grain"}, s.grain);
+  visit(Field{"surface"}, s.surface);
+  visit(Field{"normal"}, s.normal);
+  visit(Field{"tangential", "N"}, s.tangential);
+  visit(Field{"rolling", "N m"}, s.rolling);
+}
 
 struct SurfaceTouch {
   std::int32_t surface = 0;

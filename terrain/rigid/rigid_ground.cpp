@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
-#include "protocol/core/flat.hpp"
 #include "terrain/rigid/ground_friction.hpp"
 #include "terrain/rigid/ground_pressure.hpp"
 #include "terrain/surface/surface_check.hpp"
@@ -76,6 +76,12 @@ class RigidGround final : public Terrain {
   void restore(const Archive& archive) override;
 
  private:
+  template <class Visit>
+  friend void visit_fields(Visit&& visit, FieldsOf<RigidGround> auto& s) {
+    visit(Field{"surface_impulse", "N s"}, s.surface_impulse_);
+    visit(Field{"surface_work", "J"}, s.surface_work_);
+  }
+
   void add_surface(const SurfaceMesh& mesh, const ContactMaterial& material, std::vector<Vec3> last);
   void press(GroundSurface& surface, double dt) const;
   void measure(GroundSurface& surface) const;
@@ -131,8 +137,11 @@ void RigidGround::attach(const SurfaceMesh& mesh, const ContactMaterial& materia
 
 /// Contact forces with the surface at `position`, moving with `velocity` for dt.
 void RigidGround::press(GroundSurface& surface, double dt) const {
-  const GroundLaw law{options_.ground_stiffness, options_.ground_damping, options_.ground_shear_stiffness,
-                      surface.friction, options_.friction_velocity_scale};
+  const GroundLaw law{.stiffness = options_.ground_stiffness,
+                      .damping = options_.ground_damping,
+                      .shear_stiffness = options_.ground_shear_stiffness,
+                      .friction = surface.friction,
+                      .velocity_scale = options_.friction_velocity_scale};
   surface.contacts.clear();
   surface.area.swap(surface.area_before);
   std::fill(surface.load.begin(), surface.load.end(), 0.0);
@@ -245,20 +254,14 @@ TerrainState RigidGround::state() const {
 
 void RigidGround::save(Archive& archive) const {
   archive.put("ground/surfaces", static_cast<std::int64_t>(surfaces_.size()));
-  archive.put("ground/sums", std::vector<double>{surface_impulse_.x(), surface_impulse_.y(),
-                                                 surface_impulse_.z(), surface_work_});
+  save_fields(archive, "ground", *this);
   for (std::size_t k = 0; k < surfaces_.size(); ++k) {
     const GroundSurface& surface = surfaces_[k];
     const Archive::Scope scope(archive, "ground/surface_" + std::to_string(k) + "/");
-    const ContactMaterial& m = surface.material;
-    std::vector<std::int32_t> corners;
-    for (const auto& t : surface.mesh.triangles) corners.insert(corners.end(), t.begin(), t.end());
-    archive.put("triangles", corners);
-    archive.put("material",
-                std::vector<double>{m.young_modulus, m.poisson_ratio, m.friction, m.restitution,
-                                    m.normal_stiffness, m.normal_damping, m.cohesion, m.area_density});
-    put_flat(archive, "last", surface.last);
-    put_flat(archive, "shear", surface.shear);
+    save_fields(archive, "mesh", surface.mesh);
+    save_fields(archive, "material", surface.material);
+    save_value(archive, "last", surface.last);
+    save_value(archive, "shear", surface.shear);
     archive.put("area", surface.area);
     archive.put("floor_force", surface.floor_force);
     archive.put("contacts", surface.contact_count);
@@ -268,20 +271,17 @@ void RigidGround::save(Archive& archive) const {
 void RigidGround::restore(const Archive& archive) {
   surfaces_.clear();
   const std::int64_t count = archive.get_int("ground/surfaces");
-  const auto& sums = archive.get<double>("ground/sums", 4);
-  surface_impulse_ = Vec3(sums[0], sums[1], sums[2]);
-  surface_work_ = sums[3];
+  restore_fields(archive, "ground", *this);
   for (std::int64_t k = 0; k < count; ++k) {
     const Archive::Scope scope(archive, "ground/surface_" + std::to_string(k) + "/");
-    std::vector<Vec3> last = get_flat<Vec3>(archive, "last");
     SurfaceMesh mesh;
-    mesh.vertex_count = static_cast<int>(last.size());
-    const auto& corners = archive.get<std::int32_t>("triangles");
-    for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
-      mesh.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
-    const auto& m = archive.get<double>("material", 8);
-    add_surface(mesh, {m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7]}, std::move(last));
-    surfaces_.back().shear = get_flat<Vec3>(archive, "shear", mesh.vertex_count);
+    ContactMaterial material;
+    std::vector<Vec3> last;
+    restore_fields(archive, "mesh", mesh);
+    restore_fields(archive, "material", material);
+    restore_value(archive, "last", last, mesh.vertex_count);
+    add_surface(mesh, material, std::move(last));
+    restore_value(archive, "shear", surfaces_.back().shear, mesh.vertex_count);
     surfaces_.back().area = archive.get<double>("area");
     measure(surfaces_.back());
     surfaces_.back().floor_force = archive.get_double("floor_force");

@@ -108,6 +108,19 @@ TEST(Checkpoint, a_manifest_with_any_byte_changed_or_cut_is_refused) {
   EXPECT_EQ(error_of(checkpoint), "");
 }
 
+TEST(Checkpoint, one_of_an_older_format_is_refused_by_its_version) {
+  const testing::TemporaryFolder folder;
+  write_example(folder.path(), 10);
+  const fs::path checkpoint = checkpoint::list_checkpoints(folder.path()).at(0);
+  std::ofstream(checkpoint / "manifest.json")
+      << R"({"format_version": 1, "kind": "checkpoint", "checksum": "0"})";
+  EXPECT_EQ(
+      error_of(checkpoint),
+      (checkpoint / "manifest.json").string() +
+          ": was written by an older version of furrow, format 1; this program reads format 2: continue the "
+          "run with that version, or start it again with furrow run");
+}
+
 TEST(Checkpoint, what_was_never_completed_is_no_checkpoint) {
   const testing::TemporaryFolder folder;
   write_example(folder.path(), 10);

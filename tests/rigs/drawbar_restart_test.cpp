@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "protocol/core/error.hpp"
+#include "tests/protocol/fields_of.hpp"
 #include "tests/rigs/rig_fixture.hpp"
 
 using namespace furrow;
@@ -53,6 +54,25 @@ TEST(Restart, continues_bit_for_bit_whether_placed_before_or_not) {
         advance(*rig, varying(i), 1, 4e-5, 2);
     expect_equal(*original, *placed);
     expect_equal(*original, *fresh);
+  }
+}
+
+TEST(Restart, the_list_of_fields_of_a_report_forgets_no_member) {
+  EXPECT_EQ(names_of<rigs::WheelReport>().size(), member_count<rigs::WheelReport>());
+}
+
+TEST(Restart, a_report_without_one_of_its_fields_is_refused_by_name) {
+  const auto rig = placed_rig({});
+  Archive saved, lacking;
+  rig->save(saved);
+  for (const auto& [name, values] : saved.arrays())
+    if (name != "rig/report/drive_torque") lacking.put_array(name, values);
+  try {
+    rig->restore(lacking);
+    FAIL() << "was restored";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::io);
+    EXPECT_STREQ(error.what(), "saved state lacks 'rig/report/drive_torque'");
   }
 }
 

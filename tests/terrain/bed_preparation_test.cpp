@@ -7,6 +7,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "protocol/files/hdf5_file.hpp"
 #include "protocol/files/hdf5_handle.hpp"
 #include "terrain/dem/beds/bed_cache.hpp"
 #include "terrain/dem/beds/bed_compaction.hpp"
@@ -273,7 +274,7 @@ TEST_F(Beds, compaction_of_a_settled_file_is_refused) {
 TEST_F(Beds, beds_of_another_format_are_refused_by_version) {
   const PreparedBed made = prepare_bed(options_, {});
   options_.bed = (folder_ / "other.h5").string();
-  for (const auto& [step, words] : {std::pair(-1, "is older than"), std::pair(1, "is newer than")}) {
+  for (const auto& [step, words] : {std::pair(-2, "is older than"), std::pair(1, "is newer than")}) {
     std::filesystem::copy_file(made.file, options_.bed, std::filesystem::copy_options::overwrite_existing);
     const Handle file(H5Fopen(options_.bed.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
     const Handle set(H5Dopen2(file, "format_version", H5P_DEFAULT), H5Dclose);
@@ -289,6 +290,51 @@ TEST_F(Beds, beds_of_another_format_are_refused_by_version) {
       EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
     }
   }
+}
+
+// The file was settled by version 0.1.0 with format 4: 38 grains of 50 mm with rolling resistance in a bin of 1 m × 0.36 m.
+TEST_F(Beds, a_bed_of_format_4_is_read_by_name) {
+  const fs::path file = fs::path(TEST_DATA) / "bed_format_4.h5";
+  const Hdf5Reader old(file);
+  const Archive bed = read_bed(file);
+  const auto accounts = old.get<double>("accounts"), strips = old.get<double>("strips/values"),
+             walls = old.get<double>("walls/history");
+  const std::size_t count = old.get<std::int32_t>("strips/sizes").size() / 4;
+  EXPECT_EQ(bed.get_double("accounts/elastic"), accounts[1]);
+  EXPECT_EQ(bed.get<double>("accounts/velocity"),
+            std::vector<double>(accounts.begin() + 12, accounts.begin() + 15));
+  EXPECT_EQ(bed.get_int("accounts/contacts"), 20 + 19);
+  EXPECT_EQ(bed.get_int("accounts/active"), 38);
+  for (std::size_t k = 0; k < count; ++k) {
+    EXPECT_EQ(bed.get<double>("strips/travel", count)[k], strips[14 * k]);
+    EXPECT_EQ(bed.get<double>("strips/wall_force/z", count)[k], strips[14 * k + 10]);
+    EXPECT_EQ(bed.get<double>("strips/height", count)[k], strips[14 * k + 13]);
+  }
+  for (std::size_t k = 0; 8 * k < walls.size(); ++k) {
+    EXPECT_EQ(bed.get<double>("walls/tangential/w")[k], walls[8 * k + 3]);
+    EXPECT_EQ(bed.get<double>("walls/rolling/x")[k], walls[8 * k + 4]);
+  }
+}
+
+TEST_F(Beds, a_bed_of_format_4_serves_a_run_and_is_kept_as_it_was) {
+  options_.bed = (fs::path(TEST_DATA) / "bed_format_4.h5").string();
+  options_.radius = 0.05;
+  options_.density = 2500.0;
+  options_.length = 1.0;
+  options_.width = 0.36;
+  options_.rolling_friction = 0.1;
+  options_.friction = 0.9;
+  options_.cohesion = 80e3;
+  options_.step = 1e-4;
+  const PreparedBed prepared = prepare_bed(options_, {});
+  EXPECT_TRUE(prepared.settled.settled);
+  GrainSolver solver(solver_params(options_));
+  solver.restore(prepared.bed);
+  write_bed(folder_ / "again.h5", bed_archive(solver, options_, prepared.settled));
+  EXPECT_EQ(read_bed(folder_ / "again.h5").arrays(), prepared.bed.arrays());
+  solver.set_coefficients(run_coefficients(options_, options_.step));
+  for (int n = 0; n < 100; ++n) EXPECT_EQ(solver.step(options_.step), -1);
+  EXPECT_LT(std::sqrt(2.0 * solver.accounts().kinetic / (solver.params().grain.mass * 38)), kRestSpeed);
 }
 
 TEST_F(Beds, digest_knows_every_way_to_make_a_bed) {

@@ -1,9 +1,13 @@
 // The contact laws against closed forms.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
+#include "terrain/dem/size_scale.hpp"
+#include "tests/protocol/fields_of.hpp"
 #include "tests/terrain/few_grains.hpp"
 
 namespace furrow::terrain::dem {
@@ -22,6 +26,31 @@ TEST(Lanes, tanh_agrees_with_the_standard_library) {
     const double scale = x > 0.0 ? 1.0 / std::tanh(x) : 0.0;
     EXPECT_NEAR(tanh_of_positive(x) * scale, std::tanh(x) * scale, 1e-14) << x;
   }
+}
+
+// By position in memory: a coefficient that is added and not carried over is zero there.
+TEST(Coefficients, none_is_lost_or_exchanged_when_rounded_or_scaled) {
+  constexpr std::size_t kCount = sizeof(ContactCoefficients) / sizeof(double);
+  std::array<double, kCount> numbers;
+  for (std::size_t k = 0; k < kCount; ++k) numbers[k] = 1.0 + static_cast<double>(k);
+  const auto coefficients = std::bit_cast<ContactCoefficients>(numbers);
+  const auto same = std::bit_cast<std::array<double, kCount>>(rounded<double>(coefficients));
+  const auto floats = std::bit_cast<std::array<float, kCount>>(rounded<float>(coefficients));
+  const auto unscaled =
+      std::bit_cast<std::array<double, kCount>>(scaled(coefficients, pair_scale<double>(1.0, 1.0)));
+  for (std::size_t k = 0; k < kCount; ++k) {
+    EXPECT_EQ(same[k], numbers[k]);
+    EXPECT_EQ(floats[k], static_cast<float>(numbers[k]));
+    EXPECT_DOUBLE_EQ(unscaled[k], numbers[k]);
+  }
+}
+
+TEST(Accounts, the_list_of_fields_forgets_no_member) {
+  using testing::member_count, testing::names_of;
+  EXPECT_EQ(names_of<Accounts>().size(), member_count<Accounts>());
+  EXPECT_EQ(names_of<Quad>().size(), member_count<Quad>());
+  EXPECT_EQ(names_of<WallContact>().size(), member_count<WallContact>());
+  EXPECT_EQ(names_of<SurfaceHistory>().size(), member_count<SurfaceHistory>());
 }
 
 TEST(MindlinLaw, hertz_force_matches_johnson_1985_eq_4_23) {

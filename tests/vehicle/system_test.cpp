@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "protocol/core/error.hpp"
+#include "tests/protocol/fields_of.hpp"
 
 using namespace furrow;
 
@@ -75,11 +76,20 @@ TEST(System, restored_system_continues_bit_for_bit) {
   Archive a, b;
   original.system.save(a);
   copy.system.save(b);
-  for (const char* name : {"bodies", "clock", "reactions"}) {
+  ASSERT_EQ(a.arrays().size(), b.arrays().size());
+  for (const char* name : {"bodies/state/position", "bodies/state/orientation", "bodies/state/velocity",
+                           "bodies/state/angular_velocity", "bodies/angular_momentum", "reactions/force",
+                           "reactions/moment", "motor_forces", "element_forces", "start_time", "step"}) {
     const auto &x = a.get<double>(name), &y = b.get<double>(name);
     ASSERT_EQ(x.size(), y.size());
     EXPECT_EQ(std::memcmp(x.data(), y.data(), x.size() * sizeof(double)), 0) << name;
   }
+}
+
+TEST(System, the_lists_of_what_is_saved_forget_no_member) {
+  using furrow::testing::member_count, furrow::testing::names_of;
+  EXPECT_EQ(names_of<vehicle::BodyState>().size(), member_count<vehicle::BodyState>());
+  EXPECT_EQ(names_of<vehicle::Reaction>().size(), member_count<vehicle::Reaction>());
 }
 
 TEST(System, a_step_into_not_a_number_fails_and_says_so) {

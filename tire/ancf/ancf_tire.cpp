@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "tire/rim_archive.hpp"
+#include "protocol/core/archive_fields.hpp"
 
 namespace furrow::tire {
 namespace {
@@ -182,16 +182,16 @@ TireDiagnostics AncfTire::diagnostics() const {
 
 void AncfTire::save(Archive& archive) const {
   const Archive::Scope scope(archive, "ancf/");
-  save_rim(archive, "rim", rim_);
-  save_wrench(archive, "spindle", spindle_);
+  save_fields(archive, "rim", rim_);
+  save_fields(archive, "spindle", spindle_);
   archive.put("pump", pump_);
   integrator_.save(archive);
 }
 
 void AncfTire::restore(const Archive& archive) {
   const Archive::Scope scope(archive, "ancf/");
-  rim_ = restore_rim(archive, "rim");
-  spindle_ = restore_wrench(archive, "spindle");
+  restore_fields(archive, "rim", rim_);
+  restore_fields(archive, "spindle", spindle_);
   pump_ = archive.get_double("pump");
   placed_ = true;
   integrator_.restore(archive);

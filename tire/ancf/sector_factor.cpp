@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "protocol/core/archive_fields.hpp"
 #include "protocol/core/constants.hpp"
-#include "protocol/core/flat.hpp"
 #include "tire/ancf/shell_batch.hpp"
 #include "tire/ancf/shell_tangent.hpp"
 #include "tire/ancf/stopwatch.hpp"
@@ -183,34 +183,26 @@ bool SectorFactor::prepare(const Step& step, int attempt) {
 }
 
 void SectorFactor::save(Archive& archive) const {
-  archive.put("factor/flags", std::vector<std::int64_t>{valid_, excess_});
-  archive.put("factor/numbers", std::vector<double>{h_, work_});
+  save_fields(archive, "factor", *this);
   archive.put("factor/old", made_old_);
   archive.put("factor/new", made_new_);
   archive.put("factor/pressure", made_pressure_);
-  if (!contact_made_.empty()) put_flat(archive, "factor/contact", contact_made_);
+  if (!contact_made_.empty()) save_value(archive, "factor/contact", contact_made_);
   archive.put("factor/geometric", std::vector<std::int32_t>(geometric_.begin(), geometric_.end()));
 }
 
-void SectorFactor::restore(const Archive& archive, std::int64_t renewals) {
-  const auto& flags = archive.get<std::int64_t>("factor/flags", 2);
-  const auto& numbers = archive.get<double>("factor/numbers", 2);
+void SectorFactor::restore(const Archive& archive) {
+  restore_fields(archive, "factor", *this);
   made_old_ = archive.get<double>("factor/old", made_layout_.size());
   made_new_ = archive.get<double>("factor/new", made_layout_.size());
   made_pressure_ = archive.get<double>("factor/pressure", made_pressure_.size());
   const auto& geometric = archive.get<std::int32_t>("factor/geometric", geometric_.size());
   geometric_.assign(geometric.begin(), geometric.end());
   contact_made_.clear();
-  if (archive.has("factor/contact"))
-    contact_made_ = get_flat<Mat3>(archive, "factor/contact", weight_.size());
-  excess_ = static_cast<int>(flags[1]);
-  h_ = numbers[0], work_ = numbers[1];
-  renewals_ = renewals;
-  valid_ = false;
-  if (flags[0] != 0) {
-    build(std::vector<char>(factor_.sectors(), 1));
-    valid_ = factor_.factorize(params_.threads);
-  }
+  if (archive.has("factor/contact")) restore_value(archive, "factor/contact", contact_made_, weight_.size());
+  if (!valid_) return;
+  build(std::vector<char>(factor_.sectors(), 1));
+  valid_ = factor_.factorize(params_.threads);
 }
 
 }  // namespace furrow::tire

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "protocol/core/archive.hpp"
+#include "protocol/core/fields.hpp"
 #include "protocol/core/surface.hpp"
 #include "tire/ancf/shell_carcass.hpp"
 #include "tire/ancf/shell_contact.hpp"
@@ -74,12 +75,21 @@ class SectorFactor {
   };
   const Times& times() const { return times_; }
 
-  /// Everything but the number of renewals, under "factor/".
+  /// Under "factor/".
   void save(Archive& archive) const;
   /// Makes the factor from the saved shapes, with the bits it had. @throws Error(io)
-  void restore(const Archive& archive, std::int64_t renewals);
+  void restore(const Archive& archive);
 
  private:
+  template <class Visit>
+  friend void visit_fields(Visit&& visit, FieldsOf<SectorFactor> auto& s) {
+    visit(furrow::Field{"valid", ""}, s.valid_);
+    visit(furrow::Field{"step", "s"}, s.h_);
+    visit(furrow::Field{"excess"}, s.excess_);
+    visit(furrow::Field{"renewals"}, s.renewals_);
+    visit(furrow::Field{"work"}, s.work_);
+  }
+
   void note_shape(int sector, const Step& step);
   void build(const std::vector<char>& which);
   void build_sector(int sector);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "protocol/core/archive_fields.hpp"
 #include "tire/ancf/stopwatch.hpp"
 
 namespace furrow::tire {
@@ -267,9 +268,8 @@ void ShellIntegrator::save(Archive& archive) const {
     archive.put(fmt::format("branch/{}/strain", i), shell_step_.branch_strain[i]);
     archive.put(fmt::format("branch/{}/stress", i), shell_step_.branch_stress[i]);
   }
-  archive.put("pressure", std::vector<double>{shell_.pressure(), unit_force_});
-  archive.put("scalars", std::vector<double>{reference_, elastic_, dissipation_, residual_});
-  archive.put("counts", std::vector<std::int64_t>{iterations_, factor_.renewals()});
+  archive.put("pressure", shell_.pressure());
+  save_fields(archive, "sums", *this);
   factor_.save(archive);
 }
 
@@ -285,13 +285,9 @@ void ShellIntegrator::restore(const Archive& archive) {
     shell_step_.branch_stress[i] =
         archive.get<double>(fmt::format("branch/{}/stress", i), shell_.strains_size());
   }
-  const auto& pressure = archive.get<double>("pressure", 2);
-  shell_.set_pressure(pressure[0]), unit_force_ = pressure[1];
-  const auto& scalars = archive.get<double>("scalars", 4);
-  const auto& counts = archive.get<std::int64_t>("counts", 2);
-  reference_ = scalars[0], elastic_ = scalars[1], dissipation_ = scalars[2], residual_ = scalars[3];
-  iterations_ = counts[0];
-  factor_.restore(archive, counts[1]);
+  shell_.set_pressure(archive.get_double("pressure"));
+  restore_fields(archive, "sums", *this);
+  factor_.restore(archive);
 }
 
 }  // namespace furrow::tire

@@ -82,6 +82,16 @@ class ShellIntegrator {
   void restore(const Archive& archive);
 
  private:
+  template <class Visit>
+  friend void visit_fields(Visit&& visit, FieldsOf<ShellIntegrator> auto& s) {
+    visit(furrow::Field{"reference", "N"}, s.reference_);
+    visit(furrow::Field{"unit_force", "N/Pa"}, s.unit_force_);
+    visit(furrow::Field{"elastic", "J"}, s.elastic_);
+    visit(furrow::Field{"dissipation", "J"}, s.dissipation_);
+    visit(furrow::Field{"residual"}, s.residual_);
+    visit(furrow::Field{"iterations"}, s.iterations_);
+  }
+
   void set_bead(const RimState& rim);
   void predict(double h, double share);
   void evaluate(double h, const Field& force);

@@ -4,8 +4,8 @@
 //   M_spindle = Σ (x − c) × f − Δ(J ω)/H,  x − c the mean of the interval's ends
 #include "tire/rigid/rigid_tire.hpp"
 
+#include "protocol/core/archive_fields.hpp"
 #include "protocol/core/constants.hpp"
-#include "tire/rim_archive.hpp"
 
 namespace furrow::tire {
 namespace {
@@ -67,13 +67,13 @@ TireDiagnostics RigidTire::diagnostics() const {
 }
 
 void RigidTire::save(Archive& archive) const {
-  save_rim(archive, "rigid/rim", rim_);
-  save_wrench(archive, "rigid/spindle", spindle_);
+  save_fields(archive, "rigid/rim", rim_);
+  save_fields(archive, "rigid/spindle", spindle_);
 }
 
 void RigidTire::restore(const Archive& archive) {
-  rim_ = restore_rim(archive, "rigid/rim");
-  spindle_ = restore_wrench(archive, "rigid/spindle");
+  restore_fields(archive, "rigid/rim", rim_);
+  restore_fields(archive, "rigid/spindle", spindle_);
 }
 
 }  // namespace furrow::tire

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "protocol/core/fields.hpp"
 #include "protocol/core/vec.hpp"
 
 namespace furrow::vehicle {
@@ -15,6 +16,13 @@ struct BodyState {
   Vec3 velocity = Vec3::Zero();          // m/s, W
   Vec3 angular_velocity = Vec3::Zero();  // rad/s, W
 };
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<BodyState> auto& s) {
+  visit(Field{"position", "m"}, s.position);
+  visit(Field{"orientation"}, s.orientation);
+  visit(Field{"velocity", "m/s"}, s.velocity);
+  visit(Field{"angular_velocity", "rad/s"}, s.angular_velocity);
+}
 
 struct Body {
   std::string name;
@@ -35,5 +43,11 @@ struct Body {
     inertia_inverse_W = R * inertia_inverse * R.transpose();
   }
 };
+/// What a saved state keeps of a body; the rest follows, or is the builder's.
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<Body> auto& s) {
+  visit(Field{"state", ""}, s.state);
+  visit(Field{"angular_momentum", "kg m²/s"}, s.angular_momentum);
+}
 
 }  // namespace furrow::vehicle

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "protocol/core/fields.hpp"
 #include "vehicle/multibody/row.hpp"
 
 namespace furrow::vehicle {
@@ -39,6 +40,11 @@ struct Reaction {
   Vec3 force = Vec3::Zero();   // N
   Vec3 moment = Vec3::Zero();  // N m
 };
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<Reaction> auto& s) {
+  visit(Field{"force", "N"}, s.force);
+  visit(Field{"moment", "N m"}, s.moment);
+}
 
 /// Fills the joint's frames from the poses of its bodies and the place, and returns its rows.
 /// @throws Error(physics) for a zero axis or parallel axes of a universal joint.

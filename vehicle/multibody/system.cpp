@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "protocol/core/archive_fields.hpp"
 #include "protocol/core/error.hpp"
 
 namespace furrow::vehicle {
@@ -13,7 +14,18 @@ namespace {
 
 const Vec3 kGroundPosition = Vec3::Zero();
 const Mat3 kGroundAxes = Mat3::Identity();
-constexpr std::size_t kBodyNumbers = 16;  // saved numbers per body
+
+template <class Acting>  // motors or force elements
+std::vector<double> last_forces(const std::vector<Acting>& all) {
+  std::vector<double> forces;
+  for (const Acting& one : all) forces.push_back(one.last_force);
+  return forces;
+}
+
+template <class Acting>
+void take_last_forces(const std::vector<double>& forces, std::vector<Acting>& all) {
+  for (std::size_t k = 0; k < all.size(); ++k) all[k].last_force = forces[k];
+}
 
 }  // namespace
 
@@ -165,55 +177,29 @@ Vec3 System::angular_momentum(const Vec3& about) const {
 }
 
 void System::save(Archive& archive) const {
-  std::vector<double> numbers;
-  numbers.reserve(kBodyNumbers * bodies_.size());
-  const auto append = [&](const auto& v) { numbers.insert(numbers.end(), v.data(), v.data() + v.size()); };
-  for (const Body& body : bodies_) {
-    append(body.state.position);
-    append(body.state.orientation.coeffs());
-    append(body.state.velocity);
-    append(body.state.angular_velocity);
-    append(body.angular_momentum);
-  }
-  archive.put("bodies", numbers);
-  archive.put("clock", std::vector<double>{start_time_, step_});
+  save_value(archive, "bodies", bodies_);
+  save_value(archive, "reactions", reactions_);
+  archive.put("motor_forces", last_forces(motors_));
+  archive.put("element_forces", last_forces(elements_));
+  archive.put("start_time", start_time_);
+  archive.put("step", step_);
   archive.put("count", count_);
   archive.put("redundant", static_cast<std::int64_t>(redundant_count_));
-  numbers.clear();
-  for (const Reaction& reaction : reactions_) {
-    append(reaction.force);
-    append(reaction.moment);
-  }
-  for (const Motor& motor : motors_) numbers.push_back(motor.last_force);
-  for (const ForceElement& element : elements_) numbers.push_back(element.last_force);
-  archive.put("reactions", numbers);
 }
 
 void System::restore(const Archive& archive) {
-  const double* p = archive.get<double>("bodies", kBodyNumbers * bodies_.size()).data();
-  const auto take = [&](auto&& v) {
-    std::copy(p, p + v.size(), v.data());
-    p += v.size();
-  };
+  ColumnReader<Body> bodies(archive, "bodies", bodies_.size());
   for (Body& body : bodies_) {
-    take(body.state.position);
-    take(body.state.orientation.coeffs());
-    take(body.state.velocity);
-    take(body.state.angular_velocity);
-    take(body.angular_momentum);
+    bodies.take(body);
     body.refresh();
   }
-  const auto& clock = archive.get<double>("clock", 2);
-  start_time_ = clock[0];
-  step_ = clock[1];
+  ColumnReader<Reaction> reactions(archive, "reactions", reactions_.size());
+  for (Reaction& reaction : reactions_) reactions.take(reaction);
+  take_last_forces(archive.get<double>("motor_forces", motors_.size()), motors_);
+  take_last_forces(archive.get<double>("element_forces", elements_.size()), elements_);
+  start_time_ = archive.get_double("start_time");
+  step_ = archive.get_double("step");
   count_ = archive.get_int("count");
-  p = archive.get<double>("reactions", 6 * reactions_.size() + motors_.size() + elements_.size()).data();
-  for (Reaction& reaction : reactions_) {
-    take(reaction.force);
-    take(reaction.moment);
-  }
-  for (Motor& motor : motors_) motor.last_force = *p++;
-  for (ForceElement& element : elements_) element.last_force = *p++;
   prepare();
   update_jacobians();
   if (const Outcome outcome = factorize(false); !outcome.ok)

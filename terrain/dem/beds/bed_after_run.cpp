@@ -23,9 +23,7 @@ Archive grains_of(const Archive& state) {
     const std::string own = name.substr(sizeof kPrefix - 1);
     if (!own.starts_with("surface")) grains.put_array(own, values);
   }
-  grains.put("surfaces/count", std::int64_t{0});
-  grains.put("surfaces/keys", std::vector<std::int32_t>());
-  grains.put("surfaces/history", std::vector<double>());
+  SurfaceContacts({}, 0.0, false).save(grains);
   return grains;
 }
 

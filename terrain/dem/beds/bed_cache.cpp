@@ -12,6 +12,7 @@
 #include "protocol/core/field_hash.hpp"
 #include "protocol/core/hash.hpp"
 #include "protocol/files/hdf5_handle.hpp"
+#include "terrain/dem/beds/bed_format_4.hpp"
 #include "terrain/dem/beds/bed_settling.hpp"
 #include "terrain/dem/contact_mixing.hpp"
 #include "terrain/dem/solver_setup.hpp"
@@ -155,19 +156,20 @@ Archive read_bed(const std::filesystem::path& file) {
     throw io_error(file.string(), "damaged");
   if (!all.has("format_version") || !all.has("checksum"))
     throw io_error(file.string(), "not a bed of furrow");
-  if (all.get_int("format_version") > kBedFormat)
-    throw io_error(file.string(), "format_version " + std::to_string(all.get_int("format_version")) +
+  const std::int64_t format = all.get_int("format_version");
+  if (format > kBedFormat)
+    throw io_error(file.string(), "format_version " + std::to_string(format) +
                                       " is newer than this program's " + std::to_string(kBedFormat));
-  if (all.get_int("format_version") < kOldestBedFormat)
-    throw io_error(file.string(), "format_version " + std::to_string(all.get_int("format_version")) +
-                                      " is older than " + std::to_string(kOldestBedFormat) +
-                                      ", expected a bed made by this version: make it anew");
+  if (format < kOldestBedFormat)
+    throw io_error(file.string(), "format_version " + std::to_string(format) +
+                                      " is older than this program reads, expected " +
+                                      std::to_string(kOldestBedFormat) + " or later: make it anew");
   Archive archive;
   for (const auto& [name, array] : all.arrays())
     if (name != "format_version" && name != "checksum") archive.put_array(name, array);
   if (checksum(archive) != all.get<std::uint64_t>("checksum", 1).front())
     throw io_error(file.string(), "damaged: its checksum does not fit");
-  return archive;
+  return format == kBedFormat ? archive : from_format_4(archive);
 }
 
 }  // namespace furrow::terrain::dem

@@ -19,7 +19,7 @@ std::filesystem::path bed_cache_file(const std::string& digest);
 /// @throws Error(io).
 void write_bed(const std::filesystem::path& file, const Archive& archive);
 
-/// @throws Error(io) when the file is missing, not one of ours, damaged (checksum) or of a newer format.
+/// @throws Error(io) when the file is missing, not one of ours, damaged (checksum), of a newer format or of one before 4.
 Archive read_bed(const std::filesystem::path& file);
 
 }  // namespace furrow::terrain::dem

@@ -24,7 +24,7 @@ std::vector<std::string> Scenario::file_hashes() const {
     hash.add(bytes);
     hashes.push_back(hash.hex());
   };
-  for (const tire::TireOptions& tire : tires) add(read_text_file(tire.file, "a tire file in JSON"));
+  for (const auto& tire : tires) add(read_text_file(tire->options().file, "a tire file in JSON"));
   if (!terrain.bed.empty()) add(file_bytes(terrain.bed));
   return hashes;
 }

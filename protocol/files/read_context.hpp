@@ -1,0 +1,18 @@
+// Where the reader of a model's keys stands: which file it reads, and which section of it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace furrow {
+
+struct ReadContext {
+  std::string file;     // the scenario, for messages
+  std::string section;  // "terrain": what stands before the dot of each key in messages
+  /// Keys that the command line sets, with their sections: "terrain.engine".
+  std::vector<std::string> set_keys = {};
+
+  std::string key(const std::string& name) const { return section.empty() ? name : section + "." + name; }
+};
+
+}  // namespace furrow

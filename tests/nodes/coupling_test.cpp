@@ -21,7 +21,7 @@ std::filesystem::path tire_file(const std::string& name) {
 }
 
 /// A scenario of one wheel whose rig and tire are open to change until it is made.
-struct Setup : scenario::Scenario {
+struct OneWheel : scenario::Scenario {
   rigs::DrawbarRigOptions wheel_rig;
   tire::TireOptions wheel_tire;
   scenario::Scenario made() const {
@@ -32,8 +32,8 @@ struct Setup : scenario::Scenario {
   }
 };
 
-Setup rigid_wheel_on_plane() {
-  Setup scenario;
+OneWheel rigid_wheel_on_plane() {
+  OneWheel scenario;
   scenario.name = "test";
   scenario.digest = "test";
   scenario.wheel_rig.mode = "fixed_angular_speed";
@@ -57,8 +57,8 @@ Setup rigid_wheel_on_plane() {
   return scenario;
 }
 
-Setup rigid_wheel_on_grains() {
-  Setup scenario = rigid_wheel_on_plane();
+OneWheel rigid_wheel_on_grains() {
+  OneWheel scenario = rigid_wheel_on_plane();
   scenario.wheel_rig.carrier_mass = 20.0;
   scenario.wheel_rig.touchdown_damping = 300.0;
   scenario.wheel_rig.start = 0.55;
@@ -94,7 +94,7 @@ TEST(Coupling, restored_nodes_continue_bit_for_bit_on_grains) {
 }
 
 TEST(Coupling, restored_flexible_tire_continues_bit_for_bit) {
-  Setup scenario = rigid_wheel_on_plane();
+  OneWheel scenario = rigid_wheel_on_plane();
   scenario.wheel_tire.rigid = false;
   scenario.wheel_tire.elements_circumference = 30;
   expect_same_bits_after_restore(scenario.made(), 60, 120);
@@ -115,8 +115,8 @@ TEST(Coupling, momentum_received_equals_momentum_sent_one_interval_before) {
   EXPECT_LE(builder.now().transfer_moment_residual, 1e-12);
 }
 
-Setup flexible_tire_on_grains_with_tangents() {
-  Setup scenario = rigid_wheel_on_grains();
+OneWheel flexible_tire_on_grains_with_tangents() {
+  OneWheel scenario = rigid_wheel_on_grains();
   scenario.wheel_rig.carrier_mass = 100.0;
   scenario.wheel_tire.rigid = false;
   scenario.wheel_tire.elements_circumference = 30;
@@ -171,7 +171,7 @@ output::SeriesRow series_now(const testing::InProcessRun& run) {
 /// Added mass: a lagged wrench that held the tire's own inertia would blow up from a ratio of one on.
 TEST(Coupling, spin_up_and_drop_with_a_tire_three_times_as_heavy_as_its_rim) {
   for (const bool rigid : {true, false}) {
-    Setup scenario = rigid_wheel_on_plane();
+    OneWheel scenario = rigid_wheel_on_plane();
     scenario.wheel_tire.rigid = rigid;
     scenario.wheel_tire.elements_circumference = 30;
     const MassProperties tire = tire::make_tire(scenario.wheel_tire)->mass_properties();

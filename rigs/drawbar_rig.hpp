@@ -5,11 +5,12 @@
 
 #include <memory>
 
+#include "protocol/core/fields.hpp"
 #include "rigs/rig.hpp"
 
 namespace furrow::rigs {
 
-/// Every field is the scenario key `rig.<name>`.
+/// Every field is the scenario key `rig.<name>`; `lateral` is that of an entry of `rig.wheels`.
 struct DrawbarRigOptions {
   std::string mode = "fixed_angular_speed";  // fixed_angular_speed: ω given, v = ω r (1 − s)
                                              // fixed_speed: v given, ω = v / (r (1 − s))
@@ -23,17 +24,41 @@ struct DrawbarRigOptions {
   double toe_angle = 0.0;           // rad, about +z
   double toe_time = 0.0;   // s, when the wheel is turned from 0 to toe_angle; 0: it stands so from the start
   double toe_ramp = 0.01;  // s, how long that takes
-  double camber_angle = 0.0;      // rad, about the wheel's forward axis: positive leans the top to the right
-  double travel_sign = 1.0;       // +1 along +x, −1 along −x (mirrored travel)
-  double start = 0.0;             // x of the axle at t = 0, m; the scenario loader fills a default
-  double lateral = 0.0;           // y of the wheel's mid-plane, m
-  double carrier_mass = 450.0;    // wheel carrier with ballast, kg
-  double chassis_mass = 1.0;      // kg, rides on the rail
-  double set_toe_mass = 1.0;      // kg, rides on the rail
-  double rim_mass = 15.0;         // kg
-  double rim_spin_inertia = 0.7;  // kg m², about the axle
+  double camber_angle = 0.0;  // rad, about the wheel's forward axis: positive leans the top to the right
+  double travel_sign = 1.0;   // +1 along +x, −1 along −x (mirrored travel)
+  double start = 0.0;    // x of the axle at t = 0, m; where the scenario does not say it, it is filled in
+  double lateral = 0.0;  // y of the wheel's mid-plane, m
+  double carrier_mass = 450.0;         // wheel carrier with ballast, kg
+  double chassis_mass = 1.0;           // kg, rides on the rail
+  double set_toe_mass = 1.0;           // kg, rides on the rail
+  double rim_mass = 15.0;              // kg
+  double rim_spin_inertia = 0.7;       // kg m², about the axle
   double rim_diametral_inertia = 0.4;  // kg m²
 };
+
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<DrawbarRigOptions> auto& s) {
+  visit(Field{"mode", "", role::key}, s.mode);
+  visit(Field{"slip", "-", role::key}, s.slip);
+  visit(Field{"angular_speed", "rad/s", role::key}, s.angular_speed);
+  visit(Field{"speed", "m/s", role::key}, s.speed);
+  visit(Field{"ramp", "s", role::key}, s.ramp);
+  visit(Field{"touchdown_damping", "N s/m", role::key}, s.touchdown_damping);
+  visit(Field{"touchdown_time", "s", role::key}, s.touchdown_time);
+  visit(Field{"toe_angle", "rad", role::key}, s.toe_angle);
+  visit(Field{"toe_time", "s", role::key}, s.toe_time);
+  visit(Field{"toe_ramp", "s", role::key}, s.toe_ramp);
+  visit(Field{"camber_angle", "rad", role::key}, s.camber_angle);
+  visit(Field{"travel_sign", "", role::key}, s.travel_sign);
+  visit(Field{"start", "m", role::key}, s.start);
+  visit(Field{"lateral", "m"}, s.lateral);
+  visit(Field{"carrier_mass", "kg", role::key}, s.carrier_mass);
+  visit(Field{"chassis_mass", "kg", role::key}, s.chassis_mass);
+  visit(Field{"set_toe_mass", "kg", role::key}, s.set_toe_mass);
+  visit(Field{"rim_mass", "kg", role::key}, s.rim_mass);
+  visit(Field{"rim_spin_inertia", "kg m²", role::key}, s.rim_spin_inertia);
+  visit(Field{"rim_diametral_inertia", "kg m²", role::key}, s.rim_diametral_inertia);
+}
 
 std::unique_ptr<Rig> make_drawbar_rig(const DrawbarRigOptions& options);
 

@@ -38,8 +38,7 @@ struct Extent {
 
 }  // namespace
 
-PressResults press_tire(const PressOptions& options, const ProgressCall& progress) {
-  const TireFile file = tire_file_of(options.tire);
+PressResults press_tire(const TireFile& file, const PressOptions& options, const ProgressCall& progress) {
   const ShellMesh mesh = make_shell_mesh(file);
   const ShellCarcass shell(file, mesh);
   InflationReport inflation;

@@ -7,12 +7,11 @@
 
 #include "protocol/core/progress_call.hpp"
 #include "tire/ancf/press_solver.hpp"
-#include "tire/tire.hpp"
+#include "tire/tire_file.hpp"
 
 namespace furrow::tire {
 
 struct PressOptions {
-  TireOptions tire;
   PressObstacle obstacle;
   double deflection = 0.02;  // largest, m
   int points = 10;           // of the curve up to it
@@ -29,8 +28,16 @@ struct PressResults {
   double runout = 0.0;            // of the tire at rest before it is pressed: its wrinkles, m
 };
 
-/// @pre the tire is not rigid. @throws Error(physics) when there is no equilibrium
-PressResults press_tire(const PressOptions& options, const ProgressCall& progress);
+/// What TireSpec::static_test() gives for models that can be pressed.
+class StaticTest {
+ public:
+  virtual ~StaticTest() = default;
+  /// @throws Error(physics) when there is no equilibrium
+  virtual PressResults press(const PressOptions& options, const ProgressCall& progress) const = 0;
+};
+
+/// The static test of the shell. @throws Error(physics) when there is no equilibrium
+PressResults press_tire(const TireFile& file, const PressOptions& options, const ProgressCall& progress);
 
 /// summary.json without what names the run.
 nlohmann::ordered_json press_json(const PressOptions& options, const PressResults& results);

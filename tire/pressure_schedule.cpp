@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <nlohmann/json.hpp>
+
 namespace furrow::tire {
 namespace {
 bool by_pressure(const PressureSchedule::Knot& a, const PressureSchedule::Knot& b) {
@@ -23,6 +25,16 @@ double PressureSchedule::lowest() const {
 
 double PressureSchedule::highest() const {
   return std::max_element(knots.begin(), knots.end(), by_pressure)->pressure;
+}
+
+void from_json(const nlohmann::json& value, PressureSchedule& schedule) {
+  schedule.knots.clear();
+  if (value.is_number()) {
+    schedule.knots = {{0.0, value.get<double>()}};
+    return;
+  }
+  for (const nlohmann::json& entry : value)
+    schedule.knots.push_back({entry.at(0).get<double>(), entry.at(1).get<double>()});
 }
 
 }  // namespace furrow::tire

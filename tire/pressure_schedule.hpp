@@ -4,6 +4,8 @@
 
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 namespace furrow::tire {
 
 struct PressureSchedule {
@@ -21,5 +23,8 @@ struct PressureSchedule {
   double highest() const;
   bool operator==(const PressureSchedule&) const = default;
 };
+
+/// A number is one knot, an array has [t, p] for each, in s and Pa; as read, not checked.
+void from_json(const nlohmann::json& value, PressureSchedule& schedule);
 
 }  // namespace furrow::tire

@@ -104,6 +104,7 @@ TireFile read_own(JsonReader& reader) {
     reader.fail("format_version", fmt::format("is {}, this program reads up to {}", version, kFormatVersion));
   TireFile f;
   f.name = reader.text_or("name", "tire");
+  reader.skip("model");
   reader.skip("template");
   reader.skip("source");
   reader.skip("$schema");
@@ -153,15 +154,18 @@ void check(const TireFile& f) {
 }  // namespace
 
 TireFile read_tire_file(const std::filesystem::path& file) {
-  const json document = load_json(file);
-  JsonReader reader(document, file.string());
+  return read_tire_file(load_json(file), file.string());
+}
+
+TireFile read_tire_file(const json& document, const std::string& file) {
+  JsonReader reader(document, file);
   std::vector<std::string> valid;
   for (const Template& entry : kTemplates) {
     valid.push_back(entry.name);
     if (!reader.has(entry.key)) continue;
     if (reader.text(entry.key) != entry.name) continue;
     TireFile f = entry.read(reader);
-    f.path = file.string();
+    f.path = file;
     check(f);
     return f;
   }

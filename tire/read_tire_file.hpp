@@ -1,7 +1,10 @@
-// Reads a tire file in any of its layouts.
+// Reads the file of a shell tire in any of its layouts.
 #pragma once
 
 #include <filesystem>
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
 
 #include "tire/tire_file.hpp"
 
@@ -9,5 +12,7 @@ namespace furrow::tire {
 
 /// @throws Error(bad_input) naming file and key.
 TireFile read_tire_file(const std::filesystem::path& file);
+/// The same for a document that was read already from the file of that name.
+TireFile read_tire_file(const nlohmann::json& document, const std::string& file);
 
 }  // namespace furrow::tire

@@ -1,6 +1,6 @@
-// What a tire file says: profile, layup, materials, pressure, contact. Two layouts are read, our own
+// What the file of a shell tire says: profile, layup, materials, pressure, contact. Two layouts are read, our own
 // (data/tire.schema.json describes it) and the public ANCFTire layout of Project Chrono; template names are
-// registered in tire_file.cpp.
+// registered in read_tire_file.cpp.
 #pragma once
 
 #include <string>

@@ -57,7 +57,7 @@ void check_files(const scenario::Scenario& scenario, const CheckpointManifest& m
     if (hashes[k] != manifest.file_hashes[k])
       throw input_error(scenario.file.string(),
                         scenario.tires.size() == 1 ? "tire.file" : fmt::format("tires.{}.file", k),
-                        "'" + scenario.tires[k].file.string() +
+                        "'" + scenario.tires[k]->options().file.string() +
                             "' was changed since the run began, expected the file that it was computed with");
 }
 

@@ -1,7 +1,7 @@
 // `furrow bench tire`: the tire's own time on hard ground, under the coupling rule of a run.
 //
-// The ground answers one step late; the carriage m is free along x and z, so that the driven wheel, which turns at
-// constant speed, rolls without pull.
+// The ground answers one step late; a carriage holds the driven wheel (rigs/rolling_tire.hpp), which turns at constant speed
+// and rolls without pull.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -12,23 +12,16 @@
 #include <nlohmann/json.hpp>
 
 #include "nodes/commands/bench.hpp"
-#include "nodes/scenario/scenario.hpp"
-#include "protocol/core/constants.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/core/hash.hpp"
 #include "protocol/files/data_files.hpp"
-#include "terrain/rigid/rigid_ground.hpp"
-#include "tire/ancf/ancf_tire.hpp"
-#include "tire/reach.hpp"
-#include "tire/read_tire_file.hpp"
+#include "rigs/rolling_tire.hpp"
+#include "tire/tires.hpp"
 
 namespace furrow::commands {
 namespace {
-constexpr double kGap = 1e-3;            // m, between ground and undeformed tire at the start
 constexpr double kTouchdown = 20e3;      // N s/m, vertical damper of the carriage during the touch-down
 constexpr double kTouchdownShare = 0.8;  // of the time before the timed steps
-constexpr double kGroundStep = 4e-5;     // s, up to which the default ground is stable under a tread vertex
-constexpr double kFriction = 0.9, kVelocityScale = 50.0;  // -, s/m: the ground of rigs/rigid_ground.json
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -65,72 +58,38 @@ void check(const TireBench& bench) {
   require(bench.renewal >= 0.0 && bench.renewal <= 10.0, "--renewal", "0 to 10");
 }
 
-/// A tire under a carriage on the plane z = 0.
-class RollingTire {
- public:
-  RollingTire(tire::AncfTire& tire, const TireBench& bench) : tire_(tire), bench_(bench) {
-    terrain::GroundOptions options;
-    // Forces come one step late: the ground is softened with the step (terrain/rigid/rigid_ground.hpp).
-    const double slower = std::max(1.0, bench.step / kGroundStep);
-    options.ground_stiffness /= slower * slower;
-    options.ground_shear_stiffness /= slower * slower;
-    options.ground_damping /= slower;
-    options.friction = kFriction;
-    options.friction_velocity_scale = kVelocityScale;
-    ground_ = terrain::make_rigid_ground(options);
-    rim_.position = Vec3(0.0, 0.0, tire::inflated_reach(tire, 0.0) + kGap);
-    rim_.velocity = Vec3(bench.speed * tire.radius(), 0.0, 0.0);
-    rim_.angular_velocity = Vec3(0.0, bench.speed, 0.0);
-    trajectory_ = tire::RimTrajectory(rim_);
-    tire.place(rim_);
-    tire.surface(surface_);
-    ground_->attach(tire.mesh(), tire.material(), surface_);
+/// One step; what the tire took of it.
+Spent step(rigs::RollingTire& rolling, double damper) {
+  rolling.push();
+  const double begin = now(), begin_processor = processor_time();
+  rolling.roll();
+  const Spent spent{now() - begin, processor_time() - begin_processor};
+  rolling.follow(damper);
+  return spent;
+}
+
+std::unique_ptr<tire::TireSpec> read_tire(const TireBench& bench) {
+  tire::TireOptions options;
+  options.file = bench.tire == "default" ? data_folder() / "tire" / "data" / "hmmwv_layered.json"
+                                         : std::filesystem::path(bench.tire);
+  options.pressure.knots = {{0.0, bench.pressure}};
+  options.elements_circumference = bench.columns;
+  options.elements_width = bench.width;
+  return tire::read_tire(options);
+}
+
+/// Processor time of the tire's parts per step since `before`, and the rest of `total`, ms.
+nlohmann::ordered_json parts(const tire::Tire& tire, const tire::NamedValues& before, long steps,
+                             double total) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  double rest = total;
+  for (const tire::NamedValue& part : tire.times()) {
+    const double spent = 1e3 * (part.value - before.of(part.name)) / static_cast<double>(steps);
+    json[part.name] = spent;
+    rest -= spent;
   }
-
-  /// @returns what the tire took
-  Spent step(double damper) {
-    const NodalForces forces = forces_;  // the ground's of the last step
-    const Outcome pushed = ground_->advance({&surface_, 1}, bench_.step, 1, {&forces_, 1}, {&contact_, 1});
-    if (!pushed.ok) throw physics_error(pushed, "ground");
-    trajectory_.extend(rim_, bench_.step);
-    const double begin = now(), begin_processor = processor_time();
-    const Outcome moved = tire_.advance(trajectory_, forces, 1);
-    tire_.surface(surface_);
-    const Spent spent{now() - begin, processor_time() - begin_processor};
-    if (!moved.ok) throw physics_error(moved, "tire");
-    move_carriage(damper);
-    return spent;
-  }
-
-  const Wrench& wrench() const { return wrench_; }
-  double height() const { return rim_.position.z(); }
-
- private:
-  void move_carriage(double damper) {
-    const double h = bench_.step;
-    const Vec3 before = wrench_.force;  // as known to the carriage, one step late
-    wrench_ = tire_.spindle_wrench();
-    rim_.velocity.x() += h * before.x() / bench_.load;
-    rim_.velocity.z() += h * ((before.z() - damper * rim_.velocity.z()) / bench_.load - kStandardGravity);
-    rim_.position += h * rim_.velocity;
-    rim_.orientation =
-        (Quat(Eigen::AngleAxisd(h * bench_.speed, Vec3::UnitY())) * rim_.orientation).normalized();
-  }
-
-  tire::AncfTire& tire_;
-  const TireBench& bench_;
-  std::unique_ptr<terrain::Terrain> ground_;
-  RimState rim_;
-  tire::RimTrajectory trajectory_;
-  SurfaceState surface_;
-  NodalForces forces_;
-  ContactSums contact_;
-  Wrench wrench_;
-};
-
-int most_layers(const tire::TireFile& file) {
-  return static_cast<int>(
-      std::max({file.bead.layers.size(), file.sidewall.layers.size(), file.tread.layers.size()}));
+  json["other"] = rest;
+  return json;
 }
 
 /// Value below which the share `p` of the sorted values lies.
@@ -143,59 +102,42 @@ double quantile(const std::vector<double>& sorted, double p) {
 
 std::string bench_tire(const TireBench& bench, const ProgressCall& progress) {
   check(bench);
-  const std::string path = bench.tire == "default"
-                               ? (data_folder() / "tire" / "data" / "hmmwv_layered.json").string()
-                               : bench.tire;
-  tire::TireFile file = tire::read_tire_file(path);
-  file.pressure = bench.pressure;
-  if (bench.columns > 0) file.elements_circumference = bench.columns;
-  if (bench.width > 0) tire::set_elements_width(file, bench.width);
-  tire::ShellIntegratorParams params;
-  params.tolerance = bench.tolerance;
-  params.age = bench.renewal;
-  params.threads = bench.threads;
-  tire::AncfTire tire(file, params);
-  RollingTire rolling(tire, bench);
+  const std::unique_ptr<tire::TireSpec> spec = read_tire(bench);
+  const std::unique_ptr<tire::Tire> tire =
+      spec->make({.threads = bench.threads, .tolerance = bench.tolerance, .renewal = bench.renewal});
+  rigs::RollingTire rolling(*tire, {.load = bench.load, .spin = bench.speed, .step = bench.step});
 
   const auto warm = static_cast<long>(std::lround(bench.warm / bench.step));
   for (long n = 0; n < warm; ++n) {
     progress("touching down", static_cast<double>(n) / static_cast<double>(warm));
-    rolling.step(static_cast<double>(n) < kTouchdownShare * static_cast<double>(warm) ? kTouchdown : 0.0);
+    step(rolling, static_cast<double>(n) < kTouchdownShare * static_cast<double>(warm) ? kTouchdown : 0.0);
   }
 
   const double turn = 2.0 * std::numbers::pi;
   const long steps = bench.steps > 0
                          ? bench.steps
                          : std::lround(std::ceil(turn / (std::max(bench.speed, 1.0) * bench.step)));
-  const tire::ShellIntegrator::Times before = tire.integrator().times();
-  const tire::TireDiagnostics start = tire.diagnostics();
-  const double work = tire.integrator().factor_work();
+  const tire::NamedValues times = tire->times(), start = tire->figures();
   std::vector<double> wall(steps), processor(steps);
   double load = 0.0, pull = 0.0, moment = 0.0, height = 0.0, worst = 0.0;
   for (long n = 0; n < steps; ++n) {
     progress("rolling", static_cast<double>(n) / static_cast<double>(steps));
-    const Spent spent = rolling.step(0.0);
+    const Spent spent = step(rolling, 0.0);
     wall[n] = 1e3 * spent.wall, processor[n] = 1e3 * spent.processor;
     load += rolling.wrench().force.z() / static_cast<double>(steps);
     pull += rolling.wrench().force.x() / static_cast<double>(steps);
     moment += rolling.wrench().moment.y() / static_cast<double>(steps);
     height += rolling.height() / static_cast<double>(steps);
-    worst = std::max(worst, tire.integrator().residual());
+    worst = std::max(worst, tire->figures().of("residual"));
   }
-  const tire::TireDiagnostics end = tire.diagnostics();
-  const tire::ShellIntegrator::Times& t = tire.integrator().times();
-  const double per_step = 1e3 / static_cast<double>(steps);
-  const double force = per_step * (t.force - before.force),
-               jacobian = per_step * (t.jacobian - before.jacobian),
-               factorize = per_step * (t.factorize - before.factorize),
-               solve = per_step * (t.solve - before.solve);
+  const tire::NamedValues end = tire->figures();
+  const auto since = [&](const char* figure) { return end.of(figure) - start.of(figure); };
   const double total = std::accumulate(processor.begin(), processor.end(), 0.0) / static_cast<double>(steps),
                total_wall = std::accumulate(wall.begin(), wall.end(), 0.0) / static_cast<double>(steps);
   std::sort(wall.begin(), wall.end());
   std::sort(processor.begin(), processor.end());
   Hash hash;
-  hash.add(std::span<const double>(tire.integrator().q()));
-  hash.add(std::span<const double>(tire.integrator().v()));
+  tire->add_state(hash);
   const nlohmann::ordered_json json = {
       {"ms_per_step", total_wall},
       {"median_ms", quantile(wall, 0.5)},
@@ -203,26 +145,20 @@ std::string bench_tire(const TireBench& bench, const ProgressCall& progress) {
       {"processor_ms_per_step", total},
       {"processor_median_ms", quantile(processor, 0.5)},
       {"processor_p99_ms", quantile(processor, 0.99)},
-      {"parts_ms",
-       {{"force", force},
-        {"jacobian", jacobian},
-        {"factorize", factorize},
-        {"solve", solve},
-        {"other", total - force - jacobian - factorize - solve}}},
-      {"factorizations", end.factorizations - start.factorizations},
-      {"factorizations_whole", tire.integrator().factor_work() - work},
-      {"newton_iterations_mean",
-       static_cast<double>(end.newton_iterations - start.newton_iterations) / static_cast<double>(steps)},
+      {"parts_ms", parts(*tire, times, steps, total)},
+      {"factorizations", static_cast<std::int64_t>(since("factorizations"))},
+      {"factorizations_whole", since("factorizations_whole")},
+      {"newton_iterations_mean", since("newton_iterations") / static_cast<double>(steps)},
       {"max_residual", worst},
       {"residual_tolerance", bench.tolerance},
       {"renewal", bench.renewal},
-      {"deflection_m", tire.radius() - height},
+      {"deflection_m", tire->radius() - height},
       {"spindle_load_N", load},
       {"pull_N", pull},
       {"rolling_moment_Nm", moment},
-      {"layers", most_layers(file)},
+      {"layers", static_cast<int>(spec->describe().model.of("layers"))},
       {"revolutions", static_cast<double>(steps) * bench.step * bench.speed / turn},
-      {"coordinates", tire.coordinates()},
+      {"coordinates", tire->coordinates()},
       {"step_s", bench.step},
       {"steps", steps},
       {"threads", bench.threads},

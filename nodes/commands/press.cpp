@@ -19,13 +19,10 @@ namespace {
 
 constexpr int kFormatVersion = 1;
 
-tire::PressOptions press_options(const scenario::Scenario& scenario, const PressArguments& arguments) {
+tire::PressOptions press_options(const PressArguments& arguments) {
   const auto require = [](bool ok, const char* key, const std::string& what) {
     if (!ok) throw input_error("command line", key, what);
   };
-  if (scenario.tires.front().rigid)
-    throw input_error(scenario.file.string(), "tire.rigid",
-                      "is true: a rigid tire does not deflect, expected false");
   require(arguments.obstacle == "plate" || arguments.obstacle == "cleat", "--on",
           "is '" + arguments.obstacle + "', expected plate or cleat");
   require(arguments.deflection > 0.0 && arguments.deflection <= 0.2, "--deflection",
@@ -37,7 +34,6 @@ tire::PressOptions press_options(const scenario::Scenario& scenario, const Press
   require(arguments.cleat_width > 0.0 && arguments.cleat_width <= 1.0, "--cleat-width",
           "expected above 0 up to 1 m");
   tire::PressOptions o;
-  o.tire = scenario.tires.front();
   if (arguments.obstacle == "cleat")
     o.obstacle.height = arguments.cleat_height, o.obstacle.width = arguments.cleat_width;
   o.deflection = arguments.deflection;
@@ -46,16 +42,29 @@ tire::PressOptions press_options(const scenario::Scenario& scenario, const Press
   return o;
 }
 
+std::unique_ptr<tire::StaticTest> static_test(const scenario::Scenario& scenario) {
+  const tire::TireSpec& tire = *scenario.tires.front();
+  std::unique_ptr<tire::StaticTest> test = tire.static_test();
+  if (test) return test;
+  if (tire.options().rigid)
+    throw input_error(scenario.file.string(), "tire.rigid",
+                      "is true: a rigid tire does not deflect, expected false");
+  throw input_error(
+      scenario.file.string(), "tire.file",
+      fmt::format("gives a {}, expected a tire whose model can be pressed statically", tire.describe().name));
+}
+
 }  // namespace
 
 ExitCode press_command(const scenario::Scenario& scenario, const PressArguments& arguments) {
-  const tire::PressOptions options = press_options(scenario, arguments);
+  const std::unique_ptr<tire::StaticTest> test = static_test(scenario);
+  const tire::PressOptions options = press_options(arguments);
   launch::RunDirectory directory(scenario.name + "-press", arguments.out, arguments.overwrite);
   launch::catch_stop_signals();
   try {
     launch::ProgressDisplay display;
     const auto begin = std::chrono::steady_clock::now();
-    const tire::PressResults results = tire::press_tire(options, [&](const std::string& what, double share) {
+    const tire::PressResults results = test->press(options, [&](const std::string& what, double share) {
       if (launch::stop_signalled()) throw Error(ExitCode::stopped, "stopped by a signal during pressing");
       display.show({.phase = what, .share = share});
     });
@@ -63,7 +72,7 @@ ExitCode press_command(const scenario::Scenario& scenario, const PressArguments&
     nlohmann::ordered_json summary = {{"format_version", kFormatVersion},
                                       {"version", FURROW_VERSION},
                                       {"scenario", scenario.name},
-                                      {"tire", options.tire.file.filename().string()}};
+                                      {"tire", scenario.tires.front()->options().file.filename().string()}};
     summary.update(tire::press_json(options, results));
     summary["wall_s"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     write_whole_file(directory.path() / "scenario.json", scenario.completed + "\n");

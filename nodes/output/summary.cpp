@@ -47,8 +47,8 @@ Window averaging_window(const SummaryInput& in) {
   std::size_t first = 1;
   while (first < rows.size() && rows[first].time < in.scenario.run.average_from) ++first;
   if (first >= rows.size()) return {};
-  const double facet =
-      2.0 * std::numbers::pi / scenario::tire_size(in.scenario.tires[in.wheel]).elements_circumference;
+  const int facets = in.scenario.tires[in.wheel]->describe().facets;
+  const double facet = 2.0 * std::numbers::pi / facets;
   double turned = 0.0, least = INFINITY;
   std::size_t chosen = first;
   bool whole = false;
@@ -138,13 +138,13 @@ Json tire_axes_means(const Window& w) {
   return json;
 }
 
-void add_rut(const SummaryInput& in, Json& json) {
+void add_rut(const SummaryInput& in, const rigs::WheelDescription& wheel, Json& json) {
   const FinalReport& terrain = in.reports.back();
   terrain::Rut rut;
   if (!in.rows.empty()) {
     terrain::RutOptions options;
-    options.direction = in.scenario.rigs[in.wheel].travel_sign;
-    options.lateral = in.scenario.rigs[in.wheel].lateral;
+    options.direction = wheel.travel_sign;
+    options.lateral = wheel.lateral;
     options.axle = options.direction * in.rows.back().position;
     options.start = options.direction * in.rows.front().position;
     options.tread_width = in.cards[1 + in.wheel].tire_width;
@@ -154,7 +154,7 @@ void add_rut(const SummaryInput& in, Json& json) {
   json["rut_width_m"] = number(rut.measured ? rut.width : NAN);
 }
 
-void add_mobility(const SummaryInput& in, const Window& w, Json& json) {
+void add_mobility(const SummaryInput& in, const Window& w, const rigs::WheelDescription& wheel, Json& json) {
   const double load = in.carried_mass * kStandardGravity, radius = in.cards[1 + in.wheel].tire_radius;
   json["drawbar_pull_N"] = pull_statistics(in, w, load);
   const auto mean = [&](auto get) { return w.mean(get); };
@@ -168,7 +168,7 @@ void add_mobility(const SummaryInput& in, const Window& w, Json& json) {
   json["drawbar_coefficient"] = number(pull / load);
   json["sinkage_m"] = number(mean([](const SeriesRow& r) { return r.sinkage; }));
   json["sinkage_kinematic_m"] = number(mean([](const SeriesRow& r) { return r.sinkage_kinematic; }));
-  add_rut(in, json);
+  add_rut(in, wheel, json);
   json["tire_deflection_m"] = number(radius - (axle - lowest));
   json["effective_rolling_radius_m"] =
       number(spin != 0.0 ? mean([](const SeriesRow& r) { return r.effective_rolling_radius * r.spin; }) / spin
@@ -268,15 +268,16 @@ std::string summary_text(const SummaryInput& in) {
   const terrain::TerrainDescription terrain = in.scenario.terrain->describe();
   json["terrain_engine"] = terrain.engine;
   if (!terrain.law.empty()) json["law"] = terrain.law;
-  json["slip"] = in.scenario.rigs[in.wheel].slip;
-  json["travel_sign"] = in.scenario.rigs[in.wheel].travel_sign;
+  const rigs::WheelDescription wheel = scenario::describe_rig(in.scenario).wheels[in.wheel];
+  json["slip"] = wheel.slip ? Json(*wheel.slip) : Json(nullptr);
+  json["travel_sign"] = wheel.travel_sign;
   json["wheel"] = in.wheel;
-  json["lateral_m"] = in.scenario.rigs[in.wheel].lateral;
+  json["lateral_m"] = wheel.lateral;
   json["tire_radius_m"] = in.cards[1 + in.wheel].tire_radius;
   json["tread_width_m"] = in.cards[1 + in.wheel].tire_width;
   json["surface_height_m"] = number(in.setup.mean_height.at(in.wheel));
   const Window window = averaging_window(in);
-  add_mobility(in, window, json);
+  add_mobility(in, window, wheel, json);
   add_accounts(in, window, json);
   add_cost(in, json);
   return json.dump(2) + "\n";

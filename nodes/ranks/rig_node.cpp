@@ -6,7 +6,6 @@
 #include "nodes/output/results.hpp"
 #include "nodes/output/series_builder.hpp"
 #include "nodes/ranks/node.hpp"
-#include "rigs/rig_row.hpp"
 
 namespace furrow::ranks {
 namespace {
@@ -16,7 +15,7 @@ constexpr double kProgressInterval = 0.25;  // s of wall time
 
 class RigNode : public Node {
  public:
-  explicit RigNode(const scenario::Scenario& scenario) : scenario_(scenario), rig_(make_rig(scenario)) {}
+  explicit RigNode(const scenario::Scenario& scenario) : scenario_(scenario), rig_(scenario.rig->make()) {}
 
   NodeCard card() const override {
     NodeCard card = common_card(scenario_, kSelf);
@@ -116,14 +115,6 @@ class RigNode : public Node {
  private:
   static constexpr Address kSelf{Role::rig, 0};
   static constexpr Address kTerrain{Role::terrain, 0};
-
-  static std::unique_ptr<rigs::Rig> make_rig(const scenario::Scenario& scenario) {
-    if (scenario.rigs.size() == 1) return rigs::make_drawbar_rig(scenario.rigs.front());
-    std::vector<std::unique_ptr<rigs::Rig>> rigs;
-    for (const rigs::DrawbarRigOptions& options : scenario.rigs)
-      rigs.push_back(rigs::make_drawbar_rig(options));
-    return rigs::make_rig_row(std::move(rigs));
-  }
 
   /// What shall be done when all stand at `step`.
   Order order(std::int64_t step) {

@@ -12,6 +12,7 @@
 #include "nodes/output/frames.hpp"
 #include "nodes/ranks/carried_wrench.hpp"
 #include "nodes/ranks/impulse_ledger.hpp"
+#include "nodes/scenario/wheel_geometry.hpp"
 #include "protocol/core/archive_fields.hpp"
 #include "tire/reach.hpp"
 
@@ -23,16 +24,17 @@ class TireNode : public Node {
   TireNode(const scenario::Scenario& scenario, int index)
       : scenario_(scenario),
         index_(index),
-        pressure_(scenario.tires.at(index).pressure),
-        tire_(tire::make_tire(scenario.tires.at(index))),
-        reach_(tire::inflated_reach(*tire_, scenario.rigs.at(index).camber_angle)) {
-    report_.contact_tangent = scenario.tires.at(index).contact_tangent;
+        kind_(scenario.tires.at(index)->describe().kind),
+        pressure_(scenario.tires.at(index)->options().pressure),
+        tire_(scenario.tires.at(index)->make()),
+        reach_(tire::inflated_reach(*tire_, scenario::describe_rig(scenario).wheels.at(index).camber_angle)) {
+    report_.contact_tangent = scenario.tires.at(index)->options().contact_tangent;
     if (report_.contact_tangent) ledger_ = ImpulseLedger(tire_->mesh().vertex_count);
   }
 
   NodeCard card() const override {
     NodeCard card = common_card(scenario_, {Role::tire, index_});
-    card.node_kind = scenario_.tires[index_].rigid ? "rigid" : "ancf";
+    card.node_kind = kind_;
     card.substeps = scenario_.tire_substeps;
     card.tire_mass = tire_->mass_properties();
     card.tire_radius = tire_->radius();
@@ -147,9 +149,10 @@ class TireNode : public Node {
     report_.strain_energy = d.strain_energy;
     report_.dissipation = d.dissipation;
     report_.momentum = d.momentum;
-    report_.newton_iterations = d.newton_iterations;
-    report_.factorizations = d.factorizations;
-    report_.residual = d.residual;
+    const tire::NamedValues figures = tire_->figures();
+    report_.newton_iterations = static_cast<std::int64_t>(figures.of("newton_iterations"));
+    report_.factorizations = static_cast<std::int64_t>(figures.of("factorizations"));
+    report_.residual = figures.of("residual");
     report_.lowest_point = motion_.surface.position.front().z();
     for (const Vec3& x : motion_.surface.position)
       report_.lowest_point = std::min(report_.lowest_point, x.z());
@@ -165,6 +168,7 @@ class TireNode : public Node {
 
   scenario::Scenario scenario_;
   int index_;
+  std::string kind_;
   tire::PressureSchedule pressure_;
   std::unique_ptr<tire::Tire> tire_;
   double reach_;  // m

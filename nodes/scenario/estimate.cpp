@@ -11,10 +11,7 @@ namespace furrow::scenario {
 namespace {
 
 constexpr double kBytesPerRank = 40e6;        // program, MPI and libraries
-constexpr double kBytesPerCoordinate = 20e3;  // shell matrices, tangent and its factors
 constexpr double kBytesPerFrameVertex = 100.0;
-constexpr double kBytesPerSavedCoordinate =
-    110.0;                               // coordinates, velocities, and those that factors were made from
 constexpr double kBytesPerLine = 900.0;  // of timeseries.csv, and the same again in results.h5
 
 double frames(const Scenario& s) {
@@ -27,19 +24,18 @@ Estimate estimate(const Scenario& s) {
   Estimate e;
   e.terrain = s.terrain->estimate(s.terrain_context());
   e.steps = s.run.steps();
-  double vertices = 0.0;
-  for (const tire::TireOptions& options : s.tires) {
-    const TireSize size = tire_size(options);
-    e.coordinates += size.coordinates();
-    vertices += size.vertices();
+  double vertices = 0.0, tires = 0.0, saved = 0.0;
+  for (const tire::TireDescription& tire : describe_tires(s)) {
+    e.coordinates += tire.coordinates;
+    vertices += tire.vertices;
+    tires += tire.memory;
+    saved += tire.saved_bytes;
   }
   const auto ranks = static_cast<double>(1 + s.tires.size() + static_cast<std::size_t>(s.terrain_ranks));
-  e.memory = e.terrain.memory_bytes + kBytesPerCoordinate * static_cast<double>(e.coordinates) +
-             kBytesPerRank * ranks;
+  e.memory = e.terrain.memory_bytes + tires + kBytesPerRank * ranks;
   e.disk = frames(s) * (e.terrain.frame_bytes + kBytesPerFrameVertex * vertices) +
            kBytesPerLine * s.run.end / s.output.series_interval +
-           s.checkpoint.keep *
-               (e.terrain.checkpoint_bytes + kBytesPerSavedCoordinate * static_cast<double>(e.coordinates));
+           s.checkpoint.keep * (e.terrain.checkpoint_bytes + saved);
   return e;
 }
 

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <iterator>
 
@@ -21,6 +22,8 @@
 #include "protocol/files/json_fields.hpp"
 #include "protocol/files/json_text.hpp"
 #include "protocol/host.hpp"
+#include "rigs/rigs.hpp"
+#include "tire/tires.hpp"
 
 namespace furrow::scenario {
 namespace {
@@ -116,105 +119,38 @@ std::string complete(json& document, const std::string& file, const Settings& se
 }
 
 double number_or(const json& value, double absent) { return value.is_null() ? absent : value.get<double>(); }
-int count_or(const json& value, int absent) { return value.is_null() ? absent : value.get<int>(); }
 
-rigs::DrawbarRigOptions rig_options(const json& j) {
-  rigs::DrawbarRigOptions o;
-  o.mode = j["mode"];
-  o.slip = j["slip"];
-  o.angular_speed = j["angular_speed"];
-  o.speed = j["speed"];
-  o.ramp = j["ramp"];
-  o.touchdown_damping = j["touchdown_damping"];
-  o.touchdown_time = j["touchdown_time"];
-  o.toe_angle = j["toe_angle"];
-  o.toe_time = j["toe_time"];
-  o.toe_ramp = j["toe_ramp"];
-  o.camber_angle = j["camber_angle"];
-  o.travel_sign = j["travel_sign"];
-  o.start = number_or(j["start"], 0.0);
-  o.carrier_mass = j["carrier_mass"];
-  o.chassis_mass = j["chassis_mass"];
-  o.set_toe_mass = j["set_toe_mass"];
-  o.rim_mass = j["rim_mass"];
-  o.rim_spin_inertia = j["rim_spin_inertia"];
-  o.rim_diametral_inertia = j["rim_diametral_inertia"];
-  return o;
+/// The rig comes back for its starts to be filled in.
+std::shared_ptr<rigs::RigSpec> take_rig(const json& j, Scenario& s) {
+  rigs::RigOptions options;
+  read_fields(j, options);
+  s.rig_substeps = options.substeps;
+  s.drop_height = options.drop_height;
+  std::shared_ptr<rigs::RigSpec> rig = rigs::read_rig(j, {s.file.string(), "rig"});
+  s.rig = rig;
+  return rig;
 }
 
-void take_rig(const json& j, Scenario& s) {
-  s.rigs = {rig_options(j)};
-  s.rig_substeps = j["substeps"];
-  s.drop_height = j["drop_height"];
-  if (j["wheels"].empty()) return;
-  s.rigs.assign(j["wheels"].size(), s.rigs.front());
-  for (std::size_t k = 0; k < s.rigs.size(); ++k) {
-    const json& wheel = j["wheels"][k];
-    rigs::DrawbarRigOptions& o = s.rigs[k];
-    o.lateral = wheel["lateral"];
-    o.slip = number_or(wheel["slip"], o.slip);
-    o.toe_angle = number_or(wheel["toe_angle"], o.toe_angle);
-    o.camber_angle = number_or(wheel["camber_angle"], o.camber_angle);
-    o.start = number_or(wheel["start"], o.start);
-    o.carrier_mass = number_or(wheel["carrier_mass"], o.carrier_mass);
+/// All wheels share a single `tire`.
+void take_tires(const json& document, Scenario& s) {
+  if (document.contains("tire"))
+    s.tires.assign(s.rig->wheel_count(), tire::read_tire(document["tire"], {s.file.string(), "tire"}));
+  else
+    for (std::size_t k = 0; k < document["tires"].size(); ++k)
+      s.tires.push_back(tire::read_tire(document["tires"][k], {s.file.string(), fmt::format("tires.{}", k)}));
+  s.tire_substeps = s.tires.front()->options().substeps;
+  for (std::size_t k = 0; k < s.tires.size(); ++k) {
+    const tire::TireOptions& tire = s.tires[k]->options();
+    if (tire.substeps != s.tire_substeps)
+      throw input_error(
+          s.file.string(), fmt::format("tires.{}.substeps", k),
+          fmt::format("is {}, expected {} as for the first tire", tire.substeps, s.tire_substeps));
   }
 }
 
-/// A number is one knot, null none.
-tire::PressureSchedule pressure_schedule(const json& value, const std::string& key, const std::string& file) {
-  tire::PressureSchedule schedule;
-  if (value.is_number()) schedule.knots = {{0.0, value.get<double>()}};
-  if (!value.is_array()) return schedule;
-  for (const json& entry : value) {
-    const tire::PressureSchedule::Knot knot{entry[0].get<double>(), entry[1].get<double>()};
-    const std::string here = fmt::format("{}.{}", key, schedule.knots.size());
-    if (knot.pressure < 0.0)
-      throw input_error(file, here + ".1",
-                        fmt::format("is {} Pa, expected 0 or more", number_text(knot.pressure)));
-    if (!schedule.empty() && !(knot.time > schedule.knots.back().time))
-      throw input_error(file, here + ".0",
-                        fmt::format("is {} s, expected a time after that of the entry before, {} s",
-                                    number_text(knot.time), number_text(schedule.knots.back().time)));
-    schedule.knots.push_back(knot);
-  }
-  return schedule;
-}
-
-void take_tire(const json& j, const std::string& key, Scenario& s) {
-  tire::TireOptions o;
-  o.file = find_file(j["file"], key + ".file", s.file);
-  o.pressure = pressure_schedule(j["pressure"], key + ".pressure", s.file.string());
-  o.friction = number_or(j["friction"], -1.0);
-  o.elements_circumference = count_or(j["elements_circumference"], 0);
-  o.elements_width = count_or(j["elements_width"], 0);
-  o.structural_damping = number_or(j["structural_damping"], -1.0);
-  o.rigid = j["rigid"];
-  o.contact_tangent = j["contact_tangent"];
-  const int substeps = j["substeps"];
-  if (!s.tires.empty() && substeps != s.tire_substeps)
-    throw input_error(s.file.string(), key + ".substeps",
-                      fmt::format("is {}, expected {} as for the first tire", substeps, s.tire_substeps));
-  s.tire_substeps = substeps;
-  o.substep = s.run.step / substeps;
-  s.tires.push_back(o);
-}
-
-void take_run(const json& j, const json& output, Scenario& s) {
-  s.run.step = j["step"];
-  s.run.end = j["end"];
-  s.run.average_from = j["average_from"];
-  s.run.threads = j["threads"].is_string() ? 0 : j["threads"].get<int>();
-  s.run.seed = j["seed"];
-  s.run.peer_timeout = j["peer_timeout"];
-  s.output.series_interval = output["series_interval"];
-  s.output.frame_interval = output["frame_interval"];
-}
-
-void take_checkpoint(const json& j, Scenario& s) {
-  s.checkpoint.wall_interval = j["wall_interval"];
-  s.checkpoint.interval = j["interval"];
-  s.checkpoint.keep = j["keep"];
-  s.checkpoint.at_end = j["at_end"];
+void take_run(json j, Scenario& s) {
+  if (j["threads"].is_string()) j["threads"] = 0;  // auto
+  read_fields(j, s.run);
 }
 
 /// While the bed settles the other ranks wait, but the terrain may be bound to its own cores.
@@ -235,18 +171,50 @@ void take_terrain(const json& j, Scenario& s) {
   s.terrain = terrain::find_terrain(common.engine, context).read(j, context);
 }
 
+// Keys beside the sections that say something to people and editors alone.
+constexpr std::array<const char*, 2> kRemarks{"description", "$schema"};
+
+/// Keys that change no result, as the structs' lists of fields say; with their sections.
+const std::vector<std::string>& harmless_keys() {
+  static const std::vector<std::string> keys = [] {
+    std::vector<std::string> all{kRemarks.begin(), kRemarks.end()};
+    const auto add = [&](const std::string& section, const std::vector<std::string>& names) {
+      for (const std::string& name : names) all.push_back(section + "." + name);
+    };
+    constexpr unsigned kRoles = role::key | role::harmless;
+    add("run", field_names<RunOptions>(kRoles));
+    add("checkpoint", field_names<CheckpointOptions>(kRoles));
+    add("expected", field_names<ExpectedResult>(kRoles));
+    add("terrain", terrain::terrain_keys(role::harmless));
+    return all;
+  }();
+  return keys;
+}
+
+bool is_harmless(const std::string& key) {
+  return std::find(harmless_keys().begin(), harmless_keys().end(), key) != harmless_keys().end();
+}
+
+/// What is written how often is part of the digest, but leaves the physics alone.
+bool is_output(const std::string& key) { return key.starts_with("output."); }
+
 /// The expected result holds for the scenario as shipped; a setting that changes the physics makes it void.
 bool changes_results(const std::string& key) {
-  for (const char* harmless :
-       {"run.threads", "run.peer_timeout", "output.", "checkpoint.", "expected", "description", "$schema"})
-    if (key.starts_with(harmless)) return false;
-  return true;
+  const bool section = key == "expected" || key == "checkpoint" || key == "output";
+  return !section && !is_harmless(key) && !is_output(key);
+}
+
+/// Without the value at the dotted key, and without its section where that was the last one.
+void erase(json& document, const std::string& key) {
+  const std::size_t dot = key.find('.');
+  const auto section = document.find(key.substr(0, dot));
+  if (section == document.end()) return;
+  if (dot != std::string::npos) section->erase(key.substr(dot + 1));
+  if (dot == std::string::npos || section->empty()) document.erase(section);
 }
 
 std::string digest_of(json completed, const Scenario& s) {
-  for (const char* harmless : {"description", "$schema", "expected", "checkpoint"}) completed.erase(harmless);
-  for (const char* harmless : {"threads", "peer_timeout"}) completed["run"].erase(harmless);
-  for (const std::string& key : terrain::terrain_keys(role::harmless)) completed["terrain"].erase(key);
+  for (const std::string& key : harmless_keys()) erase(completed, key);
   // Files count by what they hold, wherever they stand.
   for (const terrain::TerrainFile& file : s.terrain->files()) completed["terrain"].erase(file.key);
   if (completed.contains("tire")) completed["tire"].erase("file");
@@ -282,37 +250,28 @@ Scenario load_scenario(const std::filesystem::path& file, const Settings& settin
   json document = read_document(file.string(), settings);
   if (const std::string set_aside = complete(document, file.string(), settings); !set_aside.empty())
     s.warnings.push_back(set_aside);
-  take_run(document["run"], document["output"], s);
-  take_checkpoint(document["checkpoint"], s);
-  take_rig(document["rig"], s);
-  if (document.contains("tire"))
-    for (std::size_t k = 0; k < s.rigs.size(); ++k) take_tire(document["tire"], "tire", s);
-  else
-    for (std::size_t k = 0; k < document["tires"].size(); ++k)
-      take_tire(document["tires"][k], fmt::format("tires.{}", k), s);
-  take_terrain(document["terrain"], s);
-  if (document.contains("expected")) {
-    s.expected.drawbar_pull = document["expected"]["drawbar_pull"];
-    s.expected.drawbar_pull_spread = document["expected"]["drawbar_pull_spread"];
-    s.expected.given = std::none_of(settings.begin(), settings.end(),
-                                    [](const auto& setting) { return changes_results(setting.first); });
-  }
+  take_run(document["run"], s);
+  read_fields(document["output"], s.output);
+  read_fields(document["checkpoint"], s.checkpoint);
   for (const Problem& problem : Schema::load().unusual(document))
     s.warnings.push_back(input_error(file.string(), problem.key, problem.what).what());
-  std::vector<bool> default_start(s.rigs.size(), document["rig"]["start"].is_null());
-  for (std::size_t k = 0; k < document["rig"]["wheels"].size(); ++k)
-    default_start[k] = default_start[k] && document["rig"]["wheels"][k]["start"].is_null();
   const std::vector<std::string> unusual = s.warnings;
   try {
-    check_scenario(s, default_start);
+    const std::shared_ptr<rigs::RigSpec> rig = take_rig(document["rig"], s);
+    take_tires(document, s);
+    take_terrain(document["terrain"], s);
+    check_scenario(s, *rig);
+    rig->complete(document["rig"]);
   } catch (const Error& error) {  // what looks wrong may be why it does not fit
     std::string text = error.what();
     for (const std::string& warning : unusual) text += "\n" + warning;
     throw Error(error.code(), text);
   }
-  document["rig"]["start"] = s.rigs.front().start;
-  for (std::size_t k = 0; k < document["rig"]["wheels"].size(); ++k)
-    document["rig"]["wheels"][k]["start"] = s.rigs[k].start;
+  if (document.contains("expected")) {
+    read_fields(document["expected"], s.expected);
+    s.expected.given = std::none_of(settings.begin(), settings.end(),
+                                    [](const auto& setting) { return changes_results(setting.first); });
+  }
   s.digest = digest_of(document, s);
   make_movable(document, s);
   s.completed = document.dump(2);
@@ -320,14 +279,7 @@ Scenario load_scenario(const std::filesystem::path& file, const Settings& settin
 }
 
 bool may_change_on_resume(const std::string& key) {
-  for (const char* section : {"output.", "checkpoint.", "expected."})
-    if (key.starts_with(section)) return true;
-  for (const char* name :
-       {"run.end", "run.average_from", "run.threads", "run.peer_timeout", "description", "$schema"})
-    if (key == name) return true;
-  const std::vector<std::string> harmless = terrain::terrain_keys(role::harmless);
-  return std::any_of(harmless.begin(), harmless.end(),
-                     [&](const std::string& name) { return key == "terrain." + name; });
+  return is_harmless(key) || is_output(key) || key == "run.end" || key == "run.average_from";
 }
 
 }  // namespace furrow::scenario

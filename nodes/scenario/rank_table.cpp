@@ -5,17 +5,18 @@
 
 #include <fmt/format.h>
 
+#include "nodes/scenario/wheel_geometry.hpp"
+
 namespace furrow::scenario {
 
 std::vector<RankEntry> rank_table(const Scenario& s) {
   std::vector<RankEntry> table;
-  table.push_back({0, "rig",
-                   fmt::format("{} drawbar rig{}, {}; writes the results; 1 thread", s.rigs.size(),
-                               s.rigs.size() > 1 ? "s" : "", s.rigs.front().mode)});
+  table.push_back({0, "rig", fmt::format("{}; writes the results; 1 thread", describe_rig(s).text)});
+  const std::vector<tire::TireDescription> tires = describe_tires(s);
   for (std::size_t k = 0; k < s.tires.size(); ++k)
-    table.push_back({static_cast<int>(k) + 1, fmt::format("tire {}", k),
-                     fmt::format("{}, {}; 1 thread", s.tires[k].file.filename().string(),
-                                 s.tires[k].rigid ? "rigid" : "layered shell")});
+    table.push_back(
+        {static_cast<int>(k) + 1, fmt::format("tire {}", k),
+         fmt::format("{}, {}; 1 thread", s.tires[k]->options().file.filename().string(), tires[k].name)});
   const std::string threads = s.run.threads > 0
                                   ? fmt::format("{} thread{}", s.run.threads, s.run.threads > 1 ? "s" : "")
                                   : "as many threads as there are cores left";

@@ -26,7 +26,7 @@ std::vector<std::string> Scenario::file_hashes() const {
     hash.add(bytes);
     hashes.push_back(hash.hex());
   };
-  for (const tire::TireOptions& tire : tires) add(read_text_file(tire.file, "a tire file in JSON"));
+  for (const auto& tire : tires) add(read_text_file(tire->options().file, "a tire file in JSON"));
   for (const terrain::TerrainFile& file : terrain->files()) add(file_bytes(file.path.string()));
   return hashes;
 }

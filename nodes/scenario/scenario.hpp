@@ -8,9 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "rigs/drawbar_rig.hpp"
+#include "protocol/core/fields.hpp"
+#include "rigs/drawbar_spec.hpp"
+#include "rigs/rig_spec.hpp"
 #include "terrain/terrains.hpp"
-#include "tire/tire.hpp"
+#include "tire/tire_spec.hpp"
 
 namespace furrow::scenario {
 
@@ -25,11 +27,27 @@ struct RunOptions {
   std::int64_t steps() const;  // round(end / step)
 };
 
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<RunOptions> auto& s) {
+  visit(Field{"step", "s", role::key}, s.step);
+  visit(Field{"end", "s", role::key}, s.end);
+  visit(Field{"average_from", "s", role::key}, s.average_from);
+  visit(Field{"threads", "", role::key | role::harmless}, s.threads);
+  visit(Field{"seed", "", role::key}, s.seed);
+  visit(Field{"peer_timeout", "s", role::key | role::harmless}, s.peer_timeout);
+}
+
 /// `output.*`
 struct OutputOptions {
   double series_interval = 1e-3;  // s
   double frame_interval = 0.02;   // s; 0: none
 };
+
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<OutputOptions> auto& s) {
+  visit(Field{"series_interval", "s", role::key}, s.series_interval);
+  visit(Field{"frame_interval", "s", role::key}, s.frame_interval);
+}
 
 /// `checkpoint.*`
 struct CheckpointOptions {
@@ -39,6 +57,14 @@ struct CheckpointOptions {
   bool at_end = true;
 };
 
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<CheckpointOptions> auto& s) {
+  visit(Field{"wall_interval", "s", role::key | role::harmless}, s.wall_interval);
+  visit(Field{"interval", "s", role::key | role::harmless}, s.interval);
+  visit(Field{"keep", "", role::key | role::harmless}, s.keep);
+  visit(Field{"at_end", "", role::key | role::harmless}, s.at_end);
+}
+
 /// `expected.*`, optional: what the shipped scenarios print beside their result.
 struct ExpectedResult {
   bool given = false;
@@ -46,16 +72,22 @@ struct ExpectedResult {
   double drawbar_pull_spread = 0.0;  // ± N
 };
 
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<ExpectedResult> auto& s) {
+  visit(Field{"drawbar_pull", "N", role::key | role::harmless}, s.drawbar_pull);
+  visit(Field{"drawbar_pull_spread", "N", role::key | role::harmless}, s.drawbar_pull_spread);
+}
+
 struct Scenario {
   std::filesystem::path file;
   std::string name;  // file name without extension
   std::string
       completed;       // the whole scenario as JSON text with defaults filled in; can be read from any folder
   std::string digest;  // hash of all in `completed` that decides the results, and of the tire files
-  std::vector<rigs::DrawbarRigOptions> rigs = std::vector<rigs::DrawbarRigOptions>(1);  // one per wheel
+  std::shared_ptr<const rigs::RigSpec> rig = rigs::drawbar_spec({{}});
   int rig_substeps = 1;
-  double drop_height = 0.0;              // of all tires above the ground at t = 0, m
-  std::vector<tire::TireOptions> tires;  // one per wheel
+  double drop_height = 0.0;                                  // of all tires above the ground at t = 0, m
+  std::vector<std::shared_ptr<const tire::TireSpec>> tires;  // one per wheel
   int tire_substeps = 1;
   std::shared_ptr<const terrain::TerrainSpec> terrain = terrain::default_terrain();
   int terrain_ranks = 1;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -9,9 +10,6 @@
 #include "nodes/scenario/wheel_geometry.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_text.hpp"
-#include "tire/read_tire_file.hpp"
-#include "tire/tire.hpp"
-#include "tire/tire_magnitudes.hpp"
 
 namespace furrow::scenario {
 namespace {
@@ -20,13 +18,11 @@ constexpr double kMaxSteps = 1e10;    // beyond it a run is a slip of the pen
 constexpr double kMinGrains = 4.0;    // radii that the bin must measure at least
 constexpr double kCoarseGrain = 0.1;  // of the tire radius
 constexpr double kGigabyte = 1e9;
-// Of τ that the step may be, without and with contact tangents: tests/studies/README.md, "Step of the flexible tire".
-constexpr double kLateShare = 0.04, kTangentShare = 0.1;
 
 class Checks {
  public:
-  explicit Checks(Scenario& scenario)
-      : s_(scenario), file_(scenario.file.string()), terrain_(scenario.terrain->describe()) {}
+  Checks(Scenario& scenario, rigs::RigSpec& rig)
+      : s_(scenario), rig_(rig), file_(scenario.file.string()), terrain_(scenario.terrain->describe()) {}
 
   Error wrong(const std::string& key, const std::string& what) const { return input_error(file_, key, what); }
   void warn(const std::string& key, const std::string& what) {
@@ -36,35 +32,21 @@ class Checks {
   void times();
   void rig();
   void tires();
+  void room();
   void bin();
-  void start(const std::vector<bool>& use_default);
+  void start();
   void overlaps();
   void step();
   void machine();
 
  private:
-  /// Half of what a wheel, turned by its toe angle and leaning by its camber, takes of the bin along x and across, m.
-  struct Footprint {
-    double along = 0.0, across = 0.0;
-  };
-  Footprint footprint(std::size_t wheel) const {
-    const TireSize& tire = tires_[wheel];
-    const rigs::DrawbarRigOptions& rig = s_.rigs[wheel];
-    const double c = std::cos(rig.toe_angle), s = std::abs(std::sin(rig.toe_angle));
-    const double half =
-        0.5 * tire.width * std::cos(rig.camber_angle) + tire.radius * std::abs(std::sin(rig.camber_angle));
-    const double along = tire.radius * c + half * s;
-    return {rig.toe_time > 0.0 ? std::max(along, tire.radius) : along, half * c + tire.radius * s};
-  }
-  /// The key of a wheel's value: the rig's own while there is no list of wheels.
-  std::string wheel_key(std::size_t wheel, const std::string& name) const {
-    return s_.rigs.size() == 1 ? "rig." + name : fmt::format("rig.wheels.{}.{}", wheel, name);
-  }
+  rigs::RigDescription describe() const { return s_.rig->describe(wheel_sizes(tires_), s_.run.end); }
 
   Scenario& s_;
+  rigs::RigSpec& rig_;
   std::string file_;
   terrain::TerrainDescription terrain_;
-  std::vector<TireSize> tires_;
+  std::vector<tire::TireDescription> tires_;
 };
 
 void Checks::times() {
@@ -85,49 +67,45 @@ void Checks::times() {
     throw wrong("output.series_interval",
                 fmt::format("is {} s, expected at most the averaging window of {} s", number_text(first_line),
                             number_text(run.end - run.average_from)));
-  const double ramp = s_.rigs.front().ramp;
-  if (ramp > run.average_from + 1e-12)
-    warn("run.average_from",
-         fmt::format("the window begins at {} s, while the wheel still speeds up until rig.ramp = {} s",
-                     number_text(run.average_from), number_text(ramp)));
 }
 
 void Checks::rig() {
-  for (std::size_t k = 0; k < s_.rigs.size(); ++k)
-    if (s_.rigs[k].mode == "fixed_speed" && s_.rigs[k].slip >= 1.0)
-      throw wrong(
-          wheel_key(k, "slip"),
-          fmt::format("is {}, expected below 1 in mode fixed_speed: a carriage that moves cannot slip fully",
-                      number_text(s_.rigs[k].slip)));
-  if (s_.tires.size() != s_.rigs.size())
-    throw wrong("tires", fmt::format("has {} entries, expected {}: one per wheel of rig.wheels",
-                                     s_.tires.size(), s_.rigs.size()));
+  if (s_.tires.size() != rig_.wheel_count())
+    throw wrong("tires", fmt::format("has {} entries, expected {}: one per wheel of the rig", s_.tires.size(),
+                                     rig_.wheel_count()));
 }
 
 void Checks::tires() {
-  for (const tire::TireOptions& options : s_.tires) {
-    if (options.rigid && options.contact_tangent)
-      throw wrong("tire.contact_tangent", "is true, expected false for a rigid tire");
-    const tire::TireFile given = tire::read_tire_file(options.file);
-    tires_.push_back(tire_size(options, given));
-    const tire::TireFile file = tire::tire_file_of(options, given);
-    for (const auto& [key, what] : tire::unlikely_values(given))
-      s_.warnings.push_back(input_error(file.path, key, what).what());
-    const double share = options.contact_tangent ? kTangentShare : kLateShare, tau = file.structural_damping;
-    if (!options.rigid && s_.run.step > share * tau)
+  for (const auto& tire : s_.tires)
+    for (const auto& [key, what] : tire->unlikely_values())
+      s_.warnings.push_back(input_error(tire->options().file.string(), key, what).what());
+  tires_ = describe_tires(s_);
+  for (std::size_t k = 0; k < tires_.size(); ++k) {
+    const double share = tires_[k].step_share, tau = tires_[k].damping_time;
+    if (share > 0.0 && s_.run.step > share * tau)
       warn("run.step",
            fmt::format("{} s is more than {:g} of the tire's damping time of {} s: contact forces come one "
-                       "step late and can "
-                       "feed the tire; expected at most {} s{}",
+                       "step late and can feed the tire; expected at most {} s{}",
                        number_text(s_.run.step), share, number_text(tau), number_text(0.5 * share * tau),
-                       options.contact_tangent ? "" : ", or tire.contact_tangent"));
+                       tires_[k].takes_tangents && !s_.tires[k]->options().contact_tangent
+                           ? ", or tire.contact_tangent"
+                           : ""));
   }
+  const rigs::RigDescription rig = describe();
+  if (rig.speeds_up_until > s_.run.average_from + 1e-12)
+    warn("run.average_from",
+         fmt::format("the window begins at {} s, while the wheel still speeds up until {} = {} s",
+                     number_text(s_.run.average_from), rig.speeds_up_key, number_text(rig.speeds_up_until)));
+}
+
+void Checks::room() {
   if (!terrain_.bounds) return;
+  const rigs::RigDescription rig = describe();
   for (std::size_t k = 0; k < tires_.size(); ++k) {
-    const TireSize& tire = tires_[k];
-    const double off = std::abs(s_.rigs[k].lateral);
-    const Footprint foot = footprint(k);
-    const double width = 2.0 * (foot.across + off + kWallMargin), length = 2.0 * (foot.along + kWallMargin);
+    const tire::TireDescription& tire = tires_[k];
+    const rigs::WheelDescription& wheel = rig.wheels[k];
+    const double off = std::abs(wheel.lateral);
+    const double width = 2.0 * (wheel.across + off + kWallMargin), length = 2.0 * (wheel.along + kWallMargin);
     if (width > terrain_.bounds->width)
       throw wrong("terrain.width",
                   fmt::format("is {} m, expected at least {:.2f} m: the tire is {:.2f} m wide{}",
@@ -153,45 +131,40 @@ void Checks::bin() {
                                    number_text(least)));
 }
 
-void Checks::start(const std::vector<bool>& use_default) {
-  for (std::size_t k = 0; k < tires_.size(); ++k) {
-    rigs::DrawbarRigOptions& rig = s_.rigs[k];
-    const double length = terrain_.bounds ? terrain_.bounds->length : 0.0, radius = footprint(k).along,
-                 reach = radius + kWallMargin;
-    if (use_default[k]) {
-      const AxlePath path = axle_path(s_, k, tires_[k].radius);
-      const bool forward = path.to - rig.start >= 0.0;
-      rig.start = !terrain_.bounds ? 0.0 : forward ? reach : length - reach;
-    }
-    if (!terrain_.bounds) continue;
-    const AxlePath path = axle_path(s_, k, tires_[k].radius);
-    if (path.from - radius < 0.0 || path.from + radius > length)
-      throw wrong(wheel_key(k, "start"),
+void Checks::start() {
+  rig_.fill_starts(wheel_sizes(tires_), s_.run.end, terrain_.bounds ? std::optional(terrain_.bounds->length) : std::nullopt,
+                   kWallMargin);
+  if (!terrain_.bounds) return;
+  const double length = terrain_.bounds->length;
+  for (const rigs::WheelDescription& wheel : describe().wheels) {
+    const double radius = wheel.along;
+    if (wheel.from - radius < 0.0 || wheel.from + radius > length)
+      throw wrong(wheel.start_key,
                   fmt::format("is {} m, expected {:.3f} to {:.3f} m: the tire of radius {} m would stand in "
                               "a wall of the bin",
-                              number_text(path.from), radius, length - radius, number_text(radius)));
-    if (path.to - radius < 0.0 || path.to + radius > length)
+                              number_text(wheel.from), radius, length - radius, number_text(radius)));
+    if (wheel.to - radius < 0.0 || wheel.to + radius > length)
       throw wrong(
           "terrain.length",
           fmt::format("is {} m, but the axle travels from x = {:.3f} to {:.3f} m and the tire's radius "
                       "is {} m: it would hit the end wall; expected at least {:.2f} m or a shorter run",
-                      number_text(length), path.from, path.to, number_text(radius),
-                      std::abs(path.to - path.from) + 2.0 * reach));
+                      number_text(length), wheel.from, wheel.to, number_text(radius),
+                      std::abs(wheel.to - wheel.from) + 2.0 * (radius + kWallMargin)));
   }
 }
 
 /// Wheels do not feel each other: one that stands in another would push the same grains twice.
 void Checks::overlaps() {
+  const std::vector<rigs::WheelDescription> wheels = describe().wheels;
   for (std::size_t k = 1; k < tires_.size(); ++k)
     for (std::size_t i = 0; i < k; ++i) {
       const double along = tires_[i].radius + tires_[k].radius,
                    across = 0.5 * (tires_[i].width + tires_[k].width);
-      if (std::abs(s_.rigs[i].lateral - s_.rigs[k].lateral) >= across) continue;
-      const double from = s_.rigs[k].start - s_.rigs[i].start;
-      const double to = axle_path(s_, k, tires_[k].radius).to - axle_path(s_, i, tires_[i].radius).to;
+      if (std::abs(wheels[i].lateral - wheels[k].lateral) >= across) continue;
+      const double from = wheels[k].from - wheels[i].from, to = wheels[k].to - wheels[i].to;
       if (std::min(std::abs(from), std::abs(to)) >= along && from * to > 0.0) continue;
       throw wrong(
-          wheel_key(k, "start"),
+          wheels[k].start_key,
           fmt::format("puts this wheel in the way of wheel {}, expected {:.2f} m between their axles or "
                       "{:.2f} m between their mid-planes (lateral)",
                       i, along, across));
@@ -223,13 +196,14 @@ void Checks::machine() {
 
 }  // namespace
 
-void check_scenario(Scenario& scenario, const std::vector<bool>& default_start) {
-  Checks checks(scenario);
+void check_scenario(Scenario& scenario, rigs::RigSpec& rig) {
+  Checks checks(scenario, rig);
   checks.times();
   checks.rig();
   checks.bin();
   checks.tires();
-  checks.start(default_start);
+  checks.room();
+  checks.start();
   checks.overlaps();
   checks.step();
   checks.machine();

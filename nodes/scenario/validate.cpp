@@ -8,26 +8,11 @@
 #include "nodes/scenario/estimate.hpp"
 #include "nodes/scenario/rank_table.hpp"
 #include "nodes/scenario/wheel_geometry.hpp"
-#include "tire/shell_mesh.hpp"
-#include "tire/tire_file.hpp"
 
 namespace furrow::scenario {
 namespace {
 
 constexpr double kMegabyte = 1e6;
-
-std::string pressure_text(const tire::PressureSchedule& p) {
-  if (!p.varies()) return fmt::format("{:g} kPa", 1e-3 * p.at(0.0));
-  return fmt::format("{:g} kPa, later {:g} to {:g} kPa", 1e-3 * p.at(0.0), 1e-3 * p.lowest(),
-                     1e-3 * p.highest());
-}
-
-/// Of the undeformed tire about its centre.
-MassProperties tire_mass(const tire::TireOptions& options) {
-  const tire::TireFile file = tire::tire_file_of(options);
-  const tire::ShellMesh ring = tire::make_shell_mesh(file);
-  return tire::rigid_mass(ring, tire::element_masses(file, ring));
-}
 
 }  // namespace
 
@@ -49,11 +34,9 @@ nlohmann::ordered_json validation_report(const Scenario& s) {
   json["tire_coordinates"] = e.coordinates;
   json["memory_MB"] = std::round(e.memory / kMegabyte);
   json["disk_MB"] = std::round(e.disk / kMegabyte);
-  for (std::size_t k = 0; k < s.tires.size(); ++k) {
-    const AxlePath path = axle_path(s, k, tire_size(s.tires[k]).radius);
-    json["axle_path_m"].push_back({path.from, path.to});
-    json["tire_mass_kg"].push_back(tire_mass(s.tires[k]).mass);
-  }
+  for (const rigs::WheelDescription& wheel : describe_rig(s).wheels)
+    json["axle_path_m"].push_back({wheel.from, wheel.to});
+  for (const tire::TireDescription& tire : describe_tires(s)) json["tire_mass_kg"].push_back(tire.mass.mass);
   for (const RankEntry& rank : rank_table(s))
     json["ranks"].push_back({{"rank", rank.rank}, {"node", rank.node}, {"does", rank.does}});
   json["warnings"] = s.warnings;
@@ -74,19 +57,14 @@ std::string validation_text(const Scenario& s) {
                                      100.0 * s.terrain_step() / e.terrain.stable_step, e.terrain.stable_step,
                                      e.terrain.stable_reason));
   line("terrain", e.terrain.text);
-  for (std::size_t k = 0; k < s.tires.size(); ++k) {
-    const tire::TireOptions& options = s.tires[k];
-    const TireSize size = tire_size(options);
-    const AxlePath path = axle_path(s, k, size.radius);
-    line("tire",
-         size.rigid
-             ? fmt::format("{}, rigid, radius {:g} m", options.file.filename().string(), size.radius)
-             : fmt::format("{}, {} × {} elements, {} coordinates, {}, radius {:g} m",
-                           options.file.filename().string(), size.elements_circumference, size.elements_width,
-                           size.coordinates(), pressure_text(size.pressure), size.radius));
-    const MassProperties mass = tire_mass(options);
+  const std::vector<tire::TireDescription> tires = describe_tires(s);
+  const rigs::RigDescription rig = describe_rig(s);
+  for (std::size_t k = 0; k < tires.size(); ++k) {
+    line("tire", fmt::format("{}, {}, radius {:g} m", s.tires[k]->options().file.filename().string(),
+                             tires[k].details, tires[k].radius));
+    const MassProperties& mass = tires[k].mass;
     line("tire mass", fmt::format("{:.2f} kg, spin inertia {:.3g} kg m²", mass.mass, mass.inertia(1, 1)));
-    line("axle", fmt::format("from x = {:.3f} m to {:.3f} m", path.from, path.to));
+    line("axle", fmt::format("from x = {:.3f} m to {:.3f} m", rig.wheels[k].from, rig.wheels[k].to));
   }
   line("memory", fmt::format("about {:.0f} MB in all", e.memory / kMegabyte));
   line("disk", fmt::format("about {:.0f} MB of results", e.disk / kMegabyte));

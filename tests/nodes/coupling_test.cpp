@@ -6,10 +6,12 @@
 #include "nodes/output/series_builder.hpp"
 #include "nodes/ranks/run_node.hpp"
 #include "nodes/scenario/load_scenario.hpp"
+#include "nodes/scenario/wheel_geometry.hpp"
 #include "protocol/core/constants.hpp"
 #include "terrain/dem/dem_spec.hpp"
 #include "terrain/rigid/ground_spec.hpp"
 #include "tests/nodes/in_process_run.hpp"
+#include "tire/tires.hpp"
 
 namespace furrow {
 namespace {
@@ -20,24 +22,34 @@ std::filesystem::path tire_file(const std::string& name) {
   return std::filesystem::path(FURROW_SOURCE_FOLDER) / "tire" / "data" / name;
 }
 
-scenario::Scenario rigid_wheel_on_plane() {
-  scenario::Scenario scenario;
+/// A scenario of one wheel whose rig and tire are open to change until it is made.
+struct OneWheel : scenario::Scenario {
+  rigs::DrawbarRigOptions wheel_rig;
+  tire::TireOptions wheel_tire;
+  scenario::Scenario made() const {
+    scenario::Scenario scenario = *this;
+    scenario.rig = rigs::drawbar_spec({wheel_rig});
+    scenario.tires = {tire::read_tire(wheel_tire)};
+    return scenario;
+  }
+};
+
+OneWheel rigid_wheel_on_plane() {
+  OneWheel scenario;
   scenario.name = "test";
   scenario.digest = "test";
-  scenario.rigs[0].mode = "fixed_angular_speed";
-  scenario.rigs[0].slip = 0.2;
-  scenario.rigs[0].angular_speed = 4.0;
-  scenario.rigs[0].ramp = 0.05;
-  scenario.rigs[0].touchdown_damping = 12e3;
-  scenario.rigs[0].touchdown_time = 0.2;
-  scenario.rigs[0].start = 1.0;
-  tire::TireOptions tire;
+  scenario.wheel_rig.mode = "fixed_angular_speed";
+  scenario.wheel_rig.slip = 0.2;
+  scenario.wheel_rig.angular_speed = 4.0;
+  scenario.wheel_rig.ramp = 0.05;
+  scenario.wheel_rig.touchdown_damping = 12e3;
+  scenario.wheel_rig.touchdown_time = 0.2;
+  scenario.wheel_rig.start = 1.0;
+  tire::TireOptions& tire = scenario.wheel_tire;
   tire.file = tire_file("hmmwv_layered.json");
   tire.rigid = true;
   tire.elements_circumference = 60;
   tire.elements_width = 12;
-  tire.substep = 1e-4;
-  scenario.tires = {tire};
   scenario.terrain = terrain::make_ground_spec({});
   scenario.run.step = 1e-4;
   scenario.run.end = 0.3;
@@ -45,11 +57,11 @@ scenario::Scenario rigid_wheel_on_plane() {
   return scenario;
 }
 
-scenario::Scenario rigid_wheel_on_grains() {
-  scenario::Scenario scenario = rigid_wheel_on_plane();
-  scenario.rigs[0].carrier_mass = 20.0;
-  scenario.rigs[0].touchdown_damping = 300.0;
-  scenario.rigs[0].start = 0.55;
+OneWheel rigid_wheel_on_grains() {
+  OneWheel scenario = rigid_wheel_on_plane();
+  scenario.wheel_rig.carrier_mass = 20.0;
+  scenario.wheel_rig.touchdown_damping = 300.0;
+  scenario.wheel_rig.start = 0.55;
   terrain::dem::DemOptions grains;
   grains.radius = 0.03;
   grains.layers = 2;
@@ -75,22 +87,22 @@ void expect_same_bits_after_restore(const scenario::Scenario& scenario, std::int
 }
 
 TEST(Coupling, restored_nodes_continue_bit_for_bit_on_rigid_ground) {
-  expect_same_bits_after_restore(rigid_wheel_on_plane(), 150, 300);
+  expect_same_bits_after_restore(rigid_wheel_on_plane().made(), 150, 300);
 }
 
 TEST(Coupling, restored_nodes_continue_bit_for_bit_on_grains) {
-  expect_same_bits_after_restore(rigid_wheel_on_grains(), 100, 200);
+  expect_same_bits_after_restore(rigid_wheel_on_grains().made(), 100, 200);
 }
 
 TEST(Coupling, restored_flexible_tire_continues_bit_for_bit) {
-  scenario::Scenario scenario = rigid_wheel_on_plane();
-  scenario.tires[0].rigid = false;
-  scenario.tires[0].elements_circumference = 30;
-  expect_same_bits_after_restore(scenario, 60, 120);
+  OneWheel scenario = rigid_wheel_on_plane();
+  scenario.wheel_tire.rigid = false;
+  scenario.wheel_tire.elements_circumference = 30;
+  expect_same_bits_after_restore(scenario.made(), 60, 120);
 }
 
 TEST(Coupling, momentum_received_equals_momentum_sent_one_interval_before) {
-  testing::InProcessRun run(rigid_wheel_on_grains());
+  testing::InProcessRun run(rigid_wheel_on_grains().made());
   run.steps(0, 1500);
   run.synchronize(1500);
   const auto saved = run.save();
@@ -104,20 +116,19 @@ TEST(Coupling, momentum_received_equals_momentum_sent_one_interval_before) {
   EXPECT_LE(builder.now().transfer_moment_residual, 1e-12);
 }
 
-scenario::Scenario flexible_tire_on_grains_with_tangents() {
-  scenario::Scenario scenario = rigid_wheel_on_grains();
-  scenario.rigs[0].carrier_mass = 100.0;
-  scenario.tires[0].rigid = false;
-  scenario.tires[0].elements_circumference = 30;
-  scenario.tires[0].contact_tangent = true;
+OneWheel flexible_tire_on_grains_with_tangents() {
+  OneWheel scenario = rigid_wheel_on_grains();
+  scenario.wheel_rig.carrier_mass = 100.0;
+  scenario.wheel_tire.rigid = false;
+  scenario.wheel_tire.elements_circumference = 30;
+  scenario.wheel_tire.contact_tangent = true;
   scenario.terrain_substeps = 2;
   scenario.run.step = 2e-4;
-  scenario.tires[0].substep = 2e-4;
   return scenario;
 }
 
 TEST(Coupling, contact_tangents_continue_bit_for_bit_for_any_number_of_threads) {
-  const scenario::Scenario scenario = flexible_tire_on_grains_with_tangents();
+  const scenario::Scenario scenario = flexible_tire_on_grains_with_tangents().made();
   expect_same_bits_after_restore(scenario, 250, 350);
   ranks::RunContext one, two;
   one.threads = 1;
@@ -130,265 +141,7 @@ TEST(Coupling, contact_tangents_continue_bit_for_bit_for_any_number_of_threads) 
 
 /// Σ impulses on the tire − Σ impulses by the grains = what the ledger holds.
 TEST(Coupling, the_ledger_holds_the_difference_of_the_impulses) {
-  const scenario::Scenario scenario = flexible_tire_on_grains_with_tangents();
-  testing::InProcessRun run(scenario);
-  run.steps(0, 600);
-  run.synchronize(600);
-  const auto saved = run.save();
-  output::SeriesBuilder builder(0.4673, 0.0, scenario.run.step);
-  const Archive::Scope scope(saved[0], "wheel0/");
-  builder.restore(saved[0]);
-  Vec3 ahead = Vec3::Zero();
-  const auto& owed = saved[1].get<double>("ledger/owed");
-  for (std::size_t i = 0; i < owed.size(); i += 3) ahead += Vec3(owed[i], owed[i + 1], owed[i + 2]);
-  const Vec3 difference = builder.now().impulse_received - builder.impulse_sent_arrived();
-  EXPECT_GT(builder.impulse_sent_abs(), 10.0) << "the wheel never touched the grains";
-  EXPECT_LE((difference - ahead).norm(), 1e-12 * builder.impulse_sent_abs());
-  EXPECT_GT(ahead.norm(), 0.0);
-  EXPECT_LT(saved[1].get_double("ledger/largest"), 0.05 * builder.impulse_sent_abs());
-}
-
-/// The series of wheel 0 as the rig's node has it now; means are sums since the last line.
-output::SeriesRow series_now(const testing::InProcessRun& run) {
-  const Archive rig = run.save().front();
-  output::SeriesBuilder builder(0.4673, 0.0, 1e-4);
-  Archive::Scope scope(rig, "wheel0/");
-  builder.restore(rig);
-  return builder.now();
-}
-
-/// Added mass: a lagged wrench that held the tire's own inertia would blow up from a ratio of one on.
-TEST(Coupling, spin_up_and_drop_with_a_tire_three_times_as_heavy_as_its_rim) {
-  for (const bool rigid : {true, false}) {
-    scenario::Scenario scenario = rigid_wheel_on_plane();
-    scenario.tires[0].rigid = rigid;
-    scenario.tires[0].elements_circumference = 30;
-    const MassProperties tire = tire::make_tire(scenario.tires[0])->mass_properties();
-    rigs::DrawbarRigOptions& rig = scenario.rigs[0];
-    rig.slip = 1.0;
-    rig.ramp = 0.01;
-    rig.touchdown_damping = 0.0;
-    rig.carrier_mass = 1e-3;
-    rig.rim_mass = tire.mass / 3.0;
-    rig.rim_spin_inertia = tire.inertia(1, 1) / 3.0;
-    rig.rim_diametral_inertia = tire.inertia(0, 0) / 3.0;
-    testing::InProcessRun run(scenario);
-    run.steps(0, 100);
-    run.synchronize(100);
-    const output::SeriesRow row = series_now(run);
-    const double mass = rig.carrier_mass + rig.rim_mass + tire.mass, spin = rig.angular_speed;
-    const double tolerance = rigid ? 1e-9 : 0.2;  // the flexible tire also winds up and swings
-    EXPECT_EQ(row.force.norm(), 0.0) << "it must not have landed";
-    EXPECT_NEAR(row.vertical_momentum / (-mass * kStandardGravity * row.time), 1.0, tolerance)
-        << "rigid: " << rigid;
-    EXPECT_NEAR(row.spindle_work / (0.5 * 4.0 / 3.0 * tire.inertia(1, 1) * spin * spin), 1.0, tolerance)
-        << "rigid: " << rigid;
-  }
-}
-
-TEST(Coupling, one_thread_and_two_threads_give_the_same_bits) {
-  ranks::RunContext one, two;
-  one.threads = 1;
-  two.threads = 2;
-  testing::InProcessRun first(rigid_wheel_on_grains(), one), second(rigid_wheel_on_grains(), two);
-  first.steps(0, 200);
-  second.steps(0, 200);
-  EXPECT_EQ(first.hashes(), second.hashes());
-}
-
-TEST(Coupling, another_seed_gives_another_state) {
-  scenario::Scenario other = rigid_wheel_on_grains();
-  other.run.seed = 2;
-  testing::InProcessRun first(rigid_wheel_on_grains()), second(other);
-  first.steps(0, 10);
-  second.steps(0, 10);
-  EXPECT_NE(first.hashes(), second.hashes());
-}
-
-/// z impulse that each wheel's tire has sent for up to now, N s.
-std::vector<double> vertical_impulses(const testing::InProcessRun& run, std::size_t wheels) {
-  const Archive rig = run.save().front();
-  std::vector<double> impulses;
-  for (std::size_t k = 0; k < wheels; ++k) {
-    output::SeriesBuilder builder(0.4673, 0.0, 1e-4);
-    Archive::Scope scope(rig, "wheel" + std::to_string(k) + "/");
-    builder.restore(rig);
-    impulses.push_back(builder.now().impulse_sent.z());
-  }
-  return impulses;
-}
-
-TEST(Coupling, each_of_four_wheels_on_one_bed_carries_its_own_weight) {
-  const scenario::Scenario scenario = scenario::load_scenario(
-      std::filesystem::path(FURROW_SOURCE_FOLDER) / "rigs" / "four_wheels.json", {{"terrain.radius", "0.03"},
-                                                                                  {"terrain.layers", "3"},
-                                                                                  {"terrain.cache", "false"},
-                                                                                  {"run.step", "2e-4"}});
-  testing::InProcessRun run(scenario);
-  run.steps(0, 4500);
-  const auto before = vertical_impulses(run, 4);
-  run.steps(4500, 6000);
-  const auto after = vertical_impulses(run, 4);
-  for (std::size_t k = 0; k < 4; ++k) {
-    const double tire = 4.811, weight = kStandardGravity *
-                                        (scenario.rigs[k].carrier_mass + scenario.rigs[k].rim_mass + tire);
-    EXPECT_NEAR((after[k] - before[k]) / 0.3, weight, 0.005 * weight) << "wheel " << k;
-  }
-}
-
-TEST(Coupling, a_mismatch_of_digests_stops_every_node) {
-  auto transports = make_in_process_transports(1);
-  std::vector<std::thread> threads;
-  std::vector<std::string> texts(transports.size());
-  for (std::size_t i = 0; i < transports.size(); ++i)
-    threads.emplace_back([&, i] {
-      scenario::Scenario scenario = rigid_wheel_on_plane();
-      if (i == 1) scenario.digest = "other";
-      try {
-        ranks::run_node(scenario, *transports[i], {});
-      } catch (const std::exception& error) {
-        texts[i] = error.what();
-      }
-    });
-  for (auto& thread : threads) thread.join();
-  for (const std::string& text : texts) EXPECT_NE(text, "");
-}
-
-}  // namespace
-}  // namespace furrow
-// Whole co-simulations in one process: what crosses the interfaces is conserved, and a restored run continues.
-#include <gtest/gtest.h>
-
-#include <filesystem>
-
-#include "nodes/output/series_builder.hpp"
-#include "nodes/ranks/run_node.hpp"
-#include "nodes/scenario/load_scenario.hpp"
-#include "protocol/core/constants.hpp"
-#include "terrain/dem/dem_spec.hpp"
-#include "terrain/rigid/ground_spec.hpp"
-#include "tests/nodes/in_process_run.hpp"
-
-namespace furrow {
-namespace {
-
-using testing::InProcessRun;
-
-std::filesystem::path tire_file(const std::string& name) {
-  return std::filesystem::path(FURROW_SOURCE_FOLDER) / "tire" / "data" / name;
-}
-
-scenario::Scenario rigid_wheel_on_plane() {
-  scenario::Scenario scenario;
-  scenario.name = "test";
-  scenario.digest = "test";
-  scenario.rigs[0].mode = "fixed_angular_speed";
-  scenario.rigs[0].slip = 0.2;
-  scenario.rigs[0].angular_speed = 4.0;
-  scenario.rigs[0].ramp = 0.05;
-  scenario.rigs[0].touchdown_damping = 12e3;
-  scenario.rigs[0].touchdown_time = 0.2;
-  scenario.rigs[0].start = 1.0;
-  tire::TireOptions tire;
-  tire.file = tire_file("hmmwv_layered.json");
-  tire.rigid = true;
-  tire.elements_circumference = 60;
-  tire.elements_width = 12;
-  tire.substep = 1e-4;
-  scenario.tires = {tire};
-  scenario.terrain = terrain::make_ground_spec({});
-  scenario.run.step = 1e-4;
-  scenario.run.end = 0.3;
-  scenario.output.frame_interval = 0.0;
-  return scenario;
-}
-
-scenario::Scenario rigid_wheel_on_grains() {
-  scenario::Scenario scenario = rigid_wheel_on_plane();
-  scenario.rigs[0].carrier_mass = 20.0;
-  scenario.rigs[0].touchdown_damping = 300.0;
-  scenario.rigs[0].start = 0.55;
-  terrain::dem::DemOptions grains;
-  grains.radius = 0.03;
-  grains.layers = 2;
-  grains.length = 1.6;
-  grains.width = 0.5;
-  grains.cohesion = 10e3;
-  grains.cache = false;
-  grains.activity = false;
-  scenario.terrain = terrain::dem::make_dem_spec(grains);
-  return scenario;
-}
-
-void expect_same_bits_after_restore(const scenario::Scenario& scenario, std::int64_t half, std::int64_t end) {
-  testing::InProcessRun whole(scenario);
-  whole.steps(0, half);
-  const std::vector<Archive> saved = whole.save();
-  whole.steps(half, end);
-
-  testing::InProcessRun resumed(scenario);
-  resumed.restore(saved);
-  resumed.steps(half, end);
-  EXPECT_EQ(whole.hashes(), resumed.hashes());
-}
-
-TEST(Coupling, restored_nodes_continue_bit_for_bit_on_rigid_ground) {
-  expect_same_bits_after_restore(rigid_wheel_on_plane(), 150, 300);
-}
-
-TEST(Coupling, restored_nodes_continue_bit_for_bit_on_grains) {
-  expect_same_bits_after_restore(rigid_wheel_on_grains(), 100, 200);
-}
-
-TEST(Coupling, restored_flexible_tire_continues_bit_for_bit) {
-  scenario::Scenario scenario = rigid_wheel_on_plane();
-  scenario.tires[0].rigid = false;
-  scenario.tires[0].elements_circumference = 30;
-  expect_same_bits_after_restore(scenario, 60, 120);
-}
-
-TEST(Coupling, momentum_received_equals_momentum_sent_one_interval_before) {
-  testing::InProcessRun run(rigid_wheel_on_grains());
-  run.steps(0, 1500);
-  run.synchronize(1500);
-  const auto saved = run.save();
-  output::SeriesBuilder builder(0.4673, 0.0, 1e-4);
-  Archive::Scope scope(saved[0], "wheel0/");
-  builder.restore(saved[0]);
-  const Vec3 sent = builder.impulse_sent_arrived(), received = builder.now().impulse_received;
-  EXPECT_GT(builder.impulse_sent_abs(), 0.0) << "the wheel never touched the grains";
-  EXPECT_LE((sent - received).norm(), 1e-12 * builder.impulse_sent_abs());
-  EXPECT_LE(builder.now().transfer_force_residual, 1e-12);
-  EXPECT_LE(builder.now().transfer_moment_residual, 1e-12);
-}
-
-scenario::Scenario flexible_tire_on_grains_with_tangents() {
-  scenario::Scenario scenario = rigid_wheel_on_grains();
-  scenario.rigs[0].carrier_mass = 100.0;
-  scenario.tires[0].rigid = false;
-  scenario.tires[0].elements_circumference = 30;
-  scenario.tires[0].contact_tangent = true;
-  scenario.terrain_substeps = 2;
-  scenario.run.step = 2e-4;
-  scenario.tires[0].substep = 2e-4;
-  return scenario;
-}
-
-TEST(Coupling, contact_tangents_continue_bit_for_bit_for_any_number_of_threads) {
-  const scenario::Scenario scenario = flexible_tire_on_grains_with_tangents();
-  expect_same_bits_after_restore(scenario, 250, 350);
-  ranks::RunContext one, two;
-  one.threads = 1;
-  two.threads = 2;
-  testing::InProcessRun first(scenario, one), second(scenario, two);
-  first.steps(0, 350);
-  second.steps(0, 350);
-  EXPECT_EQ(first.hashes(), second.hashes());
-}
-
-/// Σ impulses on the tire − Σ impulses by the grains = what the ledger holds.
-TEST(Coupling, the_ledger_holds_the_difference_of_the_impulses) {
-  const scenario::Scenario scenario = flexible_tire_on_grains_with_tangents();
+  const scenario::Scenario scenario = flexible_tire_on_grains_with_tangents().made();
   testing::InProcessRun run(scenario);
   run.steps(0, 600);
   run.synchronize(600);
@@ -418,11 +171,11 @@ output::SeriesRow series_now(const testing::InProcessRun& run) {
 /// Added mass: a lagged wrench that held the tire's own inertia would blow up from a ratio of one on.
 TEST(Coupling, spin_up_and_drop_with_a_tire_three_times_as_heavy_as_its_rim) {
   for (const bool rigid : {true, false}) {
-    scenario::Scenario scenario = rigid_wheel_on_plane();
-    scenario.tires[0].rigid = rigid;
-    scenario.tires[0].elements_circumference = 30;
-    const MassProperties tire = tire::make_tire(scenario.tires[0])->mass_properties();
-    rigs::DrawbarRigOptions& rig = scenario.rigs[0];
+    OneWheel scenario = rigid_wheel_on_plane();
+    scenario.wheel_tire.rigid = rigid;
+    scenario.wheel_tire.elements_circumference = 30;
+    const MassProperties tire = tire::make_tire(scenario.wheel_tire)->mass_properties();
+    rigs::DrawbarRigOptions& rig = scenario.wheel_rig;
     rig.slip = 1.0;
     rig.ramp = 0.01;
     rig.touchdown_damping = 0.0;
@@ -430,7 +183,7 @@ TEST(Coupling, spin_up_and_drop_with_a_tire_three_times_as_heavy_as_its_rim) {
     rig.rim_mass = tire.mass / 3.0;
     rig.rim_spin_inertia = tire.inertia(1, 1) / 3.0;
     rig.rim_diametral_inertia = tire.inertia(0, 0) / 3.0;
-    testing::InProcessRun run(scenario);
+    testing::InProcessRun run(scenario.made());
     run.steps(0, 100);
     run.synchronize(100);
     const output::SeriesRow row = series_now(run);
@@ -448,16 +201,17 @@ TEST(Coupling, one_thread_and_two_threads_give_the_same_bits) {
   ranks::RunContext one, two;
   one.threads = 1;
   two.threads = 2;
-  testing::InProcessRun first(rigid_wheel_on_grains(), one), second(rigid_wheel_on_grains(), two);
+  testing::InProcessRun first(rigid_wheel_on_grains().made(), one),
+      second(rigid_wheel_on_grains().made(), two);
   first.steps(0, 200);
   second.steps(0, 200);
   EXPECT_EQ(first.hashes(), second.hashes());
 }
 
 TEST(Coupling, another_seed_gives_another_state) {
-  scenario::Scenario other = rigid_wheel_on_grains();
+  scenario::Scenario other = rigid_wheel_on_grains().made();
   other.run.seed = 2;
-  testing::InProcessRun first(rigid_wheel_on_grains()), second(other);
+  testing::InProcessRun first(rigid_wheel_on_grains().made()), second(other);
   first.steps(0, 10);
   second.steps(0, 10);
   EXPECT_NE(first.hashes(), second.hashes());
@@ -487,9 +241,9 @@ TEST(Coupling, each_of_four_wheels_on_one_bed_carries_its_own_weight) {
   const auto before = vertical_impulses(run, 4);
   run.steps(4500, 6000);
   const auto after = vertical_impulses(run, 4);
+  const std::vector<rigs::WheelDescription> wheels = scenario::describe_rig(scenario).wheels;
   for (std::size_t k = 0; k < 4; ++k) {
-    const double tire = 4.811, weight = kStandardGravity *
-                                        (scenario.rigs[k].carrier_mass + scenario.rigs[k].rim_mass + tire);
+    const double tire = 4.811, weight = kStandardGravity * (wheels[k].carried_mass + tire);
     EXPECT_NEAR((after[k] - before[k]) / 0.3, weight, 0.005 * weight) << "wheel " << k;
   }
 }
@@ -500,7 +254,7 @@ TEST(Coupling, a_mismatch_of_digests_stops_every_node) {
   std::vector<std::string> texts(transports.size());
   for (std::size_t i = 0; i < transports.size(); ++i)
     threads.emplace_back([&, i] {
-      scenario::Scenario scenario = rigid_wheel_on_plane();
+      scenario::Scenario scenario = rigid_wheel_on_plane().made();
       if (i == 1) scenario.digest = "other";
       try {
         ranks::run_node(scenario, *transports[i], {});

@@ -6,19 +6,16 @@
 
 #include "nodes/ranks/carried_wrench.hpp"
 #include "rigs/drawbar_rig.hpp"
+#include "rigs/rolling_tire.hpp"
 #include "terrain/rigid/rigid_ground.hpp"
 #include "tests/tire/ancf/small_tire.hpp"
 #include "tire/reach.hpp"
 
 namespace furrow::test {
 
-/// Forces come one step late: above 4e-5 s the ground is softened with the step (terrain/rigid/rigid_ground.hpp).
+/// With friction that sets in at lower sliding speeds than the default one.
 inline terrain::GroundOptions hard_ground(double step) {
-  terrain::GroundOptions options;
-  const double slower = std::max(1.0, step / 4e-5);
-  options.ground_stiffness /= slower * slower;
-  options.ground_shear_stiffness /= slower * slower;
-  options.ground_damping /= slower;
+  terrain::GroundOptions options = rigs::hard_ground(step);
   options.friction_velocity_scale = 200.0;
   return options;
 }

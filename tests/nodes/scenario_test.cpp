@@ -18,49 +18,12 @@ namespace {
 using testing::kSmallest;
 using testing::ScenarioFile;
 
-/// The options as their structs default them; the schema must say the same.
+/// The options as their structs default them; the schema must say the same. Those of rig, tire and run:
+/// scenario_fields_test.cpp.
 TEST(Scenario, defaults_of_the_schema_are_those_of_the_options) {
   const scenario::Scenario s = testing::ScenarioFile(testing::kSmallest).load();
-  const rigs::DrawbarRigOptions rig;
-  EXPECT_EQ(s.rigs[0].mode, rig.mode);
-  EXPECT_EQ(s.rigs[0].slip, rig.slip);
-  EXPECT_EQ(s.rigs[0].angular_speed, rig.angular_speed);
-  EXPECT_EQ(s.rigs[0].speed, rig.speed);
-  EXPECT_EQ(s.rigs[0].ramp, rig.ramp);
-  EXPECT_EQ(s.rigs[0].touchdown_damping, rig.touchdown_damping);
-  EXPECT_EQ(s.rigs[0].touchdown_time, rig.touchdown_time);
-  EXPECT_EQ(s.rigs[0].toe_angle, rig.toe_angle);
-  EXPECT_EQ(s.rigs[0].travel_sign, rig.travel_sign);
-  EXPECT_EQ(s.rigs[0].carrier_mass, rig.carrier_mass);
-  EXPECT_EQ(s.rigs[0].chassis_mass, rig.chassis_mass);
-  EXPECT_EQ(s.rigs[0].set_toe_mass, rig.set_toe_mass);
-  EXPECT_EQ(s.rigs[0].rim_mass, rig.rim_mass);
-  EXPECT_EQ(s.rigs[0].rim_spin_inertia, rig.rim_spin_inertia);
-  EXPECT_EQ(s.rigs[0].rim_diametral_inertia, rig.rim_diametral_inertia);
   EXPECT_EQ(s.terrain_context().step, terrain::TerrainContext().step);
   EXPECT_EQ(s.terrain_context().seed, terrain::TerrainContext().seed);
-  const tire::TireOptions tire;
-  ASSERT_EQ(s.tires.size(), 1U);
-  EXPECT_EQ(s.tires[0].pressure, tire.pressure);
-  EXPECT_EQ(s.tires[0].friction, tire.friction);
-  EXPECT_EQ(s.tires[0].elements_circumference, tire.elements_circumference);
-  EXPECT_EQ(s.tires[0].elements_width, tire.elements_width);
-  EXPECT_EQ(s.tires[0].structural_damping, tire.structural_damping);
-  EXPECT_EQ(s.tires[0].rigid, tire.rigid);
-  EXPECT_EQ(s.tires[0].contact_tangent, tire.contact_tangent);
-  const scenario::RunOptions run;
-  EXPECT_EQ(s.run.step, run.step);
-  EXPECT_EQ(s.run.end, run.end);
-  EXPECT_EQ(s.run.average_from, run.average_from);
-  EXPECT_EQ(s.run.threads, run.threads);
-  EXPECT_EQ(s.run.seed, run.seed);
-  EXPECT_EQ(s.run.peer_timeout, run.peer_timeout);
-  EXPECT_EQ(s.checkpoint.wall_interval, scenario::CheckpointOptions().wall_interval);
-  EXPECT_EQ(s.checkpoint.interval, scenario::CheckpointOptions().interval);
-  EXPECT_EQ(s.checkpoint.keep, scenario::CheckpointOptions().keep);
-  EXPECT_EQ(s.checkpoint.at_end, scenario::CheckpointOptions().at_end);
-  EXPECT_EQ(s.output.series_interval, scenario::OutputOptions().series_interval);
-  EXPECT_EQ(s.output.frame_interval, scenario::OutputOptions().frame_interval);
   EXPECT_FALSE(s.expected.given);
   EXPECT_TRUE(s.warnings.empty());
 }
@@ -75,12 +38,14 @@ TEST(Scenario, a_setting_of_every_kind_arrives) {
                                           {"tire.substeps", "4"},
                                           {"run.threads", "3"},
                                           {"run.seed", "7"}});
-  EXPECT_EQ(s.rigs[0].slip, 0.5);
-  EXPECT_EQ(s.rigs[0].mode, "fixed_speed");
-  EXPECT_TRUE(s.tires[0].rigid);
-  EXPECT_EQ(s.tires[0].elements_width, 12);
+  const rigs::RigDescription rig = scenario::describe_rig(s);
+  EXPECT_EQ(rig.wheels.front().slip, 0.5);
+  EXPECT_EQ(rig.text, "1 drawbar rig, fixed_speed");
+  ASSERT_EQ(s.tires.size(), 1U);
+  EXPECT_TRUE(s.tires[0]->options().rigid);
+  EXPECT_EQ(s.tires[0]->options().elements_width, 12);
   EXPECT_EQ(s.terrain_context().step, 2e-5);
-  EXPECT_EQ(s.tires[0].substep, 1e-5);
+  EXPECT_EQ(s.tire_substeps, 4);
   EXPECT_EQ(s.run.threads, 3);
   EXPECT_EQ(s.terrain_context().seed, 7U);
 }
@@ -118,14 +83,14 @@ TEST(Scenario, axle_starts_clear_of_the_wall_behind_it) {
   const testing::ScenarioFile file(testing::kSmallest);
   const double radius = 0.4673;  // m, of the tire
   const scenario::Scenario forward = file.load(), backward = file.load({{"rig.travel_sign", "-1"}});
-  EXPECT_DOUBLE_EQ(forward.rigs[0].start, radius + scenario::kWallMargin);
-  EXPECT_DOUBLE_EQ(backward.rigs[0].start, 10.0 - radius - scenario::kWallMargin);
-  EXPECT_DOUBLE_EQ(file.load({{"rig.start", "3"}}).rigs[0].start, 3.0);
+  const auto wheel = [](const scenario::Scenario& s) { return scenario::describe_rig(s).wheels.front(); };
+  EXPECT_DOUBLE_EQ(wheel(forward).from, radius + scenario::kWallMargin);
+  EXPECT_DOUBLE_EQ(wheel(backward).from, 10.0 - radius - scenario::kWallMargin);
+  EXPECT_DOUBLE_EQ(wheel(file.load({{"rig.start", "3"}})).from, 3.0);
   // v = ω R (1 − s) over the run, half of it over the ramp.
-  const scenario::AxlePath path = scenario::axle_path(forward, 0, radius);
-  EXPECT_NEAR(path.to - path.from, 8.56 * radius * 0.7 * (1.5 - 0.075), 1e-12);
-  EXPECT_NEAR(scenario::axle_path(backward, 0, radius).to - backward.rigs[0].start, -(path.to - path.from),
-              1e-12);
+  const double travel = wheel(forward).to - wheel(forward).from;
+  EXPECT_NEAR(travel, 8.56 * radius * 0.7 * (1.5 - 0.075), 1e-12);
+  EXPECT_NEAR(wheel(backward).to - wheel(backward).from, -travel, 1e-12);
 }
 
 TEST(Scenario, expected_result_is_void_once_the_physics_is_changed) {
@@ -194,8 +159,8 @@ TEST(Scenario, pressure_is_a_number_or_a_table_in_time_and_part_of_the_digest) {
   const scenario::Scenario constant = file.load({{"tire.pressure", "150e3"}}),
                            table = file.load({{"tire.pressure", "[[0.5, 2e5], [1, 1e5]]"}}),
                            other = file.load({{"tire.pressure", "[[0.5, 2e5], [1.5, 1e5]]"}});
-  EXPECT_EQ(constant.tires[0].pressure, (tire::PressureSchedule{{{0.0, 150e3}}}));
-  EXPECT_EQ(table.tires[0].pressure, (tire::PressureSchedule{{{0.5, 2e5}, {1.0, 1e5}}}));
+  EXPECT_EQ(constant.tires[0]->options().pressure, (tire::PressureSchedule{{{0.0, 150e3}}}));
+  EXPECT_EQ(table.tires[0]->options().pressure, (tire::PressureSchedule{{{0.5, 2e5}, {1.0, 1e5}}}));
   EXPECT_NE(table.digest, other.digest);
   EXPECT_FALSE(scenario::may_change_on_resume("tire.pressure.1.0"));
 }

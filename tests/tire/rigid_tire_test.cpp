@@ -1,5 +1,6 @@
 // The rigid tire against Newton's and Euler's equations.
 #include "tire/rigid/rigid_tire.hpp"
+#include "tire/ancf/shell_spec.hpp"
 #include "tire/read_tire_file.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +12,7 @@ RigidTire make() {
   TireFile file = read_tire_file(TIRE_DATA "/hmmwv_layered.json");
   file.elements_circumference = 24;
   set_elements_width(file, 6);
-  return RigidTire(file);
+  return RigidTire(shell_shape(file));
 }
 
 TEST(RigidTire, free_drop_and_free_spin_ask_nothing_of_the_spindle) {

@@ -10,7 +10,7 @@
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_reader.hpp"
 #include "tire/shell_mesh.hpp"
-#include "tire/tire.hpp"
+#include "tire/tires.hpp"
 
 namespace furrow::tire {
 namespace {

@@ -174,10 +174,24 @@ TireDiagnostics AncfTire::diagnostics() const {
   d.strain_energy =
       integrator_.elastic_energy() - integrator_.shell().pressure() * (volume - undeformed_volume_) + pump_;
   d.dissipation = integrator_.dissipation();
-  d.newton_iterations = integrator_.iterations();
-  d.factorizations = integrator_.factorizations();
-  d.residual = integrator_.residual();
   return d;
+}
+
+NamedValues AncfTire::figures() const {
+  return {{"newton_iterations", static_cast<double>(integrator_.iterations())},
+          {"factorizations", static_cast<double>(integrator_.factorizations())},
+          {"factorizations_whole", integrator_.factor_work()},
+          {"residual", integrator_.residual()}};
+}
+
+NamedValues AncfTire::times() const {
+  const ShellIntegrator::Times t = integrator_.times();
+  return {{"force", t.force}, {"jacobian", t.jacobian}, {"factorize", t.factorize}, {"solve", t.solve}};
+}
+
+void AncfTire::add_state(Hash& hash) const {
+  hash.add(std::span<const double>(integrator_.q()));
+  hash.add(std::span<const double>(integrator_.v()));
 }
 
 void AncfTire::save(Archive& archive) const {

@@ -30,6 +30,9 @@ class AncfTire final : public Tire {
   Wrench spindle_wrench() const override { return spindle_; }
   void acted(NodalForces& forces) const override;
   TireDiagnostics diagnostics() const override;
+  NamedValues figures() const override;
+  NamedValues times() const override;
+  void add_state(Hash& hash) const override;
   void save(Archive& archive) const override;
   void restore(const Archive& archive) override;
 

@@ -12,28 +12,17 @@ namespace {
 const Vec3 kGravity(0.0, 0.0, -kStandardGravity);  // m/s²
 }
 
-RigidTire::RigidTire(const TireFile& file) : material_(file.contact), radius_(file.radius) {
-  const ShellMesh ring = make_shell_mesh(file);
-  surface_mesh_ = make_surface_mesh(ring);
-  mass_ = rigid_mass(ring, element_masses(file, ring));
-  tread_width_ = furrow::tire::tread_width(file, ring);
-  for (int i = 0; i < ring.columns; ++i)
-    for (int j = 0; j < ring.rows; ++j) vertex_.push_back(ring.node_position(i, j));
-  vertex_.push_back(ring.disc_centre(0));
-  vertex_.push_back(ring.disc_centre(1));
-}
-
 void RigidTire::place(const RimState& rim) {
   rim_ = rim;
   spindle_ = {};
 }
 
 void RigidTire::surface(SurfaceState& out) const {
-  out.position.resize(vertex_.size());
-  out.velocity.resize(vertex_.size());
+  out.position.resize(shape_.vertex.size());
+  out.velocity.resize(shape_.vertex.size());
   const Mat3 turn = rim_.orientation.toRotationMatrix();
-  for (std::size_t k = 0; k < vertex_.size(); ++k) {
-    const Vec3 arm = turn * vertex_[k];
+  for (std::size_t k = 0; k < shape_.vertex.size(); ++k) {
+    const Vec3 arm = turn * shape_.vertex[k];
     out.position[k] = rim_.position + arm;
     out.velocity[k] = rim_.velocity + rim_.angular_velocity.cross(arm);
   }
@@ -41,18 +30,18 @@ void RigidTire::surface(SurfaceState& out) const {
 
 Vec3 RigidTire::angular_momentum(const RimState& rim) const {
   const Mat3 turn = rim.orientation.toRotationMatrix();
-  return turn * (mass_.inertia * (turn.transpose() * rim.angular_velocity));
+  return turn * (shape_.mass.inertia * (turn.transpose() * rim.angular_velocity));
 }
 
 Outcome RigidTire::advance(const RimTrajectory& rim, const NodalForces& forces, int) {
   const RimState &start = rim.start(), &end = rim.end();
   const double duration = rim.duration();
-  spindle_.force = mass_.mass * (kGravity - (end.velocity - start.velocity) / duration);
+  spindle_.force = shape_.mass.mass * (kGravity - (end.velocity - start.velocity) / duration);
   spindle_.moment = -(angular_momentum(end) - angular_momentum(start)) / duration;
   const Mat3 mean = 0.5 * (start.orientation.toRotationMatrix() + end.orientation.toRotationMatrix());
   for (std::size_t k = 0; k < forces.vertex.size(); ++k) {
     spindle_.force += forces.force[k];
-    spindle_.moment += (mean * vertex_[forces.vertex[k]]).cross(forces.force[k]);
+    spindle_.moment += (mean * shape_.vertex[forces.vertex[k]]).cross(forces.force[k]);
   }
   rim_ = end;
   return {};
@@ -60,10 +49,16 @@ Outcome RigidTire::advance(const RimTrajectory& rim, const NodalForces& forces, 
 
 TireDiagnostics RigidTire::diagnostics() const {
   TireDiagnostics d;
-  d.momentum = mass_.mass * rim_.velocity;
-  d.kinetic_energy = 0.5 * mass_.mass * rim_.velocity.squaredNorm() +
+  d.momentum = shape_.mass.mass * rim_.velocity;
+  d.kinetic_energy = 0.5 * shape_.mass.mass * rim_.velocity.squaredNorm() +
                      0.5 * rim_.angular_velocity.dot(angular_momentum(rim_));
   return d;
+}
+
+void RigidTire::add_state(Hash& hash) const {
+  for (const Vec3& vector : {rim_.position, rim_.velocity, rim_.angular_velocity})
+    hash.add(vector.data(), 3 * sizeof(double));
+  hash.add(rim_.orientation.coeffs().data(), 4 * sizeof(double));
 }
 
 void RigidTire::save(Archive& archive) const {

@@ -161,7 +161,7 @@ TEST(ShellContact, a_restored_tire_continues_bit_for_bit) {
   }
   EXPECT_EQ(tire.integrator().q(), other.integrator().q());
   EXPECT_EQ(tire.integrator().v(), other.integrator().v());
-  EXPECT_EQ(tire.diagnostics().newton_iterations, other.diagnostics().newton_iterations);
+  EXPECT_EQ(tire.figures().of("newton_iterations"), other.figures().of("newton_iterations"));
 }
 
 }  // namespace

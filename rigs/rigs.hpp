@@ -1,0 +1,42 @@
+// The kinds of rigs by the name that a scenario gives them. A new kind is one entry of the table in rigs.cpp.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "protocol/core/fields.hpp"
+#include "protocol/files/read_context.hpp"
+#include "rigs/rig_spec.hpp"
+
+namespace furrow::rigs {
+
+/// What the section `rig` says whatever the kind: every field is the key `rig.<name>`.
+struct RigOptions {
+  std::string type = "drawbar";
+  int substeps = 1;          // of the rig in one communication step
+  double drop_height = 0.0;  // of all tires above the ground at t = 0, m
+};
+
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<RigOptions> auto& s) {
+  visit(Field{"type", "", role::key}, s.type);
+  visit(Field{"substeps", "", role::key}, s.substeps);
+  visit(Field{"drop_height", "m", role::key}, s.drop_height);
+}
+
+struct RigKind {
+  std::string_view name;  // of the key rig.type
+  /// @pre the section was checked against the schema. @throws Error(bad_input) naming file and key
+  std::unique_ptr<RigSpec> (*read)(const nlohmann::json& section, const ReadContext& context);
+};
+
+std::span<const RigKind> rig_kinds();
+
+/// Reads the section of a scenario that describes its rig. @throws Error(bad_input); an unknown type lists the valid ones
+std::unique_ptr<RigSpec> read_rig(const nlohmann::json& section, const ReadContext& context);
+
+}  // namespace furrow::rigs

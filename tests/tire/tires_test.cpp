@@ -1,0 +1,141 @@
+// The table of tire models: what reads a tire file, and that descriptions are true of the tires that are made.
+#include "tire/tires.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "protocol/core/error.hpp"
+#include "tire/press.hpp"
+
+namespace furrow::tire {
+namespace {
+
+using nlohmann::json;
+
+json file_text(const std::string& name) { return json::parse(std::ifstream(TIRE_DATA "/" + name)); }
+
+class TiresTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() / ("furrow_tires_" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  TireOptions written(const json& file) {
+    TireOptions options;
+    options.file = folder_ / "tire.json";
+    std::ofstream(options.file) << file;
+    options.elements_circumference = 20;
+    options.elements_width = 8;
+    return options;
+  }
+  std::string complaint(const json& file) {
+    const TireOptions options = written(file);
+    try {
+      read_tire(options);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::bad_input);
+      return std::string(error.what()).substr(options.file.string().size() + 2);
+    }
+    return "no error";
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(TiresTest, the_schema_of_tire_files_lists_the_models_that_there_are) {
+  json names = json::array();
+  for (const TireModel& model : tire_models()) names.push_back(std::string(model.name));
+  const json schema = file_text("tire.schema.json");
+  EXPECT_EQ(schema["properties"]["model"]["enum"], names);
+  EXPECT_EQ(schema["properties"]["model"]["default"], names.front());
+}
+
+TEST_F(TiresTest, a_file_without_a_model_is_a_shell) {
+  json file = file_text("hmmwv_layered.json");
+  EXPECT_EQ(read_tire(written(file))->describe().kind, "ancf");
+  file["model"] = "shell";
+  EXPECT_EQ(read_tire(written(file))->describe().kind, "ancf");
+}
+
+TEST_F(TiresTest, an_unknown_model_lists_the_valid_ones) {
+  json file = file_text("hmmwv_layered.json");
+  file["model"] = "brush";
+  EXPECT_EQ(complaint(file), "key 'model': is 'brush', expected one of: shell");
+  file["model"] = "ring";
+  EXPECT_EQ(complaint(file),
+            "key 'model': is 'ring', which is not available in this version, expected one of: shell");
+  file["model"] = 3;
+  EXPECT_EQ(complaint(file).substr(0, 11), "key 'model'");
+}
+
+TEST_F(TiresTest, description_is_that_of_the_made_tire) {
+  for (const bool rigid : {false, true})
+    for (const char* name : {"hmmwv_layered.json", "passenger_205_55r16.json"}) {
+      TireOptions options = written(file_text(name));
+      options.rigid = rigid;
+      const auto spec = read_tire(options);
+      const auto tire = spec->make();
+      const TireDescription d = spec->describe();
+      EXPECT_EQ(d.radius, tire->radius());
+      EXPECT_EQ(d.tread_width, tire->tread_width());
+      EXPECT_EQ(d.coordinates, tire->coordinates());
+      EXPECT_EQ(d.vertices, tire->mesh().vertex_count);
+      EXPECT_EQ(d.facets, 20);
+      EXPECT_EQ(d.mass.mass, tire->mass_properties().mass);
+      EXPECT_EQ(d.mass.inertia, tire->mass_properties().inertia);
+      EXPECT_EQ(d.kind, rigid ? "rigid" : "ancf");
+      EXPECT_EQ(d.takes_tangents, !rigid);
+      EXPECT_EQ(d.memory > 0.0, !rigid);
+      EXPECT_EQ(spec->static_test() != nullptr, !rigid);
+      double reach = 0.0;  // across; the crown's knots lie inside
+      for (const Vec3& vertex : spec->shape().vertex) reach = std::max(reach, 2.0 * std::abs(vertex.y()));
+      EXPECT_LE(reach, d.width + 2e-3);
+      EXPECT_GE(reach, 0.9 * d.width);
+    }
+}
+
+TEST_F(TiresTest, step_advice_is_a_share_of_the_damping_time_and_larger_with_contact_tangents) {
+  TireOptions options = written(file_text("hmmwv_layered.json"));
+  options.structural_damping = 0.01;
+  const TireDescription late = read_tire(options)->describe();
+  options.contact_tangent = true;
+  const TireDescription answering = read_tire(options)->describe();
+  EXPECT_EQ(late.damping_time, 0.01);
+  EXPECT_GT(late.step_share, 0.0);
+  EXPECT_GT(answering.step_share, late.step_share);
+  options.rigid = true;
+  EXPECT_EQ(read_tire(options)->describe().step_share, 0.0);
+}
+
+TEST_F(TiresTest, a_rigid_tire_takes_no_contact_tangents) {
+  const json section = {
+      {"file", TIRE_DATA "/hmmwv_layered.json"}, {"rigid", true}, {"contact_tangent", true}};
+  try {
+    read_tire(section, ReadContext{"test.json", "tires.1"});
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(),
+                 "test.json: key 'tires.1.contact_tangent': is true, expected false for a rigid tire");
+  }
+}
+
+TEST_F(TiresTest, pressure_tables_run_forward_in_time) {
+  const json section = {{"file", TIRE_DATA "/hmmwv_layered.json"},
+                        {"pressure", json::array({{0.5, 2e5}, {0.5, 1e5}})}};
+  try {
+    read_tire(section, ReadContext{"test.json", "tire"});
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(),
+                 "test.json: key 'tire.pressure.1.0': is 0.5 s, expected a time after that of the entry "
+                 "before, 0.5 s");
+  }
+}
+
+}  // namespace
+}  // namespace furrow::tire

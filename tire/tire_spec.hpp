@@ -1,0 +1,106 @@
+// What a scenario says of a tire, read, completed and able to describe and to make its model. The ranks, the checks and the
+// tools know tires by this interface and by Tire alone; tires.cpp lists the models.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "protocol/core/fields.hpp"
+#include "tire/pressure_schedule.hpp"
+#include "tire/tire.hpp"
+
+namespace furrow::tire {
+
+/// What the section `tire` of a scenario says: every field is the key `tire.<name>`, null where it says the default.
+struct TireOptions {
+  std::filesystem::path file;        // resolved
+  PressureSchedule pressure;         // gauge, Pa; empty: the file's, constant
+  double friction = -1.0;            // contact friction; negative: the file's
+  int elements_circumference = 0;    // 0: the file's
+  int elements_width = 0;            // 0: the file's; split over the sections in the file's proportions
+  double structural_damping = -1.0;  // s; negative: the file's
+  bool rigid = false;                // same surface, no deformation
+  bool contact_tangent = false;      // contact forces answer to the tire's motion within the step
+  int substeps = 1;                  // of the tire in one communication step
+};
+
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<TireOptions> auto& s) {
+  using furrow::Field;
+  visit(Field{"file", "", role::key}, s.file);
+  visit(Field{"pressure", "Pa", role::key}, s.pressure);
+  visit(Field{"friction", "-", role::key}, s.friction);
+  visit(Field{"elements_circumference", "", role::key}, s.elements_circumference);
+  visit(Field{"elements_width", "", role::key}, s.elements_width);
+  visit(Field{"structural_damping", "s", role::key}, s.structural_damping);
+  visit(Field{"rigid", "", role::key}, s.rigid);
+  visit(Field{"contact_tangent", "", role::key}, s.contact_tangent);
+  visit(Field{"substeps", "", role::key}, s.substeps);
+}
+
+/// What is known of a tire before its model is made. How far it reaches once inflated only the model can say (reach.hpp).
+struct TireDescription {
+  std::string kind;             // as results name it: "ancf", "rigid"
+  std::string name;             // for people: "layered shell"
+  std::string details;          // for people: mesh, unknowns, pressure
+  double radius = 0.0;          // undeformed, m
+  double width = 0.0;           // overall, m
+  double tread_width = 0.0;     // m
+  int coordinates = 0;          // unknowns
+  int vertices = 0;             // of the contact surface
+  int facets = 0;               // equal pieces around the circumference
+  MassProperties mass;          // undeformed, about the rim's centre
+  double memory = 0.0;          // that the model needs, bytes
+  double saved_bytes = 0.0;     // in a checkpoint
+  bool takes_tangents = false;  // contact forces may answer to its motion
+  /// Contact forces come one step late, which feeds a tire whose own damping is slower: steps of at most
+  /// `step_share` of `damping_time` are good; with a share of 0 any step is.
+  double damping_time = 0.0;  // s
+  double step_share = 0.0;    // -
+  NamedValues model;          // what else there is to know of this model: "layers"
+};
+
+/// The undeformed tire in rim axes, origin at the rim's centre.
+struct TireShape {
+  SurfaceMesh mesh;
+  std::vector<Vec3> vertex;  // m
+  ContactMaterial material;
+  MassProperties mass;
+  double radius = 0.0;       // m
+  double tread_width = 0.0;  // m
+};
+
+/// How a model computes; what is not given is as the model takes it by itself.
+struct TireContext {
+  int threads = 1;
+  std::optional<double> tolerance;  // of the solver's residual, relative
+  std::optional<double> renewal;    // change of shape at which the solver renews its factors
+};
+
+class StaticTest;
+
+class TireSpec {
+ public:
+  explicit TireSpec(TireOptions options) : options_(std::move(options)) {}
+  virtual ~TireSpec() = default;
+
+  const TireOptions& options() const { return options_; }
+  virtual TireDescription describe() const = 0;
+  /// @throws Error(bad_input)
+  virtual std::unique_ptr<Tire> make(const TireContext& context = {}) const = 0;
+  /// What it looks like when nothing deforms it; tire.rigid holds any model so.
+  virtual TireShape shape() const = 0;
+  /// Keys of the tire's file whose values look like another unit, and what is odd about them.
+  virtual std::vector<std::pair<std::string, std::string>> unlikely_values() const { return {}; }
+  /// Static pressing on an obstacle (press.hpp); null where the model has none.
+  virtual std::unique_ptr<StaticTest> static_test() const;
+
+ private:
+  TireOptions options_;
+};
+
+}  // namespace furrow::tire

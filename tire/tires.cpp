@@ -1,0 +1,82 @@
+#include "tire/tires.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "protocol/core/error.hpp"
+#include "protocol/files/data_files.hpp"
+#include "protocol/files/json_fields.hpp"
+#include "protocol/files/json_reader.hpp"
+#include "protocol/files/json_text.hpp"
+#include "tire/ancf/shell_spec.hpp"
+#include "tire/rigid/rigid_spec.hpp"
+
+namespace furrow::tire {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::array<TireModel, 1> kModels{{{"shell", read_shell}}};
+// Names that tire files may come to use.
+constexpr std::array<std::string_view, 3> kLater{"ring", "planar", "wheel"};
+
+const TireModel& model_of(const json& document, const std::string& file) {
+  JsonReader reader(document, file);
+  if (!reader.has("model")) return kModels.front();
+  const std::string name = reader.text("model");
+  std::vector<std::string_view> valid;
+  for (const TireModel& model : kModels) {
+    if (model.name == name) return model;
+    valid.push_back(model.name);
+  }
+  const bool later = std::find(kLater.begin(), kLater.end(), name) != kLater.end();
+  reader.fail("model",
+              fmt::format("is '{}', {}expected one of: {}", name,
+                          later ? "which is not available in this version, " : "", fmt::join(valid, ", ")));
+}
+
+/// What a schema cannot say of a schedule.
+void check(const PressureSchedule& schedule, const std::string& key, const std::string& file) {
+  for (std::size_t k = 0; k < schedule.knots.size(); ++k) {
+    const PressureSchedule::Knot& knot = schedule.knots[k];
+    const std::string here = fmt::format("{}.{}", key, k);
+    if (knot.pressure < 0.0)
+      throw input_error(file, here + ".1",
+                        fmt::format("is {} Pa, expected 0 or more", number_text(knot.pressure)));
+    if (k > 0 && !(knot.time > schedule.knots[k - 1].time))
+      throw input_error(file, here + ".0",
+                        fmt::format("is {} s, expected a time after that of the entry before, {} s",
+                                    number_text(knot.time), number_text(schedule.knots[k - 1].time)));
+  }
+}
+
+}  // namespace
+
+std::span<const TireModel> tire_models() { return kModels; }
+
+std::unique_ptr<TireSpec> read_tire(const TireOptions& options) {
+  const json document = load_json(options.file);
+  std::unique_ptr<TireSpec> spec = model_of(document, options.file.string()).read(document, options);
+  return options.rigid ? make_rigid(std::move(spec)) : std::move(spec);
+}
+
+std::shared_ptr<const TireSpec> read_tire(const json& section, const ReadContext& context) {
+  TireOptions options;
+  read_fields(section, options);
+  options.file = find_file(options.file.string(), context.key("file"), context.file);
+  check(options.pressure, context.key("pressure"), context.file);
+  std::shared_ptr<const TireSpec> spec = read_tire(options);
+  if (options.contact_tangent && options.rigid)
+    throw input_error(context.file, context.key("contact_tangent"),
+                      "is true, expected false for a rigid tire");
+  return spec;
+}
+
+std::unique_ptr<Tire> make_tire(const TireOptions& options) { return read_tire(options)->make(); }
+
+}  // namespace furrow::tire

@@ -1,0 +1,34 @@
+// The tire models by the name that a tire file gives them. A new model is one entry of the table in tires.cpp.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "protocol/files/read_context.hpp"
+#include "tire/tire_spec.hpp"
+
+namespace furrow::tire {
+
+struct TireModel {
+  std::string_view name;  // of the key `model` in tire files
+  /// Of a tire file and what the scenario changes of it. @throws Error(bad_input) naming file and key
+  std::unique_ptr<TireSpec> (*read)(const nlohmann::json& file, const TireOptions& options);
+};
+
+/// The first is that of files without the key `model`.
+std::span<const TireModel> tire_models();
+
+/// Reads the section of a scenario that describes a tire, and the tire's file.
+/// @pre the section was checked against the schema. @throws Error(bad_input) naming file and key
+std::shared_ptr<const TireSpec> read_tire(const nlohmann::json& section, const ReadContext& context);
+
+/// The same for options that were read already. @throws Error(bad_input); an unknown model lists the valid ones
+std::unique_ptr<TireSpec> read_tire(const TireOptions& options);
+
+/// The model of a tire's file. @throws Error(bad_input)
+std::unique_ptr<Tire> make_tire(const TireOptions& options);
+
+}  // namespace furrow::tire

@@ -36,7 +36,7 @@ terrain::TerrainContext Scenario::terrain_context() const {
   context.step = terrain_step();
   context.seed = run.seed;
   context.threads = context.settle_threads = settle_threads;
-  for (const tire::TireOptions& tire : tires) context.contact_tangents |= tire.contact_tangent;
+  for (const auto& tire : tires) context.contact_tangents |= tire->options().contact_tangent;
   return context;
 }
 

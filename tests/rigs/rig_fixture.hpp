@@ -3,6 +3,8 @@
 
 #include <array>
 #include <memory>
+#include <string_view>
+#include <vector>
 
 #include "rigs/drawbar_rig.hpp"
 
@@ -34,6 +36,14 @@ inline double carried_mass(const rigs::DrawbarRigOptions& options) {
 
 inline void advance(rigs::Rig& rig, const Wrench& wrench, int count, double step = kStep, int substeps = 1) {
   for (int i = 0; i < count; ++i) rig.advance({&wrench, 1}, step, substeps);
+}
+
+/// What the rig measures of wheel 0 beside its report, by the name of its column.
+inline double measured(const rigs::Rig& rig, std::string_view column) {
+  const rigs::Subject wheel = rig.subjects().front();
+  std::vector<double> values(wheel.columns.size());
+  rig.measure(0, values);
+  return LineView{wheel.columns, values}[column];
 }
 
 inline Wrench wrench(const Vec3& force, const Vec3& moment = Vec3::Zero()) { return {force, moment}; }

@@ -9,6 +9,7 @@
 
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
+#include "protocol/core/constants.hpp"
 #include "protocol/core/error.hpp"
 #include "vehicle/multibody/system.hpp"
 
@@ -54,6 +55,28 @@ void validate(const DrawbarRigOptions& o) {
   positive(o.rim_diametral_inertia, "rim_diametral_inertia");
 }
 
+/// What the rig measures with its longitudinal drive and its damper: columns of the wheel's table.
+struct DrawbarRow {
+  double pull = 0.0;  // raw + m·a of everything the drive carries, N, positive when the tire pulls the rig
+  double pull_raw = 0.0;             // reaction of the longitudinal drive, N
+  double damper_force = 0.0;         // touch-down damper on the slider, N
+  double pull_work = 0.0;            // ∫ raw pull · v dt, J
+  double damper_dissipation = 0.0;   // touch-down damper, J
+  double tractive_efficiency = 0.0;  // pull power / spindle power; 0 where the spindle gives none
+  double motion_resistance = 0.0;    // (torque / undeformed radius − pull) / load
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<DrawbarRow> auto& r) {
+  using namespace column;
+  visit(mean("drawbar_pull_N", "N").following("slip"), r.pull);
+  visit(mean("drawbar_pull_raw_N", "N").following("energy_error_J"), r.pull_raw);
+  visit(mean("damper_force_N", "N").following("tire_momentum_travel_kg_m_per_s"), r.damper_force);
+  visit(cumulative("pull_work_J", "J").following("spindle_work_J"), r.pull_work);
+  visit(cumulative("damper_dissipation_J", "J").following("tire_dissipation_J"), r.damper_dissipation);
+  visit(derived("tractive_efficiency"), r.tractive_efficiency);
+  visit(derived("motion_resistance_coefficient"), r.motion_resistance);
+}
+
 class DrawbarRig final : public Rig {
  public:
   explicit DrawbarRig(const DrawbarRigOptions& options) : options_(options) {
@@ -64,13 +87,19 @@ class DrawbarRig final : public Rig {
 
   std::string kind() const override { return "drawbar"; }
   int wheel_count() const override { return 1; }
-  Vec3 travel_direction() const override { return forward_; }
+  Vec3 heading(int wheel) const override {
+    check_wheel(wheel);
+    return forward_;
+  }
 
   void add_tire_mass(int wheel, const MassProperties& tire, double tire_radius) override;
   void place(std::span<const double> axle_height) override;
   RimState rim(int wheel) const override;
   Outcome advance(std::span<const Wrench> wrenches, double duration, int substeps) override;
   WheelReport report(int wheel) const override;
+  std::vector<Subject> subjects() const override { return {{"wheel0", columns_of<DrawbarRow>()}}; }
+  void measure(int /*subject*/, std::span<double> values) const override { get_values(row_, values); }
+  void derive(int subject, const LineView& line, std::span<double> values) const override;
   void save(Archive& archive) const override;
   void restore(const Archive& archive) override;
 
@@ -100,6 +129,7 @@ class DrawbarRig final : public Rig {
   int drive_ = 0, spindle_motor_ = 0;                       // motors
   int damper_ = 0;                                          // force element
   WheelReport report_;
+  DrawbarRow row_;
 };
 
 void DrawbarRig::check_wheel(int wheel) const {
@@ -201,6 +231,7 @@ void DrawbarRig::place(std::span<const double> axle_height) {
   build(axle_height[0]);
   system_->assemble(0.0);
   report_ = {};
+  row_ = {};
   report_.speed = vehicle::ramped_motion(0.0, travel_speed_, options_.ramp).rate;
   report_.spin = vehicle::ramped_motion(0.0, spin_speed_, options_.ramp).rate;
   report_.slip = report_.spin == 0.0 ? 0.0 : 1.0 - report_.speed / (report_.spin * radius_);
@@ -242,10 +273,10 @@ Outcome DrawbarRig::advance(std::span<const Wrench> wrenches, double duration, i
   report_.spin = turn / duration;
   // The drive pushes the rig along e with F_d, so that m a = F_d + F_tire: raw = −F_d, corrected = −F_d + m
   // a.
-  report_.drawbar_pull_raw = -drive / substeps;
-  report_.drawbar_pull = report_.drawbar_pull_raw + (forward_momentum() - momentum) / duration;
+  row_.pull_raw = -drive / substeps;
+  row_.pull = row_.pull_raw + (forward_momentum() - momentum) / duration;
   report_.drive_torque = options_.travel_sign * torque / substeps;
-  report_.damper_force = damper / substeps;
+  row_.damper_force = damper / substeps;
   report_.lateral_force = wrench.force.dot(left_);
   report_.aligning_moment = wrench.moment.z();
   const double rolled = report_.spin * radius_, slid = rolled - report_.speed;
@@ -254,6 +285,8 @@ Outcome DrawbarRig::advance(std::span<const Wrench> wrenches, double duration, i
   else
     report_.slip = (slid > 0.0) == (rolled > 0.0) ? kSlipLimit : -kSlipLimit;
   measure_end();
+  row_.pull_work += duration * row_.pull_raw * report_.speed;
+  row_.damper_dissipation += duration * std::abs(row_.damper_force * report_.vertical_speed);
   return {};
 }
 
@@ -274,11 +307,21 @@ WheelReport DrawbarRig::report(int wheel) const {
   return report_;
 }
 
+void DrawbarRig::derive(int /*subject*/, const LineView& line, std::span<double> values) const {
+  const auto ratio = [](double a, double b) { return b != 0.0 ? a / b : 0.0; };
+  const double pull = line["drawbar_pull_N"], torque = line["spindle_torque_Nm"];
+  DrawbarRow row;
+  row.tractive_efficiency = ratio(pull * line["speed_m_per_s"], torque * line["spin_rad_per_s"]);
+  row.motion_resistance = ratio(torque / radius_ - pull, report_.carried_mass * kStandardGravity);
+  get_values(row, values);
+}
+
 void DrawbarRig::save(Archive& archive) const {
   check_built();
   const Archive::Scope scope(archive, "rig/");
   system_->save(archive);
   save_fields(archive, "report", report_);
+  save_fields(archive, "drawbar", row_);
   archive.put("mass", system_->body(rim_).mass);
   archive.put("radius", radius_);
   archive.put("placed_height", placed_height_);
@@ -291,6 +334,7 @@ void DrawbarRig::restore(const Archive& archive) {
     throw Error(ExitCode::io, "saved rig state belongs to another tire (mass or radius differ)");
   system_->restore(archive);
   restore_fields(archive, "report", report_);
+  restore_fields(archive, "drawbar", row_);
   measure_end();
 }
 

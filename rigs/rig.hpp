@@ -7,40 +7,35 @@
 #include <vector>
 
 #include "protocol/core/archive.hpp"
+#include "protocol/core/column.hpp"
 #include "protocol/core/fields.hpp"
 #include "protocol/core/outcome.hpp"
 #include "protocol/core/surface.hpp"
 
 namespace furrow::rigs {
 
-/// What a rig measures of wheel k over the last advance. Forces, torques, speed, spin and slip are means over
-/// it; positions, vertical speed and momentum, and drift are those of its end. Frame of travel: e forward, l
+/// What every rig measures of wheel k over the last advance. Forces, torques, speed, spin and slip are means over
+/// it; positions, vertical speed and momentum, and drift are those of its end. Frame of the heading: e forward, l
 /// = z × e (left when looking along e), z up.
 struct WheelReport {
-  double slip = 0.0;   // 1 − v/(ω r), r the undeformed radius; at most ±1e6, 0 at rest
-  double speed = 0.0;  // carriage speed along the travel direction, m/s
-  double spin = 0.0;   // of the rim about its axle, rad/s, forward positive
-  double drawbar_pull_raw =
-      0.0;                     // reaction of the longitudinal drive, N, positive when the tire pulls the rig
-  double drawbar_pull = 0.0;   // raw + m·a of everything the drive carries, N
-  double drive_torque = 0.0;   // of the spindle motor about the axle, N m, positive when it drives forward
-  double lateral_force = 0.0;  // on the rim by the tire, along l, N
-  double aligning_moment = 0.0;    // on the rim by the tire, about z, N m
-  double axle_height = 0.0;        // z of the rim centre, m
-  double axle_position = 0.0;      // along travel, m
-  double vertical_speed = 0.0;     // of the wheel carrier, m/s
+  double slip = 0.0;             // 1 − v/(ω r), r the undeformed radius; at most ±1e6, 0 at rest
+  double speed = 0.0;            // of the wheel's carrier along the heading, m/s
+  double spin = 0.0;             // of the rim about its axle, rad/s, forward positive
+  double drive_torque = 0.0;     // of the spindle motor about the axle, N m, positive when it drives forward
+  double lateral_force = 0.0;    // on the rim by the tire, along l, N
+  double aligning_moment = 0.0;  // on the rim by the tire, about z, N m
+  double axle_height = 0.0;      // z of the rim centre, m
+  double axle_position = 0.0;    // along the heading, m
+  double vertical_speed = 0.0;   // of the wheel carrier, m/s
   double vertical_momentum = 0.0;  // of all mass that the wheel carries (carrier, rim, added tire), kg m/s
   double carried_mass = 0.0;       // kg, including the tire's added mass
   double joint_drift = 0.0;        // largest constraint violation, m or rad
-  double damper_force = 0.0;       // touch-down damper on the slider, N
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<WheelReport> auto& s) {
   visit(Field{"slip"}, s.slip);
   visit(Field{"speed", "m/s"}, s.speed);
   visit(Field{"spin", "rad/s"}, s.spin);
-  visit(Field{"drawbar_pull_raw", "N"}, s.drawbar_pull_raw);
-  visit(Field{"drawbar_pull", "N"}, s.drawbar_pull);
   visit(Field{"drive_torque", "N m"}, s.drive_torque);
   visit(Field{"lateral_force", "N"}, s.lateral_force);
   visit(Field{"aligning_moment", "N m"}, s.aligning_moment);
@@ -50,7 +45,19 @@ void visit_fields(Visit&& visit, FieldsOf<WheelReport> auto& s) {
   visit(Field{"vertical_momentum", "kg m/s"}, s.vertical_momentum);
   visit(Field{"carried_mass", "kg"}, s.carried_mass);
   visit(Field{"joint_drift", "m or rad"}, s.joint_drift);
-  visit(Field{"damper_force", "N"}, s.damper_force);
+}
+
+/// Something that a rig measures and that has a table of results: a wheel, a body, the vehicle.
+struct Subject {
+  std::string name;             // of its table: "wheel0", "vehicle"
+  std::vector<Column> columns;  // the rig's own; a wheel's table has them beside the columns of every wheel
+};
+
+/// Wheels without columns of the rig's own.
+inline std::vector<Subject> plain_wheels(int count) {
+  std::vector<Subject> wheels;
+  for (int k = 0; k < count; ++k) wheels.push_back({"wheel" + std::to_string(k), {}});
+  return wheels;
 }
 
 class Rig {
@@ -59,7 +66,6 @@ class Rig {
 
   virtual std::string kind() const = 0;  // "drawbar", …
   virtual int wheel_count() const = 0;
-  virtual Vec3 travel_direction() const = 0;  // unit, W
 
   /// Adds the tire's rigid-body mass properties to the rim of wheel k. Before place().
   virtual void add_tire_mass(int wheel, const MassProperties& tire, double tire_radius) = 0;
@@ -76,6 +82,16 @@ class Rig {
   virtual Outcome advance(std::span<const Wrench> wrenches, double duration, int substeps) = 0;
 
   virtual WheelReport report(int wheel) const = 0;
+
+  /// Where wheel k travels now: unit, W. It is the direction of its slip, pull and position.
+  virtual Vec3 heading(int wheel) const = 0;
+
+  /// The wheels in their order, then what else has a table; always the same. Subject k below is the k-th of them.
+  virtual std::vector<Subject> subjects() const { return plain_wheels(wheel_count()); }
+  /// Sets the values of subject k's columns as of the last advance; those of kind `derived` are not asked for.
+  virtual void measure(int /*subject*/, std::span<double> /*values*/) const {}
+  /// Sets those of kind `derived` for a line whose other columns are given.
+  virtual void derive(int /*subject*/, const LineView& /*line*/, std::span<double> /*values*/) const {}
 
   virtual void save(Archive& archive) const = 0;
   virtual void restore(const Archive& archive) = 0;

@@ -14,11 +14,37 @@ class RigRow final : public Rig {
     if (rigs_.empty()) throw physics_error("a row of rigs needs at least one rig");
     for (std::size_t i = 0; i < rigs_.size(); ++i)
       for (int wheel = 0; wheel < rigs_[i]->wheel_count(); ++wheel) wheels_.emplace_back(i, wheel);
+    subjects_ = wheels_;
+    for (std::size_t i = 0; i < rigs_.size(); ++i)
+      for (int k = rigs_[i]->wheel_count(); k < static_cast<int>(rigs_[i]->subjects().size()); ++k)
+        subjects_.emplace_back(i, k);
   }
 
   std::string kind() const override { return rigs_.front()->kind() + " row"; }
   int wheel_count() const override { return static_cast<int>(wheels_.size()); }
-  Vec3 travel_direction() const override { return rigs_.front()->travel_direction(); }
+  Vec3 heading(int wheel) const override { return rig_of(wheel).heading(wheels_[wheel].second); }
+
+  /// Wheels are numbered through; other subjects have their rig's number behind their name.
+  std::vector<Subject> subjects() const override {
+    std::vector<Subject> all = plain_wheels(wheel_count());
+    for (std::size_t k = 0; k < subjects_.size(); ++k) {
+      const auto& [rig, inner] = subjects_[k];
+      Subject subject = rigs_[rig]->subjects().at(inner);
+      if (k < wheels_.size())
+        all[k].columns = std::move(subject.columns);
+      else
+        all.push_back({subject.name + std::to_string(rig), std::move(subject.columns)});
+    }
+    return all;
+  }
+  void measure(int subject, std::span<double> values) const override {
+    const auto& [rig, inner] = subjects_.at(subject);
+    rigs_[rig]->measure(inner, values);
+  }
+  void derive(int subject, const LineView& line, std::span<double> values) const override {
+    const auto& [rig, inner] = subjects_.at(subject);
+    rigs_[rig]->derive(inner, line, values);
+  }
 
   void add_tire_mass(int wheel, const MassProperties& tire, double tire_radius) override {
     rig_of(wheel).add_tire_mass(wheels_[wheel].second, tire, tire_radius);
@@ -67,7 +93,8 @@ class RigRow final : public Rig {
   }
 
   std::vector<std::unique_ptr<Rig>> rigs_;
-  std::vector<std::pair<std::size_t, int>> wheels_;  // rig, and wheel within it
+  std::vector<std::pair<std::size_t, int>> wheels_;    // rig, and wheel within it
+  std::vector<std::pair<std::size_t, int>> subjects_;  // rig, and subject within it
 };
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 namespace furrow::rigs {
 
-/// Wheels are numbered through the rigs in order; all travel in the first rig's direction.
+/// Wheels are numbered through the rigs in order; each has its own rig's heading.
 /// @throws Error(physics) when `rigs` is empty
 std::unique_ptr<Rig> make_rig_row(std::vector<std::unique_ptr<Rig>> rigs);
 

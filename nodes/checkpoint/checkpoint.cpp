@@ -52,7 +52,10 @@ Json to_json(const CheckpointManifest& m) {
   for (const CheckpointPart& part : m.parts)
     json["parts"].push_back({{"file", part.file}, {"checksum", part.checksum}});
   for (const SeriesMark& mark : m.series)
-    json["series"].push_back({{"bytes", mark.bytes}, {"lines", mark.lines}, {"checksum", mark.checksum}});
+    json["series"].push_back({{"subject", mark.subject},
+                              {"bytes", mark.bytes},
+                              {"lines", mark.lines},
+                              {"checksum", mark.checksum}});
   json["frames"] = {
       {"every", m.frames.every}, {"first_step", m.frames.first_step}, {"first_index", m.frames.first_index}};
   json["segments"] = segments_json(m.segments);
@@ -77,7 +80,7 @@ CheckpointManifest from_json(const Json& json) {
         {m.step, part.at("file").get<std::string>(), part.at("checksum").get<std::string>(), ""});
   for (const Json& mark : json.at("series"))
     m.series.push_back({mark.at("bytes").get<std::int64_t>(), mark.at("lines").get<std::int64_t>(),
-                        mark.at("checksum").get<std::string>()});
+                        mark.at("checksum").get<std::string>(), mark.at("subject").get<std::string>()});
   const Json& frames = json.at("frames");
   m.frames = {frames.at("every").get<std::int64_t>(), frames.at("first_step").get<std::int64_t>(),
               frames.at("first_index").get<std::int64_t>()};

@@ -28,7 +28,7 @@ struct CheckpointManifest {
   std::int64_t step = 0;
   double time = 0.0;                  // s
   std::vector<CheckpointPart> parts;  // rig, tires, terrain
-  std::vector<SeriesMark> series;     // per wheel
+  std::vector<SeriesMark> series;     // per table of results
   FrameClock frames;
   std::vector<Segment> segments;  // the last one ends here
   std::int64_t bytes = 0;         // of the parts on disk

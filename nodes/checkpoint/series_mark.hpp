@@ -1,4 +1,4 @@
-// Where a series file stood when a checkpoint was made.
+// Where the file of a table of results stood when a checkpoint was made.
 #pragma once
 
 #include <cstdint>
@@ -6,10 +6,10 @@
 
 namespace furrow::checkpoint {
 
-/// Where a series stood when a checkpoint was made.
 struct SeriesMark {
   std::int64_t bytes = 0, lines = 0;  // lines of values
   std::string checksum;               // of those bytes
+  std::string subject;                // whose table it is: "wheel0", "vehicle"
 };
 
 }  // namespace furrow::checkpoint

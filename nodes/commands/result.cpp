@@ -66,11 +66,12 @@ std::string ranks_line(const json& summary) {
 std::string result_text(const std::filesystem::path& run, const scenario::Scenario& scenario) {
   const json summary = read_summary(run / "summary.json");
   std::string text;
-  for (std::size_t k = 0; k < scenario.tires.size(); ++k) {
-    const json wheel = k == 0 ? summary : read_summary(run / fmt::format("summary_wheel{}.json", k));
+  const json wheels = summary.value("wheels", json::array());
+  for (std::size_t k = 0; k < wheels.size(); ++k) {
+    const json& wheel = wheels[k];
     const auto millimetres = [&](const char* key) { return 1e3 * number(wheel, key); };
-    if (scenario.tires.size() > 1) text += fmt::format("furrow: wheel {}\n", k);
-    text += pull_line(wheel, scenario);
+    if (wheels.size() > 1) text += fmt::format("furrow: wheel {}\n", k);
+    if (wheel.contains("drawbar_pull_N")) text += pull_line(wheel, scenario);
     text += fmt::format("furrow: sinkage {:.1f} mm", millimetres("sinkage_m"));
     if (std::isfinite(millimetres("rut_width_m")))
       text += fmt::format(", rut {:.1f} mm deep, {:.0f} mm wide", millimetres("rut_depth_m"),

@@ -44,8 +44,9 @@ std::string progress_text(const Progress& p) {
         p.eta >= 0.0 && p.share >= kShareForGuess ? fmt::format("   {} left", duration_text(p.eta)) : "";
     return fmt::format("{} {:.0f} %{}", p.phase, 100.0 * p.share, left);
   }
-  std::string text = fmt::format("t {:.3f} of {:g} s   pull {:.0f} N   sinkage {:.1f} mm   {:.2f} m/s",
-                                 p.time, p.end, p.pull, 1e3 * p.sinkage, p.speed);
+  std::string text = fmt::format("t {:.3f} of {:g} s", p.time, p.end);
+  if (!std::isnan(p.pull)) text += fmt::format("   pull {:.0f} N", p.pull);
+  text += fmt::format("   sinkage {:.1f} mm   {:.2f} m/s", 1e3 * p.sinkage, p.speed);
   if (p.eta >= 0.0 && p.share >= kShareForGuess) text += fmt::format("   {} left", duration_text(p.eta));
   return text;
 }

@@ -12,8 +12,11 @@
 namespace furrow::output {
 namespace {
 
-std::string numbered(const std::string& stem, std::size_t wheel, const std::string& extension) {
-  return wheel == 0 ? stem + extension : fmt::format("{}_wheel{}{}", stem, wheel, extension);
+/// @throws Error(io) when the checkpoint knows no such table
+const checkpoint::SeriesMark& mark_of(const checkpoint::ResumePoint& resume, const std::string& subject) {
+  for (const checkpoint::SeriesMark& mark : resume.manifest.series)
+    if (mark.subject == subject) return mark;
+  throw io_error(resume.folder.string(), "knows no table of '" + subject + "'");
 }
 
 void put_heights(Hdf5Writer& file, const std::string& name, const HeightField& field) {
@@ -24,29 +27,37 @@ void put_heights(Hdf5Writer& file, const std::string& name, const HeightField& f
 
 }  // namespace
 
+std::string table_file(const std::string& subject, int wheels) {
+  return wheels == 1 && subject == "wheel0" ? "timeseries.csv" : "timeseries_" + subject + ".csv";
+}
+
 Results::Results(const scenario::Scenario& scenario, std::vector<NodeCard> cards, const TerrainSetup& setup,
-                 const std::filesystem::path& directory, const checkpoint::ResumePoint* resume)
-    : scenario_(scenario), cards_(std::move(cards)), setup_(setup), directory_(directory), resume_(resume) {
-  const std::size_t wheels = scenario_.tires.size();
-  rows_.resize(wheels);
+                 const std::filesystem::path& directory, std::vector<Table> tables,
+                 const checkpoint::ResumePoint* resume)
+    : scenario_(scenario),
+      cards_(std::move(cards)),
+      setup_(setup),
+      directory_(directory),
+      resume_(resume),
+      tables_(std::move(tables)) {
   if (resume) {
     continue_from(*resume);
     return;
   }
   write_whole_file(directory_ / "scenario.json", scenario_.completed + "\n");
-  for (std::size_t k = 0; k < wheels; ++k)
-    writers_.push_back(std::make_unique<SeriesWriter>(directory_ / numbered("timeseries", k, ".csv")));
+  for (const Table& table : tables_) writers_.push_back(std::make_unique<TableWriter>(file_of(table), table));
+}
+
+std::filesystem::path Results::file_of(const Table& table) const {
+  return directory_ / table_file(table.subject, cards_.front().wheel_count);
 }
 
 void Results::continue_from(const checkpoint::ResumePoint& resume) {
   const checkpoint::CheckpointManifest& manifest = resume.manifest;
-  for (std::size_t k = 0; k < rows_.size(); ++k)
-    writers_.push_back(std::make_unique<SeriesWriter>(directory_ / numbered("timeseries", k, ".csv"),
-                                                      manifest.series.at(k), rows_[k]));
+  for (Table& table : tables_)
+    writers_.push_back(std::make_unique<TableWriter>(file_of(table), mark_of(resume, table.subject), table));
   std::error_code ignored;
-  for (std::size_t k = 0; k < rows_.size(); ++k)
-    std::filesystem::remove(directory_ / numbered("summary", k, ".json"), ignored);
-  std::filesystem::remove(directory_ / "results.h5", ignored);
+  for (const char* name : {"summary.json", "results.h5"}) std::filesystem::remove(directory_ / name, ignored);
   remove_frames_from(directory_, manifest.frames.index(manifest.step));
   checkpoint::remove_checkpoints_after(directory_, manifest.step);
   write_xdmf_index(directory_);
@@ -59,45 +70,42 @@ std::vector<checkpoint::SeriesMark> Results::mark_series() {
   return marks;
 }
 
-void Results::add(int wheel, const SeriesRow& row) {
-  rows_[wheel].push_back(row);
-  writers_[wheel]->add(row);
+void Results::add(int table, std::span<const double> line) {
+  tables_[table].values.insert(tables_[table].values.end(), line.begin(), line.end());
+  writers_[table]->add(line);
 }
 
 void Results::write_hdf5(std::span<const FinalReport> reports) const {
-  // series/wheel<k>/<column>: as timeseries.csv, same names. terrain/height_before, height_after: (nx, ny) m, NaN where
+  // series/<subject>/<column>: as the subject's CSV file, same names. terrain/height_before, height_after: (nx, ny) m, NaN where
   // no grain is; terrain/height_*_grid: x and y of the first cell's centre and the cell's size, m.
   Hdf5Writer file(directory_ / "results.h5");
   file.attribute("scenario", scenario_.name);
   file.attribute("scenario_digest", scenario_.digest);
-  for (std::size_t k = 0; k < rows_.size(); ++k) {
-    std::vector<double> values(rows_[k].size());
-    for (const SeriesColumn& column : series_columns()) {
-      for (std::size_t i = 0; i < values.size(); ++i) values[i] = column.value(rows_[k][i]);
-      file.put(fmt::format("series/wheel{}/{}", k, column.name), values, {values.size()});
-    }
-  }
+  for (const Table& table : tables_)
+    for (const Column& column : table.columns)
+      file.put(fmt::format("series/{}/{}", table.subject, column.name), table.column(column.name),
+               {table.lines()});
   put_heights(file, "terrain/height_before", reports.back().height_before);
   put_heights(file, "terrain/height_after", reports.back().height_after);
   file.finish();
 }
 
-void Results::finish(std::span<const FinalReport> reports, std::span<const SeriesBuilder> builders,
-                     std::span<const SpindleReport> tires, std::span<const double> carried_mass, double wall,
+void Results::finish(std::span<const FinalReport> reports, std::span<const WheelEnd> wheels, double wall,
                      bool stopped) {
   for (auto& writer : writers_) writer->flush();
   write_hdf5(reports);
   write_xdmf_index(directory_);
   if (stopped) return;
   const auto steps =
-      static_cast<std::int64_t>(std::llround(builders.front().now().time / scenario_.run.step));
-  const std::vector<checkpoint::Segment> segments =
-      checkpoint::segments_until(steps, wall, reports.back().threads, resume_);
-  for (std::size_t k = builders.size(); k-- > 0;) {
-    const SummaryInput input{scenario_,   cards_,   setup_,          reports,  rows_[k],
-                             builders[k], tires[k], carried_mass[k], segments, static_cast<int>(k)};
-    write_whole_file(directory_ / numbered("summary", k, ".json"), summary_text(input));
-  }
+      static_cast<std::int64_t>(std::llround(wheels.front().series.now().time / scenario_.run.step));
+  const SummaryInput input{scenario_,
+                           cards_,
+                           setup_,
+                           reports,
+                           tables_,
+                           wheels,
+                           checkpoint::segments_until(steps, wall, reports.back().threads, resume_)};
+  write_whole_file(directory_ / "summary.json", summary_text(input));
 }
 
 }  // namespace furrow::output

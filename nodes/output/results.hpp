@@ -1,54 +1,68 @@
-// What a run leaves behind, written by the rig's rank: timeseries.csv, results.h5, results.xdmf, summary.json.
+// What a run leaves behind, written by the rig's rank: the tables of results as CSV and in results.h5, results.xdmf,
+// summary.json.
 #pragma once
 
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "nodes/checkpoint/checkpoint.hpp"
-#include "nodes/output/series.hpp"
 #include "nodes/output/series_builder.hpp"
+#include "nodes/output/table.hpp"
 #include "nodes/scenario/scenario.hpp"
 #include "protocol/messages.hpp"
 
 namespace furrow::output {
 
-/// Everything the summary of one wheel is computed from.
+/// What is known of a wheel at the end of a run.
+struct WheelEnd {
+  const SeriesBuilder& series;   // totals
+  const SpindleReport& tire;     // the last one
+  double carried_mass = 0.0;     // kg
+  Vec3 heading = Vec3::UnitX();  // unit, W
+};
+
+/// Everything the summary is computed from.
 struct SummaryInput {
   const scenario::Scenario& scenario;
   std::span<const NodeCard> cards;  // rig, tires, terrain
   const TerrainSetup& setup;
   std::span<const FinalReport> reports;  // as cards
-  std::span<const SeriesRow> rows;
-  const SeriesBuilder& builder;  // totals at the end
-  const SpindleReport& tire;     // the last one
-  double carried_mass = 0.0;     // kg
+  std::span<const Table> tables;         // those of the wheels come first
+  std::span<const WheelEnd> wheels;
   std::vector<checkpoint::Segment> segments;
-  int wheel = 0;
 };
 
-/// summary.json's text. Values that could not be measured are null.
+/// summary.json's text: what holds for the run, and `wheels`, one entry per wheel. Where there is one wheel, its keys stand
+/// beside those of the run as well. Values that could not be measured are null.
 std::string summary_text(const SummaryInput& input);
+
+/// "timeseries.csv" for the only wheel of a run, "timeseries_<subject>.csv" for any other table.
+std::string table_file(const std::string& subject, int wheels);
 
 class Results {
  public:
-  /// Opens the series files of all wheels in the existing run directory; writes scenario.json. Where a run goes on, what
-  /// was written after its checkpoint is removed, and the index made anew.
+  /// Opens the files of all tables in the existing run directory; writes scenario.json. Where a run goes on, what was
+  /// written after its checkpoint is removed, and the index made anew.
+  /// @param tables without lines; those of the wheels come first
   /// @param resume null: the run begins
   /// @throws Error(io)
   Results(const scenario::Scenario& scenario, std::vector<NodeCard> cards, const TerrainSetup& setup,
-          const std::filesystem::path& directory, const checkpoint::ResumePoint* resume = nullptr);
+          const std::filesystem::path& directory, std::vector<Table> tables,
+          const checkpoint::ResumePoint* resume = nullptr);
 
-  void add(int wheel, const SeriesRow& row);
+  /// @param line a value for each column of the table, as it is written
+  void add(int table, std::span<const double> line);
   std::vector<checkpoint::SeriesMark> mark_series();
 
   /// Writes results.h5, results.xdmf and, unless the run was stopped early, summary.json. @throws Error(io)
-  void finish(std::span<const FinalReport> reports, std::span<const SeriesBuilder> builders,
-              std::span<const SpindleReport> tires, std::span<const double> carried_mass, double wall,
+  void finish(std::span<const FinalReport> reports, std::span<const WheelEnd> wheels, double wall,
               bool stopped);
 
  private:
+  std::filesystem::path file_of(const Table& table) const;
   void continue_from(const checkpoint::ResumePoint& resume);
   void write_hdf5(std::span<const FinalReport> reports) const;
 
@@ -57,8 +71,8 @@ class Results {
   TerrainSetup setup_;
   std::filesystem::path directory_;
   const checkpoint::ResumePoint* resume_;
-  std::vector<std::unique_ptr<SeriesWriter>> writers_;
-  std::vector<std::vector<SeriesRow>> rows_;  // per wheel
+  std::vector<Table> tables_;
+  std::vector<std::unique_ptr<TableWriter>> writers_;  // as tables_
 };
 
 }  // namespace furrow::output

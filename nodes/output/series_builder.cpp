@@ -7,9 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <vector>
+#include <limits>
 
+#include "protocol/core/archive_fields.hpp"
 #include "protocol/core/constants.hpp"
 #include "tire/wheel_axes.hpp"
 
@@ -17,67 +17,70 @@ namespace furrow::output {
 
 namespace {
 
-/// Visits the fields that are means over the intervals of a line.
-template <class Visit>
-void for_each_mean(SeriesRow& row, Visit visit) {
-  for (double* mean :
-       {&row.slip, &row.speed, &row.spin, &row.drawbar_pull, &row.drawbar_pull_raw, &row.normal_force_travel,
-        &row.tractive_effort, &row.drive_torque, &row.lateral_force, &row.aligning_moment, &row.damper_force,
-        &row.slip_angle, &row.camber_angle, &row.loaded_radius, &row.effective_rolling_radius})
-    visit(*mean);
-  for (Vec3* mean : {&row.force, &row.spindle_force, &row.spindle_moment, &row.iso_force, &row.iso_moment})
-    for (int i = 0; i < 3; ++i) visit((*mean)[i]);
+constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
+
+/// Takes away what each interval measures anew, so that a column that is forgotten shows.
+void forget_interval(WheelRow& row) {
+  visit_fields(
+      [](const Column& column, double& value) {
+        if (column.kind == ColumnKind::mean || column.kind == ColumnKind::instant) value = kNotMeasured;
+      },
+      row);
 }
 
 }  // namespace
 
+SeriesBuilder::SeriesBuilder(double radius, double ground, double step)
+    : radius_(radius),
+      ground_(ground),
+      step_(step),
+      lines_(columns_of<WheelRow>()),
+      values_(lines_.columns().size()) {}
+
 void SeriesBuilder::add(const StepReports& r) {
-  add_means(r);
-  add_tire_axes(r);
-  add_work(r);
-  set_instants(r);
+  forget_interval(row_);
+  measure_means(r);
+  measure_tire_axes(r);
+  measure_work(r);
+  measure_instants(r);
   memory_.started = 1.0;
+  get_values(row_, values_);
+  lines_.add(values_);
 }
 
-void SeriesBuilder::add_means(const StepReports& r) {
-  SeriesRow& row = memory_.row;
-  memory_.count += 1.0;
-  row.slip += r.wheel.slip;
-  row.speed += r.wheel.speed;
-  row.spin += r.wheel.spin;
-  row.drawbar_pull += r.wheel.drawbar_pull;
-  row.drawbar_pull_raw += r.wheel.drawbar_pull_raw;
-  row.force += r.contact.force;
-  row.normal_force_travel += r.contact.normal.dot(r.travel);
-  row.tractive_effort += r.contact.tangential.dot(r.travel);
-  row.spindle_force += r.tire.spindle.force;
-  row.spindle_moment += r.tire.spindle.moment;
-  row.drive_torque += r.wheel.drive_torque;
-  row.lateral_force += r.wheel.lateral_force;
-  row.aligning_moment += r.wheel.aligning_moment;
-  row.damper_force += r.wheel.damper_force;
+void SeriesBuilder::measure_means(const StepReports& r) {
+  row_.slip = r.wheel.slip;
+  row_.speed = r.wheel.speed;
+  row_.spin = r.wheel.spin;
+  row_.force = r.contact.force;
+  row_.vertical_force = r.contact.force.z();
+  row_.normal_force_travel = r.contact.normal.dot(r.heading);
+  row_.tractive_effort = r.contact.tangential.dot(r.heading);
+  row_.spindle_force = r.tire.spindle.force;
+  row_.spindle_moment = r.tire.spindle.moment;
+  row_.drive_torque = r.wheel.drive_torque;
+  row_.lateral_force = r.wheel.lateral_force;
+  row_.aligning_moment = r.wheel.aligning_moment;
 }
 
 /// Contact sums are means over the interval, so the contact centre is that of its middle. The ground plane is the
 /// undisturbed surface, or where the tire has sunk below it the tire's lowest point: the bottom of the rut.
-void SeriesBuilder::add_tire_axes(const StepReports& r) {
-  SeriesRow& row = memory_.row;
+void SeriesBuilder::measure_tire_axes(const StepReports& r) {
   RimState middle = r.rim;
   if (memory_.started > 0.0) middle.position = 0.5 * (memory_.last_rim_position + r.rim.position);
-  const tire::WheelAxes axes = tire::wheel_axes(middle, r.travel, std::min(ground_, r.tire.lowest_point));
+  const tire::WheelAxes axes = tire::wheel_axes(middle, r.heading, std::min(ground_, r.tire.lowest_point));
   const Wrench wrench = axes.wrench(r.contact.force, r.contact.moment, Vec3::Zero());
-  row.iso_force += wrench.force;
-  row.iso_moment += wrench.moment;
-  row.slip_angle += axes.slip_angle;
-  row.camber_angle += axes.camber_angle;
-  row.loaded_radius += axes.loaded_radius;
-  row.effective_rolling_radius += r.wheel.speed * axes.x.dot(r.travel);  // divided by the spin in take()
-  memory_.load = r.wheel.carried_mass * kStandardGravity;
+  row_.iso_force = wrench.force;
+  row_.iso_moment = wrench.moment;
+  row_.slip_angle = axes.slip_angle;
+  row_.camber_angle = axes.camber_angle;
+  row_.loaded_radius = axes.loaded_radius;
+  memory_.rolled += r.wheel.speed * axes.x.dot(r.heading);
 }
 
-void SeriesBuilder::add_work(const StepReports& r) {
+void SeriesBuilder::measure_work(const StepReports& r) {
   Memory& m = memory_;
-  SeriesRow& row = m.row;
+  WheelRow& row = row_;
   const double tire_work = r.tire.terrain_work - m.last_tire_work;
   const double error = tire_work - (r.tire.contact_tangent ? r.contact.work : m.last_terrain_work);
   row.energy_error += error;
@@ -103,14 +106,12 @@ void SeriesBuilder::add_work(const StepReports& r) {
   m.sent_abs += step_ * r.contact.force.norm();
 
   row.spindle_work += step_ * r.wheel.drive_torque * r.wheel.spin;
-  row.pull_work += step_ * r.wheel.drawbar_pull_raw * r.wheel.speed;
   row.transfer_force_residual = std::max(row.transfer_force_residual, r.contact.transfer_force_residual);
   row.transfer_moment_residual = std::max(row.transfer_moment_residual, r.contact.transfer_moment_residual);
-  row.damper_dissipation += step_ * std::abs(r.wheel.damper_force * r.wheel.vertical_speed);
 }
 
-void SeriesBuilder::set_instants(const StepReports& r) {
-  SeriesRow& row = memory_.row;
+void SeriesBuilder::measure_instants(const StepReports& r) {
+  WheelRow& row = row_;
   row.time = r.time;
   row.position = r.wheel.axle_position;
   row.axle_height = r.wheel.axle_height;
@@ -118,7 +119,7 @@ void SeriesBuilder::set_instants(const StepReports& r) {
   row.sinkage = ground_ - r.tire.lowest_point;
   row.sinkage_kinematic = ground_ - r.wheel.axle_height + radius_;
   row.vertical_momentum = r.wheel.vertical_momentum;
-  row.momentum_x_tire = r.tire.momentum.dot(r.travel);
+  row.momentum_x_tire = r.tire.momentum.dot(r.heading);
   row.impulse_sent = memory_.sent;
   row.impulse_received = r.tire.impulse_received;
   row.soil_dissipation = r.terrain.dissipation;
@@ -139,28 +140,30 @@ void SeriesBuilder::set_instants(const StepReports& r) {
   row.factorizations = static_cast<double>(r.tire.factorizations);
 }
 
-SeriesRow SeriesBuilder::take() {
-  SeriesRow line = memory_.row;
-  const double share = memory_.count > 0.0 ? 1.0 / memory_.count : 0.0;
-  for_each_mean(line, [share](double& mean) { mean *= share; });
-  const auto ratio = [](double a, double b) { return b != 0.0 ? a / b : 0.0; };
-  line.effective_rolling_radius = ratio(line.effective_rolling_radius, line.spin);
-  line.tractive_efficiency = ratio(line.drawbar_pull * line.speed, line.drive_torque * line.spin);
-  line.motion_resistance = ratio(line.drive_torque / radius_ - line.drawbar_pull, memory_.load);
-  for_each_mean(memory_.row, [](double& sum) { sum = 0.0; });
-  memory_.count = 0.0;
+WheelRow SeriesBuilder::take() {
+  const double share = lines_.share();
+  WheelRow line;
+  set_values(line, lines_.take());
+  line.effective_rolling_radius = line.spin != 0.0 ? memory_.rolled * share / line.spin : 0.0;
+  memory_.rolled = 0.0;
   return line;
 }
 
+WheelRow SeriesBuilder::now() const {
+  WheelRow row;
+  set_values(row, lines_.now());
+  return row;
+}
+
 void SeriesBuilder::save(Archive& archive) const {
-  std::vector<double> values(sizeof(Memory) / sizeof(double));
-  std::memcpy(values.data(), static_cast<const void*>(&memory_), sizeof(Memory));
-  archive.put("series", values);
+  lines_.save(archive, "series/");
+  save_fields(archive, "interfaces", memory_);
 }
 
 void SeriesBuilder::restore(const Archive& archive) {
-  const auto& values = archive.get<double>("series", sizeof(Memory) / sizeof(double));
-  std::memcpy(static_cast<void*>(&memory_), values.data(), sizeof(Memory));
+  lines_.restore(archive, "series/");
+  row_ = now();
+  restore_fields(archive, "interfaces", memory_);
 }
 
 }  // namespace furrow::output

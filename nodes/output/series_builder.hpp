@@ -1,7 +1,10 @@
-// Turns what rig, tire and terrain report at every synchronization into lines of the time series.
+// Turns what rig, tire and terrain report of a wheel at every synchronization into lines of its table.
 #pragma once
 
-#include "nodes/output/series_row.hpp"
+#include <vector>
+
+#include "nodes/output/line_builder.hpp"
+#include "nodes/output/wheel_row.hpp"
 #include "protocol/core/archive.hpp"
 #include "protocol/messages.hpp"
 #include "rigs/rig.hpp"
@@ -17,56 +20,73 @@ struct StepReports {
   ContactSums contact;
   TerrainState terrain;
   std::int64_t grains = 0;
-  Vec3 travel = Vec3::UnitX();
+  Vec3 heading = Vec3::UnitX();  // unit, at the interval's end
 };
 
 class SeriesBuilder {
  public:
   /// @param radius undeformed tire radius, m
   /// @param ground undisturbed surface height h₀, m
-  SeriesBuilder(double radius, double ground, double step) : radius_(radius), ground_(ground), step_(step) {}
+  SeriesBuilder(double radius, double ground, double step);
 
   /// Once per synchronization n ≥ 1.
   void add(const StepReports& reports);
   /// The line for the intervals added since the last take().
-  SeriesRow take();
+  WheelRow take();
 
   /// Σ|impulse sent per interval| up to the one before the last: the interval in flight excluded, N s.
   double impulse_sent_abs() const { return memory_.sent_abs_arrived; }
   /// Impulse sent up to the interval before the last, which is what the tire has received by now, N s.
   Vec3 impulse_sent_arrived() const { return memory_.sent_arrived; }
   /// Instants and cumulative values as of the last add(); its means are not yet divided.
-  const SeriesRow& now() const { return memory_.row; }
+  WheelRow now() const;
 
   void save(Archive& archive) const;
   void restore(const Archive& archive);
 
- private:
-  void add_means(const StepReports& r);
-  void add_tire_axes(const StepReports& r);
-  void add_work(const StepReports& r);
-  void set_instants(const StepReports& r);
-
-  /// Everything that is carried from one synchronization to the next; doubles only, saved as they stand.
+  /// What is carried from one synchronization to the next beside the lines.
   struct Memory {
-    SeriesRow row;                                  // sums of interval means; instants; cumulative values
-    double count = 0.0;                             // intervals in row
     double started = 0.0;                           // 1 once an interval was added
+    double rolled = 0.0;                            // Σ speed in the wheel's plane since the last line, m/s
     double last_terrain_work = 0.0;                 // done by the terrain in the interval before, J
     double last_tire_work = 0.0;                    // cumulative until the interval before, J
     double last_rim_work = 0.0;                     // done on the tire in the interval before, J
     Vec3 sent = Vec3::Zero();                       // cumulative impulse, N s
     Vec3 sent_arrived = Vec3::Zero();               // the same, without the interval in flight, N s
     double sent_abs = 0.0, sent_abs_arrived = 0.0;  // N s
-    double load = 0.0;                              // weight carried by the wheel, N
-    Wrench last_spindle;
-    Vec3 last_rim_position = Vec3::Zero();      // m
-    Vec3 last_angular_velocity = Vec3::Zero();  // rad/s
+    Wrench last_spindle;                            // on the rim by the tire, N, N m
+    Vec3 last_rim_position = Vec3::Zero();          // m
+    Vec3 last_angular_velocity = Vec3::Zero();      // rad/s
   };
-  static_assert(sizeof(Memory) % sizeof(double) == 0);
+
+ private:
+  void measure_means(const StepReports& r);
+  void measure_tire_axes(const StepReports& r);
+  void measure_work(const StepReports& r);
+  void measure_instants(const StepReports& r);
 
   double radius_, ground_, step_;
+  WheelRow row_;  // of the last interval: what is cumulative or largest goes on from it
+  LineBuilder lines_;
+  std::vector<double> values_;  // of row_
   Memory memory_;
 };
+
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<SeriesBuilder::Memory> auto& m) {
+  visit(Field{"started"}, m.started);
+  visit(Field{"rolled", "m/s"}, m.rolled);
+  visit(Field{"last_terrain_work", "J"}, m.last_terrain_work);
+  visit(Field{"last_tire_work", "J"}, m.last_tire_work);
+  visit(Field{"last_rim_work", "J"}, m.last_rim_work);
+  visit(Field{"sent", "N s"}, m.sent);
+  visit(Field{"sent_arrived", "N s"}, m.sent_arrived);
+  visit(Field{"sent_abs", "N s"}, m.sent_abs);
+  visit(Field{"sent_abs_arrived", "N s"}, m.sent_abs_arrived);
+  visit(Field{"last_spindle_force", "N"}, m.last_spindle.force);
+  visit(Field{"last_spindle_moment", "N m"}, m.last_spindle.moment);
+  visit(Field{"last_rim_position", "m"}, m.last_rim_position);
+  visit(Field{"last_angular_velocity", "rad/s"}, m.last_angular_velocity);
+}
 
 }  // namespace furrow::output

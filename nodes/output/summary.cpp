@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -19,35 +20,82 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kMaxLate =
     0.05;  // of load × speed: energy error of the interface of a run that can be trusted
+constexpr char kPull[] = "drawbar_pull_N";    // the rig's, if it has one
 constexpr std::size_t kMaxLinesLeftOut = 50;  // at the window's beginning, for a whole number of facets
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-/// The averaging window: rows [first, last], whose means describe the time from `before` to the last row.
+/// What the summary of one wheel is computed from.
+struct WheelInput {
+  const SummaryInput& run;
+  int wheel = 0;
+  const Table& table;
+  std::vector<WheelRow> rows;
+  const WheelEnd& end;
+  const NodeCard& card() const { return run.cards[1 + wheel]; }
+};
+
+std::vector<WheelRow> wheel_rows(const Table& table) {
+  std::vector<WheelRow> rows(table.lines());
+  const std::vector<Column> columns = columns_of<WheelRow>();
+  std::vector<std::size_t> places;
+  for (const Column& column : columns) places.push_back(table.find(column.name).value());
+  std::vector<double> values(columns.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (std::size_t c = 0; c < columns.size(); ++c) values[c] = columns[c].sign * table.line(i)[places[c]];
+    set_values(rows[i], values);
+  }
+  return rows;
+}
+
+/// The averaging window: lines from `first` on, whose means describe the time from `before` to the last line. Columns that the
+/// rig adds are asked for by name, those of every wheel by their row.
 struct Window {
-  std::span<const SeriesRow> rows;
-  SeriesRow before;
+  std::span<const WheelRow> rows;
+  WheelRow before;
   bool whole_facets = false;
+  const Table* table = nullptr;
+  std::size_t first = 0;
+
   double duration() const { return rows.empty() ? 0.0 : rows.back().time - before.time; }
   template <class Get>
   double mean(Get get) const {
     double sum = 0.0;
-    for (const SeriesRow& row : rows) sum += get(row);
+    for (const WheelRow& row : rows) sum += get(row);
     return rows.empty() ? NAN : sum / static_cast<double>(rows.size());
   }
   template <class Get>
   double rate(Get get) const {
     return rows.empty() ? NAN : (get(rows.back()) - get(before)) / duration();
   }
+  /// None when the rig has no such column.
+  std::vector<double> samples(std::string_view column) const {
+    if (rows.empty()) return {};
+    std::vector<double> all = table->column(column);
+    all.erase(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min(first, all.size())));
+    return all;
+  }
+  double mean_of(std::string_view column) const {
+    const std::vector<double> values = samples(column);
+    double sum = 0.0;
+    for (const double value : values) sum += value;
+    return values.empty() ? NAN : sum / static_cast<double>(values.size());
+  }
+  /// 0 when the rig has no such column.
+  double rate_of(std::string_view column) const {
+    if (rows.empty()) return NAN;
+    const std::vector<double> all = table->column(column);
+    return all.empty() ? 0.0 : (all.back() - all[first - 1]) / duration();
+  }
 };
 
 /// The window of the scenario, shortened at its beginning to a whole number of tire facets.
-Window averaging_window(const SummaryInput& in) {
-  const auto& rows = in.rows;
+Window averaging_window(const WheelInput& in) {
+  const std::span<const WheelRow> rows = in.rows;
   std::size_t first = 1;
-  while (first < rows.size() && rows[first].time < in.scenario.run.average_from) ++first;
+  while (first < rows.size() && rows[first].time < in.run.scenario.run.average_from) ++first;
   if (first >= rows.size()) return {};
-  const int facets = in.scenario.tires[in.wheel]->describe().facets;
+  const int facets = in.run.scenario.tires[in.wheel]->describe().facets;
   const double facet = 2.0 * std::numbers::pi / facets;
   double turned = 0.0, least = INFINITY;
   std::size_t chosen = first;
@@ -61,20 +109,18 @@ Window averaging_window(const SummaryInput& in) {
     chosen = start;
     whole = off <= turn;
   }
-  return {rows.subspan(chosen), rows[chosen - 1], whole};
+  return {rows.subspan(chosen), rows[chosen - 1], whole, &in.table, chosen};
 }
 
-Json pull_statistics(const SummaryInput& in, const Window& w, double load) {
-  std::vector<double> samples;
-  for (const SeriesRow& row : w.rows) samples.push_back(row.drawbar_pull);
-  const SeriesStatistics s = statistics(samples);
+Json pull_statistics(const WheelInput& in, const Window& w, double load) {
+  const SeriesStatistics s = statistics(w.samples(kPull));
   const double interval = w.rows.empty() ? NAN : w.duration() / static_cast<double>(w.rows.size());
   const double travel = w.rows.empty() ? 0.0 : std::abs(w.rows.back().position - w.before.position);
-  const double turned = w.mean([](const SeriesRow& r) { return std::abs(r.spin); }) * w.duration() *
-                        in.cards[1 + in.wheel].tire_radius;
-  const double radius = in.cards[1 + in.wheel].tire_radius;
+  const double turned =
+      w.mean([](const WheelRow& r) { return std::abs(r.spin); }) * w.duration() * in.card().tire_radius;
+  const double radius = in.card().tire_radius;
   auto reasons = unsteady_because(s, {load, w.duration(), std::max(travel, turned), radius, w.whole_facets});
-  const double late = w.rate([](const SeriesRow& r) { return r.energy_error_abs; });
+  const double late = w.rate([](const WheelRow& r) { return r.energy_error_abs; });
   const double rolling = load * std::max(travel, turned) / w.duration();
   if (late > kMaxLate * rolling)
     reasons.push_back(fmt::format(
@@ -94,16 +140,16 @@ Json pull_statistics(const SummaryInput& in, const Window& w, double load) {
 
 /// T ω − P v = dissipation in soil and tire + rate of stored energy + what the lag of the interfaces loses.
 Json power_balance(const Window& w) {
-  const double spindle = w.rate([](const SeriesRow& r) { return r.spindle_work; });
-  const double pull = w.rate([](const SeriesRow& r) { return r.pull_work; });
-  const double soil = w.rate([](const SeriesRow& r) { return r.soil_dissipation; });
-  const double tire = w.rate([](const SeriesRow& r) { return r.tire_dissipation; });
-  const double damper = w.rate([](const SeriesRow& r) { return r.damper_dissipation; });
-  const double stored = w.rate([](const SeriesRow& r) {
+  const double spindle = w.rate([](const WheelRow& r) { return r.spindle_work; });
+  const double pull = w.rate_of("pull_work_J");
+  const double soil = w.rate([](const WheelRow& r) { return r.soil_dissipation; });
+  const double tire = w.rate([](const WheelRow& r) { return r.tire_dissipation; });
+  const double damper = w.rate_of("damper_dissipation_J");
+  const double stored = w.rate([](const WheelRow& r) {
     return r.terrain_kinetic_energy + r.terrain_potential_energy + r.terrain_elastic_energy + r.tire_energy +
            r.carried_energy;
   });
-  const double interface = -w.rate([](const SeriesRow& r) { return r.energy_error + r.rim_energy_error; });
+  const double interface = -w.rate([](const WheelRow& r) { return r.energy_error + r.rim_energy_error; });
   const double residual = spindle - pull - soil - tire - damper - stored - interface;
   return {{"spindle_power_W", number(spindle)},
           {"pull_power_W", number(pull)},
@@ -120,11 +166,11 @@ Json power_balance(const Window& w) {
 Json tire_axes_means(const Window& w) {
   Json json;
   for (const auto& [name, vector] :
-       {std::pair{"force_N", &SeriesRow::iso_force}, std::pair{"moment_Nm", &SeriesRow::iso_moment}}) {
+       {std::pair{"force_N", &WheelRow::iso_force}, std::pair{"moment_Nm", &WheelRow::iso_moment}}) {
     Json means = Json::array(), errors = Json::array();
     for (int i = 0; i < 3; ++i) {
       std::vector<double> samples;
-      for (const SeriesRow& row : w.rows) samples.push_back((row.*vector)[i]);
+      for (const WheelRow& row : w.rows) samples.push_back((row.*vector)[i]);
       const SeriesStatistics s = statistics(samples);
       means.push_back(number(s.mean));
       errors.push_back(number(s.sem));
@@ -132,59 +178,58 @@ Json tire_axes_means(const Window& w) {
     json[name] = means;
     json[std::string(name).insert(std::string(name).find('_'), "_sem")] = errors;
   }
-  json["slip_angle_rad"] = number(w.mean([](const SeriesRow& r) { return r.slip_angle; }));
-  json["camber_angle_rad"] = number(w.mean([](const SeriesRow& r) { return r.camber_angle; }));
-  json["loaded_radius_m"] = number(w.mean([](const SeriesRow& r) { return r.loaded_radius; }));
+  json["slip_angle_rad"] = number(w.mean([](const WheelRow& r) { return r.slip_angle; }));
+  json["camber_angle_rad"] = number(w.mean([](const WheelRow& r) { return r.camber_angle; }));
+  json["loaded_radius_m"] = number(w.mean([](const WheelRow& r) { return r.loaded_radius; }));
   return json;
 }
 
-void add_rut(const SummaryInput& in, const rigs::WheelDescription& wheel, Json& json) {
-  const FinalReport& terrain = in.reports.back();
+void add_rut(const WheelInput& in, Json& json) {
+  const FinalReport& terrain = in.run.reports.back();
   terrain::Rut rut;
   if (!in.rows.empty()) {
     terrain::RutOptions options;
-    options.direction = wheel.travel_sign;
-    options.lateral = wheel.lateral;
+    options.direction = in.end.heading.x() < 0.0 ? -1.0 : 1.0;
+    options.lateral = scenario::describe_rig(in.run.scenario).wheels[in.wheel].lateral;
     options.axle = options.direction * in.rows.back().position;
     options.start = options.direction * in.rows.front().position;
-    options.tread_width = in.cards[1 + in.wheel].tire_width;
+    options.tread_width = in.card().tire_width;
     rut = terrain::measure_rut(terrain.height_before, terrain.height_after, options);
   }
   json["rut_depth_m"] = number(rut.measured ? rut.depth : NAN);
   json["rut_width_m"] = number(rut.measured ? rut.width : NAN);
 }
 
-void add_mobility(const SummaryInput& in, const Window& w, const rigs::WheelDescription& wheel, Json& json) {
-  const double load = in.carried_mass * kStandardGravity, radius = in.cards[1 + in.wheel].tire_radius;
-  json["drawbar_pull_N"] = pull_statistics(in, w, load);
+void add_mobility(const WheelInput& in, const Window& w, Json& json) {
+  const double load = in.end.carried_mass * kStandardGravity, radius = in.card().tire_radius;
+  if (in.table.find(kPull)) json[kPull] = pull_statistics(in, w, load);
   const auto mean = [&](auto get) { return w.mean(get); };
-  const double pull = mean([](const SeriesRow& r) { return r.drawbar_pull; });
-  const double speed = mean([](const SeriesRow& r) { return r.speed; });
-  const double spin = mean([](const SeriesRow& r) { return r.spin; });
-  const double torque = mean([](const SeriesRow& r) { return r.drive_torque; });
-  const double force_z = mean([](const SeriesRow& r) { return r.force.z(); });
-  const double lowest = mean([](const SeriesRow& r) { return r.lowest_point; });
-  const double axle = mean([](const SeriesRow& r) { return r.axle_height; });
+  const double pull = w.mean_of(kPull);
+  const double speed = mean([](const WheelRow& r) { return r.speed; });
+  const double spin = mean([](const WheelRow& r) { return r.spin; });
+  const double torque = mean([](const WheelRow& r) { return r.drive_torque; });
+  const double force_z = mean([](const WheelRow& r) { return r.force.z(); });
+  const double lowest = mean([](const WheelRow& r) { return r.lowest_point; });
+  const double axle = mean([](const WheelRow& r) { return r.axle_height; });
   json["drawbar_coefficient"] = number(pull / load);
-  json["sinkage_m"] = number(mean([](const SeriesRow& r) { return r.sinkage; }));
-  json["sinkage_kinematic_m"] = number(mean([](const SeriesRow& r) { return r.sinkage_kinematic; }));
-  add_rut(in, wheel, json);
+  json["sinkage_m"] = number(mean([](const WheelRow& r) { return r.sinkage; }));
+  json["sinkage_kinematic_m"] = number(mean([](const WheelRow& r) { return r.sinkage_kinematic; }));
+  add_rut(in, json);
   json["tire_deflection_m"] = number(radius - (axle - lowest));
-  json["effective_rolling_radius_m"] =
-      number(spin != 0.0 ? mean([](const SeriesRow& r) { return r.effective_rolling_radius * r.spin; }) / spin
-                         : NAN);
-  json["bed_clearance_m"] = number(lowest - in.setup.floor_height);
+  json["effective_rolling_radius_m"] = number(
+      spin != 0.0 ? mean([](const WheelRow& r) { return r.effective_rolling_radius * r.spin; }) / spin : NAN);
+  json["bed_clearance_m"] = number(lowest - in.run.setup.floor_height);
   json["vertical_load_N"] = number(load);
-  json["net_terrain_force_N"] = {number(mean([](const SeriesRow& r) { return r.force.x(); })),
-                                 number(mean([](const SeriesRow& r) { return r.force.y(); })),
+  json["net_terrain_force_N"] = {number(mean([](const WheelRow& r) { return r.force.x(); })),
+                                 number(mean([](const WheelRow& r) { return r.force.y(); })),
                                  number(force_z)};
-  const double momentum_rate = w.rate([](const SeriesRow& r) { return r.vertical_momentum; });
+  const double momentum_rate = w.rate([](const WheelRow& r) { return r.vertical_momentum; });
   json["vertical_balance_residual"] = number((force_z - load - momentum_rate) / load);
-  json["terrain_resistance_N"] = number(-mean([](const SeriesRow& r) { return r.normal_force_travel; }));
-  json["tractive_effort_N"] = number(mean([](const SeriesRow& r) { return r.tractive_effort; }));
+  json["terrain_resistance_N"] = number(-mean([](const WheelRow& r) { return r.normal_force_travel; }));
+  json["tractive_effort_N"] = number(mean([](const WheelRow& r) { return r.tractive_effort; }));
   json["drive_torque_Nm"] = number(torque);
-  json["lateral_force_N"] = number(mean([](const SeriesRow& r) { return r.lateral_force; }));
-  json["aligning_moment_Nm"] = number(mean([](const SeriesRow& r) { return r.aligning_moment; }));
+  json["lateral_force_N"] = number(mean([](const WheelRow& r) { return r.lateral_force; }));
+  json["aligning_moment_Nm"] = number(mean([](const WheelRow& r) { return r.aligning_moment; }));
   json["tractive_efficiency"] = number(pull * speed / (torque * spin));
   json["motion_resistance_coefficient"] = number((torque / radius - pull) / load);
   json["iso_w"] = tire_axes_means(w);
@@ -206,50 +251,69 @@ Json rank_table(const SummaryInput& in) {
   return ranks;
 }
 
-void add_accounts(const SummaryInput& in, const Window& w, Json& json) {
-  const SeriesRow& end = in.builder.now();
-  const double sent = in.builder.impulse_sent_abs();
-  json["power_balance"] = power_balance(w);
+void add_accounts(const WheelInput& in, const Window& w, Json& json) {
+  const SeriesBuilder& series = in.end.series;
+  const SpindleReport& tire = in.end.tire;
+  const WheelRow end = series.now();
+  const double sent = series.impulse_sent_abs();
+  if (in.run.wheels.size() == 1) json["power_balance"] = power_balance(w);  // the soil's share is all wheels'
   json["interface_energy_error_J"] = number(end.energy_error);
   json["interface_energy_error_abs_J"] = number(end.energy_error_abs);
   json["rim_energy_error_J"] = number(end.rim_energy_error);
   json["interface_work_J"] = number(in.tire.terrain_work);  // Σ f·Δx, on the tire by the terrain
   json["spindle_work_J"] = number(end.spindle_work);
   json["momentum_residual"] = number(
-      sent > 0.0
-          ? (in.builder.impulse_sent_arrived() - (end.impulse_received - in.tire.impulse_ahead)).norm() / sent
-          : 0.0);
-  if (in.tire.contact_tangent) {
-    json["contact_ledger_Ns"] = number(in.tire.ledger);
-    json["contact_ledger_largest_Ns"] = number(in.tire.ledger_largest);
+      sent > 0.0 ? (series.impulse_sent_arrived() - (end.impulse_received - tire.impulse_ahead)).norm() / sent
+                 : 0.0);
+  if (tire.contact_tangent) {
+    json["contact_ledger_Ns"] = number(tire.ledger);
+    json["contact_ledger_largest_Ns"] = number(tire.ledger_largest);
   }
   json["transfer_force_residual"] = number(end.transfer_force_residual);
   json["transfer_moment_residual"] = number(end.transfer_moment_residual);
 }
 
-void add_cost(const SummaryInput& in, Json& json) {
-  const SeriesRow& end = in.builder.now();
-  const double steps = std::max(1.0, std::round(end.time / in.scenario.run.step));
-  json["simulated_s"] = end.time;
+Json wheel_summary(const WheelInput& in) {
+  Json json;
+  const rigs::WheelDescription wheel = scenario::describe_rig(in.run.scenario).wheels[in.wheel];
+  json["slip"] = wheel.slip ? Json(*wheel.slip) : Json(nullptr);
+  json["travel_sign"] = wheel.travel_sign;
+  json["wheel"] = in.wheel;
+  json["lateral_m"] = wheel.lateral;
+  json["tire_radius_m"] = in.card().tire_radius;
+  json["tread_width_m"] = in.card().tire_width;
+  json["surface_height_m"] = number(in.run.setup.mean_height.at(in.wheel));
+  const Window window = averaging_window(in);
+  add_mobility(in, window, json);
+  add_accounts(in, window, json);
+  const WheelRow end = in.end.series.now();
+  const double steps = std::max(1.0, std::round(end.time / in.run.scenario.run.step));
+  json["tire_coordinates"] = in.card().size;
+  json["newton_iterations_mean"] = number(end.newton_iterations / steps);
+  json["factorizations"] = end.factorizations;
+  return json;
+}
+
+/// @param rows of any wheel: what they say of the terrain is the same
+void add_cost(const SummaryInput& in, std::span<const WheelRow> rows, Json& json) {
+  const double time = in.wheels.front().series.now().time;
+  json["simulated_s"] = time;
   double wall = 0.0;
   for (const checkpoint::Segment& segment : in.segments) wall += segment.wall_s;
   json["wall_s"] = wall;
   json["settle_wall_s"] = in.setup.settle_wall_s;
-  json["wall_s_per_simulated_s"] = number(wall / end.time);
+  json["wall_s_per_simulated_s"] = number(wall / time);
   json["ranks"] = rank_table(in);
   json["segments"] = checkpoint::segments_json(in.segments);
   json["grains"] = in.setup.grains;
   double contacts = 0.0, active = 0.0;
-  for (const SeriesRow& row : in.rows) {
+  for (const WheelRow& row : rows) {
     contacts += row.contacts_terrain;
     active += row.active_share;
   }
-  const auto lines = static_cast<double>(in.rows.size());
+  const auto lines = static_cast<double>(rows.size());
   json["contacts_mean"] = number(contacts / lines);
   json["active_share_mean"] = number(active / lines);
-  json["tire_coordinates"] = in.cards[1 + in.wheel].size;
-  json["newton_iterations_mean"] = number(end.newton_iterations / steps);
-  json["factorizations"] = end.factorizations;
   json["compiler"] = "g++ " __VERSION__;
   json["cpu"] = checkpoint::cpu_model();
 }
@@ -268,18 +332,13 @@ std::string summary_text(const SummaryInput& in) {
   const terrain::TerrainDescription terrain = in.scenario.terrain->describe();
   json["terrain_engine"] = terrain.engine;
   if (!terrain.law.empty()) json["law"] = terrain.law;
-  const rigs::WheelDescription wheel = scenario::describe_rig(in.scenario).wheels[in.wheel];
-  json["slip"] = wheel.slip ? Json(*wheel.slip) : Json(nullptr);
-  json["travel_sign"] = wheel.travel_sign;
-  json["wheel"] = in.wheel;
-  json["lateral_m"] = wheel.lateral;
-  json["tire_radius_m"] = in.cards[1 + in.wheel].tire_radius;
-  json["tread_width_m"] = in.cards[1 + in.wheel].tire_width;
-  json["surface_height_m"] = number(in.setup.mean_height.at(in.wheel));
-  const Window window = averaging_window(in);
-  add_mobility(in, window, wheel, json);
-  add_accounts(in, window, json);
-  add_cost(in, json);
+  Json wheels = Json::array();
+  for (std::size_t k = 0; k < in.wheels.size(); ++k)
+    wheels.push_back(
+        wheel_summary({in, static_cast<int>(k), in.tables[k], wheel_rows(in.tables[k]), in.wheels[k]}));
+  if (wheels.size() == 1) json.update(wheels.front());
+  add_cost(in, wheel_rows(in.tables.front()), json);
+  json["wheels"] = wheels;
   return json.dump(2) + "\n";
 }
 

@@ -11,6 +11,7 @@
 #include <span>
 
 #include "nodes/checkpoint/frame_clock.hpp"
+#include "nodes/checkpoint/series_mark.hpp"
 #include "nodes/output/profile.hpp"
 #include "nodes/output/series.hpp"
 #include "nodes/ranks/run_context.hpp"
@@ -46,7 +47,7 @@ class Node {
 
   /// What is no state but must be known to go on: kept in checkpoints beside save().
   virtual void save_setup(Archive&) const {}
-  /// The rig's: flushes the series to the disk and says where they stand.
+  /// The rig's: flushes the tables to the disk and says where they stand.
   virtual std::vector<checkpoint::SeriesMark> mark_series() { return {}; }
 };
 

@@ -1,10 +1,11 @@
 // The rig's rank: moves the wheels, gathers what all report, and writes the results.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "nodes/output/profile.hpp"
 #include "nodes/output/results.hpp"
-#include "nodes/output/series_builder.hpp"
+#include "nodes/output/subject_series.hpp"
 #include "nodes/ranks/node.hpp"
 
 namespace furrow::ranks {
@@ -38,14 +39,16 @@ class RigNode : public Node {
     for (int k = 0; k < wheels; ++k)
       height[k] = setup_.top_height[k] + cards[1 + k].tire_reach + kPlacementGap + scenario_.drop_height;
     rig_->place(height);
+    make_tables();
     // First of all, as the others begin to write frames once they are placed.
-    if (!context.directory.empty())
-      results_ =
-          std::make_unique<output::Results>(scenario_, cards_, setup_, context.directory, context.resume);
-    for (int k = 0; k < wheels; ++k) {
-      send(transport, Address{Role::tire, k}, RimMotion{{kPlacement, 0.0}, rig_->rim(k)});
-      builders_.emplace_back(cards[1 + k].tire_radius, setup_.mean_height[k], scenario_.run.step);
+    if (!context.directory.empty()) {
+      std::vector<output::Table> tables;
+      for (const output::SubjectSeries& series : series_) tables.push_back(series.empty_table());
+      results_ = std::make_unique<output::Results>(scenario_, cards_, setup_, context.directory,
+                                                   std::move(tables), context.resume);
     }
+    for (int k = 0; k < wheels; ++k)
+      send(transport, Address{Role::tire, k}, RimMotion{{kPlacement, 0.0}, rig_->rim(k)});
     wrenches_.resize(wheels);
     series_steps_ = steps_between(scenario_.output.series_interval, scenario_.run.step);
     if (context.saved) restore(*context.saved);
@@ -65,9 +68,7 @@ class RigNode : public Node {
       wrenches_[k] = tires_[k].wrench;
     }
     const auto terrain = receive_step<TerrainReport>(transport, kTerrain, header.step);
-    for (int k = 0; k < wheels && header.step > 0; ++k)
-      builders_[k].add({header.time, rig_->report(k), rig_->rim(k), tires_[k], terrain.contact[k],
-                        terrain.state, setup_.grains, rig_->travel_direction()});
+    if (header.step > 0) measure(header, terrain);
     const bool line = header.step > 0 && series_steps_ > 0 && header.step % series_steps_ == 0;
     if (line) record();
     show_progress(header);
@@ -90,26 +91,20 @@ class RigNode : public Node {
       reports.push_back(receive<FinalReport>(transport, cards_[i].self));
     if (!results_) return;
     if (context_.profile) output::write_profile(context_.directory / "profile.json", reports);
-    std::vector<double> carried_mass;
-    for (int k = 0; k < rig_->wheel_count(); ++k) carried_mass.push_back(rig_->report(k).carried_mass);
-    results_->finish(reports, builders_, tires_, carried_mass, output::machine_clock() - wall_start_,
-                     stopped);
+    std::vector<output::WheelEnd> wheels;
+    for (int k = 0; k < rig_->wheel_count(); ++k)
+      wheels.push_back({series_[k].wheel(), tires_[k], rig_->report(k).carried_mass, rig_->heading(k)});
+    results_->finish(reports, wheels, output::machine_clock() - wall_start_, stopped);
   }
 
   void save(Archive& archive) const override {
     rig_->save(archive);
-    for (std::size_t k = 0; k < builders_.size(); ++k) {
-      Archive::Scope scope(archive, "wheel" + std::to_string(k) + "/");
-      builders_[k].save(archive);
-    }
+    for (const output::SubjectSeries& series : series_) series.save(archive);
   }
 
   void restore(const Archive& archive) override {
     rig_->restore(archive);
-    for (std::size_t k = 0; k < builders_.size(); ++k) {
-      Archive::Scope scope(archive, "wheel" + std::to_string(k) + "/");
-      builders_[k].restore(archive);
-    }
+    for (output::SubjectSeries& series : series_) series.restore(archive);
   }
 
  private:
@@ -129,26 +124,47 @@ class RigNode : public Node {
     return Order::checkpoint;
   }
 
+  void make_tables() {
+    const std::vector<rigs::Subject> subjects = rig_->subjects();
+    for (int k = 0; k < static_cast<int>(subjects.size()); ++k) {
+      std::optional<output::SeriesBuilder> wheel;
+      if (k < rig_->wheel_count())
+        wheel.emplace(cards_[1 + k].tire_radius, setup_.mean_height[k], scenario_.run.step);
+      series_.emplace_back(subjects[k], std::move(wheel));
+    }
+  }
+
+  void measure(const StepHeader& header, const TerrainReport& terrain) {
+    for (int k = 0; k < static_cast<int>(series_.size()); ++k)
+      if (k < rig_->wheel_count())
+        series_[k].add({header.time, rig_->report(k), rig_->rim(k), tires_[k], terrain.contact[k],
+                        terrain.state, setup_.grains, rig_->heading(k)},
+                       *rig_, k);
+      else
+        series_[k].add(header.time, *rig_, k);
+  }
+
   void record() {
-    for (std::size_t k = 0; k < builders_.size(); ++k) {
-      const output::SeriesRow row = builders_[k].take();
-      if (k == 0) last_ = row;
-      if (results_) results_->add(static_cast<int>(k), row);
+    for (int k = 0; k < static_cast<int>(series_.size()); ++k) {
+      const std::span<const double> line = series_[k].take(*rig_, k);
+      if (k == 0) last_.assign(line.begin(), line.end());
+      if (results_) results_->add(k, line);
     }
   }
 
   void show_progress(const StepHeader& header) {
     const double now = output::machine_clock();
-    if (!context_.progress || last_.time == 0.0 || now - shown_ < kProgressInterval) return;
+    if (!context_.progress || last_.empty() || now - shown_ < kProgressInterval) return;
     shown_ = now;
+    const LineView line{series_.front().columns(), last_};
     launch::Progress p;
     p.phase = "running";
     p.time = header.time;
     p.end = scenario_.run.end;
     p.share = header.time / scenario_.run.end;
-    p.pull = last_.drawbar_pull;
-    p.sinkage = last_.sinkage;
-    p.speed = last_.speed;
+    p.pull = line["drawbar_pull_N"];
+    p.sinkage = line["sinkage_m"];
+    p.speed = line["speed_m_per_s"];
     p.eta = (now - wall_start_) * (p.end - p.time) / (p.time - time_start_);
     context_.progress(p);
   }
@@ -159,10 +175,10 @@ class RigNode : public Node {
   std::vector<NodeCard> cards_;
   TerrainSetup setup_;
   std::vector<Wrench> wrenches_;
-  std::vector<SpindleReport> tires_;  // the last ones
-  std::vector<output::SeriesBuilder> builders_;
+  std::vector<SpindleReport> tires_;           // the last ones
+  std::vector<output::SubjectSeries> series_;  // as rig_->subjects()
   std::unique_ptr<output::Results> results_;
-  output::SeriesRow last_;
+  std::vector<double> last_;  // line of wheel 0
   std::int64_t series_steps_ = 0;
   double wall_start_ = 0.0, shown_ = 0.0, last_checkpoint_ = 0.0;  // wall time, s
   double time_start_ = 0.0;                                        // simulated, when this segment began, s

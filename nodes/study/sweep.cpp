@@ -34,9 +34,16 @@ constexpr int kPoll = 100000;  // µs
 constexpr int kTriesForFolder = 100;
 constexpr double kDeepRut = 0.4;  // of the bed's depth: a tire this deep feels the floor
 
+/// Of several wheels, wheel 0's keys can be asked for as if it were the only one.
 Json read_summary(const fs::path& run) {
   std::ifstream in(run / "summary.json");
-  return Json::parse(in, nullptr, false);
+  Json summary = Json::parse(in, nullptr, false);
+  if (!summary.is_object()) return summary;
+  const Json wheels = summary.value("wheels", Json::array());
+  if (wheels.is_array() && !wheels.empty())
+    for (const auto& [key, value] : wheels.front().items())
+      if (!summary.contains(key)) summary[key] = value;
+  return summary;
 }
 
 /// summary["a"]["b"] for "a.b".

@@ -25,7 +25,7 @@ class Run:
         if not directory.is_dir():
             raise OSError("is not a directory")
         self.directory = directory
-        self.summary = self._json("summary.json")
+        self.summary = self._summary()
         self.scenario = self._json("scenario.json")
         self.soil_estimate = self._json("soil_estimate.json")
         self.series = self._read_series()
@@ -42,9 +42,17 @@ class Run:
             raise ValueError(f"{name} is not a JSON object")
         return content
 
+    def _summary(self):
+        """Of several wheels, wheel 0's keys stand beside those of the run, as they do of a single one."""
+        summary = self._json("summary.json")
+        wheels = summary.get("wheels") or [{}]
+        return {**wheels[0], **summary}
+
     def _read_series(self):
-        path = self.directory / "timeseries.csv"
-        if not path.exists():
+        """Columns of the table of wheel 0."""
+        path = next((self.directory / name for name in ("timeseries.csv", "timeseries_wheel0.csv")
+                     if (self.directory / name).exists()), None)
+        if path is None:
             return {}
         lines = path.read_text(encoding="utf-8").splitlines()
         names = lines[0].split(",") if lines else []
@@ -55,11 +63,11 @@ class Run:
         try:
             return dict(zip(names, np.array(rows, dtype=float).T))
         except ValueError as error:
-            raise ValueError(f"timeseries.csv holds something that is no number: {error}") from error
+            raise ValueError(f"{path.name} holds something that is no number: {error}") from error
 
     def column(self, name):
         if name not in self.series:
-            raise Missing(f"timeseries.csv has no column {name}" if self.series else "there is no timeseries.csv")
+            raise Missing(f"the time series has no column {name}" if self.series else "there is no timeseries.csv")
         return self.series[name]
 
     def heights(self):

@@ -94,7 +94,9 @@ void require_grains(const json& scenario, const std::filesystem::path& file) {
 
 std::string write_soil_estimate(const std::filesystem::path& run, const std::filesystem::path& soil_file) {
   const std::filesystem::path summary_file = run / "summary.json";
-  const json summary = read_object(summary_file, "the summary of a finished run");
+  json summary = read_object(summary_file, "the summary of a finished run");
+  if (const json wheels = summary.value("wheels", json::array()); !wheels.empty())
+    summary.update(wheels.front());  // the estimate is for wheel 0
   const std::filesystem::path scenario_file = run / "scenario.json";
   const json scenario = read_object(scenario_file, "the scenario of a finished run");
   require_grains(scenario, scenario_file);

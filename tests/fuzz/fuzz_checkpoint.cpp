@@ -2,7 +2,8 @@
 #include <nlohmann/json.hpp>
 
 #include "nodes/checkpoint/checkpoint.hpp"
-#include "nodes/output/series.hpp"
+#include "nodes/output/table.hpp"
+#include "nodes/output/wheel_row.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/core/hash.hpp"
 #include "tests/fuzz/input_file.hpp"
@@ -23,16 +24,15 @@ void read(const std::uint8_t* data, std::size_t size) {
 /// The input as a series, from a mark that fits its bytes.
 void read_series(const std::uint8_t* data, std::size_t size) {
   try {
+    output::Table table{"wheel0", columns_of<output::WheelRow>(), {}};
     std::string text;
-    for (const output::SeriesColumn& column : output::series_columns())
-      text += (text.empty() ? "" : ",") + std::string(column.name);
+    for (const Column& column : table.columns) text += (text.empty() ? "" : ",") + std::string(column.name);
     text += '\n' + std::string(reinterpret_cast<const char*>(data), size);
     Hash hash;
     hash.add(text);
     const auto file =
         fuzz::input_file("timeseries.csv", reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
-    std::vector<output::SeriesRow> rows;
-    output::SeriesWriter(file, {static_cast<std::int64_t>(text.size()), 2, hash.hex()}, rows);
+    output::TableWriter(file, {static_cast<std::int64_t>(text.size()), 2, hash.hex(), "wheel0"}, table);
   } catch (const Error&) {
   }
 }

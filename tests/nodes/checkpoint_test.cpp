@@ -6,7 +6,6 @@
 
 #include "nodes/checkpoint/checkpoint.hpp"
 #include "nodes/output/frames.hpp"
-#include "nodes/output/series.hpp"
 #include "nodes/scenario/load_scenario.hpp"
 #include "protocol/files/archive_file.hpp"
 #include "temporary_folder.hpp"
@@ -31,7 +30,7 @@ checkpoint::CheckpointManifest write_example(const fs::path& run, std::int64_t s
   m.file_hashes = {"1", "2"};
   m.step = step;
   m.time = 1e-4 * static_cast<double>(step);
-  m.series = {{100, 7, "s"}};
+  m.series = {{100, 7, "s", "wheel0"}};
   m.frames = {20, 0, 0};
   m.segments = {{0, 50, 1.25, 2, ""}, {50, step, 0.1, 1, R"({"run.threads":1})"}};
   const fs::path folder = checkpoint::unfinished_checkpoint(run, step);
@@ -66,6 +65,7 @@ TEST(Checkpoint, what_was_written_is_read) {
   EXPECT_EQ(read.time, written.time);
   EXPECT_EQ(read.scenario, written.scenario);
   EXPECT_EQ(read.series.at(0).lines, 7);
+  EXPECT_EQ(read.series.at(0).subject, "wheel0");
   EXPECT_EQ(read.frames.every, 20);
   EXPECT_EQ(read.file_hashes, written.file_hashes);
   ASSERT_EQ(read.segments.size(), 2U);
@@ -145,44 +145,6 @@ TEST(FrameClock, numbers_go_on_without_gap_when_the_interval_changes) {
   EXPECT_EQ(second.continued(200, 0).index(999), 7);
   EXPECT_EQ(second.continued(200, 0).continued(300, 100).index(300), 7);
   EXPECT_EQ(second.continued(200, 50).index(200), 7) << "the frame of the step itself is still to come";
-}
-
-TEST(SeriesWriter, goes_on_at_its_mark_bit_for_bit) {
-  const testing::TemporaryFolder folder;
-  const fs::path file = folder.path() / "timeseries.csv";
-  output::SeriesRow row;
-  row.time = 0.1, row.slip = 1.0 / 3.0, row.drawbar_pull = -0.0, row.normal_force_travel = 5e-324;
-  row.force = {1e300, -2.0, std::nan("")};
-  checkpoint::SeriesMark mark;
-  {
-    output::SeriesWriter writer(file);
-    writer.add(row);
-    writer.add(row);
-    mark = writer.mark();
-    writer.add(row);
-  }
-  const std::string three = text_of(file);
-  std::ofstream(file, std::ios::app) << "0.4,cut sho";
-  std::vector<output::SeriesRow> rows;
-  {
-    output::SeriesWriter writer(file, mark, rows);
-    ASSERT_EQ(rows.size(), 2U);
-    for (const output::SeriesColumn& column : output::series_columns())
-      if (std::string(column.name) != "vertical_force_N" && std::string(column.name) != "force_z_N") {
-        EXPECT_EQ(column.value(rows[1]), column.value(row)) << column.name;
-      }
-    writer.add(rows[1]);
-  }
-  EXPECT_EQ(text_of(file), three);
-  checkpoint::SeriesMark other = mark;
-  other.bytes -= 1;
-  const auto open_files = [] {
-    const std::filesystem::directory_iterator all("/proc/self/fd");
-    return std::distance(begin(all), end(all));
-  };
-  const auto before = open_files();
-  EXPECT_THROW(output::SeriesWriter(file, other, rows), Error);
-  EXPECT_EQ(open_files(), before);
 }
 
 TEST(Resume, what_decides_the_results_may_not_change) {

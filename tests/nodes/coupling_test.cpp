@@ -160,7 +160,7 @@ TEST(Coupling, the_ledger_holds_the_difference_of_the_impulses) {
 }
 
 /// The series of wheel 0 as the rig's node has it now; means are sums since the last line.
-output::SeriesRow series_now(const testing::InProcessRun& run) {
+output::WheelRow series_now(const testing::InProcessRun& run) {
   const Archive rig = run.save().front();
   output::SeriesBuilder builder(0.4673, 0.0, 1e-4);
   Archive::Scope scope(rig, "wheel0/");
@@ -186,7 +186,7 @@ TEST(Coupling, spin_up_and_drop_with_a_tire_three_times_as_heavy_as_its_rim) {
     testing::InProcessRun run(scenario.made());
     run.steps(0, 100);
     run.synchronize(100);
-    const output::SeriesRow row = series_now(run);
+    const output::WheelRow row = series_now(run);
     const double mass = rig.carrier_mass + rig.rim_mass + tire.mass, spin = rig.angular_speed;
     const double tolerance = rigid ? 1e-9 : 0.2;  // the flexible tire also winds up and swings
     EXPECT_EQ(row.force.norm(), 0.0) << "it must not have landed";

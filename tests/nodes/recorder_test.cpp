@@ -1,14 +1,10 @@
-// timeseries.csv, frames and their index: what is written is what was given.
+// Frames and their index: what is written is what was given.
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <set>
-#include <sstream>
 
 #include "nodes/output/frames.hpp"
-#include "nodes/output/series.hpp"
 #include "nodes/output/xdmf.hpp"
-#include "protocol/core/error.hpp"
 #include "protocol/files/hdf5_file.hpp"
 #include "temporary_folder.hpp"
 
@@ -22,63 +18,6 @@ std::vector<std::string> lines_of(const std::filesystem::path& file) {
   std::vector<std::string> lines;
   for (std::string line; std::getline(stream, line);) lines.push_back(line);
   return lines;
-}
-
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> cells;
-  std::stringstream stream(line);
-  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
-  return cells;
-}
-
-TEST(Series, columns_that_users_script_against_come_first) {
-  const testing::TemporaryFolder folder;
-  output::SeriesWriter writer(folder.path() / "timeseries.csv");
-  writer.flush();
-  EXPECT_EQ(
-      lines_of(folder.path() / "timeseries.csv")
-          .at(0)
-          .substr(0, std::string("time_s,slip,drawbar_pull_N,sinkage_m,vertical_force_N,force_x_N,force_y_N,"
-                                 "force_z_N,spindle_torque_Nm,impulse_sent_Ns,impulse_received_Ns,"
-                                 "energy_error_J,")
-                         .size()),
-      "time_s,slip,drawbar_pull_N,sinkage_m,vertical_force_N,force_x_N,force_y_N,force_z_N,spindle_torque_Nm,"
-      "impulse_sent_Ns,impulse_received_Ns,energy_error_J,");
-  std::set<std::string> names;
-  for (const output::SeriesColumn& column : output::series_columns())
-    EXPECT_TRUE(names.insert(column.name).second) << column.name;
-}
-
-TEST(Series, numbers_come_back_bit_for_bit) {
-  const testing::TemporaryFolder folder;
-  output::SeriesRow row;
-  row.time = 0.1 + 0.2;
-  row.drawbar_pull = 1.0 / 3.0;
-  row.impulse_sent = {1e-300, -0.0, 2.0 / 7.0};
-  {
-    output::SeriesWriter writer(folder.path() / "timeseries.csv");
-    writer.add(row);
-    writer.flush();
-  }
-  const auto lines = lines_of(folder.path() / "timeseries.csv");
-  ASSERT_EQ(lines.size(), 2u);
-  const auto cells = split(lines[1]);
-  ASSERT_EQ(cells.size(), output::series_columns().size());
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    EXPECT_EQ(std::stod(cells[i]), output::series_columns()[i].value(row))
-        << output::series_columns()[i].name;
-}
-
-TEST(Series, a_full_disk_is_an_input_output_error_naming_the_file) {
-  try {
-    output::SeriesWriter writer("/dev/full");
-    writer.add({});
-    writer.flush();
-    FAIL() << "nothing was noticed";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::io);
-    EXPECT_NE(std::string(error.what()).find("/dev/full"), std::string::npos);
-  }
 }
 
 TEST(Frames, positions_and_forces_come_back_in_single_precision) {

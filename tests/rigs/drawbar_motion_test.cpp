@@ -73,7 +73,7 @@ TEST(FreeRolling, moment_spins_rim_and_tire_up_with_their_sum_of_inertia) {
   const double expected = start + moment * 0.1 / (options.rim_spin_inertia + kTireSpin);
   EXPECT_NEAR(rig->rim(0).angular_velocity.y(), expected, 1e-10);
   EXPECT_EQ(rig->report(0).drive_torque, 0.0);
-  EXPECT_NEAR(rig->report(0).drawbar_pull, -80.0, 1e-6);
+  EXPECT_NEAR(measured(*rig, "drawbar_pull_N"), -80.0, 1e-6);
 }
 
 TEST(FreeRolling, starts_at_rest_under_a_ramp_and_reports_a_bounded_slip) {
@@ -120,7 +120,8 @@ TEST(Vertical, touchdown_damper_acts_for_its_time_only) {
     v = half * (1.0 - c) - 0.5 * kStep * kStandardGravity;
     advance(*rig, Wrench{}, 1);
     ASSERT_NEAR(rig->report(0).vertical_speed, v, 1e-11) << i;
-    ASSERT_NEAR(rig->report(0).damper_force, active ? -options.touchdown_damping * half : 0.0, 1e-6) << i;
+    ASSERT_NEAR(measured(*rig, "damper_force_N"), active ? -options.touchdown_damping * half : 0.0, 1e-6)
+        << i;
   }
 }
 
@@ -131,13 +132,13 @@ TEST(Travel, mirrored_travel_mirrors_everything) {
   options.travel_sign = -1.0;
   options.toe_angle = -0.1;
   const auto backward = placed_rig(options);
-  EXPECT_EQ(backward->travel_direction(), Vec3(-1, 0, 0));
+  EXPECT_EQ(backward->heading(0), Vec3(-1, 0, 0));
   // Mirror in the y–z plane: forces change x, moments (axial) change y and z.
   advance(*forward, wrench(Vec3(900, 120, 4700), Vec3(15, -250, 8)), 5000);
   advance(*backward, wrench(Vec3(-900, 120, 4700), Vec3(15, 250, -8)), 5000);
   const rigs::WheelReport f = forward->report(0), b = backward->report(0);
-  EXPECT_NEAR(f.drawbar_pull, b.drawbar_pull, 1e-6);
-  EXPECT_NEAR(f.drawbar_pull_raw, b.drawbar_pull_raw, 1e-6);
+  EXPECT_NEAR(measured(*forward, "drawbar_pull_N"), measured(*backward, "drawbar_pull_N"), 1e-6);
+  EXPECT_NEAR(measured(*forward, "drawbar_pull_raw_N"), measured(*backward, "drawbar_pull_raw_N"), 1e-6);
   EXPECT_NEAR(f.drive_torque, b.drive_torque, 1e-7);
   EXPECT_NEAR(f.lateral_force, -b.lateral_force, 1e-12);  // l lies on the other side
   EXPECT_NEAR(f.slip, b.slip, 1e-9);
@@ -189,7 +190,7 @@ TEST(Camber, mirrored_camber_and_toe_mirror_everything) {
   advance(*one, wrench(Vec3(900, 120, 4700), Vec3(15, -250, 8)), 5000);
   advance(*other, wrench(Vec3(900, -120, 4700), Vec3(-15, -250, -8)), 5000);
   const rigs::WheelReport a = one->report(0), b = other->report(0);
-  EXPECT_NEAR(a.drawbar_pull, b.drawbar_pull, 1e-6);
+  EXPECT_NEAR(measured(*one, "drawbar_pull_N"), measured(*other, "drawbar_pull_N"), 1e-6);
   EXPECT_NEAR(a.drive_torque, b.drive_torque, 1e-7);
   EXPECT_NEAR(a.lateral_force, -b.lateral_force, 1e-12);
   EXPECT_NEAR(a.spin, b.spin, 1e-9);

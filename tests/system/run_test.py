@@ -89,13 +89,16 @@ class Run(SystemTest):
                       "--set", "terrain.layers=3", "--set", "run.step=2e-4", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         masses = [200, 320, 450, 700]
-        for wheel, mass in enumerate(masses):
-            name = "summary.json" if wheel == 0 else f"summary_wheel{wheel}.json"
-            summary = json.loads((self.folder / "out" / name).read_text())
-            weight = summary["vertical_load_N"]
-            self.assertAlmostEqual(weight, 9.81 * (mass + 15 + 4.8), delta=0.5)
-            self.assertAlmostEqual(summary["net_terrain_force_N"][2], weight, delta=0.005 * weight, msg=name)
+        summary = json.loads((self.folder / "out" / "summary.json").read_text())
         self.assertEqual(len(summary["ranks"]), 6)
+        self.assertNotIn("vertical_load_N", summary)
+        for wheel, (mass, entry) in enumerate(zip(masses, summary["wheels"], strict=True)):
+            weight = entry["vertical_load_N"]
+            self.assertAlmostEqual(weight, 9.81 * (mass + 15 + 4.8), delta=0.5)
+            self.assertAlmostEqual(entry["net_terrain_force_N"][2], weight, delta=0.005 * weight, msg=f"wheel {wheel}")
+        tables = sorted(path.name for path in (self.folder / "out").glob("*.csv"))
+        self.assertEqual(tables, [f"timeseries_wheel{wheel}.csv" for wheel in range(4)])
+        self.assertEqual(sorted(path.name for path in (self.folder / "out").glob("summary*")), ["summary.json"])
 
     def test_profile_is_a_chrome_trace_of_all_ranks(self):
         done = furrow("run", write_scenario(self.folder), "--out", "out", "--profile", cwd=self.folder)

@@ -1,0 +1,71 @@
+// A table of results: one subject (a wheel, a body, the vehicle), its columns, and the lines written so far. The same columns
+// serve the CSV file, the HDF5 file and the way back from a file that a run goes on with.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "nodes/checkpoint/series_mark.hpp"
+#include "protocol/core/column.hpp"
+#include "protocol/core/hash.hpp"
+
+namespace furrow::output {
+
+struct Table {
+  std::string subject;  // "wheel0", "vehicle"
+  std::vector<Column> columns;
+  std::vector<double> values;  // as they are written, line after line
+
+  std::size_t lines() const { return columns.empty() ? 0 : values.size() / columns.size(); }
+  std::span<const double> line(std::size_t i) const {
+    return std::span(values).subspan(i * columns.size(), columns.size());
+  }
+  std::optional<std::size_t> find(std::string_view column) const;
+  /// The values of a column; none when there is no such column.
+  std::vector<double> column(std::string_view name) const;
+};
+
+/// `base` with `added` in the places that Column::after asks for.
+std::vector<Column> merged_columns(std::vector<Column> base, std::span<const Column> added);
+
+/// A table as CSV, 17 digits. Every write is checked.
+class TableWriter {
+ public:
+  /// @throws Error(io)
+  TableWriter(const std::filesystem::path& file, const Table& table);
+  /// Goes on with a file that was cut short or written on since `mark`: cuts it there. Columns are found by name and keep
+  /// the order they have in the file.
+  /// @param table receives its lines
+  /// @throws Error(io) when the file does not begin with what the mark stands for, or has other columns
+  TableWriter(const std::filesystem::path& file, const checkpoint::SeriesMark& mark, Table& table);
+
+  /// @param line a value for each column of the table
+  void add(std::span<const double> line);
+  void flush();
+  /// Flushes to the disk.
+  checkpoint::SeriesMark mark();
+
+ private:
+  void take_order(std::string_view header, const Table& table);
+  const char* read_line(const char* text, Table& table) const;
+  void check(bool ok);
+  void write(const std::string& text);
+  std::filesystem::path file_;
+  std::string subject_;
+  std::vector<std::size_t> order_;  // which column of the table stands at each place of a line
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  std::unique_ptr<std::FILE, Close> stream_;
+  Hash hash_;
+  std::int64_t bytes_ = 0, lines_ = 0;
+};
+
+}  // namespace furrow::output

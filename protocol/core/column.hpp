@@ -1,0 +1,103 @@
+// Columns of result tables: what they are called, and how a line is made of what is measured at every synchronization. A
+// struct whose fields are all columns has one list of them:
+//
+//   template <class Visit>
+//   void visit_fields(Visit&& visit, FieldsOf<VehicleRow> auto& r) {
+//     visit(column::mean("speed_m_per_s", "m/s"), r.speed);
+//   }
+//
+// From it follow the table's columns, their means, the saved state and the files.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "protocol/core/fields.hpp"
+
+namespace furrow {
+
+/// What the value in a line is. Lines are some communication intervals apart.
+enum class ColumnKind {
+  instant,     // the value at the line's time
+  mean,        // of the intervals since the line before; measured is the value of each interval
+  cumulative,  // since the start of the run; who measures it sums it up
+  largest,     // since the start of the run; who measures it keeps it
+  derived,     // computed from the other columns of the line
+};
+
+struct Column : Field {  // its name ends in its unit
+  ColumnKind kind = ColumnKind::instant;
+  double sign = 1.0;  // of the value as it is written
+  const char* after =
+      "";  // of a column that is added to a table: the column that it follows; empty: it comes last
+
+  constexpr Column negative() const {
+    Column other = *this;
+    other.sign = -sign;
+    return other;
+  }
+  constexpr Column following(const char* column) const {
+    Column other = *this;
+    other.after = column;
+    return other;
+  }
+};
+
+namespace column {
+inline constexpr Column instant(const char* name, const char* unit = "-") {
+  return {{name, unit, role::column}, ColumnKind::instant};
+}
+inline constexpr Column mean(const char* name, const char* unit = "-") {
+  return {{name, unit, role::column}, ColumnKind::mean};
+}
+inline constexpr Column cumulative(const char* name, const char* unit = "-") {
+  return {{name, unit, role::column}, ColumnKind::cumulative};
+}
+inline constexpr Column largest(const char* name, const char* unit = "-") {
+  return {{name, unit, role::column}, ColumnKind::largest};
+}
+inline constexpr Column derived(const char* name, const char* unit = "-") {
+  return {{name, unit, role::column}, ColumnKind::derived};
+}
+}  // namespace column
+
+/// The columns of a struct whose fields are all columns, in the order of its list.
+template <HasFields Row>
+std::vector<Column> columns_of() {
+  std::vector<Column> columns;
+  const Row row{};
+  visit_fields([&](const Column& column, const double&) { columns.push_back(column); }, row);
+  return columns;
+}
+
+/// The values of such a struct, in the same order. @pre values.size() is the number of its columns
+template <HasFields Row>
+void get_values(const Row& row, std::span<double> values) {
+  std::size_t i = 0;
+  visit_fields([&](const Column&, const double& value) { values[i++] = value; }, row);
+}
+
+/// Takes what get_values gave.
+template <HasFields Row>
+void set_values(Row& row, std::span<const double> values) {
+  std::size_t i = 0;
+  visit_fields([&](const Column&, double& value) { value = values[i++]; }, row);
+}
+
+/// A line of a table by the names of its columns.
+struct LineView {
+  std::span<const Column> columns;
+  std::span<const double> values;  // as they are written
+
+  /// NaN when there is no such column.
+  double operator[](std::string_view name) const {
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      if (name == columns[i].name) return values[i];
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+};
+
+}  // namespace furrow

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "protocol/core/archive.hpp"
+#include "protocol/core/assert.hpp"
 #include "protocol/core/vec.hpp"
 
 namespace furrow {
@@ -17,8 +18,10 @@ void append_numbers(std::vector<double>& flat, const Matrices&... matrices) {
 }
 
 /// Takes the numbers of each matrix as append_numbers has added them. @returns where the next ones begin
+/// @pre as many stand there
 template <class... Matrices>
 const double* take_numbers(const double* from, Matrices&... matrices) {
+  FURROW_ASSERT(from != nullptr);
   ((std::copy_n(from, matrices.size(), matrices.data()), from += matrices.size()), ...);
   return from;
 }

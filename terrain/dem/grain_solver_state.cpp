@@ -2,6 +2,7 @@
 // lists as they stand, histories of touching pairs, and the accounts.
 #include <algorithm>
 
+#include "protocol/core/assert.hpp"
 #include "terrain/dem/grain_solver.hpp"
 
 namespace furrow::terrain::dem {
@@ -43,6 +44,7 @@ std::vector<double> flat(const Accounts& a) {
 }
 
 Accounts accounts_from(const std::vector<double>& v) {
+  FURROW_ASSERT(v.size() == 21, v.size());
   Accounts a;
   a.contact_work = v[0], a.elastic = v[1], a.elastic_start = v[2];
   a.wall_impulse = {v[3], v[4], v[5]};

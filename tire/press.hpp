@@ -29,7 +29,7 @@ struct PressResults {
   double runout = 0.0;            // of the tire at rest before it is pressed: its wrinkles, m
 };
 
-/// @pre the tire is not rigid. @throws Error(physics) when there is no equilibrium
+/// @pre the tire is not rigid; points > 0, deflection > 0. @throws Error(physics) when there is no equilibrium
 PressResults press_tire(const PressOptions& options, const ProgressCall& progress);
 
 /// summary.json without what names the run.

@@ -4,6 +4,9 @@
 //   M_spindle = Σ (x − c) × f − Δ(J ω)/H,  x − c the mean of the interval's ends
 #include "tire/rigid/rigid_tire.hpp"
 
+#include <algorithm>
+
+#include "protocol/core/assert.hpp"
 #include "protocol/core/constants.hpp"
 #include "tire/rim_archive.hpp"
 
@@ -45,6 +48,11 @@ Vec3 RigidTire::angular_momentum(const RimState& rim) const {
 }
 
 Outcome RigidTire::advance(const RimTrajectory& rim, const NodalForces& forces, int) {
+  FURROW_ASSERT(rim.duration() > 0.0, rim.duration());
+  FURROW_ASSERT(forces.force.size() == forces.vertex.size(), forces.force.size(), forces.vertex.size());
+  FURROW_ASSERT(std::all_of(forces.vertex.begin(), forces.vertex.end(),
+                            [&](int v) { return in_range(v, vertex_.size()); }),
+                vertex_.size());
   const RimState &start = rim.start(), &end = rim.end();
   const double duration = rim.duration();
   spindle_.force = mass_.mass * (kGravity - (end.velocity - start.velocity) / duration);

@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/core/fields.hpp"
 #include "protocol/core/vec.hpp"
@@ -49,6 +50,7 @@ class ByteWriter {
 
  private:
   void append(const void* from, std::size_t count) {
+    FURROW_ASSERT(from != nullptr || count == 0, count);
     const auto* bytes = static_cast<const std::byte*>(from);
     bytes_.insert(bytes_.end(), bytes, bytes + count);
   }
@@ -87,12 +89,15 @@ class ByteReader {
 
  private:
   std::size_t length(std::size_t size_each) {
+    FURROW_ASSERT(size_each > 0, size_each);
     std::uint64_t count = 0;
     (*this)(count);
     if (count > (bytes_.size() - at_) / size_each) fail();
     return count;
   }
   void copy(void* to, std::size_t count) {
+    FURROW_ASSERT(at_ <= bytes_.size(), at_, bytes_.size());
+    FURROW_ASSERT(to != nullptr || count == 0, count);
     if (count > bytes_.size() - at_) fail();
     if (count > 0) std::memcpy(to, bytes_.data() + at_, count);
     at_ += count;

@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/transport.hpp"
 
 namespace furrow {
 namespace {
 
 std::vector<Address> all_nodes(int tire_count) {
+  FURROW_ASSERT(tire_count >= 0, tire_count);
   std::vector<Address> nodes{{Role::rig, 0}};
   for (int k = 0; k < tire_count; ++k) nodes.push_back({Role::tire, k});
   nodes.push_back({Role::terrain, 0});
@@ -21,6 +23,7 @@ void require_same(const NodeCard& first, const NodeCard& card, const char* what,
 }
 
 void check(const std::vector<NodeCard>& cards, const std::vector<Address>& nodes) {
+  FURROW_ASSERT(cards.size() == nodes.size() && cards.size() >= 2, cards.size(), nodes.size());
   const NodeCard &rig = cards.front(), &terrain = cards.back();
   for (std::size_t i = 0; i < cards.size(); ++i) {
     const NodeCard& card = cards[i];

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <utility>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/node_transport.hpp"
 
 namespace furrow {
@@ -22,7 +23,9 @@ struct Mailbox {
 
 class QueueWire final : public Wire {
  public:
-  QueueWire(std::shared_ptr<std::vector<Mailbox>> boxes, int self) : boxes_(std::move(boxes)), self_(self) {}
+  QueueWire(std::shared_ptr<std::vector<Mailbox>> boxes, int self) : boxes_(std::move(boxes)), self_(self) {
+    FURROW_ASSERT(boxes_ != nullptr && in_range(self_, boxes_->size()), self_);
+  }
 
   int self() const override { return self_; }
   int node_count() const override { return static_cast<int>(boxes_->size()); }
@@ -39,6 +42,7 @@ class QueueWire final : public Wire {
     arrivals_seen_ = own().arrivals;
   }
   std::optional<Bytes> take(int from, MessageKind kind) override {
+    FURROW_ASSERT(in_range(from, boxes_->size()), from, boxes_->size());
     const std::lock_guard lock(own().mutex);
     return pop(own().data[{from, kind}]);
   }
@@ -60,6 +64,7 @@ class QueueWire final : public Wire {
 
   template <class Put>
   void deliver(int to, const Put& put) {
+    FURROW_ASSERT(in_range(to, boxes_->size()), to, boxes_->size());
     Mailbox& box = (*boxes_)[to];
     const std::lock_guard lock(box.mutex);
     put(box);
@@ -82,6 +87,7 @@ class QueueWire final : public Wire {
 }  // namespace
 
 std::vector<std::unique_ptr<Transport>> make_in_process_transports(int tire_count) {
+  FURROW_ASSERT(tire_count >= 0, tire_count);
   const int nodes = tire_count + 2;
   auto boxes = std::make_shared<std::vector<Mailbox>>(nodes);
   std::vector<HostNode> host;

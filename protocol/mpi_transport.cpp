@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/mpi_session.hpp"
 #include "protocol/mpi_wire.hpp"
 #include "protocol/node_transport.hpp"
@@ -15,6 +16,7 @@ namespace furrow {
 namespace {
 
 Address address_of(int rank, int tires) {
+  FURROW_ASSERT(rank >= 0 && tires >= 0, rank, tires);
   if (rank == 0) return {Role::rig, 0};
   if (rank <= tires) return {Role::tire, rank - 1};
   return {Role::terrain, 0};

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <ctime>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/peer_clock.hpp"
 
@@ -36,6 +37,7 @@ bool receive_any(const Communicator& comm, int& from, int& tag, Bytes& payload) 
 }
 
 void sleep_for(double seconds) {
+  FURROW_ASSERT(seconds >= 0.0 && seconds < 1.0, seconds);
   const timespec length{0, static_cast<long>(seconds * 1e9)};
   nanosleep(&length, nullptr);
 }
@@ -66,6 +68,7 @@ void MpiWire::send_control(int to, Bytes payload) {
 }
 
 void MpiWire::post(std::deque<PendingSend>& sends, const Communicator& comm, int to, int tag, Bytes payload) {
+  FURROW_ASSERT(in_range(to, nodes_), to, nodes_);
   if (payload.size() > static_cast<std::size_t>(INT_MAX))
     throw Error(ExitCode::rank_lost, "a message of more than 2 GiB cannot be sent");
   complete(sends);
@@ -100,6 +103,7 @@ int MpiWire::unsent_to() const {
 }
 
 std::optional<Bytes> MpiWire::take(int from, MessageKind kind) {
+  FURROW_ASSERT(in_range(from, nodes_), from, nodes_);
   const auto found = arrived_.find({from, static_cast<int>(kind)});
   if (found == arrived_.end() || found->second.empty()) return std::nullopt;
   std::optional<Bytes> first(std::move(found->second.front()));
@@ -115,6 +119,7 @@ std::optional<ControlBytes> MpiWire::take_control() {
 }
 
 void MpiWire::idle(int polls, double waited) {
+  FURROW_ASSERT(polls >= 0 && waited >= 0.0, polls, waited);
   if (polls < kYields) {
     sched_yield();
     return;

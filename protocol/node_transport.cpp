@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/peer_clock.hpp"
 
 namespace furrow {
@@ -14,7 +15,9 @@ constexpr double kWaitWorthTelling = 1.0;  // s; a quarter of the time-out if th
 /// Counts a wait, and ends it for the others, however it ends.
 class Wait {
  public:
-  Wait(PeerWatch& watch, WaitClock& clock, double timeout) : watch_(watch), clock_(clock), time_(timeout) {}
+  Wait(PeerWatch& watch, WaitClock& clock, double timeout) : watch_(watch), clock_(clock), time_(timeout) {
+    FURROW_ASSERT(timeout > 0.0, timeout);
+  }
   ~Wait() {
     clock_.waited_s += time_.total();
     try {
@@ -39,7 +42,9 @@ NodeTransport::NodeTransport(std::unique_ptr<Wire> wire, int tire_count, std::ve
     : wire_(std::move(wire)),
       tire_count_(tire_count),
       host_nodes_(std::move(host_nodes)),
-      watch_(*wire_, tire_count) {}
+      watch_(*wire_, tire_count) {
+  FURROW_ASSERT(tire_count >= 0 && wire_->node_count() >= tire_count + 2, tire_count, wire_->node_count());
+}
 
 int NodeTransport::number(Address node) const {
   switch (node.role) {

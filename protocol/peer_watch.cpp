@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "protocol/byte_stream.hpp"
+#include "protocol/core/assert.hpp"
 #include "protocol/peer_clock.hpp"
 
 namespace furrow {
@@ -25,6 +26,7 @@ PeerWatch::PeerWatch(Wire& wire, int tire_count)
       last_heartbeat_(-std::numeric_limits<double>::infinity()) {}
 
 Address PeerWatch::address(int node) const {
+  FURROW_ASSERT(node >= 0, node);
   if (node == 0) return {Role::rig, 0};
   if (node <= tire_count_) return {Role::tire, node - 1};
   return {Role::terrain, 0};
@@ -74,6 +76,7 @@ void PeerWatch::heartbeat() {
 }
 
 void PeerWatch::announce_failure(ExitCode code, const std::string& text) {
+  FURROW_ASSERT(code != ExitCode::done, static_cast<int>(code), text);
   if (failed()) return;  // one failure is told once, by the node that had it
   announced_ = true;
   ByteWriter writer;
@@ -83,7 +86,10 @@ void PeerWatch::announce_failure(ExitCode code, const std::string& text) {
   to_all_others(writer.take());
 }
 
-void PeerWatch::begin_wait(int node) { waits_for_ = node; }
+void PeerWatch::begin_wait(int node) {
+  FURROW_ASSERT(in_range(node, peers_.size()) && node != wire_.self(), node, wire_.self());
+  waits_for_ = node;
+}
 
 void PeerWatch::tell_wait() {
   if (told_) return;
@@ -98,6 +104,7 @@ void PeerWatch::end_wait() {
 }
 
 void PeerWatch::tell(int target) {
+  FURROW_ASSERT(target >= -1 && target < wire_.node_count(), target, wire_.node_count());
   ByteWriter writer;
   writer(Control::waiting);
   writer(static_cast<std::int32_t>(target));
@@ -105,6 +112,7 @@ void PeerWatch::tell(int target) {
 }
 
 Error PeerWatch::lost(int from, const std::string& what, double timeout) const {
+  FURROW_ASSERT(in_range(from, peers_.size()), from, peers_.size());
   std::string text = fmt::format("{} waited {:g} s for {} ({})", to_string(address(wire_.self())), timeout,
                                  to_string(address(from)), what);
   std::vector<bool> met(peers_.size(), false);
@@ -122,6 +130,7 @@ Error PeerWatch::lost(int from, const std::string& what, double timeout) const {
 }
 
 void PeerWatch::to_all_others(const Bytes& payload) {
+  FURROW_ASSERT(!payload.empty(), payload.size());
   for (int node = 0; node < wire_.node_count(); ++node)
     if (node != wire_.self()) wire_.send_control(node, payload);
 }

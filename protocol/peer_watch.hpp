@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/transport.hpp"
 #include "protocol/wire.hpp"
 
@@ -28,7 +29,10 @@ class PeerWatch {
   bool failed() const { return announced_ || failure_.has_value(); }
 
   /// Counts the signs of life from a node.
-  std::int64_t heard(int node) const { return peers_[node].heard; }
+  std::int64_t heard(int node) const {
+    FURROW_ASSERT(in_range(node, peers_.size()), node, peers_.size());
+    return peers_[node].heard;
+  }
 
   /// This node's own waiting; the others are told only of a wait that lasts.
   void begin_wait(int node);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "protocol/core/assert.hpp"
+
 namespace furrow::terrain {
 namespace {
 
@@ -31,6 +33,8 @@ std::vector<double> transverse_profile(const HeightField& before, const HeightFi
 /// between cells. Cells without grains are passed over; the bin's edge ends the search.
 double crossing(const std::vector<double>& y, const std::vector<double>& profile, int from, int step,
                 double level) {
+  FURROW_ASSERT(y.size() == profile.size() && in_range(from, y.size()), y.size(), profile.size(), from);
+  FURROW_ASSERT(step == 1 || step == -1, step);
   const int count = static_cast<int>(y.size());
   const auto inside = [count](int i) { return i >= 0 && i < count; };
   const auto below = [&](int i) { return !inside(i) || !(profile[i] >= level); };
@@ -50,6 +54,11 @@ double crossing(const std::vector<double>& y, const std::vector<double>& profile
 }  // namespace
 
 Rut measure_rut(const HeightField& before, const HeightField& after, const RutOptions& o) {
+  FURROW_ASSERT(std::abs(o.direction) == 1.0, o.direction);
+  FURROW_ASSERT(before.height.size() == static_cast<std::size_t>(before.nx) * before.ny, before.height.size(),
+                before.nx, before.ny);
+  FURROW_ASSERT(after.height.size() == static_cast<std::size_t>(after.nx) * after.ny, after.height.size(),
+                after.nx, after.ny);
   Rut rut;
   const bool same_grid = before.nx == after.nx && before.ny == after.ny && after.nx > 0 && after.ny > 0;
   const double travelled = o.direction * (o.axle - o.start);

@@ -26,6 +26,7 @@ struct Rut {
 };
 
 /// Not measured where there are no grains, or where the wheel has not yet left such a stretch behind.
+/// @pre direction is 1 or −1
 Rut measure_rut(const HeightField& before, const HeightField& after, const RutOptions& options);
 
 }  // namespace furrow::terrain

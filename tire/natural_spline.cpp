@@ -3,11 +3,16 @@
 #include "tire/natural_spline.hpp"
 
 #include <algorithm>
+#include <functional>
+
+#include "protocol/core/assert.hpp"
 
 namespace furrow::tire {
 
 NaturalSpline::NaturalSpline(std::vector<double> t, std::vector<double> values)
     : t_(std::move(t)), y_(std::move(values)), second_(t_.size(), 0.0) {
+  FURROW_ASSERT(t_.size() >= 2 && y_.size() == t_.size(), t_.size(), y_.size());
+  FURROW_ASSERT(std::adjacent_find(t_.begin(), t_.end(), std::greater_equal<>()) == t_.end(), t_.size());
   const std::size_t n = t_.size();
   std::vector<double> diagonal(n, 1.0), right(n, 0.0);
   for (std::size_t k = 1; k + 1 < n; ++k) {

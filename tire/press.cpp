@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/text_file.hpp"
 #include "tire/ancf/inflation.hpp"
@@ -21,6 +22,7 @@ constexpr double kEdgePressure = 0.02;  // of the largest: where the footprint e
 /// Deflection that carries the load, between two points of the curve; the solver is left there.
 template <class Press>
 PressPoint find_load(Press&& press, PressPoint low, PressPoint high, double load) {
+  FURROW_ASSERT(load > low.force && load <= high.force, load, low.force, high.force);
   PressPoint now = high;
   for (int n = 0; n < kMaxTrials && std::abs(now.force - load) > kLoadTolerance * load; ++n) {
     const double share = std::clamp((load - low.force) / (high.force - low.force), 0.02, 0.98);
@@ -39,6 +41,7 @@ struct Extent {
 }  // namespace
 
 PressResults press_tire(const TireFile& file, const PressOptions& options, const ProgressCall& progress) {
+  FURROW_ASSERT(options.points > 0 && options.deflection > 0.0, options.points, options.deflection);
   const ShellMesh mesh = make_shell_mesh(file);
   const ShellCarcass shell(file, mesh);
   InflationReport inflation;

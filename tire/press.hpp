@@ -36,7 +36,7 @@ class StaticTest {
   virtual PressResults press(const PressOptions& options, const ProgressCall& progress) const = 0;
 };
 
-/// The static test of the shell. @throws Error(physics) when there is no equilibrium
+/// The static test of the shell. @pre points > 0, deflection > 0. @throws Error(physics) when there is no equilibrium
 PressResults press_tire(const TireFile& file, const PressOptions& options, const ProgressCall& progress);
 
 /// summary.json without what names the run.

@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "protocol/core/assert.hpp"
+
 namespace furrow::tire {
 namespace {
 bool by_pressure(const PressureSchedule::Knot& a, const PressureSchedule::Knot& b) {
@@ -12,6 +14,7 @@ bool by_pressure(const PressureSchedule::Knot& a, const PressureSchedule::Knot& 
 }  // namespace
 
 double PressureSchedule::at(double time) const {
+  FURROW_ASSERT(!knots.empty(), time);
   const auto after = std::find_if(knots.begin(), knots.end(), [&](const Knot& k) { return k.time > time; });
   if (after == knots.begin()) return knots.front().pressure;
   if (after == knots.end()) return knots.back().pressure;
@@ -20,10 +23,12 @@ double PressureSchedule::at(double time) const {
 }
 
 double PressureSchedule::lowest() const {
+  FURROW_ASSERT(!knots.empty(), knots.size());
   return std::min_element(knots.begin(), knots.end(), by_pressure)->pressure;
 }
 
 double PressureSchedule::highest() const {
+  FURROW_ASSERT(!knots.empty(), knots.size());
   return std::max_element(knots.begin(), knots.end(), by_pressure)->pressure;
 }
 

@@ -18,7 +18,7 @@ struct PressureSchedule {
 
   bool empty() const { return knots.empty(); }
   bool varies() const { return knots.size() > 1; }
-  double at(double time) const;  // Pa; only of a schedule that is not empty
+  double at(double time) const;  // Pa; @pre not empty, as for the next two
   double lowest() const;
   double highest() const;
   bool operator==(const PressureSchedule&) const = default;

@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+
+#include "protocol/core/assert.hpp"
 
 namespace furrow::tire {
 
 double inflated_reach(Tire& tire, double camber) {
+  FURROW_ASSERT(std::abs(camber) < 0.5 * std::numbers::pi, camber);
   tire.place(RimState());
   SurfaceState inflated;
   tire.surface(inflated);

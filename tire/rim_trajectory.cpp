@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "protocol/core/archive_fields.hpp"
+#include "protocol/core/assert.hpp"
 
 namespace furrow::tire {
 namespace {
@@ -30,6 +31,7 @@ struct Hermite {
 };
 
 Hermite hermite(const Vec3& x0, const Vec3& v0, const Vec3& x1, const Vec3& v1, double duration, double s) {
+  FURROW_ASSERT(duration > 0.0, duration);
   const double s2 = s * s, s3 = s2 * s;
   const Vec3 m0 = duration * v0, m1 = duration * v1;
   Hermite h;
@@ -44,6 +46,7 @@ Hermite hermite(const Vec3& x0, const Vec3& v0, const Vec3& x1, const Vec3& v1, 
 RimTrajectory::RimTrajectory(const RimState& start) : start_(start), end_(start) {}
 
 void RimTrajectory::extend(const RimState& received, double duration) {
+  FURROW_ASSERT(duration > 0.0 && std::isfinite(duration), duration);
   start_ = end_;
   duration_ = duration;
   end_.position = received.position + duration * received.velocity;
@@ -54,6 +57,7 @@ void RimTrajectory::extend(const RimState& received, double duration) {
 }
 
 RimKinematics RimTrajectory::at(double s) const {
+  FURROW_ASSERT(s >= 0.0 && s <= 1.0, s);
   if (s >= 1.0 && duration_ == 0.0) return {end_, Vec3::Zero(), Vec3::Zero()};
   const Hermite x = hermite(start_.position, start_.velocity, end_.position, end_.velocity, duration_, s);
   const Hermite phi =

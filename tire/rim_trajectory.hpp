@@ -23,10 +23,10 @@ class RimTrajectory {
   explicit RimTrajectory(const RimState& start = {});
 
   /// Begins the next interval: from where the last one ended to `received` extrapolated by `duration` at
-  /// constant velocity and angular velocity.
+  /// constant velocity and angular velocity. @pre duration > 0
   void extend(const RimState& received, double duration);
 
-  /// @param s share of the interval, 0…1
+  /// @param s share of the interval. @pre 0 ≤ s ≤ 1
   RimKinematics at(double s) const;
   const RimState& start() const { return start_; }
   const RimState& end() const { return end_; }

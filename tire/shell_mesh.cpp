@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "tire/natural_spline.hpp"
 
@@ -23,6 +24,11 @@ Vec3 blend(const std::array<double, 4>& w, const std::array<Vec3, 4>& v) {
 struct Corner {
   std::array<Vec3, 4> r, d;
   Corner(const ShellMesh& mesh, int j) {
+    FURROW_ASSERT(in_range(j, mesh.elements_width()), j, mesh.elements_width());
+    FURROW_ASSERT(mesh.position.size() == static_cast<std::size_t>(mesh.rows), mesh.position.size(),
+                  mesh.rows);
+    FURROW_ASSERT(mesh.director.size() == static_cast<std::size_t>(mesh.rows), mesh.director.size(),
+                  mesh.rows);
     const Mat3 next = mesh.turn(1);
     r = {mesh.position[j], next * mesh.position[j], next * mesh.position[j + 1], mesh.position[j + 1]};
     d = {mesh.director[j], next * mesh.director[j], next * mesh.director[j + 1], mesh.director[j + 1]};
@@ -50,11 +56,15 @@ void add_point(ElementMass& m, double xi, double eta, double z, double dm) {
 
 }  // namespace
 
-double ShellMesh::pitch() const { return 2.0 * std::numbers::pi / columns; }
+double ShellMesh::pitch() const {
+  FURROW_ASSERT(columns > 0, columns);
+  return 2.0 * std::numbers::pi / columns;
+}
 
 Mat3 ShellMesh::turn(int i) const { return Eigen::AngleAxisd(i * pitch(), Vec3::UnitY()).toRotationMatrix(); }
 
 Vec3 ShellMesh::disc_centre(int side) const {
+  FURROW_ASSERT(in_range(side, 2) && !position.empty(), side, position.size());
   return Vec3(0.0, (side == 0 ? position.front() : position.back()).y(), 0.0);
 }
 
@@ -90,6 +100,7 @@ ShellMesh make_shell_mesh(const TireFile& file) {
 }
 
 SurfaceMesh make_surface_mesh(const ShellMesh& mesh) {
+  FURROW_ASSERT(mesh.columns >= 3 && mesh.rows >= 2, mesh.columns, mesh.rows);
   SurfaceMesh surface;
   surface.vertex_count = mesh.nodes() + 2;
   const int left = mesh.nodes(), right = left + 1, last = mesh.rows - 1;
@@ -113,6 +124,7 @@ SurfaceMesh make_surface_mesh(const ShellMesh& mesh) {
 }
 
 std::vector<ElementMass> element_masses(const TireFile& file, const ShellMesh& mesh) {
+  FURROW_ASSERT(file.elements_width() == mesh.elements_width(), file.elements_width(), mesh.elements_width());
   std::vector<ElementMass> masses;
   for (int j = 0; j < mesh.elements_width(); ++j) {
     ElementMass m = ElementMass::Zero();
@@ -144,6 +156,8 @@ std::vector<ElementMass> element_masses(const TireFile& file, const ShellMesh& m
 // T = ½ ωᵀ J ω with the nodal velocities ω × r and ω × d: J = Σ M_ab (x_a·x_b I − x_a x_bᵀ), x = r or d; the
 // sum over the columns averages the two axes across the spin.
 MassProperties rigid_mass(const ShellMesh& mesh, const std::vector<ElementMass>& masses) {
+  FURROW_ASSERT(masses.size() == static_cast<std::size_t>(mesh.elements_width()), masses.size(),
+                mesh.elements_width());
   MassProperties properties;
   Mat3 one = Mat3::Zero();
   for (int j = 0; j < mesh.elements_width(); ++j) {
@@ -162,6 +176,7 @@ MassProperties rigid_mass(const ShellMesh& mesh, const std::vector<ElementMass>&
 }
 
 double tread_width(const TireFile& file, const ShellMesh& mesh) {
+  FURROW_ASSERT(mesh.rows == file.elements_width() + 1, mesh.rows, file.elements_width());
   const int first = file.bead.elements_per_side + file.sidewall.elements_per_side;
   return mesh.position[mesh.rows - 1 - first].y() - mesh.position[first].y();
 }

@@ -9,6 +9,7 @@
 
 #include <vector>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/surface.hpp"
 #include "tire/tire_file.hpp"
 
@@ -22,7 +23,10 @@ struct ShellMesh {
 
   int elements_width() const { return rows - 1; }
   int nodes() const { return columns * rows; }
-  int node(int i, int j) const { return i * rows + j; }
+  int node(int i, int j) const {
+    FURROW_ASSERT(in_range(i, columns) && in_range(j, rows), i, columns, j, rows);
+    return i * rows + j;
+  }
   double pitch() const;    // angle between columns, rad
   Mat3 turn(int i) const;  // from column 0 to column i
   Vec3 node_position(int i, int j) const { return turn(i) * position[j]; }

@@ -8,11 +8,13 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 
 namespace furrow::tire {
 
 const Section& TireFile::section(int j) const {
+  FURROW_ASSERT(in_range(j, elements_width()), j, elements_width());
   const int from_edge = std::min(j, elements_width() - 1 - j);
   if (from_edge < bead.elements_per_side) return bead;
   return from_edge < bead.elements_per_side + sidewall.elements_per_side ? sidewall : tread;

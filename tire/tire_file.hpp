@@ -68,7 +68,7 @@ struct TireFile {
   int elements_width() const {
     return 2 * (bead.elements_per_side + sidewall.elements_per_side + tread.elements_per_side);
   }
-  /// The section of element j of the width, counted from the left bead.
+  /// The section of element j of the width, counted from the left bead. @pre 0 ≤ j < elements_width()
   const Section& section(int j) const;
 };
 

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "protocol/core/assert.hpp"
+
 namespace furrow::tire {
 
 Wrench WheelAxes::wrench(const Vec3& force, const Vec3& moment, const Vec3& about) const {
@@ -9,6 +11,12 @@ Wrench WheelAxes::wrench(const Vec3& force, const Vec3& moment, const Vec3& abou
 }
 
 WheelAxes wheel_axes(const RimState& rim, const Vec3& travel, double ground) {
+  FURROW_ASSERT(std::abs(travel.norm() - 1.0) < 1e-9, travel.transpose());
+  FURROW_ASSERT((rim.orientation * Vec3::UnitY()).cross(Vec3::UnitZ()).norm() > 1e-6,
+                rim.orientation.coeffs().transpose());
+  FURROW_ASSERT((rim.orientation * Vec3::UnitY()).dot(Vec3::UnitZ().cross(travel)) != 0.0,
+                travel.transpose());
+  FURROW_ASSERT(std::isfinite(ground), ground);
   WheelAxes w;
   Vec3 axle = rim.orientation * Vec3::UnitY();
   if (axle.dot(w.z.cross(travel)) < 0.0) axle = -axle;

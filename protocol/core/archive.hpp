@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 
 namespace furrow {
@@ -52,9 +53,11 @@ class Archive {
   bool has(const std::string& name) const { return arrays_.count(prefix_ + name) != 0; }
 
   /// Puts `folder` in front of all names while it lives: `Archive::Scope scope(archive, "tire/");`
+  /// @pre the folder ends in a slash
   class Scope {
    public:
     Scope(Archive& archive, const std::string& folder) : archive_(archive), before_(archive.prefix_) {
+      FURROW_ASSERT(!folder.empty() && folder.back() == '/', folder);
       archive_.prefix_ += folder;
     }
     Scope(const Archive& archive, const std::string& folder) : Scope(const_cast<Archive&>(archive), folder) {}

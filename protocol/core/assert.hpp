@@ -1,10 +1,11 @@
 // Preconditions and invariants that are checked while a program is tested: on in the builds dev, audit and asan (CMake option
 // FURROW_ASSERTS), nothing in others.
 //
-//   FURROW_ASSERT(i < size(), i, size());
+//   FURROW_ASSERT(in_range(i, size()), i, size());
 //
-// prints "FILE:LINE: FUNCTION: precondition failed: i < size() [i, size() = 12, 10]" and aborts. It never throws: it may stand
-// inside an OpenMP region. What a user can cause is no assertion but an Error (error.hpp) or an Outcome (outcome.hpp).
+// prints "FILE:LINE: FUNCTION: precondition failed: in_range(i, size()) [i, size() = 12, 10]" and aborts. It never throws:
+// it may stand inside an OpenMP region. What a user can cause is no assertion but an Error (error.hpp) or an Outcome
+// (outcome.hpp).
 #pragma once
 
 #include <cstdio>
@@ -12,6 +13,17 @@
 #include <sstream>
 #include <string>
 #include <type_traits>
+#include <utility>
+
+namespace furrow {
+
+/// Whether `index` names one of `size` entries; of any integer types.
+template <class Index, class Size>
+constexpr bool in_range(Index index, Size size) {
+  return std::cmp_greater_equal(index, 0) && std::cmp_less(index, size);
+}
+
+}  // namespace furrow
 
 namespace furrow::detail {
 

@@ -5,15 +5,17 @@
 #include <string>
 #include <type_traits>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/fields.hpp"
 #include "protocol/core/hash.hpp"
 
 namespace furrow {
 
 /// Adds name and value of every field that has all `roles` and is not the default's.
-/// @pre these fields are numbers, enumerations, switches or strings
+/// @pre some role is asked for; these fields are numbers, enumerations, switches or strings
 template <HasFields T>
 void add_fields(Hash& hash, const T& values, unsigned roles) {
+  FURROW_ASSERT(roles != role::none, roles);
   const T defaults{};
   // The same list twice: the second pass knows the default of each field by its place in it.
   const auto each = [&](auto&& take) {

@@ -6,11 +6,14 @@
 #include <string>
 #include <string_view>
 
+#include "protocol/core/assert.hpp"
+
 namespace furrow {
 
 class Hash {
  public:
   void add(const void* bytes, std::size_t count) {
+    FURROW_ASSERT(bytes != nullptr || count == 0, count);
     const auto* p = static_cast<const unsigned char*>(bytes);
     for (std::size_t i = 0; i < count; ++i) value_ = (value_ ^ p[i]) * 1099511628211ULL;
   }

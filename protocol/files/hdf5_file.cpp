@@ -4,6 +4,7 @@
 #include <functional>
 #include <numeric>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/hdf5_handle.hpp"
 #include "protocol/files/text_file.hpp"
@@ -48,6 +49,7 @@ void Hdf5Writer::check(bool ok, const std::string& what) const {
 template <class T>
 void Hdf5Writer::write(const std::string& name, std::span<const T> values, const std::vector<hsize_t>& shape,
                        hid_t type) {
+  FURROW_ASSERT(!name.empty() && !shape.empty(), name, shape.size());
   const hsize_t count = std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>());
   if (count != values.size()) throw io_error(file_.string(), "dataset '" + name + "' does not fit its shape");
   const Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
@@ -106,6 +108,7 @@ void Hdf5Writer::attribute(const std::string& name, const std::string& text) {
 }
 
 void Hdf5Writer::finish() {
+  FURROW_ASSERT(handle_ >= 0, file_.string());
   check(H5Fflush(handle_, H5F_SCOPE_LOCAL) >= 0, "cannot flush");
   const herr_t closed = H5Fclose(handle_);
   handle_ = -1;

@@ -3,6 +3,8 @@
 
 #include <hdf5.h>
 
+#include "protocol/core/assert.hpp"
+
 namespace furrow {
 
 /// An HDF5 identifier that closes itself.
@@ -18,6 +20,7 @@ class Handle {
   bool ok() const { return id_ >= 0; }
   /// Closes now; false when what was buffered could not be written.
   bool close() {
+    FURROW_ASSERT(id_ >= 0, id_);
     const bool good = close_(id_) >= 0;
     id_ = -1;
     return good;

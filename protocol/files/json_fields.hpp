@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/fields.hpp"
 
 namespace furrow {
@@ -15,6 +16,7 @@ namespace furrow {
 /// @pre the object was checked against the schema: a value of another type throws nlohmann::json::exception
 template <HasFields T>
 void read_fields(const nlohmann::json& object, T& target, unsigned roles = role::key) {
+  FURROW_ASSERT(object.is_object(), object.type_name());
   visit_fields(
       [&](const Field& field, auto& value) {
         using Value = std::remove_reference_t<decltype(value)>;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "protocol/core/assert.hpp"
+
 namespace furrow::terrain::dem {
 
 void Activity::plan(const Strips& strips) {
@@ -29,6 +31,7 @@ bool Activity::calm(const Strip& strip) const {
 }
 
 double Activity::put_to_sleep(Strip& strip, Grains& grains) {
+  FURROW_ASSERT(!strip.asleep && strip.last <= grains.count, strip.last, grains.count);
   const double removed = strip.motion.kinetic;
   std::fill(grains.velocity.begin() + strip.first, grains.velocity.begin() + strip.last, Quad{});
   std::fill(grains.spin.begin() + strip.first, grains.spin.begin() + strip.last, Quad{});
@@ -40,6 +43,7 @@ double Activity::put_to_sleep(Strip& strip, Grains& grains) {
 }
 
 void Activity::wake_moving(const Resorted& range, Strips& strips, const Grains& grains) {
+  FURROW_ASSERT(range.from >= 0 && range.to <= strips.count(), range.from, range.to, strips.count());
   const auto moves = [](const Quad& v) { return v.x != 0.0 || v.y != 0.0 || v.z != 0.0; };
   for (int k = range.from; k < range.to; ++k) {
     Strip& strip = strips[k];

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "protocol/core/assert.hpp"
 #include "terrain/dem/strips.hpp"
 
 namespace furrow::terrain::dem {
@@ -33,14 +34,24 @@ class Activity {
     double wake_force = 0.0;   // net force on one grain that wakes its strip, N
   };
 
-  void limit(const Limits& limits) { limits_ = limits; }
+  void limit(const Limits& limits) {
+    FURROW_ASSERT(limits.mean_speed >= 0.0 && limits.speed >= 0.0, limits.mean_speed, limits.speed);
+    FURROW_ASSERT(!(limits.sleep_force > limits.wake_force), limits.sleep_force, limits.wake_force);
+    limits_ = limits;
+  }
 
   /// Decides from who is awake which strips are evaluated in the coming step.
   void plan(const Strips& strips);
   /// The list of strip k is evaluated: some grain named in it needs its net force.
-  bool evaluated(int k) const { return need_[k] & kList; }
+  bool evaluated(int k) const {
+    FURROW_ASSERT(in_range(k, need_.size()), k, need_.size());
+    return need_[k] & kList;
+  }
   /// The loads on the grains of strip k will be complete: it is awake, or sleeps beside one that is.
-  bool complete(int k) const { return need_[k] & kLoads; }
+  bool complete(int k) const {
+    FURROW_ASSERT(in_range(k, need_.size()), k, need_.size());
+    return need_[k] & kLoads;
+  }
 
   /// Calm strips where `busy(k)` is false fall asleep, strips pushed too hard or busy wake.
   /// Sets what stops moving to rest and returns its kinetic energy, J.

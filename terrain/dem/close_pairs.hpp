@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "protocol/core/assert.hpp"
 #include "terrain/dem/bin.hpp"
 #include "terrain/dem/quad.hpp"
 
@@ -23,6 +24,11 @@ inline Quad shortest(const Bin& bin, const Quad& a, const Quad& b) {
 /// @pre all points lie in the bin, and a periodic side is at least two reaches long.
 template <class F>
 void for_close_pairs(const std::vector<Quad>& points, const Bin& bin, double reach, F&& f) {
+  FURROW_ASSERT(reach > 0.0 && std::isfinite(reach), reach);
+  FURROW_ASSERT(!bin.periodic_x || bin.length >= 2.0 * reach, bin.length, reach);
+  FURROW_ASSERT(!bin.periodic_y || bin.width >= 2.0 * reach, bin.width, reach);
+  FURROW_ASSERT(std::all_of(points.begin(), points.end(), [&](const Quad& p) { return bin.holds(p); }),
+                points.size());
   struct Cell {
     std::int64_t x, y, z;
   };

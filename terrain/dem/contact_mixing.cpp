@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 
 namespace furrow::terrain::dem {
@@ -20,11 +21,13 @@ double damping_ratio(double restitution) {
 }
 
 double effective_young(const ContactMaterial& a, const ContactMaterial& b) {
+  FURROW_ASSERT(a.young_modulus > 0.0 && b.young_modulus > 0.0, a.young_modulus, b.young_modulus);
   return 1.0 / ((1.0 - a.poisson_ratio * a.poisson_ratio) / a.young_modulus +
                 (1.0 - b.poisson_ratio * b.poisson_ratio) / b.young_modulus);
 }
 
 double effective_shear(const ContactMaterial& a, const ContactMaterial& b) {
+  FURROW_ASSERT(a.poisson_ratio > -1.0 && b.poisson_ratio > -1.0, a.poisson_ratio, b.poisson_ratio);
   return 1.0 / (2.0 * (2.0 - a.poisson_ratio) * (1.0 + a.poisson_ratio) / a.young_modulus +
                 2.0 * (2.0 - b.poisson_ratio) * (1.0 + b.poisson_ratio) / b.young_modulus);
 }
@@ -46,6 +49,7 @@ LawKind law_from(const std::string& name) {
 const char* law_name(LawKind law) { return law == LawKind::mindlin ? "mindlin" : "hertz_tanh"; }
 
 GrainProperties grain_properties(double radius, double density) {
+  FURROW_ASSERT(radius > 0.0 && density > 0.0, radius, density);
   const double mass = density * 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
   return {.radius = radius, .mass = mass, .inertia = 0.4 * mass * radius * radius};
 }
@@ -71,6 +75,8 @@ LawSettings law_settings(const DemOptions& o) {
 
 ContactCoefficients mix(const ContactMaterial& grain, const ContactMaterial& other, Partner partner,
                         const GrainProperties& properties, const LawSettings& law) {
+  FURROW_ASSERT(properties.radius > 0.0 && properties.mass > 0.0, properties.radius, properties.mass);
+  FURROW_ASSERT(law.kind == LawKind::mindlin || !law.friction_impulse_limit || law.step > 0.0, law.step);
   const bool pair = partner == Partner::grain;
   const double r = properties.radius, r_star = pair ? 0.5 * r : r;
   const double other_mass = pair ? properties.mass : surface_mass(other, r);
@@ -108,6 +114,7 @@ ContactCoefficients mix(const ContactMaterial& grain, const ContactMaterial& oth
 }
 
 double mass_share(const GrainProperties& grain, const ContactMaterial& surface) {
+  FURROW_ASSERT(grain.radius > 0.0 && surface.area_density >= 0.0, grain.radius, surface.area_density);
   return grain.mass / surface_mass(surface, grain.radius);
 }
 
@@ -119,6 +126,8 @@ double mass_share(const GrainProperties& grain, const ContactMaterial& surface) 
 // Friction without history or limit is a dashpot c μ F_e at small |v_t|: 7 c μ F_e dt / m < 2 between equal spheres.
 StableStep stable_step(const ContactCoefficients& pair, const GrainProperties& grain, const LawSettings& law,
                        double overlap) {
+  FURROW_ASSERT(overlap > 0.0 && pair.stiffness > 0.0, overlap, pair.stiffness);
+  FURROW_ASSERT(grain.mass > 0.0, grain.mass);
   const double s = std::sqrt(overlap), q = std::sqrt(s), m = grain.mass;
   const bool history = law.kind == LawKind::mindlin;
   const auto stiffest = [&](double normal, double shear) {

@@ -44,6 +44,7 @@ enum class Partner {
 /// Mixing: k_n, g_n arithmetic mean; μ, e, c_t minimum; 1/E* = Σ(1−ν²)/E, 1/G* = Σ 2(2−ν)(1+ν)/E; R* = r/2 or r;
 /// 1/m* = Σ 1/m, of a tire its area density × 2√3 r²: a damper made for the grain's mass alone would, felt one step
 /// late, throw the lighter tire back and forth. Cohesion area π r² of the grain. For other sizes see size_scale.hpp.
+/// @pre radius and mass of the grain are positive; with the impulse limit of law coulomb law.step > 0
 ContactCoefficients mix(const ContactMaterial& grain, const ContactMaterial& other, Partner partner,
                         const GrainProperties& properties, const LawSettings& law);
 
@@ -55,7 +56,7 @@ struct StableStep {
   double step = 0.0;   // s
   std::string reason;  // "stiffness", "damping", "friction viscosity"
 };
-/// For a bed whose contacts have overlap `overlap` and six neighbours per grain.
+/// For a bed whose contacts have overlap `overlap` and six neighbours per grain. @pre overlap, stiffness, mass > 0
 StableStep stable_step(const ContactCoefficients& pair, const GrainProperties& grain, const LawSettings& law,
                        double overlap);
 

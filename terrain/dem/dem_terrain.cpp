@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/constants.hpp"
 #include "protocol/core/error.hpp"
 #include "terrain/dem/beds/bed_generators.hpp"
@@ -79,6 +80,7 @@ class DemTerrain : public Terrain {
   }
 
   double top_height(double x_min, double x_max, double y_min, double y_max) const override {
+    FURROW_ASSERT(x_min <= x_max && y_min <= y_max, x_min, x_max, y_min, y_max);
     return dem::top_height(solver_.grains(), x_min, x_max, y_min, y_max);
   }
   double mean_height(double x_min, double x_max, double y_min, double y_max) const override {
@@ -102,6 +104,7 @@ class DemTerrain : public Terrain {
 
   Outcome advance(std::span<const SurfaceState> targets, double duration, int substeps,
                   std::span<NodalForces> forces, std::span<ContactSums> contact) override {
+    FURROW_ASSERT(duration > 0.0 && substeps > 0, duration, substeps);
     const double dt = duration / substeps;
     if (dt != dt_) set_step(dt);
     dem::SurfaceContacts& surfaces = solver_.surfaces();
@@ -187,6 +190,7 @@ class DemTerrain : public Terrain {
   }
 
   void set_step(double dt) {
+    FURROW_ASSERT(dt > 0.0, dt);
     dt_ = dt;
     solver_.set_coefficients(dem::run_coefficients(options_, dt));
     for (int k = 0; k < solver_.surfaces().count(); ++k)
@@ -212,6 +216,7 @@ class DemTerrain : public Terrain {
   }
 
   Outcome lost_grain(int index) const {
+    FURROW_ASSERT(in_range(index, solver_.grains().count), index, solver_.grains().count);
     const dem::Quad& x = solver_.grains().position[index];
     return Outcome::failure(
         fmt::format("lost grain {}", solver_.grains().id[index]),

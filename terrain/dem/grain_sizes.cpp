@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 
 namespace furrow::terrain::dem {
@@ -58,6 +59,7 @@ double smallest_radius(const DemOptions& o) { return o.radius * (1.0 - o.size_sp
 double largest_radius(const DemOptions& o) { return o.radius * (1.0 + o.size_spread); }
 
 DemOptions of_one_size(DemOptions options, double radius) {
+  FURROW_ASSERT(radius > 0.0, radius);
   options.radius = radius;
   options.size_spread = 0.0;
   return options;
@@ -65,10 +67,12 @@ DemOptions of_one_size(DemOptions options, double radius) {
 
 // Both distributions are symmetric: the mean of (1 + s x)³ is 1 + 3 s² var(x).
 double mean_volume_ratio(const DemOptions& o) {
+  FURROW_ASSERT(o.size_spread >= 0.0 && o.size_spread < 1.0, o.size_spread);
   return 1.0 + 3.0 * o.size_spread * o.size_spread * relative_variance(o);
 }
 
 void draw_radii(const DemOptions& o, std::vector<Quad>& grains) {
+  FURROW_ASSERT(o.radius > 0.0 && o.size_spread >= 0.0 && o.size_spread < 1.0, o.radius, o.size_spread);
   Draw draw(o, o.seed * 1000003ULL + 0x9e3779b9ULL);
   for (Quad& p : grains) p.w = o.size_spread > 0.0 ? o.radius * (1.0 + o.size_spread * draw()) : o.radius;
 }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <omp.h>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 
 namespace furrow::terrain::dem {
@@ -39,6 +40,14 @@ GrainSolver::GrainSolver(const SolverParams& params)
     : params_(params),
       strips_(strip_options(params)),
       surfaces_(params.grain, params.largest_radius(), params.rolling) {
+  FURROW_ASSERT(params.grain.radius > 0.0, params.grain.radius);
+  FURROW_ASSERT(params.grain.mass > 0.0 && params.grain.inertia > 0.0, params.grain.mass,
+                params.grain.inertia);
+  FURROW_ASSERT(params.bin.length > 0.0 && params.bin.width > 0.0, params.bin.length, params.bin.width);
+  FURROW_ASSERT(params.skin >= 0.0 && params.gravity >= 0.0, params.skin, params.gravity);
+  FURROW_ASSERT(params.threads > 0, params.threads);
+  FURROW_ASSERT(!params.sizes() || params.smallest > 0.0, params.smallest, params.largest);
+  FURROW_ASSERT(!params.sizes() || params.law == LawKind::mindlin, params.smallest, params.largest);
   make_chunks();
 }
 
@@ -70,10 +79,12 @@ void GrainSolver::place(const std::vector<Quad>& positions) {
 }
 
 int GrainSolver::index_of(int id) const {
+  FURROW_ASSERT(in_range(id, grains_.count), id, grains_.count);
   return static_cast<int>(std::find(grains_.id.begin(), grains_.id.end(), id) - grains_.id.begin());
 }
 
 void GrainSolver::wake(int grain) {
+  FURROW_ASSERT(in_range(grain, grains_.count), grain, grains_.count);
   for (int k = 0; k < strips_.count(); ++k)
     if (grain >= strips_[k].first && grain < strips_[k].last) strips_[k].asleep = false, strips_[k].calm = 0;
 }
@@ -111,6 +122,8 @@ void GrainSolver::reset_accounts() {
 }
 
 void GrainSolver::LoadBuffer::assign(const Loads& from, int count) {
+  FURROW_ASSERT(count >= 0, count);
+  FURROW_ASSERT(from.force != nullptr || count == 0, count);
   force.assign(from.force, from.force + count);
   torque.assign(from.torque, from.torque + count);
 }
@@ -127,6 +140,9 @@ GrainSolver::Scratch<double>& GrainSolver::scratch() {
 /// Brings the motion of a strip's grains to `offset` of the scratch memory and clears their loads.
 template <class Real, bool kSizes>
 void GrainSolver::gather(Scratch<Real>& s, int strip, int offset) {
+  FURROW_ASSERT(in_range(strip, strips_.count()) && offset >= 0, strip, strips_.count(), offset);
+  FURROW_ASSERT(s.loads.force.size() >= static_cast<std::size_t>(offset + strips_[strip].grains()),
+                s.loads.force.size(), offset);
   const int first = strips_[strip].first, n = strips_[strip].grains();
   s.motion.template set<kSizes>(offset, &grains_.position[first], &grains_.velocity[first],
                                 &grains_.spin[first], n);
@@ -140,6 +156,7 @@ void GrainSolver::gather(Scratch<Real>& s, int strip, int offset) {
 
 template <class Real, class Law, bool kRolling, bool kSizes>
 void GrainSolver::contacts_of_strip(Scratch<Real>& s, int k, int offset, double dt, bool measure) {
+  FURROW_ASSERT(in_range(k, strips_.count()) && offset >= 0, k, strips_.count(), offset);
   Strip& strip = strips_[k];
   strip.contact = {};
   const Quad* x = grains_.position.data() + strip.first;
@@ -174,6 +191,7 @@ void GrainSolver::contacts_of_strip(Scratch<Real>& s, int k, int offset, double 
 
 template <class Real, class Law, bool kRolling, bool kSizes>
 void GrainSolver::run_chunk(Chunk& chunk, double dt, bool measure) {
+  FURROW_ASSERT(chunk.from < chunk.to && chunk.to <= strips_.count(), chunk.from, chunk.to, strips_.count());
   Scratch<Real>& s = scratch<Real>();
   const int first = strips_[chunk.from].first, last = strips_[chunk.to - 1].last;
   const int beyond = strips_.next(chunk.to - 1);
@@ -217,6 +235,8 @@ void GrainSolver::finish_chunk(Chunk& chunk, const Chunk* before, double dt, boo
 }
 
 void GrainSolver::finish_strip(int k, const Loads& loads, double dt, bool measure) {
+  FURROW_ASSERT(in_range(k, strips_.count()), k, strips_.count());
+  FURROW_ASSERT(loads.force != nullptr || strips_[k].grains() == 0, k, strips_[k].grains());
   Strip& strip = strips_[k];
   if (strip.asleep) {
     feel(strip, loads);
@@ -370,6 +390,9 @@ void GrainSolver::evaluate(double dt, bool measure) {
 }
 
 int GrainSolver::step(double dt, bool measure) {
+  FURROW_ASSERT(dt > 0.0 && std::isfinite(dt), dt);
+  FURROW_ASSERT(grains_.position.size() == static_cast<std::size_t>(grains_.count + Grains::kBeyond),
+                grains_.position.size());
   const auto threads = static_cast<std::size_t>(std::max(1, params_.threads));
   if (params_.activity && mean_contact_force_ == 0.0) measure = true;
   activity_.plan(strips_);

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "protocol/core/archive.hpp"
+#include "protocol/core/assert.hpp"
 #include "protocol/core/constants.hpp"
 #include "protocol/core/fields.hpp"
 #include "protocol/core/surface.hpp"
@@ -88,14 +89,21 @@ void visit_fields(Visit&& visit, FieldsOf<Accounts> auto& s) {
 
 class GrainSolver {
  public:
+  /// @pre radius, mass, inertia, bin and threads are positive; grains of several sizes have law mindlin
   explicit GrainSolver(const SolverParams& params);
 
   const SolverParams& params() const { return params_; }
-  void set_threads(int threads) { params_.threads = threads; }
+  void set_threads(int threads) {
+    FURROW_ASSERT(threads > 0, threads);
+    params_.threads = threads;
+  }
   void set_coefficients(const SolverCoefficients& c) { coefficients_ = c; }
   const SolverCoefficients& coefficients() const { return coefficients_; }
-  /// Extra damping of all motion while settling: dv/dt = −drag v, 1/s.
-  void set_drag(double drag) { drag_ = drag; }
+  /// Extra damping of all motion while settling: dv/dt = −drag v, 1/s. @pre drag ≥ 0
+  void set_drag(double drag) {
+    FURROW_ASSERT(drag >= 0.0, drag);
+    drag_ = drag;
+  }
 
   /// Puts grains at rest with ids 0, 1, …; w of each position: its radius, m, 0: the reference radius.
   /// @throws Error(bad_input) when a radius is outside the limits of the parameters.
@@ -113,7 +121,7 @@ class GrainSolver {
   void wake(int grain);
   /// Σ m / m₀ of all grains.
   double relative_mass() const;
-  /// Current index of the grain with this id.
+  /// Current index of the grain with this id. @pre there is one
   int index_of(int id) const;
   /// No grain reaches higher, m.
   double top() const;
@@ -121,7 +129,7 @@ class GrainSolver {
   std::size_t bytes() const;
 
   /// One step. With `measure`, the force sums of Accounts are taken too.
-  /// Returns the index of a grain that left the bin or is not finite, or −1.
+  /// Returns the index of a grain that left the bin or is not finite, or −1. @pre dt > 0
   int step(double dt, bool measure = false);
 
   void save(Archive& archive) const;

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "protocol/core/archive_fields.hpp"
+#include "protocol/core/assert.hpp"
 #include "terrain/dem/grain_solver.hpp"
 
 namespace furrow::terrain::dem {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "protocol/core/assert.hpp"
 #include "terrain/dem/quad.hpp"
 
 namespace furrow::terrain::dem {
@@ -18,6 +19,7 @@ struct Grains {
   std::vector<std::int32_t> id;  // 0 … count − 1 in order of generation
 
   void resize(int n) {
+    FURROW_ASSERT(n >= 0, n);
     count = n;
     position.assign(n + kBeyond, Quad{});
     velocity.assign(n, Quad{});

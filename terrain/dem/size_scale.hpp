@@ -5,6 +5,7 @@
 //   K, k_t ∝ R*^½,   c_n, c_t ∝ (R*^½ m*)^½,   F_c ∝ min(r)²,   μ_r R* ∝ R*,   c_r ∝ (R*^{5/2} I*)^½.
 #pragma once
 
+#include "protocol/core/assert.hpp"
 #include "terrain/dem/contact_law.hpp"
 
 namespace furrow::terrain::dem {
@@ -35,6 +36,7 @@ inline SizeScale<T> pair_scale(T a, T b) {
 /// A grain with radius a r₀ against a surface. `share`: mass of the reference grain over that of the piece of surface it
 /// moves, 0 for a wall; that piece grows as r².
 inline SizeScale<double> surface_scale(double a, double share) {
+  FURROW_ASSERT(a > 0.0 && share >= 0.0, a, share);
   const double light = share / (a * a), heavy = 1.0 / (a * a * a);
   return {.radius = a,
           .mass = (1.0 + share) / (heavy + light),

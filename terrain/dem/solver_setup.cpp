@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "terrain/dem/grain_sizes.hpp"
 
@@ -39,6 +40,7 @@ SolverParams settling_params(const DemOptions& options) {
 }
 
 SolverCoefficients run_coefficients(const DemOptions& options, double step) {
+  FURROW_ASSERT(options.radius > 0.0 && options.density > 0.0, options.radius, options.density);
   LawSettings law = law_settings(options);
   law.step = step;
   const GrainProperties grain = grain_properties(options.radius, options.density);

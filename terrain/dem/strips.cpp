@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 
 namespace furrow::terrain::dem {
@@ -26,6 +27,9 @@ int cell_at(double at, int count) { return at > 0.0 ? static_cast<int>(std::min(
 /// values[first + k] = values[order[k]].
 template <class T>
 void permute(std::vector<T>& values, const Resorted& range, std::vector<T>& spare, int threads) {
+  FURROW_ASSERT(values.size() >= range.order.size() + range.first, values.size(), range.first,
+                range.order.size());
+  FURROW_ASSERT(threads > 0, threads);
   const int n = static_cast<int>(range.order.size());
   spare.resize(std::max<std::size_t>(spare.size(), n));
 #pragma omp parallel for num_threads(threads) schedule(static)
@@ -36,6 +40,8 @@ void permute(std::vector<T>& values, const Resorted& range, std::vector<T>& spar
 }  // namespace
 
 Strips::Strips(const Options& options) : options_(options) {
+  FURROW_ASSERT(options.reach > 0.0 && options.skin >= 0.0, options.reach, options.skin);
+  FURROW_ASSERT(options.bin.length > 0.0 && options.bin.width > 0.0, options.bin.length, options.bin.width);
   const Bin& bin = options_.bin;
   const double size = options_.reach + options_.skin;
   const int nx = cells_along(bin.length, size, bin.periodic_x, "x");
@@ -47,6 +53,7 @@ Strips::Strips(const Options& options) : options_(options) {
 }
 
 void Strips::restore_shape(int cells_z, std::int64_t resorted) {
+  FURROW_ASSERT(cells_z >= 1 && resorted >= 0, cells_z, resorted);
   nz_ = cells_z;
   resorted_ = resorted;
 }
@@ -64,6 +71,8 @@ std::size_t Strips::bytes() const {
 int Strips::strip_at(double x) const { return cell_at(x * inverse_x_, count()); }
 
 void Strips::sort(Grains& grains, Resorted& range, int threads) {
+  FURROW_ASSERT(range.from < range.to && range.from >= 0 && range.to <= count(), range.from, range.to,
+                count());
   const int first = strips_[range.from].first, last = strips_[range.to - 1].last, n = last - first;
   const int per_strip = ny_ * nz_, cells = (range.to - range.from) * per_strip;
   const double y0 = -0.5 * options_.bin.width;
@@ -98,6 +107,7 @@ void Strips::sort(Grains& grains, Resorted& range, int threads) {
 }
 
 void Strips::size_lists(Strip& strip, int pairs) const {
+  FURROW_ASSERT(pairs >= 0, pairs);
   strip.pairs = pairs;
   const int room = padded(pairs);
   strip.i.resize(room);
@@ -146,6 +156,9 @@ inline unsigned near_four(const Quad* x, int valid, Double4 at, double skin, dou
 }  // namespace
 
 void Strips::list_pairs(const Grains& grains, int k) {
+  FURROW_ASSERT(in_range(k, count()), k, count());
+  FURROW_ASSERT(strips_[k].cell_start.size() == static_cast<std::size_t>(ny_ * nz_ + 1), k,
+                strips_[k].cell_start.size(), ny_, nz_);
   Strip& strip = strips_[k];
   const int after = next(k);
   const Strip* const beside = after < 0 ? nullptr : &strips_[after];
@@ -198,6 +211,8 @@ void Strips::list_pairs(const Grains& grains, int k) {
 }
 
 void Strips::list_walls(const Grains& grains, Strip& strip) const {
+  FURROW_ASSERT(strip.first >= 0 && strip.first <= strip.last && strip.last <= grains.count, strip.first,
+                strip.last, grains.count);
   strip.walls.clear();
   strip.x_min = 1e300, strip.x_max = strip.z_max = -1e300;
   for (int g = strip.last - 1; g >= strip.first; --g)
@@ -219,6 +234,7 @@ namespace {
 class OldPairs {
  public:
   OldPairs(std::span<const Strip> old, bool periodic) : old_(old), periodic_(periodic) {
+    FURROW_ASSERT(!old.empty(), old.size());
     base_ = old.front().first;
     row_.assign(old.back().last - base_ + 1, 0);
     strip_of_.resize(old.back().last - base_);
@@ -277,6 +293,7 @@ HistoryRow<Real> turned(const HistoryRow<Real>& h, bool reversed) {
 
 template <class Real>
 void Strips::carry_history(std::span<const Strip> old, int old_from, const Resorted& range, int threads) {
+  FURROW_ASSERT(static_cast<int>(old.size()) == range.to - old_from, old.size(), old_from, range.to);
   const OldPairs pairs(old, options_.bin.periodic_x || options_.bin.periodic_y);
   const auto before = [&](int g) {
     const int k = g - range.first;
@@ -301,6 +318,8 @@ void Strips::carry_history(std::span<const Strip> old, int old_from, const Resor
 }
 
 void Strips::carry_walls(std::span<const Strip> old, int old_from, const Resorted& range) {
+  FURROW_ASSERT(old_from <= range.from && static_cast<int>(old.size()) == range.to - old_from, old.size(),
+                old_from, range.from);
   std::vector<std::int32_t> start(range.order.size() + 1, 0);  // old wall contacts per old grain of the range
   std::vector<const WallContact*> contacts;
   for (int s = range.from; s < range.to; ++s) {
@@ -325,6 +344,8 @@ void Strips::carry_walls(std::span<const Strip> old, int old_from, const Resorte
 }
 
 Resorted Strips::rebuild(Grains& grains, int from, int to, int threads) {
+  FURROW_ASSERT(from >= 0 && from < to && to <= count(), from, to, count());
+  FURROW_ASSERT(threads > 0, threads);
   const int lists_from = std::max(from - 1, 0), lists = to - lists_from;
   old_.resize(std::max<std::size_t>(old_.size(), lists));
   for (int k = 0; k < lists; ++k) {
@@ -358,6 +379,8 @@ Resorted Strips::rebuild(Grains& grains, int from, int to, int threads) {
 }
 
 Resorted Strips::rebuild_all(Grains& grains, int threads) {
+  FURROW_ASSERT(grains.position.size() >= static_cast<std::size_t>(grains.count + Grains::kBeyond),
+                grains.position.size(), grains.count);
   double top = 0.0;
   for (int g = 0; g < grains.count; ++g) top = std::max(top, grains.position[g].z);
   nz_ = static_cast<int>(std::clamp(top * inverse_z_, 0.0, kMaxCellsZ - 1.0)) + 1;
@@ -371,6 +394,8 @@ Resorted Strips::rebuild_all(Grains& grains, int threads) {
 }
 
 std::vector<Resorted> Strips::rebuild_moved(Grains& grains, double dt, int threads) {
+  FURROW_ASSERT(dt >= 0.0, dt);
+  FURROW_ASSERT(strips_.back().last == grains.count, strips_.back().last, grains.count);
   const int n = count();
   const auto moved = [&](int s) {
     return s >= 0 && s < n && !(strips_[s].travel + dt * strips_[s].motion.max_speed <= 0.5 * options_.skin);

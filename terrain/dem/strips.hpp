@@ -15,6 +15,7 @@
 #include <span>
 #include <vector>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/fields.hpp"
 #include "terrain/dem/bin.hpp"
 #include "terrain/dem/grains.hpp"
@@ -91,8 +92,14 @@ struct Strip {
   MotionTotals motion;
 
   int grains() const { return last - first; }
-  int grain_i(int pair) const { return static_cast<int>(i[pair] / kQuad); }
-  int grain_j(int pair) const { return static_cast<int>(j[pair] / kQuad); }
+  int grain_i(int pair) const {
+    FURROW_ASSERT(in_range(pair, pairs), pair, pairs);
+    return static_cast<int>(i[pair] / kQuad);
+  }
+  int grain_j(int pair) const {
+    FURROW_ASSERT(in_range(pair, pairs), pair, pairs);
+    return static_cast<int>(j[pair] / kQuad);
+  }
   template <class Real>
   PairHistory<Real>& history() {
     if constexpr (std::is_same_v<Real, float>) {
@@ -148,19 +155,32 @@ class Strips {
 
   const Options& options() const { return options_; }
   int count() const { return static_cast<int>(strips_.size()); }
-  Strip& operator[](int k) { return strips_[k]; }
-  const Strip& operator[](int k) const { return strips_[k]; }
+  Strip& operator[](int k) {
+    FURROW_ASSERT(in_range(k, count()), k, count());
+    return strips_[k];
+  }
+  const Strip& operator[](int k) const {
+    FURROW_ASSERT(in_range(k, count()), k, count());
+    return strips_[k];
+  }
   /// The strip after k; with periodic ends the first follows the last, else −1 follows.
-  int next(int k) const { return k + 1 < count() ? k + 1 : options_.bin.periodic_x ? 0 : -1; }
+  int next(int k) const {
+    FURROW_ASSERT(in_range(k, count()), k, count());
+    return k + 1 < count() ? k + 1 : options_.bin.periodic_x ? 0 : -1;
+  }
 
-  /// Sorts all grains and makes all lists. Returns the order.
+  /// Sorts all grains and makes all lists. Returns the order. @pre threads > 0
   Resorted rebuild_all(Grains& grains, int threads);
   /// Rebuilds where a grain may have moved too far before the end of another step of `dt`.
+  /// @pre rebuild_all was called; threads > 0
   std::vector<Resorted> rebuild_moved(Grains& grains, double dt, int threads);
 
   /// How often a grain was sorted, summed over grains: divided by their number, the rebuilds of the whole list.
   std::int64_t resorted() const { return resorted_; }
-  void set_resorted(std::int64_t n) { resorted_ = n; }
+  void set_resorted(std::int64_t n) {
+    FURROW_ASSERT(n >= 0, n);
+    resorted_ = n;
+  }
 
   /// What the lists hold in memory, with what a rebuild needs.
   std::size_t bytes() const;

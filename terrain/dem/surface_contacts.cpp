@@ -5,6 +5,7 @@
 #include <string>
 
 #include "protocol/core/archive_fields.hpp"
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "terrain/dem/contact_tangent.hpp"
 #include "terrain/dem/size_scale.hpp"
@@ -22,6 +23,8 @@ void add(Quad& q, const Triple<double>& t) { q.x += t.x, q.y += t.y, q.z += t.z;
 
 /// Spin of triangle (a, b, c) about unit n: half the circulation of the vertex velocities over the area, rad/s.
 double spin_about(const SurfaceCollider& surface, int triangle, const Vec3& n) {
+  FURROW_ASSERT(in_range(triangle, surface.mesh().triangles.size()), triangle,
+                surface.mesh().triangles.size());
   const auto& t = surface.mesh().triangles[triangle];
   const auto x = surface.positions(), v = surface.velocities();
   const Vec3 ab = x[t[1]] - x[t[0]], ac = x[t[2]] - x[t[0]];
@@ -38,6 +41,7 @@ double spin_about(const SurfaceCollider& surface, int triangle, const Vec3& n) {
 
 const SurfaceHistory* nearest(const std::vector<SurfaceHistory>& history, std::size_t from, std::size_t to,
                               const Vec3& n) {
+  FURROW_ASSERT(from <= to && to <= history.size(), from, to, history.size());
   const SurfaceHistory* best = nullptr;
   double cosine = kSameNormal;
   for (std::size_t k = from; k < to; ++k) {
@@ -52,6 +56,8 @@ const SurfaceHistory* nearest(const std::vector<SurfaceHistory>& history, std::s
 
 void SurfaceContacts::attach(const SurfaceMesh& mesh, const ContactMaterial& material,
                              const ContactCoefficients& coefficients, const SurfaceState& start) {
+  FURROW_ASSERT(start.position.size() == static_cast<std::size_t>(mesh.vertex_count), start.position.size(),
+                mesh.vertex_count);
   Surface s;
   s.collider = std::make_unique<SurfaceCollider>(mesh, largest_);
   s.sum = std::make_unique<NodalForceSum>(mesh.vertex_count, tangents_);
@@ -64,6 +70,8 @@ void SurfaceContacts::attach(const SurfaceMesh& mesh, const ContactMaterial& mat
 }
 
 void SurfaceContacts::set_targets(std::span<const SurfaceState> targets, double duration) {
+  FURROW_ASSERT(targets.size() == surfaces_.size(), targets.size(), surfaces_.size());
+  FURROW_ASSERT(duration > 0.0, duration);
   for (std::size_t k = 0; k < surfaces_.size(); ++k) {
     Surface& s = surfaces_[k];
     s.start.swap(s.end);
@@ -74,6 +82,7 @@ void SurfaceContacts::set_targets(std::span<const SurfaceState> targets, double 
 }
 
 void SurfaceContacts::move_to(double share) {
+  FURROW_ASSERT(share >= 0.0 && share <= 1.0, share);
   const Vec3 r = Vec3::Constant(largest_);
   for (Surface& s : surfaces_) {
     s.collider->move_to(share);
@@ -99,6 +108,8 @@ void SurfaceContacts::restrict_to(const SurfaceBox& grains) {
 }
 
 void SurfaceContacts::reorder(const Resorted& range, const Strips& strips) {
+  FURROW_ASSERT(range.from <= range.to && static_cast<std::size_t>(range.to) <= strips_.size(), range.from,
+                range.to, strips_.size());
   std::vector<SurfaceHistory> all;
   for (int s = range.from; s < range.to; ++s) {
     all.insert(all.end(), strips_[s].history.begin(), strips_[s].history.end());
@@ -123,6 +134,8 @@ void SurfaceContacts::reorder(const Resorted& range, const Strips& strips) {
 template <class Law>
 void SurfaceContacts::touch(const Grains& grains, Strip& strip, SurfaceStrip& mine, int k, int g, double dt,
                             const Loads& load) {
+  FURROW_ASSERT(in_range(k, count()) && in_range(g, grains.count), k, count(), g, grains.count);
+  FURROW_ASSERT(load.force != nullptr && load.torque != nullptr, g);
   const Surface& surface = surfaces_[k];
   std::array<SurfaceHit, kMaxSurfaceHits> hits;
   const Quad& x = grains.position[g];
@@ -174,6 +187,7 @@ void SurfaceContacts::touch(const Grains& grains, Strip& strip, SurfaceStrip& mi
 
 template <class Law>
 void SurfaceContacts::evaluate(const Grains& grains, Strip& strip, int s, double dt, const Loads& loads) {
+  FURROW_ASSERT(in_range(s, strips_.size()), s, strips_.size());
   SurfaceStrip& mine = strips_[s];
   mine.next.clear();
   mine.touches.clear();
@@ -197,10 +211,12 @@ template void SurfaceContacts::evaluate<MindlinLaw>(const Grains&, Strip&, int, 
 template void SurfaceContacts::evaluate<HertzTanhLaw>(const Grains&, Strip&, int, double, const Loads&);
 
 Vec3 SurfaceContacts::hand_over(double dt) {
+  FURROW_ASSERT(dt > 0.0, dt);
   Vec3 on_grains = Vec3::Zero();
   for (Surface& s : surfaces_) s.forces.clear();
   for (const SurfaceStrip& strip : strips_)
     for (const SurfaceTouch& touch : strip.touches) {
+      FURROW_ASSERT(in_range(touch.surface, surfaces_.size()), touch.surface, surfaces_.size());
       surfaces_[touch.surface].forces.push_back(touch.force);
       on_grains -= dt * (touch.force.normal + touch.force.tangential);
     }
@@ -209,6 +225,9 @@ Vec3 SurfaceContacts::hand_over(double dt) {
 }
 
 void SurfaceContacts::finish(double duration, std::span<NodalForces> forces, std::span<ContactSums> sums) {
+  FURROW_ASSERT(forces.size() == surfaces_.size(), forces.size(), surfaces_.size());
+  FURROW_ASSERT(sums.size() == surfaces_.size(), sums.size(), surfaces_.size());
+  FURROW_ASSERT(duration > 0.0, duration);
   for (std::size_t k = 0; k < surfaces_.size(); ++k) surfaces_[k].sum->finish(duration, forces[k], sums[k]);
 }
 
@@ -230,6 +249,7 @@ void SurfaceContacts::save(Archive& archive) const {
 }
 
 void SurfaceContacts::restore(const Archive& archive, const Strips& strips) {
+  FURROW_ASSERT(static_cast<int>(strips_.size()) == strips.count(), strips_.size(), strips.count());
   const auto count = archive.get_int("surfaces/count");
   surfaces_.clear();
   for (std::int64_t k = 0; k < count; ++k) {

@@ -10,6 +10,7 @@
 #include <memory>
 #include <vector>
 
+#include "protocol/core/assert.hpp"
 #include "terrain/dem/contact_mixing.hpp"
 #include "terrain/dem/strips.hpp"
 #include "terrain/surface/surface_collider.hpp"
@@ -57,19 +58,29 @@ class SurfaceContacts {
   void give_tangents(bool yes) { tangents_ = yes; }
   int count() const { return static_cast<int>(surfaces_.size()); }
   bool any() const { return !surfaces_.empty(); }
-  const ContactMaterial& material(int k) const { return surfaces_[k].material; }
-  void set_coefficients(int k, const ContactCoefficients& c) { surfaces_[k].coefficients = c; }
+  const ContactMaterial& material(int k) const {
+    FURROW_ASSERT(in_range(k, count()), k, count());
+    return surfaces_[k].material;
+  }
+  void set_coefficients(int k, const ContactCoefficients& c) {
+    FURROW_ASSERT(in_range(k, count()), k, count());
+    surfaces_[k].coefficients = c;
+  }
 
   /// Declares the motion of the coming interval from where each surface stands.
+  /// @pre one target for each surface, with all its vertices; duration > 0
   void set_targets(std::span<const SurfaceState> targets, double duration);
-  /// Moves all surfaces to a share of the interval; grains are looked for inside `grains`.
+  /// Moves all surfaces to a share of the interval; grains are looked for inside `grains`. @pre 0 ≤ share ≤ 1
   void move_to(double share);
   void restrict_to(const SurfaceBox& grains);
 
   /// Whether a vertex low enough to reach grains stands between these x now, m.
   bool low_between(double x_min, double x_max) const;
 
-  void resize(int strips) { strips_.resize(strips); }
+  void resize(int strips) {
+    FURROW_ASSERT(strips >= 0, strips);
+    strips_.resize(strips);
+  }
   /// Renames grains after a range of strips was sorted.
   void reorder(const Resorted& range, const Strips& strips);
 
@@ -79,13 +90,20 @@ class SurfaceContacts {
   void evaluate(const Grains& grains, Strip& strip, int s, double dt, const Loads& loads);
 
   /// Hands this substep's forces to the vertices, in the order of strips and grains. Returns the impulse that the
-  /// grains received, N s.
+  /// grains received, N s. @pre dt > 0
   Vec3 hand_over(double dt);
+  /// Means over the interval. @pre one entry of forces and sums for each surface; duration > 0
   void finish(double duration, std::span<NodalForces> forces, std::span<ContactSums> sums);
 
   /// Lowest, highest corner of surface k now.
-  SurfaceBox bounds(int k) const { return surfaces_[k].collider->bounds(); }
-  SurfaceBox swept_bounds(int k) const { return surfaces_[k].collider->swept_bounds(); }
+  SurfaceBox bounds(int k) const {
+    FURROW_ASSERT(in_range(k, count()), k, count());
+    return surfaces_[k].collider->bounds();
+  }
+  SurfaceBox swept_bounds(int k) const {
+    FURROW_ASSERT(in_range(k, count()), k, count());
+    return surfaces_[k].collider->swept_bounds();
+  }
 
   void save(Archive& archive) const;
   /// Into surfaces that were attached before, or that the archive brings along. @pre `strips` are restored.

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "protocol/core/assert.hpp"
 #include "terrain/dem/strips.hpp"
 
 namespace furrow::terrain::dem {
@@ -25,12 +26,14 @@ struct TouchingPairs {
   std::vector<std::uint32_t> pair;    // twice its index in the list
 
   void reserve(int pairs) {
+    FURROW_ASSERT(pairs >= 0, pairs);
     const std::size_t room = pairs + 2 * kFloatLanes;
     if (i.size() >= room) return;
     for (auto* array : {&dx, &dy, &dz, &gap, &sum}) array->resize(room);
     for (auto* array : {&i, &j, &pair}) array->resize(room);
   }
   void pad() {
+    FURROW_ASSERT(i.size() >= static_cast<std::size_t>(count + kFloatLanes), i.size(), count);
     if (count == 0) return;
     for (auto* array : {&dx, &dy, &dz, &gap, &sum})
       std::fill_n(array->begin() + count, kFloatLanes, (*array)[count - 1]);
@@ -80,8 +83,16 @@ inline void pack(Double4 low, Double4 high, unsigned mask, double* out) {
 /// Fills `out` with the touching pairs of `strip` and notes which they are; what pairs that parted left in their
 /// history is cleared. `x` points to the position of the strip's first grain; those of the next strip follow.
 /// diameter: of all grains, m, unless kSizes; width: of a bin with periodic sides, else 0, m.
+/// @pre the strip's lists are as Strips::size_lists makes them
 template <bool kSizes, class Real>
 void find_touching(Strip& strip, const Quad* x, double diameter, double width, TouchingPairs<Real>& out) {
+  FURROW_ASSERT(x != nullptr || strip.pairs == 0, strip.pairs);
+  FURROW_ASSERT(kSizes || diameter > 0.0, diameter);
+  FURROW_ASSERT(width >= 0.0, width);
+  FURROW_ASSERT(strip.i.size() == strip.j.size() && strip.i.size() % kFloatLanes == 0, strip.i.size(),
+                strip.j.size());
+  FURROW_ASSERT(in_range(strip.pairs, strip.i.size() + 1), strip.pairs, strip.i.size());
+  FURROW_ASSERT(strip.touching.size() * kFloatLanes == strip.i.size(), strip.touching.size(), strip.i.size());
   out.reserve(strip.pairs);
   const double diameter2 = diameter * diameter;
   const Double4 partner = {-1.0, -1.0, -1.0, kSizes ? 1.0 : -1.0};  // w: the sum of both radii

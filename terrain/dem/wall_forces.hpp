@@ -1,6 +1,7 @@
 // Grains against the bin: arm r − δ, the wall at rest.
 #pragma once
 
+#include "protocol/core/assert.hpp"
 #include "terrain/dem/contact_law.hpp"
 #include "terrain/dem/contact_mixing.hpp"
 #include "terrain/dem/size_scale.hpp"
@@ -14,12 +15,15 @@ struct SolverCoefficients {
 };
 
 /// Adds the wall forces on a strip's grains to `loads` (which starts at its first grain) and to its sums.
-/// radius: that the coefficients are for; without kSizes that of all grains, m.
+/// radius: that the coefficients are for; without kSizes that of all grains, m. @pre radius > 0, dt > 0
 template <class Law, bool kRolling, bool kSizes>
 void wall_forces(const Grains& grains, Strip& strip, const Bin& bin, double radius,
                  const SolverCoefficients& all, double dt, bool measure, const Loads& loads) {
+  FURROW_ASSERT(radius > 0.0 && dt > 0.0, radius, dt);
   ContactTotals& sums = strip.contact;
   for (WallContact& contact : strip.walls) {
+    FURROW_ASSERT(in_range(contact.grain, strip.grains()), contact.grain, strip.grains());
+    FURROW_ASSERT(in_range(contact.wall, kWalls), contact.wall);
     const int g = strip.first + contact.grain;
     const double distance = bin.distance(contact.wall, grains.position[g]);
     ContactMotion<double> motion;

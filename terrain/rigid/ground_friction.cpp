@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "protocol/core/assert.hpp"
+
 namespace furrow::terrain {
 namespace {
 
@@ -10,6 +12,7 @@ constexpr double kTolerance = 1e-15;  // of the sliding speed
 
 /// Root of g s + limit tanh(c s) = drive. The left side is concave, so Newton's method from 0 rises to it.
 double sliding_speed(double drive, double g, double limit, double c) {
+  FURROW_ASSERT(drive >= 0.0 && g + limit * c > 0.0, drive, g, limit, c);
   double s = 0.0;
   for (int n = 0; n < kMaxIterations; ++n) {
     const double t = std::tanh(c * s);
@@ -24,6 +27,8 @@ double sliding_speed(double drive, double g, double limit, double c) {
 
 Vec3 slide(const GroundLaw& law, double load, double area, const Vec3& velocity, double dt, Vec3& shear,
            double* grip) {
+  FURROW_ASSERT(load >= 0.0 && area >= 0.0, load, area);
+  FURROW_ASSERT(dt > 0.0, dt);
   if (grip) *grip = 0.0;
   const double limit = law.friction * load, stiffness = law.shear_stiffness * area;
   if (!(limit > 0.0) || !(stiffness > 0.0)) {

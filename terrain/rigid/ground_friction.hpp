@@ -20,6 +20,7 @@ namespace furrow::terrain {
 /// @param load N ≥ 0, N; @param area A, m²; @param velocity m/s, its z is ignored
 /// @param grip if not null: the share of the layer's stiffness κ_t A and damping d A that the vertex still feels along
 /// its motion, from 1 (sticks) to 0 (slides)
+/// @pre load ≥ 0, area ≥ 0, dt > 0
 Vec3 slide(const GroundLaw& law, double load, double area, const Vec3& velocity, double dt, Vec3& shear,
            double* grip = nullptr);
 

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "protocol/core/assert.hpp"
+
 namespace furrow::terrain {
 namespace {
 
@@ -60,6 +62,7 @@ int ground_points(const std::array<Vec3, 3>& x, std::array<GroundPoint, kMaxGrou
 
 double add_ground_force(const GroundLaw& law, int triangle, const GroundPoint& at, const Vec3& position,
                         const Vec3& velocity, std::vector<SurfaceContactForce>& contacts) {
+  FURROW_ASSERT(triangle >= 0 && at.area > 0.0, triangle, at.area);
   const double pressure = law.stiffness * at.depth - law.damping * velocity.z();
   if (!(pressure > 0.0)) return 0.0;
   SurfaceContactForce contact;

@@ -103,6 +103,7 @@ HeightField RigidGround::height_field() const {
 
 void RigidGround::add_surface(const SurfaceMesh& mesh, const ContactMaterial& material,
                               std::vector<Vec3> last) {
+  FURROW_ASSERT(last.size() == static_cast<std::size_t>(mesh.vertex_count), last.size(), mesh.vertex_count);
   GroundSurface surface{.mesh = mesh,
                         .material = material,
                         .friction = std::min(options_.friction, material.friction),

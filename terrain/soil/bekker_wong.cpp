@@ -3,13 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "protocol/core/assert.hpp"
+
 namespace furrow::terrain::soil {
 namespace {
 
 constexpr int kIntervals = 2000;   // of the contact arc on each side of θ_m; midpoint rule
 constexpr double kMaxEntry = 1.5;  // rad: nearly half the wheel
 
-double modulus(const SoilStrength& s, double width) { return s.k_c / width + s.k_phi; }
+double modulus(const SoilStrength& s, double width) {
+  FURROW_ASSERT(width > 0.0 && s.k_c / width + s.k_phi > 0.0, width, s.k_c, s.k_phi);
+  return s.k_c / width + s.k_phi;
+}
 
 struct Integrals {
   double lift = 0.0, thrust = 0.0, resistance = 0.0, torque = 0.0, pressure = 0.0;
@@ -45,6 +50,10 @@ Integrals integrate(const SoilStrength& s, const RigidWheel& w, double slip, dou
 }  // namespace
 
 WheelEstimate rigid_wheel(const SoilStrength& soil, const RigidWheel& wheel, double slip) {
+  FURROW_ASSERT(soil.n > 0.0 && soil.K > 0.0, soil.n, soil.K);
+  FURROW_ASSERT(wheel.radius > 0.0 && wheel.load > 0.0, wheel.radius, wheel.load);
+  FURROW_ASSERT(std::isfinite(slip) && std::isfinite(soil.cohesion) && std::isfinite(soil.phi), slip,
+                soil.cohesion, soil.phi);
   WheelEstimate e;
   double low = 0.0, high = kMaxEntry;
   if (integrate(soil, wheel, slip, high).lift < wheel.load) return e;
@@ -65,12 +74,15 @@ WheelEstimate rigid_wheel(const SoilStrength& soil, const RigidWheel& wheel, dou
 }
 
 double bekker_sinkage(const SoilStrength& s, const RigidWheel& w) {
+  FURROW_ASSERT(s.n > 0.0 && s.n < 3.0, s.n);
+  FURROW_ASSERT(w.radius > 0.0 && w.width > 0.0 && w.load > 0.0, w.radius, w.width, w.load);
   // W = (k_c + b k_φ) √(2R z₀) z₀ⁿ (3 − n)/3 for small z₀.
   const double factor = (3.0 - s.n) * (s.k_c + w.width * s.k_phi) * std::sqrt(2.0 * w.radius);
   return std::pow(3.0 * w.load / factor, 2.0 / (2.0 * s.n + 1.0));
 }
 
 double compaction_resistance(const SoilStrength& s, double width, double sinkage) {
+  FURROW_ASSERT(sinkage >= 0.0, sinkage);
   return width * modulus(s, width) * std::pow(sinkage, s.n + 1.0) / (s.n + 1.0);
 }
 

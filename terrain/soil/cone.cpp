@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "terrain/soil/tools.hpp"
 
 namespace furrow::terrain::soil {
 
 ConeResult cone_penetration(const Specimen& specimen, const ConeTest& test, const WorkCall& work) {
+  FURROW_ASSERT(test.samples > 0 && test.speed > 0.0 && test.diameter > 0.0, test.samples, test.speed,
+                test.diameter);
   const double r = specimen.options().radius, diameter = test.diameter * r;
   const double middle = 0.5 * specimen.length(), reach = 0.5 * diameter;
   const auto terrain = specimen.terrain();

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "terrain/dem/beds/loaded_lid.hpp"
 #include "terrain/soil/tools.hpp"
@@ -119,6 +120,8 @@ struct Sample {
 }  // namespace
 
 ShearResult direct_shear(const Specimen& specimen, const ShearTest& test, const WorkCall& work) {
+  FURROW_ASSERT(test.samples > 0 && test.speed > 0.0 && test.travel > 0.0, test.samples, test.speed,
+                test.travel);
   constexpr double kPreparation = 0.35;  // of the work
   const double r = specimen.options().radius, dt = specimen.step(), travel = test.travel * r;
   ShearCell cell(specimen, test);

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+
+#include "protocol/core/assert.hpp"
 
 namespace furrow::terrain::soil {
 namespace {
@@ -12,6 +15,7 @@ constexpr int kSearchPoints = 80;    // of the first, logarithmic, search for K
 constexpr int kGoldenSections = 60;  // after it
 
 double mean(std::span<const double> values) {
+  FURROW_ASSERT(!values.empty(), values.size());
   double sum = 0.0;
   for (const double v : values) sum += v;
   return sum / static_cast<double>(values.size());
@@ -22,6 +26,7 @@ double square(double x) { return x * x; }
 /// Regularized incomplete beta function I_x(a, b) by its continued fraction [Lentz; Press et al., Numerical Recipes,
 /// §6.4], enough for Student's distribution.
 double incomplete_beta(double a, double b, double x) {
+  FURROW_ASSERT(a > 0.0 && b > 0.0, a, b);
   if (x <= 0.0) return 0.0;
   if (x >= 1.0) return 1.0;
   if (x > (a + 1.0) / (a + b + 2.0)) return 1.0 - incomplete_beta(b, a, 1.0 - x);
@@ -49,6 +54,7 @@ double student_tail(double t, double freedom) {
 }  // namespace
 
 double student_t(double freedom) {
+  FURROW_ASSERT(freedom > 0.0, freedom);
   double low = 1.0, high = 1e3;
   for (int k = 0; k < 100; ++k) {
     const double middle = std::sqrt(low * high);
@@ -62,6 +68,7 @@ double Measured::half_interval() const {
 }
 
 Measured mean_of(std::span<const double> samples) {
+  FURROW_ASSERT(!samples.empty(), samples.size());
   Measured m;
   m.samples = static_cast<int>(samples.size());
   m.value = mean(samples);
@@ -73,6 +80,16 @@ Measured mean_of(std::span<const double> samples) {
 }
 
 BekkerFit fit_bekker(std::span<const PlateCurve> plates) {
+  FURROW_ASSERT(plates.size() >= 2, plates.size());
+  FURROW_ASSERT(std::any_of(plates.begin(), plates.end(),
+                            [&](const PlateCurve& c) { return c.width != plates[0].width; }),
+                plates[0].width);
+  FURROW_ASSERT(std::all_of(plates.begin(), plates.end(),
+                            [](const PlateCurve& c) {
+                              return c.width > 0.0 && c.sinkage.size() == c.pressure.size() &&
+                                     c.sinkage.size() >= 2;
+                            }),
+                plates.size());
   // Normal equations of Σ_i Σ p² (ln p − ln k_i − n ln z)²: with the weighted means x̄_i of ln z and ȳ_i of ln p of
   // plate i,  n = Σ_i Σ p² (ln z − x̄_i)(ln p − ȳ_i) / Σ_i Σ p² (ln z − x̄_i)²,   ln k_i = ȳ_i − n x̄_i.
   struct Sums {
@@ -124,6 +141,8 @@ BekkerFit fit_bekker(std::span<const PlateCurve> plates) {
 }
 
 JanosiFit fit_janosi(std::span<const double> travel, std::span<const double> stress) {
+  FURROW_ASSERT(travel.size() == stress.size(), travel.size(), stress.size());
+  FURROW_ASSERT(travel.size() >= 3, travel.size());
   // For a given K the best τ_max is Σ τ g / Σ g² with g = 1 − exp(−j/K).
   const auto evaluate = [&](double K) {
     double tg = 0.0, gg = 0.0, off = 0.0;
@@ -163,6 +182,7 @@ JanosiFit fit_janosi(std::span<const double> travel, std::span<const double> str
 }
 
 Line fit_line(std::span<const double> x, std::span<const double> y) {
+  FURROW_ASSERT(x.size() == y.size() && x.size() >= 2, x.size(), y.size());
   const double mx = mean(x), my = mean(y);
   double xx = 0.0, xy = 0.0;
   for (std::size_t k = 0; k < x.size(); ++k) xx += square(x[k] - mx), xy += (x[k] - mx) * (y[k] - my);
@@ -173,6 +193,9 @@ Line fit_line(std::span<const double> x, std::span<const double> y) {
 }
 
 CoulombFit fit_coulomb(std::span<const double> normal, std::span<const double> shear) {
+  FURROW_ASSERT(normal.size() == shear.size() && normal.size() >= 2, normal.size(), shear.size());
+  FURROW_ASSERT(std::adjacent_find(normal.begin(), normal.end(), std::not_equal_to<>()) != normal.end(),
+                normal.size());
   const Line line = fit_line(normal, shear);
   const auto count = static_cast<double>(normal.size());
   const double mx = mean(normal), my = mean(shear);

@@ -21,7 +21,7 @@ struct Measured {
   double half_interval() const;
 };
 
-/// 97.5 % point of Student's t distribution for `freedom` > 0 degrees of freedom.
+/// 97.5 % point of Student's t distribution for `freedom` degrees of freedom. @pre freedom > 0
 double student_t(double freedom);
 
 /// Mean of independent samples and its standard error. @pre at least one sample
@@ -71,6 +71,7 @@ CoulombFit fit_coulomb(std::span<const double> normal, std::span<const double> s
 struct Line {
   double offset = 0.0, slope = 0.0;
 };
+/// @pre two points or more
 Line fit_line(std::span<const double> x, std::span<const double> y);
 
 }  // namespace furrow::terrain::soil

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "terrain/soil/tools.hpp"
 
@@ -14,6 +15,7 @@ constexpr double kSides = 4.0;  // height of the plate's sides beyond the sinkag
 }  // namespace
 
 PlateResult plate_sinkage(const Specimen& specimen, const PlateTest& test, const WorkCall& work) {
+  FURROW_ASSERT(test.samples > 0 && test.speed > 0.0, test.samples, test.speed);
   const double r = specimen.options().radius, half = 0.5 * specimen.width();
   const double width = test.width * r, middle = 0.5 * specimen.length();
   const auto terrain = specimen.terrain();

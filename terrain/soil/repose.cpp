@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/constants.hpp"
 #include "protocol/core/error.hpp"
 #include "terrain/dem/solver_setup.hpp"
@@ -40,6 +41,7 @@ std::vector<double> profile(const dem::Grains& grains, const Specimen& s, std::v
 }  // namespace
 
 double flank_angle(const std::vector<double>& x, const std::vector<double>& height, double base) {
+  FURROW_ASSERT(!x.empty() && x.size() == height.size(), x.size(), height.size());
   const std::size_t tenth = std::max<std::size_t>(1, x.size() / 10);
   double crest = 0.0;
   for (std::size_t k = 0; k < tenth; ++k) crest += height[k] / static_cast<double>(tenth);
@@ -58,6 +60,8 @@ double flank_angle(const std::vector<double>& x, const std::vector<double>& heig
 }
 
 ReposeResult angle_of_repose(const Specimen& specimen, const ReposeTest& test, const WorkCall& work) {
+  FURROW_ASSERT(!specimen.options().periodic_x, specimen.length());
+  FURROW_ASSERT(specimen.length() > test.cut * specimen.options().radius, specimen.length(), test.cut);
   const dem::DemOptions& o = specimen.options();
   const double r = o.radius, dt = o.step, cut = test.cut * r, base = test.base * r;
   std::vector<dem::Quad> kept;

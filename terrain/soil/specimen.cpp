@@ -4,6 +4,7 @@
 #include <numbers>
 #include <string>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/constants.hpp"
 #include "terrain/dem/dem_terrain.hpp"
 #include "terrain/dem/grain_sizes.hpp"
@@ -23,6 +24,8 @@ double test_step(const dem::DemOptions& material) {
 
 Specimen::Specimen(const dem::DemOptions& material, const Box& box, std::uint64_t seed, const WorkCall& work)
     : options_(material) {
+  FURROW_ASSERT(box.length > 0.0 && box.width > 0.0 && box.depth > 0.0, box.length, box.width, box.depth);
+  FURROW_ASSERT(material.radius > 0.0, material.radius);
   const double r = material.radius;
   options_.bed.clear();
   options_.cache = false;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "protocol/core/assert.hpp"
 #include "terrain/dem/contact_mixing.hpp"
 
 namespace furrow::terrain::soil {
@@ -20,6 +21,7 @@ void quad(SurfaceMesh& mesh, int a, int b, int c, int d) {
 }  // namespace
 
 Tool strip_plate(double centre, double width, double half, double z, double height) {
+  FURROW_ASSERT(width > 0.0 && half > 0.0 && height > 0.0, width, half, height);
   SurfaceMesh mesh;
   std::vector<Vec3> x;
   const double left = centre - 0.5 * width, right = centre + 0.5 * width;
@@ -32,6 +34,9 @@ Tool strip_plate(double centre, double width, double half, double z, double heig
 }
 
 Tool toothed_sheet(double from, double to, double half, double z, double pitch, double tooth, int sign) {
+  FURROW_ASSERT(from < to && half > 0.0, from, to, half);
+  FURROW_ASSERT(pitch > 0.0 && tooth > 0.0, pitch, tooth);
+  FURROW_ASSERT(sign == 1 || sign == -1, sign);
   SurfaceMesh mesh;
   std::vector<Vec3> x;
   const auto add = [&](double px, double height) {
@@ -55,14 +60,19 @@ Tool toothed_sheet(double from, double to, double half, double z, double pitch, 
   return {std::move(mesh), std::move(x)};
 }
 
-double cone_height(double diameter, double angle) { return 0.5 * diameter / std::tan(0.5 * angle); }
+double cone_height(double diameter, double angle) {
+  FURROW_ASSERT(diameter > 0.0 && angle > 0.0 && angle < std::numbers::pi, diameter, angle);
+  return 0.5 * diameter / std::tan(0.5 * angle);
+}
 
 double cone_base_area(double diameter) {
+  FURROW_ASSERT(diameter > 0.0, diameter);
   const double turn = 2.0 * std::numbers::pi / kFacets;
   return 0.125 * kFacets * diameter * diameter * std::sin(turn);
 }
 
 Tool cone_on_shaft(const Vec3& point, double diameter, double angle, double shaft, double shaft_length) {
+  FURROW_ASSERT(shaft > 0.0 && shaft_length > 0.0, shaft, shaft_length);
   SurfaceMesh mesh;
   std::vector<Vec3> x{point};
   const double base = cone_height(diameter, angle);

@@ -1,6 +1,7 @@
 // The tools of soil tests: rigid triangulated surfaces, moved as a whole.
 #pragma once
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/surface.hpp"
 #include "terrain/dem/dem_options.hpp"
 #include "terrain/terrain.hpp"
@@ -20,9 +21,13 @@ class Tool {
 
   /// Sets the velocity of the coming interval.
   void set_velocity(const Vec3& v) { state_.velocity.assign(state_.velocity.size(), v); }
-  void set_velocity(std::size_t vertex, const Vec3& v) { state_.velocity[vertex] = v; }
+  void set_velocity(std::size_t vertex, const Vec3& v) {
+    FURROW_ASSERT(in_range(vertex, state_.velocity.size()), vertex, state_.velocity.size());
+    state_.velocity[vertex] = v;
+  }
   /// The interval is over.
   void moved(double duration) {
+    FURROW_ASSERT(duration > 0.0, duration);
     for (std::size_t a = 0; a < state_.position.size(); ++a)
       state_.position[a] += duration * state_.velocity[a];
   }
@@ -37,6 +42,7 @@ Tool strip_plate(double centre, double width, double half, double z, double heig
 
 /// A sheet from x = from to `to` and y = −half to half with ridges across x, one every `pitch`, of a triangular
 /// section 2·`tooth` wide and `tooth` high; flats at z. Outside is up (sign 1) or down (sign −1); teeth point there.
+/// @pre from < to; pitch, tooth > 0
 Tool toothed_sheet(double from, double to, double half, double z, double pitch, double tooth, int sign);
 
 /// A cone of this base diameter and total angle (rad), point down at (x, y, z), with a shaft of `shaft` × its diameter.

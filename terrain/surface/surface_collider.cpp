@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "terrain/surface/surface_geometry.hpp"
 #include "terrain/surface/surface_grid.hpp"
@@ -38,6 +39,7 @@ struct CandidateList {
   int size = 0;
 
   void insert(const Candidate& candidate, double same_point) {
+    FURROW_ASSERT(candidate.triangle >= 0 && same_point >= 0.0, candidate.triangle, same_point);
     for (int i = 0; i < size; ++i)
       if ((item[i].at.point - candidate.at.point).squaredNorm() < same_point * same_point) return;
     if (size == kMaxCandidates) {
@@ -51,6 +53,7 @@ struct CandidateList {
 };
 
 void write_hit(SurfaceHit& hit, const Candidate& from, double overlap, double share) {
+  FURROW_ASSERT(share > 0.0 && overlap > 0.0, share, overlap);
   hit.point = from.at.point;
   hit.normal = from.normal;
   hit.overlap = overlap;
@@ -146,6 +149,7 @@ bool SurfaceCollider::Data::behind(const Candidate& nearest, const Vec3& centre)
 
 /// Angle-weighted pseudo-normal of a vertex; the angles are only computed when its triangles disagree.
 bool SurfaceCollider::Data::behind_vertex(int vertex, const Vec3& offset) const {
+  FURROW_ASSERT(in_range(vertex, mesh.vertex_count), vertex, mesh.vertex_count);
   if (topology.boundary_vertex[vertex]) return false;
   int front = 0, back = 0;
   double sum = 0.0;
@@ -187,6 +191,7 @@ void SurfaceCollider::Data::consider(int t, const Vec3& centre, double radius, C
 /// Eqs. (1) and (2) for a sphere whose centre is in front of the surface.
 int SurfaceCollider::Data::share_out(const CandidateList& found, const Vec3& centre, double radius,
                                      std::span<SurfaceHit> out) const {
+  FURROW_ASSERT(found.size > 0 && !out.empty(), found.size, out.size());
   const double deepest = radius - found.item[0].distance;
   const double fade = std::clamp((kFadeTo - deepest / radius) / (kFadeTo - kFadeFrom), 0.0, 1.0);
   std::array<Vec3, kMaxCandidates> normal;
@@ -255,6 +260,8 @@ void SurfaceCollider::set_motion(std::span<const Vec3> start, std::span<const Ve
 }
 
 void SurfaceCollider::move_to(double share) {
+  FURROW_ASSERT(share >= 0.0 && share <= 1.0, share);
+  FURROW_ASSERT(data_->start.size() == data_->end.size(), data_->start.size(), data_->end.size());
   Data& d = *data_;
   d.position.resize(d.start.size());
   if (share == 1.0)
@@ -297,6 +304,7 @@ SurfaceBox SurfaceCollider::swept_bounds() const {
 }
 
 int SurfaceCollider::hits(const Vec3& centre, double radius, std::span<SurfaceHit> out) const {
+  FURROW_ASSERT(radius > 0.0 && radius <= data_->reach, radius, data_->reach);
   const Data& d = *data_;
   const std::span<const int> listed = d.grid.candidates(centre);
   // Most grains near a tire do not touch it: they leave here, before the candidate list exists.
@@ -324,6 +332,8 @@ int SurfaceCollider::hits(const Vec3& centre, double radius, std::span<SurfaceHi
 }
 
 Vec3 SurfaceCollider::velocity_at(const SurfaceHit& hit) const {
+  FURROW_ASSERT(in_range(hit.triangle, data_->mesh.triangles.size()), hit.triangle,
+                data_->mesh.triangles.size());
   const auto& v = data_->mesh.triangles[hit.triangle];
   return hit.weight[0] * data_->velocity[v[0]] + hit.weight[1] * data_->velocity[v[1]] +
          hit.weight[2] * data_->velocity[v[2]];

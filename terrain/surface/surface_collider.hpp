@@ -63,6 +63,7 @@ class SurfaceCollider {
 
   /// Moves the vertices to start + share · (end − start); serial, cheap; rebuilds the search grid when some vertex
   /// went farther than the skin since it was built. Results never depend on when the grid was built.
+  /// @pre set_motion was called; 0 ≤ share ≤ 1
   void move_to(double share);
 
   /// Triangles wholly outside this box (grown by the reach) may be ignored from the next grid on: give the box that
@@ -75,6 +76,7 @@ class SurfaceCollider {
 
   /// Touched points of the sphere, deepest first; returns how many (0 … min(out.size(), kMaxSurfaceHits)).
   /// Thread-safe, no allocation. Deterministic: depends on centre, radius and vertices only.
+  /// @pre 0 < radius ≤ reach
   int hits(const Vec3& centre, double radius, std::span<SurfaceHit> out) const;
 
   /// Velocity of the surface at a hit's point: Σ weight · vertex velocity, m/s.

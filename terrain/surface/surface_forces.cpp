@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "protocol/core/assert.hpp"
+
 namespace furrow::terrain {
 namespace {
 
@@ -19,6 +21,8 @@ NodalForceSum::NodalForceSum(int vertex_count, bool tangents)
 
 void NodalForceSum::add_tangents(std::span<const SurfaceContactForce> contacts, const SurfaceNow& surface,
                                  double dt) {
+  FURROW_ASSERT(surface.position.size() == tangent_.size(), surface.position.size(), tangent_.size());
+  FURROW_ASSERT(surface.velocity.size() == tangent_.size(), surface.velocity.size(), tangent_.size());
   for (std::size_t v = 0; v < tangent_.size(); ++v) {
     tangent_[v].position += dt * surface.position[v];
     tangent_[v].velocity += dt * surface.velocity[v];
@@ -34,6 +38,8 @@ void NodalForceSum::add_tangents(std::span<const SurfaceContactForce> contacts, 
 }
 
 void NodalForceSum::finish_tangents(double duration, NodalForces& forces) {
+  FURROW_ASSERT(forces.tangent.empty() && forces.vertex.size() <= tangent_.size(), forces.tangent.size(),
+                forces.vertex.size());
   for (const int v : forces.vertex) {
     const ContactTangent& t = tangent_[v];
     forces.tangent.push_back(
@@ -44,6 +50,9 @@ void NodalForceSum::finish_tangents(double duration, NodalForces& forces) {
 
 void NodalForceSum::add_substep(std::span<const SurfaceContactForce> contacts, const SurfaceNow& surface,
                                 double dt) {
+  FURROW_ASSERT(dt > 0.0, dt);
+  FURROW_ASSERT(surface.position.size() == impulse_.size(), surface.position.size(), impulse_.size());
+  FURROW_ASSERT(surface.velocity.size() == impulse_.size(), surface.velocity.size(), impulse_.size());
   sums_.contacts = static_cast<std::int64_t>(contacts.size());
   if (!tangent_.empty()) add_tangents(contacts, surface, dt);
   if (contacts.empty()) return;
@@ -100,6 +109,7 @@ void NodalForceSum::add_substep(std::span<const SurfaceContactForce> contacts, c
 }
 
 void NodalForceSum::finish(double duration, NodalForces& forces, ContactSums& sums) {
+  FURROW_ASSERT(duration > 0.0, duration);
   std::sort(touched_list_.begin(), touched_list_.end());
   forces.clear();
   for (int v : touched_list_) {

@@ -51,12 +51,13 @@ class NodalForceSum {
 
   /// Adds the forces of one substep of length dt. Serial, in the order given: the caller keeps that order fixed
   /// (for example by grain), then the bits do not depend on threads. Touches only vertices of touched triangles.
+  /// @pre dt > 0; the surface has a position and a velocity for each vertex
   void add_substep(std::span<const SurfaceContactForce> contacts, const SurfaceNow& surface, double dt);
   void add_substep(std::span<const SurfaceContactForce> contacts, const SurfaceCollider& surface, double dt) {
     add_substep(contacts, {surface.mesh().triangles, surface.positions(), surface.velocities()}, dt);
   }
 
-  /// Interval means: impulses divided by `duration`; clears the sums for the next interval.
+  /// Interval means: impulses divided by `duration`; clears the sums for the next interval. @pre duration > 0
   void finish(double duration, NodalForces& forces, ContactSums& sums);
 
   /// Impulse given to the surface since the last finish(), N s.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "protocol/core/assert.hpp"
+
 namespace furrow::terrain {
 namespace {
 
@@ -11,6 +13,7 @@ constexpr double kTolerance = 1e-11;  // of the deepest overlap
 constexpr int kMaxActive = 6;
 
 TrianglePoint on_edge(const Vec3& from, const Vec3& to, double share, int edge) {
+  FURROW_ASSERT(in_range(edge, 3), edge);
   TrianglePoint result;
   result.point = from + share * (to - from);
   result.weight[edge] = 1.0 - share;
@@ -20,6 +23,7 @@ TrianglePoint on_edge(const Vec3& from, const Vec3& to, double share, int edge) 
 }
 
 TrianglePoint on_vertex(const Vec3& vertex, int index) {
+  FURROW_ASSERT(in_range(index, 3), index);
   TrianglePoint result;
   result.point = vertex;
   result.weight[index] = 1.0;
@@ -34,9 +38,11 @@ struct ActiveSet {
   int size = 0;
 
   bool holds(int i) const {
+    FURROW_ASSERT(in_range(size, kMaxActive + 1), size);
     return std::find(index.begin(), index.begin() + size, i) != index.begin() + size;
   }
   void drop(int k) {
+    FURROW_ASSERT(in_range(k, size), k, size);
     for (int i = k; i + 1 < size; ++i) {
       index[i] = index[i + 1];
       lambda[i] = lambda[i + 1];
@@ -100,6 +106,7 @@ void settle_active(ActiveSet& active, std::span<const Vec3> normal, std::span<co
 }  // namespace
 
 TrianglePoint closest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  FURROW_ASSERT((b - a).cross(c - a).squaredNorm() > 0.0, a.transpose(), b.transpose(), c.transpose());
   const Vec3 ab = b - a, ac = c - a, ap = p - a;
   const double d1 = ab.dot(ap), d2 = ac.dot(ap);
   if (d1 <= 0.0 && d2 <= 0.0) return on_vertex(a, 0);
@@ -131,6 +138,9 @@ TrianglePoint closest_point(const Vec3& p, const Vec3& a, const Vec3& b, const V
 }
 
 int solve_push_out(std::span<const Vec3> normal, std::span<const double> overlap, std::span<double> lambda) {
+  FURROW_ASSERT(normal.size() == overlap.size() && lambda.size() == overlap.size(), normal.size(),
+                overlap.size(), lambda.size());
+  FURROW_ASSERT(overlap.size() <= static_cast<std::size_t>(kMaxCandidates), overlap.size());
   const int n = static_cast<int>(overlap.size());
   std::fill(lambda.begin(), lambda.end(), 0.0);
   if (n == 0) return 0;
@@ -172,6 +182,8 @@ int solve_push_out(std::span<const Vec3> normal, std::span<const double> overlap
 }
 
 void share_depth(std::span<const Vec3> normal, std::span<const double> overlap, std::span<double> shared) {
+  FURROW_ASSERT(normal.size() == overlap.size() && shared.size() == overlap.size(), normal.size(),
+                overlap.size(), shared.size());
   constexpr double kFull = 0.7, kNone = 0.3;  // cosines between which w goes from 1 to 0
   for (std::size_t i = 0; i < overlap.size(); ++i) {
     shared[i] = overlap[i];

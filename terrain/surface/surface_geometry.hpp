@@ -20,7 +20,7 @@ struct TrianglePoint {
 };
 
 /// Point of triangle (a, b, c) closest to p, by the Voronoi regions of its features
-/// [Ericson, Real-Time Collision Detection, 2005, §5.1.5]. The triangle must have an area.
+/// [Ericson, Real-Time Collision Detection, 2005, §5.1.5]. @pre the triangle has an area
 TrianglePoint closest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// Most candidates that solve_push_out takes.
@@ -34,6 +34,7 @@ inline constexpr int kMaxCandidates = 16;
 /// normals depend on each other linearly. Active-set method of [Lawson & Hanson, Solving Least Squares Problems,
 /// 1974, ch. 23], exact while G is definite: always when no two walls face each other; otherwise a wall that the
 /// method cannot place is left out. `overlap` in any order, all > 0, sizes ≤ kMaxCandidates; returns how many λ_i > 0.
+/// @pre all three spans have one size, at most kMaxCandidates
 int solve_push_out(std::span<const Vec3> normal, std::span<const double> overlap, std::span<double> lambda);
 
 /// Overlap that the contact law gets for each candidate. λ is not unique where more than three walls meet in a shallow

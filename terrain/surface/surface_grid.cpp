@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "protocol/core/assert.hpp"
+
 namespace furrow::terrain {
 namespace {
 
@@ -12,6 +14,7 @@ constexpr double kCellShare = 2.0;  // cell / margin: longer lists per query aga
 }  // namespace
 
 void SurfaceGrid::size_cells(const Vec3& extent, double margin) {
+  FURROW_ASSERT(margin > 0.0 && extent.minCoeff() >= 0.0, margin, extent.minCoeff());
   cell_ = kCellShare * margin;
   auto count = [&](int axis) { return std::floor(extent[axis] / cell_) + 1.0; };
   while (count(0) * count(1) * count(2) > kMaxCells) cell_ *= 1.25;
@@ -49,6 +52,10 @@ void SurfaceGrid::visit_cells(const Vec3& a, const Vec3& b, const Vec3& c, doubl
 
 void SurfaceGrid::build(std::span<const Vec3> vertex, std::span<const std::array<int, 3>> triangle,
                         std::span<const int> listed, double margin) {
+  FURROW_ASSERT(margin > 0.0, margin);
+  FURROW_ASSERT(
+      std::all_of(listed.begin(), listed.end(), [&](int t) { return in_range(t, triangle.size()); }),
+      triangle.size());
   cells_ = {0, 0, 0};
   first_.assign(1, 0);
   entry_.clear();

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "protocol/core/assert.hpp"
+
 namespace furrow::terrain {
 namespace {
 
@@ -14,6 +16,7 @@ struct HalfEdge {
 }  // namespace
 
 SurfaceTopology::SurfaceTopology(const SurfaceMesh& mesh) {
+  FURROW_ASSERT(mesh.vertex_count >= 0, mesh.vertex_count);
   const int count = static_cast<int>(mesh.triangles.size());
   std::vector<HalfEdge> half;
   half.reserve(3 * mesh.triangles.size());

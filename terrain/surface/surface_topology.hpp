@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/surface.hpp"
 
 namespace furrow::terrain {
@@ -21,6 +22,7 @@ struct SurfaceTopology {
 
   /// Triangles around a vertex, ascending.
   std::span<const int> around(int vertex) const {
+    FURROW_ASSERT(in_range(vertex + 1, first.size()), vertex, first.size());
     return {incident.data() + first[vertex], static_cast<std::size_t>(first[vertex + 1] - first[vertex])};
   }
 };

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "protocol/core/archive_fields.hpp"
+#include "protocol/core/assert.hpp"
 
 namespace furrow::tire {
 namespace {
@@ -13,6 +15,7 @@ constexpr int kMaxHalvings = 4;  // of a step that does not converge
 
 /// Area of the shell, m².
 double shell_area(const ShellMesh& ring, const SurfaceMesh& surface, const ShellLayout& layout) {
+  FURROW_ASSERT(surface.vertex_count >= ring.nodes(), surface.vertex_count, ring.nodes());
   const Field shape = undeformed(ring);
   const auto at = [&](int v) { return layout.get(shape, v / ring.rows, v % ring.rows, 0); };
   double area = 0.0;
@@ -46,6 +49,7 @@ AncfTire::AncfTire(const TireFile& file, const ShellIntegratorParams& params)
 }
 
 void AncfTire::set_pressure(double pressure) {
+  FURROW_ASSERT(std::isfinite(pressure), pressure);
   const double before = integrator_.shell().pressure();
   if (pressure == before) return;
   if (placed_)
@@ -93,6 +97,14 @@ void AncfTire::surface(SurfaceState& out) const {
 }
 
 Outcome AncfTire::advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) {
+  FURROW_ASSERT(placed_, substeps);
+  FURROW_ASSERT(substeps > 0 && rim.duration() > 0.0, substeps, rim.duration());
+  FURROW_ASSERT(forces.force.size() == forces.vertex.size(), forces.force.size(), forces.vertex.size());
+  FURROW_ASSERT(forces.tangent.empty() || forces.tangent.size() == forces.vertex.size(),
+                forces.tangent.size(), forces.vertex.size());
+  FURROW_ASSERT(std::all_of(forces.vertex.begin(), forces.vertex.end(),
+                            [&](int v) { return in_range(v, surface_mesh_.vertex_count); }),
+                surface_mesh_.vertex_count);
   const ShellLayout& layout = integrator_.layout();
   about_ = 0.5 * (rim.start().position + rim.end().position);
   spindle_ = {};
@@ -132,12 +144,16 @@ Outcome AncfTire::advance(const RimTrajectory& rim, const NodalForces& forces, i
 }
 
 void AncfTire::acted(NodalForces& forces) const {
+  FURROW_ASSERT(answering_.empty() || interval_ > 0.0, answering_.size(), interval_);
+  FURROW_ASSERT(answering_.empty() || answering_.back().first < forces.force.size(), answering_.size(),
+                forces.force.size());
   for (const auto& [k, entry] : answering_)
     forces.force[k] = integrator_.contact().impulse(entry) / interval_;
 }
 
 /// The step from `from` to `to`, counted in substeps; in halves of it where the iteration does not converge.
 Outcome AncfTire::step(const RimTrajectory& rim, double from, double to, int substeps, int halvings) {
+  FURROW_ASSERT(from < to && to <= substeps && halvings >= 0, from, to, substeps, halvings);
   const double share = (to - from) / substeps;
   const RimState end = to == substeps ? rim.end() : rim.at(to / substeps).state;
   Wrench part;

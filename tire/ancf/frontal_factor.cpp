@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <algorithm>
 
+#include "protocol/core/assert.hpp"
+
 namespace furrow::tire {
 namespace {
 
@@ -16,6 +18,13 @@ double supernode_operations(double c, double b) { return c * c * c / 3.0 + b * c
 
 FrontalFactor::FrontalFactor(PanelPattern pattern, const std::vector<Entry>& entries, int groups)
     : pattern_(std::move(pattern)) {
+  FURROW_ASSERT(groups > 0, groups);
+  FURROW_ASSERT(std::all_of(entries.begin(), entries.end(),
+                            [&](const Entry& e) {
+                              return e.row >= e.column && in_range(e.column, pattern_.size()) &&
+                                     in_range(e.group, groups);
+                            }),
+                entries.size(), pattern_.size(), groups);
   const auto& panels = pattern_.panels();
   const int count = static_cast<int>(panels.size());
   std::vector<int> supernode_of(pattern_.size());
@@ -60,6 +69,8 @@ FrontalFactor::FrontalFactor(PanelPattern pattern, const std::vector<Entry>& ent
 }
 
 bool FrontalFactor::factorize(std::span<const float> values, std::span<const char> changed, int threads) {
+  FURROW_ASSERT(holds_.empty() || changed.size() == holds_.front().size(), changed.size(), holds_.size());
+  FURROW_ASSERT(threads > 0, threads);
   std::fill(dirty_.begin(), dirty_.end(), 0);
   for (std::size_t s = 0; s < dirty_.size(); ++s) {
     for (std::size_t g = 0; g < changed.size(); ++g) dirty_[s] |= changed[g] & holds_[s][g];
@@ -87,6 +98,10 @@ void FrontalFactor::eliminate(const std::vector<int>& supernodes, std::span<cons
 
 /// The columns of supernode s, and what its children pass on to rows below in passed_[s].
 void FrontalFactor::gather(int s, std::span<const float> values, std::vector<float>& columns) {
+  FURROW_ASSERT(in_range(s, entries_.size()), s, entries_.size());
+  FURROW_ASSERT(std::all_of(entries_[s].begin(), entries_[s].end(),
+                            [&](const Place& e) { return in_range(e.value, values.size()); }),
+                s, values.size());
   const auto& p = pattern_.panels()[s];
   const int rows = p.columns + p.below;
   std::fill(columns.begin(), columns.begin() + static_cast<std::size_t>(rows) * p.columns, 0.0f);

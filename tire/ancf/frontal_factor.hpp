@@ -27,6 +27,7 @@ class FrontalFactor {
 
   FrontalFactor() = default;
   /// Entries with the same row and column are summed in the order given.
+  /// @pre row ≥ column and group < groups in each of them
   FrontalFactor(PanelPattern pattern, const std::vector<Entry>& entries, int groups);
 
   /// Computes what depends on the groups marked in `changed`, the branches of the pattern by `threads`.

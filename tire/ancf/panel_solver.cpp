@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/simd.hpp"
 
 namespace furrow::tire {
@@ -49,6 +50,8 @@ const float* multiply_transposed(const float* a, int columns, const float* x, fl
 }  // namespace
 
 PanelPattern::PanelPattern(int supernodes, const int* super, const int* row_start, const int* row_number) {
+  FURROW_ASSERT(supernodes > 0 && super != nullptr, supernodes);
+  FURROW_ASSERT(row_start != nullptr && row_number != nullptr, supernodes);
   int widest = 0, tallest = 0;
   for (int s = 0; s < supernodes; ++s) {
     Panel panel;
@@ -75,6 +78,7 @@ PanelPattern::PanelPattern(int supernodes, const int* super, const int* row_star
 }
 
 std::size_t PanelPattern::panel_values(int s) const {
+  FURROW_ASSERT(in_range(s, panels_.size()), s, panels_.size());
   const Panel& p = panels_[s];
   return triangle_values(p.columns) + static_cast<std::size_t>(kStrip) * strips(p.below) * p.columns;
 }

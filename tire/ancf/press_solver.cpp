@@ -9,6 +9,7 @@
 #include <cmath>
 #include <memory>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "tire/ancf/inflation.hpp"
 #include "tire/ancf/shell_batch.hpp"
@@ -270,6 +271,7 @@ void PressSolver::follow(double top) {
 }
 
 PressPoint PressSolver::press(double deflection, const std::function<void()>& each_step) {
+  FURROW_ASSERT(std::isfinite(deflection), deflection);
   PressPoint point;
   point.deflection = deflection;
   follow(deflection - start_radius_);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "protocol/core/assert.hpp"
+
 namespace furrow::tire {
 namespace {
 constexpr double kTorn = 2.0;         // undeformed radii: no tire comes so far from its axle
@@ -26,6 +28,8 @@ RimClearance::RimClearance(const TireFile& file, const ShellMesh& mesh)
 
 RimClearance::Nodes RimClearance::measure(const ShellLayout& layout, const Field& q,
                                           const RimState& rim) const {
+  FURROW_ASSERT(q.size() == layout.size(), q.size(), layout.size());
+  FURROW_ASSERT(inside_.size() == static_cast<std::size_t>(layout.rows), inside_.size(), layout.rows);
   const Vec3 axle = rim.orientation * Vec3::UnitY();
   Nodes nodes;
   double far = 0.0;

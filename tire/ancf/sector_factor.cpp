@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "protocol/core/archive_fields.hpp"
+#include "protocol/core/assert.hpp"
 #include "protocol/core/constants.hpp"
 #include "tire/ancf/shell_batch.hpp"
 #include "tire/ancf/shell_tangent.hpp"
@@ -43,10 +44,16 @@ void SectorFactor::start() {
   valid_ = false;
 }
 
-void SectorFactor::note_iterations(int count) { excess_ += std::max(0, count - 1); }
+void SectorFactor::note_iterations(int count) {
+  FURROW_ASSERT(count >= 0, count);
+  excess_ += std::max(0, count - 1);
+}
 
 /// Keeps the shape of a sector over the step, in rim axes.
 void SectorFactor::note_shape(int sector, const Step& step) {
+  FURROW_ASSERT(in_range(sector, layout_.batches()), sector, layout_.batches());
+  FURROW_ASSERT(step.q.size() == layout_.size() && step.q_new.size() == layout_.size(), step.q.size(),
+                step.q_new.size(), layout_.size());
   const RimState& rim = step.rim;
   const Mat3 back = rim.orientation.toRotationMatrix().transpose();
   made_pressure_[sector] = shell_.pressure();
@@ -72,6 +79,7 @@ void SectorFactor::note_contact(const Step& step, const Mat3& turn) {
 }
 
 void SectorFactor::build(const std::vector<char>& which) {
+  FURROW_ASSERT(which.size() == static_cast<std::size_t>(factor_.sectors()), which.size(), factor_.sectors());
   const Stopwatch watch(times_.jacobian);
   const int count = factor_.sectors();
   if (params_.threads > 1) {
@@ -129,6 +137,7 @@ bool SectorFactor::renew(const std::vector<char>& which, const Step& step) {
 
 /// Largest relative change of an edge or a director of a sector since the factor was made, in rim axes.
 double SectorFactor::age(int sector, const Field& q_new, const Mat3& turn) const {
+  FURROW_ASSERT(in_range(sector, layout_.batches()) && q_new.size() == layout_.size(), sector, q_new.size());
   Double4 most = {};
   const auto compare = [&](const Triple<Double4>& now, const Triple<Double4>& made, double weight) {
     const Triple<Double4> change{turn(0, 0) * now.x + turn(1, 0) * now.y + turn(2, 0) * now.z - made.x,
@@ -151,6 +160,8 @@ double SectorFactor::age(int sector, const Field& q_new, const Mat3& turn) const
 /// Largest change of a contact tangent of a sector since the factor was made, relative to what the factor holds of the
 /// node: that tangent and the node's inertia.
 double SectorFactor::contact_age(int sector, double h) const {
+  FURROW_ASSERT(contact_made_.empty() || contact_now_.size() == contact_made_.size(), contact_now_.size(),
+                contact_made_.size());
   if (contact_made_.empty()) return 0.0;
   double most = 0.0;
   for (int i = sector * kDoubleLanes; i < std::min((sector + 1) * kDoubleLanes, layout_.columns); ++i)
@@ -165,6 +176,7 @@ double SectorFactor::contact_age(int sector, double h) const {
 }
 
 bool SectorFactor::prepare(const Step& step, int attempt) {
+  FURROW_ASSERT(step.h > 0.0 && attempt >= 0, step.h, attempt);
   const double h = step.h;
   const Mat3 turn = step.rim.orientation.toRotationMatrix();
   const bool all = !valid_ || h_ != h || attempt > 1;

@@ -1,5 +1,6 @@
 #include "tire/ancf/shell_carcass.hpp"
 
+#include "protocol/core/assert.hpp"
 #include "tire/ancf/shell_batch.hpp"
 #include "tire/ancf/shell_matrices.hpp"
 
@@ -13,6 +14,7 @@ namespace {
 struct Decay {
   double left, taken, taken_mean;
   Decay(const MaxwellBranch& branch, double h) {
+    FURROW_ASSERT(branch.time > 0.0 && h > 0.0, branch.time, h);
     const double x = h / branch.time;
     left = std::exp(-x);
     taken = -std::expm1(-x) / x;
@@ -49,6 +51,8 @@ Double4 ShellCarcass::mask(int batch) const {
 }
 
 void ShellCarcass::batch_strains_at(const Field& q, int j, int batch, Double4* e) const {
+  FURROW_ASSERT(in_range(j, reference_.size()) && in_range(batch, layout_.batches()), j, reference_.size(),
+                batch);
   BatchNodes nodes;
   nodes.read(layout_, q.data(), batch * kDoubleLanes, j);
   batch_strains(nodes, e);
@@ -92,6 +96,9 @@ void ShellCarcass::batch_stress_between(const BatchNodes& before, const BatchNod
 
 void ShellCarcass::forces(const Field& q_new, const Field& q_force, const Field& e_old, double c,
                           Field& f) const {
+  FURROW_ASSERT(q_new.size() == layout_.size() && q_force.size() == layout_.size(), q_new.size(),
+                q_force.size(), layout_.size());
+  FURROW_ASSERT(e_old.size() == strains_size() && f.size() == layout_.size(), e_old.size(), f.size());
   std::fill(f.begin(), f.end(), 0.0);
   Double4 stress[kStrains];
   for (int j = 0; j + 1 < layout_.rows; ++j)
@@ -108,6 +115,7 @@ void ShellCarcass::forces(const Field& q_new, const Field& q_force, const Field&
 }
 
 void ShellCarcass::begin(const Field& q, Step& step) const {
+  FURROW_ASSERT(q.size() == layout_.size(), q.size(), layout_.size());
   strains(q, step.strains);
   step.new_strains = step.strains;
   step.stress.assign(strains_size(), 0.0);
@@ -134,6 +142,8 @@ double ShellCarcass::branch_gain(double h) const {
 }
 
 void ShellCarcass::prepare(Step& step, double h) const {
+  FURROW_ASSERT(h > 0.0, h);
+  FURROW_ASSERT(step.stress.size() == strains_size(), step.stress.size(), strains_size());
   step.h = h;
   if (branches_.empty()) return;
   std::copy(step.stress.begin(), step.stress.end(), step.relaxed_stress.begin());
@@ -178,6 +188,10 @@ void ShellCarcass::row_forces(const Field& q_new, const Field& q_force, Step& st
 // Row j adds to the nodes of rows j and j + 1: first the even rows, then the odd ones, so that no two threads meet.
 void ShellCarcass::forces(const Field& q_new, const Field& q_force, Step& step, double c, Field& f,
                           int threads) const {
+  FURROW_ASSERT(step.h > 0.0 && threads > 0, step.h, threads);
+  FURROW_ASSERT(q_new.size() == layout_.size() && q_force.size() == layout_.size(), q_new.size(),
+                q_force.size(), layout_.size());
+  FURROW_ASSERT(f.size() == layout_.size(), f.size(), layout_.size());
   const double with_branches = c + branch_gain(step.h);
   std::fill(f.begin(), f.end(), 0.0);
   for (const int parity : {0, 1}) {
@@ -194,6 +208,9 @@ void ShellCarcass::forces(const Field& q_new, const Field& q_force, Step& step, 
 }
 
 ShellCarcass::Energies ShellCarcass::accept(Step& step) const {
+  FURROW_ASSERT(step.strains.size() == step.new_strains.size(), step.strains.size(), step.new_strains.size());
+  FURROW_ASSERT(step.stress.size() == step.stress_change.size(), step.stress.size(),
+                step.stress_change.size());
   Energies total;
   for (const Energies& row : step.rows) total.elastic += row.elastic, total.change += row.change;
   accept_branches(step, total);
@@ -234,6 +251,7 @@ void ShellCarcass::accept_branches(Step& step, Energies& total) const {
 }
 
 ShellCarcass::Energies ShellCarcass::account(const Field& q, Field& e) const {
+  FURROW_ASSERT(e.size() == strains_size(), e.size(), strains_size());
   Double4 now[kStrains], delta[kStrains], s_now[kStrains], s_delta[kStrains];
   Energies total;
   for (int j = 0; j + 1 < layout_.rows; ++j) {
@@ -260,6 +278,7 @@ ShellCarcass::Energies ShellCarcass::account(const Field& q, Field& e) const {
 }
 
 double ShellCarcass::volume(const Field& q, const Vec3& centre) const {
+  FURROW_ASSERT(q.size() == layout_.size(), q.size(), layout_.size());
   const Triple<Double4> c{spread(centre.x()), spread(centre.y()), spread(centre.z())};
   double total = 0.0;
   for (int j = 0; j + 1 < layout_.rows; ++j) {
@@ -284,6 +303,7 @@ double ShellCarcass::volume(const Field& q, const Vec3& centre) const {
 // Stokes: ∫ n dA = ½ ∮ x × dx and ∫ x × n dA = −½ ∮ |x|² dx around the boundary, here two polygons. With the
 // surface on its left the left loop runs with the columns, the right loop against them.
 Wrench ShellCarcass::pressure_resultant(const Field& q, const Vec3& centre) const {
+  FURROW_ASSERT(q.size() == layout_.size(), q.size(), layout_.size());
   Wrench w;
   for (int side = 0; side < 2; ++side) {
     const int j = side == 0 ? 0 : layout_.rows - 1;

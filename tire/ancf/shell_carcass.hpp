@@ -12,6 +12,7 @@
 // discs.
 #pragma once
 
+#include "protocol/core/assert.hpp"
 #include "tire/ancf/shell_layout.hpp"
 #include "tire/ancf/shell_strain.hpp"
 #include "tire/shell_mesh.hpp"
@@ -27,7 +28,10 @@ class ShellCarcass {
   const ShellLayout& layout() const { return layout_; }
   double pressure() const { return pressure_; }  // Pa
   void set_pressure(double pressure) { pressure_ = pressure; }
-  const StrainMatrix& stiffness(int j) const { return stiffness_[j]; }
+  const StrainMatrix& stiffness(int j) const {
+    FURROW_ASSERT(in_range(j, stiffness_.size()), j, stiffness_.size());
+    return stiffness_[j];
+  }
 
   /// Strains of all elements: [row][batch][strain][lane].
   std::size_t strains_size() const;
@@ -57,7 +61,7 @@ class ShellCarcass {
   };
   /// Starts at q: strains and stress.
   void begin(const Field& q, Step& step) const;
-  /// Says how long the step is that comes, s.
+  /// Says how long the step is that comes, s. @pre begin() was called for this step; h > 0
   void prepare(Step& step, double h) const;
   /// What the branches add to c for a step of h: Σ g_i b_i.
   double branch_gain(double h) const;

@@ -1,10 +1,14 @@
 #include "tire/ancf/shell_contact.hpp"
 
+#include <algorithm>
 #include <cmath>
+
+#include "protocol/core/assert.hpp"
 
 namespace furrow::tire {
 
 std::size_t ShellContact::add(int i, int j, const Vec3& force, const ContactTangent& tangent) {
+  FURROW_ASSERT(i >= 0 && j > 0, i, j);
   entries_.push_back({i, j, force, tangent, Vec3::Zero()});
   return entries_.size() - 1;
 }
@@ -33,11 +37,18 @@ void ShellContact::apply(const ShellLayout& layout, const Field& q_force, const 
 }
 
 void ShellContact::accept(const ShellLayout& layout, const Field& q_force, const Field& v_new, double h) {
+  FURROW_ASSERT(h > 0.0, h);
   for (Entry& e : entries_) e.impulse += h * force(e, layout, q_force, v_new);
 }
 
 void ShellContact::stiffness(const ShellLayout& layout, double h, const Mat3& axes,
                              std::vector<Mat3>& out) const {
+  FURROW_ASSERT(h > 0.0, h);
+  FURROW_ASSERT(std::all_of(entries_.begin(), entries_.end(),
+                            [&](const Entry& e) {
+                              return in_range(e.column, layout.columns) && in_range(e.row, layout.rows);
+                            }),
+                entries_.size(), layout.columns, layout.rows);
   out.assign(static_cast<std::size_t>(layout.columns) * layout.rows, Mat3::Zero());
   for (const Entry& e : entries_)
     out[static_cast<std::size_t>(e.column) * layout.rows + e.row] =

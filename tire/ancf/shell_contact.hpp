@@ -13,6 +13,7 @@
 
 #include <vector>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/surface.hpp"
 #include "tire/ancf/shell_layout.hpp"
 
@@ -23,6 +24,7 @@ class ShellContact {
   /// Begins an interval without forces.
   void clear() { entries_.clear(); }
   /// A force on the node of column i, row j, and its tangent. @returns its number in the interval
+  /// @pre the node is free
   std::size_t add(int i, int j, const Vec3& force, const ContactTangent& tangent);
   bool empty() const { return entries_.empty(); }
 
@@ -31,7 +33,10 @@ class ShellContact {
   /// Counts F for a step of size h that was accepted.
   void accept(const ShellLayout& layout, const Field& q_force, const Field& v_new, double h);
   /// Impulse of entry k since it was added, N s.
-  const Vec3& impulse(std::size_t k) const { return entries_[k].impulse; }
+  const Vec3& impulse(std::size_t k) const {
+    FURROW_ASSERT(in_range(k, entries_.size()), k, entries_.size());
+    return entries_[k].impulse;
+  }
 
   /// ½ K + C/h of every node, [i * rows + j], turned into axes R: Rᵀ A R.
   void stiffness(const ShellLayout& layout, double h, const Mat3& axes, std::vector<Mat3>& out) const;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 
 namespace furrow::tire {
@@ -55,6 +56,7 @@ PanelPattern analyze(const std::vector<std::vector<int>>& columns, std::vector<i
 
 /// Pattern of the lower triangle: nodes that share an element are coupled.
 std::vector<std::vector<int>> ring_pattern(int columns, int across) {
+  FURROW_ASSERT(columns >= 3 && across > 0, columns, across);
   std::vector<std::vector<int>> pattern(6 * static_cast<std::size_t>(columns) * across);
   for (int node = 0; node < columns * across; ++node) {
     std::set<int> near;
@@ -106,12 +108,15 @@ std::size_t ShellFactor::block(int sector, int column, int row, int kind) const 
 }
 
 void ShellFactor::clear(int sector) {
+  FURROW_ASSERT(in_range(sector, sectors()), sector, sectors());
   std::fill(values_.begin() + block(sector, 0, 0, 0), values_.begin() + block(sector + 1, 0, 0, 0), 0.0f);
   changed_[sector] = 1;
 }
 
 void ShellFactor::add(const BatchTangent& tangent, const ElementMass& mass, double mass_factor, int j,
                       int sector) {
+  FURROW_ASSERT(in_range(sector, sectors()) && in_range(j, layout_.rows - 1), sector, sectors(), j,
+                layout_.rows);
   for (int lane = 0; lane < kDoubleLanes && sector * kDoubleLanes + lane < layout_.columns; ++lane)
     for (int n = 0; n < 4; ++n)
       for (int m = 0; m < 4; ++m) {
@@ -134,6 +139,8 @@ void ShellFactor::add(const BatchTangent& tangent, const ElementMass& mass, doub
 }
 
 void ShellFactor::add_node(const Mat3& stiffness, int sector, int lane, int row) {
+  FURROW_ASSERT(in_range(sector, sectors()) && in_range(lane, kDoubleLanes + 1), sector, sectors(), lane);
+  FURROW_ASSERT(in_range(row - 1, across_), row, across_);
   float* to = values_.data() + block(sector, lane, row - 1, 0);
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c <= r; ++c) to[6 * r + c] += static_cast<float>(stiffness(r, c));
@@ -149,6 +156,8 @@ bool ShellFactor::factorize(int threads) {
 }
 
 void ShellFactor::solve(const Mat3& turn, const Field& rhs, Field& x, int threads) {
+  FURROW_ASSERT(rhs.size() == layout_.size() && x.size() == layout_.size(), rhs.size(), x.size(),
+                layout_.size());
   const int columns = layout_.columns, stride = layout_.stride();
   const Mat3 back = turn.transpose();
   for (int j = 0; j < across_; ++j)

@@ -21,7 +21,7 @@ class ShellFactor {
 
   int unknowns() const { return factor_.pattern().size(); }
   int sectors() const { return layout_.batches(); }
-  /// Forgets the elements of a sector.
+  /// Forgets the elements of a sector. @pre 0 ≤ sector < sectors(), here and in what follows
   void clear(int sector);
   /// Adds the elements of row j of a sector: tangent plus mass_factor × M_e.
   void add(const BatchTangent& tangent, const ElementMass& mass, double mass_factor, int j, int sector);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "protocol/core/archive_fields.hpp"
+#include "protocol/core/assert.hpp"
 #include "tire/ancf/stopwatch.hpp"
 
 namespace furrow::tire {
@@ -183,6 +184,10 @@ bool ShellIntegrator::iterate(double h, const Field& force, const Mat3& turn, bo
 
 Outcome ShellIntegrator::step(double h, const RimState& end, const Field& force, const Vec3& about,
                               Wrench& on_rim) {
+  FURROW_ASSERT(h > 0.0, h);
+  FURROW_ASSERT(force.size() == layout_.size(), force.size(), layout_.size());
+  FURROW_ASSERT(q_.size() == layout_.size() && v_.size() == layout_.size(), q_.size(), v_.size(),
+                layout_.size());
   set_bead(end);
   shell_.prepare(shell_step_, h);
   layout_.fill_padding(v_new_);

@@ -50,7 +50,7 @@ class ShellIntegrator {
 
   /// One step of size h to the rim state `end`. `force`: contact forces, padding zero. `about`: moments are
   /// taken about this point. The wrench is what the tire exerts on the rim, the step's mean, without forces
-  /// on the bead discs.
+  /// on the bead discs. @pre started; h > 0; force has the layout's size
   Outcome step(double h, const RimState& end, const Field& force, const Vec3& about, Wrench& on_rim);
 
   /// Forces with tangents, in addition to those that step() is given; to be set before each interval.

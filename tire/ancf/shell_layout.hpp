@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/simd.hpp"
 #include "protocol/core/vec.hpp"
 
@@ -24,6 +25,7 @@ struct ShellLayout {
   int batches() const { return (columns + kDoubleLanes - 1) / kDoubleLanes; }
   int stride() const { return kDoubleLanes * (batches() + 2); }
   std::size_t offset(int j, int c) const {
+    FURROW_ASSERT(in_range(j, rows) && in_range(c, 6), j, rows, c);
     return static_cast<std::size_t>(j * 6 + c) * stride() + kDoubleLanes;
   }
   std::size_t size() const { return static_cast<std::size_t>(rows) * 6 * stride(); }
@@ -32,14 +34,19 @@ struct ShellLayout {
   std::size_t free_size() const { return static_cast<std::size_t>(rows - 2) * 6 * stride(); }
 
   Vec3 get(const Field& f, int i, int j, int first) const {
+    FURROW_ASSERT(in_range(i + kDoubleLanes, stride()) && (first == 0 || first == 3), i, columns, first);
+    FURROW_ASSERT(f.size() == size(), f.size(), size());
     return Vec3(f[offset(j, first) + i], f[offset(j, first + 1) + i], f[offset(j, first + 2) + i]);
   }
   void set(Field& f, int i, int j, int first, const Vec3& v) const {
+    FURROW_ASSERT(in_range(i + kDoubleLanes, stride()) && (first == 0 || first == 3), i, columns, first);
+    FURROW_ASSERT(f.size() == size(), f.size(), size());
     for (int c = 0; c < 3; ++c) f[offset(j, first + c) + i] = v[c];
   }
 
   /// Continues every line cyclically.
   void fill_padding(Field& f) const {
+    FURROW_ASSERT(f.size() == size() && columns >= kDoubleLanes, f.size(), size(), columns);
     const int right = stride() - kDoubleLanes - columns;
     for (int line = 0; line < rows * 6; ++line) {
       double* p = f.data() + static_cast<std::size_t>(line) * stride() + kDoubleLanes;
@@ -49,6 +56,7 @@ struct ShellLayout {
   }
   /// Adds what was written beyond the last column to the first ones and clears the padding.
   void fold_padding(Field& f) const {
+    FURROW_ASSERT(f.size() == size() && columns >= kDoubleLanes, f.size(), size(), columns);
     const int right = stride() - kDoubleLanes - columns;
     for (int line = 0; line < rows * 6; ++line) {
       double* p = f.data() + static_cast<std::size_t>(line) * stride() + kDoubleLanes;

@@ -1,5 +1,6 @@
-#include "protocol/core/constants.hpp"
 #include "tire/ancf/shell_mass.hpp"
+#include "protocol/core/assert.hpp"
+#include "protocol/core/constants.hpp"
 
 namespace furrow::tire {
 namespace {
@@ -8,6 +9,8 @@ constexpr int kColumn[4] = {0, 1, 1, 0}, kRow[4] = {0, 0, 1, 1};  // corner's pl
 
 ShellMass::ShellMass(const ShellMesh& mesh, std::vector<ElementMass> elements)
     : layout_{mesh.columns, mesh.rows}, elements_(std::move(elements)), rows_(mesh.rows) {
+  FURROW_ASSERT(elements_.size() == static_cast<std::size_t>(mesh.elements_width()), elements_.size(),
+                mesh.elements_width());
   for (int e = 0; e < mesh.elements_width(); ++e)
     for (int n = 0; n < 4; ++n)
       for (int m = 0; m < 4; ++m)
@@ -18,6 +21,7 @@ ShellMass::ShellMass(const ShellMesh& mesh, std::vector<ElementMass> elements)
 }
 
 void ShellMass::apply(const Field& field, double factor, Field& out) const {
+  FURROW_ASSERT(out.size() == layout_.size(), out.size(), layout_.size());
   for (int j = 0; j < layout_.rows; ++j)
     for (int c = 0; c < 6; ++c) {
       double* to = out.data() + layout_.offset(j, c);
@@ -27,6 +31,9 @@ void ShellMass::apply(const Field& field, double factor, Field& out) const {
 }
 
 void ShellMass::add(const Field& field, double factor, Field& out) const {
+  FURROW_ASSERT(field.size() == layout_.size() && out.size() == layout_.size(), field.size(), out.size(),
+                layout_.size());
+  FURROW_ASSERT(&field != &out, field.size());
   for (int j = 0; j < layout_.rows; ++j)
     for (int c = 0; c < 6; ++c) {
       double* to = out.data() + layout_.offset(j, c);

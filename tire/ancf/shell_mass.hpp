@@ -2,6 +2,7 @@
 // same for every column and Cartesian component.
 #pragma once
 
+#include "protocol/core/assert.hpp"
 #include "tire/ancf/shell_layout.hpp"
 #include "tire/shell_mesh.hpp"
 
@@ -12,12 +13,16 @@ class ShellMass {
   ShellMass(const ShellMesh& mesh, std::vector<ElementMass> elements);
 
   /// out = factor × M field; the padding of `field` must be filled, that of `out` is left alone.
+  /// @pre both have the layout's size and are not the same
   void apply(const Field& field, double factor, Field& out) const;
   /// out += factor × M field.
   void add(const Field& field, double factor, Field& out) const;
   /// out = M g, the weights of the nodes, N; padding zero.
   void weigh(Field& out) const;
-  const ElementMass& element(int j) const { return elements_[j]; }
+  const ElementMass& element(int j) const {
+    FURROW_ASSERT(in_range(j, elements_.size()), j, elements_.size());
+    return elements_[j];
+  }
 
  private:
   struct Row {

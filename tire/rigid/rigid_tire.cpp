@@ -4,7 +4,10 @@
 //   M_spindle = Σ (x − c) × f − Δ(J ω)/H,  x − c the mean of the interval's ends
 #include "tire/rigid/rigid_tire.hpp"
 
+#include <algorithm>
+
 #include "protocol/core/archive_fields.hpp"
+#include "protocol/core/assert.hpp"
 #include "protocol/core/constants.hpp"
 
 namespace furrow::tire {
@@ -34,6 +37,11 @@ Vec3 RigidTire::angular_momentum(const RimState& rim) const {
 }
 
 Outcome RigidTire::advance(const RimTrajectory& rim, const NodalForces& forces, int) {
+  FURROW_ASSERT(rim.duration() > 0.0, rim.duration());
+  FURROW_ASSERT(forces.force.size() == forces.vertex.size(), forces.force.size(), forces.vertex.size());
+  FURROW_ASSERT(std::all_of(forces.vertex.begin(), forces.vertex.end(),
+                            [&](int v) { return in_range(v, vertex_.size()); }),
+                vertex_.size());
   const RimState &start = rim.start(), &end = rim.end();
   const double duration = rim.duration();
   spindle_.force = shape_.mass.mass * (kGravity - (end.velocity - start.velocity) / duration);

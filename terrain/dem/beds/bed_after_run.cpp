@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "terrain/dem/beds/bed_preparation.hpp"
 #include "terrain/dem/beds/bed_settling.hpp"
@@ -31,6 +32,7 @@ Archive grains_of(const Archive& state) {
 
 Archive bed_after_run(const Archive& state, const DemOptions& options, double rest,
                       const ProgressCall& progress, RestResult& result) {
+  FURROW_ASSERT(rest >= 0.0 && options.step > 0.0, rest, options.step);
   SolverParams params = solver_params(options);
   params.threads = std::max(1, options.threads);
   GrainSolver solver(params);

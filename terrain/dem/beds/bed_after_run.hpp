@@ -18,6 +18,7 @@ struct RestResult {
 /// @param state what Terrain::save wrote
 /// @returns a bed as prepare_bed reads it
 /// @throws Error(physics) when a grain is lost, Error(io) when the state is of another kind
+/// @pre rest ≥ 0, options.step > 0
 Archive bed_after_run(const Archive& state, const DemOptions& options, double rest,
                       const ProgressCall& progress, RestResult& result);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "terrain/dem/beds/bed_settling.hpp"
 #include "terrain/dem/beds/loaded_lid.hpp"
@@ -43,6 +44,8 @@ double top_of(const GrainSolver& solver) {
 }  // namespace
 
 std::vector<Quad> positions_by_id(const GrainSolver& solver) {
+  FURROW_ASSERT(solver.grains().id.size() == static_cast<std::size_t>(solver.grains().count),
+                solver.grains().id.size());
   const Grains& grains = solver.grains();
   std::vector<Quad> positions(grains.count);
   for (int g = 0; g < grains.count; ++g) positions[grains.id[g]] = grains.position[g];
@@ -51,6 +54,8 @@ std::vector<Quad> positions_by_id(const GrainSolver& solver) {
 
 std::vector<Quad> compacted_positions(GrainSolver& solver, const DemOptions& options,
                                       const ProgressCall& progress) {
+  FURROW_ASSERT(options.compaction_pressure > 0.0, options.compaction_pressure);
+  FURROW_ASSERT(solver.grains().count > 0, solver.grains().count);
   const Bin& bin = solver.params().bin;
   const double dt = settle_step(options), depth = top_of(solver), area = bin.length * bin.width;
   const double load = options.compaction_pressure * area;

@@ -4,9 +4,14 @@
 #include <cmath>
 #include <limits>
 
+#include "protocol/core/assert.hpp"
+
 namespace furrow::terrain::dem {
 
 HeightField bed_height_field(const Grains& grains, const Bin& bin, double cell) {
+  FURROW_ASSERT(cell > 0.0 && bin.length > 0.0 && bin.width > 0.0, cell, bin.length, bin.width);
+  FURROW_ASSERT(grains.position.size() >= static_cast<std::size_t>(grains.count), grains.position.size(),
+                grains.count);
   HeightField field;
   field.cell = cell;
   field.nx = std::max(1, static_cast<int>(bin.length / field.cell));
@@ -26,6 +31,9 @@ HeightField bed_height_field(const Grains& grains, const Bin& bin, double cell) 
 }
 
 double mean_height(const HeightField& field, double x_min, double x_max, double y_min, double y_max) {
+  FURROW_ASSERT(field.height.size() == static_cast<std::size_t>(field.nx) * field.ny, field.height.size(),
+                field.nx, field.ny);
+  FURROW_ASSERT(x_min <= x_max && y_min <= y_max, x_min, x_max, y_min, y_max);
   double sum = 0.0;
   int cells = 0;
   for (int ix = 0; ix < field.nx; ++ix)
@@ -40,6 +48,7 @@ double mean_height(const HeightField& field, double x_min, double x_max, double 
 }
 
 double top_height(const Grains& grains, double x_min, double x_max, double y_min, double y_max) {
+  FURROW_ASSERT(x_min <= x_max && y_min <= y_max, x_min, x_max, y_min, y_max);
   double top = 0.0;
   for (int g = 0; g < grains.count; ++g) {
     const Quad& p = grains.position[g];

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <random>
 
+#include "protocol/core/assert.hpp"
+
 namespace furrow::terrain::dem {
 namespace {
 
@@ -24,6 +26,8 @@ class Uniform {
 }  // namespace
 
 std::vector<Quad> poisson_layer(const Bin& bin, double radius, std::uint64_t seed) {
+  FURROW_ASSERT(radius > 0.0 && bin.length > 2.0 * radius && bin.width > 2.0 * radius, radius, bin.length,
+                bin.width);
   const double spacing = kSpacing * radius;
   const double length = bin.length - 2.0 * radius, width = bin.width - 2.0 * radius;
   const double cell = spacing / std::numbers::sqrt2;  // at most one sample per cell
@@ -78,6 +82,7 @@ std::vector<Quad> poisson_layer(const Bin& bin, double radius, std::uint64_t see
 
 std::vector<Quad> bed_layers(const Bin& bin, double radius, int layers, std::uint64_t seed,
                              const ProgressCall& progress) {
+  FURROW_ASSERT(layers >= 0, layers);
   std::vector<Quad> all;
   for (int layer = 0; layer < layers; ++layer) {
     if (progress) progress("placing the grains", static_cast<double>(layer) / layers);
@@ -90,6 +95,7 @@ std::vector<Quad> bed_layers(const Bin& bin, double radius, int layers, std::uin
 }
 
 double expected_layer_count(const Bin& bin, double radius) {
+  FURROW_ASSERT(radius > 0.0, radius);
   const double disc = 0.25 * std::numbers::pi * kSpacing * kSpacing * radius * radius;
   // Discs reach half a spacing beyond the samples' domain; half of that rim is gained.
   const double rim = (0.5 * kSpacing - 2.0) * radius;

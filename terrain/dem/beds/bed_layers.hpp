@@ -15,6 +15,7 @@ inline constexpr double kSpacing = 2.02;
 
 /// Points of one layer, no two nearer than kSpacing · radius, each at least a radius from the bin's walls
 /// [Bridson 2007, Fast Poisson disk sampling in arbitrary dimensions, doi:10.1145/1278780.1278807]. z = 0.
+/// @pre 0 < 2 radius < length and width of the bin
 std::vector<Quad> poisson_layer(const Bin& bin, double radius, std::uint64_t seed);
 
 /// All layers, the lowest one spacing half above the floor; each layer has its own samples. `progress` hears of each.

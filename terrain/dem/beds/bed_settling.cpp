@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "terrain/dem/solver_setup.hpp"
 
@@ -36,6 +37,7 @@ SolverCoefficients settle_coefficients(const DemOptions& options) {
 
 SettleResult settle(GrainSolver& solver, const DemOptions& options, const ProgressCall& progress,
                     double most_time) {
+  FURROW_ASSERT(most_time > 0.0, most_time);
   SettleResult result;
   const double dt = settle_step(options);
   const GrainProperties& grain = solver.params().grain;

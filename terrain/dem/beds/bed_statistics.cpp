@@ -4,12 +4,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "protocol/core/assert.hpp"
 #include "terrain/dem/beds/bed_height.hpp"
 #include "terrain/dem/close_pairs.hpp"
 
 namespace furrow::terrain::dem {
 
 double lens_volume(double a, double b, double distance) {
+  FURROW_ASSERT(a > 0.0 && b > 0.0 && distance > 0.0, a, b, distance);
   const double gap = a + b - distance;
   if (gap <= 0.0) return 0.0;
   const double unequal = a == b ? 0.0 : (a - b) * (a - b) / distance;
@@ -17,12 +19,14 @@ double lens_volume(double a, double b, double distance) {
 }
 
 double volume_below(double radius, double z, double height) {
+  FURROW_ASSERT(radius > 0.0, radius);
   // A cap of height h has the volume π h² (3 r − h) / 3.
   const double h = std::clamp(height - z + radius, 0.0, 2.0 * radius);
   return std::numbers::pi * h * h * (3.0 * radius - h) / 3.0;
 }
 
 BedStatistics bed_statistics(const std::vector<Quad>& positions, const Bin& bin, double radius) {
+  FURROW_ASSERT(radius > 0.0, radius);
   BedStatistics s;
   s.grains = static_cast<std::int64_t>(positions.size());
   if (s.grains == 0) return s;

@@ -9,6 +9,7 @@
 
 #include <cmath>
 
+#include "protocol/core/assert.hpp"
 #include "terrain/dem/dem_options.hpp"
 
 namespace furrow::terrain::dem {
@@ -32,6 +33,7 @@ class LoadedLid {
 
   /// @param force of the grains, up, N; @param load down, N. Returns the velocity for the coming step.
   double step(double force, double load, double dt) {
+    FURROW_ASSERT(dt > 0.0, dt);
     velocity_ = (velocity_ + dt * (force - load) / mass_) / (1.0 + dt * damping_ / mass_);
     return velocity_;
   }

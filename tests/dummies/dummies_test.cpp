@@ -8,6 +8,7 @@
 
 #include "nodes/output/line_builder.hpp"
 #include "nodes/scenario/schema.hpp"
+#include "protocol/core/error.hpp"
 #include "protocol/core/field_hash.hpp"
 #include "protocol/files/json_fields.hpp"
 #include "terrain/terrains.hpp"
@@ -22,11 +23,19 @@ using nlohmann::json;
 
 constexpr double kStep = 1e-3;  // communication step, s
 
+template <HasFields T>
+std::vector<Field> fields_of() {
+  std::vector<Field> fields;
+  const T options{};
+  visit_fields([&](const Field& field, const auto&) { fields.push_back(field); }, options);
+  return fields;
+}
+
 // The lines that would stand in tire/tires.cpp, terrain/terrains.cpp and rigs/rigs.cpp.
 constexpr tire::TireModel kTire{"spring_wheel", tire::read_spring_wheel};
 constexpr rigs::RigKind kRig{"held_hub", rigs::read_held_hub};
-constexpr terrain::TerrainEntry kTerrain{
-    "spring_mat", terrain::fields_of<terrain::SpringMatOptions>, terrain::read_spring_mat};
+constexpr terrain::TerrainEntry kTerrain{"spring_mat", fields_of<terrain::SpringMatOptions>,
+                                         terrain::read_spring_mat};
 
 /// The three dummies coupled as ranks couple them: forces one step late.
 struct Bench {
@@ -84,7 +93,8 @@ TEST(Dummies, wheel_pressed_on_a_mat_gives_the_force_of_two_springs_in_series) {
   bench.place();
   for (int n = 0; n < 200; ++n) bench.step();
   // At the bottom a pair of vertices: A = w · chord / 2 each, k of the wheel in series with κ A of the mat.
-  const double chord = 2.0 * 0.4 * std::sin(std::numbers::pi / 36), mat = 1e7 * 0.2 * chord / 2.0, wheel = 2e4;
+  const double chord = 2.0 * 0.4 * std::sin(std::numbers::pi / 36), mat = 1e7 * 0.2 * chord / 2.0,
+               wheel = 2e4;
   const double expected = 2.0 * depth * wheel * mat / (wheel + mat);
   EXPECT_NEAR(bench.contact[0].force.z(), expected, 1e-9 * expected);
   EXPECT_NEAR(bench.terrain->state().wall_impulse.z(), -bench.terrain->state().surface_impulse.z(), 1e-12);
@@ -146,7 +156,8 @@ TEST(Dummies, key_is_a_field_and_an_entry_of_the_schema) {
   EXPECT_TRUE(schema.problems(document).empty());
   terrain::SpringMatOptions options;
   read_fields(document["terrain"], options);
-  EXPECT_EQ(options.mat_stiffness, terrain::SpringMatOptions().mat_stiffness) << "the schema's default is the struct's";
+  EXPECT_EQ(options.mat_stiffness, terrain::SpringMatOptions().mat_stiffness)
+      << "the schema's default is the struct's";
   EXPECT_EQ(schema.problems({{"terrain", {{"mat_stiffness", 0}}}}).size(), 1U);
   const std::vector<scenario::Problem> misspelt = schema.problems({{"terrain", {{"mat_stifness", 1e7}}}});
   ASSERT_EQ(misspelt.size(), 1U);
@@ -169,7 +180,7 @@ TEST(Dummies, key_changes_a_digest_only_where_it_is_not_the_default) {
 }
 
 TEST(Dummies, column_of_a_rig_is_the_mean_of_its_lines_intervals) {
-  Bench bench({{"depth", 2e-3}});
+  Bench bench(json{{"depth", 2e-3}});
   bench.place();
   const std::vector<rigs::Subject> subjects = bench.rig->subjects();
   ASSERT_EQ(subjects.size(), 1U);

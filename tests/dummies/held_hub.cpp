@@ -7,6 +7,7 @@
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
+#include "protocol/core/outcome.hpp"
 #include "protocol/files/json_fields.hpp"
 
 namespace furrow::rigs {
@@ -107,7 +108,8 @@ class HeldHubSpec final : public RigSpec {
 std::unique_ptr<RigSpec> read_held_hub(const nlohmann::json& section, const ReadContext& context) {
   HeldHubOptions options;
   read_fields(section, options);
-  if (!(options.depth >= 0.0)) throw input_error(context.file, context.key("depth"), "is negative, expected 0 or more, m");
+  if (!(options.depth >= 0.0))
+    throw input_error(context.file, context.key("depth"), "is negative, expected 0 or more, m");
   return std::make_unique<HeldHubSpec>(options);
 }
 

@@ -10,6 +10,7 @@
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
+#include "protocol/core/outcome.hpp"
 #include "protocol/files/json_fields.hpp"
 #include "terrain/surface/surface_check.hpp"
 
@@ -69,8 +70,8 @@ class SpringMat final : public Terrain {
     TerrainState state;
     for (const Guest& guest : guests_)
       for (std::size_t v = 0; v < guest.area.size(); ++v)
-        state.elastic_energy += 0.5 * options_.mat_stiffness * guest.area[v] *
-                                std::pow(std::min(guest.position[v].z(), 0.0), 2);
+        state.elastic_energy +=
+            0.5 * options_.mat_stiffness * guest.area[v] * std::pow(std::min(guest.position[v].z(), 0.0), 2);
     state.dissipation = -work_ - state.elastic_energy;
     state.surface_impulse = impulse_;
     state.wall_impulse = -impulse_;  // the world holds the mat

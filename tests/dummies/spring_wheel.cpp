@@ -12,6 +12,7 @@
 #include "protocol/core/assert.hpp"
 #include "protocol/core/constants.hpp"
 #include "protocol/core/error.hpp"
+#include "protocol/core/outcome.hpp"
 #include "protocol/files/json_fields.hpp"
 
 namespace furrow::tire {
@@ -32,12 +33,14 @@ TireShape wheel_shape(const SpringWheelOptions& o) {
     for (const double side : {0.5, -0.5})
       shape.vertex.push_back(o.radius * direction(k, o.spokes) + Vec3(0.0, side * o.width, 0.0));
   for (int k = 0; k < o.spokes; ++k) {
-    const int left = 2 * k, right = left + 1, next_left = 2 * ((k + 1) % o.spokes), next_right = next_left + 1;
+    const int left = 2 * k, right = left + 1, next_left = 2 * ((k + 1) % o.spokes),
+              next_right = next_left + 1;
     shape.mesh.triangles.push_back({right, next_right, left});
     shape.mesh.triangles.push_back({next_right, next_left, left});
   }
   shape.mesh.vertex_count = 2 * o.spokes;
-  const double spin = 0.5 * o.mass * o.radius * o.radius, other = 0.5 * spin + o.mass * o.width * o.width / 12.0;
+  const double spin = 0.5 * o.mass * o.radius * o.radius,
+               other = 0.5 * spin + o.mass * o.width * o.width / 12.0;
   shape.mass = {o.mass, Vec3(other, spin, other).asDiagonal()};
   shape.radius = o.radius;
   shape.tread_width = o.width;
@@ -47,7 +50,10 @@ TireShape wheel_shape(const SpringWheelOptions& o) {
 class SpringWheel final : public Tire {
  public:
   SpringWheel(const SpringWheelOptions& options, TireShape shape)
-      : options_(options), shape_(std::move(shape)), deflection_(shape_.vertex.size()), rate_(shape_.vertex.size()) {}
+      : options_(options),
+        shape_(std::move(shape)),
+        deflection_(shape_.vertex.size()),
+        rate_(shape_.vertex.size()) {}
 
   const SurfaceMesh& mesh() const override { return shape_.mesh; }
   ContactMaterial material() const override { return shape_.material; }
@@ -97,7 +103,8 @@ class SpringWheel final : public Tire {
     rim_ = end;
     for (std::size_t v = 0; v < deflection_.size(); ++v)
       if (!(deflection_[v] < kMostDeflection * options_.radius))
-        return Outcome::failure("reached its rim", fmt::format("vertex {} is {:g} m deep", v, deflection_[v]));
+        return Outcome::failure("reached its rim",
+                                fmt::format("vertex {} is {:g} m deep", v, deflection_[v]));
     return {};
   }
 
@@ -131,7 +138,9 @@ class SpringWheel final : public Tire {
   }
 
  private:
-  Vec3 direction_of(std::size_t vertex) const { return direction(static_cast<int>(vertex) / 2, options_.spokes); }
+  Vec3 direction_of(std::size_t vertex) const {
+    return direction(static_cast<int>(vertex) / 2, options_.spokes);
+  }
 
   Vec3 angular_momentum(const RimState& rim) const {
     const Mat3 turn = rim.orientation.toRotationMatrix();
@@ -191,7 +200,8 @@ std::unique_ptr<TireSpec> read_spring_wheel(const nlohmann::json& file, const Ti
   read_fields(file, wheel);
   const auto require = [&](const char* key, double value, double least) {
     if (!(value >= least))
-      throw input_error(options.file.string(), key, fmt::format("is {:g}, expected {:g} or more", value, least));
+      throw input_error(options.file.string(), key,
+                        fmt::format("is {:g}, expected {:g} or more", value, least));
   };
   require("radius", wheel.radius, 0.01);
   require("width", wheel.width, 0.01);

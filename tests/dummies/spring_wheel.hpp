@@ -18,12 +18,12 @@ namespace furrow::tire {
 
 /// The keys of a tire file with "model": "spring_wheel".
 struct SpringWheelOptions {
-  double radius = 0.4;      // undeformed, m
-  double width = 0.2;       // m
-  int spokes = 36;          // pairs of vertices around the circumference
-  double stiffness = 2e4;   // of one vertex, N/m
-  double damping = 200.0;   // of one vertex, N s/m
-  double mass = 30.0;       // kg, a solid cylinder's
+  double radius = 0.4;     // undeformed, m
+  double width = 0.2;      // m
+  int spokes = 36;         // pairs of vertices around the circumference
+  double stiffness = 2e4;  // of one vertex, N/m
+  double damping = 200.0;  // of one vertex, N s/m
+  double mass = 30.0;      // kg, a solid cylinder's
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<SpringWheelOptions> auto& s) {

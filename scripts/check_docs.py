@@ -3,7 +3,8 @@
 
 Tables, code blocks and lines without a space to break at may be longer. A link's #part must be a heading of the page
 that it names. A path in backticks counts if it begins with a folder of the top level; `*` and `{a,b}` are expanded, and
-`<name>` stands for any name.
+`<name>` stands for any name. Every term of the glossary names at least one file, and
+every recipe of CONTRIBUTING.md at most five.
 
 usage: scripts/check_docs.py [PAGE ...]
 Prints every mistake as PAGE:LINE and exits with 1 if there is one. Without arguments it reads all pages.
@@ -16,6 +17,7 @@ WIDTH = 120
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 CODE = re.compile(r"`([^`]+)`")
+MOST_FILES = 5  # of a recipe
 TOP = {"nodes", "protocol", "tire", "terrain", "vehicle", "rigs", "tests", "scripts"}
 PATH = re.compile(r"[\w.<>*{},-]+(/[\w.<>*{},-]+)+/?$")
 
@@ -95,11 +97,29 @@ def problems(page):
         for code in CODE.findall(text):
             if problem := path_problem(code):
                 yield number, problem
+        if page == ROOT / "GLOSSARY.md" and kind == "table" and not re.match(r"\| term \||\|-", text):
+            if not any((ROOT / code).is_file() for code in CODE.findall(text.rsplit("|", 2)[1])):
+                yield number, "names no file"
+
+
+def recipe_problems(page):
+    """Recipes are the sections 'Add …': a numbered list whose entries begin with a file."""
+    title, count = None, 0
+    for number, text, kind in lines_of(page):
+        if kind == "prose" and text.startswith("#"):
+            title, count = text.lstrip("# "), 0
+        if title and title.startswith("Add ") and re.match(r"\d+\. ", text):
+            count += 1
+            if not re.match(r"\d+\. `[^`]*/[^`]*`", text):
+                yield number, "begins with no file"
+            if count > MOST_FILES:
+                yield number, f"is file {count} of '{title}', expected at most {MOST_FILES}"
 
 
 def main():
     chosen = [pathlib.Path(name).resolve() for name in sys.argv[1:]] or pages()
     found = [f"{page.relative_to(ROOT)}:{number}: {text}" for page in chosen for number, text in problems(page)]
+    found += [f"CONTRIBUTING.md:{number}: {text}" for number, text in recipe_problems(ROOT / "CONTRIBUTING.md")]
     print("\n".join(found), end="\n" if found else "")
     return 1 if found else 0
 

@@ -35,7 +35,7 @@ Error usage_error(const std::string& what) { return input_error("command line", 
 void add_settings(CLI::App& command, Typed& typed) {
   command
       .add_option("--set", typed.settings,
-                  "key=value: sets a scenario key by its dotted path; may be repeated")
+                  "key=value: set a scenario key by its dotted path; may be repeated")
       ->take_all()
       ->allow_extra_args(false);
   command.add_option("--threads", typed.threads, "threads of the terrain: a number or auto (run.threads)");
@@ -53,14 +53,15 @@ void add_grain_bench(CLI::App& command, GrainBench& bench) {
                   "the reference bed")
       ->capture_default_str();
   command.add_option("--law", bench.law, "contact law: mindlin or hertz_tanh")->capture_default_str();
-  command.add_option("--precision", bench.precision, "of the law: mixed or double")->capture_default_str();
+  command.add_option("--precision", bench.precision, "precision of the contact law: mixed or double")
+      ->capture_default_str();
   command.add_option("--cohesion", bench.cohesion, "cohesion, Pa")->capture_default_str();
   command.add_option("--rolling-friction", bench.rolling_friction, "rolling resistance coefficient")
       ->capture_default_str();
   command.add_option("--threads", bench.threads, "threads")->capture_default_str();
-  command.add_option("--steps", bench.steps, "steps that are timed")->capture_default_str();
-  command.add_option("--warm", bench.warm, "steps before that")->capture_default_str();
-  command.add_option("--settle", bench.settle, "let the bed settle for that long at most first, s")
+  command.add_option("--steps", bench.steps, "timed steps")->capture_default_str();
+  command.add_option("--warm", bench.warm, "untimed warm-up steps")->capture_default_str();
+  command.add_option("--settle", bench.settle, "let the bed settle first, for at most this time, s")
       ->capture_default_str();
   command.add_option("--save-bed", bench.save, "write the positions before the timed steps to this CSV");
   command.add_option("--step", bench.step, "time step, s")->capture_default_str();
@@ -69,16 +70,15 @@ void add_grain_bench(CLI::App& command, GrainBench& bench) {
 void add_tire_bench(CLI::App& command, TireBench& bench) {
   command.add_option("--tire", bench.tire, "tire file, or default: the layered tire")->capture_default_str();
   command.add_option("--threads", bench.threads, "threads")->capture_default_str();
-  command.add_option("--steps", bench.steps, "steps that are timed; 0: one revolution")
-      ->capture_default_str();
+  command.add_option("--steps", bench.steps, "timed steps; 0: one revolution")->capture_default_str();
   command.add_option("--step", bench.step, "time step, s")->capture_default_str();
-  command.add_option("--warm", bench.warm, "touch-down and transients before that, s")->capture_default_str();
+  command.add_option("--warm", bench.warm, "untimed touch-down and transients, s")->capture_default_str();
   command.add_option("--pressure", bench.pressure, "inflation pressure, gauge, Pa")->capture_default_str();
   command.add_option("--load", bench.load, "mass that the tire carries, kg")->capture_default_str();
   command.add_option("--speed", bench.speed, "angular speed, rad/s")->capture_default_str();
   command
       .add_option("--tolerance", bench.tolerance,
-                  "of the free residual, relative to the norm of the pressure forces")
+                  "tolerance of the free residual, relative to the norm of the pressure forces")
       ->capture_default_str();
   command
       .add_option(
@@ -95,12 +95,12 @@ void add_press_options(CLI::App& command, PressArguments& press) {
   command.add_option("--out", press.out,
                      "new folder for the results (default: results/<scenario>-press-NNN here)");
   command.add_flag("--overwrite", press.overwrite, "let --out replace the results of an earlier run");
-  command.add_option("--on", press.obstacle, "plate or cleat")->capture_default_str();
+  command.add_option("--on", press.obstacle, "obstacle: plate or cleat")->capture_default_str();
   command.add_option("--deflection", press.deflection, "largest deflection, m")->capture_default_str();
-  command.add_option("--points", press.points, "points of the curve up to it")->capture_default_str();
+  command.add_option("--points", press.points, "points of the load–deflection curve")->capture_default_str();
   command.add_option("--load", press.load, "load of the footprint, N")->capture_default_str();
-  command.add_option("--cleat-height", press.cleat_height, "m")->capture_default_str();
-  command.add_option("--cleat-width", press.cleat_width, "of the cleat's top, along the travel, m")
+  command.add_option("--cleat-height", press.cleat_height, "height of the cleat, m")->capture_default_str();
+  command.add_option("--cleat-width", press.cleat_width, "width of the cleat's top along the travel, m")
       ->capture_default_str();
 }
 
@@ -109,12 +109,12 @@ void add_soil_options(CLI::App& command, SoilArguments& soil) {
                      "new folder for the results (default: results/<scenario>-soil-NNN here)");
   command.add_flag("--overwrite", soil.overwrite, "let --out replace the results of an earlier run");
   command.add_option("--seeds", soil.seeds, "beds per test, from run.seed on")->capture_default_str();
-  command.add_option("--speed", soil.speed, "of plate, shear box and cone, m/s")->capture_default_str();
+  command.add_option("--speed", soil.speed, "speed of plate, shear box and cone, m/s")->capture_default_str();
   command.add_option("--only", soil.only, "this test only: plate, shear, cone or repose; may be repeated")
       ->take_all()
       ->allow_extra_args(false);
   command.add_flag("--quick", soil.quick,
-                   "small boxes and one seed: a look within seconds, no result to quote");
+                   "use small boxes and one seed: an impression within seconds, not a result to quote");
 }
 
 Settings settings_of(const Typed& typed) {
@@ -122,7 +122,7 @@ Settings settings_of(const Typed& typed) {
   for (const std::string& text : typed.settings) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals == 0)
-      throw input_error("command line", "--set", "'" + text + "' is no setting, expected key=value");
+      throw input_error("command line", "--set", "is '" + text + "', expected the form key=value");
     settings.emplace_back(text.substr(0, equals), text.substr(equals + 1));
   }
   if (!typed.threads.empty()) settings.emplace_back("run.threads", typed.threads);
@@ -205,14 +205,13 @@ std::string parse_problem(const CLI::App& app, const CLI::ParseError& error, int
     commands.push_back(command->get_name());
   const std::string first = argc > 1 ? argv[1] : "";
   if (first.empty())
-    return fmt::format("no command is given, expected one of: {}; see furrow --help",
-                       fmt::join(commands, ", "));
+    return fmt::format("no command given, expected one of: {}; see furrow --help", fmt::join(commands, ", "));
   if (first[0] != '-' && std::find(commands.begin(), commands.end(), first) == commands.end()) {
     const std::vector<std::string> similar = scenario::nearest_words(first, commands);
-    return fmt::format("'{}' is no command, expected {}", first,
+    return fmt::format("unknown command '{}'; {}", first,
                        similar.empty()
-                           ? fmt::format("one of: {}; see furrow --help", fmt::join(commands, ", "))
-                           : "'" + similar.front() + "'?");
+                           ? fmt::format("expected one of: {}; see furrow --help", fmt::join(commands, ", "))
+                           : "did you mean '" + similar.front() + "'?");
   }
   return fmt::format("{}, see furrow {}--help", error.what(), asked_command(app));
 }
@@ -239,65 +238,65 @@ ExitCode run_command_line(int argc, char** argv) {
       "by a signal.");
   Typed typed;
 
-  CLI::App& run = *app.add_subcommand("run", "runs a scenario; prints the folder that holds the results");
+  CLI::App& run = *app.add_subcommand("run", "run a scenario; prints the folder that holds the results");
   add_scenario(run, typed);
   run.add_option("--out", typed.out, "new folder for the results (default: results/<scenario>-NNN here)");
   run.add_flag("--overwrite", typed.overwrite, "let --out replace the results of an earlier run");
   run.add_flag("--profile", typed.profile,
                "also write profile.json: where the time of each step goes (Chrome trace)");
-  run.add_flag("--no-plots", typed.no_plots, "leave the plots to 'furrow report'");
+  run.add_flag("--no-plots", typed.no_plots, "make no plots; 'furrow report' makes them later");
   CLI::App& resume = *app.add_subcommand(
-      "resume", "goes on with a run from its last checkpoint, bit for bit as if it had not been interrupted");
+      "resume",
+      "continue a run from its last checkpoint; the result is bit-identical to an uninterrupted run");
   resume.add_option("DIR", typed.directory, "folder of the run")->required();
-  resume.add_option("--until", typed.until, "another end of the run, s (run.end)");
+  resume.add_option("--until", typed.until, "new end of the run, s (run.end)");
   add_settings(resume, typed);
   resume.add_flag("--profile", typed.profile, "also write profile.json, of the steps from here on");
-  resume.add_flag("--no-plots", typed.no_plots, "leave the plots to 'furrow report'");
+  resume.add_flag("--no-plots", typed.no_plots, "make no plots; 'furrow report' makes them later");
   CLI::App& validate =
-      *app.add_subcommand("validate", "checks a scenario and says what a run of it will need");
+      *app.add_subcommand("validate", "check a scenario and estimate what a run of it will need");
   add_scenario(validate, typed);
   validate.add_flag("--json", typed.json, "print JSON");
-  CLI::App& ranks = *app.add_subcommand("ranks", "which MPI rank does what, and how to start them by hand");
+  CLI::App& ranks =
+      *app.add_subcommand("ranks", "list which MPI rank does what, and how to start the ranks by hand");
   add_scenario(ranks, typed);
-  CLI::App& explained =
-      *app.add_subcommand("explain", "what a scenario key means; without KEY lists all keys");
+  CLI::App& explained = *app.add_subcommand("explain", "explain a scenario key; without KEY, list all keys");
   explained.add_option("KEY", typed.key, "dotted path, for example terrain.cohesion");
   CLI::App& bed = *app.add_subcommand(
-      "bed", "prepares and settles the bed of a scenario, keeps it for later runs; prints JSON");
+      "bed", "prepare and settle the bed of a scenario and keep it for later runs; prints JSON");
   add_scenario(bed, typed);
   SoilArguments soil_arguments;
   CLI::App& soil =
       *app.add_subcommand("soil",
-                          "virtual soil tests on a scenario's grains: plate sinkage, direct shear, "
+                          "run virtual soil tests on a scenario's grains: plate sinkage, direct shear, "
                           "cone, angle of repose; prints JSON");
   add_scenario(soil, typed);
   add_soil_options(soil, soil_arguments);
   SweepArguments sweep_arguments;
-  CLI::App& sweep = *app.add_subcommand(
-      "sweep", "a table of runs that differ in some keys; goes on where it was interrupted");
+  CLI::App& sweep = *app.add_subcommand("sweep", "run a parameter study; resumes where it left off");
   sweep.add_option("STUDY", sweep_arguments.study, "study file (JSON)")->required();
   sweep.add_option("--out", sweep_arguments.out, "folder of the study (default: results/<study> here)");
   sweep.add_option("--jobs", sweep_arguments.jobs, "runs at once, each with its share of the cores")
       ->capture_default_str();
   PressArguments press_arguments;
   CLI::App& press = *app.add_subcommand(
-      "press", "presses the tire of a scenario on a plate or a cleat, statically; prints the folder");
+      "press", "press the tire of a scenario on a plate or a cleat, statically; prints the folder");
   add_scenario(press, typed);
   add_press_options(press, press_arguments);
-  CLI::App& report = *app.add_subcommand("report", "plots of a finished run, as PNG files in its folder");
+  CLI::App& report = *app.add_subcommand("report", "plot a finished run, as PNG files in its folder");
   report.add_option("DIR", typed.directory, "folder of the run, or of soil tests")->required();
   report.add_option("--soil", typed.soil,
-                    "soil.json of 'furrow soil': puts what soil theory expects beside the run's result");
+                    "soil.json of 'furrow soil': add what soil theory expects to the run's result");
 
-  CLI::App& bench = *app.add_subcommand("bench", "how fast this machine is; prints JSON");
+  CLI::App& bench = *app.add_subcommand("bench", "measure how fast this machine is; prints JSON");
   bench.require_subcommand(1);
   GrainBench grains;
   CLI::App& bench_of_grains =
-      *bench.add_subcommand("grains", "steps a settled bed, every grain in every step");
+      *bench.add_subcommand("grains", "step a settled bed, every grain in every step");
   add_grain_bench(bench_of_grains, grains);
   TireBench tire;
   CLI::App& bench_of_tire =
-      *bench.add_subcommand("tire", "rolls a loaded tire on hard ground, by parts of a step");
+      *bench.add_subcommand("tire", "roll a loaded tire on hard ground; times the parts of a step");
   add_tire_bench(bench_of_tire, tire);
 
   try {

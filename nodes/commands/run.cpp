@@ -40,7 +40,7 @@ void tell_how_to_go_on(const std::filesystem::path& directory) {
   if (checkpoint::list_checkpoints(directory).empty())
     std::fprintf(stderr, "furrow: there is no checkpoint yet; start again with furrow run\n");
   else
-    std::fprintf(stderr, "furrow: to go on from the last checkpoint: furrow resume %s\n",
+    std::fprintf(stderr, "furrow: to continue from the last checkpoint: furrow resume %s\n",
                  scenario::shell_quoted(directory.string()).c_str());
 }
 
@@ -55,14 +55,13 @@ ExitCode have_it_run(const scenario::Scenario& scenario, launch::RunDirectory& d
   }
   if (result.code == ExitCode::bad_input) directory.discard();
   if (result.code == ExitCode::stopped) {
-    std::fprintf(stderr, "furrow: %s; what there is of the results stands in %s\n", result.error.c_str(),
+    std::fprintf(stderr, "furrow: %s; partial results are in %s\n", result.error.c_str(),
                  directory.path().c_str());
     tell_how_to_go_on(directory.path());
   } else if (result.code != ExitCode::done) {
     print_error(result.error);
     if (result.code != ExitCode::bad_input) {
-      std::fprintf(stderr, "furrow: what the ranks said stands in %s\n",
-                   (directory.path() / "run.log").c_str());
+      std::fprintf(stderr, "furrow: the log of the ranks is %s\n", (directory.path() / "run.log").c_str());
       tell_how_to_go_on(directory.path());
     }
     return result.code;
@@ -98,7 +97,7 @@ ExitCode resume_supervised(const RunArguments& arguments) {
   }
   launch::find_mpirun();
   launch::catch_stop_signals();
-  std::fprintf(stderr, "furrow: %s goes on from t = %g s, results in %s\n", plan.scenario.name.c_str(),
+  std::fprintf(stderr, "furrow: continuing %s from t = %g s, results in %s\n", plan.scenario.name.c_str(),
                plan.point.manifest.time, directory.path().c_str());
   return have_it_run(plan.scenario, directory, arguments);
 }

@@ -29,7 +29,7 @@ ExitCode sweep_command(const SweepArguments& arguments) {
   if (code != ExitCode::stopped) {
     if (to_plot) make_report_or_warn(folder);
   } else {
-    std::fprintf(stderr, "furrow: stopped by a signal; the same command goes on\n");
+    std::fprintf(stderr, "furrow: stopped by a signal; run the same command to continue\n");
   }
   close(lock);
   std::cout << folder.string() << "\n";

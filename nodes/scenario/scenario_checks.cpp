@@ -14,7 +14,7 @@
 namespace furrow::scenario {
 namespace {
 
-constexpr double kMaxSteps = 1e10;    // beyond it a run is a slip of the pen
+constexpr double kMaxSteps = 1e10;    // beyond it the value is almost certainly a typo
 constexpr double kMinGrains = 4.0;    // radii that the bin must measure at least
 constexpr double kCoarseGrain = 0.1;  // of the tire radius
 constexpr double kGigabyte = 1e9;

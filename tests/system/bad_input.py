@@ -75,7 +75,7 @@ SCENARIOS = [
     ("cut_short", json.dumps(SMALL)[:-20], [], "is not valid JSON"),
     ("a_list", "[1, 2]", [], "is [1,2], expected an object"),
     ("comment", "// a comment\n{}", [], ":1:"),
-    ("set_without_value", json.dumps(SMALL), ["--set", "rig.slip"], "key '--set': 'rig.slip' is no setting, expected key=value"),
+    ("set_without_value", json.dumps(SMALL), ["--set", "rig.slip"], "key '--set': is 'rig.slip', expected the form key=value"),
     ("set_unknown", json.dumps(SMALL), ["--set", "rig.slpi=0.1"], "key 'rig.slpi': is unknown, expected 'rig.slip'?"),
     ("set_overflow", json.dumps(SMALL), ["--set", "rig.slip=1e400"], "key 'rig.slip': '1e400' is a number too large"),
     ("set_nan", json.dumps(SMALL), ["--set", "rig.slip=nan"], "key 'rig.slip': is 'nan', expected a number"),
@@ -216,7 +216,7 @@ class BadFile(SystemTest):
             self.assertIn(f"key '{key}'", done.stderr)
 
     def test_unknown_command(self):
-        self.assertIn("'rnu' is no command, expected 'run'?", self.error_of("rnu"))
+        self.assertIn("unknown command 'rnu'; did you mean 'run'?", self.error_of("rnu"))
 
     def test_no_command(self):
         self.assertIn("no command is given", self.error_of())

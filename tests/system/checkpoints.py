@@ -25,7 +25,7 @@ class Signals(CheckpointTest):
                 out, err = process.communicate(timeout=30)
                 self.assertEqual(process.returncode, 75, err)
                 self.assertEqual(out, f"{run}\n")
-                self.assertIn(f"furrow: to go on from the last checkpoint: furrow resume '{run}'", err)
+                self.assertIn(f"furrow: to continue from the last checkpoint: furrow resume '{run}'", err)
                 self.assertNotIn("error", err)
                 self.assertFalse((run / "summary.json").exists())
                 self.assertTrue((run / "results.h5").exists())

@@ -1,0 +1,40 @@
+// A small complete rig, made as CONTRIBUTING.md says: it holds the hub of one wheel, lowers it and turns it as imposed,
+// and adds a column of its own to the wheel's table.
+#pragma once
+
+#include <memory>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "protocol/core/column.hpp"
+#include "protocol/core/fields.hpp"
+#include "rigs/rigs.hpp"
+
+namespace furrow::rigs {
+
+/// The keys of the section `rig` with type held_hub.
+struct HeldHubOptions {
+  double depth = 0.01;    // that the hub is lowered in all, m
+  double lowering = 0.1;  // speed until then, m/s
+  double spin = 0.0;      // about the hub's y axis, rad/s
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<HeldHubOptions> auto& s) {
+  visit(Field{"depth", "m", role::key}, s.depth);
+  visit(Field{"lowering", "m/s", role::key}, s.lowering);
+  visit(Field{"spin", "rad/s", role::key}, s.spin);
+}
+
+/// What the rig adds to the table of its wheel.
+struct HeldHubRow {
+  double hub_load = 0.0;  // with which the hub presses the wheel down, N
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<HeldHubRow> auto& r) {
+  visit(column::mean("hub_load_N", "N"), r.hub_load);
+}
+
+/// @pre the section was checked against the schema
+std::unique_ptr<RigSpec> read_held_hub(const nlohmann::json& section, const ReadContext& context);
+
+}  // namespace furrow::rigs

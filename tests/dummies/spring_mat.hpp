@@ -1,0 +1,33 @@
+// A small complete terrain, made as CONTRIBUTING.md says: the plane z = 0 on independent springs, without friction
+// [Winkler 1867, Die Lehre von der Elasticität und Festigkeit].
+//
+// A vertex with the area A at the height z feels, as long as this is a push,
+//   f = A (−κ z − d ż),                                                                                      (1)
+// with the stiffness κ and the damping d per area, evaluated at the middle of each substep.
+#pragma once
+
+#include <memory>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "protocol/core/fields.hpp"
+#include "protocol/files/read_context.hpp"
+#include "terrain/terrain_spec.hpp"
+
+namespace furrow::terrain {
+
+/// The keys of the section `terrain` with engine spring_mat.
+struct SpringMatOptions {
+  double mat_stiffness = 1e7;  // κ, N/m³
+  double mat_damping = 0.0;    // d, N s/m³
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<SpringMatOptions> auto& s) {
+  visit(Field{"mat_stiffness", "N/m³", role::key}, s.mat_stiffness);
+  visit(Field{"mat_damping", "N s/m³", role::key}, s.mat_damping);
+}
+
+/// @pre the section was checked against the schema
+std::unique_ptr<TerrainSpec> read_spring_mat(const nlohmann::json& section, const ReadContext& context);
+
+}  // namespace furrow::terrain

@@ -1,0 +1,41 @@
+// A small complete tire model, made as CONTRIBUTING.md says: a rigid rim with radial springs to the vertices of its surface.
+//
+// A vertex has no mass, a stiffness k and a damping c. With f the force on it and e its radial direction, outwards, its
+// deflection u, positive inwards, follows
+//   c u̇ + k u = −f·e,                                                                                        (1)
+// stepped by backward Euler. All forces pass to the rim, whose mass m and inertia J are the whole tire's:
+//   F = Σ f + m g − Δ(m v)/H,   M = Σ (x − c) × f − Δ(J ω)/H.                                                (2)
+#pragma once
+
+#include <memory>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "protocol/core/fields.hpp"
+#include "tire/tires.hpp"
+
+namespace furrow::tire {
+
+/// The keys of a tire file with "model": "spring_wheel".
+struct SpringWheelOptions {
+  double radius = 0.4;     // undeformed, m
+  double width = 0.2;      // m
+  int spokes = 36;         // pairs of vertices around the circumference
+  double stiffness = 2e4;  // of one vertex, N/m
+  double damping = 200.0;  // of one vertex, N s/m
+  double mass = 30.0;      // kg, a solid cylinder's
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<SpringWheelOptions> auto& s) {
+  visit(Field{"radius", "m", role::key}, s.radius);
+  visit(Field{"width", "m", role::key}, s.width);
+  visit(Field{"spokes", "-", role::key}, s.spokes);
+  visit(Field{"stiffness", "N/m", role::key}, s.stiffness);
+  visit(Field{"damping", "N s/m", role::key}, s.damping);
+  visit(Field{"mass", "kg", role::key}, s.mass);
+}
+
+/// @throws Error(bad_input) naming file and key
+std::unique_ptr<TireSpec> read_spring_wheel(const nlohmann::json& file, const TireOptions& options);
+
+}  // namespace furrow::tire

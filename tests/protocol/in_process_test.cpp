@@ -117,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(
     Cards, HandshakeMismatch,
     ::testing::Values(
         Mismatch{"version", [](NodeCard& c) { c.protocol_version = 99; }, kTerrain,
-                 "protocol version of rig is 3"},
+                 "protocol version of rig is 4"},
         Mismatch{"digest",
                  [](NodeCard& c) { c.scenario_digest = "xyz"; },
                  {Role::tire, 1},

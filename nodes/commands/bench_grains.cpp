@@ -1,10 +1,10 @@
-#include <chrono>
 #include <cmath>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "nodes/commands/bench.hpp"
+#include "protocol/core/clock.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/core/hash.hpp"
 #include "terrain/dem/beds/bed_csv.hpp"
@@ -109,9 +109,9 @@ std::string bench_grains(const GrainBench& bench, const ProgressCall& progress) 
     terrain::dem::write_positions_csv(
         bench.save, std::span(solver.grains().position).first(solver.grains().count), 0.5 * kReferenceWidth);
   solver.reset_accounts();
-  const auto begin = std::chrono::steady_clock::now();
+  const double begin = wall_clock();
   steps("stepping", bench.steps);
-  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const double wall = wall_clock() - begin;
 
   const terrain::dem::Accounts& a = solver.accounts();
   const terrain::dem::Grains& grains = solver.grains();

@@ -3,7 +3,6 @@
 // The ground answers one step late; the carriage m is free along x and z, so that the driven wheel, which turns at
 // constant speed, rolls without pull.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <ctime>
 #include <numbers>
@@ -13,6 +12,7 @@
 
 #include "nodes/commands/bench.hpp"
 #include "nodes/scenario/scenario.hpp"
+#include "protocol/core/clock.hpp"
 #include "protocol/core/constants.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/core/hash.hpp"
@@ -29,10 +29,6 @@ constexpr double kTouchdown = 20e3;      // N s/m, vertical damper of the carria
 constexpr double kTouchdownShare = 0.8;  // of the time before the timed steps
 constexpr double kGroundStep = 4e-5;     // s, up to which the default ground is stable under a tread vertex
 constexpr double kFriction = 0.9, kVelocityScale = 50.0;  // -, s/m: the ground of rigs/rigid_ground.json
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// Processor time of this thread: what a step costs whoever else uses the machine.
 double processor_time() {
@@ -96,10 +92,10 @@ class RollingTire {
         !status.ok)
       throw physics_error(status.message);
     trajectory_.extend(rim_, bench_.step);
-    const double begin = now(), begin_processor = processor_time();
+    const double begin = wall_clock(), begin_processor = processor_time();
     const tire::TireStatus status = tire_.advance(trajectory_, forces, 1);
     tire_.surface(surface_);
-    const Spent spent{now() - begin, processor_time() - begin_processor};
+    const Spent spent{wall_clock() - begin, processor_time() - begin_processor};
     if (!status.converged) throw physics_error(status.message());
     move_carriage(damper);
     return spent;

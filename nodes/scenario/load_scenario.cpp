@@ -18,6 +18,7 @@
 #include "protocol/core/hash.hpp"
 #include "protocol/files/data_files.hpp"
 #include "protocol/files/json_text.hpp"
+#include "protocol/files/text_file.hpp"
 #include "protocol/host.hpp"
 
 namespace furrow::scenario {

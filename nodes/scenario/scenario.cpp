@@ -1,31 +1,16 @@
 #include "nodes/scenario/scenario.hpp"
 
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
-#include "protocol/core/hash.hpp"
-#include "protocol/files/json_text.hpp"
+#include "protocol/files/text_file.hpp"
 
 namespace furrow::scenario {
-namespace {
-
-std::string file_bytes(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
-
-}  // namespace
 
 std::vector<std::string> Scenario::file_hashes() const {
   std::vector<std::string> hashes;
-  const auto add = [&](const std::string& bytes) {
-    Hash hash;
-    hash.add(bytes);
-    hashes.push_back(hash.hex());
-  };
-  for (const tire::TireOptions& tire : tires) add(read_text_file(tire.file, "a tire file in JSON"));
-  if (!terrain.bed.empty()) add(file_bytes(terrain.bed));
+  for (const tire::TireOptions& tire : tires)
+    hashes.push_back(text_hash(read_text_file(tire.file, "a tire file in JSON")));
+  if (!terrain.bed.empty()) hashes.push_back(file_hash(terrain.bed));
   return hashes;
 }
 

@@ -3,19 +3,20 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
+
+#include "protocol/core/clock.hpp"
 
 namespace furrow {
 
 class PeerClock {
  public:
-  explicit PeerClock(double timeout) : timeout_(timeout), begin_(now()), last_(begin_) {}
+  explicit PeerClock(double timeout) : timeout_(timeout), begin_(wall_clock()), last_(begin_) {}
 
   /// A sign of life from the peer: the time-out starts again.
   void heard() { silent_ = 0.0; }
   /// To be asked at every poll.
   bool expired() {
-    const double at = now();
+    const double at = wall_clock();
     silent_ += std::min(at - last_, kMaxGap);
     last_ = at;
     return silent_ > timeout_;
@@ -23,11 +24,7 @@ class PeerClock {
   /// Silence counted so far, s.
   double silent() const { return silent_; }
   /// Wall time since construction, s.
-  double total() const { return now() - begin_; }
-
-  static double now() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-  }
+  double total() const { return wall_clock() - begin_; }
 
  private:
   static constexpr double kMaxGap = 0.25;  // s, counted for one poll at most

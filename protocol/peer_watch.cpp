@@ -65,7 +65,7 @@ void PeerWatch::listen() {
 }
 
 void PeerWatch::heartbeat() {
-  const double at = PeerClock::now();
+  const double at = wall_clock();
   if (at - last_heartbeat_ < kHeartbeatInterval) return;
   last_heartbeat_ = at;
   ByteWriter writer;

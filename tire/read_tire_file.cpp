@@ -10,6 +10,7 @@
 
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_reader.hpp"
+#include "protocol/files/json_text.hpp"
 #include "tire/tire_file_chrono.hpp"
 #include "tire/tire_profile.hpp"
 
@@ -99,9 +100,7 @@ std::vector<MaxwellBranch> read_prony(JsonReader& reader) {
 }
 
 TireFile read_own(JsonReader& reader) {
-  const int version = reader.count("format_version", 1);
-  if (version > kFormatVersion)
-    reader.fail("format_version", fmt::format("is {}, this program reads up to {}", version, kFormatVersion));
+  reader.check_version(kFormatVersion, true);
   TireFile f;
   f.name = reader.text_or("name", "tire");
   reader.skip("model");
@@ -154,7 +153,7 @@ void check(const TireFile& f) {
 }  // namespace
 
 TireFile read_tire_file(const std::filesystem::path& file) {
-  return read_tire_file(load_json(file), file.string());
+  return read_tire_file(load_json(file, "a tire file in JSON"), file.string());
 }
 
 TireFile read_tire_file(const json& document, const std::string& file) {

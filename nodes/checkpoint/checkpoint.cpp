@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <fstream>
-#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
@@ -10,8 +9,8 @@
 
 #include "nodes/checkpoint/segment.hpp"
 #include "protocol/core/error.hpp"
-#include "protocol/core/hash.hpp"
 #include "protocol/files/fault_point.hpp"
+#include "protocol/files/json_text.hpp"
 #include "protocol/files/text_file.hpp"
 
 namespace furrow::checkpoint {
@@ -25,17 +24,6 @@ constexpr char kManifest[] = "manifest.json";
 constexpr char kKind[] = "checkpoint";
 
 std::string step_name(std::int64_t step) { return fmt::format("{:012}", step); }
-
-std::string text_hash(const std::string& text) {
-  Hash hash;
-  hash.add(text);
-  return hash.hex();
-}
-
-std::string file_text(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
 
 Json to_json(const CheckpointManifest& m) {
   Json json{{"format_version", kFormatVersion},
@@ -94,7 +82,7 @@ CheckpointManifest read_manifest(const fs::path& file) {
   std::error_code error;
   if (!fs::is_regular_file(file, error))
     throw io_error(file.string(), "is missing: the checkpoint is not complete");
-  Json json = Json::parse(file_text(file), nullptr, false);
+  Json json = read_json_if_whole(file);
   if (!json.is_object()) throw io_error(file.string(), "is not valid JSON: the checkpoint is damaged");
   try {
     if (json.value("kind", "") != kKind) throw io_error(file.string(), "is no checkpoint of furrow");
@@ -168,16 +156,10 @@ CheckpointManifest read_checkpoint(const fs::path& folder) {
 }
 
 std::string part_checksum(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file)
-    throw io_error(path.string(), "does not exist or cannot be read: the checkpoint is not complete");
-  Hash hash;
-  std::vector<char> block(1 << 20);
-  while (file) {
-    file.read(block.data(), static_cast<std::streamsize>(block.size()));
-    hash.add(block.data(), static_cast<std::size_t>(file.gcount()));
-  }
-  return hash.hex();
+  std::error_code error;
+  if (!fs::exists(path, error))
+    throw io_error(path.string(), "does not exist: the checkpoint is not complete");
+  return file_hash(path);
 }
 
 std::vector<fs::path> list_checkpoints(const fs::path& run) {
@@ -202,7 +184,7 @@ void remove_checkpoints_after(const fs::path& run, std::int64_t step) noexcept {
   }
 }
 
-std::string build_id() { return text_hash(file_text("/proc/self/exe")); }
+std::string build_id() { return file_hash("/proc/self/exe"); }
 
 std::string cpu_model() {
   std::ifstream info("/proc/cpuinfo");

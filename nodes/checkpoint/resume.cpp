@@ -1,14 +1,14 @@
 #include "nodes/checkpoint/resume.hpp"
-#include "nodes/scenario/load_scenario.hpp"
 
 #include <cmath>
-#include <fstream>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "nodes/checkpoint/run_summary.hpp"
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/scenario/engine_keys.hpp"
+#include "nodes/scenario/load_scenario.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_text.hpp"
 
@@ -26,17 +26,13 @@ std::string dotted(const std::string& pointer) {
   return key;
 }
 
-json value_at(const json& flat, const std::string& pointer) {
-  return flat.contains(pointer) ? flat.at(pointer) : json();
-}
-
 /// Keys whose values differ, with the new ones. @throws Error(bad_input) at the first that may not.
 json changes(const fs::path& run, const json& before, const json& now) {
   json changed = json::object(), keys = before.flatten();
   keys.update(now.flatten());
   const json old_values = before.flatten(), new_values = now.flatten();
   for (const auto& [pointer, unused] : keys.items()) {
-    const json was = value_at(old_values, pointer), is = value_at(new_values, pointer);
+    const json was = old_values.value(pointer, json()), is = new_values.value(pointer, json());
     if (was == is) continue;
     const std::string key = dotted(pointer);
     if (!scenario::may_change_on_resume(key))
@@ -80,10 +76,8 @@ ResumePoint newest_whole(const fs::path& run, std::vector<std::string>& problems
 
 /// Step at which the finished run ended; negative while there is no summary.
 std::int64_t finished_at(const fs::path& run) {
-  std::ifstream in(run / "summary.json");
-  const json summary = json::parse(in, nullptr, false);
-  if (!summary.is_object() || !summary.contains("segments") || summary["segments"].empty()) return -1;
-  return summary["segments"].back().value("to_step", std::int64_t{-1});
+  const auto segments = value_at(read_summary(run), "segments");
+  return segments.empty() ? -1 : segments.back().value("to_step", std::int64_t{-1});
 }
 
 }  // namespace

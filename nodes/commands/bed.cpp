@@ -1,5 +1,4 @@
 // `furrow bed`: prepares the bed of a scenario, keeps it in the cache and says what it is like.
-#include <chrono>
 #include <cmath>
 #include <iostream>
 
@@ -9,6 +8,7 @@
 #include "nodes/launch/progress.hpp"
 #include "nodes/launch/signals.hpp"
 #include "nodes/scenario/scenario.hpp"
+#include "protocol/core/clock.hpp"
 #include "protocol/core/constants.hpp"
 #include "terrain/dem/beds/bed_compaction.hpp"
 #include "terrain/dem/beds/bed_preparation.hpp"
@@ -65,7 +65,7 @@ ExitCode bed_command(const scenario::Scenario& scenario) {
   const terrain::dem::DemOptions grains = scenario.grains("only grains make a bed");
   launch::catch_stop_signals();
   launch::ProgressDisplay display;
-  const auto begin = std::chrono::steady_clock::now();
+  const double begin = wall_clock();
   const terrain::dem::PreparedBed prepared =
       terrain::dem::prepare_bed(grains, [&](const std::string& what, double share) {
         if (launch::stop_signalled())
@@ -76,7 +76,7 @@ ExitCode bed_command(const scenario::Scenario& scenario) {
   solver.restore(prepared.bed);
   const terrain::dem::BedStatistics statistics =
       terrain::dem::bed_statistics(terrain::dem::positions_by_id(solver), solver.params().bin, grains.radius);
-  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const double wall = wall_clock() - begin;
   display.clear();
   if (!prepared.settled.settled)
     print_warning(scenario.file.string() + ": the bed did not come to rest and is used as it is");

@@ -3,7 +3,6 @@
 // The ground answers one step late; a carriage holds the driven wheel (rigs/rolling_tire.hpp), which turns at constant speed
 // and rolls without pull.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <ctime>
 #include <numbers>
@@ -12,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "nodes/commands/bench.hpp"
+#include "protocol/core/clock.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/core/hash.hpp"
 #include "protocol/files/data_files.hpp"
@@ -22,10 +22,6 @@ namespace furrow::commands {
 namespace {
 constexpr double kTouchdown = 20e3;      // N s/m, vertical damper of the carriage during the touch-down
 constexpr double kTouchdownShare = 0.8;  // of the time before the timed steps
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// Processor time of this thread: what a step costs whoever else uses the machine.
 double processor_time() {

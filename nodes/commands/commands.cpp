@@ -15,8 +15,8 @@
 #include "nodes/scenario/explain.hpp"
 #include "nodes/scenario/load_scenario.hpp"
 #include "nodes/scenario/rank_table.hpp"
-#include "nodes/scenario/schema.hpp"
 #include "nodes/scenario/validate.hpp"
+#include "protocol/files/nearest_words.hpp"
 #include "protocol/mpi_transport.hpp"
 #include "terrain/soil/soil_estimate.hpp"
 
@@ -207,7 +207,7 @@ std::string parse_problem(const CLI::App& app, const CLI::ParseError& error, int
   if (first.empty())
     return fmt::format("no command given, expected one of: {}; see furrow --help", fmt::join(commands, ", "));
   if (first[0] != '-' && std::find(commands.begin(), commands.end(), first) == commands.end()) {
-    const std::vector<std::string> similar = scenario::nearest_words(first, commands);
+    const std::vector<std::string> similar = nearest_words(first, commands);
     return fmt::format("unknown command '{}'; {}", first,
                        similar.empty()
                            ? fmt::format("expected one of: {}; see furrow --help", fmt::join(commands, ", "))

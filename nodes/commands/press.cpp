@@ -1,5 +1,4 @@
 // `furrow press`: a tire of a scenario against a plate or a cleat.
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
@@ -11,6 +10,7 @@
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
 #include "nodes/scenario/scenario.hpp"
+#include "protocol/core/clock.hpp"
 #include "protocol/files/text_file.hpp"
 #include "tire/press.hpp"
 
@@ -63,7 +63,7 @@ ExitCode press_command(const scenario::Scenario& scenario, const PressArguments&
   launch::catch_stop_signals();
   try {
     launch::ProgressDisplay display;
-    const auto begin = std::chrono::steady_clock::now();
+    const double begin = wall_clock();
     const tire::PressResults results = test->press(options, [&](const std::string& what, double share) {
       if (launch::stop_signalled()) throw Error(ExitCode::stopped, "stopped by a signal during pressing");
       display.show({.phase = what, .share = share});
@@ -74,7 +74,7 @@ ExitCode press_command(const scenario::Scenario& scenario, const PressArguments&
                                       {"scenario", scenario.name},
                                       {"tire", scenario.tires.front()->options().file.filename().string()}};
     summary.update(tire::press_json(options, results));
-    summary["wall_s"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    summary["wall_s"] = wall_clock() - begin;
     write_whole_file(directory.path() / "scenario.json", scenario.completed + "\n");
     tire::write_press_tables(directory.path(), results);
     write_whole_file(directory.path() / "summary.json", summary.dump(2) + "\n");

@@ -4,16 +4,15 @@
 #include <sys/wait.h>
 #include <unistd.h>
 #include <csignal>
-#include <cstdio>
 
 #include <array>
 #include <cerrno>
-#include <cstring>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "nodes/commands/commands.hpp"
+#include "nodes/launch/child_process.hpp"
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
 #include "nodes/scenario/scenario.hpp"
@@ -31,32 +30,24 @@ struct Finished {
 
 /// Runs a program to its end; a stop signal ends it.
 Finished run_program(std::vector<std::string> command, bool quiet) {
-  std::vector<char*> arguments;
-  for (std::string& argument : command) arguments.push_back(argument.data());
-  arguments.push_back(nullptr);
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) throw io_error("pipe", std::strerror(errno));
-  const pid_t parent = getpid(), child = fork();
-  if (child < 0) throw io_error(command.front(), std::strerror(errno));
-  if (child == 0) {
-    launch::die_with_parent(SIGKILL, parent);
-    launch::restore_signals();
-    dup2(ends[1], STDOUT_FILENO);
-    if (quiet) dup2(open("/dev/null", O_WRONLY), STDERR_FILENO);
-    execv(arguments.front(), arguments.data());
-    _exit(127);
-  }
-  close(ends[1]);
+  launch::Pipe pipe;
+  const int nothing = open("/dev/null", O_WRONLY | O_CLOEXEC);
+  const pid_t child = launch::start_child({.command = std::move(command),
+                                           .out = pipe.write,
+                                           .err = quiet ? nothing : -1,
+                                           .death_signal = SIGKILL});
+  close(nothing);
+  pipe.close_write();
   Finished finished;
   std::array<char, 4096> bytes;
-  for (ssize_t count; (count = read(ends[0], bytes.data(), bytes.size())) != 0;) {
+  for (ssize_t count; (count = read(pipe.read, bytes.data(), bytes.size())) != 0;) {
     if (count > 0)
       finished.output.append(bytes.data(), static_cast<std::size_t>(count));
     else if (errno != EINTR)
       break;
     if (launch::stop_signalled()) kill(child, SIGTERM);
   }
-  close(ends[0]);
+  pipe.close_read();
   while (waitpid(child, &finished.status, 0) < 0 && errno == EINTR)
     if (launch::stop_signalled()) kill(child, SIGTERM);
   return finished;

@@ -1,28 +1,27 @@
 // The last lines of a run: what it found, from its summary.
 #include <cmath>
-#include <fstream>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "nodes/checkpoint/run_summary.hpp"
 #include "nodes/commands/commands.hpp"
 #include "nodes/scenario/scenario.hpp"
 
 namespace furrow::commands {
 namespace {
 
-using nlohmann::json;
+using json = nlohmann::ordered_json;
 
 double number(const json& object, const char* key) {
   return object.is_object() && object.contains(key) && object[key].is_number() ? object[key].get<double>()
                                                                                : NAN;
 }
 
-json read_summary(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  json summary = json::parse(in, nullptr, false);
-  if (!summary.is_object()) throw io_error(file.string(), "cannot be read, expected the summary of the run");
+json summary_of(const std::filesystem::path& run) {
+  json summary = checkpoint::read_summary(run);
+  if (summary.is_null()) throw io_error(run.string(), "holds no summary of the run that can be read");
   return summary;
 }
 
@@ -64,7 +63,7 @@ std::string ranks_line(const json& summary) {
 }  // namespace
 
 std::string result_text(const std::filesystem::path& run, const scenario::Scenario& scenario) {
-  const json summary = read_summary(run / "summary.json");
+  const json summary = summary_of(run);
   std::string text;
   const json wheels = summary.value("wheels", json::array());
   for (std::size_t k = 0; k < wheels.size(); ++k) {

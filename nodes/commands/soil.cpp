@@ -1,6 +1,5 @@
 // `furrow soil`: virtual soil tests on a scenario's grains.
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <iostream>
 
@@ -9,15 +8,12 @@
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
 #include "nodes/scenario/scenario.hpp"
+#include "protocol/core/clock.hpp"
 #include "protocol/files/text_file.hpp"
 #include "terrain/soil/soil_output.hpp"
 
 namespace furrow::commands {
 namespace {
-
-double wall_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 terrain::soil::SoilOptions soil_options(const terrain::dem::DemOptions& grains,
                                         const SoilArguments& arguments) {
@@ -46,10 +42,10 @@ terrain::soil::SoilOptions soil_options(const terrain::dem::DemOptions& grains,
 
 /// Shows share and time left; ends the tests when a signal asks for it.
 ProgressCall shown_on(launch::ProgressDisplay& display) {
-  return [&display, begin = wall_s()](const std::string& what, double share) {
+  return [&display, begin = wall_clock()](const std::string& what, double share) {
     if (launch::stop_signalled()) throw Error(ExitCode::stopped, "stopped by a signal during the soil tests");
     launch::Progress progress{.phase = what, .share = share};
-    if (share > 0.0) progress.eta = (wall_s() - begin) * (1.0 - share) / share;
+    if (share > 0.0) progress.eta = (wall_clock() - begin) * (1.0 - share) / share;
     display.show(progress);
   };
 }
@@ -70,12 +66,12 @@ ExitCode soil_command(const scenario::Scenario& scenario, const SoilArguments& a
                directory.path().c_str());
   try {
     launch::ProgressDisplay display;
-    const double begin = wall_s();
+    const double begin = wall_clock();
     const terrain::soil::SoilResults results =
         terrain::soil::run_soil_tests(options, plan, shown_on(display));
     display.clear();
     const terrain::soil::SoilRun run{scenario.name, scenario.digest, options,
-                                     plan,          results,         wall_s() - begin};
+                                     plan,          results,         wall_clock() - begin};
     const nlohmann::ordered_json soil = terrain::soil::soil_json(run);
     write_whole_file(directory.path() / "scenario.json", scenario.completed + "\n");
     terrain::soil::write_soil_tables(directory.path(), run);

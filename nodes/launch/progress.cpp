@@ -4,13 +4,14 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 
 #include <fmt/format.h>
+
+#include "protocol/core/clock.hpp"
 
 namespace furrow::launch {
 namespace {
@@ -19,10 +20,6 @@ constexpr double kTerminalInterval = 0.2;  // s between redrawings
 constexpr double kPlainInterval = 5.0;     // s between lines
 constexpr double kShareForGuess = 0.005;   // of the run, before which the time left is anyone's guess
 constexpr std::size_t kPlainWidth = 80;    // of a terminal that does not say
-
-double wall_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 std::string duration_text(double seconds) {
   const long s = std::lround(std::min(seconds, 1e7));
@@ -57,7 +54,7 @@ ProgressDisplay::ProgressDisplay() {
 }
 
 void ProgressDisplay::show(const Progress& progress) {
-  const double now = wall_s();
+  const double now = wall_clock();
   const bool new_phase = progress.phase != phase_;
   if (!new_phase && now - last_ < (terminal_ ? kTerminalInterval : kPlainInterval)) return;
   last_ = now;

@@ -7,8 +7,6 @@
 #include <csignal>
 
 #include <array>
-#include <cerrno>
-#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -18,10 +16,12 @@
 
 #include <fmt/format.h>
 
+#include "nodes/launch/child_process.hpp"
 #include "nodes/launch/signals.hpp"
 #include "nodes/launch/supervisor_lines.hpp"
 #include "nodes/launch/supervisor_text.hpp"
 #include "nodes/launch/thread_setup.hpp"
+#include "protocol/core/clock.hpp"
 
 namespace furrow::launch {
 namespace {
@@ -33,35 +33,6 @@ constexpr double kKillPatience = 5.0;    // s from that until it is killed
 constexpr double kDrainPatience = 1.0;   // s to read what is left once mpirun has ended
 constexpr double kLogInterval = 5.0;     // s between lines of progress in the log
 constexpr int kPollInterval = 100;       // ms
-constexpr int kCannotRun = 127;
-
-double wall_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-struct Pipe {
-  int read = -1, write = -1;
-  Pipe() {
-    int ends[2];
-    if (pipe2(ends, O_CLOEXEC) != 0) throw io_error("pipe", std::strerror(errno));
-    read = ends[0];
-    write = ends[1];
-  }
-  ~Pipe() {
-    close_read();
-    close_write();
-  }
-  Pipe(const Pipe&) = delete;
-  Pipe& operator=(const Pipe&) = delete;
-  void close_read() { close_end(read); }
-  void close_write() { close_end(write); }
-
- private:
-  static void close_end(int& end) {
-    if (end >= 0) ::close(end);
-    end = -1;
-  }
-};
 
 /// Cuts what a pipe delivers into lines.
 class Lines {
@@ -127,7 +98,7 @@ class Supervisor {
 
   LaunchResult run() {
     start();
-    while (!(reaped_ && (both_closed() || wall_s() - reaped_at_ > kDrainPatience))) {
+    while (!(reaped_ && (both_closed() || wall_clock() - reaped_at_ > kDrainPatience))) {
       read_some();
       reap();
       if (!reaped_) pass_on_stop();
@@ -141,7 +112,6 @@ class Supervisor {
 
  private:
   void start();
-  [[noreturn]] void become_mpirun(const std::vector<char*>& arguments);
   void read_some();
   void take_output(std::string_view line);
   void take_error_text(std::string_view line) {
@@ -170,33 +140,17 @@ class Supervisor {
 };
 
 void Supervisor::start() {
-  std::vector<std::string> command = mpirun_command(launch_);
-  std::vector<char*> arguments;
-  for (std::string& argument : command) arguments.push_back(argument.data());
-  arguments.push_back(nullptr);
-  const pid_t parent = getpid();
-  child_ = fork();
-  if (child_ < 0) throw io_error(command.front(), std::string("cannot be started: ") + std::strerror(errno));
-  if (child_ == 0) {
-    setpgid(0, 0);
-    die_with_parent(SIGTERM, parent);
-    become_mpirun(arguments);
-  }
-  setpgid(child_, child_);
+  const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
+  child_ = start_child({.command = mpirun_command(launch_),
+                        .in = nothing,
+                        .out = out_.write,
+                        .err = err_.write,
+                        .own_group = true,
+                        .death_signal = SIGTERM,
+                        .prepare = set_environment});
+  close(nothing);
   out_.close_write();
   err_.close_write();
-}
-
-void Supervisor::become_mpirun(const std::vector<char*>& arguments) {
-  restore_signals();
-  const int nothing = open("/dev/null", O_RDONLY);
-  dup2(nothing, STDIN_FILENO);
-  dup2(out_.write, STDOUT_FILENO);
-  dup2(err_.write, STDERR_FILENO);
-  set_environment();
-  execv(arguments.front(), arguments.data());
-  dprintf(STDERR_FILENO, "%s cannot be run: %s\n", arguments.front(), std::strerror(errno));
-  _exit(kCannotRun);
 }
 
 void Supervisor::read_some() {
@@ -228,7 +182,7 @@ void Supervisor::take_output(std::string_view text) {
       break;
     case RankLine::Kind::progress:
       if (asked_ == 0.0) display_.show(line->progress);
-      if (const double now = wall_s(); now - logged_ >= kLogInterval) {
+      if (const double now = wall_clock(); now - logged_ >= kLogInterval) {
         logged_ = now;
         log_ << progress_text(line->progress) << '\n';
       }
@@ -249,13 +203,13 @@ void Supervisor::take_output(std::string_view text) {
 void Supervisor::reap() {
   if (reaped_ || waitpid(child_, &status_, WNOHANG) != child_) return;
   reaped_ = true;
-  reaped_at_ = wall_s();
+  reaped_at_ = wall_clock();
 }
 
 void Supervisor::pass_on_stop() {
   const int stops = stop_signals();
   if (stops == 0) return;
-  const double now = wall_s();
+  const double now = wall_clock();
   if (stop_seen_ == 0.0) {
     stop_seen_ = now;
     display_.say("furrow: stopping; once more to stop at once");

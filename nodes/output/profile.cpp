@@ -1,11 +1,11 @@
 #include "nodes/output/profile.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include <nlohmann/json.hpp>
 
+#include "protocol/core/clock.hpp"
 #include "protocol/files/text_file.hpp"
 
 namespace furrow::output {
@@ -16,10 +16,6 @@ constexpr std::size_t kColumns = 4;  // step, begin, exchanged, advanced
 
 }  // namespace
 
-double machine_clock() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 StepProfile::StepProfile(std::int64_t steps) {
   if (steps <= 0) return;
   every_ = (steps + kMaxSteps - 1) / kMaxSteps;
@@ -29,7 +25,7 @@ StepProfile::StepProfile(std::int64_t steps) {
 void StepProfile::start(std::int64_t step, int part) {
   if (every_ == 0 || step % every_ != 0) return;
   if (part == 0) times_.insert(times_.end(), {static_cast<double>(step), 0.0, 0.0, 0.0});
-  times_[times_.size() - 3 + static_cast<std::size_t>(part)] = machine_clock();
+  times_[times_.size() - 3 + static_cast<std::size_t>(part)] = wall_clock();
 }
 
 void write_profile(const std::filesystem::path& file, std::span<const FinalReport> reports) {

@@ -11,9 +11,6 @@
 
 namespace furrow::output {
 
-/// Wall clock that all processes of one machine share, s.
-double machine_clock();
-
 /// One rank's record of its steps, evenly thinned to at most about 4000.
 class StepProfile {
  public:
@@ -22,7 +19,7 @@ class StepProfile {
   void begin(std::int64_t step) { start(step, 0); }  // synchronize begins
   void exchanged(std::int64_t step) { start(step, 1); }
   void advanced(std::int64_t step) { start(step, 2); }
-  /// Step number and the three times of each recorded step, s of machine_clock().
+  /// Step number and the three times of each recorded step, s of wall_clock().
   const std::vector<double>& times() const { return times_; }
 
  private:

@@ -7,6 +7,7 @@
 
 #include "nodes/output/profile.hpp"
 #include "protocol/core/archive_fields.hpp"
+#include "protocol/core/clock.hpp"
 #include "protocol/files/archive_file.hpp"
 #include "protocol/files/fault_point.hpp"
 
@@ -29,7 +30,7 @@ CheckpointWriter::CheckpointWriter(const scenario::Scenario& scenario, Node& nod
       cards_(cards.begin(), cards.end()),
       cost_(std::move(cost)),
       frames_(frame_clock(scenario, context)),
-      begin_(output::machine_clock()) {
+      begin_(wall_clock()) {
   if (transport.self() == kRig) build_ = checkpoint::build_id();
 }
 
@@ -56,7 +57,7 @@ CheckpointPart CheckpointWriter::write_part(std::int64_t step) const {
 void CheckpointWriter::write(std::int64_t step, bool needed) {
   if (context_.directory.empty()) return;
   last_step_ = step;
-  write_begin_ = output::machine_clock();
+  write_begin_ = wall_clock();
   transport_.heartbeat();
   const CheckpointPart own = write_part(step);
   if (transport_.self() == kRig) {
@@ -86,9 +87,9 @@ checkpoint::CheckpointManifest CheckpointWriter::manifest(std::int64_t step,
     m.bytes += static_cast<std::int64_t>(std::filesystem::file_size(
         checkpoint::unfinished_checkpoint(context_.directory, step) / part.file, ignored));
   m.frames = frames_;
-  m.segments = checkpoint::segments_until(step, output::machine_clock() - begin_, cards_.back().threads,
-                                          context_.resume);
-  m.write_s = output::machine_clock() - write_begin_;
+  m.segments =
+      checkpoint::segments_until(step, wall_clock() - begin_, cards_.back().threads, context_.resume);
+  m.write_s = wall_clock() - write_begin_;
   return m;
 }
 

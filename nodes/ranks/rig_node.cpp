@@ -7,6 +7,7 @@
 #include "nodes/output/results.hpp"
 #include "nodes/output/subject_series.hpp"
 #include "nodes/ranks/node.hpp"
+#include "protocol/core/clock.hpp"
 
 namespace furrow::ranks {
 namespace {
@@ -52,7 +53,7 @@ class RigNode : public Node {
     wrenches_.resize(wheels);
     series_steps_ = steps_between(scenario_.output.series_interval, scenario_.run.step);
     if (context.saved) restore(*context.saved);
-    wall_start_ = last_checkpoint_ = output::machine_clock();
+    wall_start_ = last_checkpoint_ = wall_clock();
     if (context.resume) time_start_ = context.resume->manifest.time;
   }
 
@@ -94,7 +95,7 @@ class RigNode : public Node {
     std::vector<output::WheelEnd> wheels;
     for (int k = 0; k < rig_->wheel_count(); ++k)
       wheels.push_back({series_[k].wheel(), tires_[k], rig_->report(k).carried_mass, rig_->heading(k)});
-    results_->finish(reports, wheels, output::machine_clock() - wall_start_, stopped);
+    results_->finish(reports, wheels, wall_clock() - wall_start_, stopped);
   }
 
   void save(Archive& archive) const override {
@@ -117,10 +118,9 @@ class RigNode : public Node {
     if (context_.stop_requested && context_.stop_requested()) return Order::stop;
     const scenario::CheckpointOptions& o = scenario_.checkpoint;
     const std::int64_t every = steps_between(o.interval, scenario_.run.step);
-    const bool by_wall =
-        o.wall_interval > 0.0 && output::machine_clock() - last_checkpoint_ >= o.wall_interval;
+    const bool by_wall = o.wall_interval > 0.0 && wall_clock() - last_checkpoint_ >= o.wall_interval;
     if (!by_wall && (every == 0 || step % every != 0)) return Order::go_on;
-    last_checkpoint_ = output::machine_clock();
+    last_checkpoint_ = wall_clock();
     return Order::checkpoint;
   }
 
@@ -153,7 +153,7 @@ class RigNode : public Node {
   }
 
   void show_progress(const StepHeader& header) {
-    const double now = output::machine_clock();
+    const double now = wall_clock();
     if (!context_.progress || last_.empty() || now - shown_ < kProgressInterval) return;
     shown_ = now;
     const LineView line{series_.front().columns(), last_};

@@ -5,7 +5,8 @@
 #include "nodes/output/profile.hpp"
 #include "nodes/ranks/checkpoint_writer.hpp"
 #include "nodes/ranks/node.hpp"
-#include "protocol/core/hash.hpp"
+#include "protocol/core/archive_hash.hpp"
+#include "protocol/core/clock.hpp"
 #include "protocol/files/archive_file.hpp"
 #include "protocol/files/fault_point.hpp"
 
@@ -24,12 +25,7 @@ double cpu_s() {
 std::uint64_t state_hash(const Node& node) {
   Archive archive;
   node.save(archive);
-  Hash hash;
-  for (const auto& [name, values] : archive.arrays()) {
-    hash.add(name);
-    std::visit([&](const auto& v) { hash.add(v.data(), v.size() * sizeof(v[0])); }, values);
-  }
-  return hash.value();
+  return archive_hash(archive).value();
 }
 
 std::int64_t run_steps(Node& node, Transport& transport, double step, std::int64_t from, std::int64_t to,
@@ -81,8 +77,7 @@ class RunLoop {
   ExitCode step(const std::vector<NodeCard>& cards) {
     const std::int64_t steps = scenario_.run.steps();
     output::StepProfile profile(context_.profile ? steps : 0);
-    wall_start_ = output::machine_clock(), cpu_start_ = cpu_s(),
-    waited_start_ = transport_.wait_clock().waited_s;
+    wall_start_ = wall_clock(), cpu_start_ = cpu_s(), waited_start_ = transport_.wait_clock().waited_s;
     CheckpointWriter checkpoints(scenario_, *node_, transport_, context_, cards, [this] { return cost(); });
     const std::int64_t at =
         run_steps(*node_, transport_, scenario_.run.step, from_, steps, &profile,
@@ -109,8 +104,8 @@ class RunLoop {
 
   NodeCost cost() const {
     const double wait = transport_.wait_clock().waited_s - waited_start_;
-    return {before_.cpu_s + cpu_s() - cpu_start_,
-            before_.compute_s + output::machine_clock() - wall_start_ - wait, before_.wait_s + wait};
+    return {before_.cpu_s + cpu_s() - cpu_start_, before_.compute_s + wall_clock() - wall_start_ - wait,
+            before_.wait_s + wait};
   }
 
   const scenario::Scenario& scenario_;

@@ -21,6 +21,7 @@
 #include "protocol/files/data_files.hpp"
 #include "protocol/files/json_fields.hpp"
 #include "protocol/files/json_text.hpp"
+#include "protocol/files/text_file.hpp"
 #include "protocol/host.hpp"
 #include "rigs/rigs.hpp"
 #include "tire/tires.hpp"

@@ -1,33 +1,18 @@
 #include "nodes/scenario/scenario.hpp"
 
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
 #include "protocol/core/error.hpp"
-#include "protocol/core/hash.hpp"
-#include "protocol/files/json_text.hpp"
+#include "protocol/files/text_file.hpp"
 #include "terrain/dem/dem_options.hpp"
 
 namespace furrow::scenario {
-namespace {
-
-std::string file_bytes(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
-
-}  // namespace
 
 std::vector<std::string> Scenario::file_hashes() const {
   std::vector<std::string> hashes;
-  const auto add = [&](const std::string& bytes) {
-    Hash hash;
-    hash.add(bytes);
-    hashes.push_back(hash.hex());
-  };
-  for (const auto& tire : tires) add(read_text_file(tire->options().file, "a tire file in JSON"));
-  for (const terrain::TerrainFile& file : terrain->files()) add(file_bytes(file.path.string()));
+  for (const auto& tire : tires)
+    hashes.push_back(text_hash(read_text_file(tire->options().file, "a tire file in JSON")));
+  for (const terrain::TerrainFile& file : terrain->files()) hashes.push_back(file_hash(file.path));
   return hashes;
 }
 

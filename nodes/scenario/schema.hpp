@@ -55,10 +55,4 @@ class Schema {
   nlohmann::json root_;
 };
 
-/// Number of letters to insert, remove, replace or swap with their neighbour, whatever their case.
-std::size_t edit_distance(const std::string& a, const std::string& b);
-
-/// Of `known`, what looks like `word`: best first, at most three.
-std::vector<std::string> nearest_words(const std::string& word, const std::vector<std::string>& known);
-
 }  // namespace furrow::scenario

@@ -7,6 +7,7 @@
 #include "nodes/scenario/schema.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/data_files.hpp"
+#include "protocol/files/json_reader.hpp"
 #include "protocol/files/json_text.hpp"
 #include "terrain/terrains.hpp"
 
@@ -33,18 +34,11 @@ json named_material(const json& document, const std::filesystem::path& scenario)
 
 json read_soil_material(const std::filesystem::path& file) {
   const std::string name = file.string();
-  const json soil = parse_json(read_text_file(name, "a soil in JSON"), name);
-  if (!soil.is_object() || !soil.contains("terrain") || !soil["terrain"].is_object())
-    throw input_error(name, "terrain", "is missing, expected an object { } with the soil's values");
-  for (const auto& [key, value] : soil.items())
-    if (key != "format_version" && key != "description" && key != "terrain" && key != "measured")
-      throw input_error(name, key, "is unknown, expected format_version, description, terrain or measured");
-  if (!soil.contains("format_version"))
-    throw input_error(name, "format_version", fmt::format("is missing, expected {}", kFormatVersion));
-  if (soil.value("format_version", json(0)) != kFormatVersion)
-    throw input_error(
-        name, "format_version",
-        fmt::format("is {}, expected {}", value_text(soil.value("format_version", json())), kFormatVersion));
+  const json soil = load_json(file, "a soil in JSON");
+  JsonReader reader(soil, name);
+  reader.child("terrain");
+  reader.allow_only({"format_version", "description", "terrain", "measured"});
+  reader.check_version(kFormatVersion, true);
   // The bin and the size of its grains are the scenario's.
   const std::vector<std::string> of_soil = terrain::terrain_keys(role::soil);
   for (const auto& [key, value] : soil["terrain"].items())

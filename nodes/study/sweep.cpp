@@ -7,14 +7,14 @@
 #include <cstdio>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "nodes/checkpoint/checkpoint.hpp"
+#include "nodes/checkpoint/run_summary.hpp"
+#include "nodes/launch/child_process.hpp"
 #include "nodes/launch/progress.hpp"
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
@@ -29,40 +29,11 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+using checkpoint::read_summary, checkpoint::value_at;
 
 constexpr int kPoll = 100000;  // µs
 constexpr int kTriesForFolder = 100;
 constexpr double kDeepRut = 0.4;  // of the bed's depth: a tire this deep feels the floor
-
-/// Of several wheels, wheel 0's keys can be asked for as if it were the only one.
-Json read_summary(const fs::path& run) {
-  std::ifstream in(run / "summary.json");
-  Json summary = Json::parse(in, nullptr, false);
-  if (!summary.is_object()) return summary;
-  const Json wheels = summary.value("wheels", Json::array());
-  if (wheels.is_array() && !wheels.empty())
-    for (const auto& [key, value] : wheels.front().items())
-      if (!summary.contains(key)) summary[key] = value;
-  return summary;
-}
-
-/// summary["a"]["b"] for "a.b".
-Json value_at(const Json& summary, const std::string& path) {
-  const Json* at = &summary;
-  for (std::size_t from = 0; from <= path.size();) {
-    const std::size_t to = std::min(path.find('.', from), path.size());
-    const std::string part = path.substr(from, to - from);
-    if (at->is_array() && !part.empty() && part.find_first_not_of("0123456789") == std::string::npos &&
-        std::stoul(part) < at->size())
-      at = &(*at)[std::stoul(part)];
-    else if (at->is_object() && at->contains(part))
-      at = &(*at)[part];
-    else
-      return {};
-    from = to + 1;
-  }
-  return *at;
-}
 
 std::string cell(const Json& value) {
   if (value.is_null()) return "";
@@ -238,25 +209,12 @@ void Sweep::start(Run& run, std::size_t share) {
   std::error_code error;
   fs::create_directories(folder_of(run).parent_path(), error);
   wait_until_free(folder_of(run));
-  std::vector<std::string> list = command(run);
-  std::vector<char*> arguments;
-  for (std::string& argument : list) arguments.push_back(argument.data());
-  arguments.push_back(nullptr);
-  const std::string log = log_of(run).string();
-  const pid_t parent = getpid(), child = fork();
-  if (child < 0) throw io_error(list.front(), std::string("cannot be started: ") + std::strerror(errno));
-  if (child == 0) {
-    launch::die_with_parent(SIGTERM, parent);
-    setpgid(0, 0);  // signals of a terminal are passed on by the parent
-    launch::restore_signals();
-    sched_setaffinity(0, sizeof(cpu_set_t), &shares_[share]);
-    const int out = open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0666);
-    dup2(out, STDOUT_FILENO);
-    dup2(out, STDERR_FILENO);
-    execv(arguments.front(), arguments.data());
-    _exit(127);
-  }
-  run.process = child;
+  const std::vector<std::string> list = command(run);
+  const int log = open(log_of(run).c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  const auto pin = [cores = shares_[share]] { sched_setaffinity(0, sizeof cores, &cores); };
+  run.process = launch::start_child(
+      {.command = list, .out = log, .err = log, .own_group = true, .death_signal = SIGTERM, .prepare = pin});
+  close(log);
   run.share = share;
   run.state = State::running;
   tell(run, list[1] == "resume" ? "goes on" : "begins");

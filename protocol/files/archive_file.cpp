@@ -1,39 +1,63 @@
 #include "protocol/files/archive_file.hpp"
 
 #include <algorithm>
+#include <optional>
 
-#include "protocol/core/hash.hpp"
+#include <fmt/format.h>
+
+#include "protocol/core/archive_hash.hpp"
 #include "protocol/files/hdf5_file.hpp"
+#include "protocol/files/text_file.hpp"
 
 namespace furrow {
 namespace {
 
-constexpr char kKind[] = "state";
-constexpr char kGroup[] = "state";
+// The datasets that told what the beds of earlier versions are.
+constexpr char kOldVersion[] = "format_version";
+constexpr char kOldChecksum[] = "checksum";
+constexpr char kOldKind[] = "bed";
+
+/// What a file says of itself.
+struct Label {
+  std::string kind;
+  std::int64_t version = 1;
+  std::optional<std::string> checksum;
+};
+
+Label label_of(const Hdf5Reader& file) {
+  Label label;
+  if (file.has_attribute("kind")) {
+    label.kind = file.text("kind");
+    if (!file.has_attribute("kind_version")) return label;
+    label.version = file.integer("kind_version");
+    label.checksum = file.text("checksum");
+  } else if (file.has(kOldVersion) && file.has(kOldChecksum)) {
+    const auto version = file.get<std::int64_t>(kOldVersion);
+    const auto checksum = file.get<std::uint64_t>(kOldChecksum);
+    if (version.size() != 1 || checksum.size() != 1) return label;
+    label = {kOldKind, version.front(), fmt::format("{:016x}", checksum.front())};
+  }
+  return label;
+}
 
 std::string swapped(std::string name, char from, char to) {
   std::replace(name.begin(), name.end(), from, to);
   return name;
 }
 
-std::string checksum(const Archive& archive) {
-  Hash hash;
-  for (const auto& [name, array] : archive.arrays()) {
-    const std::size_t type = array.index();
-    hash.add(name);
-    hash.add(&type, sizeof type);
-    std::visit(
-        [&hash](const auto& values) {
-          const std::size_t size = values.size();
-          hash.add(&size, sizeof size);
-          hash.add(std::span(values));
-        },
-        array);
-  }
-  return hash.hex();
+std::string stored_name(const std::string& name, const ArchiveKind& kind) {
+  return *kind.group ? std::string(kind.group) + "/" + swapped(name, '/', ':') : name;
 }
 
-Archive::Array read_array(const Hdf5Reader& file, const std::string& name) {
+/// The array's name of a dataset; empty for one that is no array.
+std::string array_name(const std::string& stored, const ArchiveKind& kind) {
+  const std::string group = kind.group;
+  if (group.empty()) return stored == kOldVersion || stored == kOldChecksum ? "" : stored;
+  return stored.starts_with(group + "/") ? swapped(stored.substr(group.size() + 1), ':', '/') : "";
+}
+
+Archive::Array read_array(const Hdf5Reader& file, const std::filesystem::path& path,
+                          const std::string& name) {
   switch (file.type(name)) {
     case Hdf5Type::float64:
       return file.get<double>(name);
@@ -43,38 +67,58 @@ Archive::Array read_array(const Hdf5Reader& file, const std::string& name) {
       return file.get<std::int32_t>(name);
     case Hdf5Type::uint64:
       return file.get<std::uint64_t>(name);
-    default:
+    case Hdf5Type::uint8:
       return file.get<std::uint8_t>(name);
+    default:
+      throw io_error(path.string(),
+                     "the dataset '" + name + "' is of a type that no array has: it is damaged");
   }
+}
+
+void check_label(const Label& label, const std::filesystem::path& path, const ArchiveKind& kind) {
+  if (label.kind != kind.name) throw io_error(path.string(), std::string("is not ") + kind.words);
+  if (label.version >= kind.oldest && label.version <= kind.version) return;
+  const bool newer = label.version > kind.version;
+  throw io_error(path.string(),
+                 fmt::format("is {} of version {}, which is {} than this program's {}{}", kind.words,
+                             label.version, newer ? "newer" : "older", newer ? kind.version : kind.oldest,
+                             newer ? "" : ", expected one made by this version: make it anew"));
 }
 
 }  // namespace
 
-void write_archive(const std::filesystem::path& path, const Archive& archive) {
-  Hdf5Writer file(path);
-  file.attribute("kind", std::string(kKind));
-  file.attribute("arrays", static_cast<std::int64_t>(archive.arrays().size()));
-  file.attribute("checksum", checksum(archive));
+void write_archive(const std::filesystem::path& path, const Archive& archive, const ArchiveKind& kind) {
+  Hdf5Writer file(path, kind.several_writers ? own_temporary_name(path) : temporary_name(path));
+  file.attribute("kind", std::string(kind.name));
+  file.attribute("kind_version", kind.version);
+  file.attribute("checksum", archive_hash(archive).hex());
   for (const auto& [name, array] : archive.arrays()) {
-    if (name.find(':') != std::string::npos)
-      throw io_error(path.string(), "array name '" + name + "' holds a ':'");
-    const std::string stored = std::string(kGroup) + "/" + swapped(name, '/', ':');
+    const std::string stored = stored_name(name, kind);
+    if (array_name(stored, kind) != name)
+      throw io_error(path.string(), "an array may not be called '" + name + "'");
     std::visit([&](const auto& values) { file.put(stored, std::span(values), {values.size()}); }, array);
   }
   file.finish();
 }
 
-Archive read_archive(const std::filesystem::path& path) {
+Archive read_archive(const std::filesystem::path& path, const ArchiveKind& kind, std::int64_t* version) {
   const Hdf5Reader file(path);
-  if (!file.has_attribute("kind") || file.text("kind") != kKind)
-    throw io_error(path.string(), "is not a saved state");
+  const Label label = label_of(file);
+  check_label(label, path, kind);
+  if (version) *version = label.version;
   Archive archive;
-  if (file.integer("arrays") > 0)
-    for (const std::string& stored : file.list(kGroup))
-      archive.put_array(swapped(stored, ':', '/'), read_array(file, std::string(kGroup) + "/" + stored));
-  if (checksum(archive) != file.text("checksum"))
+  for (const std::string& stored : file.datasets())
+    if (const std::string name = array_name(stored, kind); !name.empty())
+      archive.put_array(name, read_array(file, path, stored));
+  if (label.checksum && archive_hash(archive).hex() != *label.checksum)
     throw io_error(path.string(), "the checksum does not fit the contents: the file is damaged");
   return archive;
+}
+
+bool may_be_archive(const std::filesystem::path& path, const ArchiveKind& kind) try {
+  return label_of(Hdf5Reader(path)).kind == kind.name;
+} catch (const Error&) {
+  return true;
 }
 
 }  // namespace furrow

@@ -1,7 +1,9 @@
-// A node's saved state on disk: every array of an Archive as a dataset of its own type, bit for bit.
-//   attributes  format_version, kind = "state", arrays (their number), checksum
-//   /state/<name>  with ':' in place of the '/' in the archive's names
-// The checksum is FNV-1a over names, types and bytes in the order of the names.
+// An Archive on disk: every array as a dataset of its own type, bit for bit.
+//   attributes  format_version; kind; kind_version; checksum, archive_hash() in hexadecimal digits
+//   datasets    the arrays; those of a saved state as state/<name>, with ':' in place of the '/' in their names
+// Files of earlier versions are read as well. Their saved states have no kind_version, and a checksum over more than
+// archive_hash(): it is the manifest's checksum that vouches for them. Their beds have no attributes but the datasets
+// format_version, in place of kind_version, and checksum.
 #pragma once
 
 #include <filesystem>
@@ -10,10 +12,29 @@
 
 namespace furrow {
 
-/// The file appears whole or not at all. @throws Error(io)
-void write_archive(const std::filesystem::path& file, const Archive& archive);
+/// What an archive is of.
+struct ArchiveKind {
+  const char* name;
+  const char* words;     // "a saved state"
+  std::int64_t version;  // of its arrays
+  std::int64_t oldest;   // that can be read
+  const char*
+      group;  // that holds the arrays, with ':' in place of '/' in names; empty: names are as they are
+  bool several_writers;  // processes may write the same file at once; the last one wins
+};
 
-/// @throws Error(io) naming the file when it is missing, cut short, damaged, of another kind or of a newer format
-Archive read_archive(const std::filesystem::path& file);
+inline constexpr ArchiveKind kSavedState{"state", "a saved state", 1, 1, "state", false};
+
+/// The file appears whole or not at all. @throws Error(io)
+void write_archive(const std::filesystem::path& file, const Archive& archive,
+                   const ArchiveKind& kind = kSavedState);
+
+/// @param version receives the version of the arrays
+/// @throws Error(io) naming the file when it is missing, cut short, damaged, of another kind or of another version
+Archive read_archive(const std::filesystem::path& file, const ArchiveKind& kind = kSavedState,
+                     std::int64_t* version = nullptr);
+
+/// Whether an HDF5 file is of this kind, or so damaged that it cannot be told.
+bool may_be_archive(const std::filesystem::path& file, const ArchiveKind& kind);
 
 }  // namespace furrow

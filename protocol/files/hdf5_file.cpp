@@ -28,8 +28,8 @@ hid_t native(std::uint8_t) { return H5T_NATIVE_UINT8; }
 
 }  // namespace
 
-Hdf5Writer::Hdf5Writer(const std::filesystem::path& file)
-    : lock_(library), file_(file), part_(temporary_name(file)) {
+Hdf5Writer::Hdf5Writer(const std::filesystem::path& file, const std::filesystem::path& part)
+    : lock_(library), file_(file), part_(part.empty() ? temporary_name(file) : part) {
   silence();
   handle_ = H5Fcreate(part_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   check(handle_ >= 0, "cannot create");
@@ -121,8 +121,9 @@ Hdf5Reader::Hdf5Reader(const std::filesystem::path& file) : lock_(library), file
   std::error_code ignored;
   if (!std::filesystem::exists(file_, ignored)) throw io_error(file_.string(), "does not exist");
   handle_ = H5Fopen(file_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-  check(handle_ >= 0, "not a complete HDF5 file");
+  check(handle_ >= 0, "not an HDF5 file, or damaged");
   try {
+    if (!has_attribute("format_version")) return;
     const std::int64_t version = integer("format_version");
     check(version <= kFormatVersion, "format_version " + std::to_string(version) +
                                          " is newer than this program reads, which is " +
@@ -145,19 +146,14 @@ bool Hdf5Reader::has(const std::string& name) const {
 
 bool Hdf5Reader::has_attribute(const std::string& name) const { return H5Aexists(handle_, name.c_str()) > 0; }
 
-std::vector<std::string> Hdf5Reader::list(const std::string& group) const {
-  const Handle opened(H5Gopen2(handle_, group.c_str(), H5P_DEFAULT), H5Gclose);
-  H5G_info_t info{};
-  check(opened >= 0 && H5Gget_info(opened, &info) >= 0, "lacks the group '" + group + "'");
+std::vector<std::string> Hdf5Reader::datasets() const {
   std::vector<std::string> names;
-  for (hsize_t i = 0; i < info.nlinks; ++i) {
-    const auto name_of = [&](char* text, std::size_t size) {
-      return H5Lget_name_by_idx(opened, ".", H5_INDEX_NAME, H5_ITER_INC, i, text, size, H5P_DEFAULT);
-    };
-    std::string name(static_cast<std::size_t>(std::max<ssize_t>(name_of(nullptr, 0), 0)), '\0');
-    name_of(name.data(), name.size() + 1);
-    names.push_back(name);
-  }
+  const auto add = [](hid_t, const char* name, const H5O_info_t* info, void* target) -> herr_t {
+    if (info->type == H5O_TYPE_DATASET) static_cast<std::vector<std::string>*>(target)->emplace_back(name);
+    return 0;
+  };
+  check(H5Ovisit2(handle_, H5_INDEX_NAME, H5_ITER_INC, add, &names, H5O_INFO_BASIC) >= 0,
+        "its contents cannot be listed: the file is damaged");
   return names;
 }
 

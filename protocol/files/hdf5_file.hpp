@@ -15,8 +15,10 @@ namespace furrow {
 
 class Hdf5Writer {
  public:
-  /// Creates a temporary file; nothing stands under `file` until finish(). @throws Error(io)
-  explicit Hdf5Writer(const std::filesystem::path& file);
+  /// Creates a temporary file; nothing stands under `file` until finish().
+  /// @param part the temporary file, in the same folder; empty: temporary_name(file)
+  /// @throws Error(io)
+  explicit Hdf5Writer(const std::filesystem::path& file, const std::filesystem::path& part = {});
   ~Hdf5Writer();  // without finish(): removes the temporary file
   Hdf5Writer(const Hdf5Writer&) = delete;
   Hdf5Writer& operator=(const Hdf5Writer&) = delete;
@@ -54,6 +56,7 @@ enum class Hdf5Type { float64, float32, int64, int32, uint64, uint8, other };
 
 class Hdf5Reader {
  public:
+  /// Takes files of other programs as well: only those of ours have the attribute format_version.
   /// @throws Error(io) when `file` cannot be opened, is cut short, or its format_version is newer than ours
   explicit Hdf5Reader(const std::filesystem::path& file);
   ~Hdf5Reader();
@@ -63,8 +66,8 @@ class Hdf5Reader {
   bool has(const std::string& name) const;  // a dataset or group; groups on the way must exist
   bool has_attribute(const std::string& name) const;
 
-  /// Names of what a group holds, in alphabetical order.
-  std::vector<std::string> list(const std::string& group) const;
+  /// Names of all datasets, those in groups as "a/b".
+  std::vector<std::string> datasets() const;
   std::vector<hsize_t> shape(const std::string& name) const;
   Hdf5Type type(const std::string& name) const;
 

@@ -1,4 +1,4 @@
-// HDF5 identifiers that close themselves
+// HDF5 identifiers that close themselves.
 #pragma once
 
 #include <hdf5.h>
@@ -18,33 +18,10 @@ class Handle {
   Handle& operator=(const Handle&) = delete;
   operator hid_t() const { return id_; }
   bool ok() const { return id_ >= 0; }
-  /// Closes now; false when what was buffered could not be written.
-  bool close() {
-    FURROW_ASSERT(id_ >= 0, id_);
-    const bool good = close_(id_) >= 0;
-    id_ = -1;
-    return good;
-  }
 
  private:
   hid_t id_;
   herr_t (*close_)(hid_t);
-};
-
-/// Keeps HDF5 from printing its error stack while it lives.
-class Quiet {
- public:
-  Quiet() {
-    H5Eget_auto2(H5E_DEFAULT, &call_, &data_);
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  }
-  ~Quiet() { H5Eset_auto2(H5E_DEFAULT, call_, data_); }
-  Quiet(const Quiet&) = delete;
-  Quiet& operator=(const Quiet&) = delete;
-
- private:
-  H5E_auto2_t call_ = nullptr;
-  void* data_ = nullptr;
 };
 
 }  // namespace furrow

@@ -1,55 +1,74 @@
-// Reads objects of a tire file key by key. Every complaint names the file, the dotted key, the offending
-// value and what is allowed; keys that nobody asked for are errors with the nearest valid key suggested.
+// Reads an object of a JSON file key by key: tire files, soil files, studies, soil estimates. Every complaint names the file,
+// the dotted key, the offending value and what is expected; keys that nobody asked for are errors with the nearest valid key.
 #pragma once
 
-#include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
+#include "protocol/core/error.hpp"
+
 namespace furrow {
 
-/// The parsed file. @throws Error(bad_input) for a missing, empty, malformed or duplicate-keyed file.
-nlohmann::json load_json(const std::filesystem::path& file);
-
-/// Of `valid`, the name with the smallest edit distance to `name`; empty when none is near.
-std::string nearest_name(const std::string& name, const std::vector<std::string>& valid);
-
-class JsonReader {
+/// @tparam Json nlohmann::json, or nlohmann::ordered_json where the order of keys matters
+template <class Json>
+class BasicJsonReader {
  public:
-  JsonReader(const nlohmann::json& object, std::string file, std::string path = "");
+  /// @param object outlives the reader; @param path of the object in its file: "contact", "layers[2]"
+  BasicJsonReader(const Json& object, std::string file, std::string path = "");
 
   bool has(const std::string& key) const { return object_.contains(key); }
-  JsonReader child(const std::string& key);
-  const nlohmann::json& array(const std::string& key);
+  /// Whether the key is there and not null.
+  bool given(const std::string& key) const { return has(key) && !object_.at(key).is_null(); }
+
+  BasicJsonReader child(const std::string& key);
+  /// The object under this key; an empty one where the key is not given.
+  Json object_or_empty(const std::string& key);
+  const Json& array(const std::string& key);
   std::string text(const std::string& key);
   std::string text_or(const std::string& key, const std::string& otherwise);
   bool flag_or(const std::string& key, bool otherwise);
-  int count(const std::string& key, int least);
+  int count(const std::string& key, int least, int most = 100000);
 
-  double number(const std::string& key);        // finite
+  double number(const std::string& key);
   double positive(const std::string& key);      // > 0
   double not_negative(const std::string& key);  // ≥ 0
   double not_negative_or(const std::string& key, double otherwise);
-  /// `size` finite numbers (any number when size < 0).
+  /// `size` numbers (any number of them when size < 0).
   std::vector<double> numbers(const std::string& key, int size = -1);
 
-  /// Takes a key without reading it (comments, names).
-  void skip(const std::string& key) { used_.push_back(key); }
-  /// @throws Error(bad_input) when a key is left that nothing asked for.
-  void finish() const;
+  /// `format_version` is a whole number of at most `newest`; it may be missing unless it is required.
+  void check_version(int newest, bool required = false);
 
-  [[noreturn]] void fail(const std::string& key, const std::string& what) const;
+  /// Takes a key without reading it (comments, names).
+  void skip(const std::string& key);
+  /// @throws Error(bad_input) when there is a key that is not one of `known`.
+  void allow_only(const std::vector<std::string>& known) const;
+  /// @throws Error(bad_input) when there is a key that nothing asked for.
+  void finish() const { allow_only(used_); }
+
+  Error wrong(const std::string& key, const std::string& what) const {
+    return input_error(file_, key.empty() ? path_ : full(key), what);
+  }
+  [[noreturn]] void fail(const std::string& key, const std::string& what) const { throw wrong(key, what); }
   std::string full(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
   const std::string& file() const { return file_; }
-  const nlohmann::json& object() const { return object_; }
+  const Json& object() const { return object_; }
 
  private:
-  const nlohmann::json& at(const std::string& key);
+  /// The value, which must be of a type. @param is one of Json's questions: &Json::is_string
+  const Json& at(const std::string& key, bool (Json::*is)() const noexcept, const std::string& expected);
 
-  const nlohmann::json& object_;
+  const Json& object_;
   std::string file_, path_;
   std::vector<std::string> used_;
 };
+
+extern template class BasicJsonReader<nlohmann::json>;
+extern template class BasicJsonReader<nlohmann::ordered_json>;
+
+using JsonReader = BasicJsonReader<nlohmann::json>;
+using OrderedJsonReader = BasicJsonReader<nlohmann::ordered_json>;
 
 }  // namespace furrow

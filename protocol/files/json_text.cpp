@@ -1,82 +1,45 @@
 #include "protocol/files/json_text.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <iterator>
-#include <optional>
-#include <set>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "protocol/core/error.hpp"
+#include "protocol/files/text_file.hpp"
 
 namespace furrow {
 namespace {
 
 using nlohmann::json;
 
-constexpr std::uintmax_t kMaxText = 16 << 20;  // bytes
-constexpr std::size_t kMaxValue = 60;          // characters shown of a value
-
-/// Offset of the first byte that is not UTF-8 (RFC 3629), or npos.
-std::size_t find_invalid_utf8(const std::string& text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  for (std::size_t i = 0; i < text.size();) {
-    const unsigned lead = byte(i);
-    const int more = lead < 0x80                   ? 0
-                     : lead >= 0xC2 && lead < 0xE0 ? 1
-                     : lead >= 0xE0 && lead < 0xF0 ? 2
-                     : lead >= 0xF0 && lead < 0xF5 ? 3
-                                                   : -1;
-    if (more < 0 || lead == 0 || i + static_cast<std::size_t>(more) >= text.size()) return i;
-    unsigned code = more == 0 ? lead : lead & (0x3FU >> more);
-    for (int k = 1; k <= more; ++k) {
-      if ((byte(i + static_cast<std::size_t>(k)) & 0xC0U) != 0x80U) return i;
-      code = code << 6 | (byte(i + static_cast<std::size_t>(k)) & 0x3FU);
-    }
-    const bool overlong = (more == 2 && code < 0x800) || (more == 3 && code < 0x10000);
-    if (overlong || (code >= 0xD800 && code < 0xE000) || code > 0x10FFFF) return i;
-    i += 1 + static_cast<std::size_t>(more);
-  }
-  return std::string::npos;
-}
-
-/// "line:column", both from 1, the column in characters.
-std::string place(const std::string& text, std::size_t offset) {
-  offset = std::min(offset, text.size());
-  const std::size_t line = 1 + static_cast<std::size_t>(std::count(
-                                   text.begin(), text.begin() + static_cast<std::ptrdiff_t>(offset), '\n'));
-  const std::size_t newline = offset == 0 ? std::string::npos : text.rfind('\n', offset - 1);
-  std::size_t column = 1;
-  for (std::size_t i = newline == std::string::npos ? 0 : newline + 1; i < offset; ++i)
-    column += (static_cast<unsigned char>(text[i]) & 0xC0U) != 0x80U;
-  return fmt::format("{}:{}", line, column);
-}
+constexpr std::size_t kMaxValue = 60;  // characters shown of a value
 
 /// Builds a document event by event, so that keys can be checked as they come.
-class Builder final : public nlohmann::json_sax<json> {
+template <class Json>
+class Builder final : public nlohmann::json_sax<Json> {
+  using Base = nlohmann::json_sax<Json>;
+
  public:
   Builder(const std::string& text, std::string name) : text_(text), name_(std::move(name)) {}
 
-  json take() { return std::move(root_); }
+  Json take() { return std::move(root_); }
 
   bool null() override { return add(nullptr); }
   bool boolean(bool value) override { return add(value); }
-  bool number_integer(number_integer_t value) override { return add(value); }
-  bool number_unsigned(number_unsigned_t value) override { return add(value); }
-  bool number_float(number_float_t value, const string_t&) override { return add(value); }
-  bool string(string_t& value) override { return add(std::move(value)); }
-  bool binary(binary_t&) override { return false; }
-  bool start_object(std::size_t) override { return open(json::object()); }
-  bool start_array(std::size_t) override { return open(json::array()); }
+  bool number_integer(typename Base::number_integer_t value) override { return add(value); }
+  bool number_unsigned(typename Base::number_unsigned_t value) override { return add(value); }
+  bool number_float(typename Base::number_float_t value, const std::string&) override { return add(value); }
+  bool string(std::string& value) override { return add(std::move(value)); }
+  bool binary(typename Base::binary_t&) override { return false; }
+  bool start_object(std::size_t) override { return open(Json::object()); }
+  bool start_array(std::size_t) override { return open(Json::array()); }
   bool end_object() override { return close(); }
   bool end_array() override { return close(); }
 
-  bool key(string_t& name) override {
+  bool key(std::string& name) override {
     Level& level = levels_.back();
     level.key = name;
     if (level.value->contains(name)) throw input_error(name_, path(), "is given twice, expected once");
@@ -85,7 +48,7 @@ class Builder final : public nlohmann::json_sax<json> {
 
   bool parse_error(std::size_t position, const std::string&,
                    const nlohmann::detail::exception& error) override {
-    const std::string where = name_ + ":" + place(text_, position == 0 ? 0 : position - 1);
+    const std::string where = name_ + ":" + place_in_text(text_, position == 0 ? 0 : position - 1);
     constexpr int kOverflow = 406;
     if (error.id == kOverflow)
       throw input_error(where, path(),
@@ -101,12 +64,12 @@ class Builder final : public nlohmann::json_sax<json> {
 
  private:
   struct Level {
-    json* value;
+    Json* value;
     std::string key;
   };
 
   /// Where the next value goes.
-  json* place_for() {
+  Json* place_for() {
     if (levels_.empty()) return &root_;
     Level& level = levels_.back();
     if (level.value->is_array()) {
@@ -115,12 +78,12 @@ class Builder final : public nlohmann::json_sax<json> {
     }
     return &(*level.value)[level.key];
   }
-  bool add(json value) {
+  bool add(Json value) {
     *place_for() = std::move(value);
     return true;
   }
-  bool open(json value) {
-    json* at = place_for();
+  bool open(Json value) {
+    Json* at = place_for();
     *at = std::move(value);
     levels_.push_back({at, {}});
     return true;
@@ -140,49 +103,38 @@ class Builder final : public nlohmann::json_sax<json> {
 
   const std::string& text_;
   std::string name_;
-  json root_;
+  Json root_;
   std::vector<Level> levels_;
 };
 
 }  // namespace
 
-std::string read_text_file(const std::filesystem::path& file, const std::string& expected) {
-  const std::string name = file.string();
-  std::error_code error;
-  const auto status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status))
-    throw input_error(
-        name, "",
-        (error && error.value() != ENOENT ? "cannot be read (" + error.message() + ")" : "does not exist") +
-            ", expected " + expected);
-  if (std::filesystem::is_directory(status))
-    throw input_error(name, "", "is a directory, expected " + expected);
-  if (!std::filesystem::is_regular_file(status))
-    throw input_error(name, "", "is not a regular file, expected " + expected);
-  const std::uintmax_t size = std::filesystem::file_size(file, error);
-  if (!error && size > kMaxText)
-    throw input_error(name, "",
-                      fmt::format("is {} MB large, expected {} of at most 16 MB", size >> 20, expected));
-  errno = 0;
-  std::ifstream in(file, std::ios::binary);
-  if (!in)
-    throw input_error(name, "",
-                      fmt::format("cannot be read ({}), expected {}", std::strerror(errno), expected));
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (std::all_of(text.begin(), text.end(),
-                  [](unsigned char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }))
-    throw input_error(name, "", "is empty, expected " + expected);
-  if (const std::size_t bad = find_invalid_utf8(text); bad != std::string::npos)
-    throw input_error(name + ":" + place(text, bad), "",
-                      fmt::format("byte 0x{:02x} is not UTF-8, expected {} in UTF-8",
-                                  static_cast<unsigned char>(text[bad]), expected));
-  return text;
-}
-
-json parse_json(const std::string& text, const std::string& name) {
-  Builder builder(text, name);
-  json::sax_parse(text, &builder);
+template <class Json>
+Json parse_json(const std::string& text, const std::string& name) {
+  Builder<Json> builder(text, name);
+  Json::sax_parse(text, &builder);
   return builder.take();
+}
+template nlohmann::json parse_json(const std::string&, const std::string&);
+template nlohmann::ordered_json parse_json(const std::string&, const std::string&);
+
+template <class Json>
+Json load_json(const std::filesystem::path& file, const std::string& expected) {
+  Json document = parse_json<Json>(read_text_file(file, expected), file.string());
+  if (!document.is_object()) throw input_error(file.string(), "", "is no object, expected " + expected);
+  return document;
+}
+template nlohmann::json load_json(const std::filesystem::path&, const std::string&);
+template nlohmann::ordered_json load_json(const std::filesystem::path&, const std::string&);
+
+nlohmann::ordered_json read_json_if_whole(const std::filesystem::path& file) {
+  using Json = nlohmann::ordered_json;
+  try {
+    Json document = Json::parse(read_whole_file(file), nullptr, false);
+    return document.is_discarded() ? Json() : document;
+  } catch (const Error&) {
+    return {};
+  }
 }
 
 json parse_value(const std::string& text, const std::string& name, const std::string& key) {
@@ -214,15 +166,18 @@ std::string number_text(double value) {
   return text;
 }
 
-std::string value_text(const json& value) {
-  if (value.is_number()) return number_text(value.get<double>());
-  std::string text = value.is_string() ? "'" + value.get<std::string>() + "'"
-                                       : value.dump(-1, ' ', false, json::error_handler_t::replace);
+template <class Json>
+std::string value_text(const Json& value) {
+  if (value.is_number()) return number_text(value.template get<double>());
+  std::string text = value.is_string() ? "'" + value.template get<std::string>() + "'"
+                                       : value.dump(-1, ' ', false, Json::error_handler_t::replace);
   if (text.size() <= kMaxValue) return text;
   std::size_t cut = kMaxValue - 3;
   while (cut > 0 && (static_cast<unsigned char>(text[cut]) & 0xC0U) == 0x80U) --cut;
   return text.substr(0, cut) + "…";
 }
+template std::string value_text(const nlohmann::json&);
+template std::string value_text(const nlohmann::ordered_json&);
 
 std::string one_of(const json& values) {
   std::string text;

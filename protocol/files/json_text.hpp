@@ -9,13 +9,20 @@
 
 namespace furrow {
 
-/// The bytes of a text file in UTF-8.
-/// @throws Error(bad_input) when it is missing, a directory, a device, empty, too large, or not UTF-8
-std::string read_text_file(const std::filesystem::path& file, const std::string& expected);
-
+/// @tparam Json nlohmann::json, or nlohmann::ordered_json where the order of keys matters
 /// @param name of the file, for messages
 /// @throws Error(bad_input): syntax with line and column, duplicate keys and overflowing numbers by their key
-nlohmann::json parse_json(const std::string& text, const std::string& name);
+template <class Json = nlohmann::json>
+Json parse_json(const std::string& text, const std::string& name);
+
+/// The object that a file holds.
+/// @param expected what should be there, for messages: "a study in JSON"
+/// @throws Error(bad_input) as read_text_file and parse_json, and for what is no object
+template <class Json = nlohmann::json>
+Json load_json(const std::filesystem::path& file, const std::string& expected);
+
+/// What a file of the program's own holds; null when it is missing, cut short or no JSON.
+nlohmann::ordered_json read_json_if_whole(const std::filesystem::path& file);
 
 /// A value given on the command line: JSON if it is JSON, else a string. @throws Error(bad_input) as
 /// parse_json
@@ -25,7 +32,8 @@ nlohmann::json parse_value(const std::string& text, const std::string& name, con
 std::string number_text(double value);
 
 /// One line of a value, at most 60 characters, for messages.
-std::string value_text(const nlohmann::json& value);
+template <class Json>
+std::string value_text(const Json& value);
 
 /// "'a', 'b' or 'c'".
 std::string one_of(const nlohmann::json& values);

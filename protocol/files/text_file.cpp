@@ -3,14 +3,21 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <vector>
+
+#include <fmt/format.h>
 
 #include "protocol/core/error.hpp"
 
 namespace furrow {
 namespace {
+
+constexpr std::uintmax_t kMaxText = 16 << 20;  // bytes
 
 Error failed(const std::filesystem::path& file, const std::string& what) {
   return io_error(file.string(), what + ": " + std::strerror(errno));
@@ -24,7 +31,139 @@ void flush_to_disk(const std::filesystem::path& path) {
   if (result != 0) throw failed(path, "cannot flush to the disk");
 }
 
+/// Gives `use` what the stream holds, block by block; `use` returns false when it has enough. @returns false after an error
+template <class Use>
+bool read_blocks(std::ifstream& in, const Use& use) {
+  std::vector<char> block(1 << 20);
+  while (in) {
+    in.read(block.data(), static_cast<std::streamsize>(block.size()));
+    if (!use(block.data(), static_cast<std::size_t>(in.gcount()))) return true;
+  }
+  return in.eof();
+}
+
+Error unreadable(const std::filesystem::path& file) {
+  return io_error(file.string(), "does not exist or cannot be read");
+}
+
+/// A regular file of a size that a person may have written.
+void check_text_file(const std::filesystem::path& file, const std::string& expected) {
+  const std::string name = file.string();
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status))
+    throw input_error(
+        name, "",
+        (error && error.value() != ENOENT ? "cannot be read (" + error.message() + ")" : "does not exist") +
+            ", expected " + expected);
+  if (std::filesystem::is_directory(status))
+    throw input_error(name, "", "is a directory, expected " + expected);
+  if (!std::filesystem::is_regular_file(status))
+    throw input_error(name, "", "is not a regular file, expected " + expected);
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  if (!error && size > kMaxText)
+    throw input_error(name, "",
+                      fmt::format("is {} MB large, expected {} of at most 16 MB", size >> 20, expected));
+}
+
 }  // namespace
+
+std::string read_whole_file(const std::filesystem::path& file) {
+  std::string bytes;
+  std::ifstream in(file, std::ios::binary);
+  const bool good = in && read_blocks(in, [&](const char* block, std::size_t count) {
+                      bytes.append(block, count);
+                      return true;
+                    });
+  if (!good) throw unreadable(file);
+  return bytes;
+}
+
+void add_file(Hash& hash, const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  const bool good = in && read_blocks(in, [&](const char* block, std::size_t count) {
+                      hash.add(block, count);
+                      return true;
+                    });
+  if (!good) throw unreadable(file);
+}
+
+std::string file_hash(const std::filesystem::path& file) {
+  Hash hash;
+  add_file(hash, file);
+  return hash.hex();
+}
+
+std::string text_hash(const std::string& text) {
+  Hash hash;
+  hash.add(text);
+  return hash.hex();
+}
+
+std::string read_text_file(const std::filesystem::path& file, const std::string& expected) {
+  const std::string name = file.string();
+  check_text_file(file, expected);
+  errno = 0;
+  std::ifstream in(file, std::ios::binary);
+  std::string text;
+  // What comes counts, not the size that the system tells: files grow, and those of the kernel have none.
+  const bool good = in && read_blocks(in, [&](const char* block, std::size_t count) {
+                      text.append(block, count);
+                      return text.size() <= kMaxText;
+                    });
+  if (!good)
+    throw input_error(name, "",
+                      fmt::format("cannot be read ({}), expected {}", std::strerror(errno), expected));
+  if (text.size() > kMaxText)
+    throw input_error(name, "", fmt::format("is too large, expected {} of at most 16 MB", expected));
+  if (std::all_of(text.begin(), text.end(),
+                  [](unsigned char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }))
+    throw input_error(name, "", "is empty, expected " + expected);
+  if (const std::size_t bad = find_invalid_utf8(text); bad != std::string::npos)
+    throw input_error(name + ":" + place_in_text(text, bad), "",
+                      fmt::format("byte 0x{:02x} is not UTF-8, expected {} in UTF-8",
+                                  static_cast<unsigned char>(text[bad]), expected));
+  return text;
+}
+
+std::size_t find_invalid_utf8(const std::string& text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  for (std::size_t i = 0; i < text.size();) {
+    const unsigned lead = byte(i);
+    const int more = lead < 0x80                   ? 0
+                     : lead >= 0xC2 && lead < 0xE0 ? 1
+                     : lead >= 0xE0 && lead < 0xF0 ? 2
+                     : lead >= 0xF0 && lead < 0xF5 ? 3
+                                                   : -1;
+    if (more < 0 || lead == 0 || i + static_cast<std::size_t>(more) >= text.size()) return i;
+    unsigned code = more == 0 ? lead : lead & (0x3FU >> more);
+    for (int k = 1; k <= more; ++k) {
+      if ((byte(i + static_cast<std::size_t>(k)) & 0xC0U) != 0x80U) return i;
+      code = code << 6 | (byte(i + static_cast<std::size_t>(k)) & 0x3FU);
+    }
+    const bool overlong = (more == 2 && code < 0x800) || (more == 3 && code < 0x10000);
+    if (overlong || (code >= 0xD800 && code < 0xE000) || code > 0x10FFFF) return i;
+    i += 1 + static_cast<std::size_t>(more);
+  }
+  return std::string::npos;
+}
+
+std::string place_in_text(const std::string& text, std::size_t offset) {
+  offset = std::min(offset, text.size());
+  const std::size_t line = 1 + static_cast<std::size_t>(std::count(
+                                   text.begin(), text.begin() + static_cast<std::ptrdiff_t>(offset), '\n'));
+  const std::size_t newline = offset == 0 ? std::string::npos : text.rfind('\n', offset - 1);
+  std::size_t column = 1;
+  for (std::size_t i = newline == std::string::npos ? 0 : newline + 1; i < offset; ++i)
+    column += (static_cast<unsigned char>(text[i]) & 0xC0U) != 0x80U;
+  return fmt::format("{}:{}", line, column);
+}
+
+std::filesystem::path own_temporary_name(const std::filesystem::path& file) {
+  std::array<char, 64> host{};
+  gethostname(host.data(), host.size() - 1);
+  return file.parent_path() / fmt::format(".{}.{}.{}.part", file.filename().string(), host.data(), getpid());
+}
 
 std::filesystem::path temporary_name(const std::filesystem::path& file) {
   return file.parent_path() / ("." + file.filename().string() + ".part");

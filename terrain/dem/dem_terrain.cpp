@@ -1,7 +1,6 @@
 #include "terrain/dem/dem_terrain.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -9,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "protocol/core/assert.hpp"
+#include "protocol/core/clock.hpp"
 #include "protocol/core/constants.hpp"
 #include "protocol/core/error.hpp"
 #include "terrain/dem/beds/bed_generators.hpp"
@@ -68,7 +68,7 @@ class DemTerrain : public Terrain {
   }
 
   double prepare(const ProgressCall& progress) override {
-    const auto begin = std::chrono::steady_clock::now();
+    const double begin = wall_clock();
     const dem::PreparedBed prepared = dem::prepare_bed(options_, progress);
     // A run from a cached bed and the run that settled it both start here, from the same archive.
     solver_.restore(prepared.bed);
@@ -76,7 +76,7 @@ class DemTerrain : public Terrain {
     solver_.set_coefficients(dem::run_coefficients(options_, dt_));
     solver_.reset_accounts();
     if (progress && !prepared.settled.settled) progress("bed not settled", 1.0);
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return wall_clock() - begin;
   }
 
   double top_height(double x_min, double x_max, double y_min, double y_max) const override {

@@ -1,13 +1,13 @@
 #include "terrain/dem/grain_bench.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <span>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "protocol/core/clock.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/core/hash.hpp"
 #include "terrain/dem/beds/bed_csv.hpp"
@@ -91,9 +91,9 @@ GrainBenchResult run_grain_bench(const GrainBench& bench, const ProgressCall& pr
     write_positions_csv(bench.save, std::span(solver.grains().position).first(solver.grains().count),
                         0.5 * kReferenceWidth);
   solver.reset_accounts();
-  const auto begin = std::chrono::steady_clock::now();
+  const double begin = wall_clock();
   steps("stepping", bench.steps);
-  result.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  result.wall = wall_clock() - begin;
 
   const Accounts& a = solver.accounts();
   result.grains = solver.grains().count;

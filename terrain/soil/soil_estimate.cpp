@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "protocol/core/error.hpp"
+#include "protocol/files/json_reader.hpp"
 #include "protocol/files/json_text.hpp"
 #include "protocol/files/text_file.hpp"
 #include "terrain/soil/bekker_wong.hpp"
@@ -20,41 +21,23 @@ using nlohmann::json;
 constexpr int kFormatVersion = 1;
 constexpr double kDegree = std::numbers::pi / 180.0;  // rad
 
-json read_object(const std::filesystem::path& file, const std::string& expected) {
-  json object = parse_json(read_text_file(file, expected), file.string());
-  if (!object.is_object()) throw input_error(file.string(), "", "is no object, expected " + expected);
-  const json version = object.value("format_version", json(nullptr));
-  if (version.is_number() && version.get<double>() > kFormatVersion)
-    throw input_error(file.string(), "format_version",
-                      fmt::format("is {}: the file is newer than this program, expected at most {}",
-                                  value_text(version), kFormatVersion));
-  return object;
+/// A number that theory cannot do without, above zero or any.
+double number(JsonReader& reader, const std::string& key, bool positive = false) {
+  if (!reader.has(key)) reader.fail(key, "is missing: not the expected file, or not all soil tests were run");
+  return positive ? reader.positive(key) : reader.number(key);
 }
 
-double number(const json& object, const std::filesystem::path& file, const std::string& key, double above) {
-  if (!object.contains(key))
-    throw input_error(file.string(), key,
-                      "is missing: not the expected file, or not all soil tests were run");
-  const json value = object.value(key, json(nullptr));
-  if (!value.is_number() || !(value.get<double>() > above))
-    throw input_error(file.string(), key,
-                      fmt::format("is {}, expected a number{}", value_text(value),
-                                  std::isfinite(above) ? " above " + number_text(above) : ""));
-  return value.get<double>();
-}
-
-SoilStrength strength_of(const json& soil, const std::filesystem::path& file, double width) {
+SoilStrength strength_of(JsonReader& soil, double width) {
   SoilStrength s;
-  s.k_c = number(soil, file, "k_c", -INFINITY);
-  s.k_phi = number(soil, file, "k_phi", -INFINITY);
-  s.n = number(soil, file, "n", 0.0);
-  s.cohesion = number(soil, file, "cohesion_Pa", -INFINITY);
-  s.phi = kDegree * number(soil, file, "friction_angle_deg", -INFINITY);
-  s.K = number(soil, file, "janosi_K_m", 0.0);
+  s.k_c = number(soil, "k_c");
+  s.k_phi = number(soil, "k_phi");
+  s.n = number(soil, "n", true);
+  s.cohesion = number(soil, "cohesion_Pa");
+  s.phi = kDegree * number(soil, "friction_angle_deg");
+  s.K = number(soil, "janosi_K_m", true);
   if (!(s.k_c / width + s.k_phi > 0.0))
-    throw input_error(file.string(), "k_phi",
-                      fmt::format("k_c/b + k_phi is {:g} for a wheel {:g} m wide, expected a number above 0",
-                                  s.k_c / width + s.k_phi, width));
+    soil.fail("k_phi", fmt::format("k_c/b + k_phi is {:g} for a wheel {:g} m wide, expected a number above 0",
+                                   s.k_c / width + s.k_phi, width));
   return s;
 }
 
@@ -93,23 +76,26 @@ void require_grains(const json& scenario, const std::filesystem::path& file) {
 }  // namespace
 
 std::string write_soil_estimate(const std::filesystem::path& run, const std::filesystem::path& soil_file) {
-  const std::filesystem::path summary_file = run / "summary.json";
-  json summary = read_object(summary_file, "the summary of a finished run");
+  json summary = load_json(run / "summary.json", "the summary of a finished run");
   if (const json wheels = summary.value("wheels", json::array()); !wheels.empty())
     summary.update(wheels.front());  // the estimate is for wheel 0
+  JsonReader of_run(summary, (run / "summary.json").string());
+  of_run.check_version(kFormatVersion);
   const std::filesystem::path scenario_file = run / "scenario.json";
-  const json scenario = read_object(scenario_file, "the scenario of a finished run");
+  const json scenario = load_json(scenario_file, "the scenario of a finished run");
   require_grains(scenario, scenario_file);
   RigidWheel wheel;
-  wheel.radius = number(summary, summary_file, "tire_radius_m", 0.0);
-  wheel.width = number(summary, summary_file, "tread_width_m", 0.0);
-  wheel.load = number(summary, summary_file, "vertical_load_N", 0.0);
-  const double slip = number(summary, summary_file, "slip", -INFINITY);
+  wheel.radius = number(of_run, "tire_radius_m", true);
+  wheel.width = number(of_run, "tread_width_m", true);
+  wheel.load = number(of_run, "vertical_load_N", true);
+  const double slip = number(of_run, "slip");
 
   const std::filesystem::path file =
       std::filesystem::is_directory(soil_file) ? soil_file / "soil.json" : soil_file;
-  const json soil = read_object(file, "the soil.json that 'furrow soil' writes");
-  const SoilStrength s = strength_of(soil, file, wheel.width);
+  const json soil = load_json(file, "the soil.json that 'furrow soil' writes");
+  JsonReader of_soil(soil, file.string());
+  of_soil.check_version(kFormatVersion);
+  const SoilStrength s = strength_of(of_soil, wheel.width);
   const WheelEstimate e = soil::rigid_wheel(s, wheel, slip);
 
   nlohmann::ordered_json j;

@@ -17,8 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const scenario::Schema schema = scenario::Schema::load();
   try {
     const auto file = fuzz::input_file("scenario.json", data, size);
-    nlohmann::json document = parse_json(read_text_file(file, "a scenario"), file.string());
-    if (!document.is_object()) return 0;
+    nlohmann::json document = load_json(file, "a scenario");
     schema.normalize(document);
     if (!schema.problems(document).empty()) return 0;
     schema.fill_defaults(document);

@@ -132,8 +132,7 @@ TEST(Scenario, mistakes_in_a_soil_file_are_named_with_that_file) {
   EXPECT_EQ(complaint(R"({"format_version": 1, "terrain": {"radius": 0.01}})").substr(0, 62),
             ": key 'terrain.radius': is not a property of soil, expected on");
   EXPECT_EQ(complaint(R"({"format_version": 2, "terrain": {}})"), ": key 'format_version': is 2, expected 1");
-  EXPECT_EQ(complaint(R"({"format_version": 1})"),
-            ": key 'terrain': is missing, expected an object { } with the soil's values");
+  EXPECT_EQ(complaint(R"({"format_version": 1})"), ": key 'terrain': is missing, expected an object { }");
 }
 
 TEST(Scenario, mistakes_are_named_with_what_is_expected) {
@@ -197,15 +196,6 @@ TEST(Schema, defaults_obey_the_schema) {
   schema.normalize(document);
   EXPECT_TRUE(schema.problems(document).empty());
   EXPECT_TRUE(schema.unusual(document).empty());
-}
-
-/// Damerau–Levenshtein distance (optimal string alignment) of known pairs.
-TEST(Schema, edit_distance_of_known_pairs) {
-  EXPECT_EQ(scenario::edit_distance("", "abc"), 3U);
-  EXPECT_EQ(scenario::edit_distance("kitten", "sitting"), 3U);
-  EXPECT_EQ(scenario::edit_distance("slip", "SLIP"), 0U);
-  EXPECT_EQ(scenario::edit_distance("slip", "slpi"), 1U);
-  EXPECT_EQ(scenario::edit_distance("ca", "abc"), 3U);
 }
 
 }  // namespace

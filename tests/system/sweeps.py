@@ -79,7 +79,7 @@ class Sweep(SystemTest):
                             ({"grid": {"rig.slip": [0.1, 0.2, 0.1]}}, "key 'grid': has the run 'rig.slip=0.1' twice"),
                             ({"grid": {"rig.slip": [0.1]}, "set": {"rig.slip": 0.2}}, "key 'grid.rig.slip': is in 'set' as well"),
                             ({"grid": {"rig.slip": [0.1]}, "rest": 0.1}, "key 'rest': is the time between passes"),
-                            ({"passes": 0}, "key 'passes': expected a whole number"),
+                            ({"passes": 0}, "key 'passes': is 0, expected a whole number"),
                             ({"passes": 2, "set": {"checkpoint.at_end": False}}, "key 'checkpoint.at_end': is false, expected true"),
                             ({"passes": 2, "set": {"terrain.engine": "rigid"}}, "key 'terrain.engine': is 'rigid', expected 'dem'"),
                             ({"list": [{"rig.slip": 0.1}], "plot": {"x": "rig.slipp", "y": "sinkage_m"}}, "key 'plot.x': is 'rig.slipp', expected"),

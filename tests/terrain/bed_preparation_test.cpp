@@ -277,11 +277,11 @@ TEST_F(Beds, beds_of_another_format_are_refused_by_version) {
   for (const auto& [step, words] : {std::pair(-2, "is older than"), std::pair(1, "is newer than")}) {
     std::filesystem::copy_file(made.file, options_.bed, std::filesystem::copy_options::overwrite_existing);
     const Handle file(H5Fopen(options_.bed.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
-    const Handle set(H5Dopen2(file, "format_version", H5P_DEFAULT), H5Dclose);
+    const Handle attribute(H5Aopen(file, "kind_version", H5P_DEFAULT), H5Aclose);
     std::int64_t version = 0;
-    H5Dread(set, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &version);
+    H5Aread(attribute, H5T_NATIVE_INT64, &version);
     version += step;
-    H5Dwrite(set, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &version);
+    H5Awrite(attribute, H5T_NATIVE_INT64, &version);
     H5Fflush(file, H5F_SCOPE_GLOBAL);
     try {
       read_bed(options_.bed);

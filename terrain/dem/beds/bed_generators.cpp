@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "protocol/core/error.hpp"
+#include "terrain/dem/beds/bed_cache.hpp"
 #include "terrain/dem/beds/bed_csv.hpp"
 #include "terrain/dem/beds/bed_layers.hpp"
 #include "terrain/dem/beds/bed_positions_h5.hpp"
@@ -158,7 +159,7 @@ std::vector<Quad> lattice_layer(const Bin& bin, double radius, std::uint64_t see
 }
 
 bool is_positions_file(const std::filesystem::path& bed) {
-  return is_hdf5(bed) ? !is_settled_bed(bed) : bed.extension() != ".h5";
+  return is_hdf5(bed) ? !may_be_bed(bed) : bed.extension() != ".h5";
 }
 
 std::vector<Quad> starting_positions(const DemOptions& options, const ProgressCall& progress) {

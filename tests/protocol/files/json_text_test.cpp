@@ -5,6 +5,7 @@
 
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_text.hpp"
+#include "protocol/files/text_file.hpp"
 #include "tests/nodes/temporary_folder.hpp"
 
 namespace furrow {

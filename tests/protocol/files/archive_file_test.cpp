@@ -6,9 +6,10 @@
 #include <fstream>
 #include <limits>
 
+#include "protocol/core/hash.hpp"
 #include "protocol/files/archive_file.hpp"
 #include "protocol/files/hdf5_file.hpp"
-#include "temporary_folder.hpp"
+#include "tests/nodes/temporary_folder.hpp"
 
 namespace furrow {
 namespace {
@@ -46,9 +47,11 @@ void expect_same_bits(const Archive& a, const Archive& b) {
   }
 }
 
-std::string error_of(const std::filesystem::path& file) {
+constexpr ArchiveKind kBed{"bed", "a bed", 4, "", true};
+
+std::string error_of(const std::filesystem::path& file, const ArchiveKind& kind = kSavedState) {
   try {
-    read_archive(file);
+    read_archive(file, kind);
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ExitCode::io);
     return error.what();
@@ -63,6 +66,71 @@ TEST(ArchiveFile, every_type_comes_back_bit_for_bit) {
   expect_same_bits(example(), read_archive(file));
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1)
       << "a temporary file is left";
+}
+
+TEST(ArchiveFile, a_kind_without_a_group_keeps_the_names_as_they_are) {
+  const testing::TemporaryFolder folder;
+  const auto file = folder.path() / "bed.h5";
+  write_archive(file, example(), kBed);
+  expect_same_bits(example(), read_archive(file, kBed));
+  EXPECT_TRUE(Hdf5Reader(file).has("grains/list/start"));
+  EXPECT_TRUE(may_be_archive(file, kBed));
+  EXPECT_FALSE(may_be_archive(file, kSavedState));
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1)
+      << "a temporary file is left";
+}
+
+TEST(ArchiveFile, other_kinds_and_versions_are_refused_by_name) {
+  const testing::TemporaryFolder folder;
+  const auto file = folder.path() / "bed.h5";
+  ArchiveKind other = kBed;
+  for (const auto& [version, words] :
+       {std::pair(3, "older than this program's 4"), {5, "newer than this program's 4"}}) {
+    other.version = version;
+    write_archive(file, example(), other);
+    EXPECT_NE(error_of(file, kBed).find(words), std::string::npos) << error_of(file, kBed);
+  }
+  EXPECT_NE(error_of(file).find("bed.h5: is not a saved state"), std::string::npos);
+}
+
+/// As versions before kind_version wrote beds: the arrays at the root, beside the datasets format_version and checksum.
+TEST(ArchiveFile, beds_of_earlier_versions_are_read) {
+  const testing::TemporaryFolder folder;
+  const auto file = folder.path() / "old.h5";
+  const Archive archive = example();
+  Hash hash;
+  for (const auto& [name, array] : archive.arrays()) {
+    hash.add(name);
+    std::visit([&](const auto& values) { hash.add(values.data(), values.size() * sizeof values[0]); }, array);
+  }
+  const auto write = [&](std::int64_t version, std::uint64_t checksum) {
+    Hdf5Writer out(file);
+    out.put("format_version", std::vector<std::int64_t>{version}, {1});
+    out.put("checksum", std::vector<std::uint64_t>{checksum}, {1});
+    for (const auto& [stored, values] : archive.arrays())
+      std::visit([&, &name = stored](const auto& v) { out.put(name, std::span(v), {v.size()}); }, values);
+    out.finish();
+  };
+  write(4, hash.value());
+  expect_same_bits(archive, read_archive(file, kBed));
+  EXPECT_TRUE(may_be_archive(file, kBed));
+  write(4, hash.value() + 1);
+  EXPECT_NE(error_of(file, kBed).find("checksum"), std::string::npos);
+  write(3, hash.value());
+  EXPECT_NE(error_of(file, kBed).find("is older than"), std::string::npos);
+}
+
+/// As versions before kind_version wrote saved states; their checksum covered types and lengths as well.
+TEST(ArchiveFile, saved_states_of_earlier_versions_are_read) {
+  const testing::TemporaryFolder folder;
+  const auto file = folder.path() / "old.h5";
+  Hdf5Writer out(file);
+  out.attribute("kind", std::string("state"));
+  out.attribute("arrays", std::int64_t{1});
+  out.attribute("checksum", std::string("0123456789abcdef"));
+  out.put("state/grains:x", std::vector<double>{1.0, 2.0}, {2});
+  out.finish();
+  EXPECT_EQ(read_archive(file).get<double>("grains/x"), (std::vector<double>{1.0, 2.0}));
 }
 
 TEST(ArchiveFile, an_empty_archive_comes_back_empty) {

@@ -1,0 +1,38 @@
+#include "nodes/checkpoint/run_summary.hpp"
+
+#include <algorithm>
+
+#include "protocol/files/json_text.hpp"
+
+namespace furrow::checkpoint {
+
+using Json = nlohmann::ordered_json;
+
+Json read_summary(const std::filesystem::path& run) {
+  Json summary = read_json_if_whole(run / "summary.json");
+  if (!summary.is_object()) return {};
+  const Json wheels = summary.value("wheels", Json::array());
+  if (wheels.is_array() && !wheels.empty())
+    for (const auto& [key, value] : wheels.front().items())
+      if (!summary.contains(key)) summary[key] = value;
+  return summary;
+}
+
+Json value_at(const Json& summary, const std::string& path) {
+  const Json* at = &summary;
+  for (std::size_t from = 0; from <= path.size();) {
+    const std::size_t to = std::min(path.find('.', from), path.size());
+    const std::string part = path.substr(from, to - from);
+    if (at->is_array() && !part.empty() && part.find_first_not_of("0123456789") == std::string::npos &&
+        std::stoul(part) < at->size())
+      at = &(*at)[std::stoul(part)];
+    else if (at->is_object() && at->contains(part))
+      at = &(*at)[part];
+    else
+      return {};
+    from = to + 1;
+  }
+  return *at;
+}
+
+}  // namespace furrow::checkpoint

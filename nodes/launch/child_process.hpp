@@ -1,0 +1,41 @@
+// Programs that this one starts: mpirun, the runs of a sweep, the script that plots.
+#pragma once
+
+#include <sys/types.h>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace furrow::launch {
+
+/// The two ends of a pipe, which children do not inherit unless they are given one as a stream.
+struct Pipe {
+  int read = -1, write = -1;
+  Pipe();  // @throws Error(io)
+  ~Pipe() {
+    close_read();
+    close_write();
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+  void close_read() { close_end(read); }
+  void close_write() { close_end(write); }
+
+ private:
+  static void close_end(int& end);
+};
+
+/// A program to start, and what it has from the start.
+struct Child {
+  std::vector<std::string> command;    // path and arguments
+  int in = -1, out = -1, err = -1;     // its standard streams; −1: those of this process
+  bool own_group = false;              // signals of the terminal do not reach it
+  int death_signal = 0;                // that ends it when this process does
+  std::function<void()> prepare = {};  // called in the child before the program begins
+};
+
+/// @returns its process id. A program that cannot be run ends with status 127, after a line on its standard error.
+/// @throws Error(io) when no process can be made
+pid_t start_child(Child child);
+
+}  // namespace furrow::launch

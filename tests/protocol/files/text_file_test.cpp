@@ -1,0 +1,85 @@
+// Whole files: what is read is what was written, and what people wrote is bounded.
+#include "protocol/files/text_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "protocol/core/error.hpp"
+#include "tests/nodes/temporary_folder.hpp"
+
+namespace furrow {
+namespace {
+
+using testing::TemporaryFolder;
+
+/// More than one block of the readers, with every byte in it.
+std::string many_bytes() {
+  std::string bytes((3 << 20) + 17, '\0');
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(i * i + i / 251);
+  return bytes;
+}
+
+TEST(TextFile, bytes_come_back_as_written_and_nothing_else_is_left) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "bytes";
+  for (const std::string& bytes : {std::string(), std::string("a\0b\r\n", 5), many_bytes()}) {
+    write_whole_file(file, bytes);
+    EXPECT_EQ(read_whole_file(file), bytes);
+  }
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+}
+
+TEST(TextFile, the_hash_of_a_file_is_that_of_its_bytes) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "bytes";
+  write_whole_file(file, many_bytes());
+  EXPECT_EQ(file_hash(file), text_hash(many_bytes()));
+  EXPECT_EQ(text_hash(""), "cbf29ce484222325");   // FNV-1a, 64 bits, by its definition
+  EXPECT_EQ(text_hash("a"), "af63dc4c8601ec8c");  // its published test vector
+}
+
+TEST(TextFile, what_cannot_be_read_is_an_error_naming_the_file) {
+  const TemporaryFolder folder;
+  for (const auto& file : {folder.path() / "none", folder.path()}) {
+    try {
+      read_whole_file(file);
+      ADD_FAILURE() << file << " was read";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::io);
+      EXPECT_NE(std::string(error.what()).find(file.string()), std::string::npos);
+    }
+    EXPECT_THROW(file_hash(file), Error);
+  }
+}
+
+TEST(TextFile, a_user_s_text_is_a_regular_file_of_a_readable_size) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "large";
+  const auto refusal = [](const std::filesystem::path& path) -> std::string {
+    try {
+      read_text_file(path, "a text");
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::bad_input);
+      return std::string(error.what()).substr(path.string().size() + 2);
+    }
+    return "";
+  };
+  std::ofstream(file) << "x";
+  std::filesystem::resize_file(file, (16 << 20) + 1);
+  EXPECT_EQ(refusal(file), "is 16 MB large, expected a text of at most 16 MB");
+  EXPECT_EQ(refusal(folder.path()), "is a directory, expected a text");
+  EXPECT_EQ(refusal("/dev/null"), "is not a regular file, expected a text");
+  EXPECT_EQ(refusal(folder.path() / "none"), "does not exist, expected a text");
+  // The kernel says that its files have no size; what they hold is read all the same.
+  EXPECT_FALSE(read_text_file("/proc/self/status", "a text").empty());
+}
+
+TEST(TextFile, temporary_names_stand_beside_the_file) {
+  EXPECT_EQ(temporary_name("a/b.h5"), "a/.b.h5.part");
+  EXPECT_EQ(own_temporary_name("a/b.h5").parent_path(), "a");
+  EXPECT_NE(own_temporary_name("a/b.h5"), temporary_name("a/b.h5"));
+}
+
+}  // namespace
+}  // namespace furrow

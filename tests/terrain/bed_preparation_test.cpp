@@ -270,10 +270,11 @@ TEST_F(Beds, compaction_of_a_settled_file_is_refused) {
   EXPECT_NE(refusal().find("terrain.compaction_pressure"), std::string::npos);
 }
 
-TEST_F(Beds, beds_of_another_format_are_refused_by_version) {
+/// Format 4 differs from the present one in the digest alone, not in the file.
+TEST_F(Beds, beds_of_another_format_are_refused_by_version_unless_they_are_the_same_file) {
   const PreparedBed made = prepare_bed(options_, {});
   options_.bed = (folder_ / "other.h5").string();
-  for (const auto& [step, words] : {std::pair(-1, "is older than"), std::pair(1, "is newer than")}) {
+  for (const auto& [step, words] : {std::pair(-2, "is older than"), {-1, ""}, {1, "is newer than"}}) {
     std::filesystem::copy_file(made.file, options_.bed, std::filesystem::copy_options::overwrite_existing);
     const Handle file(H5Fopen(options_.bed.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
     const Handle set(H5Dopen2(file, "format_version", H5P_DEFAULT), H5Dclose);
@@ -283,9 +284,11 @@ TEST_F(Beds, beds_of_another_format_are_refused_by_version) {
     H5Dwrite(set, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &version);
     H5Fflush(file, H5F_SCOPE_GLOBAL);
     try {
-      read_bed(options_.bed);
-      ADD_FAILURE() << "was read";
+      const Archive bed = read_bed(options_.bed);
+      EXPECT_STREQ(words, "") << "was read";
+      EXPECT_EQ(bed.arrays(), made.bed.arrays());
     } catch (const Error& error) {
+      EXPECT_STRNE(words, "") << error.what();
       EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
     }
   }

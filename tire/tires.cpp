@@ -60,7 +60,7 @@ void check(const PressureSchedule& schedule, const std::string& key, const std::
 std::span<const TireModel> tire_models() { return kModels; }
 
 std::unique_ptr<TireSpec> read_tire(const TireOptions& options) {
-  const json document = load_json(options.file);
+  const json document = load_json(options.file, "a tire file in JSON");
   std::unique_ptr<TireSpec> spec = model_of(document, options.file.string()).read(document, options);
   return options.rigid ? make_rigid(std::move(spec)) : std::move(spec);
 }

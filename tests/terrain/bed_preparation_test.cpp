@@ -271,7 +271,7 @@ TEST_F(Beds, compaction_of_a_settled_file_is_refused) {
   EXPECT_NE(refusal().find("terrain.compaction_pressure"), std::string::npos);
 }
 
-TEST_F(Beds, beds_of_another_format_are_refused_by_version) {
+TEST_F(Beds, beds_newer_than_this_program_or_older_than_format_4_are_refused_by_version) {
   const PreparedBed made = prepare_bed(options_, {});
   options_.bed = (folder_ / "other.h5").string();
   for (const auto& [step, words] : {std::pair(-2, "is older than"), std::pair(1, "is newer than")}) {

@@ -71,9 +71,10 @@ std::shared_ptr<const TireSpec> read_tire(const json& section, const ReadContext
   options.file = find_file(options.file.string(), context.key("file"), context.file);
   check(options.pressure, context.key("pressure"), context.file);
   std::shared_ptr<const TireSpec> spec = read_tire(options);
-  if (options.contact_tangent && options.rigid)
+  if (!options.contact_tangent) return spec;
+  if (const TireDescription tire = spec->describe(); !tire.takes_tangents)
     throw input_error(context.file, context.key("contact_tangent"),
-                      "is true, expected false for a rigid tire");
+                      fmt::format("is true, expected false for a {} tire", tire.name));
   return spec;
 }
 

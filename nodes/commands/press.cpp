@@ -46,12 +46,10 @@ std::unique_ptr<tire::StaticTest> static_test(const scenario::Scenario& scenario
   const tire::TireSpec& tire = *scenario.tires.front();
   std::unique_ptr<tire::StaticTest> test = tire.static_test();
   if (test) return test;
-  if (tire.options().rigid)
-    throw input_error(scenario.file.string(), "tire.rigid",
-                      "is true: a rigid tire does not deflect, expected false");
-  throw input_error(
-      scenario.file.string(), "tire.file",
-      fmt::format("gives a {}, expected a tire whose model can be pressed statically", tire.describe().name));
+  throw input_error(scenario.file.string(), "tire",
+                    fmt::format("is a {} tire, which cannot be pressed, expected a model that deflects, with "
+                                "tire.rigid false",
+                                tire.describe().name));
 }
 
 }  // namespace

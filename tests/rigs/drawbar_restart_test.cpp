@@ -19,7 +19,8 @@ Wrench varying(int i) {
 void expect_equal(const rigs::Rig& a, const rigs::Rig& b) {
   const rigs::WheelReport x = a.report(0), y = b.report(0);
   EXPECT_EQ(std::memcmp(&x, &y, sizeof x), 0);
-  for (const Column& column : a.subjects().front().columns)
+  const rigs::Subject wheel = a.subjects().front();
+  for (const Column& column : wheel.columns)
     EXPECT_EQ(measured(a, column.name), measured(b, column.name)) << column.name;
   const RimState s = a.rim(0), t = b.rim(0);
   EXPECT_EQ(s.position, t.position);

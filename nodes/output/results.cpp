@@ -6,6 +6,7 @@
 
 #include "nodes/output/frames.hpp"
 #include "nodes/output/xdmf.hpp"
+#include "protocol/core/assert.hpp"
 #include "protocol/files/hdf5_file.hpp"
 #include "protocol/files/text_file.hpp"
 
@@ -17,6 +18,8 @@ std::string numbered(const std::string& stem, std::size_t wheel, const std::stri
 }
 
 void put_heights(Hdf5Writer& file, const std::string& name, const HeightField& field) {
+  FURROW_ASSERT(field.height.size() == static_cast<std::size_t>(field.nx) * field.ny, name,
+                field.height.size(), field.nx, field.ny);
   if (field.nx == 0) return;
   file.put(name, field.height, {static_cast<hsize_t>(field.nx), static_cast<hsize_t>(field.ny)});
   file.put(name + "_grid", std::vector<double>{field.x0, field.y0, field.cell}, {3});
@@ -39,6 +42,7 @@ Results::Results(const scenario::Scenario& scenario, std::vector<NodeCard> cards
 }
 
 void Results::continue_from(const checkpoint::ResumePoint& resume) {
+  FURROW_ASSERT(resume.manifest.series.size() == rows_.size(), resume.manifest.series.size(), rows_.size());
   const checkpoint::CheckpointManifest& manifest = resume.manifest;
   for (std::size_t k = 0; k < rows_.size(); ++k)
     writers_.push_back(std::make_unique<SeriesWriter>(directory_ / numbered("timeseries", k, ".csv"),
@@ -60,6 +64,7 @@ std::vector<checkpoint::SeriesMark> Results::mark_series() {
 }
 
 void Results::add(int wheel, const SeriesRow& row) {
+  FURROW_ASSERT(in_range(wheel, rows_.size()), wheel, rows_.size());
   rows_[wheel].push_back(row);
   writers_[wheel]->add(row);
 }
@@ -85,6 +90,10 @@ void Results::write_hdf5(std::span<const FinalReport> reports) const {
 void Results::finish(std::span<const FinalReport> reports, std::span<const SeriesBuilder> builders,
                      std::span<const SpindleReport> tires, std::span<const double> carried_mass, double wall,
                      bool stopped) {
+  FURROW_ASSERT(reports.size() == cards_.size(), reports.size(), cards_.size());
+  FURROW_ASSERT(builders.size() == rows_.size(), builders.size(), rows_.size());
+  FURROW_ASSERT(carried_mass.size() == rows_.size(), carried_mass.size(), rows_.size());
+  FURROW_ASSERT(wall >= 0.0, wall);
   for (auto& writer : writers_) writer->flush();
   write_hdf5(reports);
   write_xdmf_index(directory_);

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 
 namespace furrow::output {
@@ -95,6 +96,7 @@ std::string header_line() {
 
 /// The line at `text`, which ends in a line feed; null when it is none.
 const char* read_line(const char* text, SeriesRow& row) {
+  FURROW_ASSERT(text != nullptr, kColumns[0].name);
   for (const SeriesColumn& column : kColumns) {
     char* end = nullptr;
     const double value = std::strtod(text, &end);
@@ -119,6 +121,7 @@ SeriesWriter::SeriesWriter(const std::filesystem::path& file)
 SeriesWriter::SeriesWriter(const std::filesystem::path& file, const checkpoint::SeriesMark& mark,
                            std::vector<SeriesRow>& rows)
     : file_(file), stream_(std::fopen(file.c_str(), "rb+")) {
+  FURROW_ASSERT(mark.bytes >= 0 && mark.lines >= 0, mark.bytes, mark.lines);
   if (!stream_)
     throw io_error(file_.string(), std::string("cannot be opened to go on with it: ") + std::strerror(errno));
   std::string text(static_cast<std::size_t>(mark.bytes), '\0');
@@ -143,6 +146,7 @@ void SeriesWriter::check(bool ok) {
 }
 
 void SeriesWriter::write(const std::string& text) {
+  FURROW_ASSERT(!text.empty() && text.back() == '\n', text.size());
   check(std::fwrite(text.data(), 1, text.size(), stream_.get()) == text.size());
   hash_.add(text);
   bytes_ += static_cast<std::int64_t>(text.size());

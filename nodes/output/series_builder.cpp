@@ -10,6 +10,7 @@
 #include <cstring>
 #include <vector>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/constants.hpp"
 #include "tire/wheel_axes.hpp"
 
@@ -32,6 +33,8 @@ void for_each_mean(SeriesRow& row, Visit visit) {
 }  // namespace
 
 void SeriesBuilder::add(const StepReports& r) {
+  FURROW_ASSERT(std::abs(r.travel.norm() - 1.0) < 1e-9, r.travel.transpose());
+  FURROW_ASSERT(memory_.started == 0.0 || r.time > memory_.row.time, r.time, memory_.row.time);
   add_means(r);
   add_tire_axes(r);
   add_work(r);

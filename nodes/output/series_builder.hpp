@@ -1,8 +1,11 @@
 // Turns what rig, tire and terrain report at every synchronization into lines of the time series.
 #pragma once
 
+#include <cmath>
+
 #include "nodes/output/series_row.hpp"
 #include "protocol/core/archive.hpp"
+#include "protocol/core/assert.hpp"
 #include "protocol/messages.hpp"
 #include "rigs/rig.hpp"
 
@@ -24,9 +27,13 @@ class SeriesBuilder {
  public:
   /// @param radius undeformed tire radius, m
   /// @param ground undisturbed surface height h₀, m
-  SeriesBuilder(double radius, double ground, double step) : radius_(radius), ground_(ground), step_(step) {}
+  /// @pre radius > 0, step > 0
+  SeriesBuilder(double radius, double ground, double step) : radius_(radius), ground_(ground), step_(step) {
+    FURROW_ASSERT(radius > 0.0 && step > 0.0, radius, step);
+    FURROW_ASSERT(std::isfinite(ground), ground);
+  }
 
-  /// Once per synchronization n ≥ 1.
+  /// Once per synchronization n ≥ 1. @pre time grows; travel is a unit vector
   void add(const StepReports& reports);
   /// The line for the intervals added since the last take().
   SeriesRow take();

@@ -1,5 +1,6 @@
 #include "nodes/scenario/wheel_geometry.hpp"
 
+#include "protocol/core/assert.hpp"
 #include "tire/read_tire_file.hpp"
 
 #include <algorithm>
@@ -27,6 +28,8 @@ TireSize tire_size(const tire::TireOptions& options) {
 }
 
 AxlePath axle_path(const Scenario& scenario, std::size_t wheel, double tire_radius) {
+  FURROW_ASSERT(in_range(wheel, scenario.rigs.size()), wheel, scenario.rigs.size());
+  FURROW_ASSERT(tire_radius > 0.0, tire_radius);
   const rigs::DrawbarRigOptions& rig = scenario.rigs[wheel];
   const double speed =
       rig.mode == "fixed_angular_speed" ? rig.angular_speed * tire_radius * (1.0 - rig.slip) : rig.speed;

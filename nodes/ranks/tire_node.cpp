@@ -12,6 +12,7 @@
 #include "nodes/output/frames.hpp"
 #include "nodes/ranks/carried_wrench.hpp"
 #include "nodes/ranks/impulse_ledger.hpp"
+#include "protocol/core/assert.hpp"
 #include "tire/reach.hpp"
 
 namespace furrow::ranks {
@@ -67,6 +68,7 @@ class TireNode : public Node {
   }
 
   void advance(const StepHeader& header) override {
+    FURROW_ASSERT(header.step >= 0 && scenario_.tire_substeps > 0, header.step, scenario_.tire_substeps);
     const double duration = scenario_.run.step;
     trajectory_.extend(rim_.rim, duration);
     if (report_.contact_tangent) {

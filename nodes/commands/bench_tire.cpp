@@ -13,6 +13,7 @@
 
 #include "nodes/commands/bench.hpp"
 #include "nodes/scenario/scenario.hpp"
+#include "protocol/core/assert.hpp"
 #include "protocol/core/constants.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/core/hash.hpp"
@@ -136,6 +137,8 @@ int most_layers(const tire::TireFile& file) {
 
 /// Value below which the share `p` of the sorted values lies.
 double quantile(const std::vector<double>& sorted, double p) {
+  FURROW_ASSERT(!sorted.empty() && std::is_sorted(sorted.begin(), sorted.end()), sorted.size());
+  FURROW_ASSERT(p >= 0.0 && p <= 1.0, p);
   return sorted[std::min(sorted.size() - 1,
                          static_cast<std::size_t>(p * static_cast<double>(sorted.size())))];
 }

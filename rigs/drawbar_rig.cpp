@@ -142,6 +142,7 @@ void DrawbarRig::check_built() const {
 }
 
 void DrawbarRig::add_tire_mass(int wheel, const MassProperties& tire, double tire_radius) {
+  FURROW_ASSERT(tire.mass >= 0.0 && tire.inertia.allFinite(), tire.mass);
   check_wheel(wheel);
   if (system_) throw physics_error("drawbar rig: tire mass must be added before the rig is placed");
   if (!(tire_radius > 0.0)) throw physics_error("drawbar rig: the tire radius must be positive");
@@ -163,6 +164,7 @@ void DrawbarRig::set_speeds() {
 }
 
 vehicle::BodyState DrawbarRig::moving(double axle_height) const {
+  FURROW_ASSERT(std::isfinite(travel_speed_) && options_.ramp >= 0.0, travel_speed_, options_.ramp);
   vehicle::BodyState state;
   state.position = Vec3(options_.start, options_.lateral, axle_height);
   state.velocity = vehicle::ramped_motion(0.0, travel_speed_, options_.ramp).rate * forward_;
@@ -170,6 +172,8 @@ vehicle::BodyState DrawbarRig::moving(double axle_height) const {
 }
 
 void DrawbarRig::build(double axle_height) {
+  FURROW_ASSERT(std::isfinite(axle_height), axle_height);
+  FURROW_ASSERT(radius_ > 0.0, radius_);
   system_.emplace();
   placed_height_ = axle_height;
   vehicle::BodyState state = moving(axle_height);
@@ -293,6 +297,7 @@ Outcome DrawbarRig::advance(std::span<const Wrench> wrenches, double duration, i
 }
 
 void DrawbarRig::measure_end() {
+  FURROW_ASSERT(system_.has_value(), placed_height_);
   const vehicle::BodyState& rim = system_->body(rim_).state;
   report_.axle_height = rim.position.z();
   report_.axle_position = forward_.dot(rim.position);

@@ -1,5 +1,6 @@
 #include "rigs/rig_row.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "protocol/core/assert.hpp"
@@ -11,6 +12,8 @@ namespace {
 class RigRow final : public Rig {
  public:
   explicit RigRow(std::vector<std::unique_ptr<Rig>> rigs) : rigs_(std::move(rigs)) {
+    FURROW_ASSERT(std::none_of(rigs_.begin(), rigs_.end(), [](const auto& rig) { return rig == nullptr; }),
+                  rigs_.size());
     if (rigs_.empty()) throw physics_error("a row of rigs needs at least one rig");
     for (std::size_t i = 0; i < rigs_.size(); ++i)
       for (int wheel = 0; wheel < rigs_[i]->wheel_count(); ++wheel) wheels_.emplace_back(i, wheel);
@@ -80,7 +83,10 @@ class RigRow final : public Rig {
   }
 
  private:
-  Rig& rig_of(int wheel) const { return *rigs_[wheels_.at(wheel).first]; }
+  Rig& rig_of(int wheel) const {
+    FURROW_ASSERT(in_range(wheel, wheels_.size()), wheel, wheels_.size());
+    return *rigs_[wheels_.at(wheel).first];
+  }
 
   /// Gives each rig its own wheels' part of `values`.
   template <class T, class Call>

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "nodes/checkpoint/segment.hpp"
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/fault_point.hpp"
 #include "protocol/files/json_text.hpp"
@@ -23,7 +24,10 @@ constexpr int kFormatVersion = 2;  // 1 held the states of nodes as lists of num
 constexpr char kManifest[] = "manifest.json";
 constexpr char kKind[] = "checkpoint";
 
-std::string step_name(std::int64_t step) { return fmt::format("{:012}", step); }
+std::string step_name(std::int64_t step) {
+  FURROW_ASSERT(step >= 0, step);
+  return fmt::format("{:012}", step);
+}
 
 Json to_json(const CheckpointManifest& m) {
   Json json{{"format_version", kFormatVersion},
@@ -128,6 +132,7 @@ fs::path unfinished_checkpoint(const fs::path& run, std::int64_t step) {
 }
 
 void complete_checkpoint(const fs::path& run, const CheckpointManifest& manifest, int keep) {
+  FURROW_ASSERT(keep > 0, keep);
   const fs::path part = unfinished_checkpoint(run, manifest.step);
   const fs::path folder = checkpoints_folder(run) / step_name(manifest.step);
   Json json = to_json(manifest);
@@ -195,6 +200,8 @@ std::string cpu_model() {
 
 std::vector<Segment> segments_until(std::int64_t step, double wall_s, int threads,
                                     const ResumePoint* resume) {
+  FURROW_ASSERT(resume == nullptr || step >= resume->manifest.step, step);
+  FURROW_ASSERT(threads > 0, threads);
   std::vector<Segment> segments;
   Segment now;
   if (resume) {

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "protocol/core/assert.hpp"
+
 namespace furrow::checkpoint {
 
 struct FrameClock {
@@ -11,19 +13,26 @@ struct FrameClock {
   std::int64_t first_step = 0;   // of this segment of the run
   std::int64_t first_index = 0;  // of its first frame
 
-  bool due(std::int64_t step) const { return every > 0 && step % every == 0; }
+  bool due(std::int64_t step) const {
+    FURROW_ASSERT(step >= 0, step);
+    return every > 0 && step % every == 0;
+  }
   /// Number of the first frame at `step` or later.
   std::int64_t index(std::int64_t step) const {
     return every > 0 ? first_index + before(step) - before(first_step) : first_index;
   }
   /// Of the segment that begins at `step`.
   FrameClock continued(std::int64_t step, std::int64_t new_every) const {
+    FURROW_ASSERT(new_every >= 0, step, new_every);
     return {new_every, step, index(step)};
   }
 
  private:
   /// Multiples of `every` in [0, step).
-  std::int64_t before(std::int64_t step) const { return (step + every - 1) / every; }
+  std::int64_t before(std::int64_t step) const {
+    FURROW_ASSERT(every > 0 && step >= 0, every, step);
+    return (step + every - 1) / every;
+  }
 };
 
 }  // namespace furrow::checkpoint

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "nodes/commands/bench.hpp"
+#include "protocol/core/assert.hpp"
 #include "protocol/core/clock.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/core/hash.hpp"
@@ -90,6 +91,8 @@ nlohmann::ordered_json parts(const tire::Tire& tire, const tire::NamedValues& be
 
 /// Value below which the share `p` of the sorted values lies.
 double quantile(const std::vector<double>& sorted, double p) {
+  FURROW_ASSERT(!sorted.empty() && std::is_sorted(sorted.begin(), sorted.end()), sorted.size());
+  FURROW_ASSERT(p >= 0.0 && p <= 1.0, p);
   return sorted[std::min(sorted.size() - 1,
                          static_cast<std::size_t>(p * static_cast<double>(sorted.size())))];
 }

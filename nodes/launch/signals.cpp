@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kStopSignals[] = {SIGTERM, SIGINT, SIGHUP, SIGUSR1};
 std::atomic<int> stop_count{0};
+bool catching = false;
 static_assert(std::atomic<int>::is_always_lock_free);  // safe in a signal handler
 
 void count_stop(int) { stop_count.fetch_add(1, std::memory_order_relaxed); }
@@ -34,7 +35,10 @@ void catch_stop_signals() {
   for (const int signal : kStopSignals)
     if (!ignored(signal)) set_handler(signal, count_stop);
   set_handler(SIGPIPE, SIG_IGN);
+  catching = true;
 }
+
+bool catches_stop_signals() { return catching; }
 
 int stop_signals() { return stop_count.load(std::memory_order_relaxed); }
 

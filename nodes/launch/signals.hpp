@@ -6,6 +6,8 @@ namespace furrow::launch {
 /// Counts stop signals from now on instead of dying of them, except those that this process was started to ignore; a
 /// write to a closed pipe becomes an error.
 void catch_stop_signals();
+/// Whether this process does.
+bool catches_stop_signals();
 
 /// How many have come.
 int stop_signals();

@@ -21,6 +21,7 @@
 #include "nodes/launch/supervisor_lines.hpp"
 #include "nodes/launch/supervisor_text.hpp"
 #include "nodes/launch/thread_setup.hpp"
+#include "protocol/core/assert.hpp"
 #include "protocol/core/clock.hpp"
 
 namespace furrow::launch {
@@ -56,6 +57,7 @@ std::string signal_name(int signal) {
 }
 
 std::vector<std::string> mpirun_command(const Launch& launch) {
+  FURROW_ASSERT(!launch.ranks.empty(), launch.ranks.size());
   std::vector<std::string> command{find_mpirun().string(),
                                    "--oversubscribe",
                                    "--bind-to",
@@ -283,6 +285,7 @@ std::filesystem::path find_mpirun() {
 }
 
 LaunchResult supervise(const Launch& launch, ProgressDisplay& display) {
+  FURROW_ASSERT(catches_stop_signals());
   return Supervisor(launch, display).run();
 }
 

@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "protocol/core/assert.hpp"
+
 namespace furrow::launch {
 namespace {
 
@@ -16,6 +18,8 @@ constexpr std::size_t kMaxLine = 4096;  // bytes: PIPE_BUF of Linux, what a writ
 }  // namespace
 
 std::string encode(const RankLine& line) {
+  FURROW_ASSERT(in_range(static_cast<int>(line.kind), kKinds.size()), static_cast<int>(line.kind));
+  FURROW_ASSERT(line.rank >= 0, line.rank);
   json j{{"kind", kKinds[static_cast<std::size_t>(line.kind)]}, {"rank", line.rank}};
   if (line.kind == RankLine::Kind::error) j["code"] = static_cast<int>(line.code);
   if (line.kind == RankLine::Kind::progress) {

@@ -17,6 +17,8 @@
 
 #if defined(__SSE2__)
 #include <immintrin.h>
+
+#include "protocol/core/assert.hpp"
 #endif
 
 namespace furrow::launch {
@@ -34,6 +36,7 @@ struct Demand {
 };
 
 Demand demand(const HostView& host, int cores, int terrain_threads) {
+  FURROW_ASSERT(cores > 0 && terrain_threads >= 0, cores, terrain_threads);
   Demand d;
   bool rig = false;
   for (const HostNode& n : host.nodes) {
@@ -65,6 +68,7 @@ bool no_core_is_shared(const HostView& host) {
 }
 
 std::string pinning_note(const HostView& host, std::size_t node, int wanted) {
+  FURROW_ASSERT(in_range(node, host.nodes.size()), node, host.nodes.size());
   const std::vector<int>& cores = host.nodes[node].cores;
   const bool wants_more = wanted > 1 || host.nodes[node].node.role == Role::terrain;
   if (cores.size() > 1 || host.machine_cores < 2 || !wants_more) return {};
@@ -77,6 +81,7 @@ std::string pinning_note(const HostView& host, std::size_t node, int wanted) {
 
 /// The launcher gave each rank cores of its own, or overlapping ones: every node stays within what it got.
 ThreadPlan plan_within_own_cores(const HostView& host, std::size_t node, int terrain_threads) {
+  FURROW_ASSERT(in_range(node, host.nodes.size()), node, host.nodes.size());
   const HostNode& self = host.nodes[node];
   ThreadPlan plan;
   const int own = static_cast<int>(self.cores.size());
@@ -89,6 +94,7 @@ ThreadPlan plan_within_own_cores(const HostView& host, std::size_t node, int ter
 
 /// All nodes may use the same cores: share them out in the order rig, tires, terrain.
 ThreadPlan plan_on_common_cores(const HostView& host, std::size_t node, int terrain_threads) {
+  FURROW_ASSERT(!host.nodes[node].cores.empty(), node);
   const HostNode& self = host.nodes[node];
   int cores = static_cast<int>(self.cores.size());
   if (host.cpu_limit > 0.0) cores = std::clamp(static_cast<int>(std::lround(host.cpu_limit)), 1, cores);
@@ -143,6 +149,7 @@ bool user_binds() {
 }
 
 void bind_this_thread(const int* first, std::size_t count) {
+  FURROW_ASSERT(first != nullptr && count > 0, count);
   cpu_set_t set;
   CPU_ZERO(&set);
   for (std::size_t i = 0; i < count; ++i)
@@ -163,6 +170,8 @@ void flush_denormals_to_zero() {
 }  // namespace
 
 ThreadPlan plan_threads(const HostView& host, std::size_t node, int terrain_threads) {
+  FURROW_ASSERT(in_range(node, host.nodes.size()), node, host.nodes.size());
+  FURROW_ASSERT(terrain_threads >= 0, terrain_threads);
   ThreadPlan plan = all_share_the_same_cores(host) ? plan_on_common_cores(host, node, terrain_threads)
                                                    : plan_within_own_cores(host, node, terrain_threads);
   const bool terrain = host.nodes[node].node.role == Role::terrain;
@@ -186,6 +195,7 @@ ThreadPlan plan_threads(const Transport& transport, int terrain_threads) {
 }
 
 void apply(const ThreadPlan& plan) {
+  FURROW_ASSERT(plan.threads > 0, plan.threads);
   using SetThreads = void (*)(int);
   for (const char* name : {"openblas_set_num_threads", "MKL_Set_Num_Threads"})
     if (void* found = dlsym(RTLD_DEFAULT, name)) reinterpret_cast<SetThreads>(found)(1);
@@ -206,6 +216,7 @@ std::vector<std::string> passive_environment() {
 }
 
 void wait_passively(char** argv) {
+  FURROW_ASSERT(argv != nullptr && argv[0] != nullptr, "argv");
   if (std::getenv("OMP_WAIT_POLICY")) return;
   for (const std::string& pair : passive_environment()) {
     const std::size_t equals = pair.find('=');

@@ -43,6 +43,7 @@ inline constexpr int kMaxAutoThreads = 32;
 
 /// @param node             which of host.nodes
 /// @param terrain_threads  what the user wants for the terrain; 0: decide here
+/// @pre node < host.nodes.size(), terrain_threads ≥ 0
 ThreadPlan plan_threads(const HostView& host, std::size_t node, int terrain_threads);
 
 /// Looks at this machine and plans for the transport's own node.

@@ -1,7 +1,10 @@
 #include "nodes/output/frames.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/files/fault_point.hpp"
 #include "protocol/files/hdf5_file.hpp"
 
@@ -10,6 +13,7 @@ namespace {
 
 std::filesystem::path frame_file(const std::filesystem::path& run, const std::string& what,
                                  std::int64_t index) {
+  FURROW_ASSERT(index >= 0, what, index);
   const auto folder = run / "frames";
   std::error_code ignored;  // if the folder cannot be made, creating the file says so
   std::filesystem::create_directories(folder, ignored);
@@ -28,6 +32,13 @@ std::vector<float> flatten(const std::vector<Vec3>& vectors) {
 
 void write_tire_frame(const std::filesystem::path& run, int tire, std::int64_t index, double time,
                       const SurfaceMesh& mesh, const SurfaceState& surface, const NodalForces& forces) {
+  FURROW_ASSERT(tire >= 0, tire);
+  FURROW_ASSERT(surface.velocity.size() == surface.position.size(), surface.velocity.size(),
+                surface.position.size());
+  FURROW_ASSERT(forces.force.size() == forces.vertex.size(), forces.force.size(), forces.vertex.size());
+  FURROW_ASSERT(std::all_of(forces.vertex.begin(), forces.vertex.end(),
+                            [&](int v) { return in_range(v, surface.position.size()); }),
+                surface.position.size());
   const std::size_t count = surface.position.size();
   std::vector<Vec3> dense(count, Vec3::Zero());
   for (std::size_t i = 0; i < forces.vertex.size(); ++i) dense[forces.vertex[i]] = forces.force[i];
@@ -47,6 +58,8 @@ void write_tire_frame(const std::filesystem::path& run, int tire, std::int64_t i
 
 void write_terrain_frame(const std::filesystem::path& run, std::int64_t index, double time,
                          const terrain::TerrainFrame& frame) {
+  FURROW_ASSERT(frame.position.size() == 3 * frame.radius.size(), frame.position.size(), frame.radius.size());
+  FURROW_ASSERT(frame.speed.size() == frame.radius.size(), frame.speed.size(), frame.radius.size());
   const std::size_t count = frame.radius.size();
   if (count == 0) return;
   Hdf5Writer file(frame_file(run, "terrain", index));
@@ -59,6 +72,7 @@ void write_terrain_frame(const std::filesystem::path& run, std::int64_t index, d
 }
 
 void remove_frames_from(const std::filesystem::path& run, std::int64_t index) {
+  FURROW_ASSERT(index >= 0, index);
   std::vector<std::filesystem::path> doomed;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(run / "frames", error)) {

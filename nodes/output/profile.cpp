@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/clock.hpp"
 #include "protocol/files/text_file.hpp"
 
@@ -23,6 +24,8 @@ StepProfile::StepProfile(std::int64_t steps) {
 }
 
 void StepProfile::start(std::int64_t step, int part) {
+  FURROW_ASSERT(in_range(part, 3), step, part);
+  FURROW_ASSERT(part == 0 || !times_.empty() || every_ == 0 || step % every_ != 0, step, part);
   if (every_ == 0 || step % every_ != 0) return;
   if (part == 0) times_.insert(times_.end(), {static_cast<double>(step), 0.0, 0.0, 0.0});
   times_[times_.size() - 3 + static_cast<std::size_t>(part)] = wall_clock();

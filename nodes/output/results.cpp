@@ -6,6 +6,7 @@
 
 #include "nodes/output/frames.hpp"
 #include "nodes/output/xdmf.hpp"
+#include "protocol/core/assert.hpp"
 #include "protocol/files/hdf5_file.hpp"
 #include "protocol/files/text_file.hpp"
 
@@ -20,6 +21,8 @@ const checkpoint::SeriesMark& mark_of(const checkpoint::ResumePoint& resume, con
 }
 
 void put_heights(Hdf5Writer& file, const std::string& name, const HeightField& field) {
+  FURROW_ASSERT(field.height.size() == static_cast<std::size_t>(field.nx) * field.ny, name,
+                field.height.size(), field.nx, field.ny);
   if (field.nx == 0) return;
   file.put(name, field.height, {static_cast<hsize_t>(field.nx), static_cast<hsize_t>(field.ny)});
   file.put(name + "_grid", std::vector<double>{field.x0, field.y0, field.cell}, {3});
@@ -53,6 +56,7 @@ std::filesystem::path Results::file_of(const Table& table) const {
 }
 
 void Results::continue_from(const checkpoint::ResumePoint& resume) {
+  FURROW_ASSERT(resume.manifest.series.size() == rows_.size(), resume.manifest.series.size(), rows_.size());
   const checkpoint::CheckpointManifest& manifest = resume.manifest;
   for (Table& table : tables_)
     writers_.push_back(std::make_unique<TableWriter>(file_of(table), mark_of(resume, table.subject), table));
@@ -71,6 +75,7 @@ std::vector<checkpoint::SeriesMark> Results::mark_series() {
 }
 
 void Results::add(int table, std::span<const double> line) {
+  FURROW_ASSERT(in_range(table, tables_.size()), table, tables_.size());
   tables_[table].values.insert(tables_[table].values.end(), line.begin(), line.end());
   writers_[table]->add(line);
 }
@@ -92,6 +97,10 @@ void Results::write_hdf5(std::span<const FinalReport> reports) const {
 
 void Results::finish(std::span<const FinalReport> reports, std::span<const WheelEnd> wheels, double wall,
                      bool stopped) {
+  FURROW_ASSERT(reports.size() == cards_.size(), reports.size(), cards_.size());
+  FURROW_ASSERT(builders.size() == rows_.size(), builders.size(), rows_.size());
+  FURROW_ASSERT(carried_mass.size() == rows_.size(), carried_mass.size(), rows_.size());
+  FURROW_ASSERT(wall >= 0.0, wall);
   for (auto& writer : writers_) writer->flush();
   write_hdf5(reports);
   write_xdmf_index(directory_);

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "protocol/core/archive_fields.hpp"
+#include "protocol/core/assert.hpp"
 #include "protocol/core/constants.hpp"
 #include "tire/wheel_axes.hpp"
 
@@ -38,6 +39,7 @@ SeriesBuilder::SeriesBuilder(double radius, double ground, double step)
       values_(lines_.columns().size()) {}
 
 void SeriesBuilder::add(const StepReports& r) {
+  FURROW_ASSERT(std::abs(r.heading.norm() - 1.0) < 1e-9, r.heading.transpose());
   forget_interval(row_);
   measure_means(r);
   measure_tire_axes(r);

@@ -6,6 +6,7 @@
 #include "nodes/output/line_builder.hpp"
 #include "nodes/output/wheel_row.hpp"
 #include "protocol/core/archive.hpp"
+#include "protocol/core/assert.hpp"
 #include "protocol/messages.hpp"
 #include "rigs/rig.hpp"
 
@@ -27,9 +28,10 @@ class SeriesBuilder {
  public:
   /// @param radius undeformed tire radius, m
   /// @param ground undisturbed surface height h₀, m
+  /// @pre radius > 0, step > 0
   SeriesBuilder(double radius, double ground, double step);
 
-  /// Once per synchronization n ≥ 1.
+  /// Once per synchronization n ≥ 1. @pre time grows; travel is a unit vector
   void add(const StepReports& reports);
   /// The line for the intervals added since the last take().
   WheelRow take();

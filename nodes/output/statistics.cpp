@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "protocol/core/assert.hpp"
+
 namespace furrow::output {
 namespace {
 
@@ -17,10 +19,12 @@ constexpr double kBounces = 3.0;        // the window must hold
 constexpr double kSteadyTravel = 2.0;   // undeformed radii the window must hold
 
 double mean_of(std::span<const double> x) {
+  FURROW_ASSERT(!x.empty(), x.size());
   return std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
 }
 
 double integrated_autocorrelation_time(std::span<const double> x, double mean, double variance) {
+  FURROW_ASSERT(!x.empty() && variance > 0.0, x.size(), variance);
   const std::size_t n = x.size();
   double tau = 1.0;
   std::size_t lag = 1;
@@ -34,6 +38,7 @@ double integrated_autocorrelation_time(std::span<const double> x, double mean, d
 }
 
 double slope(std::span<const double> x, double mean) {
+  FURROW_ASSERT(!x.empty(), x.size());
   const double middle = 0.5 * static_cast<double>(x.size() - 1);
   double xy = 0.0, xx = 0.0;
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -66,6 +71,7 @@ SeriesStatistics statistics(std::span<const double> x) {
 }
 
 std::vector<std::string> unsteady_because(const SeriesStatistics& pull, const SteadyWindow& window) {
+  FURROW_ASSERT(window.radius >= 0.0, window.radius);
   std::vector<std::string> reasons;
   const auto require = [&reasons](bool ok, std::string reason) {
     if (!ok) reasons.push_back(std::move(reason));

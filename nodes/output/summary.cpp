@@ -9,6 +9,7 @@
 #include "nodes/output/results.hpp"
 #include "nodes/output/statistics.hpp"
 #include "nodes/scenario/wheel_geometry.hpp"
+#include "protocol/core/assert.hpp"
 #include "protocol/core/constants.hpp"
 #include "protocol/core/hash.hpp"
 #include "terrain/rut.hpp"
@@ -91,6 +92,7 @@ struct Window {
 
 /// The window of the scenario, shortened at its beginning to a whole number of tire facets.
 Window averaging_window(const WheelInput& in) {
+  FURROW_ASSERT(in_range(in.wheel, in.run.scenario.tires.size()), in.wheel, in.run.scenario.tires.size());
   const std::span<const WheelRow> rows = in.rows;
   std::size_t first = 1;
   while (first < rows.size() && rows[first].time < in.run.scenario.run.average_from) ++first;
@@ -321,6 +323,8 @@ void add_cost(const SummaryInput& in, std::span<const WheelRow> rows, Json& json
 }  // namespace
 
 std::string summary_text(const SummaryInput& in) {
+  FURROW_ASSERT(in.reports.size() == in.cards.size(), in.reports.size(), in.cards.size());
+  FURROW_ASSERT(in_range(in.wheel, in.scenario.rigs.size()), in.wheel, in.scenario.rigs.size());
   Hash state;
   for (const FinalReport& report : in.reports) state.add(&report.state_hash, sizeof report.state_hash);
   Json json;

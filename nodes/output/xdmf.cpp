@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/hdf5_file.hpp"
 #include "protocol/files/text_file.hpp"
@@ -37,6 +38,7 @@ bool read_frame(const std::filesystem::path& path, Frame& frame) {
 }
 
 std::string data_item(const Frame& f, const char* name, hsize_t count, int width, const char* type) {
+  FURROW_ASSERT(width > 0, name, width);
   const std::string shape = width > 1 ? fmt::format("{} {}", count, width) : fmt::format("{}", count);
   return fmt::format(
       "<DataItem Dimensions=\"{}\" NumberType=\"{}\" Precision=\"4\" Format=\"HDF\">{}:/{}</DataItem>", shape,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "nodes/ranks/node.hpp"
+#include "protocol/core/assert.hpp"
 #include "protocol/core/constants.hpp"
 
 namespace furrow::ranks {
@@ -14,8 +15,10 @@ inline Vec3 spin_momentum(const MassProperties& mass, const RimState& rim) {
 
 /// The complete spindle wrench without the tire's own rigid-body inertia and weight:
 ///   F_sent = F + m (Δv/H − g),   M_sent = M + Δ(R J Rᵀ ω)/H
+/// @pre duration > 0
 inline Wrench carried_wrench(const Wrench& spindle, const MassProperties& mass, const RimState& from,
                              const RimState& to, double duration) {
+  FURROW_ASSERT(duration > 0.0 && mass.mass >= 0.0, duration, mass.mass);
   Wrench sent;
   sent.force = spindle.force + mass.mass * (to.velocity - from.velocity) / duration +
                Vec3(0.0, 0.0, mass.mass * kStandardGravity);

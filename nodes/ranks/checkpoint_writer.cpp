@@ -7,6 +7,7 @@
 
 #include "nodes/output/profile.hpp"
 #include "protocol/core/archive_fields.hpp"
+#include "protocol/core/assert.hpp"
 #include "protocol/core/clock.hpp"
 #include "protocol/files/archive_file.hpp"
 #include "protocol/files/fault_point.hpp"
@@ -55,6 +56,8 @@ CheckpointPart CheckpointWriter::write_part(std::int64_t step) const {
 }
 
 void CheckpointWriter::write(std::int64_t step, bool needed) {
+  FURROW_ASSERT(step > 0, step);
+  FURROW_ASSERT(step > last_step_, step, last_step_);
   if (context_.directory.empty()) return;
   last_step_ = step;
   write_begin_ = wall_clock();
@@ -70,6 +73,7 @@ void CheckpointWriter::write(std::int64_t step, bool needed) {
 
 checkpoint::CheckpointManifest CheckpointWriter::manifest(std::int64_t step,
                                                           std::vector<CheckpointPart> parts) const {
+  FURROW_ASSERT(parts.size() == cards_.size(), parts.size(), cards_.size());
   checkpoint::CheckpointManifest m;
   m.version = FURROW_VERSION;
   m.build = build_;
@@ -94,6 +98,7 @@ checkpoint::CheckpointManifest CheckpointWriter::manifest(std::int64_t step,
 }
 
 void CheckpointWriter::complete(CheckpointPart own, bool needed) {
+  FURROW_ASSERT(transport_.self() == kRig, to_string(transport_.self()));
   const std::int64_t step = own.step;
   std::string problem = own.problem;
   std::vector<CheckpointPart> parts{std::move(own)};

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "protocol/core/archive_fields.hpp"
+#include "protocol/core/assert.hpp"
 
 namespace furrow::ranks {
 namespace {
@@ -14,6 +15,12 @@ constexpr double kNothing = 1e-12;   // N s
 }  // namespace
 
 void ImpulseLedger::settle(const NodalForces& reported, double duration) {
+  FURROW_ASSERT(duration > 0.0, duration);
+  FURROW_ASSERT(reported.force.size() == reported.vertex.size(), reported.force.size(),
+                reported.vertex.size());
+  FURROW_ASSERT(std::all_of(reported.vertex.begin(), reported.vertex.end(),
+                            [&](int v) { return in_range(v, owed_.size()); }),
+                owed_.size());
   for (std::size_t k = 0; k < reported.vertex.size(); ++k)
     owed_[reported.vertex[k]] -= duration * reported.force[k];
   settled_ = sum().norm();
@@ -21,6 +28,9 @@ void ImpulseLedger::settle(const NodalForces& reported, double duration) {
 }
 
 void ImpulseLedger::hand_back(NodalForces& forces, double duration) {
+  FURROW_ASSERT(duration > 0.0, duration);
+  FURROW_ASSERT(std::is_sorted(forces.vertex.begin(), forces.vertex.end()), forces.vertex.size());
+  FURROW_ASSERT(forces.tangent.size() == forces.vertex.size(), forces.tangent.size(), forces.vertex.size());
   next_.clear();
   std::size_t k = 0;
   for (int v = 0; v < static_cast<int>(owed_.size()); ++v) {
@@ -40,6 +50,11 @@ void ImpulseLedger::hand_back(NodalForces& forces, double duration) {
 }
 
 void ImpulseLedger::book(const NodalForces& acted, double duration) {
+  FURROW_ASSERT(duration > 0.0, duration);
+  FURROW_ASSERT(acted.force.size() == acted.vertex.size(), acted.force.size(), acted.vertex.size());
+  FURROW_ASSERT(
+      std::all_of(acted.vertex.begin(), acted.vertex.end(), [&](int v) { return in_range(v, owed_.size()); }),
+      owed_.size());
   for (std::size_t k = 0; k < acted.vertex.size(); ++k) owed_[acted.vertex[k]] += duration * acted.force[k];
 }
 

@@ -25,7 +25,7 @@ class ImpulseLedger {
   /// Changes reported forces into those of the next interval. At most half of a force is taken back; vertices that
   /// touch nothing any more get their share as well. @pre settled
   void hand_back(NodalForces& forces, double duration);
-  /// Books what acted over an interval.
+  /// Books what acted over an interval. @pre duration > 0, here and above; all vertices are the ledger's
   void book(const NodalForces& acted, double duration);
 
   Vec3 sum() const;                            // now, N s

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "protocol/core/assert.hpp"
+
 namespace furrow::ranks {
 
 NodeCard common_card(const scenario::Scenario& scenario, Address self) {
@@ -27,6 +29,7 @@ std::string when(const StepHeader& header) {
 }
 
 std::int64_t steps_between(double interval, double step) {
+  FURROW_ASSERT(step > 0.0, step);
   if (interval <= 0.0) return 0;
   return std::max<std::int64_t>(1, std::llround(interval / step));
 }

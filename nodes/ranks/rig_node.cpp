@@ -7,6 +7,7 @@
 #include "nodes/output/results.hpp"
 #include "nodes/output/subject_series.hpp"
 #include "nodes/ranks/node.hpp"
+#include "protocol/core/assert.hpp"
 #include "protocol/core/clock.hpp"
 
 namespace furrow::ranks {
@@ -29,6 +30,8 @@ class RigNode : public Node {
   }
 
   void set_up(Transport& transport, std::span<const NodeCard> cards, const RunContext& context) override {
+    FURROW_ASSERT(cards.size() == static_cast<std::size_t>(rig_->wheel_count()) + 2, cards.size(),
+                  rig_->wheel_count());
     context_ = context;
     cards_.assign(cards.begin(), cards.end());
     const int wheels = rig_->wheel_count();
@@ -58,6 +61,8 @@ class RigNode : public Node {
   }
 
   void synchronize(Transport& transport, const StepHeader& header) override {
+    FURROW_ASSERT(builders_.size() == static_cast<std::size_t>(rig_->wheel_count()), builders_.size(),
+                  rig_->wheel_count());
     due_ = next_;
     next_ = order(header.step + 2);
     const int wheels = rig_->wheel_count();
@@ -76,6 +81,8 @@ class RigNode : public Node {
   }
 
   void advance(const StepHeader& header) override {
+    FURROW_ASSERT(wrenches_.size() == static_cast<std::size_t>(rig_->wheel_count()), wrenches_.size(),
+                  rig_->wheel_count());
     const Outcome outcome = rig_->advance(wrenches_, scenario_.run.step, scenario_.rig_substeps);
     if (!outcome.ok) throw physics_error(outcome, to_string(kSelf), when(header));
   }
@@ -114,6 +121,7 @@ class RigNode : public Node {
 
   /// What shall be done when all stand at `step`.
   Order order(std::int64_t step) {
+    FURROW_ASSERT(step >= 0, step);
     if (next_ == Order::stop) return Order::stop;
     if (context_.stop_requested && context_.stop_requested()) return Order::stop;
     const scenario::CheckpointOptions& o = scenario_.checkpoint;

@@ -6,6 +6,7 @@
 #include "nodes/ranks/checkpoint_writer.hpp"
 #include "nodes/ranks/node.hpp"
 #include "protocol/core/archive_hash.hpp"
+#include "protocol/core/assert.hpp"
 #include "protocol/core/clock.hpp"
 #include "protocol/files/archive_file.hpp"
 #include "protocol/files/fault_point.hpp"
@@ -30,6 +31,8 @@ std::uint64_t state_hash(const Node& node) {
 
 std::int64_t run_steps(Node& node, Transport& transport, double step, std::int64_t from, std::int64_t to,
                        output::StepProfile* profile, const std::function<void(std::int64_t)>& checkpoint) {
+  FURROW_ASSERT(step > 0.0, step);
+  FURROW_ASSERT(from >= 0 && from <= to, from, to);
   for (std::int64_t n = from; n < to; ++n) {
     const StepHeader header{n, static_cast<double>(n) * step};
     if (profile) profile->begin(n);

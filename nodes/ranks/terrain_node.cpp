@@ -4,6 +4,7 @@
 #include "nodes/output/frames.hpp"
 #include "nodes/ranks/node.hpp"
 #include "protocol/core/archive_fields.hpp"
+#include "protocol/core/assert.hpp"
 
 namespace furrow::ranks {
 namespace {
@@ -84,6 +85,8 @@ class TerrainNode : public Node {
   }
 
   void advance(const StepHeader& header) override {
+    FURROW_ASSERT(targets_.size() == forces_.size(), targets_.size(), forces_.size());
+    FURROW_ASSERT(report_.contact.size() == forces_.size(), report_.contact.size(), forces_.size());
     const Outcome outcome =
         terrain_->advance(targets_, scenario_.run.step, scenario_.terrain_substeps, forces_, report_.contact);
     if (!outcome.ok) throw physics_error(outcome, "terrain", when(header));

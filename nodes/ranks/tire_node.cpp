@@ -14,6 +14,7 @@
 #include "nodes/ranks/impulse_ledger.hpp"
 #include "nodes/scenario/wheel_geometry.hpp"
 #include "protocol/core/archive_fields.hpp"
+#include "protocol/core/assert.hpp"
 #include "tire/reach.hpp"
 
 namespace furrow::ranks {
@@ -70,6 +71,7 @@ class TireNode : public Node {
   }
 
   void advance(const StepHeader& header) override {
+    FURROW_ASSERT(header.step >= 0 && scenario_.tire_substeps > 0, header.step, scenario_.tire_substeps);
     const double duration = scenario_.run.step;
     trajectory_.extend(rim_.rim, duration);
     if (report_.contact_tangent) {

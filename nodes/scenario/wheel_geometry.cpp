@@ -1,5 +1,6 @@
 #include "nodes/scenario/wheel_geometry.hpp"
 
+#include "protocol/core/assert.hpp"
 namespace furrow::scenario {
 
 std::vector<tire::TireDescription> describe_tires(const Scenario& scenario) {

@@ -20,6 +20,7 @@
 #include "nodes/launch/signals.hpp"
 #include "nodes/scenario/load_scenario.hpp"
 #include "nodes/study/pass_bed.hpp"
+#include "protocol/core/assert.hpp"
 #include "protocol/files/text_file.hpp"
 #include "protocol/host.hpp"
 #include "terrain/dem/beds/bed_cache.hpp"
@@ -56,6 +57,7 @@ std::string last_error(const fs::path& log) {
 
 /// As many shares of the cores this process may use, as even as they come; all of them where there are too few.
 std::vector<cpu_set_t> core_shares(int jobs) {
+  FURROW_ASSERT(jobs > 0, jobs);
   const std::vector<int> cores = allowed_cores();
   const int shares = std::min(jobs, static_cast<int>(cores.size()));
   std::vector<cpu_set_t> sets(jobs);
@@ -84,6 +86,7 @@ void wait_until_free(const fs::path& folder) {
 }
 
 std::string state_name(int state) {
+  FURROW_ASSERT(in_range(state, 5), state);
   constexpr const char* kNames[] = {"waiting", "running", "done", "failed", "stopped"};
   return kNames[state];
 }
@@ -174,6 +177,7 @@ Sweep::Run* Sweep::next() {
 /// The bed of a pass is what the pass before it left, after a rest; sinkage counts from the surface before the first.
 /// @returns false when there is none: stopped by a signal, or the run has failed
 bool Sweep::take_over_bed(Run& run) try {
+  FURROW_ASSERT(run.pass > 1, run.pass);
   const Run& before = *(&run - 1);
   const Run& first = *(&run - (run.pass - 1));
   const fs::path bed = options_.folder / "beds" / fmt::format("{}_rest_{}.h5", before.digest, study_.rest);
@@ -206,6 +210,8 @@ bool Sweep::take_over_bed(Run& run) try {
 }
 
 void Sweep::start(Run& run, std::size_t share) {
+  FURROW_ASSERT(in_range(share, shares_.size()), share, shares_.size());
+  FURROW_ASSERT(run.state == State::waiting && run.loaded, static_cast<int>(run.state), run.loaded);
   std::error_code error;
   fs::create_directories(folder_of(run).parent_path(), error);
   wait_until_free(folder_of(run));
@@ -221,6 +227,7 @@ void Sweep::start(Run& run, std::size_t share) {
 }
 
 void Sweep::look_at(Run& run) {
+  FURROW_ASSERT(run.process > 0 && run.state == State::running, run.process, static_cast<int>(run.state));
   int status = 0;
   if (waitpid(run.process, &status, WNOHANG) != run.process) return;
   run.process = -1;

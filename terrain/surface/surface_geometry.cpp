@@ -106,7 +106,7 @@ void settle_active(ActiveSet& active, std::span<const Vec3> normal, std::span<co
 }  // namespace
 
 TrianglePoint closest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  FURROW_ASSERT((b - a).cross(c - a).squaredNorm() > 0.0, a.transpose(), b.transpose(), c.transpose());
+  FURROW_ASSERT((b - a).cross(c - a).squaredNorm() != 0.0, a.transpose(), b.transpose(), c.transpose());
   const Vec3 ab = b - a, ac = c - a, ap = p - a;
   const double d1 = ab.dot(ap), d2 = ac.dot(ap);
   if (d1 <= 0.0 && d2 <= 0.0) return on_vertex(a, 0);

@@ -14,7 +14,7 @@ constexpr double kCellShare = 2.0;  // cell / margin: longer lists per query aga
 }  // namespace
 
 void SurfaceGrid::size_cells(const Vec3& extent, double margin) {
-  FURROW_ASSERT(margin > 0.0 && extent.minCoeff() >= 0.0, margin, extent.minCoeff());
+  FURROW_ASSERT(margin > 0.0 && !(extent.minCoeff() < 0.0), margin, extent.minCoeff());
   cell_ = kCellShare * margin;
   auto count = [&](int axis) { return std::floor(extent[axis] / cell_) + 1.0; };
   while (count(0) * count(1) * count(2) > kMaxCells) cell_ *= 1.25;

@@ -2,12 +2,14 @@
 
 #include <cmath>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 
 namespace furrow::vehicle {
 namespace {
 
 JointFrame in_body(const Pose& body, const Vec3& point_W, const Mat3& axes_W) {
+  FURROW_ASSERT(body.R != nullptr && body.position != nullptr, point_W.transpose());
   return {body.R->transpose() * (point_W - *body.position), body.R->transpose() * axes_W};
 }
 
@@ -22,12 +24,14 @@ Row base_row(const Joint& joint, RowKind kind) {
 }
 
 Row offset_row(const Joint& joint, int axis) {
+  FURROW_ASSERT(in_range(axis, 3), axis);
   Row row = base_row(joint, RowKind::offset);
   row.axis_a = joint.frame_a.axes.col(axis);
   return row;
 }
 
 Row dot_row(const Joint& joint, int axis_of_a, int axis_of_b) {
+  FURROW_ASSERT(in_range(axis_of_a, 3) && in_range(axis_of_b, 3), axis_of_a, axis_of_b);
   Row row = base_row(joint, RowKind::dot);
   row.axis_a = joint.frame_a.axes.col(axis_of_a);
   row.axis_b = joint.frame_b.axes.col(axis_of_b);

@@ -3,6 +3,8 @@
 
 #include <functional>
 
+#include "protocol/core/assert.hpp"
+
 namespace furrow::vehicle {
 
 /// Value (m or rad) and rate (m/s or rad/s) of an imposed coordinate at one instant.
@@ -14,8 +16,9 @@ struct Motion {
 using MotionFunction = std::function<Motion(double time)>;
 
 /// Speed from rest to `speed` over `ramp` seconds by the C² smoothstep S(u) = 6u⁵ − 15u⁴ + 10u³, then
-/// constant; the value is its integral, T (u⁶ − 3u⁵ + 5u⁴/2) during the ramp. ramp = 0: constant from t = 0.
+/// constant; the value is its integral, T (u⁶ − 3u⁵ + 5u⁴/2) during the ramp. ramp = 0: constant from t = 0. @pre ramp ≥ 0
 inline Motion ramped_motion(double time, double speed, double ramp) {
+  FURROW_ASSERT(ramp >= 0.0, ramp);
   if (time < ramp) {
     const double u = time > 0.0 ? time / ramp : 0.0;
     return {speed * ramp * u * u * u * u * (2.5 + u * (u - 3.0)),
@@ -26,6 +29,7 @@ inline Motion ramped_motion(double time, double speed, double ramp) {
 
 /// Value from 0 at time 0 to `change` after `duration` seconds by the same smoothstep.
 inline Motion step_motion(double time, double change, double duration) {
+  FURROW_ASSERT(duration >= 0.0, duration);
   if (!(time > 0.0)) return {};
   if (time >= duration) return {change, 0.0};
   const double u = time / duration;

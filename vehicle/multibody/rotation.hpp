@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/vec.hpp"
 
 namespace furrow::vehicle {
@@ -36,6 +37,7 @@ inline Quat rotated(const Quat& q, const Vec3& omega_W, double h) {
 /// @return false when the iteration does not settle.
 inline bool midpoint_angular_velocity(const Mat3& R, const Mat3& inertia_inverse, const Vec3& momentum_W,
                                       double h, Vec3& omega_W) {
+  FURROW_ASSERT(h >= 0.0, h);
   const Vec3 L = R.transpose() * momentum_W;
   Vec3 W = inertia_inverse * L;
   for (int i = 0; i < 60; ++i) {

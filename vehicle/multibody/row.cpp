@@ -3,9 +3,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "protocol/core/assert.hpp"
+
 namespace furrow::vehicle {
 
 double row_value(const Row& row, const Pose& A, const Pose& B) {
+  FURROW_ASSERT(A.R != nullptr && B.R != nullptr, row.a, row.b);
+  FURROW_ASSERT(A.position != nullptr && B.position != nullptr, row.a, row.b);
   switch (row.kind) {
     case RowKind::dot:
       return (*A.R * row.axis_a).dot(*B.R * row.axis_b);
@@ -22,6 +26,8 @@ double row_value(const Row& row, const Pose& A, const Pose& B) {
 }
 
 RowJacobian row_jacobian(const Row& row, const Pose& A, const Pose& B) {
+  FURROW_ASSERT(A.R != nullptr && B.R != nullptr, row.a, row.b);
+  FURROW_ASSERT(A.position != nullptr && B.position != nullptr, row.a, row.b);
   RowJacobian J;
   if (row.kind == RowKind::dot) {
     // d(a·b)/dt = (ω_A × a)·b + a·(ω_B × b) = ω_A·(a × b) − ω_B·(a × b)

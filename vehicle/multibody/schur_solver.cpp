@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "protocol/core/assert.hpp"
+
 namespace furrow::vehicle {
 namespace {
 
@@ -16,6 +18,10 @@ struct Side {
 }  // namespace
 
 void SchurSolver::analyze(std::span<const Row> rows) {
+  FURROW_ASSERT(
+      std::all_of(rows.begin(), rows.end(),
+                  [](const Row& row) { return row.a >= kGround && row.b >= kGround && row.a != row.b; }),
+      rows.size());
   int body_count = 0;
   for (const Row& row : rows) body_count = std::max({body_count, row.a + 1, row.b + 1});
   std::vector<std::vector<Side>> sides(body_count);
@@ -50,9 +56,12 @@ void SchurSolver::analyze(std::span<const Row> rows) {
 
 bool SchurSolver::factorize(std::span<const RowJacobian> jacobians, std::span<const Body> bodies,
                             std::span<const double> compliance) {
+  FURROW_ASSERT(jacobians.size() == diagonal_.size(), jacobians.size(), diagonal_.size());
+  FURROW_ASSERT(compliance.size() == diagonal_.size(), compliance.size(), diagonal_.size());
   double* values = S_.valuePtr();
   std::fill(values, values + S_.nonZeros(), 0.0);
   for (const Entry& entry : entries_) {
+    FURROW_ASSERT(in_range(entry.body, bodies.size()), entry.body, bodies.size());
     if (compliance[entry.i] < 0.0 || compliance[entry.j] < 0.0) continue;
     const RowJacobian &Ji = jacobians[entry.i], &Jj = jacobians[entry.j];
     const Body& body = bodies[entry.body];
@@ -74,10 +83,14 @@ bool SchurSolver::factorize(std::span<const RowJacobian> jacobians, std::span<co
 }
 
 void SchurSolver::multiply(const Eigen::VectorXd& P, Eigen::VectorXd& r) const {
+  FURROW_ASSERT(P.size() == S_.rows(), P.size(), S_.rows());
   r.noalias() = S_.selfadjointView<Eigen::Lower>() * P;
   r -= epsilon_ * P;
 }
 
-void SchurSolver::solve(const Eigen::VectorXd& r, Eigen::VectorXd& P) const { P = ldlt_.solve(r); }
+void SchurSolver::solve(const Eigen::VectorXd& r, Eigen::VectorXd& P) const {
+  FURROW_ASSERT(r.size() == S_.rows(), r.size(), S_.rows());
+  P = ldlt_.solve(r);
+}
 
 }  // namespace furrow::vehicle

@@ -18,12 +18,12 @@ namespace furrow::vehicle {
 
 class SchurSolver {
  public:
-  /// Symbolic analysis for rows with fixed bodies.
+  /// Symbolic analysis for rows with fixed bodies. @pre no row joins a body with itself
   void analyze(std::span<const Row> rows);
 
   /// Builds S from the rows' Jacobians at the bodies' present poses and factors it. compliance[i] ≥ 0 is
   /// added to the diagonal; a negative value switches row i off (its impulse is then r_i itself: give it 0).
-  /// @return false when the factorization fails.
+  /// @return false when the factorization fails. @pre one Jacobian and one compliance for each row analysed
   bool factorize(std::span<const RowJacobian> jacobians, std::span<const Body> bodies,
                  std::span<const double> compliance);
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "protocol/core/archive_fields.hpp"
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 
 namespace furrow::vehicle {
@@ -41,6 +42,7 @@ int System::add_body(const std::string& name, double mass, const Mat3& inertia, 
 }
 
 void System::set_mass_properties(int index, double mass, const Mat3& inertia) {
+  FURROW_ASSERT(in_range(index, bodies_.size()), index, bodies_.size());
   Body& body = bodies_[index];
   const bool symmetric = (inertia - inertia.transpose()).norm() <= 1e-12 * inertia.norm();
   if (!(mass > 0.0) || !std::isfinite(mass) || !symmetric || inertia.llt().info() != Eigen::Success)
@@ -52,6 +54,9 @@ void System::set_mass_properties(int index, double mass, const Mat3& inertia) {
 }
 
 int System::add_joint(JointKind kind, const std::string& name, int a, int b, const JointPlace& place) {
+  FURROW_ASSERT(a >= kGround && a < body_count() && b >= kGround && b < body_count(), name, a, b,
+                body_count());
+  FURROW_ASSERT(a != b, name, a);
   Joint joint;
   joint.name = name;
   joint.kind = kind;
@@ -69,6 +74,8 @@ int System::add_joint(JointKind kind, const std::string& name, int a, int b, con
 }
 
 int System::add_motor(const std::string& name, int joint, MotionFunction motion) {
+  FURROW_ASSERT(in_range(joint, joints_.size()), name, joint, joints_.size());
+  FURROW_ASSERT(motion != nullptr, name);
   Motor motor;
   motor.name = name;
   motor.joint = joint;
@@ -82,6 +89,8 @@ int System::add_motor(const std::string& name, int joint, MotionFunction motion)
 }
 
 int System::add_joint_element(const std::string& name, int joint, ForceLaw law) {
+  FURROW_ASSERT(in_range(joint, joints_.size()), name, joint, joints_.size());
+  FURROW_ASSERT(law != nullptr, name);
   elements_.push_back({name, free_coordinate(joints_[joint]), std::move(law), 0.0});
   prepared_ = false;
   return static_cast<int>(elements_.size()) - 1;
@@ -89,6 +98,10 @@ int System::add_joint_element(const std::string& name, int joint, ForceLaw law) 
 
 int System::add_line_element(const std::string& name, int a, int b, const Vec3& point_a, const Vec3& point_b,
                              ForceLaw law) {
+  FURROW_ASSERT(a >= kGround && a < body_count() && b >= kGround && b < body_count(), name, a, b,
+                body_count());
+  FURROW_ASSERT(a != b && law != nullptr, name, a);
+  FURROW_ASSERT((point_b - point_a).norm() > 0.0, name);
   Row row;
   row.kind = RowKind::distance;
   row.a = a;
@@ -101,6 +114,8 @@ int System::add_line_element(const std::string& name, int a, int b, const Vec3& 
 }
 
 void System::set_state(int index, const BodyState& state) {
+  FURROW_ASSERT(in_range(index, bodies_.size()), index, bodies_.size());
+  FURROW_ASSERT(state.orientation.norm() > 0.0, bodies_[index].name);
   Body& body = bodies_[index];
   body.state = state;
   body.state.orientation.normalize();
@@ -109,16 +124,19 @@ void System::set_state(int index, const BodyState& state) {
 }
 
 void System::set_load(int index, const Vec3& force, const Vec3& moment) {
+  FURROW_ASSERT(in_range(index, bodies_.size()), index, bodies_.size());
   bodies_[index].force = force;
   bodies_[index].moment = moment;
 }
 
 Pose System::pose(int body) const {
+  FURROW_ASSERT(body >= kGround && body < body_count(), body, body_count());
   if (body == kGround) return {&kGroundPosition, &kGroundAxes};
   return {&bodies_[body].state.position, &bodies_[body].R};
 }
 
 Motion System::target(int row, double time) const {
+  FURROW_ASSERT(in_range(row, constraint_rows_.size()), row, constraint_rows_.size());
   const double reference = constraint_rows_[row].reference;
   const int motor = row_motor_[row];
   if (motor < 0) return {reference, 0.0};
@@ -127,6 +145,7 @@ Motion System::target(int row, double time) const {
 }
 
 Motion System::coordinate(int index) const {
+  FURROW_ASSERT(in_range(index, joints_.size()), index, joints_.size());
   const Row row = free_coordinate(joints_[index]);
   const Pose A = pose(row.a), B = pose(row.b);
   const RowJacobian J = row_jacobian(row, A, B);
@@ -209,6 +228,8 @@ void System::restore(const Archive& archive) {
 }
 
 std::string System::row_name(int row) const {
+  FURROW_ASSERT(in_range(row, constraint_rows_.size() + elements_.size()), row, constraint_rows_.size(),
+                elements_.size());
   if (row >= static_cast<int>(constraint_rows_.size())) return elements_[row - constraint_rows_.size()].name;
   if (row_motor_[row] >= 0) return motors_[row_motor_[row]].name;
   for (const Joint& joint : joints_)

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "protocol/core/archive.hpp"
+#include "protocol/core/assert.hpp"
 #include "protocol/core/outcome.hpp"
 #include "vehicle/multibody/body.hpp"
 #include "vehicle/multibody/force_element.hpp"
@@ -33,7 +34,8 @@ class System {
  public:
   explicit System(const Vec3& gravity = Vec3(0.0, 0.0, -9.81)) : gravity_(gravity) {}
 
-  // Building; indices count from 0. Joints and elements are placed in the bodies' present poses.
+  // Building; indices count from 0 and are those of bodies and joints added before. Joints and elements are placed in
+  // the bodies' present poses.
   /// @pre mass > 0, inertia symmetric positive definite
   int add_body(const std::string& name, double mass, const Mat3& inertia, const BodyState& state);
   void set_mass_properties(int body, double mass, const Mat3& inertia);
@@ -43,7 +45,7 @@ class System {
   int add_motor(const std::string& name, int joint, MotionFunction motion);
   /// Acts on the free coordinate of a joint.
   int add_joint_element(const std::string& name, int joint, ForceLaw law);
-  /// Acts on the distance between two points, W, m.
+  /// Acts on the distance between two points, W, m. @pre the points differ
   int add_line_element(const std::string& name, int a, int b, const Vec3& point_a, const Vec3& point_b,
                        ForceLaw law);
 
@@ -63,15 +65,28 @@ class System {
 
   double time() const { return start_time_ + static_cast<double>(count_) * step_; }
   int body_count() const { return static_cast<int>(bodies_.size()); }
-  const Body& body(int index) const { return bodies_[index]; }
-  const Joint& joint(int index) const { return joints_[index]; }
+  const Body& body(int index) const {
+    FURROW_ASSERT(in_range(index, bodies_.size()), index, bodies_.size());
+    return bodies_[index];
+  }
+  const Joint& joint(int index) const {
+    FURROW_ASSERT(in_range(index, joints_.size()), index, joints_.size());
+    return joints_[index];
+  }
 
   // Means over the last step.
   const Reaction& reaction(int joint) const {
+    FURROW_ASSERT(in_range(joint, reactions_.size()), joint, reactions_.size());
     return reactions_[joint];
-  }  // in the axes of the joint's frame on A
-  double motor_force(int motor) const { return motors_[motor].last_force; }  // on B, N or N m
-  double element_force(int element) const { return elements_[element].last_force; }
+  }                                      // in the axes of the joint's frame on A
+  double motor_force(int motor) const {  // on B, N or N m
+    FURROW_ASSERT(in_range(motor, motors_.size()), motor, motors_.size());
+    return motors_[motor].last_force;
+  }
+  double element_force(int element) const {
+    FURROW_ASSERT(in_range(element, elements_.size()), element, elements_.size());
+    return elements_[element].last_force;
+  }
 
   /// Value and rate of a joint's free coordinate now (angles in (−π, π]).
   Motion coordinate(int joint) const;

@@ -51,6 +51,8 @@ void System::update_jacobians() {
 
 // Compliance of a damper row: p = −(h c/2) g·v½ is a constraint row g·v½ + p · 2/(h c) = 0.
 Outcome System::factorize(bool with_dampers) {
+  FURROW_ASSERT(!with_dampers || step_ > 0.0, step_);
+  FURROW_ASSERT(damping_.size() == elements_.size(), damping_.size(), elements_.size());
   const std::size_t first = constraint_rows_.size();
   for (std::size_t e = 0; e < elements_.size(); ++e)
     compliance_[first + e] = with_dampers && damping_[e] > 0.0 ? 2.0 / (step_ * damping_[e]) : -1.0;
@@ -61,6 +63,7 @@ Outcome System::factorize(bool with_dampers) {
 }
 
 double System::rate(int i) const {
+  FURROW_ASSERT(in_range(i, rows_.size()), i, rows_.size());
   const Row& row = rows_[i];
   const RowJacobian& J = jacobians_[i];
   double sum = 0.0;
@@ -72,6 +75,7 @@ double System::rate(int i) const {
 }
 
 void System::begin_velocities(double h) {
+  FURROW_ASSERT(base_.size() == bodies_.size(), base_.size(), bodies_.size());
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const Body& body = bodies_[i];
     base_[i].position = body.state.position;
@@ -85,6 +89,7 @@ void System::begin_velocities(double h) {
 // First half (implicit): f½ = f(x₀, v₀) − c (ẋ½ − ẋ₀), whose part −c ẋ½ is left to the damper rows.
 // Second half: f(x₁, v½). Both at the time of mid-step.
 void System::element_forces(double h, bool implicit) {
+  FURROW_ASSERT(jacobians_.size() == rows_.size(), jacobians_.size(), rows_.size());
   const std::size_t first = constraint_rows_.size();
   const double mid_time = time() + 0.5 * h;
   for (std::size_t e = 0; e < elements_.size(); ++e) {
@@ -134,6 +139,7 @@ void System::set_angular_velocities() {
 }
 
 Outcome System::move(double h) {
+  FURROW_ASSERT(h > 0.0, h);
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     Body& body = bodies_[i];
     if (!midpoint_angular_velocity(base_[i].R, body.inertia_inverse, body.angular_momentum, h,
@@ -238,6 +244,7 @@ void System::remove_null_impulses() {
 // Reaction of a joint on B, about its point on B: F = Σ λ ∂φ/∂v_B, M = Σ λ ∂φ/∂ω_B − r_B × F; half of each
 // stage.
 void System::collect_reactions(double h, bool first_half) {
+  FURROW_ASSERT(reactions_.size() == joints_.size(), reactions_.size(), joints_.size());
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     const Joint& joint = joints_[j];
     const Mat3& R_a =
@@ -302,6 +309,7 @@ Outcome System::check_finite() const {
 }
 
 void System::assemble(double time) {
+  FURROW_ASSERT(std::isfinite(time), time);
   start_time_ = time;
   count_ = 0;
   prepare();

@@ -40,8 +40,8 @@ Outcome RigidTire::advance(const RimTrajectory& rim, const NodalForces& forces, 
   FURROW_ASSERT(rim.duration() > 0.0, rim.duration());
   FURROW_ASSERT(forces.force.size() == forces.vertex.size(), forces.force.size(), forces.vertex.size());
   FURROW_ASSERT(std::all_of(forces.vertex.begin(), forces.vertex.end(),
-                            [&](int v) { return in_range(v, vertex_.size()); }),
-                vertex_.size());
+                            [&](int v) { return in_range(v, shape_.vertex.size()); }),
+                shape_.vertex.size());
   const RimState &start = rim.start(), &end = rim.end();
   const double duration = rim.duration();
   spindle_.force = shape_.mass.mass * (kGravity - (end.velocity - start.velocity) / duration);

@@ -58,9 +58,9 @@ void check(const TireBench& bench) {
 /// One step; what the tire took of it.
 Spent step(rigs::RollingTire& rolling, double damper) {
   rolling.push();
-  const double begin = now(), begin_processor = processor_time();
+  const double begin = wall_clock(), begin_processor = processor_time();
   rolling.roll();
-  const Spent spent{now() - begin, processor_time() - begin_processor};
+  const Spent spent{wall_clock() - begin, processor_time() - begin_processor};
   rolling.follow(damper);
   return spent;
 }

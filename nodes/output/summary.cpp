@@ -262,7 +262,7 @@ void add_accounts(const WheelInput& in, const Window& w, Json& json) {
   json["interface_energy_error_J"] = number(end.energy_error);
   json["interface_energy_error_abs_J"] = number(end.energy_error_abs);
   json["rim_energy_error_J"] = number(end.rim_energy_error);
-  json["interface_work_J"] = number(in.tire.terrain_work);  // Σ f·Δx, on the tire by the terrain
+  json["interface_work_J"] = number(tire.terrain_work);  // Σ f·Δx, on the tire by the terrain
   json["spindle_work_J"] = number(end.spindle_work);
   json["momentum_residual"] = number(
       sent > 0.0 ? (series.impulse_sent_arrived() - (end.impulse_received - tire.impulse_ahead)).norm() / sent
@@ -324,7 +324,7 @@ void add_cost(const SummaryInput& in, std::span<const WheelRow> rows, Json& json
 
 std::string summary_text(const SummaryInput& in) {
   FURROW_ASSERT(in.reports.size() == in.cards.size(), in.reports.size(), in.cards.size());
-  FURROW_ASSERT(in_range(in.wheel, in.scenario.rigs.size()), in.wheel, in.scenario.rigs.size());
+  FURROW_ASSERT(in.tables.size() >= in.wheels.size() && !in.wheels.empty(), in.tables.size(), in.wheels.size());
   Hash state;
   for (const FinalReport& report : in.reports) state.add(&report.state_hash, sizeof report.state_hash);
   Json json;

@@ -13,7 +13,6 @@
 #include "nodes/checkpoint/frame_clock.hpp"
 #include "nodes/checkpoint/series_mark.hpp"
 #include "nodes/output/profile.hpp"
-#include "nodes/output/series.hpp"
 #include "nodes/ranks/run_context.hpp"
 #include "nodes/scenario/scenario.hpp"
 #include "protocol/core/archive.hpp"

@@ -11,7 +11,7 @@
 namespace furrow::scenario {
 
 std::vector<RankEntry> rank_table(const Scenario& s) {
-  FURROW_ASSERT(!s.rigs.empty() && s.terrain_ranks > 0, s.rigs.size(), s.terrain_ranks);
+  FURROW_ASSERT(s.rig && s.terrain && s.terrain_ranks > 0, s.terrain_ranks);
   std::vector<RankEntry> table;
   table.push_back({0, "rig", fmt::format("{}; writes the results; 1 thread", describe_rig(s).text)});
   const std::vector<tire::TireDescription> tires = describe_tires(s);

@@ -1,6 +1,5 @@
 #include "nodes/scenario/wheel_geometry.hpp"
 
-#include "protocol/core/assert.hpp"
 namespace furrow::scenario {
 
 std::vector<tire::TireDescription> describe_tires(const Scenario& scenario) {

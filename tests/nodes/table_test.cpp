@@ -52,7 +52,7 @@ class SpringRig final : public rigs::Rig {
   void add_tire_mass(int, const MassProperties&, double) override {}
   void place(std::span<const double>) override {}
   RimState rim(int) const override { return {}; }
-  void advance(std::span<const Wrench>, double, int) override {}
+  Outcome advance(std::span<const Wrench>, double, int) override { return {}; }
   rigs::WheelReport report(int) const override { return {}; }
   Vec3 heading(int) const override { return sign * Vec3::UnitX(); }
   std::vector<rigs::Subject> subjects() const override {

@@ -31,6 +31,7 @@ class RigNode : public Node {
 
   void set_up(Transport& transport, std::span<const NodeCard> cards, const RunContext& context) override {
     FURROW_ASSERT(cards.size() == static_cast<std::size_t>(rig_->wheel_count()) + 2, cards.size(),
+                  rig_->wheel_count());
     context_ = context;
     cards_.assign(cards.begin(), cards.end());
     const int wheels = rig_->wheel_count();
@@ -79,6 +80,7 @@ class RigNode : public Node {
 
   void advance(const StepHeader& header) override {
     FURROW_ASSERT(wrenches_.size() == static_cast<std::size_t>(rig_->wheel_count()), wrenches_.size(),
+                  rig_->wheel_count());
     const Outcome outcome = rig_->advance(wrenches_, scenario_.run.step, scenario_.rig_substeps);
     if (!outcome.ok) throw physics_error(outcome, to_string(kSelf), when(header));
   }

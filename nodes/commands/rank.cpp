@@ -27,10 +27,10 @@ namespace {
 
 constexpr auto kTimeForNews = std::chrono::milliseconds(300);
 
-/// Speaks to the supervisor, or to the user where there is none.
-class Voice {
+/// Reports to the supervisor, or to the user where there is none.
+class RankReporter {
  public:
-  Voice() : supervised_(std::getenv(launch::kSupervisedVariable) != nullptr), rank_(launched_rank()) {}
+  RankReporter() : supervised_(std::getenv(launch::kSupervisedVariable) != nullptr), rank_(launched_rank()) {}
 
   bool supervised() const { return supervised_; }
   int rank() const { return rank_; }
@@ -93,9 +93,9 @@ bool told_by_another(Transport& transport, const Error& error) {
 
 /// The rig's rank makes the folder, unless a supervisor has, and tells the others.
 std::filesystem::path agree_on_directory(Transport& transport, const scenario::Scenario& scenario,
-                                         const RunArguments& arguments, const Voice& voice,
+                                         const RunArguments& arguments, const RankReporter& reporter,
                                          std::optional<launch::RunDirectory>& made) {
-  if (voice.supervised()) return arguments.out;
+  if (reporter.supervised()) return arguments.out;
   const Address rig{Role::rig, 0};
   if (transport.self() != rig) return receive<RunFolder>(transport, rig).path;
   if (arguments.resume)
@@ -109,13 +109,14 @@ std::filesystem::path agree_on_directory(Transport& transport, const scenario::S
 }
 
 ExitCode run_this_node(Transport& transport, const scenario::Scenario& scenario,
-                       const checkpoint::ResumePoint* resume, const RunArguments& arguments, Voice& voice) {
+                       const checkpoint::ResumePoint* resume, const RunArguments& arguments,
+                       RankReporter& reporter) {
   std::optional<launch::RunDirectory> made;
   try {
     ranks::RunContext context;
     transport.set_peer_timeout(scenario.run.peer_timeout);
     try {
-      context.directory = agree_on_directory(transport, scenario, arguments, voice, made);
+      context.directory = agree_on_directory(transport, scenario, arguments, reporter, made);
     } catch (const PeerFailure&) {
       throw;
     } catch (const Error& error) {
@@ -124,15 +125,15 @@ ExitCode run_this_node(Transport& transport, const scenario::Scenario& scenario,
     }
     const launch::ThreadPlan plan = launch::plan_threads(transport, scenario.run.threads);
     launch::apply(plan);
-    if (!plan.note.empty()) voice.note(plan.note);
+    if (!plan.note.empty()) reporter.note(plan.note);
     context.threads = plan.threads;
     context.profile = arguments.profile;
     context.stop_requested = [] { return launch::stop_signalled(); };
-    context.note = [&](const std::string& text) { voice.note(text); };
+    context.note = [&](const std::string& text) { reporter.note(text); };
     context.resume = resume;
-    context.progress = [&](const launch::Progress& progress) { voice.show(progress); };
+    context.progress = [&](const launch::Progress& progress) { reporter.show(progress); };
     const ExitCode code = ranks::run_node(scenario, transport, context);
-    voice.clear();
+    reporter.clear();
     if (made && code == ExitCode::done) std::cerr << result_text(made->path(), scenario);
     if (made) std::cout << made->path().string() << std::endl;
     return code;
@@ -141,11 +142,11 @@ ExitCode run_this_node(Transport& transport, const scenario::Scenario& scenario,
     return failure.code();  // whoever failed has told the user
   } catch (const Error& error) {
     if (made && error.code() == ExitCode::bad_input) made->discard();
-    if (!told_by_another(transport, error)) voice.error(error);
+    if (!told_by_another(transport, error)) reporter.error(error);
     if (error.code() == ExitCode::rank_lost) abandon_mpi(static_cast<int>(error.code()));
     return error.code();
   } catch (const std::exception& error) {
-    voice.error(physics_error(std::string("unexpected: ") + error.what()));
+    reporter.error(physics_error(std::string("unexpected: ") + error.what()));
     return ExitCode::physics;
   }
 }
@@ -157,7 +158,7 @@ void let_first_rank_speak() { std::this_thread::sleep_for(std::chrono::seconds(1
 ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
   launch::die_with_parent(SIGKILL, getppid());
   launch::catch_stop_signals();
-  Voice voice;
+  RankReporter reporter;
   std::optional<scenario::Scenario> scenario;
   checkpoint::ResumePlan plan;
   try {
@@ -167,12 +168,12 @@ ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
         arguments.resume ? plan.scenario : scenario::load_scenario(arguments.scenario, arguments.settings);
   } catch (const Error& error) {
     if (first_on_machine())
-      voice.error(error);
+      reporter.error(error);
     else
       let_first_rank_speak();
     return error.code();
   }
-  if (!voice.supervised() && voice.rank() == 0)
+  if (!reporter.supervised() && reporter.rank() == 0)
     for (const auto* warnings : {&scenario->warnings, &plan.warnings})
       for (const std::string& warning : *warnings) print_warning(warning);
   std::unique_ptr<Transport> transport;
@@ -180,11 +181,11 @@ ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
     transport =
         make_mpi_transport(&argc, &argv, static_cast<int>(scenario->tires.size()), scenario->terrain_ranks);
   } catch (const Error& error) {
-    if (voice.rank() == 0) voice.error(error);
+    if (reporter.rank() == 0) reporter.error(error);
     return error.code();
   }
-  voice.started();
-  return run_this_node(*transport, *scenario, arguments.resume ? &plan.point : nullptr, arguments, voice);
+  reporter.started();
+  return run_this_node(*transport, *scenario, arguments.resume ? &plan.point : nullptr, arguments, reporter);
 }
 
 }  // namespace furrow::commands

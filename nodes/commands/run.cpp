@@ -36,7 +36,7 @@ void tell_result(const scenario::Scenario& scenario, const std::filesystem::path
 }
 
 /// What can be done with a run that did not come to its end.
-void tell_how_to_go_on(const std::filesystem::path& directory) {
+void tell_how_to_continue(const std::filesystem::path& directory) {
   if (checkpoint::list_checkpoints(directory).empty())
     std::fprintf(stderr, "furrow: there is no checkpoint yet; start again with furrow run\n");
   else
@@ -44,8 +44,8 @@ void tell_how_to_go_on(const std::filesystem::path& directory) {
                  scenario::shell_quoted(directory.string()).c_str());
 }
 
-ExitCode have_it_run(const scenario::Scenario& scenario, launch::RunDirectory& directory,
-                     const RunArguments& arguments) {
+ExitCode supervise_run(const scenario::Scenario& scenario, launch::RunDirectory& directory,
+                       const RunArguments& arguments) {
   launch::LaunchResult result;
   {
     launch::ProgressDisplay display;
@@ -57,12 +57,12 @@ ExitCode have_it_run(const scenario::Scenario& scenario, launch::RunDirectory& d
   if (result.code == ExitCode::stopped) {
     std::fprintf(stderr, "furrow: %s; partial results are in %s\n", result.error.c_str(),
                  directory.path().c_str());
-    tell_how_to_go_on(directory.path());
+    tell_how_to_continue(directory.path());
   } else if (result.code != ExitCode::done) {
     print_error(result.error);
     if (result.code != ExitCode::bad_input) {
       std::fprintf(stderr, "furrow: the log of the ranks is %s\n", (directory.path() / "run.log").c_str());
-      tell_how_to_go_on(directory.path());
+      tell_how_to_continue(directory.path());
     }
     return result.code;
   } else {
@@ -81,7 +81,7 @@ ExitCode run_supervised(const RunArguments& arguments) {
   launch::RunDirectory directory(scenario.name, arguments.out, arguments.overwrite);
   launch::catch_stop_signals();
   std::fprintf(stderr, "furrow: %s, results in %s\n", scenario.name.c_str(), directory.path().c_str());
-  return have_it_run(scenario, directory, arguments);
+  return supervise_run(scenario, directory, arguments);
 }
 
 ExitCode resume_supervised(const RunArguments& arguments) {
@@ -99,7 +99,7 @@ ExitCode resume_supervised(const RunArguments& arguments) {
   launch::catch_stop_signals();
   std::fprintf(stderr, "furrow: continuing %s from t = %g s, results in %s\n", plan.scenario.name.c_str(),
                plan.point.manifest.time, directory.path().c_str());
-  return have_it_run(plan.scenario, directory, arguments);
+  return supervise_run(plan.scenario, directory, arguments);
 }
 
 }  // namespace furrow::commands

@@ -163,7 +163,7 @@ Sweep::Run* Sweep::next() {
     if (run.state == State::done) continue;
     if (run.state != State::waiting) continue;
     if (run.pass > 1 && runs_[i - 1].state != State::done) continue;
-    if (!run.loaded && !take_over_bed(run)) {
+    if (!run.loaded && !prepare_bed(run)) {
       if (launch::stop_signalled()) return nullptr;
       continue;
     }
@@ -176,7 +176,7 @@ Sweep::Run* Sweep::next() {
 
 /// The bed of a pass is what the pass before it left, after a rest; sinkage counts from the surface before the first.
 /// @returns false when there is none: stopped by a signal, or the run has failed
-bool Sweep::take_over_bed(Run& run) try {
+bool Sweep::prepare_bed(Run& run) try {
   FURROW_ASSERT(run.pass > 1, run.pass);
   const Run& before = *(&run - 1);
   const Run& first = *(&run - (run.pass - 1));
@@ -226,7 +226,7 @@ void Sweep::start(Run& run, std::size_t share) {
   tell(run, list[1] == "resume" ? "goes on" : "begins");
 }
 
-void Sweep::look_at(Run& run) {
+void Sweep::poll(Run& run) {
   FURROW_ASSERT(run.process > 0 && run.state == State::running, run.process, static_cast<int>(run.state));
   int status = 0;
   if (waitpid(run.process, &status, WNOHANG) != run.process) return;
@@ -296,7 +296,7 @@ ExitCode Sweep::run() {
     running = false;
     for (Run& run : runs_) {
       if (run.process <= 0) continue;
-      look_at(run);
+      poll(run);
       if (run.process <= 0) taken[run.share] = false;
       running = true;
     }

@@ -53,10 +53,9 @@ class Sweep {
   bool finished(const Run& run) const;
   std::vector<std::string> command(const Run& run) const;
   Run* next();
-  bool take_over_bed(Run& run);
+  bool prepare_bed(Run& run);
   void start(Run& run, std::size_t share);
-  void look_at(Run& run);
-  void ended(Run& run, int status);
+  void poll(Run& run);
   void stop_all();
   void tell(const Run& run, const std::string& what) const;
   void write_table() const;

@@ -403,7 +403,7 @@ int GrainSolver::step(double dt, bool measure) {
     if (full_.size() < threads) full_.resize(threads);
     evaluate<double>(dt, measure);
   }
-  if (surfaces_.any()) accounts_.surface_impulse += surfaces_.hand_over(dt);
+  if (surfaces_.any()) accounts_.surface_impulse += surfaces_.add_substep_forces(dt);
 
   const int count = static_cast<int>(chunks_.size());
 #pragma omp parallel for num_threads(params_.threads) schedule(dynamic, 1)

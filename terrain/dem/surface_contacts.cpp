@@ -210,7 +210,7 @@ void SurfaceContacts::evaluate(const Grains& grains, Strip& strip, int s, double
 template void SurfaceContacts::evaluate<MindlinLaw>(const Grains&, Strip&, int, double, const Loads&);
 template void SurfaceContacts::evaluate<HertzTanhLaw>(const Grains&, Strip&, int, double, const Loads&);
 
-Vec3 SurfaceContacts::hand_over(double dt) {
+Vec3 SurfaceContacts::add_substep_forces(double dt) {
   FURROW_ASSERT(dt > 0.0, dt);
   Vec3 on_grains = Vec3::Zero();
   for (Surface& s : surfaces_) s.forces.clear();

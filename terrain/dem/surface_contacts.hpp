@@ -89,9 +89,9 @@ class SurfaceContacts {
   template <class Law>
   void evaluate(const Grains& grains, Strip& strip, int s, double dt, const Loads& loads);
 
-  /// Hands this substep's forces to the vertices, in the order of strips and grains. Returns the impulse that the
+  /// Adds this substep's forces to the vertices, in the order of strips and grains. Returns the impulse that the
   /// grains received, N s. @pre dt > 0
-  Vec3 hand_over(double dt);
+  Vec3 add_substep_forces(double dt);
   /// Means over the interval. @pre one entry of forces and sums for each surface; duration > 0
   void finish(double duration, std::span<NodalForces> forces, std::span<ContactSums> sums);
 

@@ -38,9 +38,9 @@ struct Job {
 };
 
 /// Runs jobs on a few threads; the calling one reports.
-class Crew {
+class JobPool {
  public:
-  Crew(const std::vector<Job>& jobs, int threads, const ProgressCall& progress)
+  JobPool(const std::vector<Job>& jobs, int threads, const ProgressCall& progress)
       : jobs_(jobs), done_(jobs.size()), progress_(progress) {
     for (auto& d : done_) d = 0.0;
     for (const Job& job : jobs) total_ += job.work();
@@ -48,8 +48,8 @@ class Crew {
   }
 
   void run() {
-    std::vector<std::thread> crew;
-    for (int t = 0; t < threads_; ++t) crew.emplace_back([this] { take_jobs(); });
+    std::vector<std::thread> threads;
+    for (int t = 0; t < threads_; ++t) threads.emplace_back([this] { take_jobs(); });
     while (working_ < threads_) {
       std::this_thread::sleep_for(kTick);
       try {
@@ -58,7 +58,7 @@ class Crew {
         fail(std::current_exception());
       }
     }
-    for (std::thread& thread : crew) thread.join();
+    for (std::thread& thread : threads) thread.join();
     if (error_) std::rethrow_exception(error_);
   }
 
@@ -285,7 +285,7 @@ SoilPlan soil_plan(const SoilOptions& o) {
 SoilResults run_soil_tests(const SoilOptions& options, const SoilPlan& plan, const ProgressCall& progress) {
   SoilResults results;
   const Planner planner(options, plan, results);
-  if (!planner.jobs.empty()) Crew(planner.jobs, options.threads, progress).run();
+  if (!planner.jobs.empty()) JobPool(planner.jobs, options.threads, progress).run();
   return results;
 }
 

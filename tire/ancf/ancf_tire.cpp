@@ -53,8 +53,8 @@ void AncfTire::set_pressure(double pressure) {
   const double before = integrator_.shell().pressure();
   if (pressure == before) return;
   if (placed_)
-    pump_ += (pressure - before) *
-             (integrator_.shell().volume(integrator_.q(), rim_.position) - undeformed_volume_);
+    pressure_work_ += (pressure - before) *
+                      (integrator_.shell().volume(integrator_.q(), rim_.position) - undeformed_volume_);
   integrator_.set_pressure(pressure);
 }
 
@@ -76,7 +76,7 @@ void AncfTire::place(const RimState& rim) {
   integrator_.start(q, v);
   rim_ = rim;
   spindle_ = {};
-  pump_ = 0.0;
+  pressure_work_ = 0.0;
   placed_ = true;
 }
 
@@ -187,8 +187,8 @@ TireDiagnostics AncfTire::diagnostics() const {
       if (c < 3) d.momentum[c] += sum;
     }
   const double volume = integrator_.shell().volume(q, rim_.position);
-  d.strain_energy =
-      integrator_.elastic_energy() - integrator_.shell().pressure() * (volume - undeformed_volume_) + pump_;
+  d.strain_energy = integrator_.elastic_energy() -
+                    integrator_.shell().pressure() * (volume - undeformed_volume_) + pressure_work_;
   d.dissipation = integrator_.dissipation();
   return d;
 }
@@ -214,7 +214,7 @@ void AncfTire::save(Archive& archive) const {
   const Archive::Scope scope(archive, "ancf/");
   save_fields(archive, "rim", rim_);
   save_fields(archive, "spindle", spindle_);
-  archive.put("pump", pump_);
+  archive.put("pump", pressure_work_);
   integrator_.save(archive);
 }
 
@@ -222,7 +222,7 @@ void AncfTire::restore(const Archive& archive) {
   const Archive::Scope scope(archive, "ancf/");
   restore_fields(archive, "rim", rim_);
   restore_fields(archive, "spindle", spindle_);
-  pump_ = archive.get_double("pump");
+  pressure_work_ = archive.get_double("pump");
   placed_ = true;
   integrator_.restore(archive);
 }

@@ -57,7 +57,7 @@ class AncfTire final : public Tire {
   bool placed_ = false;
   // ∫ (V − V₀) dp since the tire was placed, J: what a changing pressure puts into the potential −p (V − V₀) without work
   // on the tire.
-  double pump_ = 0.0;
+  double pressure_work_ = 0.0;
   Field force_;  // of the running interval
   std::vector<std::pair<std::size_t, std::size_t>>
       answering_;  // of the last interval: forces that answered to the motion, and their numbers there

@@ -9,16 +9,16 @@
 namespace furrow::tire {
 namespace {
 
-/// Over a step of h = x τ: what is left of H, e^{−x}, and what of ΔE is added to it, b; the mean of H is
+/// A branch over a step of h = x τ: H decays by the factor e^{−x} and responds to ΔE with the factor b; the mean of H is
 /// b H + (1 − b)/x ΔE.
-struct Decay {
-  double left, taken, taken_mean;
-  Decay(const MaxwellBranch& branch, double h) {
+struct BranchStep {
+  double decay, response, mean_response;
+  BranchStep(const MaxwellBranch& branch, double h) {
     FURROW_ASSERT(branch.time > 0.0 && h > 0.0, branch.time, h);
     const double x = h / branch.time;
-    left = std::exp(-x);
-    taken = -std::expm1(-x) / x;
-    taken_mean = x < 1e-3 ? 0.5 - x / 6.0 + x * x / 24.0 : (1.0 - taken) / x;
+    decay = std::exp(-x);
+    response = -std::expm1(-x) / x;
+    mean_response = x < 1e-3 ? 0.5 - x / 6.0 + x * x / 24.0 : (1.0 - response) / x;
   }
 };
 
@@ -137,7 +137,7 @@ void ShellCarcass::begin(const Field& q, Step& step) const {
 
 double ShellCarcass::branch_gain(double h) const {
   double gain = 0.0;
-  for (const MaxwellBranch& branch : branches_) gain += branch.modulus * Decay(branch, h).taken;
+  for (const MaxwellBranch& branch : branches_) gain += branch.modulus * BranchStep(branch, h).response;
   return gain;
 }
 
@@ -148,9 +148,9 @@ void ShellCarcass::prepare(Step& step, double h) const {
   if (branches_.empty()) return;
   std::copy(step.stress.begin(), step.stress.end(), step.relaxed_stress.begin());
   for (std::size_t i = 0; i < branches_.size(); ++i) {
-    const double left = Decay(branches_[i], h).left;
+    const double decay = BranchStep(branches_[i], h).decay;
     for (std::size_t k = 0; k < step.stress.size(); ++k)
-      step.relaxed_stress[k] += left * step.branch_stress[i][k];
+      step.relaxed_stress[k] += decay * step.branch_stress[i][k];
   }
 }
 
@@ -223,7 +223,7 @@ ShellCarcass::Energies ShellCarcass::accept(Step& step) const {
 /// exact for an even change of strain.
 void ShellCarcass::accept_branches(Step& step, Energies& total) const {
   for (std::size_t i = 0; i < branches_.size(); ++i) {
-    const Decay decay(branches_[i], step.h);
+    const BranchStep branch(branches_[i], step.h);
     const double g = branches_[i].modulus;
     for (int j = 0; j + 1 < layout_.rows; ++j) {
       Double4 work = {}, change = {};
@@ -235,9 +235,9 @@ void ShellCarcass::accept_branches(Step& step, Energies& total) const {
           double *strain = step.branch_strain[i].data() + n, *stress = step.branch_stress[i].data() + n;
           const Double4 e = valid * (load(step.new_strains.data() + n) - load(step.strains.data() + n)),
                         u = load(step.stress_change.data() + n), h = load(strain), s = load(stress);
-          const Double4 h_new = decay.left * h + decay.taken * e,
-                        s_new = decay.left * s + g * decay.taken * u;
-          work += (decay.taken * s + g * decay.taken_mean * u) * e;
+          const Double4 h_new = branch.decay * h + branch.response * e,
+                        s_new = branch.decay * s + g * branch.response * u;
+          work += (branch.response * s + g * branch.mean_response * u) * e;
           change += s_new * h_new - s * h;
           store(strain, h_new);
           store(stress, s_new);

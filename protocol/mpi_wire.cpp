@@ -60,15 +60,16 @@ MpiWire::~MpiWire() {
 }
 
 void MpiWire::send(int to, MessageKind kind, Bytes payload) {
+  FURROW_ASSERT(in_range(to, nodes_), to, nodes_);
   post(sends_, data_, to, static_cast<int>(kind), std::move(payload));
 }
 
 void MpiWire::send_control(int to, Bytes payload) {
+  FURROW_ASSERT(in_range(to, nodes_), to, nodes_);
   post(control_sends_, control_, to, 0, std::move(payload));
 }
 
 void MpiWire::post(std::deque<PendingSend>& sends, const Communicator& comm, int to, int tag, Bytes payload) {
-  FURROW_ASSERT(in_range(to, nodes_), to, nodes_);
   if (payload.size() > static_cast<std::size_t>(INT_MAX))
     throw Error(ExitCode::rank_lost, "a message of more than 2 GiB cannot be sent");
   complete(sends);

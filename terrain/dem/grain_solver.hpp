@@ -39,7 +39,7 @@ struct SolverParams {
   double smallest = 0.0;  // radius of any grain, m; 0: all have the reference radius
   double largest = 0.0;   // m; 0: as above
   Bin bin;
-  double gravity = kStandardGravity;  // m/s²
+  Vec3 gravity = standard_gravity();  // m/s²
   double skin = 0.0;                  // neighbours are listed within the sum of their radii + skin, m
   int threads = 1;
   Precision precision = Precision::mixed;
@@ -59,7 +59,7 @@ struct Accounts {
   Vec3 surface_impulse = Vec3::Zero();  // N s
   double floor_force = 0.0;             // last step, N
   double kinetic = 0.0;                 // now, J
-  double height = 0.0;                  // Σ m z / m₀ now, m
+  double height = 0.0;                  // Σ m h / m₀ now, h along GrainSolver::up(), m
   Vec3 velocity = Vec3::Zero();         // Σ m v / m₀ now, m/s
   std::int64_t contacts = 0;            // last step
   double max_overlap = 0.0;             // met since reset, m
@@ -119,6 +119,8 @@ class GrainSolver {
   void reset_accounts();
   /// Wakes the strip of a grain whose motion was set from outside.
   void wake(int grain);
+  /// The direction against gravity, a unit vector, along which heights are measured; z without gravity.
+  const Vec3& up() const { return up_; }
   /// Σ m / m₀ of all grains.
   double relative_mass() const;
   /// Current index of the grain with this id. @pre there is one
@@ -177,6 +179,7 @@ class GrainSolver {
   void reduce(double dt, bool measure);
 
   SolverParams params_;
+  Vec3 up_;
   SolverCoefficients coefficients_;
   double drag_ = 0.0;
   Grains grains_;

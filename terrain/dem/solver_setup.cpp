@@ -18,6 +18,7 @@ SolverParams solver_params(const DemOptions& o) {
   SolverParams p;
   p.law = law_from(o.law);
   p.rolling = o.rolling_friction > 0.0;
+  p.gravity = o.gravity;
   p.precision = precision_from(o.precision);
   p.grain = grain_properties(o.radius, o.density);
   p.smallest = smallest_radius(o), p.largest = largest_radius(o);

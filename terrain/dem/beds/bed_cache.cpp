@@ -33,6 +33,7 @@ std::string bed_digest(const DemOptions& o) {
   add(o.periodic_x);
   add(o.seed);
   add(settle_step(o));
+  if (o.gravity != standard_gravity()) hash.add(o.gravity.data(), 3 * sizeof(double));
   if (!o.bed.empty()) add_file(hash, o.bed);
   return hash.hex();
 }

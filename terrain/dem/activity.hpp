@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "protocol/core/assert.hpp"
+#include "protocol/core/vec.hpp"
 #include "terrain/dem/strips.hpp"
 
 namespace furrow::terrain::dem {
@@ -32,6 +33,12 @@ class Activity {
     double speed = 0.0;        // of each, m/s
     double sleep_force = 0.0;  // net force on each, N
     double wake_force = 0.0;   // net force on one grain that wakes its strip, N
+  };
+
+  /// Of grains when they fell asleep.
+  struct Stopped {
+    double kinetic = 0.0;          // J
+    Vec3 velocity = Vec3::Zero();  // Σ m v / m₀, m/s
   };
 
   void limit(const Limits& limits) {
@@ -54,10 +61,10 @@ class Activity {
   }
 
   /// Calm strips where `busy(k)` is false fall asleep, strips pushed too hard or busy wake.
-  /// Sets what stops moving to rest and returns its kinetic energy, J.
+  /// Sets what stops moving to rest and returns the motion that this took away.
   template <class Busy>
-  double update(Strips& strips, Grains& grains, const Busy& busy) const {
-    double removed = 0.0;
+  Stopped update(Strips& strips, Grains& grains, const Busy& busy) const {
+    Stopped stopped;
     for (int k = 0; k < strips.count(); ++k) {
       Strip& strip = strips[k];
       if (strip.asleep ? woken(strip) : !calm(strip)) {
@@ -66,11 +73,13 @@ class Activity {
         if (busy(strip)) {
           strip.asleep = false, strip.calm = 0;
         } else if (!strip.asleep) {
-          removed += put_to_sleep(strip, grains);
+          stopped.kinetic += strip.motion.kinetic;
+          stopped.velocity += Vec3(strip.motion.velocity.x, strip.motion.velocity.y, strip.motion.velocity.z);
+          put_to_sleep(strip, grains);
         }
       }
     }
-    return removed;
+    return stopped;
   }
   /// Wakes the strips of a sorted range into which a moving grain came.
   static void wake_moving(const Resorted& range, Strips& strips, const Grains& grains);
@@ -79,7 +88,7 @@ class Activity {
   static constexpr std::uint8_t kList = 1, kLoads = 2;
   bool calm(const Strip& strip) const;
   bool woken(const Strip& strip) const { return strip.motion.max_net_force > limits_.wake_force; }
-  static double put_to_sleep(Strip& strip, Grains& grains);
+  static void put_to_sleep(Strip& strip, Grains& grains);
 
   Limits limits_;
   std::vector<std::uint8_t> need_;  // per strip

@@ -263,11 +263,13 @@ void GrainSolver::feel(Strip& strip, const Loads& loads) const {
   const double* const force = flat(loads.force);
   const double* const position = flat(grains_.position.data() + strip.first);
   const double per_radius = 1.0 / params_.grain.radius;
-  Double4 largest{};
+  Double4 largest{}, held{};
   for (int g = 0; g < kQuad * strip.grains(); g += kQuad) {
     const Double4 f = load_lanes<Double4>(force + g) + cube(position[g + 3] * per_radius) * weight;
     largest = larger(largest, f * f);
+    held += f;
   }
+  store(strip.motion.held, held);
   strip.motion.max_net_force = std::sqrt(sum_of(largest));
 }
 
@@ -285,7 +287,7 @@ void GrainSolver::integrate(Strip& strip, const Loads& loads, double dt, bool me
   double* const spin = flat(grains_.spin.data() + strip.first);
   double* const position = flat(grains_.position.data() + strip.first);
   Double4 moving{}, spinning{}, work{}, momentum{}, moment{}, fastest{}, net{};
-  Double4 most_pushed{};  // largest squares of the acceleration
+  Double4 pushed{}, most_pushed{};  // Σ m a / m₀, largest squares of the acceleration
   for (int g = 0; g < kQuad * n; g += kQuad) {
     const Double4 f = load_lanes<Double4>(force + g), t = load_lanes<Double4>(torque + g);
     if constexpr (kSizes) {
@@ -308,7 +310,10 @@ void GrainSolver::integrate(Strip& strip, const Loads& loads, double dt, bool me
     momentum += weighed(v, m);
     moment += weighed(x, m);
     fastest = larger(fastest, v2);
-    if constexpr (kMaySleep) most_pushed = larger(most_pushed, weighed(a * a, m * m));
+    if constexpr (kMaySleep) {
+      pushed += weighed(a, m);
+      most_pushed = larger(most_pushed, weighed(a * a, m * m));
+    }
     if (measure) net[0] += mass * m * std::sqrt(sum_of(a * a));
   }
   MotionTotals& sums = strip.motion;
@@ -320,6 +325,7 @@ void GrainSolver::integrate(Strip& strip, const Loads& loads, double dt, bool me
   // Not a number when one of the sums is not: the strip will be sorted, and the grain be found.
   sums.max_speed = std::sqrt(sum_of(fastest)) + 0.0 * (sums.kinetic + sum_of(moment));
   sums.max_net_force = mass * std::sqrt(sum_of(most_pushed));
+  store(sums.held, mass * pushed);
   sums.net_force = net[0];
   strip.travel += dt * sums.max_speed;
 }
@@ -332,9 +338,11 @@ void GrainSolver::change_activity() {
   activity_.limit({kSleepMeanSpeed * speed, kSleepSpeed * speed, kSleepForce * mean_contact_force_,
                    kWakeForce * mean_contact_force_});
   const double margin = 2.0 * strips_.options().reach;
-  accounts_.slept += activity_.update(strips_, grains_, [&](const Strip& strip) {
+  const Activity::Stopped stopped = activity_.update(strips_, grains_, [&](const Strip& strip) {
     return surfaces_.any() && surfaces_.low_between(strip.x_min - margin, strip.x_max + margin);
   });
+  accounts_.slept += stopped.kinetic;
+  accounts_.momentum_removed += params_.grain.mass * stopped.velocity;
 }
 
 double GrainSolver::top() const {
@@ -347,7 +355,7 @@ double GrainSolver::top() const {
 void GrainSolver::reduce(double dt, bool measure) {
   Accounts& a = accounts_;
   double power = 0.0, work = 0.0, contact_force = 0.0, net_force = 0.0;
-  Quad wall;
+  Quad wall, held;
   a.elastic = a.floor_force = a.kinetic = a.height = 0.0;
   a.velocity.setZero();
   a.contacts = a.active = 0;
@@ -366,11 +374,16 @@ void GrainSolver::reduce(double dt, bool measure) {
     a.velocity += Vec3(m.velocity.x, m.velocity.y, m.velocity.z);
     a.contacts += c.contacts;
     a.max_overlap = std::max(a.max_overlap, c.max_overlap);
-    if (!strips_[k].asleep) a.active += strips_[k].grains();
+    if (strips_[k].asleep) {
+      add(held, load(m.held));
+    } else {
+      a.active += strips_[k].grains();
+    }
   }
   // Forces of the step act on velocities that change during it: Σ F·v at mid-step = Σ F·v + ½ dt Σ (F·a + T·α).
   a.contact_work += dt * (power + 0.5 * dt * work);
   a.wall_impulse += dt * Vec3(wall.x, wall.y, wall.z);
+  a.momentum_removed += dt * Vec3(held.x, held.y, held.z);
   if (measure) {
     a.contact_force = contact_force;
     a.net_force = net_force;

@@ -66,7 +66,9 @@ struct Accounts {
   double contact_force = 0.0;           // Σ |F|, N, last measured step
   double net_force = 0.0;               // Σ |net force| of grains, N, last measured step
   double slept = 0.0;                   // kinetic energy of grains when they fell asleep, J
-  std::int64_t active = 0;              // grains awake, last step
+  // Momentum of grains when they fell asleep, and the impulse of what pushes on those asleep, kg m/s.
+  Vec3 momentum_removed = Vec3::Zero();
+  std::int64_t active = 0;  // grains awake, last step
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<Accounts> auto& s) {
@@ -84,6 +86,7 @@ void visit_fields(Visit&& visit, FieldsOf<Accounts> auto& s) {
   visit(Field{"contact_force", "N"}, s.contact_force);
   visit(Field{"net_force", "N"}, s.net_force);
   visit(Field{"slept", "J"}, s.slept);
+  visit(Field{"momentum_removed", "kg m/s"}, s.momentum_removed);
   visit(Field{"active"}, s.active);
 }
 
@@ -174,7 +177,7 @@ class GrainSolver {
   void finish_strip(int k, const Loads& loads, double dt, bool measure);
   template <bool kMaySleep, bool kSizes>
   void integrate(Strip& strip, const Loads& loads, double dt, bool measure);
-  void feel(Strip& strip, const Loads& loads) const;
+  void feel(Strip& strip, const Loads& loads) const;  // of a sleeping strip
   void change_activity();
   void reduce(double dt, bool measure);
 

@@ -15,6 +15,7 @@ struct FewGrains {
   double gravity = 0.0;  // m/s²
   double slope = 0.0;    // rad, of a floor that falls along +x: gravity is turned from −z towards +x
   Precision precision = Precision::full;
+  bool activity = false;
   double smallest = 0.0, largest = 0.0;  // m; 0: all have options.radius
 
   FewGrains() {
@@ -34,6 +35,7 @@ struct FewGrains {
     params.bin.periodic_y = options.periodic_y();
     params.gravity = gravity * Vec3(std::sin(slope), 0.0, -std::cos(slope));
     params.precision = precision;
+    params.activity = activity;
     params.smallest = smallest, params.largest = largest;
     params.skin = 0.3 * options.radius;
     GrainSolver solver(params);

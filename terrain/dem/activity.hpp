@@ -7,7 +7,9 @@
 // is awake the net force on every sleeping grain is evaluated in every step, and since the grain stands still that
 // holds all that changed since it fell asleep. Above a limit the whole strip wakes, before its grains have moved at
 // all; a front of waking runs one strip per step, faster than any wave in the bed. A tire that comes near and a
-// moving grain that comes in wake it too. Decisions use sums of fixed order: they do not depend on threads.
+// moving grain that comes in wake it too. The mean contact force is sampled every `kSampleSteps` steps; a strip that
+// sleeps counts as when it was last evaluated at such a step. Decisions use sums of fixed order: they do not depend on
+// threads.
 #pragma once
 
 #include <cstdint>
@@ -25,6 +27,7 @@ inline constexpr double kSleepSpeed = 0.1;       // every grain
 inline constexpr double kSleepForce = 0.05;
 inline constexpr double kWakeForce = 0.1;
 inline constexpr int kCalmSteps = 50;
+inline constexpr int kSampleSteps = 100;  // between samples of the mean contact force
 
 class Activity {
  public:

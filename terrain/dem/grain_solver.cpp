@@ -330,10 +330,22 @@ void GrainSolver::integrate(Strip& strip, const Loads& loads, double dt, bool me
   strip.travel += dt * sums.max_speed;
 }
 
+void GrainSolver::take_samples() {
+  samples_.resize(strips_.count());
+  double force = 0.0;
+  std::int64_t contacts = 0;
+  for (int k = 0; k < strips_.count(); ++k) {
+    const ContactTotals& now = strips_[k].contact;
+    if (activity_.evaluated(k)) samples_[k] = {now.contact_force, now.contacts};
+    force += samples_[k].force;
+    contacts += samples_[k].contacts;
+  }
+  if (contacts > 0) mean_contact_force_ = force / static_cast<double>(contacts);
+  until_sample_ = kSampleSteps;
+}
+
 void GrainSolver::change_activity() {
   if (!params_.activity) return;
-  if (mean_contact_force_ == 0.0)
-    mean_contact_force_ = accounts_.contact_force / std::max<std::int64_t>(1, accounts_.contacts);
   const double speed = std::sqrt(params_.gravity.norm() * params_.grain.radius);
   activity_.limit({kSleepMeanSpeed * speed, kSleepSpeed * speed, kSleepForce * mean_contact_force_,
                    kWakeForce * mean_contact_force_});
@@ -416,7 +428,8 @@ int GrainSolver::step(double dt, bool measure) {
   FURROW_ASSERT(grains_.position.size() == static_cast<std::size_t>(grains_.count + Grains::kBeyond),
                 grains_.position.size());
   const auto threads = static_cast<std::size_t>(std::max(1, params_.threads));
-  if (params_.activity && mean_contact_force_ == 0.0) measure = true;
+  const bool sample = sample_now();
+  measure = measure || sample;
   activity_.plan(strips_);
   if (params_.precision == Precision::mixed) {
     if (single_.size() < threads) single_.resize(threads);
@@ -436,6 +449,8 @@ int GrainSolver::step(double dt, bool measure) {
     finish_chunk(chunks_[c], before, dt, measure);
   }
   reduce(dt, measure);
+  if (sample) take_samples();
+  if (params_.activity) --until_sample_;
   change_activity();
   // A grain that is not a number or went far is met when its strip is sorted, one that slips out when its wall pushes.
   for (const Resorted& range : strips_.rebuild_moved(grains_, dt, params_.threads)) {

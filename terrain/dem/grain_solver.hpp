@@ -119,6 +119,8 @@ class GrainSolver {
   SurfaceContacts& surfaces() { return surfaces_; }
   const SurfaceContacts& surfaces() const { return surfaces_; }
   const Accounts& accounts() const { return accounts_; }
+  /// Decides about sleep and waking; sampled every kSampleSteps steps while grains may sleep, N.
+  double mean_contact_force() const { return mean_contact_force_; }
   void reset_accounts();
   /// Wakes the strip of a grain whose motion was set from outside.
   void wake(int grain);
@@ -179,6 +181,10 @@ class GrainSolver {
   void integrate(Strip& strip, const Loads& loads, double dt, bool measure);
   void feel(Strip& strip, const Loads& loads) const;  // of a sleeping strip
   void change_activity();
+  bool sample_now() const { return params_.activity && until_sample_ == 0; }
+  /// Takes samples of the contact forces of the strips that this step evaluated. Those of sleeping strips stay: nothing
+  /// moves there.
+  void take_samples();
   void reduce(double dt, bool measure);
 
   SolverParams params_;
@@ -189,7 +195,14 @@ class GrainSolver {
   Strips strips_;
   SurfaceContacts surfaces_;
   Activity activity_;
-  double mean_contact_force_ = 0.0;  // of the bed when grains were first allowed to sleep, N
+  /// Of the contacts that a strip lists, when they were last evaluated in a step that took samples.
+  struct ForceSample {
+    double force = 0.0;  // Σ |F|, N
+    std::int64_t contacts = 0;
+  };
+  std::vector<ForceSample> samples_;  // per strip
+  std::int64_t until_sample_ = 0;     // steps
+  double mean_contact_force_ = 0.0;   // of the bed, by the samples, N
   Accounts accounts_;
   std::vector<Chunk> chunks_;
   std::vector<Scratch<float>> single_;  // per thread

@@ -145,6 +145,40 @@ TEST(Activity, impulses_on_a_bed_that_falls_asleep_and_is_pressed_are_its_moment
   }
 }
 
+TEST(Activity, mean_contact_force_follows_the_load) {
+  const DemOptions options = bed_options(20e3);
+  const Archive archive = settled(options);
+  GrainSolver asleep = bed(options, archive, true), awake = bed(options, archive, false);
+  for (int k = 0; k < 1500; ++k) asleep.step(options.step), awake.step(options.step);
+  const double before = asleep.mean_contact_force();
+  press(asleep, options, awake.top(), 0.1, 20, 100);
+  press(awake, options, awake.top(), 0.1, 20, 100);
+  awake.step(options.step, true);
+  const double all = awake.accounts().contact_force / static_cast<double>(awake.accounts().contacts);
+  EXPECT_GT(all, 1.2 * before);
+  EXPECT_NEAR(asleep.mean_contact_force(), all, 0.05 * all);
+}
+
+TEST(Activity, mean_contact_force_has_the_same_bits_after_a_restart_between_two_samples) {
+  const DemOptions options = bed_options(20e3);
+  GrainSolver solver = bed(options, settled(options), true);
+  for (int k = 0; k < kSampleSteps + kSampleSteps / 2; ++k) solver.step(options.step);
+  Archive saved;
+  solver.save(saved);
+  SolverParams params = solver.params();
+  params.threads = 2;
+  GrainSolver again(params);
+  again.set_coefficients(solver.coefficients());
+  again.restore(saved);
+  const double before = solver.mean_contact_force();
+  for (int k = 0; k < 3 * kSampleSteps; ++k) {
+    solver.step(options.step), again.step(options.step);
+    ASSERT_EQ(solver.mean_contact_force(), again.mean_contact_force()) << k;
+  }
+  EXPECT_NE(solver.mean_contact_force(), before);
+  EXPECT_EQ(hash_of(solver), hash_of(again));
+}
+
 TEST(Activity, pressed_sleeping_bed_pushes_back_like_one_that_is_all_awake) {
   for (double cohesion : {0.0, 40e3}) {
     const DemOptions options = bed_options(cohesion);

@@ -9,7 +9,6 @@
 
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
-#include "protocol/core/constants.hpp"
 #include "protocol/core/error.hpp"
 #include "vehicle/multibody/system.hpp"
 
@@ -174,7 +173,7 @@ vehicle::BodyState DrawbarRig::moving(double axle_height) const {
 void DrawbarRig::build(double axle_height) {
   FURROW_ASSERT(std::isfinite(axle_height), axle_height);
   FURROW_ASSERT(radius_ > 0.0, radius_);
-  system_.emplace();
+  system_.emplace(options_.gravity);
   placed_height_ = axle_height;
   vehicle::BodyState state = moving(axle_height);
   chassis_ = system_->add_body("chassis", options_.chassis_mass, kGuidedInertia * Mat3::Identity(), state);
@@ -306,6 +305,7 @@ void DrawbarRig::measure_end() {
   report_.vertical_momentum =
       options_.carrier_mass * report_.vertical_speed + (options_.rim_mass + tire_.mass) * rim.velocity.z();
   report_.joint_drift = system_->max_violation();
+  report_.gravity = options_.gravity;
 }
 
 WheelReport DrawbarRig::report(int wheel) const {
@@ -319,7 +319,7 @@ void DrawbarRig::derive(int /*subject*/, const LineView& line, std::span<double>
   const double pull = line["drawbar_pull_N"], torque = line["spindle_torque_Nm"];
   DrawbarRow row;
   row.tractive_efficiency = ratio(pull * line["speed_m_per_s"], torque * line["spin_rad_per_s"]);
-  row.motion_resistance = ratio(torque / radius_ - pull, report_.carried_mass * kStandardGravity);
+  row.motion_resistance = ratio(torque / radius_ - pull, report_.load());
   get_values(row, values);
 }
 

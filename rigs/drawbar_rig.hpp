@@ -5,12 +5,13 @@
 
 #include <memory>
 
+#include "protocol/core/constants.hpp"
 #include "protocol/core/fields.hpp"
 #include "rigs/rig.hpp"
 
 namespace furrow::rigs {
 
-/// Every field is the scenario key `rig.<name>`; `lateral` is that of an entry of `rig.wheels`.
+/// Every field but the gravity is the scenario key `rig.<name>`; `lateral` is that of an entry of `rig.wheels`.
 struct DrawbarRigOptions {
   std::string mode = "fixed_angular_speed";  // fixed_angular_speed: ω given, v = ω r (1 − s)
                                              // fixed_speed: v given, ω = v / (r (1 − s))
@@ -34,6 +35,7 @@ struct DrawbarRigOptions {
   double rim_mass = 15.0;              // kg
   double rim_spin_inertia = 0.7;       // kg m², about the axle
   double rim_diametral_inertia = 0.4;  // kg m²
+  Vec3 gravity = standard_gravity();   // m/s²
 };
 
 template <class Visit>

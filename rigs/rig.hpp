@@ -8,6 +8,7 @@
 
 #include "protocol/core/archive.hpp"
 #include "protocol/core/column.hpp"
+#include "protocol/core/constants.hpp"
 #include "protocol/core/fields.hpp"
 #include "protocol/core/outcome.hpp"
 #include "protocol/core/surface.hpp"
@@ -30,6 +31,12 @@ struct WheelReport {
   double vertical_momentum = 0.0;  // of all mass that the wheel carries (carrier, rim, added tire), kg m/s
   double carried_mass = 0.0;       // kg, including the tire's added mass
   double joint_drift = 0.0;        // largest constraint violation, m or rad
+
+  /// On all that the wheel carries, W, m/s².
+  Vec3 gravity = standard_gravity();
+
+  /// Weight on the undisturbed ground of all that the wheel carries, N.
+  double load() const { return -carried_mass * gravity.z(); }
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<WheelReport> auto& s) {
@@ -45,6 +52,7 @@ void visit_fields(Visit&& visit, FieldsOf<WheelReport> auto& s) {
   visit(Field{"vertical_momentum", "kg m/s"}, s.vertical_momentum);
   visit(Field{"carried_mass", "kg"}, s.carried_mass);
   visit(Field{"joint_drift", "m or rad"}, s.joint_drift);
+  visit(Field{"gravity", "m/s²"}, s.gravity);
 }
 
 /// Something that a rig measures and that has a table of results: a wheel, a body, the vehicle.

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "protocol/core/constants.hpp"
 #include "protocol/core/fields.hpp"
 #include "terrain/terrain.hpp"
 
@@ -26,6 +27,7 @@ struct TerrainContext {
   int threads = 1;                // OpenMP threads while stepping
   int settle_threads = 1;         // OpenMP threads while a bed settles
   bool contact_tangents = false;  // tire.contact_tangent of any tire: send them beside the forces
+  Vec3 gravity = standard_gravity();  // m/s²; acts on the grains, the rigid ground has no weight
 };
 
 /// The keys that every engine shares.

@@ -29,6 +29,7 @@ class Tire {
   virtual MassProperties mass_properties() const = 0;
   virtual double radius() const = 0;       // of the undeformed contact surface, m
   virtual double tread_width() const = 0;  // m
+  virtual Vec3 gravity() const = 0;        // that it was made for, W, m/s²
   virtual int coordinates() const = 0;     // unknowns
 
   /// Gauge pressure from now on, Pa. A rigid tire does not mind.
@@ -43,7 +44,7 @@ class Tire {
 
   /// Integrates from the trajectory's start to its end in `substeps` equal steps. `forces` act constantly; those that
   /// come with tangents answer to the motion, where the model can (TireDescription::takes_tangents).
-  /// Gravity (0, 0, −9.81 m/s²) acts.
+  /// gravity() acts.
   /// @returns failure when the equations have no solution, a force is not finite, or the tire left the model's range
   /// @pre placed; substeps > 0; one force for each vertex, vertices of the mesh
   virtual Outcome advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) = 0;

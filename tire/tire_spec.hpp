@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "protocol/core/constants.hpp"
 #include "protocol/core/fields.hpp"
 #include "tire/pressure_schedule.hpp"
 #include "tire/tire.hpp"
@@ -74,11 +75,12 @@ struct TireShape {
   double tread_width = 0.0;  // m
 };
 
-/// How a model computes; what is not given is as the model takes it by itself.
+/// How a model computes, and under which gravity; what is not given is as the model takes it by itself.
 struct TireContext {
   int threads = 1;
   std::optional<double> tolerance;  // of the solver's residual, relative
   std::optional<double> renewal;    // change of shape at which the solver renews its factors
+  Vec3 gravity = standard_gravity();  // m/s²
 };
 
 class StaticTest;

@@ -9,7 +9,6 @@
 #include "nodes/launch/signals.hpp"
 #include "nodes/scenario/scenario.hpp"
 #include "protocol/core/clock.hpp"
-#include "protocol/core/constants.hpp"
 #include "terrain/dem/beds/bed_compaction.hpp"
 #include "terrain/dem/beds/bed_preparation.hpp"
 #include "terrain/dem/beds/bed_statistics.hpp"
@@ -48,7 +47,7 @@ json bed_json(const scenario::Scenario& s, const terrain::dem::DemOptions& o,
   j["max_overlap_m"] = bed.max_overlap;
   j["settled"] = prepared.settled.settled;
   j["force_residual"] = prepared.settled.force_ratio;
-  j["weight_N"] = mass * kStandardGravity;
+  j["weight_N"] = mass * o.gravity.norm();
   j["floor_force_error"] = prepared.settled.floor_error;
   j["settling_time_s"] = prepared.settled.time;
   j["settling_step_s"] = terrain::dem::settle_step(o);

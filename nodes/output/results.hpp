@@ -20,7 +20,7 @@ namespace furrow::output {
 struct WheelEnd {
   const SeriesBuilder& series;   // totals
   const SpindleReport& tire;     // the last one
-  double carried_mass = 0.0;     // kg
+  double load = 0.0;             // weight on the undisturbed ground of all that it carries, N
   Vec3 heading = Vec3::UnitX();  // unit, W
 };
 

@@ -11,7 +11,6 @@
 
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
-#include "protocol/core/constants.hpp"
 #include "tire/wheel_axes.hpp"
 
 namespace furrow::output {
@@ -133,7 +132,7 @@ void SeriesBuilder::measure_instants(const StepReports& r) {
   // Vertical motion and height of the carried mass; its imposed horizontal motion exchanges no net energy at
   // constant speed and is in the raw pull's work while it changes.
   const double mass = r.wheel.carried_mass, w = r.wheel.vertical_speed, u = r.wheel.speed;
-  row.carried_energy = 0.5 * mass * (w * w + u * u) + mass * kStandardGravity * r.wheel.axle_height;
+  row.carried_energy = 0.5 * mass * (w * w + u * u) - (mass * r.wheel.gravity).dot(r.rim.position);
   row.contacts_tire = static_cast<double>(r.contact.contacts);
   row.contacts_terrain = static_cast<double>(r.terrain.contacts);
   row.active_share =

@@ -10,7 +10,6 @@
 #include "nodes/output/statistics.hpp"
 #include "nodes/scenario/wheel_geometry.hpp"
 #include "protocol/core/assert.hpp"
-#include "protocol/core/constants.hpp"
 #include "protocol/core/hash.hpp"
 #include "terrain/rut.hpp"
 
@@ -203,7 +202,7 @@ void add_rut(const WheelInput& in, Json& json) {
 }
 
 void add_mobility(const WheelInput& in, const Window& w, Json& json) {
-  const double load = in.end.carried_mass * kStandardGravity, radius = in.card().tire_radius;
+  const double load = in.end.load, radius = in.card().tire_radius;
   if (in.table.find(kPull)) json[kPull] = pull_statistics(in, w, load);
   const auto mean = [&](auto get) { return w.mean(get); };
   const double pull = w.mean_of(kPull);

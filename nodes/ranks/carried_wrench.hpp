@@ -3,7 +3,6 @@
 
 #include "nodes/ranks/node.hpp"
 #include "protocol/core/assert.hpp"
-#include "protocol/core/constants.hpp"
 
 namespace furrow::ranks {
 
@@ -17,11 +16,10 @@ inline Vec3 spin_momentum(const MassProperties& mass, const RimState& rim) {
 ///   F_sent = F + m (Δv/H − g),   M_sent = M + Δ(R J Rᵀ ω)/H
 /// @pre duration > 0
 inline Wrench carried_wrench(const Wrench& spindle, const MassProperties& mass, const RimState& from,
-                             const RimState& to, double duration) {
+                             const RimState& to, double duration, const Vec3& gravity) {
   FURROW_ASSERT(duration > 0.0 && mass.mass >= 0.0, duration, mass.mass);
   Wrench sent;
-  sent.force = spindle.force + mass.mass * (to.velocity - from.velocity) / duration +
-               Vec3(0.0, 0.0, mass.mass * kStandardGravity);
+  sent.force = spindle.force + mass.mass * (to.velocity - from.velocity) / duration - mass.mass * gravity;
   sent.moment = spindle.moment + (spin_momentum(mass, to) - spin_momentum(mass, from)) / duration;
   return sent;
 }

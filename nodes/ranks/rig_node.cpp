@@ -99,7 +99,7 @@ class RigNode : public Node {
     if (context_.profile) output::write_profile(context_.directory / "profile.json", reports);
     std::vector<output::WheelEnd> wheels;
     for (int k = 0; k < rig_->wheel_count(); ++k)
-      wheels.push_back({series_[k].wheel(), tires_[k], rig_->report(k).carried_mass, rig_->heading(k)});
+      wheels.push_back({series_[k].wheel(), tires_[k], rig_->report(k).load(), rig_->heading(k)});
     results_->finish(reports, wheels, wall_clock() - wall_start_, stopped);
   }
 

@@ -117,7 +117,8 @@ class TireNode : public Node {
   void account(double duration) {
     const RimState &from = trajectory_.start(), &to = trajectory_.end();
     report_.spindle = tire_->spindle_wrench();
-    report_.wrench = carried_wrench(report_.spindle, tire_->mass_properties(), from, to, duration);
+    report_.wrench =
+        carried_wrench(report_.spindle, tire_->mass_properties(), from, to, duration, tire_->gravity());
     const Vec3 turned = 0.5 * duration * (from.angular_velocity + to.angular_velocity);
     report_.rim_work -=
         report_.spindle.force.dot(to.position - from.position) + report_.spindle.moment.dot(turned);

@@ -30,16 +30,15 @@ bool Activity::calm(const Strip& strip) const {
          m.max_speed < limits_.speed && m.max_net_force < limits_.sleep_force;
 }
 
-double Activity::put_to_sleep(Strip& strip, Grains& grains) {
+void Activity::put_to_sleep(Strip& strip, Grains& grains) {
   FURROW_ASSERT(!strip.asleep && strip.last <= grains.count, strip.last, grains.count);
-  const double removed = strip.motion.kinetic;
   std::fill(grains.velocity.begin() + strip.first, grains.velocity.begin() + strip.last, Quad{});
   std::fill(grains.spin.begin() + strip.first, grains.spin.begin() + strip.last, Quad{});
-  const double height = strip.motion.height;
+  const MotionTotals before = strip.motion;
   strip.motion = {};
-  strip.motion.height = height;
+  strip.motion.height = before.height;
+  strip.motion.held = before.held;
   strip.asleep = true;
-  return removed;
 }
 
 void Activity::wake_moving(const Resorted& range, Strips& strips, const Grains& grains) {

@@ -7,13 +7,16 @@
 // is awake the net force on every sleeping grain is evaluated in every step, and since the grain stands still that
 // holds all that changed since it fell asleep. Above a limit the whole strip wakes, before its grains have moved at
 // all; a front of waking runs one strip per step, faster than any wave in the bed. A tire that comes near and a
-// moving grain that comes in wake it too. Decisions use sums of fixed order: they do not depend on threads.
+// moving grain that comes in wake it too. The mean contact force is sampled every `kSampleSteps` steps; a strip that
+// sleeps counts as when it was last evaluated at such a step. Decisions use sums of fixed order: they do not depend on
+// threads.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "protocol/core/assert.hpp"
+#include "protocol/core/vec.hpp"
 #include "terrain/dem/strips.hpp"
 
 namespace furrow::terrain::dem {
@@ -24,6 +27,7 @@ inline constexpr double kSleepSpeed = 0.1;       // every grain
 inline constexpr double kSleepForce = 0.05;
 inline constexpr double kWakeForce = 0.1;
 inline constexpr int kCalmSteps = 50;
+inline constexpr int kSampleSteps = 100;  // between samples of the mean contact force
 
 class Activity {
  public:
@@ -32,6 +36,12 @@ class Activity {
     double speed = 0.0;        // of each, m/s
     double sleep_force = 0.0;  // net force on each, N
     double wake_force = 0.0;   // net force on one grain that wakes its strip, N
+  };
+
+  /// Of grains when they fell asleep.
+  struct Stopped {
+    double kinetic = 0.0;          // J
+    Vec3 velocity = Vec3::Zero();  // Σ m v / m₀, m/s
   };
 
   void limit(const Limits& limits) {
@@ -54,10 +64,10 @@ class Activity {
   }
 
   /// Calm strips where `busy(k)` is false fall asleep, strips pushed too hard or busy wake.
-  /// Sets what stops moving to rest and returns its kinetic energy, J.
+  /// Sets what stops moving to rest and returns the motion that this took away.
   template <class Busy>
-  double update(Strips& strips, Grains& grains, const Busy& busy) const {
-    double removed = 0.0;
+  Stopped update(Strips& strips, Grains& grains, const Busy& busy) const {
+    Stopped stopped;
     for (int k = 0; k < strips.count(); ++k) {
       Strip& strip = strips[k];
       if (strip.asleep ? woken(strip) : !calm(strip)) {
@@ -66,11 +76,13 @@ class Activity {
         if (busy(strip)) {
           strip.asleep = false, strip.calm = 0;
         } else if (!strip.asleep) {
-          removed += put_to_sleep(strip, grains);
+          stopped.kinetic += strip.motion.kinetic;
+          stopped.velocity += Vec3(strip.motion.velocity.x, strip.motion.velocity.y, strip.motion.velocity.z);
+          put_to_sleep(strip, grains);
         }
       }
     }
-    return removed;
+    return stopped;
   }
   /// Wakes the strips of a sorted range into which a moving grain came.
   static void wake_moving(const Resorted& range, Strips& strips, const Grains& grains);
@@ -79,7 +91,7 @@ class Activity {
   static constexpr std::uint8_t kList = 1, kLoads = 2;
   bool calm(const Strip& strip) const;
   bool woken(const Strip& strip) const { return strip.motion.max_net_force > limits_.wake_force; }
-  static double put_to_sleep(Strip& strip, Grains& grains);
+  static void put_to_sleep(Strip& strip, Grains& grains);
 
   Limits limits_;
   std::vector<std::uint8_t> need_;  // per strip

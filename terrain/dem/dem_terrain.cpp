@@ -9,7 +9,6 @@
 
 #include "protocol/core/assert.hpp"
 #include "protocol/core/clock.hpp"
-#include "protocol/core/constants.hpp"
 #include "protocol/core/error.hpp"
 #include "terrain/dem/beds/bed_generators.hpp"
 #include "terrain/dem/beds/bed_height.hpp"
@@ -131,7 +130,7 @@ class DemTerrain : public Terrain {
     const double mass = solver_.params().grain.mass;
     TerrainState s;
     s.kinetic_energy = a.kinetic;
-    s.potential_energy = mass * kStandardGravity * a.height;
+    s.potential_energy = mass * solver_.params().gravity.norm() * a.height;
     s.elastic_energy = a.elastic;
     s.dissipation = -a.contact_work - (a.elastic - a.elastic_start) + a.slept;
     s.energy_removed = a.slept;

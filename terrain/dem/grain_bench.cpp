@@ -100,7 +100,7 @@ GrainBenchResult run_grain_bench(const GrainBench& bench, const ProgressCall& pr
   result.contacts = a.contacts;
   for (int k = 0; k < solver.strips().count(); ++k) result.pairs_listed += solver.strips()[k].pairs;
   result.floor_force = a.floor_force;
-  result.weight = solver.relative_mass() * params.grain.mass * params.gravity;
+  result.weight = solver.relative_mass() * params.grain.mass * -params.gravity.z();
   result.kinetic_energy = a.kinetic;
   result.force_residual = a.contact_force > 0.0 ? a.net_force / a.contact_force : 0.0;
   result.list_rebuilds = solver.rebuilds();

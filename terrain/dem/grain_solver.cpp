@@ -29,6 +29,13 @@ Strips::Options strip_options(const SolverParams& p) {
 
 double cube(double a) { return a * a * a; }
 
+Vec3 against(const Vec3& gravity) {
+  const double strength = gravity.norm();
+  return strength > 0.0 ? Vec3(-gravity / strength) : Vec3(Vec3::UnitZ());
+}
+
+Double4 lanes_of(const Vec3& v) { return Double4{v.x(), v.y(), v.z(), 0.0}; }
+
 template <class T>
 void grow(std::vector<T>& v, std::size_t n) {
   if (v.size() < n) v.resize(n + n / 4);
@@ -38,13 +45,14 @@ void grow(std::vector<T>& v, std::size_t n) {
 
 GrainSolver::GrainSolver(const SolverParams& params)
     : params_(params),
+      up_(against(params.gravity)),
       strips_(strip_options(params)),
       surfaces_(params.grain, params.largest_radius(), params.rolling) {
   FURROW_ASSERT(params.grain.radius > 0.0, params.grain.radius);
   FURROW_ASSERT(params.grain.mass > 0.0 && params.grain.inertia > 0.0, params.grain.mass,
                 params.grain.inertia);
   FURROW_ASSERT(params.bin.length > 0.0 && params.bin.width > 0.0, params.bin.length, params.bin.width);
-  FURROW_ASSERT(params.skin >= 0.0 && params.gravity >= 0.0, params.skin, params.gravity);
+  FURROW_ASSERT(params.skin >= 0.0 && params.gravity.allFinite(), params.skin, params.gravity.norm());
   FURROW_ASSERT(params.threads > 0, params.threads);
   FURROW_ASSERT(!params.sizes() || params.smallest > 0.0, params.smallest, params.largest);
   FURROW_ASSERT(!params.sizes() || params.law == LawKind::mindlin, params.smallest, params.largest);
@@ -113,7 +121,8 @@ void GrainSolver::reset_accounts() {
     accounts_.kinetic +=
         mass * (0.5 * params_.grain.mass * (v.x * v.x + v.y * v.y + v.z * v.z) +
                 0.5 * params_.grain.inertia * size * size * (w.x * w.x + w.y * w.y + w.z * w.z));
-    accounts_.height += mass * grains_.position[g].z;
+    const Quad& x = grains_.position[g];
+    accounts_.height += mass * up_.dot(Vec3(x.x, x.y, x.z));
     accounts_.velocity += mass * Vec3(v.x, v.y, v.z);
   }
   for (int k = 0; k < strips_.count(); ++k)
@@ -250,15 +259,17 @@ void GrainSolver::finish_strip(int k, const Loads& loads, double dt, bool measur
 }
 
 void GrainSolver::feel(Strip& strip, const Loads& loads) const {
-  const Double4 weight{0.0, 0.0, -params_.gravity * params_.grain.mass, 0.0};
+  const Double4 weight = lanes_of(params_.gravity * params_.grain.mass);
   const double* const force = flat(loads.force);
   const double* const position = flat(grains_.position.data() + strip.first);
   const double per_radius = 1.0 / params_.grain.radius;
-  Double4 largest{};
+  Double4 largest{}, held{};
   for (int g = 0; g < kQuad * strip.grains(); g += kQuad) {
     const Double4 f = load_lanes<Double4>(force + g) + cube(position[g + 3] * per_radius) * weight;
     largest = larger(largest, f * f);
+    held += f;
   }
+  store(strip.motion.held, held);
   strip.motion.max_net_force = std::sqrt(sum_of(largest));
 }
 
@@ -269,14 +280,14 @@ void GrainSolver::integrate(Strip& strip, const Loads& loads, double dt, bool me
   double per_mass = 1.0 / mass, per_inertia = 1.0 / inertia;
   double m = 1.0, i = 1.0;  // of a grain, in those of the reference radius
   const double keep = 1.0 / (1.0 + dt * drag_);
-  const Double4 gravity{0.0, 0.0, -params_.gravity, 0.0};
+  const Double4 gravity = lanes_of(params_.gravity);
   const int n = strip.grains();
   const double *const force = flat(loads.force), *const torque = flat(loads.torque);
   double* const velocity = flat(grains_.velocity.data() + strip.first);
   double* const spin = flat(grains_.spin.data() + strip.first);
   double* const position = flat(grains_.position.data() + strip.first);
-  Double4 moving{}, spinning{}, work{}, momentum{}, height{}, fastest{}, net{};
-  Double4 most_pushed{};  // largest squares of the acceleration
+  Double4 moving{}, spinning{}, work{}, momentum{}, moment{}, fastest{}, net{};
+  Double4 pushed{}, most_pushed{};  // Σ m a / m₀, largest squares of the acceleration
   for (int g = 0; g < kQuad * n; g += kQuad) {
     const Double4 f = load_lanes<Double4>(force + g), t = load_lanes<Double4>(torque + g);
     if constexpr (kSizes) {
@@ -297,9 +308,12 @@ void GrainSolver::integrate(Strip& strip, const Loads& loads, double dt, bool me
     spinning += weighed(w * w, i);
     work += f * a + t * alpha;
     momentum += weighed(v, m);
-    height += weighed(x, m);
+    moment += weighed(x, m);
     fastest = larger(fastest, v2);
-    if constexpr (kMaySleep) most_pushed = larger(most_pushed, weighed(a * a, m * m));
+    if constexpr (kMaySleep) {
+      pushed += weighed(a, m);
+      most_pushed = larger(most_pushed, weighed(a * a, m * m));
+    }
     if (measure) net[0] += mass * m * std::sqrt(sum_of(a * a));
   }
   MotionTotals& sums = strip.motion;
@@ -307,25 +321,40 @@ void GrainSolver::integrate(Strip& strip, const Loads& loads, double dt, bool me
   sums.kinetic = 0.5 * (mass * sums.speed2 + inertia * sum_of(spinning));
   sums.step_work = sum_of(work);
   store(sums.velocity, momentum);
-  sums.height = height[2];
+  sums.height = up_.dot(Vec3(moment[0], moment[1], moment[2]));
   // Not a number when one of the sums is not: the strip will be sorted, and the grain be found.
-  sums.max_speed = std::sqrt(sum_of(fastest)) + 0.0 * (sums.kinetic + sum_of(height));
+  sums.max_speed = std::sqrt(sum_of(fastest)) + 0.0 * (sums.kinetic + sum_of(moment));
   sums.max_net_force = mass * std::sqrt(sum_of(most_pushed));
+  store(sums.held, mass * pushed);
   sums.net_force = net[0];
   strip.travel += dt * sums.max_speed;
 }
 
+void GrainSolver::take_samples() {
+  samples_.resize(strips_.count());
+  double force = 0.0;
+  std::int64_t contacts = 0;
+  for (int k = 0; k < strips_.count(); ++k) {
+    const ContactTotals& now = strips_[k].contact;
+    if (activity_.evaluated(k)) samples_[k] = {now.contact_force, now.contacts};
+    force += samples_[k].force;
+    contacts += samples_[k].contacts;
+  }
+  if (contacts > 0) mean_contact_force_ = force / static_cast<double>(contacts);
+  until_sample_ = kSampleSteps;
+}
+
 void GrainSolver::change_activity() {
   if (!params_.activity) return;
-  if (mean_contact_force_ == 0.0)
-    mean_contact_force_ = accounts_.contact_force / std::max<std::int64_t>(1, accounts_.contacts);
-  const double speed = std::sqrt(params_.gravity * params_.grain.radius);
+  const double speed = std::sqrt(params_.gravity.norm() * params_.grain.radius);
   activity_.limit({kSleepMeanSpeed * speed, kSleepSpeed * speed, kSleepForce * mean_contact_force_,
                    kWakeForce * mean_contact_force_});
   const double margin = 2.0 * strips_.options().reach;
-  accounts_.slept += activity_.update(strips_, grains_, [&](const Strip& strip) {
+  const Activity::Stopped stopped = activity_.update(strips_, grains_, [&](const Strip& strip) {
     return surfaces_.any() && surfaces_.low_between(strip.x_min - margin, strip.x_max + margin);
   });
+  accounts_.slept += stopped.kinetic;
+  accounts_.momentum_removed += params_.grain.mass * stopped.velocity;
 }
 
 double GrainSolver::top() const {
@@ -338,7 +367,7 @@ double GrainSolver::top() const {
 void GrainSolver::reduce(double dt, bool measure) {
   Accounts& a = accounts_;
   double power = 0.0, work = 0.0, contact_force = 0.0, net_force = 0.0;
-  Quad wall;
+  Quad wall, held;
   a.elastic = a.floor_force = a.kinetic = a.height = 0.0;
   a.velocity.setZero();
   a.contacts = a.active = 0;
@@ -357,11 +386,16 @@ void GrainSolver::reduce(double dt, bool measure) {
     a.velocity += Vec3(m.velocity.x, m.velocity.y, m.velocity.z);
     a.contacts += c.contacts;
     a.max_overlap = std::max(a.max_overlap, c.max_overlap);
-    if (!strips_[k].asleep) a.active += strips_[k].grains();
+    if (strips_[k].asleep) {
+      add(held, load(m.held));
+    } else {
+      a.active += strips_[k].grains();
+    }
   }
   // Forces of the step act on velocities that change during it: Σ F·v at mid-step = Σ F·v + ½ dt Σ (F·a + T·α).
   a.contact_work += dt * (power + 0.5 * dt * work);
   a.wall_impulse += dt * Vec3(wall.x, wall.y, wall.z);
+  a.momentum_removed += dt * Vec3(held.x, held.y, held.z);
   if (measure) {
     a.contact_force = contact_force;
     a.net_force = net_force;
@@ -394,7 +428,8 @@ int GrainSolver::step(double dt, bool measure) {
   FURROW_ASSERT(grains_.position.size() == static_cast<std::size_t>(grains_.count + Grains::kBeyond),
                 grains_.position.size());
   const auto threads = static_cast<std::size_t>(std::max(1, params_.threads));
-  if (params_.activity && mean_contact_force_ == 0.0) measure = true;
+  const bool sample = sample_now();
+  measure = measure || sample;
   activity_.plan(strips_);
   if (params_.precision == Precision::mixed) {
     if (single_.size() < threads) single_.resize(threads);
@@ -414,6 +449,8 @@ int GrainSolver::step(double dt, bool measure) {
     finish_chunk(chunks_[c], before, dt, measure);
   }
   reduce(dt, measure);
+  if (sample) take_samples();
+  if (params_.activity) --until_sample_;
   change_activity();
   // A grain that is not a number or went far is met when its strip is sorted, one that slips out when its wall pushes.
   for (const Resorted& range : strips_.rebuild_moved(grains_, dt, params_.threads)) {

@@ -39,7 +39,7 @@ struct SolverParams {
   double smallest = 0.0;  // radius of any grain, m; 0: all have the reference radius
   double largest = 0.0;   // m; 0: as above
   Bin bin;
-  double gravity = kStandardGravity;  // m/s²
+  Vec3 gravity = standard_gravity();  // m/s²
   double skin = 0.0;                  // neighbours are listed within the sum of their radii + skin, m
   int threads = 1;
   Precision precision = Precision::mixed;
@@ -59,14 +59,16 @@ struct Accounts {
   Vec3 surface_impulse = Vec3::Zero();  // N s
   double floor_force = 0.0;             // last step, N
   double kinetic = 0.0;                 // now, J
-  double height = 0.0;                  // Σ m z / m₀ now, m
+  double height = 0.0;                  // Σ m h / m₀ now, h along GrainSolver::up(), m
   Vec3 velocity = Vec3::Zero();         // Σ m v / m₀ now, m/s
   std::int64_t contacts = 0;            // last step
   double max_overlap = 0.0;             // met since reset, m
   double contact_force = 0.0;           // Σ |F|, N, last measured step
   double net_force = 0.0;               // Σ |net force| of grains, N, last measured step
   double slept = 0.0;                   // kinetic energy of grains when they fell asleep, J
-  std::int64_t active = 0;              // grains awake, last step
+  // Momentum of grains when they fell asleep, and the impulse of what pushes on those asleep, kg m/s.
+  Vec3 momentum_removed = Vec3::Zero();
+  std::int64_t active = 0;  // grains awake, last step
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<Accounts> auto& s) {
@@ -84,6 +86,7 @@ void visit_fields(Visit&& visit, FieldsOf<Accounts> auto& s) {
   visit(Field{"contact_force", "N"}, s.contact_force);
   visit(Field{"net_force", "N"}, s.net_force);
   visit(Field{"slept", "J"}, s.slept);
+  visit(Field{"momentum_removed", "kg m/s"}, s.momentum_removed);
   visit(Field{"active"}, s.active);
 }
 
@@ -116,9 +119,13 @@ class GrainSolver {
   SurfaceContacts& surfaces() { return surfaces_; }
   const SurfaceContacts& surfaces() const { return surfaces_; }
   const Accounts& accounts() const { return accounts_; }
+  /// Decides about sleep and waking; sampled every kSampleSteps steps while grains may sleep, N.
+  double mean_contact_force() const { return mean_contact_force_; }
   void reset_accounts();
   /// Wakes the strip of a grain whose motion was set from outside.
   void wake(int grain);
+  /// The direction against gravity, a unit vector, along which heights are measured; z without gravity.
+  const Vec3& up() const { return up_; }
   /// Σ m / m₀ of all grains.
   double relative_mass() const;
   /// Current index of the grain with this id. @pre there is one
@@ -172,18 +179,30 @@ class GrainSolver {
   void finish_strip(int k, const Loads& loads, double dt, bool measure);
   template <bool kMaySleep, bool kSizes>
   void integrate(Strip& strip, const Loads& loads, double dt, bool measure);
-  void feel(Strip& strip, const Loads& loads) const;
+  void feel(Strip& strip, const Loads& loads) const;  // of a sleeping strip
   void change_activity();
+  bool sample_now() const { return params_.activity && until_sample_ == 0; }
+  /// Takes samples of the contact forces of the strips that this step evaluated. Those of sleeping strips stay: nothing
+  /// moves there.
+  void take_samples();
   void reduce(double dt, bool measure);
 
   SolverParams params_;
+  Vec3 up_;
   SolverCoefficients coefficients_;
   double drag_ = 0.0;
   Grains grains_;
   Strips strips_;
   SurfaceContacts surfaces_;
   Activity activity_;
-  double mean_contact_force_ = 0.0;  // of the bed when grains were first allowed to sleep, N
+  /// Of the contacts that a strip lists, when they were last evaluated in a step that took samples.
+  struct ForceSample {
+    double force = 0.0;  // Σ |F|, N
+    std::int64_t contacts = 0;
+  };
+  std::vector<ForceSample> samples_;  // per strip
+  std::int64_t until_sample_ = 0;     // steps
+  double mean_contact_force_ = 0.0;   // of the bed, by the samples, N
   Accounts accounts_;
   std::vector<Chunk> chunks_;
   std::vector<Scratch<float>> single_;  // per thread

@@ -53,6 +53,10 @@ void GrainSolver::save(Archive& archive) const {
   archive.put("id", grains_.id);
   save_fields(archive, "accounts", accounts_);
   archive.put("mean_contact_force", mean_contact_force_);
+  std::vector<double> samples;
+  for (const ForceSample& s : samples_) samples.insert(samples.end(), {s.force, double(s.contacts)});
+  archive.put("samples/strips", samples);
+  archive.put("samples/until", until_sample_);
   archive.put("strips/resorted", strips_.resorted());
   archive.put("strips/cells_z", static_cast<std::int64_t>(strips_.cells_z()));
 
@@ -95,6 +99,15 @@ void GrainSolver::restore(const Archive& archive) {
   grains_.id = archive.get<std::int32_t>("id", n);
   restore_fields(archive, "accounts", accounts_);
   mean_contact_force_ = archive.get_double("mean_contact_force");
+  // Cached beds of older programs hold no samples: the first step takes them.
+  samples_.clear();
+  until_sample_ = 0;
+  if (archive.has("samples/until")) {
+    until_sample_ = archive.get_int("samples/until");
+    const auto& samples = archive.get<double>("samples/strips");
+    for (std::size_t k = 0; k + 1 < samples.size(); k += 2)
+      samples_.push_back({samples[k], static_cast<std::int64_t>(samples[k + 1])});
+  }
   strips_.restore_shape(static_cast<int>(archive.get_int("strips/cells_z")),
                         archive.get_int("strips/resorted"));
 

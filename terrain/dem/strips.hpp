@@ -71,6 +71,7 @@ struct MotionTotals {
   double max_speed = 0.0;  // m/s
   double speed2 = 0.0;     // Σ v², m²/s²
   double max_net_force = 0.0;  // N, only when grains may sleep
+  Quad held;                   // Σ contact forces + weight, N, only when grains may sleep
 };
 
 struct Strip {
@@ -131,6 +132,7 @@ void visit_fields(Visit&& visit, FieldsOf<Strip> auto& s) {
   visit(Field{"floor_force", "N"}, s.contact.floor_force);
   visit(Field{"contacts"}, s.contact.contacts);
   visit(Field{"height", "m"}, s.motion.height);
+  visit(Field{"held", "N"}, s.motion.held);
 }
 
 /// A range of strips that was sorted again: order[k] is the old index of grain first + k.

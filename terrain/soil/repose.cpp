@@ -5,7 +5,6 @@
 #include <string>
 
 #include "protocol/core/assert.hpp"
-#include "protocol/core/constants.hpp"
 #include "protocol/core/error.hpp"
 #include "terrain/dem/solver_setup.hpp"
 #include "terrain/soil/fits.hpp"
@@ -63,7 +62,7 @@ ReposeResult angle_of_repose(const Specimen& specimen, const ReposeTest& test, c
   FURROW_ASSERT(!specimen.options().periodic_x, specimen.length());
   FURROW_ASSERT(specimen.length() > test.cut * specimen.options().radius, specimen.length(), test.cut);
   const dem::DemOptions& o = specimen.options();
-  const double r = o.radius, dt = o.step, cut = test.cut * r, base = test.base * r;
+  const double gravity = o.gravity.norm(), r = o.radius, dt = o.step, cut = test.cut * r, base = test.base * r;
   std::vector<dem::Quad> kept;
   for (const dem::Quad& p : specimen.positions())
     if (p.x < cut || p.z < base - r) kept.push_back(p);
@@ -74,7 +73,7 @@ ReposeResult angle_of_repose(const Specimen& specimen, const ReposeTest& test, c
   ReposeResult result;
   result.before = profile(solver.grains(), specimen, result.x);
   result.height = specimen.height() - base;
-  const double time = std::sqrt(result.height / kStandardGravity);
+  const double time = std::sqrt(result.height / gravity);
   const auto most = static_cast<std::int64_t>(test.longest * time / dt),
              least = static_cast<std::int64_t>(test.shortest * time / dt);
   const double mass = solver.params().grain.mass * solver.relative_mass();
@@ -85,7 +84,7 @@ ReposeResult angle_of_repose(const Specimen& specimen, const ReposeTest& test, c
       throw physics_error("repose test: grain " + std::to_string(solver.grains().id[lost]) + " was lost");
     if (++steps % kCheckEvery != 0) continue;
     const double speed = std::sqrt(2.0 * solver.accounts().kinetic / mass);
-    result.at_rest = steps > least && speed < kRestShare * std::sqrt(kStandardGravity * r);
+    result.at_rest = steps > least && speed < kRestShare * std::sqrt(gravity * r);
     work(static_cast<double>(steps) / static_cast<double>(most));
   }
   result.time = static_cast<double>(steps) * dt;

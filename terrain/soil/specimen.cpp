@@ -5,7 +5,6 @@
 #include <string>
 
 #include "protocol/core/assert.hpp"
-#include "protocol/core/constants.hpp"
 #include "terrain/dem/dem_terrain.hpp"
 #include "terrain/dem/grain_sizes.hpp"
 
@@ -65,7 +64,7 @@ std::unique_ptr<Terrain> Specimen::terrain() const {
 double Specimen::weight() const {
   double cubes = 0.0;  // m³
   for (const dem::Quad& p : positions_) cubes += p.w * p.w * p.w;
-  return options_.density * 4.0 / 3.0 * std::numbers::pi * cubes * kStandardGravity;
+  return options_.density * 4.0 / 3.0 * std::numbers::pi * cubes * options_.gravity.norm();
 }
 
 }  // namespace furrow::terrain::soil

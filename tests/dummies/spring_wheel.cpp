@@ -60,6 +60,7 @@ class SpringWheel final : public Tire {
   MassProperties mass_properties() const override { return shape_.mass; }
   double radius() const override { return shape_.radius; }
   double tread_width() const override { return shape_.tread_width; }
+  Vec3 gravity() const override { return kGravity; }
   int coordinates() const override { return static_cast<int>(deflection_.size()); }
 
   void set_pressure(double) override {}

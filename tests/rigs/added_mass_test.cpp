@@ -32,6 +32,20 @@ TEST(AddedMass, free_spin_up_and_drop_are_exact_with_three_times_the_rims_inerti
   EXPECT_NEAR(rig->rim(0).position.z(), 0.5 - 0.5 * kStandardGravity * 0.08 * 0.08, 1e-12);
 }
 
+TEST(AddedMass, wheel_falls_along_its_slider_and_the_drive_holds_it_on_a_slope) {
+  rigs::DrawbarRigOptions options = steady_options();
+  options.mode = "free_rolling";
+  options.speed = 0.0;
+  options.gravity = Vec3(2.0, 0.0, -9.0);
+  const auto rig = placed_rig(options, MassProperties{});
+  advance(*rig, wrench(Vec3::Zero()), 2000);
+  const double t = 2000 * kStep,
+               mass = rig->report(0).carried_mass + options.chassis_mass + options.set_toe_mass;
+  EXPECT_NEAR(rig->rim(0).velocity.z(), -9.0 * t, 1e-10);
+  EXPECT_NEAR(measured(*rig, "drawbar_pull_raw_N"), mass * 2.0, 1e-8 * mass);
+  EXPECT_EQ(rig->report(0).gravity, options.gravity);
+}
+
 // The same with a tire that lags: it computes its complete wrench from the rim motion of the interval before
 // and subtracts its rigid-body part of the same interval, as the exchange does. The difference vanishes for a
 // rigid tire.

@@ -103,6 +103,82 @@ TEST(Activity, bed_at_rest_falls_asleep_and_stays_where_it_is) {
   EXPECT_NEAR(solver.accounts().floor_force, weight, 0.02 * weight);
 }
 
+TEST(Activity, momentum_of_sliding_grains_is_booked_when_they_fall_asleep) {
+  FewGrains few;
+  few.options.friction = 0.0;
+  few.options.step = 2e-5;
+  few.options.periodic_x = true;
+  few.gravity = kStandardGravity;
+  few.activity = true;
+  const double load = grain_properties(few.options.radius, few.options.density).mass * kStandardGravity;
+  const double z = few.options.radius - std::pow(load / few.coefficients().floor.stiffness, 2.0 / 3.0);
+  GrainSolver s = few.make({{0.1, 0.0, z, 0.0}, {0.3, 0.05, z, 0.0}, {0.45, -0.05, z, 0.0}});
+  const double speed = 0.4 * kSleepMeanSpeed * std::sqrt(kStandardGravity * few.options.radius);
+  for (const int id : {0, 1, 2}) set_velocity(s, id, Vec3(speed, 0.0, 0.0));
+  for (int k = 0; k < 2 * kCalmSteps; ++k) s.step(few.options.step);
+  ASSERT_EQ(s.accounts().active, 0);
+  const double mass = s.params().grain.mass;
+  EXPECT_EQ(s.accounts().velocity.norm(), 0.0);
+  EXPECT_NEAR(s.accounts().momentum_removed.x(), 3 * mass * speed, 1e-12 * mass * speed);
+  EXPECT_EQ(s.accounts().momentum_removed.y(), 0.0);
+}
+
+/// Σ impulses on a bed less what its momentum gained and what sleep took, over the impulse of its weight.
+double momentum_left(const GrainSolver& s, const Vec3& momentum_before, double time) {
+  const Accounts& a = s.accounts();
+  const double mass = s.params().grain.mass;
+  const Vec3 weight = mass * s.relative_mass() * time * s.params().gravity;
+  const Vec3 given = weight + a.wall_impulse + a.surface_impulse - a.momentum_removed;
+  return (mass * a.velocity - momentum_before - given).norm() / weight.norm();
+}
+
+TEST(Activity, impulses_on_a_bed_that_falls_asleep_and_is_pressed_are_its_momentum_and_what_sleep_took) {
+  const DemOptions options = bed_options(20e3);
+  const Archive archive = settled(options);
+  for (const bool activity : {false, true}) {
+    GrainSolver solver = bed(options, archive, activity);
+    const Vec3 before = solver.params().grain.mass * solver.accounts().velocity;
+    for (int k = 0; k < 2000; ++k) solver.step(options.step);
+    EXPECT_EQ(solver.accounts().active < solver.grains().count, activity);
+    press(solver, options, solver.top(), 0.1, 20, 100);
+    EXPECT_LT(momentum_left(solver, before, 4000 * options.step), activity ? 1e-3 : 1e-10);
+  }
+}
+
+TEST(Activity, mean_contact_force_follows_the_load) {
+  const DemOptions options = bed_options(20e3);
+  const Archive archive = settled(options);
+  GrainSolver asleep = bed(options, archive, true), awake = bed(options, archive, false);
+  for (int k = 0; k < 1500; ++k) asleep.step(options.step), awake.step(options.step);
+  const double before = asleep.mean_contact_force();
+  press(asleep, options, awake.top(), 0.1, 20, 100);
+  press(awake, options, awake.top(), 0.1, 20, 100);
+  awake.step(options.step, true);
+  const double all = awake.accounts().contact_force / static_cast<double>(awake.accounts().contacts);
+  EXPECT_GT(all, 1.2 * before);
+  EXPECT_NEAR(asleep.mean_contact_force(), all, 0.05 * all);
+}
+
+TEST(Activity, mean_contact_force_has_the_same_bits_after_a_restart_between_two_samples) {
+  const DemOptions options = bed_options(20e3);
+  GrainSolver solver = bed(options, settled(options), true);
+  for (int k = 0; k < kSampleSteps + kSampleSteps / 2; ++k) solver.step(options.step);
+  Archive saved;
+  solver.save(saved);
+  SolverParams params = solver.params();
+  params.threads = 2;
+  GrainSolver again(params);
+  again.set_coefficients(solver.coefficients());
+  again.restore(saved);
+  const double before = solver.mean_contact_force();
+  for (int k = 0; k < 3 * kSampleSteps; ++k) {
+    solver.step(options.step), again.step(options.step);
+    ASSERT_EQ(solver.mean_contact_force(), again.mean_contact_force()) << k;
+  }
+  EXPECT_NE(solver.mean_contact_force(), before);
+  EXPECT_EQ(hash_of(solver), hash_of(again));
+}
+
 TEST(Activity, pressed_sleeping_bed_pushes_back_like_one_that_is_all_awake) {
   for (double cohesion : {0.0, 40e3}) {
     const DemOptions options = bed_options(cohesion);

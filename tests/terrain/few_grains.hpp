@@ -1,6 +1,7 @@
 // A handful of grains in a bin, for tests of laws and solver.
 #pragma once
 
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -12,7 +13,9 @@ namespace furrow::terrain::dem {
 struct FewGrains {
   DemOptions options;
   double gravity = 0.0;  // m/s²
+  double slope = 0.0;    // rad, of a floor that falls along +x: gravity is turned from −z towards +x
   Precision precision = Precision::full;
+  bool activity = false;
   double smallest = 0.0, largest = 0.0;  // m; 0: all have options.radius
 
   FewGrains() {
@@ -30,8 +33,9 @@ struct FewGrains {
     params.bin.width = options.width;
     params.bin.periodic_x = options.periodic_x;
     params.bin.periodic_y = options.periodic_y();
-    params.gravity = gravity;
+    params.gravity = gravity * Vec3(std::sin(slope), 0.0, -std::cos(slope));
     params.precision = precision;
+    params.activity = activity;
     params.smallest = smallest, params.largest = largest;
     params.skin = 0.3 * options.radius;
     GrainSolver solver(params);

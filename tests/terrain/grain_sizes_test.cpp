@@ -239,6 +239,59 @@ TEST(GrainSizes, frictionless_elastic_crowd_keeps_its_energy) {
   EXPECT_NEAR(s.accounts().kinetic + s.accounts().elastic, k0, 2e-4 * k0);
 }
 
+/// Stiffness or damping of a contact of a small grain with one `ratio` times as large, over that with its like, as it acts on the
+/// small grain in its fastest mode: k (1/m + 1/√(m M)) over 2 k/m, Gershgorin's bound in mass-weighted coordinates.
+double row_of_bound(double coefficient, double like, double ratio) {
+  return coefficient / like * 0.5 * (1.0 + std::pow(ratio, -1.5));
+}
+
+TEST(GrainSizes, contacts_with_larger_grains_are_stiffer_and_yet_no_less_stable_than_those_with_their_like) {
+  DemOptions o;
+  const ContactCoefficients like = run_coefficients(o, o.step).pair;
+  for (double ratio = 1.0; ratio < 4.01; ratio += 0.05) {
+    const ContactCoefficients c = scaled(like, pair_scale<double>(1.0, ratio));
+    EXPECT_NEAR(c.stiffness / like.stiffness, std::sqrt(2.0 * ratio / (1.0 + ratio)), 1e-12);
+    EXPECT_LE(row_of_bound(c.stiffness, like.stiffness, ratio), 1.0 + 1e-12) << ratio;
+    EXPECT_LE(row_of_bound(c.shear_stiffness, like.shear_stiffness, ratio), 1.0 + 1e-12) << ratio;
+    EXPECT_LE(row_of_bound(c.damping, like.damping, ratio), 1.013) << ratio;
+  }
+}
+
+/// Largest distance from rest of a pair of cohesive grains, `ratio` between their radii, that starts a little off it, after
+/// many steps; over that at the start.
+double growth_of_pair(double ratio, double share_of_limit) {
+  FewGrains few;
+  few.options.restitution = 0.999;
+  few.options.cohesion = 80e3;
+  few.smallest = few.options.radius, few.largest = ratio * few.options.radius * 1.0001;
+  const double small = few.options.radius, large = ratio * small;
+  const ContactCoefficients c = scaled(few.coefficients().pair, pair_scale<double>(1.0, ratio));
+  // K δ^{3/2} = F_c; about it ω² = 3/2 K √δ (1/m + 1/M).
+  const double overlap = std::pow(c.cohesion_force / c.stiffness, 2.0 / 3.0);
+  const double m = grain_properties(small, few.options.density).mass, big = m * ratio * ratio * ratio;
+  const double omega = std::sqrt(1.5 * c.stiffness * std::sqrt(overlap) * (1.0 / m + 1.0 / big));
+  const double rest = small + large - overlap, off = 1e-6 * overlap;
+  GrainSolver s = few.make({{0.3, 0, 0.3, small}, {0.3 + rest + off, 0, 0.3, large}});
+  double most = 0.0;
+  for (int k = 0; k < 400; ++k) {
+    s.step(share_of_limit * 2.0 / omega);
+    most = std::max(most, std::abs((position(s, 1) - position(s, 0)).norm() - rest));
+  }
+  return most / off;
+}
+
+TEST(GrainSizes, pair_of_two_sizes_is_stable_up_to_its_closed_form_limit_which_lies_above_the_admitted_step) {
+  double limit_of_like = 0.0;
+  for (const double ratio : {1.0, 1.5, 2.5, 4.0}) {
+    EXPECT_LT(growth_of_pair(ratio, 0.97), 50.0) << ratio;
+    EXPECT_GT(growth_of_pair(ratio, 1.03), 1e3) << ratio;
+    const double limit =
+        std::pow(2.0 * ratio / (1.0 + ratio), -0.25) * std::sqrt(2.0 / (1.0 + std::pow(ratio, -3.0)));
+    limit_of_like = std::max(limit_of_like, ratio == 1.0 ? limit : 0.0);
+    EXPECT_GE(limit, limit_of_like) << ratio;
+  }
+}
+
 TEST(GrainSizes, list_misses_no_contact) {
   FewGrains few = of_many_sizes();
   few.gravity = kStandardGravity;

@@ -8,11 +8,11 @@
 namespace furrow::tire {
 namespace {
 
-RigidTire make() {
+RigidTire make(const Vec3& gravity = standard_gravity()) {
   TireFile file = read_tire_file(TIRE_DATA "/hmmwv_layered.json");
   file.elements_circumference = 24;
   set_elements_width(file, 6);
-  return RigidTire(shell_shape(file));
+  return RigidTire(shell_shape(file), gravity);
 }
 
 TEST(RigidTire, free_drop_and_free_spin_ask_nothing_of_the_spindle) {
@@ -47,6 +47,19 @@ TEST(RigidTire, spin_up_needs_inertia_times_angular_acceleration) {
   tire.advance(t, {}, 1);
   EXPECT_NEAR(tire.spindle_wrench().moment.y(), -tire.mass_properties().inertia(1, 1) * 10.0, 1e-12);
   EXPECT_NEAR(tire.spindle_wrench().force.z(), -9.81 * tire.mass_properties().mass, 1e-10);
+}
+
+TEST(RigidTire, tire_at_rest_hangs_its_weight_on_the_spindle_along_a_tilted_gravity) {
+  const Vec3 gravity(3.0, -1.0, -9.0);
+  RigidTire tire = make(gravity);
+  RimState rim;
+  tire.place(rim);
+  RimTrajectory t(rim);
+  t.extend(rim, 1e-3);
+  tire.advance(t, {}, 1);
+  EXPECT_EQ(tire.gravity(), gravity);
+  EXPECT_LT((tire.spindle_wrench().force - tire.mass_properties().mass * gravity).norm(), 1e-12);
+  EXPECT_EQ(tire.spindle_wrench().moment.norm(), 0.0);
 }
 
 TEST(RigidTire, contact_forces_reach_the_spindle_with_their_arm) {

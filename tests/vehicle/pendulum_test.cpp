@@ -20,7 +20,7 @@ Vec3 hanging(double arm, double angle) { return {-arm * std::sin(angle), 0.0, -a
 struct Pendulum {
   vehicle::System system;
   int body, joint;
-  explicit Pendulum(double angle) {
+  explicit Pendulum(double angle, const Vec3& gravity = standard_gravity()) : system(gravity) {
     body = system.add_body("bob", kMass, Vec3(0.2, kInertia, 0.25).asDiagonal(),
                            bar_state(hanging(kArm, angle), angle));
     joint =
@@ -52,6 +52,13 @@ TEST(Pendulum, quarter_period_matches_elliptic_integral_with_second_order) {
   const double coarse = angle_after_quarter(100), fine = angle_after_quarter(200);
   EXPECT_LT(std::abs(fine), 1e-4);
   EXPECT_NEAR(coarse / fine, 4.0, 0.1);
+}
+
+TEST(Pendulum, hangs_at_rest_along_a_tilted_gravity) {
+  const double tilt = 0.3;  // towards −x, where the bob hangs at this angle
+  Pendulum pendulum(tilt, kStandardGravity * hanging(1.0, tilt));
+  for (int i = 0; i < 1000; ++i) pendulum.system.step(1e-3);
+  EXPECT_NEAR(pendulum.angle(), tilt, 1e-9);
 }
 
 TEST(Pendulum, energy_stays_bounded_over_many_swings) {

@@ -21,6 +21,7 @@ class AncfTire final : public Tire {
   MassProperties mass_properties() const override { return rigid_mass_; }
   double radius() const override { return radius_; }
   double tread_width() const override { return tread_width_; }
+  Vec3 gravity() const override { return integrator_.params().gravity; }
   int coordinates() const override { return 6 * ring_.nodes(); }
 
   void set_pressure(double pressure) override;

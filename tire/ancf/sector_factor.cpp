@@ -33,7 +33,7 @@ SectorFactor::SectorFactor(const ShellLayout& layout, const ShellCarcass& shell,
       age_(layout.batches()),
       which_(layout.batches()) {
   Field weight;
-  mass_.weigh(weight);
+  mass_.weigh(standard_gravity(), weight);
   for (int i = 0; i < layout_.columns; ++i)
     for (int j = 0; j < layout_.rows; ++j) weight_.push_back(-weight[layout_.offset(j, 2) + i]);
 }

@@ -102,7 +102,7 @@ class SectorFactor {
   ShellLayout layout_;
   const ShellCarcass& shell_;
   const ShellMass& mass_;
-  std::vector<double> weight_;  // of the nodes, [column * rows + row], N
+  std::vector<double> weight_;  // of the nodes under standard gravity, [column * rows + row], N
   ShellFactor factor_;
 
   // What the factor was made from: coordinates in rim axes at the ends of a step, sector beside sector.

@@ -37,7 +37,7 @@ ShellIntegrator::ShellIntegrator(const TireFile& file, const ShellMesh& mesh,
   s_.assign(kPairs, r_);
   y_.assign(kPairs, r_);
   rho_.assign(kPairs, 0.0);
-  mass_.weigh(gravity_);
+  mass_.weigh(params.gravity, gravity_);
 }
 
 void ShellIntegrator::start(const Field& q, const Field& v) {

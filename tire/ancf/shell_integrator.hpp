@@ -25,6 +25,7 @@
 #include <cstdint>
 #include <string>
 
+#include "protocol/core/constants.hpp"
 #include "tire/ancf/sector_factor.hpp"
 #include "tire/ancf/shell_carcass.hpp"
 #include "tire/ancf/shell_contact.hpp"
@@ -36,6 +37,9 @@ namespace furrow::tire {
 struct ShellIntegratorParams : SectorFactorParams {
   double tolerance = 1e-4;  // of the free residual, relative to the norm of the pressure forces
   int max_iterations = 40;  // per attempt
+
+  /// m/s²
+  Vec3 gravity = standard_gravity();
 };
 
 class ShellIntegrator {

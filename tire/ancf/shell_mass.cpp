@@ -1,6 +1,5 @@
 #include "tire/ancf/shell_mass.hpp"
 #include "protocol/core/assert.hpp"
-#include "protocol/core/constants.hpp"
 
 namespace furrow::tire {
 namespace {
@@ -50,13 +49,13 @@ void ShellMass::add(const Field& field, double factor, Field& out) const {
     }
 }
 
-void ShellMass::weigh(Field& out) const {
-  Field down(layout_.size(), 0.0);
+void ShellMass::weigh(const Vec3& gravity, Field& out) const {
+  Field acceleration(layout_.size(), 0.0);
   for (int j = 0; j < layout_.rows; ++j)
-    for (int i = 0; i < layout_.columns; ++i) layout_.set(down, i, j, 0, Vec3(0.0, 0.0, -kStandardGravity));
-  layout_.fill_padding(down);
+    for (int i = 0; i < layout_.columns; ++i) layout_.set(acceleration, i, j, 0, gravity);
+  layout_.fill_padding(acceleration);
   out.assign(layout_.size(), 0.0);
-  apply(down, 1.0, out);
+  apply(acceleration, 1.0, out);
 }
 
 }  // namespace furrow::tire

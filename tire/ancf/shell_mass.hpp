@@ -17,8 +17,8 @@ class ShellMass {
   void apply(const Field& field, double factor, Field& out) const;
   /// out += factor × M field.
   void add(const Field& field, double factor, Field& out) const;
-  /// out = M g, the weights of the nodes, N; padding zero.
-  void weigh(Field& out) const;
+  /// out = M g, the weights of the nodes under this gravity (m/s²), N; padding zero.
+  void weigh(const Vec3& gravity, Field& out) const;
   const ElementMass& element(int j) const {
     FURROW_ASSERT(in_range(j, elements_.size()), j, elements_.size());
     return elements_[j];

@@ -51,6 +51,7 @@ class ShellSpec final : public TireSpec {
   TireDescription describe() const override;
   std::unique_ptr<Tire> make(const TireContext& context) const override {
     ShellIntegratorParams params;
+    params.gravity = context.gravity;
     params.threads = context.threads;
     params.tolerance = context.tolerance.value_or(params.tolerance);
     params.age = context.renewal.value_or(params.age);

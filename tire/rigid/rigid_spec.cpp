@@ -19,8 +19,8 @@ class RigidSpec final : public TireSpec {
     d.damping_time = d.step_share = 0.0;
     return d;
   }
-  std::unique_ptr<Tire> make(const TireContext&) const override {
-    return std::make_unique<RigidTire>(flexible_->shape());
+  std::unique_ptr<Tire> make(const TireContext& context) const override {
+    return std::make_unique<RigidTire>(flexible_->shape(), context.gravity);
   }
   TireShape shape() const override { return flexible_->shape(); }
   std::vector<std::pair<std::string, std::string>> unlikely_values() const override {

@@ -8,12 +8,8 @@
 
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
-#include "protocol/core/constants.hpp"
 
 namespace furrow::tire {
-namespace {
-const Vec3 kGravity(0.0, 0.0, -kStandardGravity);  // m/s²
-}
 
 void RigidTire::place(const RimState& rim) {
   rim_ = rim;
@@ -44,7 +40,7 @@ Outcome RigidTire::advance(const RimTrajectory& rim, const NodalForces& forces, 
                 shape_.vertex.size());
   const RimState &start = rim.start(), &end = rim.end();
   const double duration = rim.duration();
-  spindle_.force = shape_.mass.mass * (kGravity - (end.velocity - start.velocity) / duration);
+  spindle_.force = shape_.mass.mass * (gravity_ - (end.velocity - start.velocity) / duration);
   spindle_.moment = -(angular_momentum(end) - angular_momentum(start)) / duration;
   const Mat3 mean = 0.5 * (start.orientation.toRotationMatrix() + end.orientation.toRotationMatrix());
   for (std::size_t k = 0; k < forces.vertex.size(); ++k) {

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "protocol/core/constants.hpp"
 #include "tire/tire.hpp"
 #include "tire/tire_spec.hpp"
 
@@ -10,13 +11,15 @@ namespace furrow::tire {
 
 class RigidTire final : public Tire {
  public:
-  explicit RigidTire(TireShape shape) : shape_(std::move(shape)) {}
+  explicit RigidTire(TireShape shape, const Vec3& gravity = standard_gravity())
+      : shape_(std::move(shape)), gravity_(gravity) {}
 
   const SurfaceMesh& mesh() const override { return shape_.mesh; }
   ContactMaterial material() const override { return shape_.material; }
   MassProperties mass_properties() const override { return shape_.mass; }
   double radius() const override { return shape_.radius; }
   double tread_width() const override { return shape_.tread_width; }
+  Vec3 gravity() const override { return gravity_; }
   int coordinates() const override { return 0; }
 
   void set_pressure(double) override {}
@@ -33,6 +36,7 @@ class RigidTire final : public Tire {
   Vec3 angular_momentum(const RimState& rim) const;  // about the rim centre, W
 
   TireShape shape_;
+  Vec3 gravity_;    // m/s²
   RimState rim_;    // now
   Wrench spindle_;  // of the last advance
 };

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "protocol/core/archive.hpp"
+#include "protocol/core/constants.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/outcome.hpp"
 #include "vehicle/multibody/body.hpp"
@@ -32,7 +33,7 @@ namespace furrow::vehicle {
 
 class System {
  public:
-  explicit System(const Vec3& gravity = Vec3(0.0, 0.0, -9.81)) : gravity_(gravity) {}
+  explicit System(const Vec3& gravity = standard_gravity()) : gravity_(gravity) {}
 
   // Building; indices count from 0 and are those of bodies and joints added before. Joints and elements are placed in
   // the bodies' present poses.

@@ -40,7 +40,7 @@ Archive bed_after_run(const Archive& state, const DemOptions& options, double re
   result = {};
   const double dt = options.step;
   solver.set_coefficients(run_coefficients(options, dt));
-  const double mass = params.grain.mass * solver.relative_mass(), weight = mass * params.gravity;
+  const double mass = params.grain.mass * solver.relative_mass(), weight = -mass * params.gravity.z();
   const auto resting = static_cast<std::int64_t>(std::ceil(rest / dt));
   const auto most = resting + static_cast<std::int64_t>(kMaxSettleTime / dt);
   for (std::int64_t n = 0; n < most && !result.settled; ++n) {

@@ -2,6 +2,8 @@
 
 #include <cstdlib>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "protocol/core/field_hash.hpp"
 #include "protocol/core/hash.hpp"
@@ -33,6 +35,7 @@ std::string bed_digest(const DemOptions& o) {
   add(o.periodic_x);
   add(o.seed);
   add(settle_step(o));
+  if (o.gravity != standard_gravity()) hash.add(o.gravity.data(), 3 * sizeof(double));
   if (!o.bed.empty()) add_file(hash, o.bed);
   return hash.hex();
 }
@@ -57,8 +60,14 @@ void write_bed(const std::filesystem::path& file, const Archive& archive) {
 
 Archive read_bed(const std::filesystem::path& file) {
   std::int64_t version = 0;
-  const Archive bed = read_archive(file, kBed, &version);
-  return version == kBedFormat ? bed : from_format_4(bed);
+  Archive bed = read_archive(file, kBed, &version);
+  if (version != kBedFormat) return from_format_4(bed);
+  if (!bed.has("accounts/momentum_removed")) {  // kept before it was booked: a settled bed lost none
+    bed.put("accounts/momentum_removed", std::vector<double>(3));
+    const std::vector<double> none(bed.get<std::int32_t>("strips/walls").size());
+    for (const char* component : {"x", "y", "z", "w"}) bed.put(std::string("strips/held/") + component, none);
+  }
+  return bed;
 }
 
 bool may_be_bed(const std::filesystem::path& file) { return may_be_archive(file, kBed); }

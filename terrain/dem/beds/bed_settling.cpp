@@ -41,7 +41,7 @@ SettleResult settle(GrainSolver& solver, const DemOptions& options, const Progre
   SettleResult result;
   const double dt = settle_step(options);
   const GrainProperties& grain = solver.params().grain;
-  const double mass = grain.mass * solver.relative_mass(), weight = mass * solver.params().gravity;
+  const double mass = grain.mass * solver.relative_mass(), weight = -mass * solver.params().gravity.z();
   solver.set_coefficients(settle_coefficients(options));
   solver.set_drag(kFallDrag);
   bool lying = false;

@@ -121,7 +121,7 @@ Rebound solver_impact(const ImpactCase& impact, const Motion& before, Ground gro
   terrain::dem::SolverParams params;
   params.grain = terrain::dem::grain_properties(r, impact.density);
   params.bin.length = params.bin.width = 80.0 * r;
-  params.gravity = 0.0;
+  params.gravity = Vec3::Zero();
   params.skin = 0.3 * r;
   terrain::dem::GrainSolver solver(params);
   const terrain::dem::ContactCoefficients k = solver_coefficients(impact);

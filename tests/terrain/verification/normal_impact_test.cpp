@@ -34,7 +34,7 @@ Rebound pair_impact(double radius, double density, const Elastic& material, doub
   terrain::dem::SolverParams params;
   params.grain = terrain::dem::grain_properties(radius, density);
   params.bin.length = params.bin.width = 80.0 * radius;
-  params.gravity = 0.0;
+  params.gravity = Vec3::Zero();
   params.skin = 0.3 * radius;
   terrain::dem::GrainSolver solver(params);
   ContactMaterial sphere;

@@ -205,7 +205,7 @@ Motion pair_impact(const ImpactCase& impact, double speed, double spin_1, double
   terrain::dem::SolverParams params;
   params.grain = terrain::dem::grain_properties(r, impact.density);
   params.bin.length = params.bin.width = 80.0 * r;
-  params.gravity = 0.0;
+  params.gravity = Vec3::Zero();
   params.skin = 0.3 * r;
   terrain::dem::GrainSolver solver(params);
   ContactMaterial sphere;

@@ -82,6 +82,20 @@ TEST(AncfTire, inflated_tire_at_rest_hangs_its_weight_on_the_rim) {
   EXPECT_LT(std::hypot(w.force.x(), w.force.y()), 0.05);
 }
 
+TEST(AncfTire, inflated_tire_at_rest_hangs_its_weight_on_the_rim_along_a_tilted_gravity) {
+  tire::ShellIntegratorParams params;
+  params.gravity = Vec3(4.0, 3.0, -8.0);
+  tire::AncfTire tire(small_file(), params);
+  RimState rim;
+  tire.place(rim);
+  tire::RimTrajectory t(rim);
+  for (int n = 0; n < 600; ++n) {
+    t.extend(rim, 2e-4);
+    ASSERT_TRUE(tire.advance(t, {}, 1).ok);
+  }
+  EXPECT_LT((tire.spindle_wrench().force - tire.mass_properties().mass * params.gravity).norm(), 0.3);  // N
+}
+
 TEST(AncfTire, restored_tire_continues_bit_for_bit) {
   tire::AncfTire tire(small_file()), other(small_file());
   expect_restart_bit_for_bit(tire, other, [](tire::AncfTire&, int) {});

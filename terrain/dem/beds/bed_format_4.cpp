@@ -1,7 +1,9 @@
 #include "terrain/dem/beds/bed_format_4.hpp"
 
+#include <cstdint>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "protocol/core/archive_fields.hpp"
 #include "terrain/dem/grain_solver.hpp"
@@ -85,6 +87,8 @@ Archive from_format_4(const Archive& bed) {
   name_strips(bed, named);
   name_walls(bed, named);
   SurfaceContacts({}, 0.0, false).save(named);  // a bed bears none
+  named.put("samples/strips", std::vector<double>());  // none taken: the first step does
+  named.put("samples/until", std::int64_t{0});
   return named;
 }
 

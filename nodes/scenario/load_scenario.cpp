@@ -119,8 +119,6 @@ std::string complete(json& document, const std::string& file, const Settings& se
   return set_aside;
 }
 
-double number_or(const json& value, double absent) { return value.is_null() ? absent : value.get<double>(); }
-
 /// The rig comes back for its starts to be filled in.
 std::shared_ptr<rigs::RigSpec> take_rig(const json& j, Scenario& s) {
   rigs::RigOptions options;

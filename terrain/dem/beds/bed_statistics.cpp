@@ -11,7 +11,7 @@
 namespace furrow::terrain::dem {
 
 double lens_volume(double a, double b, double distance) {
-  FURROW_ASSERT(a > 0.0 && b > 0.0 && distance > 0.0, a, b, distance);
+  FURROW_ASSERT(a > 0.0 && b > 0.0 && (distance > 0.0 || (distance == 0.0 && a == b)), a, b, distance);
   const double gap = a + b - distance;
   if (gap <= 0.0) return 0.0;
   const double unequal = a == b ? 0.0 : (a - b) * (a - b) / distance;

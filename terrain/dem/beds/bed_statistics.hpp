@@ -26,7 +26,7 @@ struct BedStatistics {
 BedStatistics bed_statistics(const std::vector<Quad>& grains, const Bin& bin, double radius);
 
 /// Volume that spheres of radii a and b share at this distance of their centres, m³:
-/// π (a + b − d)² (d² + 2 d (a + b) − 3 (a − b)²) / (12 d). @pre a, b, distance > 0
+/// π (a + b − d)² (d² + 2 d (a + b) − 3 (a − b)²) / (12 d). @pre a, b, distance > 0, or 0 for equal spheres
 double lens_volume(double a, double b, double distance);
 
 /// Volume of a sphere at height z below `height`, m³.

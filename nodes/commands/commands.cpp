@@ -205,7 +205,7 @@ std::string parse_problem(const CLI::App& app, const CLI::ParseError& error, int
     commands.push_back(command->get_name());
   const std::string first = argc > 1 ? argv[1] : "";
   if (first.empty())
-    return fmt::format("no command given, expected one of: {}; see furrow --help", fmt::join(commands, ", "));
+    return fmt::format("no command is given, expected one of: {}; see furrow --help", fmt::join(commands, ", "));
   if (first[0] != '-' && std::find(commands.begin(), commands.end(), first) == commands.end()) {
     const std::vector<std::string> similar = nearest_words(first, commands);
     return fmt::format("unknown command '{}'; {}", first,

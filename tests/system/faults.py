@@ -140,9 +140,9 @@ class Damaged(CheckpointTest):
 
     def test_of_a_newer_program(self):
         manifest = json.loads((self.newest / "manifest.json").read_text())
-        manifest["format_version"] = 2
+        manifest["format_version"] = 3
         (self.newest / "manifest.json").write_text(json.dumps(manifest))
-        self.goes_on_from_the_one_before("format_version 2 is newer than this program reads")
+        self.goes_on_from_the_one_before("format_version 3 is newer than this program reads")
 
     def test_of_another_scenario(self):
         manifests = sorted((self.run / "checkpoints").glob("*/manifest.json"))

@@ -1,14 +1,10 @@
 #include "nodes/scenario/load_scenario.hpp"
 
-#include <unistd.h>
-#include <climits>
 #include <cmath>
 #include <cstdlib>
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <iterator>
 
 #include <fmt/format.h>
 

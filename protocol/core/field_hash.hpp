@@ -17,12 +17,9 @@ template <HasFields T>
 void add_fields(Hash& hash, const T& values, unsigned roles) {
   FURROW_ASSERT(roles != role::none, roles);
   const T defaults{};
-  // The same list twice: the second pass knows the default of each field by its place in it.
-  const auto each = [&](auto&& take) {
-    std::size_t place = 0;
-    visit_fields([&](const Field& field, const auto& value) { take(place++, field, value); }, values);
-  };
-  each([&](std::size_t place, const Field& field, const auto& value) {
+  std::size_t here = 0;  // place of the field in the list, by which its default is found
+  const auto add = [&](const Field& field, const auto& value) {
+    const std::size_t place = here++;
     if (!field.is(roles)) return;
     using Value = std::remove_cvref_t<decltype(value)>;
     bool same = false;
@@ -40,7 +37,8 @@ void add_fields(Hash& hash, const T& values, unsigned roles) {
       hash.add(std::string(value));
     else if constexpr (std::is_arithmetic_v<Value> || std::is_enum_v<Value>)
       hash.add(&value, sizeof value);
-  });
+  };
+  visit_fields(add, values);
 }
 
 }  // namespace furrow

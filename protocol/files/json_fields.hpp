@@ -1,4 +1,4 @@
-// Reads and writes structs with a list of fields (protocol/core/fields.hpp) as JSON objects: one key per field.
+// Reads structs with a list of fields (protocol/core/fields.hpp) from JSON objects: one key per field.
 #pragma once
 
 #include <string>
@@ -27,19 +27,6 @@ void read_fields(const nlohmann::json& object, T& target, unsigned roles = role:
         }
       },
       target);
-}
-
-/// The fields that have all `roles`, by name; of types that JSON knows.
-template <HasFields T>
-nlohmann::ordered_json fields_json(const T& source, unsigned roles = role::key) {
-  nlohmann::ordered_json object = nlohmann::ordered_json::object();
-  visit_fields(
-      [&](const Field& field, const auto& value) {
-        if constexpr (std::is_constructible_v<nlohmann::ordered_json, decltype(value)>)
-          if (field.is(roles)) object[field.name] = value;
-      },
-      source);
-  return object;
 }
 
 /// Names of the fields that have all `roles`, in order.

@@ -1,5 +1,5 @@
-// What a scenario says of its rig, read, completed and able to describe and to make it. The ranks, the checks and the tools
-// know rigs by this interface and by Rig alone; rigs.cpp lists the kinds.
+// What a scenario says of its rig, read, completed and able to describe and to make it. The ranks, the checks and the
+// tools know rigs by this interface and by Rig alone; rigs.cpp lists the kinds.
 #pragma once
 
 #include <memory>
@@ -50,8 +50,8 @@ class RigSpec {
   virtual RigDescription describe(std::span<const WheelSize> tires, double duration) const = 0;
   virtual std::unique_ptr<Rig> make() const = 0;
 
-  /// Puts the axles for which the scenario names no start `margin` clear of the wall behind them, in a bin from x = 0 to
-  /// `length`, m; at x = 0 where there is no bin.
+  /// Puts the axles for which the scenario names no start `margin` clear of the wall behind them, in a bin from x = 0
+  /// to `length`, m; at x = 0 where there is no bin.
   virtual void fill_starts(std::span<const WheelSize> tires, double duration, std::optional<double> length,
                            double margin) = 0;
   /// Writes what was filled in into the scenario's section.

@@ -36,7 +36,8 @@ struct RigKind {
 
 std::span<const RigKind> rig_kinds();
 
-/// Reads the section of a scenario that describes its rig. @throws Error(bad_input); an unknown type lists the valid ones
+/// Reads the section of a scenario that describes its rig. @throws Error(bad_input); an unknown type lists the valid
+/// ones
 std::unique_ptr<RigSpec> read_rig(const nlohmann::json& section, const ReadContext& context);
 
 }  // namespace furrow::rigs

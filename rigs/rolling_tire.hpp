@@ -14,8 +14,8 @@
 
 namespace furrow::rigs {
 
-/// A rigid plane that is softened with the step above 4e-5 s, up to which the default one is stable under a tread vertex:
-/// its forces come one step late (terrain/rigid/rigid_ground.hpp).
+/// A rigid plane that is softened with the step above 4e-5 s, up to which the default one is stable under a tread
+/// vertex: its forces come one step late (terrain/rigid/rigid_ground.hpp).
 terrain::GroundOptions hard_ground(double step);
 
 struct RollingOptions {

@@ -1,5 +1,5 @@
-// What a scenario says of a tire, read, completed and able to describe and to make its model. The ranks, the checks and the
-// tools know tires by this interface and by Tire alone; tires.cpp lists the models.
+// What a scenario says of a tire, read, completed and able to describe and to make its model. The ranks, the checks and
+// the tools know tires by this interface and by Tire alone; tires.cpp lists the models.
 #pragma once
 
 #include <filesystem>
@@ -43,7 +43,8 @@ void visit_fields(Visit&& visit, FieldsOf<TireOptions> auto& s) {
   visit(Field{"substeps", "", role::key}, s.substeps);
 }
 
-/// What is known of a tire before its model is made. How far it reaches once inflated only the model can say (reach.hpp).
+/// What is known of a tire before its model is made. How far it reaches once inflated only the model can say
+/// (reach.hpp).
 struct TireDescription {
   std::string kind;             // as results name it: "ancf", "rigid"
   std::string name;             // for people: "layered shell"

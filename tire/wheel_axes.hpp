@@ -1,15 +1,17 @@
 // The tire's axes on the ground (ISO-W), in which forces and moments of tires are customarily given:
 //
-//   origin C: the contact centre, where wheel plane, ground plane and the plane through the spin axis that stands on the
-//     ground meet; z up, normal to the ground; x forward, along the line in which wheel and ground plane meet; y = z × x.
+//   origin C: the contact centre, where wheel plane, ground plane and the plane through the spin axis that stands on
+//     the ground meet; z up, normal to the ground; x forward, along the line in which wheel and ground plane meet;
+//     y = z × x.
 //
 // These are the "tyre axis system" of ISO 8855:2011, the "wheel axis system" of ISO 8855:1991 and the W-axes of TYDEX.
 // The ground plane is horizontal. With a the spin axis towards the left of travel, r the wheel centre, h the ground:
 //
 //   x = a × z/|a × z|,   C = r − ρ (x × a),   loaded radius ρ = (r_z − h)/(x × a)_z
 //
-// Slip angle: from x to the velocity of the wheel centre, about z; a velocity with a part along +y gives a positive angle
-// and a negative lateral force. Camber (inclination) angle: of the wheel plane about x; positive leans the top to −y.
+// Slip angle: from x to the velocity of the wheel centre, about z; a velocity with a part along +y gives a positive
+// angle and a negative lateral force. Camber (inclination) angle: of the wheel plane about x; positive leans the top to
+// −y.
 #pragma once
 
 #include "protocol/core/surface.hpp"

@@ -19,8 +19,8 @@ struct ResumePlan {
   std::vector<std::string> warnings;
 };
 
-/// Chooses the newest checkpoint that is whole, and compares the scenario that it was computed with to the one that is to
-/// be continued. Looks, and changes nothing: every rank finds the same.
+/// Chooses the newest checkpoint that is whole, and compares the scenario that it was computed with to the one that is
+/// to be continued. Looks, and changes nothing: every rank finds the same.
 /// @throws Error(bad_input) when `run` holds no run or no checkpoint, or a key that decides the results has changed;
 ///         Error(io) when every checkpoint is damaged
 ResumePlan plan_resume(const std::filesystem::path& run,

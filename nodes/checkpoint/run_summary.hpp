@@ -8,8 +8,8 @@
 
 namespace furrow::checkpoint {
 
-/// The summary of a run; null while the run has not ended, and when the file is damaged. Of several wheels, wheel 0's keys can be
-/// asked for as if it were the only one.
+/// The summary of a run; null while the run has not ended, and when the file is damaged. Of several wheels, wheel 0's
+/// keys can be asked for as if it were the only one.
 nlohmann::ordered_json read_summary(const std::filesystem::path& run);
 
 /// summary["a"]["b"][1] for "a.b.1"; null where there is no such entry.

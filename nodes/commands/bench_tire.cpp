@@ -1,7 +1,7 @@
 // `furrow bench tire`: the tire's own time on hard ground, under the coupling rule of a run.
 //
-// The ground answers one step late; a carriage holds the driven wheel (rigs/rolling_tire.hpp), which turns at constant speed
-// and rolls without pull.
+// The ground answers one step late; a carriage holds the driven wheel (rigs/rolling_tire.hpp), which turns at constant
+// speed and rolls without pull.
 #include <algorithm>
 #include <cmath>
 #include <ctime>

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <functional>
 #include <iostream>
+#include <utility>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -224,102 +226,150 @@ void print_lines(const char* kind, const std::string& text) {
   }
 }
 
+/// The command line of `furrow`: what it understands, and what the user chose.
+class CommandLine {
+ public:
+  CommandLine(int argc, char** argv) : argc_(argc), argv_(argv) {
+    app_.set_version_flag("--version", "furrow " FURROW_VERSION);
+    app_.require_subcommand(1);
+    app_.footer(
+        "Exit codes: 0 done, 2 bad input, 3 the physics failed, 4 a rank was lost, 5 input/output, 75 stopped "
+        "by a signal.");
+    add_runs();
+    add_questions();
+    add_virtual_tests();
+    add_studies();
+    add_benches();
+  }
+
+  ExitCode execute() {
+    try {
+      app_.parse(argc_, argv_);
+    } catch (const CLI::Success& asked) {  // --help, --version
+      app_.exit(asked);
+      return ExitCode::done;
+    } catch (const CLI::ParseError& error) {
+      throw usage_error(parse_problem(app_, error, argc_, argv_));
+    }
+    return chosen_();
+  }
+
+ private:
+  /// A command, and what is done when it is the one that was given.
+  CLI::App& add(CLI::App& parent, const char* name, const char* purpose, std::function<ExitCode()> action) {
+    CLI::App& command = *parent.add_subcommand(name, purpose);
+    command.callback([this, action = std::move(action)] { chosen_ = action; });
+    return command;
+  }
+  CLI::App& add(const char* name, const char* purpose, std::function<ExitCode()> action) {
+    return add(app_, name, purpose, std::move(action));
+  }
+
+  void add_runs();
+  void add_questions();
+  void add_virtual_tests();
+  void add_studies();
+  void add_benches();
+
+  int argc_;
+  char** argv_;
+  CLI::App app_{"Furrow: how much a flexible tire pulls on granular soil, and how deep it sinks.", "furrow"};
+  std::function<ExitCode()> chosen_;
+  Typed typed_;
+  SoilArguments soil_;
+  PressArguments press_;
+  SweepArguments sweep_;
+  GrainBench grains_;
+  TireBench tire_;
+};
+
+void CommandLine::add_runs() {
+  CLI::App& run = add("run", "run a scenario; prints the folder that holds the results",
+                      [this] { return run_command(typed_, argc_, argv_); });
+  add_scenario(run, typed_);
+  run.add_option("--out", typed_.out, "new folder for the results (default: results/<scenario>-NNN here)");
+  run.add_flag("--overwrite", typed_.overwrite, "let --out replace the results of an earlier run");
+  run.add_flag("--profile", typed_.profile,
+               "also write profile.json: where the time of each step goes (Chrome trace)");
+  run.add_flag("--no-plots", typed_.no_plots, "make no plots; 'furrow report' makes them later");
+
+  CLI::App& resume = add("resume",
+                         "continue a run from its last checkpoint; the result is bit-identical to an "
+                         "uninterrupted run",
+                         [this] { return resume_command(typed_, argc_, argv_); });
+  resume.add_option("DIR", typed_.directory, "folder of the run")->required();
+  resume.add_option("--until", typed_.until, "new end of the run, s (run.end)");
+  add_settings(resume, typed_);
+  resume.add_flag("--profile", typed_.profile, "also write profile.json, of the steps from here on");
+  resume.add_flag("--no-plots", typed_.no_plots, "make no plots; 'furrow report' makes them later");
+}
+
+void CommandLine::add_questions() {
+  CLI::App& validate = add("validate", "check a scenario and estimate what a run of it will need",
+                           [this] { return validate_command(typed_); });
+  add_scenario(validate, typed_);
+  validate.add_flag("--json", typed_.json, "print JSON");
+
+  add_scenario(add("ranks", "list which MPI rank does what, and how to start the ranks by hand",
+                   [this] { return ranks_command(typed_, {argv_, argv_ + argc_}); }),
+               typed_);
+
+  add("explain", "explain a scenario key; without KEY, list all keys",
+      [this] {
+        std::cout << scenario::explain(typed_.key);
+        return ExitCode::done;
+      })
+      .add_option("KEY", typed_.key, "dotted path, for example terrain.cohesion");
+}
+
+void CommandLine::add_virtual_tests() {
+  add_scenario(add("bed", "prepare and settle the bed of a scenario and keep it for later runs; prints JSON",
+                   [this] { return bed_command(load(typed_)); }),
+               typed_);
+
+  CLI::App& soil = add("soil",
+                       "run virtual soil tests on a scenario's grains: plate sinkage, direct shear, "
+                       "cone, angle of repose; prints JSON",
+                       [this] { return soil_command(load(typed_), soil_); });
+  add_scenario(soil, typed_);
+  add_soil_options(soil, soil_);
+
+  CLI::App& press = add("press", "press the tire of a scenario on a plate or a cleat, statically; prints the folder",
+                        [this] { return press_command(load(typed_), press_); });
+  add_scenario(press, typed_);
+  add_press_options(press, press_);
+}
+
+void CommandLine::add_studies() {
+  CLI::App& sweep = add("sweep", "run a parameter study; resumes where it left off",
+                        [this] { return sweep_command(sweep_); });
+  sweep.add_option("STUDY", sweep_.study, "study file (JSON)")->required();
+  sweep.add_option("--out", sweep_.out, "folder of the study (default: results/<study> here)");
+  sweep.add_option("--jobs", sweep_.jobs, "runs at once, each with its share of the cores")->capture_default_str();
+
+  CLI::App& report = add("report", "plot a finished run, as PNG files in its folder",
+                         [this] { return report_command(typed_); });
+  report.add_option("DIR", typed_.directory, "folder of the run, or of soil tests")->required();
+  report.add_option("--soil", typed_.soil,
+                    "soil.json of 'furrow soil': add what soil theory expects to the run's result");
+}
+
+void CommandLine::add_benches() {
+  CLI::App& bench = *app_.add_subcommand("bench", "measure how fast this machine is; prints JSON");
+  bench.require_subcommand(1);
+  add_grain_bench(add(bench, "grains", "step a settled bed, every grain in every step",
+                      [this] { return bench_command(bench_grains, grains_); }),
+                  grains_);
+  add_tire_bench(add(bench, "tire", "roll a loaded tire on hard ground; times the parts of a step",
+                     [this] { return bench_command(bench_tire, tire_); }),
+                 tire_);
+}
+
 }  // namespace
 
 void print_error(const std::string& text) { print_lines("error", text); }
 void print_warning(const std::string& text) { print_lines("warning", text); }
 
-ExitCode run_command_line(int argc, char** argv) {
-  CLI::App app("Furrow: how much a flexible tire pulls on granular soil, and how deep it sinks.", "furrow");
-  app.set_version_flag("--version", "furrow " FURROW_VERSION);
-  app.require_subcommand(1);
-  app.footer(
-      "Exit codes: 0 done, 2 bad input, 3 the physics failed, 4 a rank was lost, 5 input/output, 75 stopped "
-      "by a signal.");
-  Typed typed;
-
-  CLI::App& run = *app.add_subcommand("run", "run a scenario; prints the folder that holds the results");
-  add_scenario(run, typed);
-  run.add_option("--out", typed.out, "new folder for the results (default: results/<scenario>-NNN here)");
-  run.add_flag("--overwrite", typed.overwrite, "let --out replace the results of an earlier run");
-  run.add_flag("--profile", typed.profile,
-               "also write profile.json: where the time of each step goes (Chrome trace)");
-  run.add_flag("--no-plots", typed.no_plots, "make no plots; 'furrow report' makes them later");
-  CLI::App& resume = *app.add_subcommand(
-      "resume",
-      "continue a run from its last checkpoint; the result is bit-identical to an uninterrupted run");
-  resume.add_option("DIR", typed.directory, "folder of the run")->required();
-  resume.add_option("--until", typed.until, "new end of the run, s (run.end)");
-  add_settings(resume, typed);
-  resume.add_flag("--profile", typed.profile, "also write profile.json, of the steps from here on");
-  resume.add_flag("--no-plots", typed.no_plots, "make no plots; 'furrow report' makes them later");
-  CLI::App& validate =
-      *app.add_subcommand("validate", "check a scenario and estimate what a run of it will need");
-  add_scenario(validate, typed);
-  validate.add_flag("--json", typed.json, "print JSON");
-  CLI::App& ranks =
-      *app.add_subcommand("ranks", "list which MPI rank does what, and how to start the ranks by hand");
-  add_scenario(ranks, typed);
-  CLI::App& explained = *app.add_subcommand("explain", "explain a scenario key; without KEY, list all keys");
-  explained.add_option("KEY", typed.key, "dotted path, for example terrain.cohesion");
-  CLI::App& bed = *app.add_subcommand(
-      "bed", "prepare and settle the bed of a scenario and keep it for later runs; prints JSON");
-  add_scenario(bed, typed);
-  SoilArguments soil_arguments;
-  CLI::App& soil =
-      *app.add_subcommand("soil",
-                          "run virtual soil tests on a scenario's grains: plate sinkage, direct shear, "
-                          "cone, angle of repose; prints JSON");
-  add_scenario(soil, typed);
-  add_soil_options(soil, soil_arguments);
-  SweepArguments sweep_arguments;
-  CLI::App& sweep = *app.add_subcommand("sweep", "run a parameter study; resumes where it left off");
-  sweep.add_option("STUDY", sweep_arguments.study, "study file (JSON)")->required();
-  sweep.add_option("--out", sweep_arguments.out, "folder of the study (default: results/<study> here)");
-  sweep.add_option("--jobs", sweep_arguments.jobs, "runs at once, each with its share of the cores")
-      ->capture_default_str();
-  PressArguments press_arguments;
-  CLI::App& press = *app.add_subcommand(
-      "press", "press the tire of a scenario on a plate or a cleat, statically; prints the folder");
-  add_scenario(press, typed);
-  add_press_options(press, press_arguments);
-  CLI::App& report = *app.add_subcommand("report", "plot a finished run, as PNG files in its folder");
-  report.add_option("DIR", typed.directory, "folder of the run, or of soil tests")->required();
-  report.add_option("--soil", typed.soil,
-                    "soil.json of 'furrow soil': add what soil theory expects to the run's result");
-
-  CLI::App& bench = *app.add_subcommand("bench", "measure how fast this machine is; prints JSON");
-  bench.require_subcommand(1);
-  GrainBench grains;
-  CLI::App& bench_of_grains =
-      *bench.add_subcommand("grains", "step a settled bed, every grain in every step");
-  add_grain_bench(bench_of_grains, grains);
-  TireBench tire;
-  CLI::App& bench_of_tire =
-      *bench.add_subcommand("tire", "roll a loaded tire on hard ground; times the parts of a step");
-  add_tire_bench(bench_of_tire, tire);
-
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& asked) {  // --help, --version
-    app.exit(asked);
-    return ExitCode::done;
-  } catch (const CLI::ParseError& error) {
-    throw usage_error(parse_problem(app, error, argc, argv));
-  }
-  if (run.parsed()) return run_command(typed, argc, argv);
-  if (resume.parsed()) return resume_command(typed, argc, argv);
-  if (validate.parsed()) return validate_command(typed);
-  if (ranks.parsed()) return ranks_command(typed, {argv, argv + argc});
-  if (soil.parsed()) return soil_command(load(typed), soil_arguments);
-  if (press.parsed()) return press_command(load(typed), press_arguments);
-  if (bed.parsed()) return bed_command(load(typed));
-  if (sweep.parsed()) return sweep_command(sweep_arguments);
-  if (report.parsed()) return report_command(typed);
-  if (bench_of_grains.parsed()) return bench_command(bench_grains, grains);
-  if (bench_of_tire.parsed()) return bench_command(bench_tire, tire);
-  std::cout << scenario::explain(typed.key);
-  return ExitCode::done;
-}
+ExitCode run_command_line(int argc, char** argv) { return CommandLine(argc, argv).execute(); }
 
 }  // namespace furrow::commands

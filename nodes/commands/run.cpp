@@ -1,4 +1,5 @@
-// `furrow run` and `furrow resume` outside MPI: check first, then have the ranks started and watched, then tell the result.
+// `furrow run` and `furrow resume` outside MPI: check first, then have the ranks started and watched, then tell the
+// result.
 #include <cstdio>
 #include <iostream>
 

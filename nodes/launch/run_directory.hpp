@@ -24,8 +24,8 @@ class RunDirectory {
 
   const std::filesystem::path& path() const { return path_; }
 
-  /// The run never came to be: unless it was to go on, removes its results and the folders that the constructor made, puts back what was set
-  /// aside.
+  /// The run never came to be: unless it was to go on, removes its results and the folders that the constructor made,
+  /// puts back what was set aside.
   void discard();
 
  private:

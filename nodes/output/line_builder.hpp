@@ -19,7 +19,8 @@ class LineBuilder {
 
   /// Once per interval, a value for each column: means are summed, all others replaced.
   void add(std::span<const double> measured);
-  /// The line for the intervals added since the last take(): valid until the next. Derived columns are left as measured.
+  /// The line for the intervals added since the last take(): valid until the next. Derived columns are left as
+  /// measured.
   std::span<const double> take();
 
   /// As of the last add(); means are sums since the last line.

@@ -80,8 +80,8 @@ void Results::add(int table, std::span<const double> line) {
 }
 
 void Results::write_hdf5(std::span<const FinalReport> reports) const {
-  // series/<subject>/<column>: as the subject's CSV file, same names. terrain/height_before, height_after: (nx, ny) m, NaN where
-  // no grain is; terrain/height_*_grid: x and y of the first cell's centre and the cell's size, m.
+  // series/<subject>/<column>: as the subject's CSV file, same names. terrain/height_before, height_after: (nx, ny) m,
+  // NaN where no grain is; terrain/height_*_grid: x and y of the first cell's centre and the cell's size, m.
   Hdf5Writer file(directory_ / "results.h5");
   file.attribute("scenario", scenario_.name);
   file.attribute("scenario_digest", scenario_.digest);

@@ -35,8 +35,8 @@ struct SummaryInput {
   std::vector<checkpoint::Segment> segments;
 };
 
-/// summary.json's text: what holds for the run, and `wheels`, one entry per wheel. Where there is one wheel, its keys stand
-/// beside those of the run as well. Values that could not be measured are null.
+/// summary.json's text: what holds for the run, and `wheels`, one entry per wheel. Where there is one wheel, its keys
+/// stand beside those of the run as well. Values that could not be measured are null.
 std::string summary_text(const SummaryInput& input);
 
 /// "timeseries.csv" for the only wheel of a run, "timeseries_<subject>.csv" for any other table.

@@ -48,8 +48,8 @@ std::vector<WheelRow> wheel_rows(const Table& table) {
   return rows;
 }
 
-/// The averaging window: lines from `first` on, whose means describe the time from `before` to the last line. Columns that the
-/// rig adds are asked for by name, those of every wheel by their row.
+/// The averaging window: lines from `first` on, whose means describe the time from `before` to the last line. Columns
+/// that the rig adds are asked for by name, those of every wheel by their row.
 struct Window {
   std::span<const WheelRow> rows;
   WheelRow before;

@@ -1,5 +1,5 @@
-// A table of results: one subject (a wheel, a body, the vehicle), its columns, and the lines written so far. The same columns
-// serve the CSV file, the HDF5 file and the way back from a file that a run goes on with.
+// A table of results: one subject (a wheel, a body, the vehicle), its columns, and the lines written so far. The same
+// columns serve the CSV file, the HDF5 file and the way back from a file that a run goes on with.
 #pragma once
 
 #include <cstdint>
@@ -40,8 +40,8 @@ class TableWriter {
  public:
   /// @throws Error(io)
   TableWriter(const std::filesystem::path& file, const Table& table);
-  /// Goes on with a file that was cut short or written on since `mark`: cuts it there. Columns are found by name and keep
-  /// the order they have in the file.
+  /// Goes on with a file that was cut short or written on since `mark`: cuts it there. Columns are found by name and
+  /// keep the order they have in the file.
   /// @param table receives its lines
   /// @throws Error(io) when the file does not begin with what the mark stands for, or has other columns
   TableWriter(const std::filesystem::path& file, const checkpoint::SeriesMark& mark, Table& table);

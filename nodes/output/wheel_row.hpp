@@ -1,5 +1,5 @@
-// What the table of results says of every wheel, whatever the rig: one list of columns beside the struct. A column is added by
-// a member, its line in the list, and a value for it in SeriesBuilder.
+// What the table of results says of every wheel, whatever the rig: one list of columns beside the struct. A column is
+// added by a member, its line in the list, and a value for it in SeriesBuilder.
 #pragma once
 
 #include "protocol/core/column.hpp"

@@ -1,10 +1,10 @@
-// What a tire that uses contact tangents owes its terrain: the impulse that acted on each vertex less the impulse that the
-// terrain then reported of the same interval. It is handed back a share at a time,
+// What a tire that uses contact tangents owes its terrain: the impulse that acted on each vertex less the impulse that
+// the terrain then reported of the same interval. It is handed back a share at a time,
 //
 //   L ← L + H (F_n − f̄_n),      f_{n+1} = f̄_n − β L/H,
 //
-// so that Σ impulses on the tire − Σ impulses on the terrain is what the ledger holds. β is small: handed back in a hurry,
-// a difference that comes from the vertex's acceleration would act like a negative mass.
+// so that Σ impulses on the tire − Σ impulses on the terrain is what the ledger holds. β is small: handed back in a
+// hurry, a difference that comes from the vertex's acceleration would act like a negative mass.
 #pragma once
 
 #include <vector>

@@ -3,8 +3,8 @@
 //   set_up;  for n = 0 … N:  synchronize(n);  if n < N: advance
 //
 // synchronize sends everything before it receives anything, so that no order of ranks can deadlock. The rig orders
-// checkpoints and stops: at t_n it tells the tires, at t_{n+1} they tell the terrain, and all save at t_{n+2}, before they
-// synchronize there. Between the steps nothing is in flight, so that the nodes' states are all there is.
+// checkpoints and stops: at t_n it tells the tires, at t_{n+1} they tell the terrain, and all save at t_{n+2}, before
+// they synchronize there. Between the steps nothing is in flight, so that the nodes' states are all there is.
 #pragma once
 
 #include <memory>
@@ -26,8 +26,8 @@ class Node {
 
   virtual NodeCard card() const = 0;
 
-  /// Exchanges what is said once; `cards` in the order rig, tires, terrain. A run that is continued comes out of it in the
-  /// state of context.saved.
+  /// Exchanges what is said once; `cards` in the order rig, tires, terrain. A run that is continued comes out of it in
+  /// the state of context.saved.
   virtual void set_up(Transport& transport, std::span<const NodeCard> cards, const RunContext& context) = 0;
 
   virtual void synchronize(Transport& transport, const StepHeader& header) = 0;
@@ -57,7 +57,8 @@ std::unique_ptr<Node> make_terrain_node(const scenario::Scenario& scenario, int 
 /// The node that `self` is in this scenario.
 std::unique_ptr<Node> make_node(const scenario::Scenario& scenario, Address self, int threads);
 
-/// Synchronizes and advances for n = from … to − 1; calls `checkpoint(n)` when one falls due. Ends early when ordered to.
+/// Synchronizes and advances for n = from … to − 1; calls `checkpoint(n)` when one falls due. Ends early when ordered
+/// to.
 /// @returns the step it stands at, not yet synchronized there
 std::int64_t run_steps(Node& node, Transport& transport, double step, std::int64_t from, std::int64_t to,
                        output::StepProfile* profile = nullptr,

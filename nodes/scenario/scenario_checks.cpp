@@ -132,8 +132,8 @@ void Checks::bin() {
 }
 
 void Checks::start() {
-  rig_.fill_starts(wheel_sizes(tires_), s_.run.end, terrain_.bounds ? std::optional(terrain_.bounds->length) : std::nullopt,
-                   kWallMargin);
+  rig_.fill_starts(wheel_sizes(tires_), s_.run.end,
+                   terrain_.bounds ? std::optional(terrain_.bounds->length) : std::nullopt, kWallMargin);
   if (!terrain_.bounds) return;
   const double length = terrain_.bounds->length;
   for (const rigs::WheelDescription& wheel : describe().wheels) {

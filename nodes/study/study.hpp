@@ -4,7 +4,7 @@
 //    "set": {"run.end": 1.2},                        for all runs
 //    "grid": {"rig.slip": [0, 0.3], "terrain.cohesion": [40e3, 80e3]},   every combination, the last key fastest
 //    "list": [{"rig.slip": 0.1}, …],                 or these
-//    "passes": 3, "rest": 0.2,                       each of these, or the scenario alone, so many times over the same bed
+//    "passes": 3, "rest": 0.2,                       each of these so often over one bed
 //    "results": ["drawbar_pull_N.mean", …],          of summary.json; columns of the collected table
 //    "plot": {"x": "rig.slip", "y": "drawbar_pull_N.mean", "error": "drawbar_pull_N.sem", "lines": "terrain.cohesion",
 //             "mean_over": "run.seed"}}                  points are means over these runs, bars their 95 % intervals

@@ -1,5 +1,5 @@
-// Structs with a list of fields (fields.hpp) in a saved state (archive.hpp): every field under its own name, so that one that is
-// added, moved or left out is missed by name and never shifts another.
+// Structs with a list of fields (fields.hpp) in a saved state (archive.hpp): every field under its own name, so that
+// one that is added, moved or left out is missed by name and never shifts another.
 //
 //   number, switch, enumeration        one number: double, int64 and uint64 as they are, shorter integers as int32
 //   vector, matrix, orientation        their numbers, a matrix column by column, an orientation x y z w

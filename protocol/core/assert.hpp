@@ -1,11 +1,11 @@
-// Preconditions and invariants that are checked while a program is tested: on in the builds dev, audit and asan (CMake option
-// FURROW_ASSERTS), nothing in others.
+// Preconditions and invariants that are checked while a program is tested: on in the builds dev, audit and asan (CMake
+// option FURROW_ASSERTS), nothing in others.
 //
 //   FURROW_ASSERT(in_range(i, size()), i, size());
 //
-// prints "FILE:LINE: FUNCTION: precondition failed: in_range(i, size()) [i, size() = 12, 10]" and aborts. It never throws:
-// it may stand inside an OpenMP region. What a user can cause is no assertion but an Error (error.hpp) or an Outcome
-// (outcome.hpp).
+// prints "FILE:LINE: FUNCTION: precondition failed: in_range(i, size()) [i, size() = 12, 10]" and aborts. It never
+// throws: it may stand inside an OpenMP region. What a user can cause is no assertion but an Error (error.hpp) or an
+// Outcome (outcome.hpp).
 #pragma once
 
 #include <cstdio>

@@ -1,5 +1,5 @@
-// Columns of result tables: what they are called, and how a line is made of what is measured at every synchronization. A
-// struct whose fields are all columns has one list of them:
+// Columns of result tables: what they are called, and how a line is made of what is measured at every synchronization.
+// A struct whose fields are all columns has one list of them:
 //
 //   template <class Visit>
 //   void visit_fields(Visit&& visit, FieldsOf<VehicleRow> auto& r) {

@@ -7,8 +7,8 @@ namespace furrow {
 
 inline constexpr double kStandardGravity = 9.81;  // m/s²
 
-/// Gravity of a level site, W, m/s². Models are given theirs and take this one where nothing else is said: the world's z
-/// is the normal of the undisturbed ground, so that a slope is a tilted gravity.
+/// Gravity of a level site, W, m/s². Models are given theirs and take this one where nothing else is said: the world's
+/// z is the normal of the undisturbed ground, so that a slope is a tilted gravity.
 inline Vec3 standard_gravity() { return {0.0, 0.0, -kStandardGravity}; }
 
 }  // namespace furrow

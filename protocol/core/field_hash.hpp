@@ -1,5 +1,5 @@
-// Digests of structs with a list of fields: what differs from the default counts, by name, so that a key that is added later
-// changes no digest of those that do not use it.
+// Digests of structs with a list of fields: what differs from the default counts, by name, so that a key that is added
+// later changes no digest of those that do not use it.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// One list of fields per struct serves all that sends, saves, reads, checks, prints or hashes it. The list stands beside the
-// struct, in its namespace:
+// One list of fields per struct serves all that sends, saves, reads, checks, prints or hashes it. The list stands
+// beside the struct, in its namespace:
 //
 //   struct GroundOptions {
 //     double stiffness = 4e8;  // N/m³
@@ -9,8 +9,9 @@
 //     visit(Field{"stiffness", "N/m³"}, s.stiffness);
 //   }
 //
-// A visitor is called with each field's name, unit and roles and the member itself, const when the struct is. Members that are
-// structs with a list of their own are visited as one field; the visitor decides to go into them (concept HasFields).
+// A visitor is called with each field's name, unit and roles and the member itself, const when the struct is. Members
+// that are structs with a list of their own are visited as one field; the visitor decides to go into them (concept
+// HasFields).
 #pragma once
 
 #include <concepts>

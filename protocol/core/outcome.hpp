@@ -1,6 +1,6 @@
-// How an advance of a tire, a terrain or a rig ended: the one way in which partners report that physics or numerics failed.
-// Errors of the user are thrown (error.hpp); what may happen in any step is returned, and becomes an Error(physics) only where
-// the caller knows which partner it was, and when: physics_error(outcome, who, where).
+// How an advance of a tire, a terrain or a rig ended: the one way in which partners report that physics or numerics
+// failed. Errors of the user are thrown (error.hpp); what may happen in any step is returned, and becomes an
+// Error(physics) only where the caller knows which partner it was, and when: physics_error(outcome, who, where).
 #pragma once
 
 #include <string>

@@ -1,7 +1,7 @@
-// Several numbers at once: the one vocabulary of vector registers that all kernels use. Float8, Double4 are as wide on every
-// machine; where there are no registers of 32 bytes the compiler splits them (vector extensions of GCC and Clang).
-// Beyond + − × ÷ and comparison these are the few operations that kernels need. The contact law is written once for a
-// type T that is `double`, Float8 or Double4.
+// Several numbers at once: the one vocabulary of vector registers that all kernels use. Float8, Double4 are as wide on
+// every machine; where there are no registers of 32 bytes the compiler splits them (vector extensions of GCC and
+// Clang). Beyond + − × ÷ and comparison these are the few operations that kernels need. The contact law is written once
+// for a type T that is `double`, Float8 or Double4.
 #pragma once
 
 #include <cmath>

@@ -57,8 +57,8 @@ void visit_fields(Visit&& visit, FieldsOf<SurfaceState> auto& s) {
   visit(Field{"velocity", "m/s"}, s.velocity);
 }
 
-/// How a nodal force answers to the motion of its vertex, means over the interval in which it acted: over an interval in
-/// which the vertex moves otherwise it would be about force − stiffness (x − position) − damping (v − velocity).
+/// How a nodal force answers to the motion of its vertex, means over the interval in which it acted: over an interval
+/// in which the vertex moves otherwise it would be about force − stiffness (x − position) − damping (v − velocity).
 struct ContactTangent {
   Mat3 stiffness = Mat3::Zero();  // −∂f/∂x, N/m, W, symmetric, not negative
   Mat3 damping = Mat3::Zero();    // −∂f/∂v, N s/m, likewise

@@ -41,6 +41,7 @@ struct TerrainState {
   double dissipation = 0.0;          // −∫ contact forces · relative velocity dt − Δ elastic energy, J
   double energy_removed = 0.0;       // by the activity switch, J
   Vec3 momentum = Vec3::Zero();      // kg m/s, now
+  Vec3 momentum_removed = Vec3::Zero();  // by the activity switch, kg m/s
   Vec3 wall_impulse = Vec3::Zero();  // by walls and floor on the grains, N s
   Vec3 surface_impulse = Vec3::Zero();  // by tires on the grains, N s
   double floor_force = 0.0;             // vertical, N, last substep
@@ -56,6 +57,7 @@ void visit_fields(Visit&& visit, FieldsOf<TerrainState> auto& s) {
   visit(Field{"dissipation", "J"}, s.dissipation);
   visit(Field{"energy_removed", "J"}, s.energy_removed);
   visit(Field{"momentum", "kg m/s"}, s.momentum);
+  visit(Field{"momentum_removed", "kg m/s"}, s.momentum_removed);
   visit(Field{"wall_impulse", "N s"}, s.wall_impulse);
   visit(Field{"surface_impulse", "N s"}, s.surface_impulse);
   visit(Field{"floor_force", "N"}, s.floor_force);

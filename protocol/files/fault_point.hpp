@@ -1,5 +1,5 @@
-// Places where tests make the program die, stop or fail. In `furrow` the call does nothing; tests/system/furrow_faults is
-// the same program linked with tests/system/fault_injection.cpp in place of fault_point.cpp.
+// Places where tests make the program die, stop or fail. In `furrow` the call does nothing; tests/system/furrow_faults
+// is the same program linked with tests/system/fault_injection.cpp in place of fault_point.cpp.
 #pragma once
 
 namespace furrow {

@@ -1,5 +1,6 @@
-// Reads an object of a JSON file key by key: tire files, soil files, studies, soil estimates. Every complaint names the file,
-// the dotted key, the offending value and what is expected; keys that nobody asked for are errors with the nearest valid key.
+// Reads an object of a JSON file key by key: tire files, soil files, studies, soil estimates. Every complaint names the
+// file, the dotted key, the offending value and what is expected; keys that nobody asked for are errors with the
+// nearest valid key.
 #pragma once
 
 #include <string>

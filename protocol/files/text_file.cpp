@@ -31,7 +31,8 @@ void flush_to_disk(const std::filesystem::path& path) {
   if (result != 0) throw failed(path, "cannot flush to the disk");
 }
 
-/// Gives `use` what the stream holds, block by block; `use` returns false when it has enough. @returns false after an error
+/// Gives `use` what the stream holds, block by block; `use` returns false when it has enough. @returns false after an
+/// error
 template <class Use>
 bool read_blocks(std::ifstream& in, const Use& use) {
   std::vector<char> block(1 << 20);

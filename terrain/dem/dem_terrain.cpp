@@ -135,6 +135,7 @@ class DemTerrain : public Terrain {
     s.dissipation = -a.contact_work - (a.elastic - a.elastic_start) + a.slept;
     s.energy_removed = a.slept;
     s.momentum = mass * a.velocity;
+    s.momentum_removed = a.momentum_removed;
     s.wall_impulse = a.wall_impulse;
     s.surface_impulse = a.surface_impulse;
     s.floor_force = a.floor_force;

@@ -17,7 +17,8 @@ constexpr double kCut = 2.0;  // normal: the spread is so many standard deviatio
 /// Variance of the radius over that of the whole spread squared.
 double relative_variance(const DemOptions& o) {
   if (o.size_distribution == "uniform") return 1.0 / 3.0;
-  // A normal distribution cut at ± kCut [Johnson, Kotz & Balakrishnan 1994, Continuous univariate distributions 1, §10.1].
+  // A normal distribution cut at ± kCut [Johnson, Kotz & Balakrishnan 1994, Continuous univariate distributions 1,
+  // §10.1].
   const double density = std::exp(-0.5 * kCut * kCut) / std::sqrt(2.0 * std::numbers::pi);
   return (1.0 - 2.0 * kCut * density / std::erf(kCut / std::numbers::sqrt2)) / (kCut * kCut);
 }

@@ -248,7 +248,7 @@ void GrainSolver::finish_strip(int k, const Loads& loads, double dt, bool measur
   FURROW_ASSERT(loads.force != nullptr || strips_[k].grains() == 0, k, strips_[k].grains());
   Strip& strip = strips_[k];
   if (strip.asleep) {
-    feel(strip, loads);
+    load_sleeper(strip, loads);
   } else if (params_.sizes()) {
     params_.activity ? integrate<true, true>(strip, loads, dt, measure)
                      : integrate<false, true>(strip, loads, dt, measure);
@@ -258,7 +258,7 @@ void GrainSolver::finish_strip(int k, const Loads& loads, double dt, bool measur
   }
 }
 
-void GrainSolver::feel(Strip& strip, const Loads& loads) const {
+void GrainSolver::load_sleeper(Strip& strip, const Loads& loads) const {
   const Double4 weight = lanes_of(params_.gravity * params_.grain.mass);
   const double* const force = flat(loads.force);
   const double* const position = flat(grains_.position.data() + strip.first);

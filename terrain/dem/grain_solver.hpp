@@ -179,7 +179,7 @@ class GrainSolver {
   void finish_strip(int k, const Loads& loads, double dt, bool measure);
   template <bool kMaySleep, bool kSizes>
   void integrate(Strip& strip, const Loads& loads, double dt, bool measure);
-  void feel(Strip& strip, const Loads& loads) const;  // of a sleeping strip
+  void load_sleeper(Strip& strip, const Loads& loads) const;  // of a sleeping strip
   void change_activity();
   bool sample_now() const { return params_.activity && until_sample_ == 0; }
   /// Takes samples of the contact forces of the strips that this step evaluated. Those of sleeping strips stay: nothing

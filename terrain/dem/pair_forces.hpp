@@ -1,10 +1,12 @@
-// The contact law on the touching pairs of a strip, a register full at a time: eight in single, four in double precision.
+// The contact law on the touching pairs of a strip, a register full at a time: eight in single, four in double
+// precision.
 //
 // With d = x_i − x_j the arms r − δ/2 are ±d/2, so v = v_i − v_j − ½ (ω_i + ω_j) × d, and the torque on i and on j is
 // −½ d × F_t. Grains of other sizes have the arms r_i − δ/2 = ½ (|d| + Δ) and ½ (|d| − Δ), Δ = r_i − r_j: then v gains
-// −½ Δ (ω_i − ω_j) × n, and the couple ∓½ Δ n × F_t stands beside that of rolling resistance. Velocity and spin of a grain are one row: a pair costs two loads and one subtraction of rows, and one
-// transposition turns the rows of eight pairs into lanes. Forces are added up in double precision, the same number to i
-// and with the other sign to j: momentum is conserved to round-off of double whatever the law's precision.
+// −½ Δ (ω_i − ω_j) × n, and the couple ∓½ Δ n × F_t stands beside that of rolling resistance. Velocity and spin of a
+// grain are one row: a pair costs two loads and one subtraction of rows, and one transposition turns the rows of eight
+// pairs into lanes. Forces are added up in double precision, the same number to i and with the other sign to j:
+// momentum is conserved to round-off of double whatever the law's precision.
 #pragma once
 
 #include <vector>
@@ -60,7 +62,8 @@ struct PairLaw {
   bool measure = false;  // sum |F| too
 };
 
-/// Relative motion of pairs: dv = v_i − v_j, turn = ω_i + ω_j and, where wanted, roll = ω_i − ω_j and delta = r_i − r_j.
+/// Relative motion of pairs: dv = v_i − v_j, turn = ω_i + ω_j and, where wanted, roll = ω_i − ω_j and delta = r_i −
+/// r_j.
 template <bool kRoll, class L>
 struct RelativeMotion {
   Triple<L> dv, turn, roll;

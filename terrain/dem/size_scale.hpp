@@ -33,8 +33,8 @@ inline SizeScale<T> pair_scale(T a, T b) {
   return s;
 }
 
-/// A grain with radius a r₀ against a surface. `share`: mass of the reference grain over that of the piece of surface it
-/// moves, 0 for a wall; that piece grows as r².
+/// A grain with radius a r₀ against a surface. `share`: mass of the reference grain over that of the piece of surface
+/// it moves, 0 for a wall; that piece grows as r².
 inline SizeScale<double> surface_scale(double a, double share) {
   FURROW_ASSERT(a > 0.0 && share >= 0.0, a, share);
   const double light = share / (a * a), heavy = 1.0 / (a * a * a);
@@ -45,8 +45,8 @@ inline SizeScale<double> surface_scale(double a, double share) {
           .smaller = a};
 }
 
-/// The coefficients of law mindlin for another size; T may hold several contacts. Law hertz_tanh has none: its stiffness
-/// is stated for one size.
+/// The coefficients of law mindlin for another size; T may hold several contacts. Law hertz_tanh has none: its
+/// stiffness is stated for one size.
 template <class T, class S>
 inline Coefficients<T> scaled(const Coefficients<S>& c, const SizeScale<T>& s) {
   const T zero = constant<T>(0.0), root_r = root(s.radius);

@@ -1,4 +1,5 @@
-// A small complete tire model, made as CONTRIBUTING.md says: a rigid rim with radial springs to the vertices of its surface.
+// A small complete tire model, made as CONTRIBUTING.md says: a rigid rim with radial springs to the vertices of its
+// surface.
 //
 // A vertex has no mass, a stiffness k and a damping c. With f the force on it and e its radial direction, outwards, its
 // deflection u, positive inwards, follows

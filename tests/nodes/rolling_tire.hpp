@@ -1,4 +1,5 @@
-// A flexible tire on the drawbar rig over hard ground, coupled as the nodes couple them, in one thread and open to view.
+// A flexible tire on the drawbar rig over hard ground, coupled as the nodes couple them, in one thread and open to
+// view.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// Tables of results: from one list of columns follow means, files, saved state and the way back; the rig adds columns and
-// subjects without any of these knowing of it.
+// Tables of results: from one list of columns follow means, files, saved state and the way back; the rig adds columns
+// and subjects without any of these knowing of it.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // LIGGGHTS with a constant pull between grains that touch: liggghts_with_pull DECK LOG PULL_N DIAMETER_M
 //
-// Runs a deck through LIGGGHTS's library, one rank. Its `fix pull all external pf/callback 1 1` gets F_c along the line of
-// centres for every pair nearer than a diameter, added after the contact forces: the Coulomb limit is taken from the
+// Runs a deck through LIGGGHTS's library, one rank. Its `fix pull all external pf/callback 1 1` gets F_c along the line
+// of centres for every pair nearer than a diameter, added after the contact forces: the Coulomb limit is taken from the
 // elastic force, as with the engine's cohesion. LIGGGHTS's own cohesion models have no such law.
 #include <cmath>
 #include <cstdlib>

@@ -2,9 +2,11 @@
 //
 // `test` of the job:
 //   fall   grains fall and come to rest for `steps`; positions every `every` steps
-//   plate  `rest_steps`, then a mesh box (plate_side, plate_height, its lower face at plate_z, in the middle of the bin)
+//   plate  `rest_steps`, then a mesh box (plate_side, plate_height, its lower face at plate_z, in the middle of the
+//   bin)
 //          goes down at `speed` for `steps`; means over each `every` steps
-//   shear  grains between plates of grains: they fall for `settle_steps`; the lid, free to rise and sink, takes its load
+//   shear  grains between plates of grains: they fall for `settle_steps`; the lid, free to rise and sink, takes its
+//   load
 //          `pressure` × area over `load_steps`, keeps it for `hold_steps`, then moves along x in `stages`, each with a
 //          `speed`, reached evenly over `ramp_steps`, for `steps` in all; means over each `every` steps.
 //          Lid: M v̇ = F − P − c v with the mass of its grains and c = lid_damping, N s/m.

@@ -1,5 +1,5 @@
-// What tests ask of structs with a list of fields: whether no member was forgotten, and values that tell every number from
-// every other.
+// What tests ask of structs with a list of fields: whether no member was forgotten, and values that tell every number
+// from every other.
 #pragma once
 
 #include <string>

@@ -96,8 +96,8 @@ TEST(Rigs, description_is_that_of_the_made_rig) {
   EXPECT_NEAR(rig->report(0).slip, *d.slip, 1e-9);
 }
 
-/// A disc of radius R and width b, turned by δ and leaning by γ: R cos δ + h sin δ along, h cos δ + R sin δ across, with
-/// h = b/2 cos γ + R sin γ.
+/// A disc of radius R and width b, turned by δ and leaning by γ: R cos δ + h sin δ along, h cos δ + R sin δ across,
+/// with h = b/2 cos γ + R sin γ.
 TEST(Rigs, a_wheel_takes_the_room_of_a_disc_that_turns_and_leans) {
   const double toe = 0.3, camber = 0.2;
   const double h = 0.5 * kWidth * std::cos(camber) + kRadius * std::sin(camber);

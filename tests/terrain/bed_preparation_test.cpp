@@ -299,7 +299,8 @@ std::vector<double> numbers_in(hid_t file, const char* name) {
   return numbers;
 }
 
-// The file was settled by version 0.1.0 with format 4: 38 grains of 50 mm with rolling resistance in a bin of 1 m × 0.36 m.
+// The file was settled by version 0.1.0 with format 4: 38 grains of 50 mm with rolling resistance in a bin of 1 m ×
+// 0.36 m.
 TEST_F(Beds, a_bed_of_format_4_is_read_by_name) {
   const fs::path file = fs::path(TEST_DATA) / "bed_format_4.h5";
   const Archive bed = read_bed(file);

@@ -247,6 +247,26 @@ TEST_F(DemTerrain, plate_books_force_momentum_and_energy) {
   }
 }
 
+TEST_F(DemTerrain, impulses_are_the_momentum_and_what_sleep_took) {
+  options_.activity = true;
+  const auto terrain = make_dem_terrain(options_);
+  terrain->prepare({});
+  Plate plate(0.1, -0.05, 0.1, 4, terrain->top_height(0.1, 0.2, -0.05, 0.05) + 1e-4);
+  terrain->attach(plate.mesh, kRubber, plate.state);
+  const TerrainState before = terrain->state();
+  Press press;
+  const double dt = 6e-5;
+  ASSERT_TRUE(press.run(*terrain, plate, Vec3(0.1, 0.0, -0.2), 1000, dt, 2).ok);
+  const TerrainState after = terrain->state();
+  ASSERT_GT((after.momentum_removed - before.momentum_removed).norm(), 0.0);
+  const double mass = 2500 * 4.0 / 3.0 * M_PI * 1e-6 * static_cast<double>(terrain->size());
+  const Vec3 weight = mass * 1000 * dt * standard_gravity();
+  const auto given = [](const TerrainState& s) -> Vec3 {
+    return s.wall_impulse + s.surface_impulse - s.momentum_removed - s.momentum;
+  };
+  EXPECT_LT((given(after) - given(before) + weight).norm(), 1e-10 * weight.norm());
+}
+
 TEST_F(DemTerrain, restored_terrain_with_a_tire_continues_bit_for_bit) {
   options_.rolling_friction = 0.1;
   const auto a = make_dem_terrain(options_);

@@ -130,8 +130,8 @@ TEST(GrainSizes, restitution_of_unequal_spheres_is_the_one_asked_for) {
   }
 }
 
-/// Rigid bodies that slide throughout: friction impulse P = μ (1 + e) m* u, spins 5/2 P/(m r). Stiff, so that the line of
-/// centres hardly turns meanwhile.
+/// Rigid bodies that slide throughout: friction impulse P = μ (1 + e) m* u, spins 5/2 P/(m r). Stiff, so that the line
+/// of centres hardly turns meanwhile.
 TEST(GrainSizes, sliding_impact_of_unequal_spheres_gives_both_their_spin) {
   Unequal u;
   u.few.options.young_modulus = 2.5e12;
@@ -239,8 +239,9 @@ TEST(GrainSizes, frictionless_elastic_crowd_keeps_its_energy) {
   EXPECT_NEAR(s.accounts().kinetic + s.accounts().elastic, k0, 2e-4 * k0);
 }
 
-/// Stiffness or damping of a contact of a small grain with one `ratio` times as large, over that with its like, as it acts on the
-/// small grain in its fastest mode: k (1/m + 1/√(m M)) over 2 k/m, Gershgorin's bound in mass-weighted coordinates.
+/// Stiffness or damping of a contact of a small grain with one `ratio` times as large, over that with its like, as it
+/// acts on the small grain in its fastest mode: k (1/m + 1/√(m M)) over 2 k/m, Gershgorin's bound in mass-weighted
+/// coordinates.
 double row_of_bound(double coefficient, double like, double ratio) {
   return coefficient / like * 0.5 * (1.0 + std::pow(ratio, -1.5));
 }
@@ -257,8 +258,8 @@ TEST(GrainSizes, contacts_with_larger_grains_are_stiffer_and_yet_no_less_stable_
   }
 }
 
-/// Largest distance from rest of a pair of cohesive grains, `ratio` between their radii, that starts a little off it, after
-/// many steps; over that at the start.
+/// Largest distance from rest of a pair of cohesive grains, `ratio` between their radii, that starts a little off it,
+/// after many steps; over that at the start.
 double growth_of_pair(double ratio, double share_of_limit) {
   FewGrains few;
   few.options.restitution = 0.999;

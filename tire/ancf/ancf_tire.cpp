@@ -214,7 +214,7 @@ void AncfTire::save(Archive& archive) const {
   const Archive::Scope scope(archive, "ancf/");
   save_fields(archive, "rim", rim_);
   save_fields(archive, "spindle", spindle_);
-  archive.put("pump", pressure_work_);
+  archive.put("pressure_work", pressure_work_);
   integrator_.save(archive);
 }
 
@@ -222,7 +222,7 @@ void AncfTire::restore(const Archive& archive) {
   const Archive::Scope scope(archive, "ancf/");
   restore_fields(archive, "rim", rim_);
   restore_fields(archive, "spindle", spindle_);
-  pressure_work_ = archive.get_double("pump");
+  pressure_work_ = archive.get_double("pressure_work");
   placed_ = true;
   integrator_.restore(archive);
 }

@@ -56,8 +56,8 @@ class AncfTire final : public Tire {
   RimState rim_;    // now
   Wrench spindle_;  // of the last advance
   bool placed_ = false;
-  // ∫ (V − V₀) dp since the tire was placed, J: what a changing pressure puts into the potential −p (V − V₀) without work
-  // on the tire.
+  // ∫ (V − V₀) dp since the tire was placed, J: what a changing pressure puts into the potential −p (V − V₀) without
+  // work on the tire.
   double pressure_work_ = 0.0;
   Field force_;  // of the running interval
   std::vector<std::pair<std::size_t, std::size_t>>

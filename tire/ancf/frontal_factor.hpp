@@ -2,9 +2,9 @@
 //
 // Multifrontal method [Duff & Reid 1983, The multifrontal solution of indefinite sparse symmetric linear equations,
 // ACM Trans. Math. Softw. 9, doi:10.1145/356044.356047]: each supernode of the elimination tree adds its entries of the
-// matrix and what its children pass on, eliminates its own columns, and passes the rest to its parent. What is passed is
-// kept; when entries of the matrix change only the supernodes that hold them and those above are computed again.
-// The result does not depend on what was renewed before: a factor made at once has the same bits.
+// matrix and what its children pass on, eliminates its own columns, and passes the rest to its parent. What is passed
+// is kept; when entries of the matrix change only the supernodes that hold them and those above are computed again. The
+// result does not depend on what was renewed before: a factor made at once has the same bits.
 //
 // Single precision: the factor corrects a residual that is computed in double precision.
 #pragma once

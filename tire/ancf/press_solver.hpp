@@ -1,6 +1,7 @@
 // Static pressing of an inflated ring of shell elements, its beads fixed, on a frictionless obstacle z = H(x).
 //
-// Equilibrium is a minimum of the potential of elastic, pressure and contact forces, without inertia, viscosity and weight:
+// Equilibrium is a minimum of the potential of elastic, pressure and contact forces, without inertia, viscosity and
+// weight:
 //   Π(q) = ½ EᵀD̂E − p V(q) + Σ ½ κ A ⟨H(x) − z⟩²,
 // the contact summed over points of the mid-surface with their share A of the undeformed area. Loading and unloading
 // coincide wherever the minimum is unique.

@@ -1,6 +1,6 @@
-// How far the shell is from the rim that holds it. The rim is taken as a solid cylinder of the beads' radius between the
-// bead loops; what hangs outside of it, beyond a flange, may come nearer to the axle. Rim and shell have no contact law: a
-// tire whose clearance is used up is beyond this model.
+// How far the shell is from the rim that holds it. The rim is taken as a solid cylinder of the beads' radius between
+// the bead loops; what hangs outside of it, beyond a flange, may come nearer to the axle. Rim and shell have no contact
+// law: a tire whose clearance is used up is beyond this model.
 #pragma once
 
 #include <vector>

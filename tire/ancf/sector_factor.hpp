@@ -5,9 +5,9 @@
 // in its symmetric form; K and C are those of the contact (shell_contact.hpp). As c is some hundred, a degree of local
 // rotation matters, and A ages where the tire deforms. So the ring is cut into sectors, and the factor is renewed in
 // those whose shape, in rim axes, has changed since it was made: around the contact patch, which travels through the
-// rim's axes, and where the tire sways or wrinkles. A sector's age is the largest relative change of an edge, a director
-// or a contact tangent.
-// The factor of given shapes has the same bits however it came about: what is saved is the shapes.
+// rim's axes, and where the tire sways or wrinkles. A sector's age is the largest relative change of an edge, a
+// director or a contact tangent. The factor of given shapes has the same bits however it came about: what is saved is
+// the shapes.
 #pragma once
 
 #include <cstdint>
@@ -58,8 +58,8 @@ class SectorFactor {
 
   /// Starts without a factor and counts from zero.
   void start();
-  /// Makes the factor fit for a step: young enough everywhere; after a failed attempt (1) renewed wherever it has aged at
-  /// all, then (2 and up) new. @returns false when there is none
+  /// Makes the factor fit for a step: young enough everywhere; after a failed attempt (1) renewed wherever it has aged
+  /// at all, then (2 and up) new. @returns false when there is none
   bool prepare(const Step& step, int attempt);
   /// x = A⁻¹ rhs on the free rows, in world axes of a rim turned by `turn`; padding of x is zero there.
   void solve(const Mat3& turn, const Field& rhs, Field& x) { factor_.solve(turn, rhs, x, params_.threads); }

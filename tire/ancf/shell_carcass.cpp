@@ -9,8 +9,8 @@
 namespace furrow::tire {
 namespace {
 
-/// A branch over a step of h = x τ: H decays by the factor e^{−x} and responds to ΔE with the factor b; the mean of H is
-/// b H + (1 − b)/x ΔE.
+/// A branch over a step of h = x τ: H decays by the factor e^{−x} and responds to ΔE with the factor b; the mean of H
+/// is b H + (1 − b)/x ΔE.
 struct BranchStep {
   double decay, response, mean_response;
   BranchStep(const MaxwellBranch& branch, double h) {
@@ -219,8 +219,8 @@ ShellCarcass::Energies ShellCarcass::accept(Step& step) const {
   return total;
 }
 
-/// H_i and g_i D̂ H_i at the step's end. What is lost is the work of the mean stress, Σ ΔEᵀ g D̂ H̄, less what is stored:
-/// exact for an even change of strain.
+/// H_i and g_i D̂ H_i at the step's end. What is lost is the work of the mean stress, Σ ΔEᵀ g D̂ H̄, less what is
+/// stored: exact for an even change of strain.
 void ShellCarcass::accept_branches(Step& step, Energies& total) const {
   for (std::size_t i = 0; i < branches_.size(); ++i) {
     const BranchStep branch(branches_[i], step.h);

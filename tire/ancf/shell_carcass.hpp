@@ -6,10 +6,9 @@
 // changes evenly over the step h, x_i = h/τ_i,
 //   H_i' = e^{−x_i} H_i + b_i ΔE,  b_i = (1 − e^{−x_i})/x_i
 // holds exactly (Taylor, Pister & Goudreau 1970, Thermomechanical analysis of viscoelastic solids, IJNME 2,
-// doi:10.1002/nme.1620020106), and as e^{−2x} + (1 − b)² ≤ 1 a step never gives energy. The stiffness of all branches is
-// a multiple of the element's own, so a step costs the same product D̂ ΔE as without them.
-// The pressure acts on the current area of the mid-surface; V is the volume that it closes with the bead
-// discs.
+// doi:10.1002/nme.1620020106), and as e^{−2x} + (1 − b)² ≤ 1 a step never gives energy. The stiffness of all branches
+// is a multiple of the element's own, so a step costs the same product D̂ ΔE as without them. The pressure acts on the
+// current area of the mid-surface; V is the volume that it closes with the bead discs.
 #pragma once
 
 #include "protocol/core/assert.hpp"
@@ -65,7 +64,8 @@ class ShellCarcass {
   void prepare(Step& step, double h) const;
   /// What the branches add to c for a step of h: Σ g_i b_i.
   double branch_gain(double h) const;
-  /// forces() of a step, with c as without branches. Rows are shared out to `threads`; the result does not depend on how many.
+  /// forces() of a step, with c as without branches. Rows are shared out to `threads`; the result does not depend on
+  /// how many.
   void forces(const Field& q_new, const Field& q_force, Step& step, double c, Field& f, int threads) const;
   /// Takes the last q_new as the next step's start. @returns changes over the step, and Σ ΔEᵀ D̂ ΔE, J
   Energies accept(Step& step) const;

@@ -3,9 +3,9 @@
 // Over a step h from (q, v) to (q', v'), with q_f = ½ (q + q') and E, E' the strains at q, q':
 //   q' − q = h v'                                                                          (1) free nodes
 //   M (v' − v)/h + B(q_f)ᵀ D̂ [E' + τ (E' − E)/h] − p ∂V/∂q(q_f) = F + M g + Q              (2)
-// F are the contact forces, constant over the step or answering to it (shell_contact.hpp), Q the reactions at the beads.
-// q', v' of the beads come from the rim.
-//  - As E is quadratic in q, E' − E = B(q_f) (q' − q): strain rates vanish exactly for a rigid motion between
+// F are the contact forces, constant over the step or answering to it (shell_contact.hpp), Q the reactions at the
+// beads. q', v' of the beads come from the rim. - As E is quadratic in q, E' − E = B(q_f) (q' − q): strain rates vanish
+// exactly for a rigid motion between
 //    the step's ends, and the work of the internal forces is Δ(elastic energy) + ½ ΔEᵀ D̂ ΔE + (τ/h) ΔEᵀ D̂ ΔE.
 //    With the ½ Δvᵀ M Δv that (1) removes, energy cannot grow; the numerical damping acts like h of
 //    additional τ, 1 % of the material's.
@@ -18,8 +18,8 @@
 // Forces at the middle: Simo & Tarnow (1992), The discrete energy-momentum method, ZAMP 43,
 // doi:10.1007/BF00913408.
 //
-// The equations are solved by a quasi-Newton method: an old Cholesky factor of the tangent (sector_factor.hpp), corrected
-// by BFGS pairs [Nocedal & Wright 2006, Alg. 7.4].
+// The equations are solved by a quasi-Newton method: an old Cholesky factor of the tangent (sector_factor.hpp),
+// corrected by BFGS pairs [Nocedal & Wright 2006, Alg. 7.4].
 #pragma once
 
 #include <cstdint>

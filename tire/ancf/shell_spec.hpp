@@ -1,4 +1,5 @@
-// The layered shell tire as an entry of the table of models: its file, what a scenario changes of it, what it says of itself.
+// The layered shell tire as an entry of the table of models: its file, what a scenario changes of it, what it says of
+// itself.
 #pragma once
 
 #include <memory>

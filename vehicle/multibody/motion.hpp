@@ -16,7 +16,8 @@ struct Motion {
 using MotionFunction = std::function<Motion(double time)>;
 
 /// Speed from rest to `speed` over `ramp` seconds by the C² smoothstep S(u) = 6u⁵ − 15u⁴ + 10u³, then
-/// constant; the value is its integral, T (u⁶ − 3u⁵ + 5u⁴/2) during the ramp. ramp = 0: constant from t = 0. @pre ramp ≥ 0
+/// constant; the value is its integral, T (u⁶ − 3u⁵ + 5u⁴/2) during the ramp. ramp = 0: constant from t = 0. @pre ramp
+/// ≥ 0
 inline Motion ramped_motion(double time, double speed, double ramp) {
   FURROW_ASSERT(ramp >= 0.0, ramp);
   if (time < ramp) {

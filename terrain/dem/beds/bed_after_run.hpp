@@ -13,8 +13,9 @@ struct RestResult {
   double speed = 0.0;        // rms of the grains, m/s
 };
 
-/// Takes the tires away, lets the grains lie for `rest` seconds under the coefficients and step of the run, and then, with
-/// the drag of settling, until they are at rest or kMaxSettleTime more have passed. May throw what `progress` throws.
+/// Takes the tires away, lets the grains lie for `rest` seconds under the coefficients and step of the run, and then,
+/// with the drag of settling, until they are at rest or kMaxSettleTime more have passed. May throw what `progress`
+/// throws.
 /// @param state what Terrain::save wrote
 /// @returns a bed as prepare_bed reads it
 /// @throws Error(physics) when a grain is lost, Error(io) when the state is of another kind

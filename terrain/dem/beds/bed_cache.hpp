@@ -18,7 +18,8 @@ std::filesystem::path bed_cache_file(const std::string& digest);
 /// Complete or absent, also with two writers. @throws Error(io)
 void write_bed(const std::filesystem::path& file, const Archive& archive);
 
-/// @throws Error(io) when the file is missing, not one of ours, damaged (checksum), of a newer format or of one before 4.
+/// @throws Error(io) when the file is missing, not one of ours, damaged (checksum), of a newer format or of one before
+/// 4.
 Archive read_bed(const std::filesystem::path& file);
 
 /// Whether an HDF5 file is a settled bed of furrow, or too damaged to tell.

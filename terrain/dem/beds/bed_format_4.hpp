@@ -1,5 +1,5 @@
-// Beds written before their state was saved by name: format 4 held accounts, strips and wall contacts as lists of numbers in a
-// fixed order. Users keep settled beds, so these are still read.
+// Beds written before their state was saved by name: format 4 held accounts, strips and wall contacts as lists of
+// numbers in a fixed order. Users keep settled beds, so these are still read.
 #pragma once
 
 #include "protocol/core/archive.hpp"

@@ -2,7 +2,8 @@
 // impact level, Granular Matter 13:643–656 (2011), doi:10.1007/s10035-011-0277-0.
 //
 // The curves are points read off the paper's figures, as published with the verification data of Kratos Multiphysics
-// (DEMApplication, basic_benchmarks/paper_data), thinned. Where the figures show two materials on one curve, one is kept.
+// (DEMApplication, basic_benchmarks/paper_data), thinned. Where the figures show two materials on one curve, one is
+// kept.
 #pragma once
 
 #include "tests/terrain/verification/impact.hpp"

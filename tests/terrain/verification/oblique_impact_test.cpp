@@ -184,8 +184,8 @@ TEST(ObliqueImpact, chung_ooi_2011_test_6_constant_normal_speed_and_varied_spin)
   }
 }
 
-// The solver's grains are of one material. The large sphere, 125,000 times heavier, stays at rest; what is left of it is
-// its curvature, R* = 5/6 R, which the contact coefficients are given by hand.
+// The solver's grains are of one material. The large sphere, 125,000 times heavier, stays at rest; what is left of it
+// is its curvature, R* = 5/6 R, which the contact coefficients are given by hand.
 TEST(ObliqueImpact, chung_ooi_2011_test_8_on_a_sphere_five_times_larger) {
   const Material alloy{"aluminium alloy", chung_ooi::kAluminium, 2700.0};
   for (const Ground ground : {Ground::plane, Ground::mesh})
@@ -281,8 +281,8 @@ TEST(ObliqueImpact, without_slip_matches_the_hypergeometric_solution) {
   }
 }
 
-/// The damper may pull at the end of a contact, that is what makes the restitution exactly e; friction feels the pressing
-/// part alone, μ ∫ max(F_e, 0) dt. A known deviation from the rigid body, recorded with its size.
+/// The damper may pull at the end of a contact, that is what makes the restitution exactly e; friction feels the
+/// pressing part alone, μ ∫ max(F_e, 0) dt. A known deviation from the rigid body, recorded with its size.
 TEST(ObliqueImpact, friction_impulse_exceeds_the_rigid_bodys_by_the_dampers_pull) {
   for (const auto& [e, tolerance] : {std::pair{0.2, 0.11}, {0.5, 0.035}, {0.7, 0.012}, {0.9, 0.002}})
     for (const Ground ground : {Ground::plane, Ground::mesh}) {

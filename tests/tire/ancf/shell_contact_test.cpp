@@ -1,4 +1,5 @@
-// Contact forces that answer to the tire's motion: stability above the step of forces that come late, restart, equilibrium.
+// Contact forces that answer to the tire's motion: stability above the step of forces that come late, restart,
+// equilibrium.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -49,8 +50,8 @@ tire::TireFile limp_file() {
   return file;
 }
 
-/// Presses a tire on springs and holds it. @returns the largest change of the spindle's force from one interval to the next
-/// over the last quarter, N; infinite if it did not converge
+/// Presses a tire on springs and holds it. @returns the largest change of the spindle's force from one interval to the
+/// next over the last quarter, N; infinite if it did not converge
 double unrest(bool tangents, double h, double& load, double time = 0.04) {
   tire::AncfTire tire(limp_file());
   const double depth = 0.010;

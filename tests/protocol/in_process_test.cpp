@@ -95,7 +95,7 @@ struct Mismatch {
   const char* name;
   std::function<void(NodeCard&)> spoil;  // the card of one node
   Address where;
-  const char* text;  // part of the error
+  std::string text;  // part of the error
 };
 
 void PrintTo(const Mismatch& mismatch, std::ostream* out) { *out << mismatch.name; }
@@ -117,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(
     Cards, HandshakeMismatch,
     ::testing::Values(
         Mismatch{"version", [](NodeCard& c) { c.protocol_version = 99; }, kTerrain,
-                 "protocol version of rig is 4"},
+                 "protocol version of rig is " + std::to_string(kProtocolVersion)},
         Mismatch{"digest",
                  [](NodeCard& c) { c.scenario_digest = "xyz"; },
                  {Role::tire, 1},
@@ -234,7 +234,7 @@ TEST(WaitClock, counts_the_time_blocked_in_receive) {
     }
     if (t.self() == kRig) {
       receive<TerrainSetup>(t, kTerrain);
-      EXPECT_NEAR(t.wait_clock().waited_s, 0.3, 0.15);
+      EXPECT_GE(t.wait_clock().waited_s, 0.25);
     }
   });
 }

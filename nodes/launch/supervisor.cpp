@@ -149,7 +149,10 @@ void Supervisor::start() {
                         .err = err_.write,
                         .own_group = true,
                         .death_signal = SIGTERM,
-                        .prepare = set_environment});
+                        .prepare = [hold = launch_.hold] {
+                          set_environment();
+                          if (hold >= 0) fcntl(hold, F_SETFD, 0);
+                        }});
   close(nothing);
   out_.close_write();
   err_.close_write();

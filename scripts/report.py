@@ -8,6 +8,7 @@ Exit codes: 0 at least one plot was written, 5 a file could not be read or writt
 """
 import argparse
 import json
+import os
 import pathlib
 import sys
 
@@ -31,6 +32,23 @@ PLOTS = {
 SWEEP_PLOTS = {"curve": sweep.curve, "passes": sweep.passes, "rut_along": sweep.rut_along}
 SOIL_PLOTS = {"plate": soil.plate, "shear": soil.shear, "cone": soil.cone, "repose": soil.repose}
 PRESS_PLOTS = {"load_deflection": press.load_deflection, "footprint": press.footprint}
+
+
+def may_write(folder, name):
+    """Whether `name` is ours to write. In a run's folder it is added to the list of what furrow wrote there, before it is made."""
+    files = folder / ".furrow-run"
+    if not files.is_file():
+        return True
+    listed = files.read_text(errors="replace").split("furrow-run 1\n")[-1].splitlines()
+    if name in listed:
+        return True
+    if os.path.lexists(folder / name):
+        return False
+    with open(files, "a") as out:
+        out.write(name + "\n")
+        out.flush()
+        os.fsync(out.fileno())
+    return True
 
 
 def words(run):
@@ -77,6 +95,10 @@ def main():
             print(f"report: no {name}.png: a file in {arguments.directory} is damaged: {error}", file=sys.stderr)
             continue
         try:
+            if not may_write(out, f"{name}.png"):
+                print(f"report: no {name}.png: a file of that name stands there that furrow did not write", file=sys.stderr)
+                matplotlib.pyplot.close(figure)
+                continue
             figure.savefig(out / f"{name}.png", dpi=130)
         except OSError as error:
             print(f"furrow: error: {out / (name + '.png')}: {error}", file=sys.stderr)

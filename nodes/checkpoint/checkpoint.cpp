@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "nodes/checkpoint/segment.hpp"
+#include "nodes/launch/run_list.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/fault_point.hpp"
@@ -113,13 +114,37 @@ CheckpointManifest read_manifest(const fs::path& file) {
 
 /// The step that a complete checkpoint's folder is named after; negative for anything else.
 std::int64_t step_of(const fs::path& folder) {
-  const std::string name = folder.filename().string();
-  const bool digits = name.size() >= 12 && name.size() < 19 &&
-                      std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isdigit(c); });
-  return digits ? std::stoll(name) : -1;
+  std::int64_t step = -1;
+  return launch::is_of_form(folder.filename().string(), "%012d", &step) ? step : -1;
+}
+
+constexpr const char* kFolderForms[] = {"%012d", ".%012d.part"};
+constexpr const char* kFileForms[] = {kManifest, "rig.h5", "tire%1d.h5", "terrain.h5"};
+
+/// Removes what is a checkpoint's in its folder, and the folder unless somebody else's files stand there.
+void remove_checkpoint(const fs::path& run, const fs::path& folder) {
+  launch::remove_listed(run, launch::RunList(checkpoint_forms()),
+                        "checkpoints/" + folder.filename().string() + "/");
+  std::error_code error;
+  fs::remove(folder, error);
+}
+
+bool is_whole(const fs::path& folder) {
+  std::error_code error;
+  return fs::exists(folder / kManifest, error);
 }
 
 }  // namespace
+
+std::vector<std::string> checkpoint_forms() {
+  std::vector<std::string> forms{"checkpoints/"};
+  for (const char* name : kFolderForms) {
+    const std::string folder = forms.front() + name + "/";
+    forms.push_back(folder);
+    for (const char* file : kFileForms) forms.push_back(folder + file);
+  }
+  return forms;
+}
 
 std::string part_name(const Address& node) {
   return node.role == Role::tire ? fmt::format("tire{}.h5", node.index) : to_string(node.role) + ".h5";
@@ -141,13 +166,18 @@ void complete_checkpoint(const fs::path& run, const CheckpointManifest& manifest
   sync_folder(part);
   fault_point("checkpoint.rename");
   std::error_code error;
-  fs::remove_all(folder, error);
+  remove_checkpoint(run, folder);
   fs::rename(part, folder, error);
   if (error) throw io_error(folder.string(), "cannot be given its name: " + error.message());
   sync_folder(checkpoints_folder(run));
   sync_folder(run);
-  const std::vector<fs::path> all = list_checkpoints(run);
-  for (std::size_t i = static_cast<std::size_t>(keep); i < all.size(); ++i) fs::remove_all(all[i], error);
+  int kept = 0;
+  for (const fs::path& each : list_checkpoints(run))
+    if (is_whole(each) && ++kept > keep) remove_checkpoint(run, each);
+}
+
+void drop_unfinished_checkpoint(const fs::path& run, std::int64_t step) {
+  remove_checkpoint(run, unfinished_checkpoint(run, step));
 }
 
 CheckpointManifest read_checkpoint(const fs::path& folder) {
@@ -182,8 +212,10 @@ void remove_checkpoints_after(const fs::path& run, std::int64_t step) noexcept {
     std::error_code error;
     std::vector<fs::path> doomed;
     for (const auto& entry : fs::directory_iterator(checkpoints_folder(run), error))
-      if (step_of(entry.path()) > step || entry.path().extension() == ".part") doomed.push_back(entry.path());
-    for (const fs::path& folder : doomed) fs::remove_all(folder, error);
+      if (step_of(entry.path()) > step ||
+          launch::is_of_form(entry.path().filename().string(), kFolderForms[1]))
+        doomed.push_back(entry.path());
+    for (const fs::path& folder : doomed) remove_checkpoint(run, folder);
   } catch (...) {
     // What stays does no harm: it is replaced when its step comes.
   }

@@ -48,6 +48,9 @@ std::vector<Segment> segments_until(std::int64_t step, double wall_s, int thread
 /// "rig.h5", "tire0.h5", "terrain.h5".
 std::string part_name(const Address& node);
 
+/// Their folders and files, for the run's list (launch/run_list.hpp).
+std::vector<std::string> checkpoint_forms();
+
 std::filesystem::path checkpoints_folder(const std::filesystem::path& run);
 /// Where the parts of a checkpoint are written before it is complete.
 std::filesystem::path unfinished_checkpoint(const std::filesystem::path& run, std::int64_t step);
@@ -55,6 +58,9 @@ std::filesystem::path unfinished_checkpoint(const std::filesystem::path& run, st
 /// Writes the manifest beside the parts, gives the folder its name and removes all but the newest `keep` checkpoints.
 /// @throws Error(io)
 void complete_checkpoint(const std::filesystem::path& run, const CheckpointManifest& manifest, int keep);
+
+/// Removes the parts of a checkpoint that could not be completed. Errors are ignored.
+void drop_unfinished_checkpoint(const std::filesystem::path& run, std::int64_t step);
 
 /// @throws Error(io) when the checkpoint is damaged, incomplete or of another format; every part is read
 CheckpointManifest read_checkpoint(const std::filesystem::path& folder);
@@ -65,7 +71,7 @@ std::string part_checksum(const std::filesystem::path& file);
 /// Folders of the complete checkpoints, newest first.
 std::vector<std::filesystem::path> list_checkpoints(const std::filesystem::path& run);
 
-/// Removes checkpoints beyond `step`, and what was never completed. Errors are ignored.
+/// Removes checkpoints beyond `step`, and those never completed; no other file. Errors are ignored.
 void remove_checkpoints_after(const std::filesystem::path& run, std::int64_t step) noexcept;
 
 /// Tells builds of the program apart: a hash of its file.

@@ -156,6 +156,8 @@ ExitCode ranks_command(const Typed& typed, const std::vector<std::string>& comma
 ExitCode report_command(const Typed& typed) {
   launch::require_run_directory(typed.directory);
   if (!typed.soil.empty()) {
+    if (launch::has_run_list(typed.directory))
+      launch::add_to_run_list(typed.directory, {"soil_estimate.json"});
     const std::string theory = terrain::soil::write_soil_estimate(typed.directory, typed.soil);
     std::cerr << "furrow: " << theory << "\n";
   }

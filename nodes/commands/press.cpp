@@ -73,6 +73,7 @@ ExitCode press_command(const scenario::Scenario& scenario, const PressArguments&
                                       {"tire", scenario.tires.front()->options().file.filename().string()}};
     summary.update(tire::press_json(options, results));
     summary["wall_s"] = wall_clock() - begin;
+    directory.add({"scenario.json", "summary.json", "press.csv", "footprint.csv"});
     write_whole_file(directory.path() / "scenario.json", scenario.completed + "\n");
     tire::write_press_tables(directory.path(), results);
     write_whole_file(directory.path() / "summary.json", summary.dump(2) + "\n");

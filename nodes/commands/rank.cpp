@@ -13,6 +13,7 @@
 
 #include "nodes/checkpoint/resume.hpp"
 #include "nodes/commands/commands.hpp"
+#include "nodes/launch/held_folder.hpp"
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
 #include "nodes/launch/supervisor_lines.hpp"
@@ -91,9 +92,17 @@ bool told_by_another(Transport& transport, const Error& error) {
   return false;
 }
 
+/// Another run may have had the folder until now, and gone on from where this one meant to.
+void require_same_start(const std::filesystem::path& run, const checkpoint::ResumePoint& resume) {
+  if (checkpoint::last_checkpoint(run).manifest.step != resume.manifest.step)
+    throw input_error(run.string(), "",
+                      "was continued by another run until now, expected furrow resume once more");
+}
+
 /// The rig's rank makes the folder, unless a supervisor has, and tells the others.
 std::filesystem::path agree_on_directory(Transport& transport, const scenario::Scenario& scenario,
-                                         const RunArguments& arguments, const RankReporter& reporter,
+                                         const checkpoint::ResumePoint* resume, const RunArguments& arguments,
+                                         const RankReporter& reporter,
                                          std::optional<launch::RunDirectory>& made) {
   if (reporter.supervised()) return arguments.out;
   const Address rig{Role::rig, 0};
@@ -101,22 +110,27 @@ std::filesystem::path agree_on_directory(Transport& transport, const scenario::S
   if (arguments.resume)
     made.emplace(arguments.out);
   else
-    made.emplace(scenario.name, arguments.out, arguments.overwrite);
+    made.emplace(scenario.name, arguments.out, arguments.overwrite, arguments.scenario);
+  made->lock().share();
+  if (resume) require_same_start(arguments.out, *resume);
   const RunFolder folder{std::filesystem::absolute(made->path()).string()};
   for (int k = 0; k < transport.tire_count(); ++k) send(transport, Address{Role::tire, k}, folder);
   send(transport, Address{Role::terrain, 0}, folder);
   return made->path();
 }
 
+/// @param held by ranks with a supervisor, from their beginning
 ExitCode run_this_node(Transport& transport, const scenario::Scenario& scenario,
                        const checkpoint::ResumePoint* resume, const RunArguments& arguments,
-                       RankReporter& reporter) {
+                       RankReporter& reporter, std::optional<launch::HeldFolder>& held) {
   std::optional<launch::RunDirectory> made;
   try {
     ranks::RunContext context;
     transport.set_peer_timeout(scenario.run.peer_timeout);
     try {
-      context.directory = agree_on_directory(transport, scenario, arguments, reporter, made);
+      context.directory = agree_on_directory(transport, scenario, resume, arguments, reporter, made);
+      if (!held) held.emplace(context.directory);
+      context.held = &*held;
     } catch (const PeerFailure&) {
       throw;
     } catch (const Error& error) {
@@ -160,8 +174,10 @@ ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
   launch::catch_stop_signals();
   RankReporter reporter;
   std::optional<scenario::Scenario> scenario;
+  std::optional<launch::HeldFolder> held;
   checkpoint::ResumePlan plan;
   try {
+    if (reporter.supervised()) held.emplace(arguments.out);
     if (arguments.resume) plan = checkpoint::plan_resume(arguments.out, arguments.settings);
     if (plan.finished) return ExitCode::done;
     scenario =
@@ -185,7 +201,8 @@ ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
     return error.code();
   }
   reporter.started();
-  return run_this_node(*transport, *scenario, arguments.resume ? &plan.point : nullptr, arguments, reporter);
+  return run_this_node(*transport, *scenario, arguments.resume ? &plan.point : nullptr, arguments, reporter,
+                       held);
 }
 
 }  // namespace furrow::commands

@@ -48,11 +48,21 @@ void tell_how_to_continue(const std::filesystem::path& directory) {
 ExitCode supervise_run(const scenario::Scenario& scenario, launch::RunDirectory& directory,
                        const RunArguments& arguments) {
   launch::LaunchResult result;
-  {
+  try {
+    directory.add({"run.log"});
+    directory.lock().share();
     launch::ProgressDisplay display;
     result = launch::supervise({rank_arguments(arguments, directory.path()), scenario::rank_table(scenario),
-                                directory.path() / "run.log"},
+                                directory.path() / "run.log", directory.lock().descriptor()},
                                display);
+  } catch (const Error&) {
+    directory.discard();
+    throw;
+  }
+  if (!directory.lock().stands()) {  // what there is of the run is not where its path says
+    print_error(result.error.empty() ? directory.path().string() + ": was moved or removed as the run ended"
+                                     : result.error);
+    return result.code == ExitCode::done ? ExitCode::io : result.code;
   }
   if (result.code == ExitCode::bad_input) directory.discard();
   if (result.code == ExitCode::stopped) {
@@ -79,7 +89,7 @@ ExitCode run_supervised(const RunArguments& arguments) {
   const scenario::Scenario scenario = scenario::load_scenario(arguments.scenario, arguments.settings);
   for (const std::string& warning : scenario.warnings) print_warning(warning);
   launch::find_mpirun();
-  launch::RunDirectory directory(scenario.name, arguments.out, arguments.overwrite);
+  launch::RunDirectory directory(scenario.name, arguments.out, arguments.overwrite, arguments.scenario);
   launch::catch_stop_signals();
   std::fprintf(stderr, "furrow: %s, results in %s\n", scenario.name.c_str(), directory.path().c_str());
   return supervise_run(scenario, directory, arguments);

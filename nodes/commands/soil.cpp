@@ -73,6 +73,7 @@ ExitCode soil_command(const scenario::Scenario& scenario, const SoilArguments& a
     const terrain::soil::SoilRun run{scenario.name, scenario.digest, options,
                                      plan,          results,         wall_clock() - begin};
     const nlohmann::ordered_json soil = terrain::soil::soil_json(run);
+    directory.add({"scenario.json", "soil.json", "plate.csv", "shear.csv", "cone.csv", "repose.csv"});
     write_whole_file(directory.path() / "scenario.json", scenario.completed + "\n");
     terrain::soil::write_soil_tables(directory.path(), run);
     write_whole_file(directory.path() / "soil.json", soil.dump(2) + "\n");

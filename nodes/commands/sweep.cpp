@@ -1,5 +1,4 @@
 // `furrow sweep`: the table of runs of a study.
-#include <unistd.h>
 #include <cstdio>
 #include <iostream>
 
@@ -19,11 +18,8 @@ ExitCode sweep_command(const SweepArguments& arguments) {
       arguments.out.empty() ? std::filesystem::path("results") / study.name : arguments.out;
   const bool to_plot = study.passes > 0 || !study.plot.is_null();
   study::Sweep sweep(std::move(study), {folder, arguments.jobs});
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error || access(folder.c_str(), W_OK | X_OK) != 0)
-    throw input_error(folder.string(), "--out", "cannot be written, expected a place that can be written");
-  const int lock = launch::lock_folder(folder, "--out");
+  const launch::RunDirectory directory = launch::RunDirectory::of_study(folder);
+  launch::remove_unfinished(folder);
   launch::catch_stop_signals();
   const ExitCode code = sweep.run();
   if (code != ExitCode::stopped) {
@@ -31,7 +27,6 @@ ExitCode sweep_command(const SweepArguments& arguments) {
   } else {
     std::fprintf(stderr, "furrow: stopped by a signal; run the same command to continue\n");
   }
-  close(lock);
   std::cout << folder.string() << "\n";
   return code;
 }

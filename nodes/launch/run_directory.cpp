@@ -1,19 +1,16 @@
 #include "nodes/launch/run_directory.hpp"
 
-#include <fcntl.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
-#include <vector>
 
 #include <fmt/format.h>
 
 #include "protocol/core/error.hpp"
+#include "protocol/files/text_file.hpp"
 
 namespace furrow::launch {
 namespace {
@@ -21,144 +18,279 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kMaxNumbers = 100000;
+constexpr const char* kAside = ".furrow-before";
+constexpr const char* kStudy = "sweep.json";  // what the list of a study holds
 
-/// What runs leave behind; nothing else is ever removed.
-bool is_result(const fs::path& entry) {
-  const std::string name = entry.filename().string();
-  constexpr std::array<const char*, 12> kNames{
-      "scenario.json", "results.h5", "results.xdmf", "run.log",  "profile.json", "report.json",
-      "soil.json",     "plate.csv",  "shear.csv",    "cone.csv", "repose.csv",   "soil_estimate.json"};
-  return std::find(kNames.begin(), kNames.end(), name) != kNames.end() || name == "frames" ||
-         name == "checkpoints" || (name.starts_with("timeseries") && entry.extension() == ".csv") ||
-         (name.starts_with("summary") && entry.extension() == ".json") || entry.extension() == ".png";
-}
-
-std::vector<fs::path> results_in(const fs::path& folder) {
-  std::vector<fs::path> found;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error))
-    if (is_result(entry.path())) found.push_back(entry.path());
-  return found;
+Error no_list(const fs::path& folder, const std::string& key, const std::string& why) {
+  return input_error(folder.string(), key,
+                     fmt::format("holds no run's list of its files ({}): {}", kRunList, why));
 }
 
 bool is_run(const fs::path& folder) {
   std::error_code error;
   return fs::exists(folder / "run.log", error) || fs::exists(folder / "scenario.json", error) ||
-         fs::exists(folder / "sweep.json", error);
+         fs::exists(folder / kStudy, error);
+}
+
+/// Whether the run of this list wrote more than what there is before its first step.
+bool came_to_be(const RunList& list) {
+  return std::any_of(list.forms().begin(), list.forms().end(), [](const std::string& name) {
+    return name != std::string(kAside) + "/" && name != "run.log" && name != "scenario.json";
+  });
+}
+
+/// Without separators at the end. @throws Error(bad_input) for a way through a folder that does not exist
+fs::path way_to(const fs::path& out) {
+  fs::path way;
+  bool missing = false;
+  for (const fs::path& part : out) {
+    if (part.empty()) continue;
+    if (missing && part == "..")
+      throw input_error(
+          out.string(), "--out",
+          "leads through '" + way.string() + "', which does not exist, expected a way without it");
+    way /= part;
+    std::error_code error;
+    missing = missing || !fs::exists(way, error);
+  }
+  return way;
+}
+
+bool stands(const fs::path& at) {
+  std::error_code error;
+  return fs::exists(fs::symlink_status(at, error));
 }
 
 }  // namespace
 
-RunDirectory::RunDirectory(const std::string& scenario, const fs::path& out, bool overwrite) {
-  if (!out.empty()) {
-    path_ = out;
-    std::error_code error;
-    if (!fs::exists(fs::symlink_status(out, error)) && make(out)) {
-      lock();
-      return;
+RunDirectory::RunDirectory(const std::string& scenario, const fs::path& out, bool overwrite,
+                           const fs::path& reads) {
+  try {
+    bool made = false;
+    for (int number = 1; out.empty() && !made && number < kMaxNumbers; ++number) {
+      path_ = fs::path("results") / fmt::format("{}-{:03}", scenario, number);
+      made = !stands(path_) && make();
     }
-    if (!fs::is_directory(out, error))
+    if (out.empty() && !made)
+      throw input_error("results", "", "holds too many runs of " + scenario + ", expected --out");
+    if (!out.empty()) {
+      path_ = way_to(out);
+      made = !stands(path_) && make();
+    }
+    std::error_code error;
+    if (!made && !fs::is_directory(path_, error))
       throw input_error(out.string(), "--out", "exists and is no folder, expected a new folder");
-    if (!overwrite)
+    if (!made && !overwrite)
       throw input_error(out.string(), "--out", "exists already, expected a new folder or --overwrite");
-    take_over();
-    return;
+    if (made)
+      begin();
+    else
+      take_over(reads);
+  } catch (const Error&) {
+    discard();
+    throw;
   }
-  for (int number = 1; number < kMaxNumbers; ++number) {
-    path_ = fs::path("results") / fmt::format("{}-{:03}", scenario, number);
-    std::error_code error;
-    if (fs::exists(fs::symlink_status(path_, error))) continue;
-    if (make(path_)) {
-      lock();
-      return;
-    }
-  }
-  throw input_error("results", "", "holds too many runs of " + scenario + ", expected --out");
 }
 
 RunDirectory::RunDirectory(const fs::path& existing) : existing_(true), path_(existing) {
   require_run_directory(existing);
+  if (!has_run_list(path_))
+    throw no_list(path_, "",
+                  "an earlier version of furrow made it; continue it with that version, or start again with "
+                  "furrow run in a new folder");
   require_writable("");
-  lock("");
+  lock_ = FolderLock(path_, "", FolderLock::Mode::alone);
+  take_back(RunList::read(path_));
 }
+
+RunDirectory::RunDirectory(OfStudy, const fs::path& folder) : path_(way_to(folder)) {
+  try {
+    if (!stands(path_) && make()) {
+      begin();
+    } else {
+      std::error_code error;
+      if (!fs::is_directory(path_, error))
+        throw input_error(folder.string(), "--out",
+                          "exists and is no folder, expected a new one or that of a study");
+      if (!has_run_list(path_) && !fs::is_empty(path_, error))
+        throw no_list(
+            folder, "--out",
+            "no study made it, or an earlier version of furrow did; expected a new or empty folder");
+      require_writable("--out");
+      lock_ = FolderLock(path_, "--out", FolderLock::Mode::alone);
+      const RunList list = RunList::read(path_);
+      if (!list.forms().empty() && !list.holds(kStudy))
+        throw input_error(folder.string(), "--out", "holds a run, expected a new folder or that of a study");
+    }
+  } catch (const Error&) {
+    discard();
+    throw;
+  }
+  existing_ = true;
+}
+
+RunDirectory RunDirectory::of_study(const fs::path& folder) { return RunDirectory(OfStudy{}, folder); }
+
+fs::path RunDirectory::aside() const { return path_ / kAside; }
 
 void RunDirectory::require_writable(const std::string& key) const {
   if (access(path_.c_str(), W_OK | X_OK) != 0)
     throw input_error(path_.string(), key, "cannot be written, expected a place that can be written");
 }
 
-bool RunDirectory::make(const fs::path& folder) {
+/// @returns false when it exists by now
+bool RunDirectory::make() {
   std::vector<fs::path> missing;
-  std::error_code error;
-  for (fs::path at = folder.lexically_normal(); !at.empty() && !fs::exists(at, error); at = at.parent_path())
-    if (at.has_filename()) missing.push_back(at);
-  std::reverse(missing.begin(), missing.end());
-  for (const fs::path& at : missing) {
-    if (mkdir(at.c_str(), 0777) == 0) {
-      if (made_.empty()) made_ = at;
+  fs::path at;
+  for (const fs::path& part : path_) {
+    at /= part;
+    std::error_code error;
+    if (!fs::exists(at, error)) missing.push_back(at);
+  }
+  for (const fs::path& folder : missing) {
+    if (mkdir(folder.c_str(), 0777) == 0) {
+      if (made_.empty()) made_ = folder;
       continue;
     }
     const int reason = errno;
-    if (reason == EEXIST && at != missing.back()) continue;  // another run made it at the same time
+    if (reason == EEXIST && folder != missing.back()) continue;  // another run made it at the same time
     discard();
     if (reason == EEXIST) return false;
     throw input_error(
-        folder.string(), "--out",
+        path_.string(), "--out",
         fmt::format("cannot be made ({}), expected a place that can be written", std::strerror(reason)));
   }
   return true;
 }
 
-void RunDirectory::take_over() {
-  std::error_code error;
-  if (!fs::is_empty(path_, error) && !is_run(path_))
-    throw input_error(path_.string(), "--out",
-                      "holds no run, expected a run's folder to overwrite, or a new one");
-  require_writable("--out");
-  lock();
-  fs::remove_all(aside(), error);
-  const std::vector<fs::path> results = results_in(path_);
-  if (results.empty()) return;
-  set_aside_ = fs::create_directory(aside(), error);
-  for (std::size_t i = 0; i < results.size() && !error; ++i)
-    fs::rename(results[i], aside() / results[i].filename(), error);
-  if (error)
-    throw input_error(path_.string(), "--out",
-                      "cannot be cleared (" + error.message() + "), expected a folder to write");
+void RunDirectory::begin() {
+  fresh_ = true;
+  lock_ = FolderLock(path_, "--out", FolderLock::Mode::alone);
+  begin_run_list(path_, {});
+  begun_ = true;
 }
 
-void RunDirectory::lock(const std::string& key) { folder_ = lock_folder(path_, key); }
+void RunDirectory::take_over(const fs::path& reads) {
+  std::error_code error;
+  const bool listed = has_run_list(path_);
+  if (!listed && !fs::is_empty(path_, error))
+    throw no_list(path_, "--out",
+                  "no run made it, or an earlier version of furrow did; expected a new or empty folder (move "
+                  "this one away)");
+  require_writable("--out");
+  if (!listed) return begin();
+  lock_ = FolderLock(path_, "--out", FolderLock::Mode::alone);
+  const RunList list = RunList::read(path_);
+  if (list.holds(kStudy))
+    throw input_error(path_.string(), "--out",
+                      "holds a study, expected a run's folder to overwrite, or a new one");
+  take_back(list);
+  set_aside(RunList::read(path_), reads);
+}
+
+/// What a run that was killed had set aside: put back unless that run came to be.
+void RunDirectory::take_back(const RunList& list) {
+  if (!stands(aside())) return;
+  if (!list.holds(std::string(kAside) + "/"))
+    throw input_error(aside().string(), "",
+                      "stands where results are to be set aside, expected it elsewhere");
+  if (came_to_be(list)) return drop_aside();
+  remove_listed(path_, list);
+  put_back();
+}
+
+/// Whenever this is cut short, the folder's list says that no run came to be, and the other one what to put back.
+void RunDirectory::set_aside(const RunList& list, const fs::path& reads) {
+  const RunList::Found found = list.find(path_);
+  try {
+    const std::string read_there =
+        reads.empty() ? "" : fs::weakly_canonical(reads).lexically_relative(fs::canonical(path_)).string();
+    const bool kept = std::find(found.files.begin(), found.files.end(), read_there) != found.files.end();
+    std::vector<std::string> names;
+    if (!found.files.empty()) {
+      names.push_back(std::string(kAside) + "/");
+      add_to_run_list(path_, names);
+      fs::create_directory(aside());
+      set_aside_ = true;
+      begin_run_list(aside(), list.forms());
+    }
+    if (kept) {
+      write_whole_file(aside() / read_there, read_whole_file(path_ / read_there));
+      names.push_back(read_there);
+    }
+    begin_run_list(path_, names);
+    for (auto folder = found.folders.rbegin(); set_aside_ && folder != found.folders.rend(); ++folder)
+      fs::create_directory(aside() / *folder);
+    for (const std::string& file : found.files)
+      if (file != read_there) fs::rename(path_ / file, aside() / file);
+    std::error_code error;
+    for (const std::string& folder : found.folders) fs::remove(path_ / folder, error);  // where it is empty
+    begun_ = true;
+  } catch (const fs::filesystem_error& failure) {
+    if (set_aside_) put_back();
+    throw input_error(path_.string(), "--out",
+                      "cannot be cleared (" + failure.code().message() + "), expected a folder to write");
+  } catch (const Error&) {
+    if (set_aside_) put_back();
+    throw;
+  }
+}
+
+/// What cannot be put back stays set aside, and the list says so.
+void RunDirectory::put_back() {
+  set_aside_ = false;
+  const RunList before = has_run_list(aside()) ? RunList::read(aside()) : RunList();
+  if (!before.forms().empty()) {  // else nothing was moved yet
+    const RunList::Found found = before.find(aside());
+    begin_run_list(path_, {std::string(kAside) + "/"});
+    std::error_code error;
+    for (auto folder = found.folders.rbegin(); folder != found.folders.rend(); ++folder)
+      fs::create_directory(path_ / *folder, error);
+    bool whole = true;
+    for (const std::string& file : found.files) {
+      fs::rename(aside() / file, path_ / file, error);
+      whole = whole && !error;
+    }
+    if (!whole) return;
+    begin_run_list(path_, before.forms());
+  }
+  drop_aside();
+}
+
+/// With what is in its list.
+void RunDirectory::drop_aside() {
+  std::error_code error;
+  if (has_run_list(aside())) {
+    remove_listed(aside(), RunList::read(aside()));
+    fs::remove(aside() / kRunList, error);
+  }
+  fs::remove(aside(), error);
+}
 
 RunDirectory::~RunDirectory() {
-  std::error_code error;
-  if (set_aside_) fs::remove_all(aside(), error);
-  if (folder_ >= 0) close(folder_);
+  if (!set_aside_ || !lock_.stands()) return;
+  try {
+    drop_aside();
+  } catch (const std::exception&) {
+    // What stays is removed by the next run that takes the folder.
+  }
 }
 
 void RunDirectory::discard() {
   if (existing_) return;
   std::error_code error;
-  for (const fs::path& result : results_in(path_)) fs::remove_all(result, error);
-  if (set_aside_) {
-    for (const auto& entry : fs::directory_iterator(aside(), error))
-      fs::rename(entry.path(), path_ / entry.path().filename(), error);
-    fs::remove(aside(), error);
-    set_aside_ = false;
-  }
+  if (lock_.stands()) try {
+      if (begun_) remove_listed(path_, RunList::read(path_));
+      if (set_aside_) put_back();
+      if (fresh_) fs::remove(path_ / kRunList, error);
+    } catch (const std::exception&) {
+      // What stays is in the list.
+    }
+  begun_ = false;
   if (made_.empty()) return;
   // Upwards as long as nothing else stands there.
-  for (fs::path at = path_.lexically_normal(); fs::remove(at, error) && at != made_.lexically_normal();)
-    at = at.parent_path();
+  for (fs::path at = path_; fs::remove(at, error) && at != made_;) at = at.parent_path();
   made_.clear();
-}
-
-int lock_folder(const fs::path& folder, const std::string& key) {
-  const int handle = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (handle >= 0 && flock(handle, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-    close(handle);
-    throw input_error(folder.string(), key, "is taken by a run that is not over, expected another folder");
-  }
-  return handle;
 }
 
 void require_run_directory(const fs::path& folder) {

@@ -3,19 +3,28 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
+
+#include "nodes/launch/folder_lock.hpp"
+#include "nodes/launch/run_list.hpp"
 
 namespace furrow::launch {
 
-/// Makes the folder of a run and takes it away again if the run never came to be. Results of an earlier run that
-/// are to be overwritten are set aside until it is known that the new one runs. One process at a time has the folder.
+/// Makes the folder of a run, with the list of what is written into it (run_list.hpp), and takes it away again if the
+/// run never came to be. Results of an earlier run that are to be overwritten are set aside in .furrow-before until it
+/// is known that the new one runs. One run at a time has the folder.
 class RunDirectory {
  public:
   /// @param out  the user's choice; empty: results/<scenario>-NNN, the first number that is free
-  /// @throws Error(bad_input) when `out` exists and may not be overwritten, or cannot be made
-  RunDirectory(const std::string& scenario, const std::filesystem::path& out, bool overwrite);
+  /// @param reads  a file that the run is yet to read: it stays where it is, though a result of the earlier run
+  /// @throws Error(bad_input) when `out` exists and may not be overwritten, is another's, or cannot be made
+  RunDirectory(const std::string& scenario, const std::filesystem::path& out, bool overwrite,
+               const std::filesystem::path& reads = {});
   /// The folder of a run that goes on.
-  /// @throws Error(bad_input) when it holds none, cannot be written, or another process has it
+  /// @throws Error(bad_input) when it holds none, cannot be written, or others have it
   explicit RunDirectory(const std::filesystem::path& existing);
+  /// The folder of a study, which goes on where there is one. @throws Error(bad_input)
+  static RunDirectory of_study(const std::filesystem::path& folder);
 
   /// Gives the folder free and removes what was set aside.
   ~RunDirectory();
@@ -24,29 +33,39 @@ class RunDirectory {
 
   const std::filesystem::path& path() const { return path_; }
 
+  /// What is written from now on: files, folders ("frames/") and forms (run_list.hpp).
+  /// @throws Error(bad_input) when a file of that name stands there that furrow did not write
+  void add(const std::vector<std::string>& names) const { add_to_run_list(path_, names); }
+
+  /// Before the ranks begin: they hold the folder too from then on.
+  FolderLock& lock() { return lock_; }
+
   /// The run never came to be: unless it was to go on, removes its results and the folders that the constructor made,
   /// puts back what was set aside.
   void discard();
 
  private:
-  /// @returns false when it exists by now
-  bool make(const std::filesystem::path& folder);
-  void take_over();
-  void require_writable(const std::string& key) const;
-  void lock(const std::string& key = "--out");
-  std::filesystem::path aside() const { return path_ / ".before"; }
+  struct OfStudy {};
+  RunDirectory(OfStudy, const std::filesystem::path& folder);
 
-  int folder_ = -1;  // open and locked as long as this lives
-  bool set_aside_ = false;
-  bool existing_ = false;
+  bool make();
+  void begin();
+  void take_over(const std::filesystem::path& reads);
+  void take_back(const RunList& list);
+  void set_aside(const RunList& list, const std::filesystem::path& reads);
+  void put_back();
+  void drop_aside();
+  void require_writable(const std::string& key) const;
+  std::filesystem::path aside() const;
+
+  bool existing_ = false;   // not this object's to remove
+  bool fresh_ = false;      // the folder had no list before
+  bool begun_ = false;      // the list is that of this run
+  bool set_aside_ = false;  // results of an earlier run
+  FolderLock lock_;
   std::filesystem::path path_;
   std::filesystem::path made_;  // the topmost folder that did not exist before; empty: none
 };
-
-/// Takes a folder for this process. @returns a descriptor to close; the lock ends with it, or with the process
-/// @param key for the message
-/// @throws Error(bad_input) when another process has it
-int lock_folder(const std::filesystem::path& folder, const std::string& key);
 
 /// @throws Error(bad_input) unless `folder` holds a run
 void require_run_directory(const std::filesystem::path& folder);

@@ -143,13 +143,18 @@ class Supervisor {
 
 void Supervisor::start() {
   const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
+  // When this process is killed the ranks save their state and stop: mpirun hands USR1 on at once, and TERM after two
+  // seconds in which they would go on.
   child_ = start_child({.command = mpirun_command(launch_),
                         .in = nothing,
                         .out = out_.write,
                         .err = err_.write,
                         .own_group = true,
-                        .death_signal = SIGTERM,
-                        .prepare = set_environment});
+                        .death_signal = SIGUSR1,
+                        .prepare = [hold = launch_.hold] {
+                          set_environment();
+                          if (hold >= 0) fcntl(hold, F_SETFD, 0);
+                        }});
   close(nothing);
   out_.close_write();
   err_.close_write();

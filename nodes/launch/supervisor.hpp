@@ -17,6 +17,7 @@ struct Launch {
   std::vector<std::string> arguments;  // of this program in every rank, without its name
   std::vector<scenario::RankEntry> ranks;
   std::filesystem::path log;  // everything that ranks and launcher say
+  int hold = -1;  // descriptor of the folder's lock, which the launcher keeps as long as it lives; −1: none
 };
 
 struct LaunchResult {

@@ -4,9 +4,11 @@
 
 #include <fmt/format.h>
 
+#include "nodes/launch/run_list.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/files/fault_point.hpp"
 #include "protocol/files/hdf5_file.hpp"
+#include "protocol/files/new_file.hpp"
 
 namespace furrow::output {
 namespace {
@@ -16,8 +18,18 @@ std::filesystem::path frame_file(const std::filesystem::path& run, const std::st
   FURROW_ASSERT(index >= 0, what, index);
   const auto folder = run / "frames";
   std::error_code ignored;  // if the folder cannot be made, creating the file says so
-  std::filesystem::create_directories(folder, ignored);
+  std::filesystem::create_directory(folder, ignored);
   return folder / fmt::format("{}_{:06d}.h5", what, index);
+}
+
+constexpr const char* kForms[] = {"tire%1d_%06d.h5", "terrain_%06d.h5"};  // what frame_file makes
+
+/// The number of a frame by its file's name; negative for any other file.
+std::int64_t number_of(const std::string& name) {
+  std::int64_t number = -1;
+  for (const char* form : kForms)
+    if (launch::is_of_form(name, form, &number)) return number;
+  return -1;
 }
 
 std::vector<float> flatten(const std::vector<Vec3>& vectors) {
@@ -29,6 +41,12 @@ std::vector<float> flatten(const std::vector<Vec3>& vectors) {
 }
 
 }  // namespace
+
+std::vector<std::string> frame_forms() {
+  std::vector<std::string> forms{"frames/"};
+  for (const char* form : kForms) forms.push_back(std::string("frames/") + form);
+  return forms;
+}
 
 void write_tire_frame(const std::filesystem::path& run, int tire, std::int64_t index, double time,
                       const SurfaceMesh& mesh, const SurfaceState& surface, const NodalForces& forces) {
@@ -76,11 +94,8 @@ void remove_frames_from(const std::filesystem::path& run, std::int64_t index) {
   std::vector<std::filesystem::path> doomed;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(run / "frames", error)) {
-    const std::string name = entry.path().stem().string();
-    const std::size_t digits = name.rfind('_') + 1;  // 0 where there is none
-    const bool numbered = digits > 0 && name.find_first_not_of("0123456789", digits) == std::string::npos;
-    if (entry.path().extension() == ".part" || (numbered && std::stoll(name.substr(digits)) >= index))
-      doomed.push_back(entry.path());
+    const std::string name = entry.path().filename().string();
+    if (number_of(name) >= index || number_of(name_in_the_making(name)) >= 0) doomed.push_back(entry.path());
   }
   for (const auto& file : doomed) std::filesystem::remove(file, error);
 }

@@ -6,11 +6,16 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "protocol/core/surface.hpp"
 #include "terrain/terrain.hpp"
 
 namespace furrow::output {
+
+/// Their folder and their names, for the run's list (launch/run_list.hpp).
+std::vector<std::string> frame_forms();
 
 /// @throws Error(io)
 void write_tire_frame(const std::filesystem::path& run, int tire, std::int64_t index, double time,
@@ -20,7 +25,7 @@ void write_tire_frame(const std::filesystem::path& run, int tire, std::int64_t i
 void write_terrain_frame(const std::filesystem::path& run, std::int64_t index, double time,
                          const terrain::TerrainFrame& frame);
 
-/// Removes the frames whose number is `index` or more, and what was never finished. Errors are ignored.
+/// Removes the frames whose number is `index` or more, and those never finished; no other file. Errors are ignored.
 void remove_frames_from(const std::filesystem::path& run, std::int64_t index);
 
 }  // namespace furrow::output

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "nodes/launch/run_list.hpp"
 #include "nodes/output/frames.hpp"
 #include "nodes/output/xdmf.hpp"
 #include "protocol/core/assert.hpp"
@@ -43,6 +44,7 @@ Results::Results(const scenario::Scenario& scenario, std::vector<NodeCard> cards
       directory_(directory),
       resume_(resume),
       tables_(std::move(tables)) {
+  list_files();
   if (resume) {
     continue_from(*resume);
     return;
@@ -55,12 +57,23 @@ std::filesystem::path Results::file_of(const Table& table) const {
   return directory_ / table_file(table.subject, cards_.front().wheel_count);
 }
 
+/// Before any rank writes one of them: the others wait for the rig until they are placed.
+void Results::list_files() const {
+  std::vector<std::string> names{"scenario.json", "results.h5", "results.xdmf", "summary.json",
+                                 "summary_failed.json"};
+  for (const Table& table : tables_) names.push_back(file_of(table).filename().string());
+  for (const auto& forms : {frame_forms(), checkpoint::checkpoint_forms()})
+    names.insert(names.end(), forms.begin(), forms.end());
+  launch::add_to_run_list(directory_, names);
+}
+
 void Results::continue_from(const checkpoint::ResumePoint& resume) {
   const checkpoint::CheckpointManifest& manifest = resume.manifest;
   for (Table& table : tables_)
     writers_.push_back(std::make_unique<TableWriter>(file_of(table), mark_of(resume, table.subject), table));
   std::error_code ignored;
   for (const char* name : {"summary.json", "results.h5"}) std::filesystem::remove(directory_ / name, ignored);
+  launch::remove_unfinished(directory_);
   remove_frames_from(directory_, manifest.frames.index(manifest.step));
   checkpoint::remove_checkpoints_after(directory_, manifest.step);
   write_xdmf_index(directory_);

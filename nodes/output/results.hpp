@@ -44,7 +44,8 @@ std::string table_file(const std::string& subject, int wheels);
 
 class Results {
  public:
-  /// Opens the files of all tables in the existing run directory; writes scenario.json. Where a run goes on, what was
+  /// Adds all that the ranks write to the existing run directory's list; opens the files of all tables there; writes
+  /// scenario.json. Where a run goes on, what was
   /// written after its checkpoint is removed, and the index made anew.
   /// @param tables without lines; those of the wheels come first
   /// @param resume null: the run begins
@@ -63,6 +64,7 @@ class Results {
 
  private:
   std::filesystem::path file_of(const Table& table) const;
+  void list_files() const;
   void continue_from(const checkpoint::ResumePoint& resume);
   void write_hdf5(std::span<const FinalReport> reports) const;
 

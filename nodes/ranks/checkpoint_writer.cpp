@@ -44,7 +44,8 @@ CheckpointPart CheckpointWriter::write_part(std::int64_t step) const {
     save_cost(archive, cost_());
     const std::filesystem::path folder = checkpoint::unfinished_checkpoint(context_.directory, step);
     std::error_code ignored;  // if it cannot be made, the file says so
-    std::filesystem::create_directories(folder, ignored);
+    std::filesystem::create_directory(folder.parent_path(), ignored);
+    std::filesystem::create_directory(folder, ignored);
     fault_point("checkpoint.write");
     write_archive(folder / part.file, archive);
     part.checksum = checkpoint::part_checksum(folder / part.file);
@@ -62,6 +63,7 @@ void CheckpointWriter::write(std::int64_t step, bool needed) {
   last_step_ = step;
   write_begin_ = wall_clock();
   transport_.heartbeat();
+  if (context_.held) context_.held->check();
   const CheckpointPart own = write_part(step);
   if (transport_.self() == kRig) {
     complete(own, needed);
@@ -117,8 +119,7 @@ void CheckpointWriter::complete(CheckpointPart own, bool needed) {
       problem = error.what();
     }
   }
-  std::error_code ignored;
-  std::filesystem::remove_all(checkpoint::unfinished_checkpoint(context_.directory, step), ignored);
+  checkpoint::drop_unfinished_checkpoint(context_.directory, step);
   const std::string text = fmt::format("the checkpoint at t = {:.6g} s could not be written: {}",
                                        static_cast<double>(step) * scenario_.run.step, problem);
   if (needed) throw Error(ExitCode::io, text);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 
+#include "nodes/launch/run_list.hpp"
 #include "nodes/output/profile.hpp"
 #include "nodes/output/results.hpp"
 #include "nodes/output/subject_series.hpp"
@@ -15,6 +16,7 @@ namespace {
 
 constexpr double kPlacementGap = 1e-3;      // m, between the highest grain and the inflated tire
 constexpr double kProgressInterval = 0.25;  // s of wall time
+constexpr double kFolderInterval = 1.0;     // s of wall time after which a folder that was moved is noticed
 
 class RigNode : public Node {
  public:
@@ -44,6 +46,7 @@ class RigNode : public Node {
       height[k] = setup_.top_height[k] + cards[1 + k].tire_reach + kPlacementGap + scenario_.drop_height;
     rig_->place(height);
     make_tables();
+    check_folder();
     // First of all, as the others begin to write frames once they are placed.
     if (!context.directory.empty()) {
       std::vector<output::Table> tables;
@@ -63,6 +66,7 @@ class RigNode : public Node {
   void synchronize(Transport& transport, const StepHeader& header) override {
     due_ = next_;
     next_ = order(header.step + 2);
+    if (wall_clock() - checked_ > kFolderInterval) check_folder();
     const int wheels = rig_->wheel_count();
     for (int k = 0; k < wheels; ++k)
       send(transport, Address{Role::tire, k}, RimMotion{header, rig_->rim(k), next_});
@@ -96,6 +100,8 @@ class RigNode : public Node {
     for (std::size_t i = 1; i < cards_.size(); ++i)
       reports.push_back(receive<FinalReport>(transport, cards_[i].self));
     if (!results_) return;
+    check_folder();
+    if (context_.profile) launch::add_to_run_list(context_.directory, {"profile.json"});
     if (context_.profile) output::write_profile(context_.directory / "profile.json", reports);
     std::vector<output::WheelEnd> wheels;
     for (int k = 0; k < rig_->wheel_count(); ++k)
@@ -128,6 +134,11 @@ class RigNode : public Node {
     if (!by_wall && (every == 0 || step % every != 0)) return Order::go_on;
     last_checkpoint_ = wall_clock();
     return Order::checkpoint;
+  }
+
+  void check_folder() {
+    if (context_.held) context_.held->check();
+    checked_ = wall_clock();
   }
 
   void make_tables() {
@@ -186,7 +197,7 @@ class RigNode : public Node {
   std::unique_ptr<output::Results> results_;
   std::vector<double> last_;  // line of wheel 0
   std::int64_t series_steps_ = 0;
-  double wall_start_ = 0.0, shown_ = 0.0, last_checkpoint_ = 0.0;  // wall time, s
+  double wall_start_ = 0.0, shown_ = 0.0, last_checkpoint_ = 0.0, checked_ = 0.0;  // wall time, s
   double time_start_ = 0.0;                                        // simulated, when this segment began, s
   Order next_ = Order::go_on, due_ = Order::go_on;
 };

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "nodes/checkpoint/checkpoint.hpp"
+#include "nodes/launch/held_folder.hpp"
 #include "nodes/launch/progress.hpp"
 #include "protocol/core/archive.hpp"
 
@@ -12,6 +13,7 @@ namespace furrow::ranks {
 
 struct RunContext {
   std::filesystem::path directory;                  // existing run directory; empty: write nothing (tests)
+  launch::HeldFolder* held = nullptr;               // on that directory; null: nobody moves it (tests)
   int threads = 1;                                  // OpenMP threads of this node while stepping
   bool profile = false;                             // record the time of steps
   std::function<bool()> stop_requested;             // a signal asked for a stop

@@ -45,6 +45,7 @@ class TerrainNode : public Node {
 
   void set_up(Transport& transport, std::span<const NodeCard> cards, const RunContext& context) override {
     directory_ = context.directory;
+    held_ = context.held;
     frames_ = frame_clock(scenario_, context);
     const int tires = static_cast<int>(scenario_.tires.size());
     std::vector<SurfaceSetup> surfaces;
@@ -168,6 +169,7 @@ class TerrainNode : public Node {
 
   void write_frame(const StepHeader& header) {
     if (!frames_.due(header.step)) return;
+    if (held_) held_->check();
     terrain_->frame(frame_);
     output::write_terrain_frame(directory_, frames_.index(header.step), header.time, frame_);
   }
@@ -182,6 +184,7 @@ class TerrainNode : public Node {
   HeightField before_;
   terrain::TerrainFrame frame_;
   std::filesystem::path directory_;
+  launch::HeldFolder* held_ = nullptr;
   checkpoint::FrameClock frames_;
   Order due_ = Order::go_on;
 };

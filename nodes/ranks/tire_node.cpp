@@ -47,6 +47,7 @@ class TireNode : public Node {
 
   void set_up(Transport& transport, std::span<const NodeCard>, const RunContext& context) override {
     directory_ = context.directory;
+    held_ = context.held;
     frames_ = frame_clock(scenario_, context);
     send(transport, kTerrain, SurfaceSetup{tire_->mesh(), tire_->material()});
     const auto start = receive_step<RimMotion>(transport, kRig, kPlacement);
@@ -165,6 +166,7 @@ class TireNode : public Node {
 
   void write_frame(const StepHeader& header) {
     if (!frames_.due(header.step)) return;
+    if (held_) held_->check();
     output::write_tire_frame(directory_, index_, frames_.index(header.step), header.time, tire_->mesh(),
                              motion_.surface, forces_);
   }
@@ -183,6 +185,7 @@ class TireNode : public Node {
   SpindleReport report_;
   std::vector<Vec3> before_;
   std::filesystem::path directory_;
+  launch::HeldFolder* held_ = nullptr;
   checkpoint::FrameClock frames_;
   Order next_ = Order::go_on, due_ = Order::go_on;
 };

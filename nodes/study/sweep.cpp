@@ -15,8 +15,9 @@
 #include "nodes/checkpoint/checkpoint.hpp"
 #include "nodes/checkpoint/run_summary.hpp"
 #include "nodes/launch/child_process.hpp"
+#include "nodes/launch/folder_lock.hpp"
 #include "nodes/launch/progress.hpp"
-#include "nodes/launch/run_directory.hpp"
+#include "nodes/launch/run_list.hpp"
 #include "nodes/launch/signals.hpp"
 #include "nodes/scenario/load_scenario.hpp"
 #include "nodes/study/pass_bed.hpp"
@@ -32,8 +33,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using checkpoint::read_summary, checkpoint::value_at;
 
-constexpr int kPoll = 100000;  // µs
-constexpr int kTriesForFolder = 100;
+constexpr int kPoll = 100000;     // µs
 constexpr double kDeepRut = 0.4;  // of the bed's depth: a tire this deep feels the floor
 
 std::string cell(const Json& value) {
@@ -74,15 +74,6 @@ bool readable(const fs::path& bed) try {
   return true;
 } catch (const Error&) {
   return false;  // absent or damaged: made anew
-}
-
-/// Ranks outlive a supervisor that was killed by a second or two.
-void wait_until_free(const fs::path& folder) {
-  for (int tries = 0; tries < kTriesForFolder && fs::exists(folder); ++tries, usleep(kPoll)) try {
-      close(launch::lock_folder(folder, ""));
-      return;
-    } catch (const Error&) {
-    }
 }
 
 std::string state_name(int state) {
@@ -183,7 +174,8 @@ bool Sweep::prepare_bed(Run& run) try {
   const fs::path bed = options_.folder / "beds" / fmt::format("{}_rest_{}.h5", before.digest, study_.rest);
   std::error_code error;
   if (!readable(bed)) {
-    fs::create_directories(bed.parent_path(), error);
+    launch::add_to_run_list(options_.folder, {"beds/", "beds/" + bed.filename().string()});
+    fs::create_directory(bed.parent_path(), error);
     launch::ProgressDisplay display;
     const auto progress = [&](const std::string& what, double share) {
       if (launch::stop_signalled()) throw Error(ExitCode::stopped, "stopped by a signal while the bed lay");
@@ -213,10 +205,11 @@ void Sweep::start(Run& run, std::size_t share) {
   FURROW_ASSERT(in_range(share, shares_.size()), share, shares_.size());
   FURROW_ASSERT(run.state == State::waiting && run.loaded, static_cast<int>(run.state), run.loaded);
   std::error_code error;
-  fs::create_directories(folder_of(run).parent_path(), error);
-  wait_until_free(folder_of(run));
+  launch::add_to_run_list(options_.folder, {"runs/", "runs/" + run.digest + ".log"});
+  fs::create_directory(folder_of(run).parent_path(), error);
+  launch::wait_until_free(folder_of(run));  // ranks outlive a supervisor that was killed by a second or two
   const std::vector<std::string> list = command(run);
-  const int log = open(log_of(run).c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  const int log = open(log_of(run).c_str(), O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW | O_CLOEXEC, 0666);
   const auto pin = [cores = shares_[share]] { sched_setaffinity(0, sizeof cores, &cores); };
   run.process = launch::start_child(
       {.command = list, .out = log, .err = log, .own_group = true, .death_signal = SIGTERM, .prepare = pin});
@@ -275,6 +268,7 @@ void Sweep::stop_all() {
 }
 
 ExitCode Sweep::run() {
+  launch::add_to_run_list(options_.folder, {"sweep.json", "sweep.csv"});
   write_whole_file(options_.folder / "sweep.json", Json{{"format_version", 1},
                                                         {"study", study_.name},
                                                         {"passes", study_.passes},

@@ -7,7 +7,6 @@
 
 #include "protocol/core/archive_hash.hpp"
 #include "protocol/files/hdf5_file.hpp"
-#include "protocol/files/text_file.hpp"
 
 namespace furrow {
 namespace {
@@ -88,7 +87,7 @@ void check_label(const Label& label, const std::filesystem::path& path, const Ar
 }  // namespace
 
 void write_archive(const std::filesystem::path& path, const Archive& archive, const ArchiveKind& kind) {
-  Hdf5Writer file(path, kind.several_writers ? own_temporary_name(path) : temporary_name(path));
+  Hdf5Writer file(path);
   file.attribute("kind", std::string(kind.name));
   file.attribute("kind_version", kind.version);
   file.attribute("checksum", archive_hash(archive).hex());

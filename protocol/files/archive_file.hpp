@@ -20,12 +20,12 @@ struct ArchiveKind {
   std::int64_t oldest;   // that can be read
   const char*
       group;  // that holds the arrays, with ':' in place of '/' in names; empty: names are as they are
-  bool several_writers;  // processes may write the same file at once; the last one wins
 };
 
-inline constexpr ArchiveKind kSavedState{"state", "a saved state", 1, 1, "state", false};
+inline constexpr ArchiveKind kSavedState{"state", "a saved state", 1, 1, "state"};
 
-/// The file appears whole or not at all. @throws Error(io)
+/// The file appears whole or not at all. Of several processes that write it at once the last one wins.
+/// @throws Error(io)
 void write_archive(const std::filesystem::path& file, const Archive& archive,
                    const ArchiveKind& kind = kSavedState);
 

@@ -7,7 +7,6 @@
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/hdf5_handle.hpp"
-#include "protocol/files/text_file.hpp"
 
 namespace furrow {
 namespace {
@@ -28,18 +27,15 @@ hid_t native(std::uint8_t) { return H5T_NATIVE_UINT8; }
 
 }  // namespace
 
-Hdf5Writer::Hdf5Writer(const std::filesystem::path& file, const std::filesystem::path& part)
-    : lock_(library), file_(file), part_(part.empty() ? temporary_name(file) : part) {
+Hdf5Writer::Hdf5Writer(const std::filesystem::path& file) : lock_(library), file_(file), part_(file) {
   silence();
-  handle_ = H5Fcreate(part_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  handle_ = H5Fcreate(part_.way().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   check(handle_ >= 0, "cannot create");
   attribute("format_version", kFormatVersion);
 }
 
 Hdf5Writer::~Hdf5Writer() {
   if (handle_ >= 0) H5Fclose(handle_);
-  std::error_code ignored;
-  std::filesystem::remove(part_, ignored);  // after finish() there is none
 }
 
 void Hdf5Writer::check(bool ok, const std::string& what) const {
@@ -113,7 +109,7 @@ void Hdf5Writer::finish() {
   const herr_t closed = H5Fclose(handle_);
   handle_ = -1;
   check(closed >= 0, "cannot close");
-  publish_file(part_, file_);
+  part_.publish();
 }
 
 Hdf5Reader::Hdf5Reader(const std::filesystem::path& file) : lock_(library), file_(file) {

@@ -11,14 +11,14 @@
 #include <string>
 #include <vector>
 
+#include "protocol/files/new_file.hpp"
+
 namespace furrow {
 
 class Hdf5Writer {
  public:
-  /// Creates a temporary file; nothing stands under `file` until finish().
-  /// @param part the temporary file, in the same folder; empty: temporary_name(file)
-  /// @throws Error(io)
-  explicit Hdf5Writer(const std::filesystem::path& file, const std::filesystem::path& part = {});
+  /// Nothing stands under `file` until finish(). @throws Error(io)
+  explicit Hdf5Writer(const std::filesystem::path& file);
   ~Hdf5Writer();  // without finish(): removes the temporary file
   Hdf5Writer(const Hdf5Writer&) = delete;
   Hdf5Writer& operator=(const Hdf5Writer&) = delete;
@@ -47,7 +47,8 @@ class Hdf5Writer {
   void check(bool ok, const std::string& what) const;
 
   std::unique_lock<std::recursive_mutex> lock_;
-  std::filesystem::path file_, part_;
+  std::filesystem::path file_;
+  NewFile part_;
   hid_t handle_ = -1;
 };
 

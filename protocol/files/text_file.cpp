@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -13,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "protocol/core/error.hpp"
+#include "protocol/files/new_file.hpp"
 
 namespace furrow {
 namespace {
@@ -21,14 +21,6 @@ constexpr std::uintmax_t kMaxText = 16 << 20;  // bytes
 
 Error failed(const std::filesystem::path& file, const std::string& what) {
   return io_error(file.string(), what + ": " + std::strerror(errno));
-}
-
-void flush_to_disk(const std::filesystem::path& path) {
-  const int handle = open(path.c_str(), O_RDONLY);
-  if (handle < 0) throw failed(path, "cannot open to flush");
-  const int result = fsync(handle);
-  close(handle);
-  if (result != 0) throw failed(path, "cannot flush to the disk");
 }
 
 /// Gives `use` what the stream holds, block by block; `use` returns false when it has enough. @returns false after an
@@ -160,30 +152,18 @@ std::string place_in_text(const std::string& text, std::size_t offset) {
   return fmt::format("{}:{}", line, column);
 }
 
-std::filesystem::path own_temporary_name(const std::filesystem::path& file) {
-  std::array<char, 64> host{};
-  gethostname(host.data(), host.size() - 1);
-  return file.parent_path() / fmt::format(".{}.{}.{}.part", file.filename().string(), host.data(), getpid());
+void sync_folder(const std::filesystem::path& folder) {
+  const int handle = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (handle < 0) throw failed(folder, "cannot open to flush");
+  const int result = fsync(handle);
+  close(handle);
+  if (result != 0) throw failed(folder, "cannot flush to the disk");
 }
-
-std::filesystem::path temporary_name(const std::filesystem::path& file) {
-  return file.parent_path() / ("." + file.filename().string() + ".part");
-}
-
-void publish_file(const std::filesystem::path& written, const std::filesystem::path& file) {
-  flush_to_disk(written);
-  if (rename(written.c_str(), file.c_str()) != 0) throw failed(file, "cannot rename the finished file");
-}
-
-void sync_folder(const std::filesystem::path& folder) { flush_to_disk(folder); }
 
 void write_whole_file(const std::filesystem::path& file, const std::string& text) {
-  const auto part = temporary_name(file);
-  std::ofstream stream(part, std::ios::binary);
-  stream << text;
-  stream.close();
-  if (!stream) throw failed(file, "cannot write");
-  publish_file(part, file);
+  NewFile made(file);
+  made.write(text);
+  made.publish();
 }
 
 }  // namespace furrow

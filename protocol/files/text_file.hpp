@@ -1,4 +1,4 @@
-// Whole files. Written, they appear or do not: under a temporary name, flushed to the disk, then renamed.
+// Whole files. Written, they appear or do not (new_file.hpp).
 #pragma once
 
 #include <filesystem>
@@ -26,17 +26,8 @@ std::string text_hash(const std::string& text);
 /// @throws Error(io) naming the file
 void write_whole_file(const std::filesystem::path& file, const std::string& text);
 
-/// Flushes `written` to the disk and renames it to `file`. @throws Error(io)
-void publish_file(const std::filesystem::path& written, const std::filesystem::path& file);
-
 /// Flushes what was renamed, made or removed in a folder to the disk. @throws Error(io)
 void sync_folder(const std::filesystem::path& folder);
-
-/// The temporary name beside `file`.
-std::filesystem::path temporary_name(const std::filesystem::path& file);
-
-/// As temporary_name, and no other process of any machine has it: for files that several may write at once.
-std::filesystem::path own_temporary_name(const std::filesystem::path& file);
 
 /// Offset of the first byte that is not UTF-8 (RFC 3629), or npos.
 std::size_t find_invalid_utf8(const std::string& text);

@@ -9,7 +9,7 @@ import subprocess
 import unittest
 
 from checkpoint_runs import FAULTY, INTERVAL, RANKS, STEPS, CheckpointTest, steps, summary
-from program import furrow, main, ranks
+from program import furrow, main, start
 
 # (point, rank, which time, step at which the run goes on at the latest)
 KILLS = [
@@ -177,10 +177,12 @@ class Damaged(CheckpointTest):
 class Folder(CheckpointTest):
     def test_two_on_one_folder(self):
         process = self.start_waiting("step", 0, 250)
-        for command in (["resume", self.run_folder], ["run", self.path, "--out", self.run_folder, "--overwrite"]):
-            done = furrow(*command, cwd=self.folder)
-            self.assertEqual(done.returncode, 2, done.stderr)
-            self.assertIn("is taken by a run that is not over", done.stderr)
+        others = [start(*command, cwd=self.folder) for command in  # they wait for 10 s, together
+                  (["resume", self.run_folder], ["run", self.path, "--out", self.run_folder, "--overwrite"])]
+        for other in others:
+            _, err = other.communicate(timeout=30)
+            self.assertEqual(other.returncode, 2, err)
+            self.assertIn("is taken by a run that is not over", err)
         self.mark.unlink()
         _, err = process.communicate(timeout=30)
         self.assertEqual(process.returncode, 0, err)

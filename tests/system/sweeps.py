@@ -102,7 +102,7 @@ class Sweep(SystemTest):
         for name in ("study_slip.json", "study_slip_angle.json", "study_camber.json", "study_hard_slip.json", "multipass.json"):
             done = furrow("sweep", ROOT / "rigs" / name, "--out", "/proc/furrow", cwd=self.folder)
             self.assertEqual(done.returncode, 2, done.stderr)
-            self.assertIn("key '--out': cannot be written", done.stderr)
+            self.assertIn("key '--out': cannot be made", done.stderr)
 
     def test_passes_begin_on_the_bed_that_the_last_one_left(self):
         study = self.study(passes=2, rest=0.01, grid={"run.seed": [1, 2]}, set={"run.end": 0.15, "run.average_from": 0.1},

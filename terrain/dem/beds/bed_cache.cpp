@@ -20,7 +20,7 @@ namespace {
 constexpr std::int64_t kBedFormat = 5;        // raise when the bits of a bed or its digest may change
 constexpr std::int64_t kOldestBedFormat = 4;  // that can be read
 
-constexpr ArchiveKind kBed{"bed", "a bed of furrow", kBedFormat, kOldestBedFormat, "", true};
+constexpr ArchiveKind kBed{"bed", "a bed of furrow", kBedFormat, kOldestBedFormat, ""};
 
 }  // namespace
 

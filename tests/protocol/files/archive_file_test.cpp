@@ -47,7 +47,7 @@ void expect_same_bits(const Archive& a, const Archive& b) {
   }
 }
 
-constexpr ArchiveKind kBed{"bed", "a bed", 4, 4, "", true};
+constexpr ArchiveKind kBed{"bed", "a bed", 4, 4, ""};
 
 std::string error_of(const std::filesystem::path& file, const ArchiveKind& kind = kSavedState) {
   try {

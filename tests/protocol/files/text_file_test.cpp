@@ -75,11 +75,5 @@ TEST(TextFile, a_user_s_text_is_a_regular_file_of_a_readable_size) {
   EXPECT_FALSE(read_text_file("/proc/self/status", "a text").empty());
 }
 
-TEST(TextFile, temporary_names_stand_beside_the_file) {
-  EXPECT_EQ(temporary_name("a/b.h5"), "a/.b.h5.part");
-  EXPECT_EQ(own_temporary_name("a/b.h5").parent_path(), "a");
-  EXPECT_NE(own_temporary_name("a/b.h5"), temporary_name("a/b.h5"));
-}
-
 }  // namespace
 }  // namespace furrow

@@ -1,0 +1,267 @@
+#!/usr/bin/python3
+"""The folder of a run: nothing of the user's own is lost in it, one run at a time has it, and a run notices when it is gone."""
+import fcntl
+import json
+import os
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import unittest
+
+import h5py
+import numpy
+
+from checkpoint_runs import FAULTY, RUN, CheckpointTest, steps, summary
+from program import SystemTest, furrow, main, start, wait_for, write_scenario
+
+CYCLES = 30
+OF_THE_SEGMENT = ("wall_s", "settle_wall_s", "wall_s_per_simulated_s", "ranks", "segments", "cpu")
+MINE = ("photo.png", "summary_of_my_thesis.json", "timeseries_measured.csv", "frames/cad.step", "checkpoints/notes.txt")
+
+
+def files(folder):
+    """{path in the folder: file} of all files below it."""
+    return {str(path.relative_to(folder)): path for path in pathlib.Path(folder).rglob("*") if not path.is_dir()}
+
+
+def unlisted(folder):
+    """The files that the list does not hold."""
+    forms = (pathlib.Path(folder) / ".furrow-run").read_text().split("furrow-run 1\n")[-1].splitlines()
+    numbers = lambda form: re.sub(r"%0?(\d+)d", r"\\d{\1,}", re.escape(form).replace("\\%", "%"))
+    listed = re.compile("|".join(map(numbers, forms)))
+    return {name for name in files(folder) if not listed.fullmatch(name)} - {".furrow-run"}
+
+
+def datasets(path):
+    """{name: values} of an HDF5 file but for time that was spent, and forces in frames of tires, which resumed runs do not know."""
+    found = {}
+    with h5py.File(path) as file:
+        file.visititems(lambda name, item: found.update({name: item[()]}) if isinstance(item, h5py.Dataset) else None)
+    return {name: values for name, values in found.items()
+            if not name.endswith("wall_s") and "run:cost" not in name and not (path.name.startswith("tire") and name == "force")}
+
+
+class Overwrite(SystemTest):
+    def setUp(self):
+        super().setUp()
+        self.path = write_scenario(self.folder, RUN)
+        self.out = self.folder / "out"
+
+    def run_it(self, *arguments, code=0, cwd=None):
+        done = furrow("run", *arguments, cwd=cwd or self.folder)
+        self.assertEqual(done.returncode, code, done.stderr)
+        return done
+
+    def put_mine(self, names=MINE):
+        for name in names:
+            (self.out / name).parent.mkdir(parents=True, exist_ok=True)
+            (self.out / name).write_text("mine")
+
+    def test_a_folder_that_no_run_made_is_refused(self):
+        names = (*MINE, "scenario.json", "report.json", "soil.json", "run.log")
+        self.put_mine(names)
+        for command in (["run", self.path, "--overwrite"], ["run", self.path], ["soil", self.path, "--overwrite"],
+                        ["press", self.path, "--set", "tire.rigid=false", "--overwrite"]):
+            done = furrow(*command, "--out", self.out, cwd=self.folder)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertRegex(done.stderr, r"furrow: error: .*out: key '--out': (holds no run|exists already)")
+        self.assertIn("an earlier version of furrow made it", furrow("resume", self.out, cwd=self.folder).stderr)
+        self.assertEqual({name: path.read_text() for name, path in files(self.out).items()}, dict.fromkeys(names, "mine"))
+
+    def test_what_furrow_wrote_goes_and_what_the_user_wrote_stays(self):
+        self.run_it(self.path, "--out", "out", "--profile")
+        self.assertEqual(unlisted(self.out), set())
+        self.put_mine()
+        again = furrow("report", "out", cwd=self.folder)  # plots are listed too, once
+        self.assertEqual(again.returncode, 0, again.stderr)
+        ours = files(self.out).keys() - set(MINE)
+        self.assertEqual(unlisted(self.out), set(MINE))
+        self.run_it(self.path, "--out", "out", "--overwrite", "--no-plots", "--set", "output.frame_interval=0")
+        self.assertEqual(unlisted(self.out), set(MINE))
+        for name in MINE:
+            self.assertEqual((self.out / name).read_text(), "mine", name)
+        left = files(self.out).keys() - set(MINE)
+        self.assertFalse([name for name in left if name.endswith((".png", "profile.json")) or name.startswith("frames")])
+        self.assertLess(left, ours)
+
+    def test_a_plot_never_replaces_a_picture_of_the_users_own(self):
+        self.run_it(self.path, "--out", "out", "--no-plots")
+        (self.out / "forces.png").write_text("mine")
+        done = furrow("report", "out", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("no forces.png: a file of that name stands there", done.stderr)
+        self.assertEqual((self.out / "forces.png").read_text(), "mine")
+
+    def test_a_runs_own_scenario_can_be_run_over_its_folder(self):
+        self.run_it(self.path, "--out", "out", "--no-plots")
+        first = summary(self.out)
+        for arguments, cwd in (((self.out / "scenario.json", "--out", "out"), self.folder),
+                               (("scenario.json", "--out", "."), self.out)):
+            self.run_it(*arguments, "--overwrite", "--no-plots", cwd=cwd)
+            self.assertEqual(summary(self.out)["state_hash"], first["state_hash"])
+        before = {name: path.read_bytes() for name, path in files(self.out).items()}
+        link = self.folder / "link.json"
+        link.symlink_to(self.out / "scenario.json")
+        done = self.run_it(link, "--out", "out", "--overwrite", "--set", "terrain.bed=none.csv", code=2)
+        self.assertIn("none.csv", done.stderr)
+        self.assertEqual({name: path.read_bytes() for name, path in files(self.out).items()}, before)
+
+    def test_a_way_through_a_folder_that_is_not_there_is_refused(self):
+        inner = self.folder / "inner"
+        inner.mkdir()
+        done = self.run_it(self.path, "--out", "nonex/../../w/x", code=2, cwd=inner)
+        self.assertRegex(done.stderr, "^furrow: error: nonex/../../w/x: key '--out': leads through 'nonex', which does not exist")
+        self.assertEqual((self.names(), list(inner.iterdir())), (["inner", "small.json"], []))
+
+    def test_a_study_is_refused_where_no_study_was(self):
+        study = self.folder / "study.json"
+        study.write_text(json.dumps({"scenario": "small.json", "grid": {"rig.slip": [0.1]}}))
+        self.put_mine(("sweep.csv",))
+        done = furrow("sweep", study, "--out", "out", cwd=self.folder)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("holds no run's list of its files (.furrow-run): no study made it", done.stderr)
+        self.assertEqual(files(self.out).keys(), {"sweep.csv"})
+
+    def test_of_two_that_begin_together_one_has_the_folder(self):
+        both = [start("run", self.path, "--out", "out", "--no-plots", cwd=self.folder) for _ in range(2)]
+        told = [process.communicate(timeout=60)[1] for process in both]
+        self.assertEqual(sorted(process.returncode for process in both), [0, 2], told)
+        self.assertEqual(sum(err.count("furrow: error: ") for err in told), 1, told)
+        self.assertEqual(summary(self.out)["simulated_s"], 0.05)
+
+    @unittest.skipUnless(os.geteuid() == 0, "needs the right to mount")
+    def test_a_full_disk_as_the_list_is_written_is_told_and_leaves_nothing(self):
+        disk = self.folder / "disk"
+        disk.mkdir()
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=1m", "tmpfs", disk], capture_output=True).returncode != 0:
+            self.skipTest("needs the right to mount")
+        self.addCleanup(subprocess.run, ["umount", "-l", disk])
+        subprocess.run(["dd", "if=/dev/zero", f"of={disk}/ballast", "bs=4k"], capture_output=True)
+        done = self.run_it(self.path, "--out", "disk/out", code=5)
+        self.assertEqual(done.stderr, "furrow: error: disk/out/.furrow-run: cannot be written: No space left on device\n")
+        self.assertEqual([path.name for path in disk.iterdir()], ["ballast"])
+
+
+class Gone(CheckpointTest):
+    """What happens to the folder while the run waits in the middle of a step."""
+
+    def goes_on(self, process, code, words):
+        self.mark.unlink()
+        _, err = process.communicate(timeout=60)
+        self.no_process_left()
+        self.assertEqual(process.returncode, code, err)
+        self.assertEqual(err.count("furrow: error: "), 1, err)
+        self.assertRegex(err, words)
+        return err
+
+    def test_moved(self):
+        process = self.start_waiting("step", 0, 220)
+        elsewhere = self.folder / "elsewhere"
+        self.run_folder.rename(elsewhere)
+        err = self.goes_on(process, 5, "furrow: error: .*out: was moved, removed or emptied while the run was under way")
+        self.assertNotIn("resume", err)
+        self.assertFalse(self.run_folder.exists())
+        self.resume(run=elsewhere)
+        self.same_as_whole(elsewhere)
+
+    def test_removed(self):
+        process = self.start_waiting("step", 0, 220)
+        shutil.rmtree(self.run_folder)
+        self.goes_on(process, 5, "furrow: error: .*out: was moved, removed or emptied while the run was under way")
+        self.assertFalse(self.run_folder.exists())
+
+    def test_a_folder_in_it_removed(self):
+        for name in ("frames", "checkpoints"):
+            with self.subTest(name):
+                shutil.rmtree(self.run_folder, ignore_errors=True)
+                process = self.start_waiting("step", 0, 220)
+                shutil.rmtree(self.run_folder / name)
+                self.goes_on(process, 5, f"furrow: error: .*out/{name}: was moved or removed while the run was under way")
+                self.assertFalse((self.run_folder / name).exists())
+
+    def test_another_run_in_its_place(self):
+        process = self.start_waiting("step", 0, 220)
+        self.run_folder.rename(self.folder / "elsewhere")
+        shutil.copytree(self.whole, self.run_folder)
+        before = {name: path.read_bytes() for name, path in files(self.run_folder).items()}
+        self.goes_on(process, 5, "furrow: error: .*out: was moved, removed or emptied while the run was under way")
+        self.assertEqual({name: path.read_bytes() for name, path in files(self.run_folder).items()}, before)
+
+    @unittest.skipUnless(os.geteuid() == 0 and shutil.which("setpriv"), "needs to become a user who is not root")
+    def test_made_read_only(self):
+        for path in (self.folder, self.path):
+            os.chown(path, 65534, 65534)
+        command = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups", FAULTY, "run", self.path, "--out", self.run_folder]
+        environment = {**os.environ, **self.fault("step", 0, 220, "wait"), "HOME": str(self.folder), "XDG_CACHE_HOME": str(self.folder / "cache")}
+        process = subprocess.Popen(command, cwd=self.folder, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment)
+        self.addCleanup(process.kill)
+        wait_for(lambda: self.mark.exists() or process.poll() is not None, 60, "the fault fires")
+        for name in ("frames", "checkpoints", ""):
+            os.chmod(self.run_folder / name, 0o555)
+        self.goes_on(process, 5, "furrow: error: .*out/frames/.*: cannot create: Permission denied")
+        for name in ("", "frames", "checkpoints"):
+            os.chmod(self.run_folder / name, 0o755)
+        for path in self.folder.rglob("*"):
+            os.chown(path, 0, 0)
+        self.resume()
+        self.same_as_whole()
+
+
+class Killed(CheckpointTest):
+    """kill -9 of `furrow` itself, and somebody who goes on at once."""
+    SCENARIO = {**RUN, "rig": {**RUN["rig"], "mode": "fixed_speed", "speed": 0.1}, "run": {**RUN["run"], "end": 1.0},
+                "checkpoint": {"interval": 0.01, "keep": 2}}
+
+    def same_as_whole(self, run=None):
+        run = run or self.run_folder
+        own, others = files(run), files(self.whole)
+        self.assertEqual(own.keys(), others.keys())
+        for name in own.keys() - {"run.log", ".furrow-run"}:
+            if name.endswith(".h5"):
+                a, b = datasets(own[name]), datasets(others[name])
+                self.assertEqual(a.keys(), b.keys(), name)
+                for key in a:
+                    numpy.testing.assert_array_equal(a[key], b[key], f"{name}: {key}")
+            elif name == "summary.json":
+                kept = [{key: value for key, value in summary(folder).items() if key not in OF_THE_SEGMENT} for folder in (run, self.whole)]
+                self.assertEqual(*kept)
+            elif not name.endswith("manifest.json"):
+                self.assertEqual(own[name].read_bytes(), others[name].read_bytes(), name)
+
+    def test_thirty_times_in_a_row_without_a_pause(self):
+        command = ["run", self.path, "--out", self.run_folder, "--no-plots"]
+        for _ in range(CYCLES):
+            process = start(*command, cwd=self.folder, program=FAULTY)
+            self.addCleanup(process.kill)
+            told = line = process.stderr.readline()
+            while line and "results in" not in line:
+                told += (line := process.stderr.readline())
+            begun = re.search(r"from t = (\S+) s, results in", told)
+            begin = round(float(begun[1]) / RUN["run"]["step"]) if begun else 0
+            wait_for(lambda: process.poll() is not None or (steps(self.run_folder) or [0])[-1] > begin, 60, "a checkpoint")
+            self.assertIsNone(process.poll(), told)
+            process.kill()
+            process.communicate(timeout=30)
+            command = ["resume", self.run_folder, "--no-plots"]
+        self.resume()
+        self.same_as_whole()
+        self.assertEqual(len(summary(self.run_folder)["segments"]), CYCLES + 1)
+
+    def test_whoever_waits_in_vain_is_told_for_whom(self):
+        run = self.copy_of_whole()
+        with open(run / ".furrow-run") as held:  # as a rank that does not end
+            fcntl.flock(held, fcntl.LOCK_SH)
+            others = [start(*command, cwd=self.folder, program=FAULTY) for command in
+                      (["resume", run], ["run", self.path, "--out", run, "--overwrite"])]
+            for other in others:
+                _, err = other.communicate(timeout=60)
+                self.assertEqual(other.returncode, 2, err)
+                waits, error = err.splitlines()
+                self.assertRegex(waits, r"^furrow: .*out is taken by a run that is not over: process \d+ .*; waiting for up to 10 s")
+                self.assertRegex(error, rf"^furrow: error: .*out: .*process {os.getpid()} \(")
+
+
+if __name__ == "__main__":
+    main()

@@ -4,6 +4,7 @@ import matplotlib as mpl
 import matplotlib.pyplot as plt
 import numpy as np
 
+from .digits import digits, with_error
 from .raster import Buffers, Camera, occlusion, shade, shadow
 from .run_data import Missing
 
@@ -147,11 +148,11 @@ def annotate(axis, run, time, camera, centre, sign, ground):
     lines = [f"t = {time:.2f} s"]
     pull = run.summary.get("drawbar_pull_N") or {}
     if pull.get("mean") is not None:
-        lines.append(f"drawbar pull {pull['mean']:.0f} ± {pull.get('sem') or float('nan'):.0f} N"
+        lines.append(f"drawbar pull {with_error(pull['mean'], pull.get('sem'))} N"
                      + ("" if pull.get("steady") else " (not steady)"))
     for name, label in (("sinkage_m", "sinkage"), ("rut_depth_m", "rut depth")):
         if run.number(name) is not None:
-            lines.append(f"{label} {1e3 * run.number(name):.1f} mm")
+            lines.append(f"{label} {digits(1e3 * run.number(name))} mm")
     if run.number("grains"):
         lines.append(f"{run.number('grains'):,.0f} grains")
     axis.text(0.015, 0.97, "\n".join(lines), transform=axis.transAxes, va="top", fontsize=11.5, linespacing=1.5)

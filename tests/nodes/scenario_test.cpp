@@ -148,8 +148,11 @@ TEST(Scales, what_binds_the_wheel_of_a_laboratory_is_named_by_its_key) {
   EXPECT_EQ(bounding_keys(load({{"terrain.radius", "0.006"}, {"terrain.layers", "50"}})),
             Keys{"terrain.radius"});
   EXPECT_EQ(bounding_keys(load({{"terrain.layers", "40"}})), Keys{"terrain.layers"});
-  EXPECT_EQ(bounding_keys(load({{"terrain.width", "0.08"}})), Keys{"terrain.width"});
-  EXPECT_EQ(bounding_keys(load({{"terrain.width", "0.08"}, {"terrain.sides", "periodic"}})), Keys{});
+  EXPECT_EQ(bounding_keys(load({{"terrain.width", "0.08"}, {"terrain.layers", "90"}})),
+            Keys{"terrain.width"});
+  EXPECT_EQ(bounding_keys(
+                load({{"terrain.width", "0.08"}, {"terrain.layers", "90"}, {"terrain.sides", "periodic"}})),
+            Keys{});
   EXPECT_EQ(bounding_keys(load({{"terrain.length", "0.28"}})), Keys{"terrain.length"});
   EXPECT_EQ(bounding_keys(load({{"rig.lowering_speed", "0.01"}})), Keys{"rig.move_from"});
   const Keys fast = bounding_keys(load({{"rig.angular_speed", "35"}, {"terrain.length", "4"}}));

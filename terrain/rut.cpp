@@ -53,6 +53,16 @@ double crossing(const std::vector<double>& y, const std::vector<double>& profile
   return step > 0 ? y.back() : y.front();
 }
 
+/// Why there is no rut to measure, in words; empty where there may be one.
+std::string why_not(const HeightField& before, const HeightField& after, const RutOptions& o) {
+  if (after.nx <= 0 || after.ny <= 0) return "the ground keeps no rut";
+  if (before.nx != after.nx || before.ny != after.ny) return "the surface before the run is not known";
+  const double travelled = o.direction * (o.axle - o.start), farthest = kFarthest * o.radius;
+  if (travelled >= farthest) return "";
+  return fmt::format("the axle travelled {:.3g} m, and the rut is measured {:.3g} to {:.3g} m behind it",
+                     travelled, kNearest * o.radius, farthest);
+}
+
 }  // namespace
 
 Rut measure_rut(const HeightField& before, const HeightField& after, const RutOptions& o) {
@@ -62,18 +72,10 @@ Rut measure_rut(const HeightField& before, const HeightField& after, const RutOp
   FURROW_ASSERT(after.height.size() == static_cast<std::size_t>(after.nx) * after.ny, after.height.size(),
                 after.nx, after.ny);
   Rut rut;
-  const double nearest = kNearest * o.radius, farthest = kFarthest * o.radius;
-  const double travelled = o.direction * (o.axle - o.start);
-  if (after.nx <= 0 || after.ny <= 0)
-    rut.missing = "the ground keeps no rut";
-  else if (before.nx != after.nx || before.ny != after.ny)
-    rut.missing = "the surface before the run is not known";
-  else if (travelled < farthest)
-    rut.missing =
-        fmt::format("the axle travelled {:.3g} m, and the rut is measured {:.3g} to {:.3g} m behind it",
-                    travelled, nearest, farthest);
+  rut.missing = why_not(before, after, o);
   if (!rut.missing.empty()) return rut;
-  const double a = o.axle - o.direction * nearest, b = o.axle - o.direction * farthest;
+  const double a = o.axle - o.direction * kNearest * o.radius,
+               b = o.axle - o.direction * kFarthest * o.radius;
   rut.profile = transverse_profile(before, after, std::min(a, b), std::max(a, b));
   for (int iy = 0; iy < after.ny; ++iy) rut.y.push_back(after.y0 + iy * after.cell);
 

@@ -9,7 +9,7 @@ namespace furrow::scenario {
 /// most 20 mm, as much as a tire of 0.47 m bulges.
 double wall_margin(double tire_radius);
 
-/// Mounts the tires on `rig`, the scenario's, fills in where the axles of `rig`, the scenario's, start, checks all, and adds warnings.
+/// Mounts the tires on `rig`, the scenario's, fills in where its axles start, checks all, and adds warnings.
 /// @throws Error(bad_input)
 void check_scenario(Scenario& scenario, rigs::RigSpec& rig);
 

@@ -32,6 +32,7 @@ void validate(const DrawbarRigOptions& o) {
   require(o.mode != "fixed_speed" || o.slip < 1.0, "slip", "must be below 1 in mode fixed_speed");
   require(std::isfinite(o.angular_speed) && std::isfinite(o.speed), "angular_speed", "speeds must be finite");
   require(o.ramp >= 0.0 && std::isfinite(o.ramp), "ramp", "must be 0 or a positive time in s");
+  require(o.move_from >= 0.0 && std::isfinite(o.move_from), "move_from", "must not be negative");
   require(o.touchdown_damping >= 0.0 && std::isfinite(o.touchdown_damping), "touchdown_damping",
           "must not be negative");
   require(o.touchdown_time >= 0.0, "touchdown_time", "must not be negative");
@@ -166,7 +167,7 @@ vehicle::BodyState DrawbarRig::moving(double axle_height) const {
   FURROW_ASSERT(std::isfinite(travel_speed_) && options_.ramp >= 0.0, travel_speed_, options_.ramp);
   vehicle::BodyState state;
   state.position = Vec3(options_.start, options_.lateral, axle_height);
-  state.velocity = vehicle::ramped_motion(0.0, travel_speed_, options_.ramp).rate * forward_;
+  state.velocity = vehicle::ramped_motion(-options_.move_from, travel_speed_, options_.ramp).rate * forward_;
   return state;
 }
 
@@ -187,8 +188,9 @@ void DrawbarRig::build(double axle_height) {
   const Vec3 axle = state.orientation * Vec3::UnitY();
   const Vec3 diagonal(options_.rim_diametral_inertia, options_.rim_spin_inertia,
                       options_.rim_diametral_inertia);
-  state.angular_velocity =
-      options_.travel_sign * vehicle::ramped_motion(0.0, spin_speed_, options_.ramp).rate * axle;
+  state.angular_velocity = options_.travel_sign *
+                           vehicle::ramped_motion(-options_.move_from, spin_speed_, options_.ramp).rate *
+                           axle;
   rim_ = system_->add_body("rim", options_.rim_mass + tire_.mass, Mat3(diagonal.asDiagonal()) + tire_.inertia,
                            state);
 
@@ -206,14 +208,13 @@ void DrawbarRig::build(double axle_height) {
   slider_ = system_->add_joint(vehicle::JointKind::prismatic, "vertical slider", set_toe_, carrier_,
                                place(Vec3::UnitZ()));
   spindle_ = system_->add_joint(vehicle::JointKind::revolute, "spindle", carrier_, rim_, place(axle));
-  const double ramp = options_.ramp;
-  drive_ = system_->add_motor("longitudinal drive", rail_, [speed = travel_speed_, ramp](double t) {
-    return vehicle::ramped_motion(t, speed, ramp);
-  });
+  const auto from_rest = [ramp = options_.ramp, from = options_.move_from](double speed) {
+    return [=](double t) { return vehicle::ramped_motion(t - from, speed, ramp); };
+  };
+  drive_ = system_->add_motor("longitudinal drive", rail_, from_rest(travel_speed_));
   if (!free_rolling()) {
-    const double spin = options_.travel_sign * spin_speed_;
-    spindle_motor_ = system_->add_motor(
-        "spindle motor", spindle_, [spin, ramp](double t) { return vehicle::ramped_motion(t, spin, ramp); });
+    spindle_motor_ =
+        system_->add_motor("spindle motor", spindle_, from_rest(options_.travel_sign * spin_speed_));
   }
   if (steered())
     system_->add_motor("steering", toe_lock_,
@@ -235,8 +236,8 @@ void DrawbarRig::place(std::span<const double> axle_height) {
   system_->assemble(0.0);
   report_ = {};
   row_ = {};
-  report_.speed = vehicle::ramped_motion(0.0, travel_speed_, options_.ramp).rate;
-  report_.spin = vehicle::ramped_motion(0.0, spin_speed_, options_.ramp).rate;
+  report_.speed = vehicle::ramped_motion(-options_.move_from, travel_speed_, options_.ramp).rate;
+  report_.spin = vehicle::ramped_motion(-options_.move_from, spin_speed_, options_.ramp).rate;
   report_.slip = report_.spin == 0.0 ? 0.0 : 1.0 - report_.speed / (report_.spin * radius_);
   measure_end();
 }
@@ -283,7 +284,9 @@ Outcome DrawbarRig::advance(std::span<const Wrench> wrenches, double duration, i
   report_.lateral_force = wrench.force.dot(left_);
   report_.aligning_moment = wrench.moment.z();
   const double rolled = report_.spin * radius_, slid = rolled - report_.speed;
-  if (std::abs(slid) <= kSlipLimit * std::abs(rolled))
+  if (options_.move_from > 0.0 && system_->time() <= options_.move_from)
+    report_.slip = 0.0;  // the wheel stands
+  else if (std::abs(slid) <= kSlipLimit * std::abs(rolled))
     report_.slip = rolled == 0.0 ? 0.0 : slid / rolled;
   else
     report_.slip = (slid > 0.0) == (rolled > 0.0) ? kSlipLimit : -kSlipLimit;

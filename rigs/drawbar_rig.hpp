@@ -11,7 +11,9 @@
 
 namespace furrow::rigs {
 
-/// Every field but the gravity is the scenario key `rig.<name>`; `lateral` is that of an entry of `rig.wheels`.
+/// Every field but the gravity is the scenario key `rig.<name>`; `lateral` is that of an entry of `rig.wheels`. What is
+/// negative here is open: RigSpec::mount fills it in from the tire (drawbar_mount.hpp), and a rig is made of given
+/// values alone.
 struct DrawbarRigOptions {
   std::string mode = "fixed_angular_speed";  // fixed_angular_speed: ω given, v = ω r (1 − s)
                                              // fixed_speed: v given, ω = v / (r (1 − s))
@@ -19,9 +21,11 @@ struct DrawbarRigOptions {
   double slip = 0.3;                         // -, below 1 for fixed_speed
   double angular_speed = 8.56;               // rad/s
   double speed = 4.0;                        // carriage speed, m/s, modes fixed_speed and free_rolling
-  double ramp = 0.15;  // smooth (C²) ramp of both motions from rest, s; 0: from t = 0 at full speed
-  double touchdown_damping = 12e3;  // N s/m, vertical damper between set-toe and carrier
-  double touchdown_time = 0.35;     // s, how long it acts
+  double ramp = 0.15;      // smooth (C²) ramp of both motions from rest, s; 0: from t = 0 at full speed
+  double move_from = 0.0;  // when both motions begin, s: until then the wheel is lowered and stands
+  double touchdown_damping = -1.0;  // N s/m, vertical damper between set-toe and carrier
+  double touchdown_time = -1.0;     // s, how long it acts
+  double lowering_speed = -1.0;     // m/s, at which that damper lets the load down; in place of its constant
   double toe_angle = 0.0;           // rad, about +z
   double toe_time = 0.0;   // s, when the wheel is turned from 0 to toe_angle; 0: it stands so from the start
   double toe_ramp = 0.01;  // s, how long that takes
@@ -29,13 +33,14 @@ struct DrawbarRigOptions {
   double travel_sign = 1.0;   // +1 along +x, −1 along −x (mirrored travel)
   double start = 0.0;    // x of the axle at t = 0, m; where the scenario does not say it, it is filled in
   double lateral = 0.0;  // y of the wheel's mid-plane, m
-  double carrier_mass = 450.0;         // wheel carrier with ballast, kg
-  double chassis_mass = 1.0;           // kg, rides on the rail
-  double set_toe_mass = 1.0;           // kg, rides on the rail
-  double rim_mass = 15.0;              // kg
-  double rim_spin_inertia = 0.7;       // kg m², about the axle
-  double rim_diametral_inertia = 0.4;  // kg m²
-  Vec3 gravity = standard_gravity();   // m/s²
+  double load = -1.0;    // weight of all that the ground carries, tire included, N
+  double carrier_mass = -1.0;           // wheel carrier with ballast, kg; in place of the load
+  double chassis_mass = 1.0;            // kg, rides on the rail
+  double set_toe_mass = 1.0;            // kg, rides on the rail
+  double rim_mass = -1.0;               // kg
+  double rim_spin_inertia = -1.0;       // kg m², about the axle
+  double rim_diametral_inertia = -1.0;  // kg m²
+  Vec3 gravity = standard_gravity();    // m/s²
 };
 
 template <class Visit>
@@ -45,8 +50,10 @@ void visit_fields(Visit&& visit, FieldsOf<DrawbarRigOptions> auto& s) {
   visit(Field{"angular_speed", "rad/s", role::key}, s.angular_speed);
   visit(Field{"speed", "m/s", role::key}, s.speed);
   visit(Field{"ramp", "s", role::key}, s.ramp);
+  visit(Field{"move_from", "s", role::key}, s.move_from);
   visit(Field{"touchdown_damping", "N s/m", role::key}, s.touchdown_damping);
   visit(Field{"touchdown_time", "s", role::key}, s.touchdown_time);
+  visit(Field{"lowering_speed", "m/s", role::key}, s.lowering_speed);
   visit(Field{"toe_angle", "rad", role::key}, s.toe_angle);
   visit(Field{"toe_time", "s", role::key}, s.toe_time);
   visit(Field{"toe_ramp", "s", role::key}, s.toe_ramp);
@@ -54,6 +61,7 @@ void visit_fields(Visit&& visit, FieldsOf<DrawbarRigOptions> auto& s) {
   visit(Field{"travel_sign", "", role::key}, s.travel_sign);
   visit(Field{"start", "m", role::key}, s.start);
   visit(Field{"lateral", "m"}, s.lateral);
+  visit(Field{"load", "N", role::key}, s.load);
   visit(Field{"carrier_mass", "kg", role::key}, s.carrier_mass);
   visit(Field{"chassis_mass", "kg", role::key}, s.chassis_mass);
   visit(Field{"set_toe_mass", "kg", role::key}, s.set_toe_mass);

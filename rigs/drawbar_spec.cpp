@@ -11,6 +11,7 @@
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_fields.hpp"
 #include "protocol/files/json_text.hpp"
+#include "rigs/drawbar_mount.hpp"
 #include "rigs/rig_row.hpp"
 
 namespace furrow::rigs {
@@ -24,23 +25,44 @@ struct Place {
   bool start_given = true;
 };
 
+bool says(const json& section, const char* name) {
+  const auto entry = section.find(name);
+  return entry != section.end() && !entry->is_null();
+}
+
+/// Of the axle after the ramp, m/s, forward positive.
+double full_speed(const DrawbarRigOptions& rig, double tire_radius) {
+  return rig.mode == "fixed_angular_speed" ? rig.angular_speed * tire_radius * (1.0 - rig.slip) : rig.speed;
+}
+
+/// Of the tread against the axle after the ramp, m/s, forward positive.
+double tread_speed(const DrawbarRigOptions& rig, double tire_radius) {
+  if (rig.mode == "fixed_angular_speed") return rig.angular_speed * tire_radius;
+  return rig.mode == "free_rolling" ? rig.speed : rig.speed / (1.0 - rig.slip);
+}
+
 /// Of the axle's travel, m, forward positive.
 double travel(const DrawbarRigOptions& rig, double tire_radius, double duration) {
-  const double speed =
-      rig.mode == "fixed_angular_speed" ? rig.angular_speed * tire_radius * (1.0 - rig.slip) : rig.speed;
   // Over the ramp the mean speed is half of the full one.
-  const double ramped = std::min(rig.ramp, duration);
-  return speed * (duration - 0.5 * ramped);
+  const double moving = std::max(0.0, duration - rig.move_from), ramped = std::min(rig.ramp, moving);
+  return full_speed(rig, tire_radius) * (moving - 0.5 * ramped);
 }
 
 class DrawbarSpec final : public RigSpec {
  public:
   /// @param listed whether the wheels are entries of rig.wheels
-  DrawbarSpec(std::vector<Place> places, bool listed) : places_(std::move(places)), listed_(listed) {
+  DrawbarSpec(std::vector<Place> places, bool listed, ReadContext context)
+      : places_(std::move(places)), listed_(listed), context_(std::move(context)) {
     FURROW_ASSERT(!places_.empty());
   }
 
   std::size_t wheel_count() const override { return places_.size(); }
+
+  void mount(std::span<const MountedTire> tires) override {
+    FURROW_ASSERT(tires.size() == places_.size(), tires.size(), places_.size());
+    for (std::size_t k = 0; k < places_.size(); ++k)
+      places_[k].rig = mounted(places_[k].rig, tires[k], context_, wheel_key(k));
+  }
 
   RigDescription describe(std::span<const WheelSize> tires, double duration) const override {
     FURROW_ASSERT(tires.size() == places_.size(), tires.size(), places_.size());
@@ -48,8 +70,8 @@ class DrawbarSpec final : public RigSpec {
     RigDescription d;
     d.kind = places_.size() > 1 ? "drawbar row" : "drawbar";
     d.text = fmt::format("{} drawbar rig{}, {}", places_.size(), places_.size() > 1 ? "s" : "", first.mode);
-    d.speeds_up_until = first.ramp;
-    d.speeds_up_key = "rig.ramp";
+    d.speeds_up_until = first.move_from + first.ramp;
+    d.speeds_up_key = first.move_from > 0.0 ? "rig.move_from + rig.ramp" : "rig.ramp";
     for (std::size_t k = 0; k < places_.size(); ++k) d.wheels.push_back(wheel(k, tires[k], duration));
     return d;
   }
@@ -62,16 +84,27 @@ class DrawbarSpec final : public RigSpec {
   }
 
   void fill_starts(std::span<const WheelSize> tires, double duration, std::optional<double> length,
-                   double margin) override {
+                   std::span<const double> margins) override {
+    FURROW_ASSERT(margins.size() == places_.size(), margins.size(), places_.size());
     for (std::size_t k = 0; k < places_.size(); ++k) {
       if (places_[k].start_given) continue;
       const WheelDescription d = wheel(k, tires[k], duration);
-      const double reach = d.along + margin;
+      const double reach = d.along + margins[k];
       places_[k].rig.start = !length ? 0.0 : d.to >= d.from ? reach : *length - reach;
     }
   }
 
+  /// What all wheels have in common is written for all; what follows from a load or a speed that is stated, is not.
   void complete(json& section) const override {
+    bool by_load = says(section, "load");
+    for (const json& entry : section.value("wheels", json::array())) by_load |= says(entry, "load");
+    fill(section, "rim_mass", &DrawbarRigOptions::rim_mass);
+    fill(section, "rim_spin_inertia", &DrawbarRigOptions::rim_spin_inertia);
+    fill(section, "rim_diametral_inertia", &DrawbarRigOptions::rim_diametral_inertia);
+    fill(section, "touchdown_time", &DrawbarRigOptions::touchdown_time);
+    if (!by_load) fill(section, "carrier_mass", &DrawbarRigOptions::carrier_mass);
+    if (!says(section, "lowering_speed"))
+      fill(section, "touchdown_damping", &DrawbarRigOptions::touchdown_damping);
     section["start"] = places_.front().rig.start;
     for (std::size_t k = 0; listed_ && k < places_.size(); ++k)
       section["wheels"][k]["start"] = places_[k].rig.start;
@@ -95,17 +128,37 @@ class DrawbarSpec final : public RigSpec {
     d.slip = rig.slip;
     d.travel_sign = rig.travel_sign;
     d.carried_mass = rig.carrier_mass + rig.rim_mass;
-    d.start_key = listed_ && places_.size() > 1 ? fmt::format("rig.wheels.{}.start", k) : "rig.start";
+    d.speed = full_speed(rig, tire.radius);
+    d.tread_speed = tread_speed(rig, tire.radius);
+    d.lowering_time = rig.move_from;
+    if (rig.touchdown_damping > 0.0) d.lowering_speed = rig.load / rig.touchdown_damping;
+    d.start_key = "rig." + wheel_key(k) + "start";
     return d;
+  }
+
+  void fill(json& section, const char* key, double DrawbarRigOptions::*value) const {
+    const double first = places_.front().rig.*value;
+    const auto same = [&](const Place& place) { return place.rig.*value == first; };
+    if (first >= 0.0 && std::all_of(places_.begin(), places_.end(), same)) section[key] = first;
+  }
+
+  /// What stands before the name of a key of wheel k within the section.
+  std::string wheel_key(std::size_t k) const {
+    return listed_ && places_.size() > 1 ? fmt::format("wheels.{}.", k) : "";
   }
 
   std::vector<Place> places_;
   bool listed_;
+  ReadContext context_;
 };
 
-bool says(const json& section, const char* name) {
-  const auto entry = section.find(name);
-  return entry != section.end() && !entry->is_null();
+/// Whether the object says both keys, of which one excludes the other.
+void refuse_both(const json& object, const char* one, const char* other, const ReadContext& context,
+                 const std::string& wheel = "") {
+  if (says(object, one) && says(object, other))
+    throw input_error(
+        context.file, context.key(wheel + one),
+        fmt::format("is given beside '{}', expected one of the two", context.key(wheel + other)));
 }
 
 }  // namespace
@@ -113,10 +166,14 @@ bool says(const json& section, const char* name) {
 std::unique_ptr<RigSpec> read_drawbar(const json& section, const ReadContext& context) {
   DrawbarRigOptions common;
   read_fields(section, common);
+  refuse_both(section, "load", "carrier_mass", context);
+  refuse_both(section, "lowering_speed", "touchdown_damping", context);
   std::vector<Place> places;
   const json wheels = section.value("wheels", json::array());
   for (const json& entry : wheels) {
+    refuse_both(entry, "load", "carrier_mass", context, fmt::format("wheels.{}.", places.size()));
     DrawbarWheel wheel{common};
+    if (says(entry, "load") || says(entry, "carrier_mass")) wheel.rig.load = wheel.rig.carrier_mass = -1.0;
     read_fields(entry, wheel);
     places.push_back({wheel.rig, says(section, "start") || says(entry, "start")});
   }
@@ -127,14 +184,14 @@ std::unique_ptr<RigSpec> read_drawbar(const json& section, const ReadContext& co
           context.file, context.key(places.size() > 1 ? fmt::format("wheels.{}.slip", k) : "slip"),
           fmt::format("is {}, expected below 1 in mode fixed_speed: a carriage that moves cannot slip fully",
                       number_text(rig.slip)));
-  return std::make_unique<DrawbarSpec>(std::move(places), !wheels.empty());
+  return std::make_unique<DrawbarSpec>(std::move(places), !wheels.empty(), context);
 }
 
 std::unique_ptr<RigSpec> drawbar_spec(std::vector<DrawbarRigOptions> rigs) {
   std::vector<Place> places;
   for (DrawbarRigOptions& rig : rigs) places.push_back({std::move(rig), true});
   const bool listed = places.size() > 1;
-  return std::make_unique<DrawbarSpec>(std::move(places), listed);
+  return std::make_unique<DrawbarSpec>(std::move(places), listed, ReadContext{"scenario", "rig"});
 }
 
 }  // namespace furrow::rigs

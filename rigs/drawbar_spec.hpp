@@ -24,6 +24,7 @@ void visit_fields(Visit&& visit, FieldsOf<DrawbarWheel> auto& s) {
   visit(Field{"slip", "-", role::key}, s.rig.slip);
   visit(Field{"toe_angle", "rad", role::key}, s.rig.toe_angle);
   visit(Field{"camber_angle", "rad", role::key}, s.rig.camber_angle);
+  visit(Field{"load", "N", role::key}, s.rig.load);
   visit(Field{"carrier_mass", "kg", role::key}, s.rig.carrier_mass);
 }
 

@@ -11,6 +11,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "rigs/rig.hpp"
+#include "tire/rim_properties.hpp"
 
 namespace furrow::rigs {
 
@@ -20,17 +21,29 @@ struct WheelSize {
   double width = 0.0;   // overall, m
 };
 
+/// What a rig may take from a tire where the scenario leaves it open.
+struct MountedTire {
+  double radius = 0.0;      // undeformed, m
+  double mass = 0.0;        // kg
+  tire::RimProperties rim;  // as its file says
+  std::string file;         // for messages
+};
+
 struct WheelDescription {
   double lateral = 0.0;         // y of the mid-plane, m
   double from = 0.0, to = 0.0;  // x of the axle at start and end of the run, m
   double along = 0.0,
          across = 0.0;     // half of what the wheel takes of the bin along x and y as it turns and leans, m
   double toe_angle = 0.0;  // largest over the run, about +z, rad
-  double camber_angle = 0.0;   // largest over the run, about the wheel's forward axis, rad
-  std::optional<double> slip;  // that the rig imposes or aims at, -; none where it has no such thing
-  double travel_sign = 1.0;    // +1 along +x, −1 along −x
-  double carried_mass = 0.0;   // without the tire, kg
-  std::string start_key;       // of the scenario, says where the axle starts
+  double camber_angle = 0.0;    // largest over the run, about the wheel's forward axis, rad
+  std::optional<double> slip;   // that the rig imposes or aims at, -; none where it has no such thing
+  double travel_sign = 1.0;     // +1 along +x, −1 along −x
+  double carried_mass = 0.0;    // without the tire, kg
+  double speed = 0.0;           // of the axle at full speed, m/s
+  double tread_speed = 0.0;     // of the tread against the axle at full speed, m/s
+  double lowering_time = 0.0;   // until the motions begin, s; 0: they begin at once
+  double lowering_speed = 0.0;  // at which the wheel is let down, m/s; 0: it falls
+  std::string start_key;        // of the scenario, says where the axle starts
 };
 
 struct RigDescription {
@@ -46,14 +59,17 @@ class RigSpec {
   virtual ~RigSpec() = default;
 
   virtual std::size_t wheel_count() const = 0;
+  /// Fills in what the scenario leaves to the tires: masses, loads, dampers. Comes first, with one tire per wheel.
+  /// @throws Error(bad_input) naming the keys where neither of them says it
+  virtual void mount(std::span<const MountedTire> /*tires*/) {}
   /// With one size per wheel, for a run of `duration`, s.
   virtual RigDescription describe(std::span<const WheelSize> tires, double duration) const = 0;
   virtual std::unique_ptr<Rig> make() const = 0;
 
-  /// Puts the axles for which the scenario names no start `margin` clear of the wall behind them, in a bin from x = 0
-  /// to `length`, m; at x = 0 where there is no bin.
+  /// Puts the axles for which the scenario names no start each its own of `margins` clear of the wall behind them, in a
+  /// bin from x = 0 to `length`, m; at x = 0 where there is no bin.
   virtual void fill_starts(std::span<const WheelSize> tires, double duration, std::optional<double> length,
-                           double margin) = 0;
+                           std::span<const double> margins) = 0;
   /// Writes what was filled in into the scenario's section.
   virtual void complete(nlohmann::json& section) const = 0;
 };

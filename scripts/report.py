@@ -19,6 +19,7 @@ matplotlib.use("Agg")
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 from plot import charts, ground, press, scene, soil, sweep  # noqa: E402
+from plot.digits import with_error  # noqa: E402
 from plot.run_data import Missing, Run  # noqa: E402
 
 PLOTS = {
@@ -56,7 +57,7 @@ def words(run):
     pull = run.summary.get("drawbar_pull_N") or {}
     if pull.get("mean") is None:
         return
-    print(f"report: drawbar pull {pull['mean']:.1f} ± {pull.get('sem') or float('nan'):.1f} N (standard error) "
+    print(f"report: drawbar pull {with_error(pull['mean'], pull.get('sem'))} N (standard error) "
           f"from {pull['from_s']:.3g} to {pull['to_s']:.3g} s", file=sys.stderr)
     if not pull.get("steady", False):
         reasons = "; ".join(pull.get("unsteady_because") or ["the averaging window is not long or even enough"])

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "protocol/core/assert.hpp"
 
 namespace furrow::terrain {
 namespace {
 
-constexpr double kNearest = 0.3, kFarthest = 0.55;  // m behind the axle
+constexpr double kNearest = 0.642, kFarthest = 1.177;  // undeformed radii behind the axle
 
 /// Mean of before − after along travel, per y cell.
 std::vector<double> transverse_profile(const HeightField& before, const HeightField& after, double x_min,
@@ -51,19 +53,29 @@ double crossing(const std::vector<double>& y, const std::vector<double>& profile
   return step > 0 ? y.back() : y.front();
 }
 
+/// Why there is no rut to measure, in words; empty where there may be one.
+std::string why_not(const HeightField& before, const HeightField& after, const RutOptions& o) {
+  if (after.nx <= 0 || after.ny <= 0) return "the ground keeps no rut";
+  if (before.nx != after.nx || before.ny != after.ny) return "the surface before the run is not known";
+  const double travelled = o.direction * (o.axle - o.start), farthest = kFarthest * o.radius;
+  if (travelled >= farthest) return "";
+  return fmt::format("the axle travelled {:.3g} m, and the rut is measured {:.3g} to {:.3g} m behind it",
+                     travelled, kNearest * o.radius, farthest);
+}
+
 }  // namespace
 
 Rut measure_rut(const HeightField& before, const HeightField& after, const RutOptions& o) {
-  FURROW_ASSERT(std::abs(o.direction) == 1.0, o.direction);
+  FURROW_ASSERT(std::abs(o.direction) == 1.0 && o.radius > 0.0, o.direction, o.radius);
   FURROW_ASSERT(before.height.size() == static_cast<std::size_t>(before.nx) * before.ny, before.height.size(),
                 before.nx, before.ny);
   FURROW_ASSERT(after.height.size() == static_cast<std::size_t>(after.nx) * after.ny, after.height.size(),
                 after.nx, after.ny);
   Rut rut;
-  const bool same_grid = before.nx == after.nx && before.ny == after.ny && after.nx > 0 && after.ny > 0;
-  const double travelled = o.direction * (o.axle - o.start);
-  if (!same_grid || travelled < kFarthest) return rut;
-  const double a = o.axle - o.direction * kNearest, b = o.axle - o.direction * kFarthest;
+  rut.missing = why_not(before, after, o);
+  if (!rut.missing.empty()) return rut;
+  const double a = o.axle - o.direction * kNearest * o.radius,
+               b = o.axle - o.direction * kFarthest * o.radius;
   rut.profile = transverse_profile(before, after, std::min(a, b), std::max(a, b));
   for (int iy = 0; iy < after.ny; ++iy) rut.y.push_back(after.y0 + iy * after.cell);
 
@@ -76,11 +88,17 @@ Rut measure_rut(const HeightField& before, const HeightField& after, const RutOp
     sum += rut.profile[iy];
     ++count;
   }
-  if (count == 0) return rut;
+  if (count == 0) {
+    rut.missing = "there are no grains where the tread went";
+    return rut;
+  }
   rut.measured = true;
   rut.depth = sum / count;
   rut.width = std::nan("");
-  if (rut.depth <= 0.0) return rut;  // the wheel left no rut: it has no width
+  if (rut.depth <= 0.0) {
+    rut.missing = "the ground behind the wheel is no lower than before: it has no width";
+    return rut;
+  }
   rut.width = crossing(rut.y, rut.profile, middle, 1, 0.5 * rut.depth) -
               crossing(rut.y, rut.profile, middle, -1, 0.5 * rut.depth);
   return rut;

@@ -1,6 +1,7 @@
 // The rut that a wheel leaves, measured on the terrain's height fields before and after.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "protocol/core/surface.hpp"
@@ -13,20 +14,25 @@ struct RutOptions {
   double start = 0.0;        // x of the axle at the beginning, m
   double lateral = 0.0;      // y of the wheel, m
   double direction = 1.0;    // +1 travel along +x, −1 along −x
+  double radius = 0.0;       // of the undeformed tire, m
   double tread_width = 0.0;  // m
 };
 
 struct Rut {
   bool measured = false;
-  double depth = 0.0;  // mean depth over the middle half of the tread width, 0.3–0.55 m behind the axle, m
+  std::string missing;  // why there is no depth or no width, in words
+  double depth =
+      0.0;  // mean depth over the middle half of the tread width, 0.642 to 1.177 R behind the axle, m
   double width =
       0.0;  // distance of the points where the mean transverse profile falls below half the depth for two
             // cells or more, m; NaN when the depth is not positive
   std::vector<double> y, profile;  // mean transverse profile of (before − after) in that window, m
 };
 
-/// Not measured where there are no grains, or where the wheel has not yet left such a stretch behind.
-/// @pre direction is 1 or −1
+/// The stretch is that of the reference wheel, 0.30 to 0.55 m at R = 0.4673 m: it begins behind the contact of a wheel
+/// that has sunk by a fifth of its radius (√(2 z R) = 0.63 R). Not measured where there are no grains, or where the
+/// wheel has not yet left such a stretch behind.
+/// @pre direction is 1 or −1; radius > 0
 Rut measure_rut(const HeightField& before, const HeightField& after, const RutOptions& options);
 
 }  // namespace furrow::terrain

@@ -104,6 +104,7 @@ TireFile read_own(JsonReader& reader) {
   TireFile f;
   f.name = reader.text_or("name", "tire");
   reader.skip("model");
+  reader.skip("rim");  // read by tires.cpp, whatever the model
   reader.skip("template");
   reader.skip("source");
   reader.skip("$schema");

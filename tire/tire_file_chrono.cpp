@@ -98,6 +98,7 @@ TireFile read_chrono(JsonReader& reader) {
   TireFile f;
   f.name = reader.text_or("Name", "tire");
   reader.skip("Template");
+  reader.skip("rim");  // read by tires.cpp, whatever the layout
   if (const auto type = reader.text("Type"); type != "Tire")
     reader.fail("Type", "is '" + type + "', expected 'Tire'");
   if (reader.flag_or("8-Node Elements", false))

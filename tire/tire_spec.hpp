@@ -12,6 +12,7 @@
 #include "protocol/core/constants.hpp"
 #include "protocol/core/fields.hpp"
 #include "tire/pressure_schedule.hpp"
+#include "tire/rim_properties.hpp"
 #include "tire/tire.hpp"
 
 namespace furrow::tire {
@@ -92,6 +93,9 @@ class TireSpec {
   virtual ~TireSpec() = default;
 
   const TireOptions& options() const { return options_; }
+  /// What the tire's file says of its rim.
+  const RimProperties& rim() const { return rim_; }
+  void set_rim(const RimProperties& rim) { rim_ = rim; }
   virtual TireDescription describe() const = 0;
   /// @throws Error(bad_input)
   virtual std::unique_ptr<Tire> make(const TireContext& context = {}) const = 0;
@@ -104,6 +108,7 @@ class TireSpec {
 
  private:
   TireOptions options_;
+  RimProperties rim_;
 };
 
 }  // namespace furrow::tire

@@ -40,6 +40,21 @@ const TireModel& model_of(const json& document, const std::string& file) {
                           later ? "which is not available in this version, " : "", fmt::join(valid, ", ")));
 }
 
+/// The block `rim` of any model's file.
+RimProperties rim_of(const json& document, const std::string& file) {
+  RimProperties rim;
+  if (!document.contains("rim")) return rim;
+  JsonReader whole(document, file);
+  JsonReader reader = whole.child("rim");
+  visit_fields(
+      [&](const Field& field, double& value) {
+        if (reader.has(field.name)) value = reader.positive(field.name);
+      },
+      rim);
+  reader.finish();
+  return rim;
+}
+
 /// What a schema cannot say of a schedule.
 void check(const PressureSchedule& schedule, const std::string& key, const std::string& file) {
   for (std::size_t k = 0; k < schedule.knots.size(); ++k) {
@@ -62,7 +77,9 @@ std::span<const TireModel> tire_models() { return kModels; }
 std::unique_ptr<TireSpec> read_tire(const TireOptions& options) {
   const json document = load_json(options.file, "a tire file in JSON");
   std::unique_ptr<TireSpec> spec = model_of(document, options.file.string()).read(document, options);
-  return options.rigid ? make_rigid(std::move(spec)) : std::move(spec);
+  if (options.rigid) spec = make_rigid(std::move(spec));
+  spec->set_rim(rim_of(document, options.file.string()));
+  return spec;
 }
 
 std::shared_ptr<const TireSpec> read_tire(const json& section, const ReadContext& context) {

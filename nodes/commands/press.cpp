@@ -80,11 +80,12 @@ ExitCode press_command(const scenario::Scenario& scenario, const PressArguments&
     if (!summary["statically_stable"].get<bool>())
       print_warning(
           "this tire wrinkles under its pressure: the equilibrium was reached by creep and need not be the "
-          "only one; see summary.json, loading_unloading_difference");
+          "only one; see loading_unloading_difference in summary.json and tire/README.md, \"Static pressing\"");
     if (summary["deflection_m"].is_null())
       print_warning(fmt::format(
           "the load of {:g} N was not reached: the largest force is {:.4g} N; no stiffness is given, and the "
-          "footprint is that of this force; see --load and --deflection",
+          "footprint is that of this force; press further (--deflection) or ask for less (--load); see "
+          "tire/README.md, \"Static pressing\"",
           options.load, results.at_load.force));
     std::cout << directory.path().string() << std::endl;
   } catch (const Error&) {

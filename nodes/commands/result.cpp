@@ -8,6 +8,7 @@
 #include "nodes/checkpoint/run_summary.hpp"
 #include "nodes/commands/commands.hpp"
 #include "nodes/scenario/scenario.hpp"
+#include "protocol/files/digits.hpp"
 
 namespace furrow::commands {
 namespace {
@@ -31,10 +32,10 @@ std::string pull_line(const json& summary, const scenario::Scenario& scenario) {
   const json force = summary.value("net_terrain_force_N", json::array());
   if (force.size() == 3 && force[2].is_number() && force[2].get<double>() == 0.0)
     return "furrow: the tire did not touch the terrain in the averaging window: nothing was measured\n";
-  std::string text = fmt::format(
-      "furrow: drawbar pull {:.0f} ± {:.0f} N, {:.1f} % of the load of {:.0f} N, mean over {:.3g} to {:.3g} "
-      "s\n",
-      mean, number(pull, "sem"), 100.0 * mean / load, load, number(pull, "from_s"), number(pull, "to_s"));
+  std::string text =
+      fmt::format("furrow: drawbar pull {} N, {:.1f} % of the load of {} N, mean over {:.3g} to {:.3g} s\n",
+                  with_error(mean, number(pull, "sem")), 100.0 * mean / load, digits(load),
+                  number(pull, "from_s"), number(pull, "to_s"));
   if (pull.value("steady", false)) {
     text += "furrow: the pull is steady\n";
   } else {
@@ -42,11 +43,14 @@ std::string pull_line(const json& summary, const scenario::Scenario& scenario) {
     for (const json& reason : pull.value("unsteady_because", json::array()))
       why += (why.empty() ? "" : "; ") + reason.get<std::string>();
     text += "furrow: the pull is not steady" + (why.empty() ? "" : ": " + why) + "\n";
+    text +=
+        "furrow: another stretch of the run may give another mean; average over more of it with a later "
+        "run.end and a longer terrain.length (rigs/README.md, \"Steady or not\")\n";
   }
   if (scenario.expected.given) {
     const double off = std::abs(mean - scenario.expected.drawbar_pull);
-    text += fmt::format("furrow: expected {:.0f} ± {:.0f} N: {}\n", scenario.expected.drawbar_pull,
-                        scenario.expected.drawbar_pull_spread,
+    text += fmt::format("furrow: expected {} N: {}\n",
+                        with_error(scenario.expected.drawbar_pull, scenario.expected.drawbar_pull_spread),
                         off <= scenario.expected.drawbar_pull_spread ? "within" : "NOT within");
   }
   return text;
@@ -71,10 +75,12 @@ std::string result_text(const std::filesystem::path& run, const scenario::Scenar
     const auto millimetres = [&](const char* key) { return 1e3 * number(wheel, key); };
     if (wheels.size() > 1) text += fmt::format("furrow: wheel {}\n", k);
     if (wheel.contains("drawbar_pull_N")) text += pull_line(wheel, scenario);
-    text += fmt::format("furrow: sinkage {:.1f} mm", millimetres("sinkage_m"));
+    text += fmt::format("furrow: sinkage {} mm", digits(millimetres("sinkage_m")));
     if (std::isfinite(millimetres("rut_width_m")))
-      text += fmt::format(", rut {:.1f} mm deep, {:.0f} mm wide", millimetres("rut_depth_m"),
-                          millimetres("rut_width_m"));
+      text += fmt::format(", rut {} mm deep, {} mm wide", digits(millimetres("rut_depth_m")),
+                          digits(millimetres("rut_width_m")));
+    else if (const json why = wheel.value("rut_missing_because", json()); why.is_string())
+      text += ", no rut measured: " + why.get<std::string>();
     text += "\n";
   }
   text += fmt::format("furrow: {:.1f} s for {:g} simulated s, {:.1f} s to prepare the bed{}\n",

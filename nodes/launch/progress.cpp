@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "protocol/core/clock.hpp"
+#include "protocol/files/digits.hpp"
 
 namespace furrow::launch {
 namespace {
@@ -42,8 +43,8 @@ std::string progress_text(const Progress& p) {
     return fmt::format("{} {:.0f} %{}", p.phase, 100.0 * p.share, left);
   }
   std::string text = fmt::format("t {:.3f} of {:g} s", p.time, p.end);
-  if (!std::isnan(p.pull)) text += fmt::format("   pull {:.0f} N", p.pull);
-  text += fmt::format("   sinkage {:.1f} mm   {:.2f} m/s", 1e3 * p.sinkage, p.speed);
+  if (!std::isnan(p.pull)) text += fmt::format("   pull {} N", digits(p.pull));
+  text += fmt::format("   sinkage {} mm   {} m/s", digits(1e3 * p.sinkage), digits(p.speed));
   if (p.eta >= 0.0 && p.share >= kShareForGuess) text += fmt::format("   {} left", duration_text(p.eta));
   return text;
 }

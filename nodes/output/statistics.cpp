@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -12,11 +13,11 @@
 namespace furrow::output {
 namespace {
 
-constexpr double kWindow = 5.0;         // lags summed, in integrated autocorrelation times
-constexpr double kSteadySem = 0.02;     // of the load: largest standard error of a steady pull
-constexpr double kBouncePeriod = 0.25;  // s, of a loaded wheel (about 4 Hz)
-constexpr double kBounces = 3.0;        // the window must hold
-constexpr double kSteadyTravel = 2.0;   // undeformed radii the window must hold
+constexpr double kWindow = 5.0;        // lags summed, in integrated autocorrelation times
+constexpr double kSteadySem = 0.02;    // of the load: largest standard error of a steady pull
+constexpr double kBounces = 3.0;       // the window must hold
+constexpr double kSteadyTravel = 2.0;  // undeformed radii the window must hold
+constexpr double kHardening = 1.9;     // κ of bounce_period
 
 double mean_of(std::span<const double> x) {
   FURROW_ASSERT(!x.empty(), x.size());
@@ -70,6 +71,12 @@ SeriesStatistics statistics(std::span<const double> x) {
   return s;
 }
 
+double bounce_period(double settlement, double gravity) {
+  FURROW_ASSERT(gravity > 0.0, gravity);
+  if (!(settlement > 0.0)) return 0.0;
+  return 2.0 * std::numbers::pi * std::sqrt(settlement / (kHardening * gravity));
+}
+
 std::vector<std::string> unsteady_because(const SeriesStatistics& pull, const SteadyWindow& window) {
   FURROW_ASSERT(window.radius >= 0.0, window.radius);
   std::vector<std::string> reasons;
@@ -80,9 +87,9 @@ std::vector<std::string> unsteady_because(const SeriesStatistics& pull, const St
   require(
       pull.sem <= kSteadySem * window.load,
       fmt::format("the standard error {:.3g} N is above {:.0f} % of the load", pull.sem, 100.0 * kSteadySem));
-  require(window.duration >= kBounces * kBouncePeriod,
+  require(window.duration >= kBounces * window.bounce_period,
           fmt::format("the window of {:.3g} s is shorter than {:.0f} bounce periods ({:.3g} s)",
-                      window.duration, kBounces, kBounces * kBouncePeriod));
+                      window.duration, kBounces, kBounces * window.bounce_period));
   require(window.travel >= kSteadyTravel * window.radius,
           fmt::format("the window holds {:.3g} m of rolling, less than {:.0f} tire radii", window.travel,
                       kSteadyTravel));

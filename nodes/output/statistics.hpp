@@ -25,15 +25,23 @@ SeriesStatistics statistics(std::span<const double> samples);
 
 /// What a steady mean is judged by, besides its statistics.
 struct SteadyWindow {
-  double load = 0.0;          // weight on the wheel, N
-  double duration = 0.0;      // s
-  double travel = 0.0;        // of the axle or of the tread, whichever is longer, m
-  double radius = 0.0;        // undeformed tire radius, m
+  double load = 0.0;           // weight on the wheel, N
+  double bounce_period = 0.0;  // s; 0: not known
+  double duration = 0.0;       // s
+  double travel = 0.0;         // of the axle or of the tread, whichever is longer, m
+  double radius = 0.0;         // undeformed tire radius, m
   bool whole_facets = false;  // the window holds a whole number of tire facets, within one line of the series
 };
 
+/// Period in which a loaded wheel bounces on its tire and soil, s: T = 2π √(m/k) = 2π √(z/(κ g)) with k = κ W/z. z is
+/// what tire and soil give under the load W, sinkage and deflection together, m. κ = 1.9 is how much stiffer they are
+/// about that state than W/z: rigs/drawbar_pull_small.json without its touch-down damper bounces with 0.25 s (minima of
+/// the axle's height at 0.166, 0.434 and 0.663 s) at z = 28 mm. A force that goes with depth^1.5, as of a Hertz contact
+/// or of a wheel on soil with p ∝ z [Bekker 1956], gives 1.5; soil that unloads is stiffer. 0 where z is not positive.
+double bounce_period(double settlement, double gravity);
+
 /// Why a mean over this window is not steady, in words; empty when it is: halves agree within 2√2 · sem, sem at most
-/// 2 % of the load, at least 3 bounce periods of 0.25 s (a loaded wheel bounces at about 4 Hz), 2 radii of travel.
+/// 2 % of the load, at least 3 bounce periods, 2 radii of travel, a whole number of facets.
 std::vector<std::string> unsteady_because(const SeriesStatistics& pull, const SteadyWindow& window);
 
 }  // namespace furrow::output

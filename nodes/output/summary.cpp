@@ -10,6 +10,7 @@
 #include "nodes/output/statistics.hpp"
 #include "nodes/scenario/wheel_geometry.hpp"
 #include "protocol/core/assert.hpp"
+#include "protocol/core/constants.hpp"
 #include "protocol/core/hash.hpp"
 #include "terrain/rut.hpp"
 
@@ -20,8 +21,10 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kMaxLate =
     0.05;  // of load × speed: energy error of the interface of a run that can be trusted
-constexpr char kPull[] = "drawbar_pull_N";    // the rig's, if it has one
-constexpr std::size_t kMaxLinesLeftOut = 50;  // at the window's beginning, for a whole number of facets
+constexpr char kPull[] = "drawbar_pull_N";  // the rig's, if it has one
+// At the window's beginning lines may be left out for a whole number of facets: those of one facet, of which this
+// many are always allowed, but this share of the window never lost.
+constexpr std::size_t kLinesLeftOut = 50, kPartLeftOut = 4;
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
@@ -98,6 +101,12 @@ Window averaging_window(const WheelInput& in) {
   if (first >= rows.size()) return {};
   const int facets = in.run.scenario.tires[in.wheel]->describe().facets;
   const double facet = 2.0 * std::numbers::pi / facets;
+  const double turn_last = std::abs(rows.back().spin) * (rows.back().time - rows[rows.size() - 2].time);
+  const std::size_t part = (rows.size() - first) / kPartLeftOut;
+  const std::size_t of_facet = facet < turn_last * static_cast<double>(part)
+                                   ? static_cast<std::size_t>(std::ceil(facet / turn_last))
+                                   : part;
+  const std::size_t left_out = std::max(kLinesLeftOut, of_facet);
   double turned = 0.0, least = INFINITY;
   std::size_t chosen = first;
   bool whole = false;
@@ -105,12 +114,20 @@ Window averaging_window(const WheelInput& in) {
     const double turn = std::abs(rows[start].spin) * (rows[start].time - rows[start - 1].time);
     turned += turn;
     const double off = std::abs(std::remainder(turned, facet));
-    if (start >= first + kMaxLinesLeftOut || turned < 0.5 * facet || off >= least) continue;
+    if (start >= first + left_out || turned < 0.5 * facet || off >= least) continue;
     least = off;
     chosen = start;
     whole = off <= turn;
   }
   return {rows.subspan(chosen), rows[chosen - 1], whole, &in.table, chosen};
+}
+
+/// What tire and ground give under the load, m.
+double settlement(const WheelInput& in, const Window& w) {
+  const auto given = [&](const WheelRow& r) {
+    return r.sinkage + in.card().tire_radius - (r.axle_height - r.lowest_point);
+  };
+  return w.mean(given);
 }
 
 Json pull_statistics(const WheelInput& in, const Window& w, double load) {
@@ -120,7 +137,9 @@ Json pull_statistics(const WheelInput& in, const Window& w, double load) {
   const double turned =
       w.mean([](const WheelRow& r) { return std::abs(r.spin); }) * w.duration() * in.card().tire_radius;
   const double radius = in.card().tire_radius;
-  auto reasons = unsteady_because(s, {load, w.duration(), std::max(travel, turned), radius, w.whole_facets});
+  const double bounce = bounce_period(settlement(in, w), kStandardGravity);
+  auto reasons =
+      unsteady_because(s, {load, bounce, w.duration(), std::max(travel, turned), radius, w.whole_facets});
   const double late = w.rate([](const WheelRow& r) { return r.energy_error_abs; });
   const double rolling = load * std::max(travel, turned) / w.duration();
   if (late > kMaxLate * rolling)
@@ -135,6 +154,7 @@ Json pull_statistics(const WheelInput& in, const Window& w, double load) {
           {"drift_N_per_s", number(s.drift / interval)},
           {"steady", reasons.empty()},
           {"unsteady_because", reasons},
+          {"bounce_period_s", number(bounce)},
           {"from_s", number(w.rows.empty() ? NAN : w.before.time)},
           {"to_s", number(w.rows.empty() ? NAN : w.rows.back().time)}};
 }
@@ -188,17 +208,20 @@ Json tire_axes_means(const Window& w) {
 void add_rut(const WheelInput& in, Json& json) {
   const FinalReport& terrain = in.run.reports.back();
   terrain::Rut rut;
+  rut.missing = "the series has no lines";
   if (!in.rows.empty()) {
     terrain::RutOptions options;
     options.direction = in.end.heading.x() < 0.0 ? -1.0 : 1.0;
     options.lateral = scenario::describe_rig(in.run.scenario).wheels[in.wheel].lateral;
     options.axle = options.direction * in.rows.back().position;
     options.start = options.direction * in.rows.front().position;
+    options.radius = in.card().tire_radius;
     options.tread_width = in.card().tire_width;
     rut = terrain::measure_rut(terrain.height_before, terrain.height_after, options);
   }
   json["rut_depth_m"] = number(rut.measured ? rut.depth : NAN);
   json["rut_width_m"] = number(rut.measured ? rut.width : NAN);
+  json["rut_missing_because"] = rut.missing.empty() ? Json(nullptr) : Json(rut.missing);
 }
 
 void add_mobility(const WheelInput& in, const Window& w, Json& json) {
@@ -323,7 +346,8 @@ void add_cost(const SummaryInput& in, std::span<const WheelRow> rows, Json& json
 
 std::string summary_text(const SummaryInput& in) {
   FURROW_ASSERT(in.reports.size() == in.cards.size(), in.reports.size(), in.cards.size());
-  FURROW_ASSERT(in.tables.size() >= in.wheels.size() && !in.wheels.empty(), in.tables.size(), in.wheels.size());
+  FURROW_ASSERT(in.tables.size() >= in.wheels.size() && !in.wheels.empty(), in.tables.size(),
+                in.wheels.size());
   Hash state;
   for (const FinalReport& report : in.reports) state.add(&report.state_hash, sizeof report.state_hash);
   Json json;

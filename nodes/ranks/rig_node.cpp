@@ -14,7 +14,8 @@
 namespace furrow::ranks {
 namespace {
 
-constexpr double kPlacementGap = 1e-3;      // m, between the highest grain and the inflated tire
+// Between the highest grain and the inflated tire: of its radius, and at most, m.
+constexpr double kPlacementShare = 1.0 / 400.0, kMostPlacementGap = 1e-3;
 constexpr double kProgressInterval = 0.25;  // s of wall time
 constexpr double kFolderInterval = 1.0;     // s of wall time after which a folder that was moved is noticed
 
@@ -43,7 +44,9 @@ class RigNode : public Node {
     setup_ = receive<TerrainSetup>(transport, kTerrain);
     std::vector<double> height(wheels);
     for (int k = 0; k < wheels; ++k)
-      height[k] = setup_.top_height[k] + cards[1 + k].tire_reach + kPlacementGap + scenario_.drop_height;
+      height[k] = setup_.top_height[k] + cards[1 + k].tire_reach +
+                  std::min(kPlacementShare * cards[1 + k].tire_radius, kMostPlacementGap) +
+                  scenario_.drop_height;
     rig_->place(height);
     make_tables();
     check_folder();

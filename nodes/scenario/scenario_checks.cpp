@@ -18,6 +18,7 @@ constexpr double kMaxSteps = 1e10;    // beyond it the value is almost certainly
 constexpr double kMinGrains = 4.0;    // radii that the bin must measure at least
 constexpr double kCoarseGrain = 0.1;  // of the tire radius
 constexpr double kGigabyte = 1e9;
+constexpr double kWallShare = 0.05, kMostWallMargin = 0.02;  // of the tire's radius; m
 
 class Checks {
  public:
@@ -80,6 +81,7 @@ void Checks::tires() {
     for (const auto& [key, what] : tire->unlikely_values())
       s_.warnings.push_back(input_error(tire->options().file.string(), key, what).what());
   tires_ = describe_tires(s_);
+  rig_.mount(mounted_tires(s_, tires_));
   for (std::size_t k = 0; k < tires_.size(); ++k) {
     const double share = tires_[k].step_share, tau = tires_[k].damping_time;
     if (share > 0.0 && s_.run.step > share * tau)
@@ -104,8 +106,8 @@ void Checks::room() {
   for (std::size_t k = 0; k < tires_.size(); ++k) {
     const tire::TireDescription& tire = tires_[k];
     const rigs::WheelDescription& wheel = rig.wheels[k];
-    const double off = std::abs(wheel.lateral);
-    const double width = 2.0 * (wheel.across + off + kWallMargin), length = 2.0 * (wheel.along + kWallMargin);
+    const double off = std::abs(wheel.lateral), margin = wall_margin(tire.radius);
+    const double width = 2.0 * (wheel.across + off + margin), length = 2.0 * (wheel.along + margin);
     if (width > terrain_.bounds->width)
       throw wrong("terrain.width",
                   fmt::format("is {} m, expected at least {:.2f} m: the tire is {:.2f} m wide{}",
@@ -132,8 +134,10 @@ void Checks::bin() {
 }
 
 void Checks::start() {
+  std::vector<double> margins;
+  for (const tire::TireDescription& tire : tires_) margins.push_back(wall_margin(tire.radius));
   rig_.fill_starts(wheel_sizes(tires_), s_.run.end,
-                   terrain_.bounds ? std::optional(terrain_.bounds->length) : std::nullopt, kWallMargin);
+                   terrain_.bounds ? std::optional(terrain_.bounds->length) : std::nullopt, margins);
   if (!terrain_.bounds) return;
   const double length = terrain_.bounds->length;
   for (const rigs::WheelDescription& wheel : describe().wheels) {
@@ -149,7 +153,7 @@ void Checks::start() {
           fmt::format("is {} m, but the axle travels from x = {:.3f} to {:.3f} m and the tire's radius "
                       "is {} m: it would hit the end wall; expected at least {:.2f} m or a shorter run",
                       number_text(length), wheel.from, wheel.to, number_text(radius),
-                      std::abs(wheel.to - wheel.from) + 2.0 * (radius + kWallMargin)));
+                      std::abs(wheel.to - wheel.from) + 2.0 * (radius + wall_margin(radius))));
   }
 }
 
@@ -195,6 +199,8 @@ void Checks::machine() {
 }
 
 }  // namespace
+
+double wall_margin(double tire_radius) { return std::min(kWallShare * tire_radius, kMostWallMargin); }
 
 void check_scenario(Scenario& scenario, rigs::RigSpec& rig) {
   Checks checks(scenario, rig);

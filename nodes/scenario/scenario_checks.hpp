@@ -5,10 +5,11 @@
 
 namespace furrow::scenario {
 
-/// Distance that a tire keeps from a wall by default: room for what it bulges, m.
-inline constexpr double kWallMargin = 0.02;
+/// Distance that a tire keeps from a wall by default, room for what it bulges, m: a twentieth of its radius, and at
+/// most 20 mm, as much as a tire of 0.47 m bulges.
+double wall_margin(double tire_radius);
 
-/// Fills in where the axles of `rig`, the scenario's, start, checks all, and adds warnings.
+/// Mounts the tires on `rig`, the scenario's, fills in where its axles start, checks all, and adds warnings.
 /// @throws Error(bad_input)
 void check_scenario(Scenario& scenario, rigs::RigSpec& rig);
 

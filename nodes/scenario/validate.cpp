@@ -8,11 +8,58 @@
 #include "nodes/scenario/estimate.hpp"
 #include "nodes/scenario/rank_table.hpp"
 #include "nodes/scenario/wheel_geometry.hpp"
+#include "nodes/scenario/wheel_scales.hpp"
+#include "protocol/files/digits.hpp"
 
 namespace furrow::scenario {
 namespace {
 
 constexpr double kMegabyte = 1e6;
+
+/// NaN of an infinite or undefined ratio is null.
+nlohmann::ordered_json number(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+nlohmann::ordered_json scales_json(const WheelScales& w) {
+  nlohmann::ordered_json json;
+  json["load_N"] = w.load;
+  json["froude_number"] = number(w.froude);
+  if (!w.grains) return json;
+  const WheelScales::OnGrains& g = *w.grains;
+  json["contact_pressure_Pa"] = number(g.pressure);
+  json["contact_length_m"] = g.contact_length;
+  json["width_in_grains"] = g.grains_wide;
+  json["contact_length_in_grains"] = g.grains_long;
+  json["expected_sinkage_m"] = g.sinkage;
+  json["bed_height_over_sinkage"] = number(g.depth_ratio);
+  json["beside_m"] = g.beside ? nlohmann::ordered_json(*g.beside) : nlohmann::ordered_json(nullptr);
+  json["ahead_at_end_m"] = g.ahead;
+  json["window_near_end_wall"] = g.near_end;
+  json["inertial_number"] = number(g.inertial);
+  return json;
+}
+
+/// Name and text of each line.
+std::vector<std::pair<std::string, std::string>> scales_lines(const WheelScales& w) {
+  std::vector<std::pair<std::string, std::string>> lines{{"load", digits(w.load) + " N"}};
+  std::string speed = fmt::format("Froude number {}", digits(w.froude));
+  if (w.grains) {
+    const WheelScales::OnGrains& g = *w.grains;
+    lines.emplace_back("contact", fmt::format("about {} mm long at {} kPa, {} grains long, {} wide",
+                                              digits(1e3 * g.contact_length), digits(1e-3 * g.pressure),
+                                              digits(g.grains_long), digits(g.grains_wide)));
+    lines.emplace_back("sinkage", fmt::format("about {} mm by bearing capacity; the bed is {} times as deep",
+                                              digits(1e3 * g.sinkage), digits(g.depth_ratio)));
+    lines.emplace_back(
+        "walls",
+        fmt::format("{}, {} m ahead of the wheel at the end",
+                    g.beside ? digits(*g.beside) + " m beside the wheel" : "none beside", digits(g.ahead)));
+    speed += fmt::format(", inertial number {}", digits(g.inertial));
+  }
+  lines.emplace_back("speed", speed);
+  return lines;
+}
 
 }  // namespace
 
@@ -37,8 +84,12 @@ nlohmann::ordered_json validation_report(const Scenario& s) {
   for (const rigs::WheelDescription& wheel : describe_rig(s).wheels)
     json["axle_path_m"].push_back({wheel.from, wheel.to});
   for (const tire::TireDescription& tire : describe_tires(s)) json["tire_mass_kg"].push_back(tire.mass.mass);
+  for (const WheelScales& wheel : wheel_scales(s)) json["wheels"].push_back(scales_json(wheel));
   for (const RankEntry& rank : rank_table(s))
     json["ranks"].push_back({{"rank", rank.rank}, {"node", rank.node}, {"does", rank.does}});
+  json["bound_by"] = nlohmann::ordered_json::array();
+  for (const Bound& bound : scale_bounds(s))
+    json["bound_by"].push_back({{"key", bound.key}, {"what", bound.what}});
   json["warnings"] = s.warnings;
   return json;
 }
@@ -59,15 +110,18 @@ std::string validation_text(const Scenario& s) {
   line("terrain", e.terrain.text);
   const std::vector<tire::TireDescription> tires = describe_tires(s);
   const rigs::RigDescription rig = describe_rig(s);
+  const std::vector<WheelScales> scales = wheel_scales(s);
   for (std::size_t k = 0; k < tires.size(); ++k) {
     line("tire", fmt::format("{}, {}, radius {:g} m", s.tires[k]->options().file.filename().string(),
                              tires[k].details, tires[k].radius));
     const MassProperties& mass = tires[k].mass;
     line("tire mass", fmt::format("{:.2f} kg, spin inertia {:.3g} kg m²", mass.mass, mass.inertia(1, 1)));
     line("axle", fmt::format("from x = {:.3f} m to {:.3f} m", rig.wheels[k].from, rig.wheels[k].to));
+    for (const auto& [name, value] : scales_lines(scales[k])) line(name, value);
   }
   line("memory", fmt::format("about {:.0f} MB in all", e.memory / kMegabyte));
   line("disk", fmt::format("about {:.0f} MB of results", e.disk / kMegabyte));
+  for (const Bound& bound : scale_bounds(s)) line("bound by", bound.key + ": " + bound.what);
   return text + "ranks\n" + rank_table_text(s);
 }
 

@@ -1,5 +1,7 @@
 #include "nodes/scenario/wheel_geometry.hpp"
 
+#include "protocol/core/assert.hpp"
+
 namespace furrow::scenario {
 
 std::vector<tire::TireDescription> describe_tires(const Scenario& scenario) {
@@ -15,6 +17,16 @@ std::vector<rigs::WheelSize> wheel_sizes(const std::vector<tire::TireDescription
   std::vector<rigs::WheelSize> sizes;
   for (const tire::TireDescription& tire : tires) sizes.push_back({tire.radius, tire.width});
   return sizes;
+}
+
+std::vector<rigs::MountedTire> mounted_tires(const Scenario& scenario,
+                                             const std::vector<tire::TireDescription>& tires) {
+  FURROW_ASSERT(tires.size() == scenario.tires.size(), tires.size(), scenario.tires.size());
+  std::vector<rigs::MountedTire> mounted;
+  for (std::size_t k = 0; k < tires.size(); ++k)
+    mounted.push_back({tires[k].radius, tires[k].mass.mass, scenario.tires[k]->rim(),
+                       scenario.tires[k]->options().file.string()});
+  return mounted;
 }
 
 rigs::RigDescription describe_rig(const Scenario& scenario) {

@@ -22,6 +22,7 @@
 #include "nodes/scenario/load_scenario.hpp"
 #include "nodes/study/pass_bed.hpp"
 #include "protocol/core/assert.hpp"
+#include "protocol/files/digits.hpp"
 #include "protocol/files/text_file.hpp"
 #include "protocol/host.hpp"
 #include "terrain/dem/beds/bed_cache.hpp"
@@ -238,8 +239,8 @@ void Sweep::poll(Run& run) {
     for (const std::string& name : study_.results)
       if (study_.results_chosen && value_at(summary, name).is_null())
         tell(run, "has no result '" + name + "'");
-    tell(run, fmt::format("is done: pull {:.0f} ± {:.0f} N", number("drawbar_pull_N.mean"),
-                          number("drawbar_pull_N.sem")));
+    tell(run, fmt::format("is done: pull {} N",
+                          with_error(number("drawbar_pull_N.mean"), number("drawbar_pull_N.sem"))));
     if (const double deep = number("sinkage_m") / number("surface_height_m"); run.pass > 0 && deep > kDeepRut)
       tell(run,
            fmt::format(

@@ -2,6 +2,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
+from .digits import digits, with_error
 from .run_data import Missing
 from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, mark_window, panels
 
@@ -57,7 +58,7 @@ def pull_slip_sinkage(run):
     if run.window and statistics.get("mean") is not None:
         mean, sem = statistics["mean"], statistics.get("sem") or np.nan
         share = run.number("drawbar_coefficient")
-        text = f"mean {mean:.0f} ± {sem:.0f} N (standard error)" + (f" = {100 * share:.1f} % of load" if share else "")
+        text = f"mean {with_error(mean, sem)} N (standard error)" + (f" = {100 * share:.1f} % of load" if share else "")
         top.plot(run.window, [mean, mean], color=RED, lw=1.8, label=text)
         if np.isfinite(sem):
             top.fill_between(run.window, mean - sem, mean + sem, color=RED, alpha=0.3, lw=0)
@@ -69,7 +70,7 @@ def pull_slip_sinkage(run):
     if theory is not None:
         error = run.soil_estimate.get("drawbar_pull_standard_error_N") or 0.0
         top.axhline(theory, color=ORANGE, ls="--", lw=1.5, label=f"soil theory for a rigid wheel, furrow soil's parameters: "
-                    f"{theory:.0f} ± {error:.0f} N")
+                    f"{with_error(theory, error)} N")
     top.axhline(0.0, color="black", lw=0.8)
     settled_limits(top, run, *([pull] if theory is None else [pull, np.full_like(pull, theory)]))
     top.set_ylabel("drawbar pull, N")
@@ -104,7 +105,7 @@ def forces(run):
     noisy(top, time, vertical, BLUE, "vertical force of the ground")
     if run.number("vertical_load_N"):
         top.axhline(run.number("vertical_load_N"), color=RED, ls="--", lw=1.2,
-                    label=f"load (weight carried) {run.number('vertical_load_N'):.0f} N")
+                    label=f"load (weight carried) {digits(run.number('vertical_load_N'))} N")
     top.set_ylabel("N")
     settled_limits(top, run, vertical)
     top.set_title("Vertical force on the tire by the ground: positive up")

@@ -4,10 +4,11 @@ import warnings
 import matplotlib.pyplot as plt
 import numpy as np
 
+from .digits import digits
 from .run_data import Missing
 from .style import BLUE, GREY, ORANGE, RED
 
-NEAREST, FARTHEST = 0.3, 0.55  # m behind the axle: where the rut is measured
+NEAREST, FARTHEST = 0.642, 1.177  # tire radii behind the axle: where the rut is measured (terrain/rut.cpp)
 
 
 def row_mean(values, axis):
@@ -26,13 +27,14 @@ def rut(run):
         raise Missing("the ground has not changed its shape")
     sign, lateral = run.travel_sign, run.lateral
     start, end = (sign * run.column("position_m")[[0, -1]]).tolist()
-    tread = run.number("tread_width_m")
+    tread, radius = run.number("tread_width_m"), run.number("tire_radius_m") or 0.4673
+    window = sorted(end - sign * share * radius for share in (NEAREST, FARTHEST))
     figure = plt.figure(figsize=(12, 7.6))
     grid = figure.add_gridspec(2, 2, height_ratios=[1, 1.15], width_ratios=[1, 1.5])
     figure.suptitle(run.title, fontsize=11.5, x=0.01, ha="left", fontweight="bold")
-    top_view(figure, figure.add_subplot(grid[0, :]), after, depth, start, end, sign, tread, lateral)
-    across(figure.add_subplot(grid[1, 0]), run, after, depth, end, sign, tread, lateral)
-    along(figure.add_subplot(grid[1, 1]), before, after, start, end, sign, tread, lateral)
+    top_view(figure, figure.add_subplot(grid[0, :]), after, depth, start, end, sign, tread, lateral, window)
+    across(figure.add_subplot(grid[1, 0]), run, after, depth, end, tread, lateral, window)
+    along(figure.add_subplot(grid[1, 1]), before, after, start, end, sign, tread, lateral, window)
     return figure
 
 
@@ -46,7 +48,7 @@ def median3(values):
         return np.nanmedian(stack, axis=0)
 
 
-def top_view(figure, axis, field, depth, start, end, sign, tread, lateral):
+def top_view(figure, axis, field, depth, start, end, sign, tread, lateral, window):
     depth = median3(depth)
     limit = max(float(np.nanpercentile(np.abs(depth), 99.5)), 1.0)
     image = axis.pcolormesh(field.x, field.y, depth.T, cmap="RdBu_r", vmin=-limit, vmax=limit, shading="nearest")
@@ -57,7 +59,6 @@ def top_view(figure, axis, field, depth, start, end, sign, tread, lateral):
     axis.plot(start, lateral, "o", color="black", ms=5, label="axle at the start")
     axis.plot(end, lateral, ">" if sign > 0 else "<", color="black", ms=9, label="axle at the end, in direction of travel")
     if tread:
-        window = sorted([end - sign * NEAREST, end - sign * FARTHEST])
         axis.add_patch(plt.Rectangle((window[0], lateral - 0.5 * tread), window[1] - window[0], tread, fill=False, lw=1.4,
                                      label="tread width, where the rut is measured"))
     axis.set_xlabel("x, m")
@@ -66,10 +67,10 @@ def top_view(figure, axis, field, depth, start, end, sign, tread, lateral):
     axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncol=3, borderaxespad=0.2, fontsize=8)
 
 
-def across(axis, run, field, depth, end, sign, tread, lateral):
-    behind = sign * (end - field.x)
-    chosen = (behind >= NEAREST) & (behind <= FARTHEST)
-    axis.set_title(f"Across, mean over {NEAREST}–{FARTHEST} m behind the axle")
+def across(axis, run, field, depth, end, tread, lateral, window):
+    chosen = (field.x >= window[0]) & (field.x <= window[1])
+    near, far = sorted(abs(end - x) for x in window)
+    axis.set_title(f"Across, mean over {digits(near)}–{digits(far)} m behind the axle")
     if chosen.any():
         axis.plot(1e3 * field.y, -row_mean(depth[chosen], 0), color=BLUE, lw=2.0)
     axis.axhline(0.0, color=GREY, lw=1.0)
@@ -78,9 +79,9 @@ def across(axis, run, field, depth, end, sign, tread, lateral):
                      label=f"tread width {1e3 * tread:.0f} mm")
     measured, width = run.number("rut_depth_m"), run.number("rut_width_m")
     if measured is not None:
-        axis.axhline(-1e3 * measured, color=RED, ls="--", lw=1.2, label=f"rut depth {1e3 * measured:.1f} mm")
+        axis.axhline(-1e3 * measured, color=RED, ls="--", lw=1.2, label=f"rut depth {digits(1e3 * measured)} mm")
     if measured is not None and width is not None:
-        axis.axhline(-500.0 * measured, color=RED, ls=":", lw=1.2, label=f"width at half depth {1e3 * width:.0f} mm")
+        axis.axhline(-500.0 * measured, color=RED, ls=":", lw=1.2, label=f"width at half depth {digits(1e3 * width)} mm")
     axis.set_xlabel("y, mm")
     axis.set_ylabel("height change, mm")
     axis.margins(y=0.25)
@@ -88,7 +89,7 @@ def across(axis, run, field, depth, end, sign, tread, lateral):
         axis.legend(loc="lower right", fontsize=8)
 
 
-def along(axis, before, after, start, end, sign, tread, lateral):
+def along(axis, before, after, start, end, sign, tread, lateral, window):
     half = 0.25 * (tread or 0.2)
     middle = np.abs(after.y - lateral) <= half
     axis.plot(before.x, 1e3 * row_mean(before.z[:, middle], 1), color=GREY, label="before")
@@ -97,7 +98,6 @@ def along(axis, before, after, start, end, sign, tread, lateral):
     axis.axvline(start, color="black", lw=1.0, ls=":")
     axis.annotate("axle at the end", (end, 1.0), xycoords=("data", "axes fraction"), fontsize=8.5,
                   xytext=(3 if sign > 0 else -3, -10), textcoords="offset points", ha="left" if sign > 0 else "right")
-    window = sorted([end - sign * NEAREST, end - sign * FARTHEST])
     axis.axvspan(*window, color=RED, alpha=0.10, lw=0, label="where the rut is measured")
     axis.set_xlabel("x, m")
     axis.set_ylabel("surface height z, mm")

@@ -5,6 +5,8 @@ import re
 import h5py
 import numpy as np
 
+from .digits import digits
+
 
 class Missing(Exception):
     """What a plot needs is not in the run directory."""
@@ -123,7 +125,7 @@ class Run:
         if self.number("slip") is not None:
             what.append(f"slip {self.number('slip'):g}")
         if self.number("vertical_load_N") is not None:
-            what.append(f"load {self.number('vertical_load_N'):.0f} N")
+            what.append(f"load {digits(self.number('vertical_load_N'))} N")
         wheels = len(self.scenario.get("rig", {}).get("wheels") or [])
         if wheels > 1:
             what.append(f"wheel 0 of {wheels}")

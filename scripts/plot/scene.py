@@ -4,11 +4,13 @@ import matplotlib as mpl
 import matplotlib.pyplot as plt
 import numpy as np
 
+from .digits import digits, with_error
 from .raster import Buffers, Camera, occlusion, shade, shadow
 from .run_data import Missing
 
 WIDTH, HEIGHT = 1500, 860  # pixels of the picture; rendered at twice that
-BEHIND, AHEAD = 1.45, 0.75  # m of the bed that are shown, from the axle
+BEHIND, AHEAD = 1.45, 0.75  # m of the bed that are shown, from the axle of a tire as high as this one:
+TIRE_HEIGHT = 0.935  # m; scenes of other sizes are drawn at another scale
 LIGHT = np.array([0.35, -0.55, 0.76])  # towards the light, for travel along +x
 SOIL = [(0.23, 0.12, 0.05), (0.55, 0.36, 0.19), (0.86, 0.72, 0.50)]  # linear RGB: low, undisturbed, high
 RUBBER, RIM = np.array([0.075, 0.077, 0.083]), np.array([0.30, 0.31, 0.33])
@@ -42,9 +44,9 @@ def outline(vertex, triangle):
 class Soil:
     """The grains worth drawing: near the top or near the cuts that face the camera."""
 
-    def __init__(self, path, centre, sign):
+    def __init__(self, path, centre, sign, scale):
         with h5py.File(path, "r") as file:
-            position, radius = file["position"][()].astype(float), file["radius"][()].astype(float)
+            position, radius = scale * file["position"][()].astype(float), scale * file["radius"][()].astype(float)
         self.lateral = (position[:, 1].min(), position[:, 1].max())
         ahead = sign * (position[:, 0] - centre[0])
         inside = (ahead > -BEHIND) & (ahead < AHEAD)
@@ -132,7 +134,12 @@ def render(tire, soil, colours, centre, sign, ground):
     return image.reshape(HEIGHT, 2, WIDTH, 2, 3).mean((1, 3)), camera
 
 
-def annotate(axis, run, time, camera, centre, sign, ground):
+def scale_of(height):
+    """By which a scene is enlarged so that a tire of this height fits the picture; 1 where it does anyway."""
+    return 1.0 if 0.5 < height / TIRE_HEIGHT < 2.0 else TIRE_HEIGHT / height
+
+
+def annotate(axis, run, time, camera, centre, sign, ground, scale):
     def at(point):
         column, row, _, _ = camera.project(np.array([point]))
         return column[0] / 2, row[0] / 2
@@ -141,17 +148,18 @@ def annotate(axis, run, time, camera, centre, sign, ground):
     start, end = (at((centre[0] + sign * a, edge, below)) for a in (0.10, 0.60))
     axis.annotate("", end, start, arrowprops={"arrowstyle": "-|>", "lw": 2.5, "color": "#333333"})
     axis.annotate("travel", start, xytext=(4, -16), textcoords="offset points", ha="left", fontsize=11)
-    left, right = (at((centre[0] + sign * a, edge, below)) for a in (-0.85, -0.35))
+    bar = float(f"{0.5 / scale:.1g}")  # m
+    left, right = (at((centre[0] + sign * a, edge, below)) for a in (-0.85, -0.85 + bar * scale))
     axis.plot([left[0], right[0]], [left[1], right[1]], color="#333333", lw=3, solid_capstyle="butt")
-    axis.annotate("0.5 m", left, xytext=(6, -12), textcoords="offset points", ha="left", fontsize=11)
+    axis.annotate(f"{bar:g} m", left, xytext=(6, -12), textcoords="offset points", ha="left", fontsize=11)
     lines = [f"t = {time:.2f} s"]
     pull = run.summary.get("drawbar_pull_N") or {}
     if pull.get("mean") is not None:
-        lines.append(f"drawbar pull {pull['mean']:.0f} ± {pull.get('sem') or float('nan'):.0f} N"
+        lines.append(f"drawbar pull {with_error(pull['mean'], pull.get('sem'))} N"
                      + ("" if pull.get("steady") else " (not steady)"))
     for name, label in (("sinkage_m", "sinkage"), ("rut_depth_m", "rut depth")):
         if run.number(name) is not None:
-            lines.append(f"{label} {1e3 * run.number(name):.1f} mm")
+            lines.append(f"{label} {digits(1e3 * run.number(name))} mm")
     if run.number("grains"):
         lines.append(f"{run.number('grains'):,.0f} grains")
     axis.text(0.015, 0.97, "\n".join(lines), transform=axis.transAxes, va="top", fontsize=11.5, linespacing=1.5)
@@ -162,14 +170,16 @@ def scene(run):
     with h5py.File(tire_file, "r") as file:
         tire = file["position"][()].astype(float), file["triangle"][()].astype(int)
         time = float(file.attrs["time_s"])
+    scale = scale_of(float(np.ptp(tire[0][:, 2])))
+    tire = scale * tire[0], tire[1]
     centre, sign = 0.5 * (tire[0].min(0) + tire[0].max(0)), run.travel_sign
     soil = colours = None
-    ground, span = run.number("surface_height_m", 0.0), 1e-3
+    ground, span = scale * run.number("surface_height_m", 0.0), 1e-3
     if grain_file is not None:
-        soil = Soil(grain_file, centre, sign)
-        ground = run.number("surface_height_m", soil.surface)
+        soil = Soil(grain_file, centre, sign, scale)
+        ground = scale * run.number("surface_height_m", soil.surface / scale)
         depth = np.percentile(ground - soil.position[:, 2] - soil.radius, 98)
-        span = max(1.6 * run.number("rut_depth_m", 0.0), 0.15 * depth, 2.0 * np.median(soil.radius))
+        span = max(1.6 * scale * run.number("rut_depth_m", 0.0), 0.15 * depth, 2.0 * np.median(soil.radius))
         colours = soil_colours(soil, ground, span)
     image, camera = render(tire, soil, colours, centre, sign, ground)
     figure = plt.figure(figsize=(WIDTH / 130, (HEIGHT + 60) / 130), layout="none")
@@ -179,11 +189,11 @@ def scene(run):
     axis.set_ylim(HEIGHT, 0)
     axis.axis("off")
     figure.text(0.015, 1 - 30 / (HEIGHT + 60), run.title, fontsize=12, fontweight="bold", va="center")
-    annotate(axis, run, time, camera, centre, sign, ground)
+    annotate(axis, run, time, camera, centre, sign, ground, scale)
     if soil is not None:
         bar = figure.add_axes([0.72, 0.075, 0.25, 0.018])
         map_ = mpl.colors.LinearSegmentedColormap.from_list("soil", np.array(SOIL) ** (1 / 2.2))
-        colourbar = figure.colorbar(mpl.cm.ScalarMappable(mpl.colors.Normalize(-1e3 * span, 1e3 * span), map_), cax=bar,
+        colourbar = figure.colorbar(mpl.cm.ScalarMappable(mpl.colors.Normalize(-1e3 * span / scale, 1e3 * span / scale), map_), cax=bar,
                                     orientation="horizontal")
         colourbar.set_label("height of grains about the undisturbed surface, mm", fontsize=9)
         colourbar.ax.tick_params(labelsize=8)

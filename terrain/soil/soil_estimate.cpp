@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "protocol/core/error.hpp"
+#include "protocol/files/digits.hpp"
 #include "protocol/files/json_reader.hpp"
 #include "protocol/files/json_text.hpp"
 #include "protocol/files/text_file.hpp"
@@ -123,8 +124,8 @@ std::string write_soil_estimate(const std::filesystem::path& run, const std::fil
     j["compaction_resistance_N"] = e.resistance;
     j["drive_torque_Nm"] = e.torque;
     j["largest_pressure_Pa"] = e.pressure;
-    text = fmt::format("soil theory (rigid wheel): drawbar pull {:.0f} ± {:.0f} N, sinkage {:.1f} mm", e.pull,
-                       error, 1e3 * e.sinkage);
+    text = fmt::format("soil theory (rigid wheel): drawbar pull {} N, sinkage {} mm",
+                       with_error(e.pull, error), digits(1e3 * e.sinkage));
     if (quick) text += "; from a quick look at the soil, no result to quote";
     const json sinkage = summary.value("sinkage_m", json()),
                clearance = summary.value("bed_clearance_m", json());

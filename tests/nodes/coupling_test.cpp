@@ -11,6 +11,7 @@
 #include "terrain/dem/dem_spec.hpp"
 #include "terrain/rigid/ground_spec.hpp"
 #include "tests/nodes/in_process_run.hpp"
+#include "tests/rigs/reference_options.hpp"
 #include "tire/tires.hpp"
 
 namespace furrow {
@@ -24,7 +25,7 @@ std::filesystem::path tire_file(const std::string& name) {
 
 /// A scenario of one wheel whose rig and tire are open to change until it is made.
 struct OneWheel : scenario::Scenario {
-  rigs::DrawbarRigOptions wheel_rig;
+  rigs::DrawbarRigOptions wheel_rig = testing::reference_options();
   tire::TireOptions wheel_tire;
   scenario::Scenario made() const {
     scenario::Scenario scenario = *this;

@@ -12,6 +12,7 @@
 
 #include "protocol/core/constants.hpp"
 #include "tests/nodes/rolling_tire.hpp"
+#include "tests/rigs/reference_options.hpp"
 #include "tire/wheel_axes.hpp"
 
 namespace furrow::test {
@@ -20,7 +21,7 @@ namespace {
 constexpr double kStep = 1e-4;  // s
 
 rigs::DrawbarRigOptions free_rolling(double speed) {
-  rigs::DrawbarRigOptions options;
+  rigs::DrawbarRigOptions options = testing::reference_options();
   options.mode = "free_rolling";
   options.speed = speed;
   options.ramp = 0.1;

@@ -10,7 +10,7 @@
 namespace furrow {
 namespace {
 
-constexpr double kTread = 0.24, kDepth = 0.02;  // m
+constexpr double kTread = 0.24, kDepth = 0.02, kRadius = 0.4673;  // m
 
 HeightField flat(double length, double cell) {
   HeightField field;
@@ -40,7 +40,7 @@ HeightField pressed(HeightField field, double a, double b, double noise = 0.0) {
 }
 
 terrain::RutOptions forward() {
-  return {.axle = 2.0, .start = 0.5, .lateral = 0.0, .direction = 1.0, .tread_width = kTread};
+  return {.axle = 2.0, .start = 0.5, .lateral = 0.0, .direction = 1.0, .radius = kRadius, .tread_width = kTread};
 }
 
 TEST(Rut, depth_and_width_of_a_pressed_trapezoid) {
@@ -92,10 +92,28 @@ TEST(Rut, cells_without_grains_are_passed_over) {
 
 TEST(Rut, is_not_measured_without_grains_or_before_the_wheel_has_left_one) {
   EXPECT_FALSE(terrain::measure_rut({}, {}, forward()).measured);
+  EXPECT_EQ(terrain::measure_rut({}, {}, forward()).missing, "the ground keeps no rut");
   const HeightField before = flat(2.65, 0.02);
   terrain::RutOptions options = forward();
   options.axle = options.start + 0.5;
   EXPECT_FALSE(terrain::measure_rut(before, before, options).measured);
+  EXPECT_EQ(terrain::measure_rut(before, before, options).missing,
+            "the axle travelled 0.5 m, and the rut is measured 0.3 to 0.55 m behind it");
+}
+
+/// The rut of a wheel of 58 mm was looked for 0.3 m behind its axle, where it never went.
+TEST(Rut, of_a_small_wheel_is_measured_close_behind_it) {
+  const HeightField before = flat(2.65, 0.005);
+  const HeightField after = pressed(before, 1.0, 1.15);
+  terrain::RutOptions options = forward();
+  options.start = 1.0;
+  options.axle = 1.15;
+  EXPECT_FALSE(terrain::measure_rut(before, after, options).measured);
+  options.radius = 0.058;
+  const terrain::Rut rut = terrain::measure_rut(before, after, options);
+  ASSERT_TRUE(rut.measured);
+  EXPECT_NEAR(rut.depth, kDepth, 1e-12);
+  EXPECT_TRUE(rut.missing.empty()) << rut.missing;
 }
 
 TEST(Rut, an_untouched_bed_has_no_rut_width) {

@@ -8,7 +8,11 @@
 #include "nodes/scenario/load_scenario.hpp"
 #include "nodes/scenario/scenario_checks.hpp"
 #include "nodes/scenario/schema.hpp"
+#include "nodes/scenario/validate.hpp"
 #include "nodes/scenario/wheel_geometry.hpp"
+#include "nodes/scenario/wheel_scales.hpp"
+#include "protocol/files/data_files.hpp"
+#include "protocol/files/json_text.hpp"
 #include "terrain/dem/dem_options.hpp"
 #include "tests/nodes/scenario_fixture.hpp"
 
@@ -76,7 +80,8 @@ TEST(Scenario, former_name_of_the_contact_law_means_the_same_and_gives_the_same_
   EXPECT_EQ(former.completed, present.completed);
   EXPECT_EQ(former.digest, present.digest);
   const testing::ScenarioFile soil(R"({"format_version": 1, "terrain": {"law": "coulomb"}})");
-  EXPECT_EQ(file.load({{"terrain.material", '"' + soil.path().string() + '"'}}).terrain->describe().law, "hertz_tanh");
+  EXPECT_EQ(file.load({{"terrain.material", '"' + soil.path().string() + '"'}}).terrain->describe().law,
+            "hertz_tanh");
 }
 
 TEST(Scenario, axle_starts_clear_of_the_wall_behind_it) {
@@ -84,13 +89,101 @@ TEST(Scenario, axle_starts_clear_of_the_wall_behind_it) {
   const double radius = 0.4673;  // m, of the tire
   const scenario::Scenario forward = file.load(), backward = file.load({{"rig.travel_sign", "-1"}});
   const auto wheel = [](const scenario::Scenario& s) { return scenario::describe_rig(s).wheels.front(); };
-  EXPECT_DOUBLE_EQ(wheel(forward).from, radius + scenario::kWallMargin);
-  EXPECT_DOUBLE_EQ(wheel(backward).from, 10.0 - radius - scenario::kWallMargin);
+  EXPECT_DOUBLE_EQ(wheel(forward).from, radius + scenario::wall_margin(radius));
+  EXPECT_DOUBLE_EQ(wheel(backward).from, 10.0 - radius - scenario::wall_margin(radius));
+  EXPECT_EQ(scenario::wall_margin(radius), 0.02);
+  EXPECT_DOUBLE_EQ(scenario::wall_margin(0.058), 0.0029);
   EXPECT_DOUBLE_EQ(wheel(file.load({{"rig.start", "3"}})).from, 3.0);
   // v = ω R (1 − s) over the run, half of it over the ramp.
   const double travel = wheel(forward).to - wheel(forward).from;
   EXPECT_NEAR(travel, 8.56 * radius * 0.7 * (1.5 - 0.075), 1e-12);
   EXPECT_NEAR(wheel(backward).to - wheel(backward).from, -travel, 1e-12);
+}
+
+TEST(Scenario, a_load_in_newtons_is_the_load_of_the_wheel_and_stays_the_way_it_was_said) {
+  const testing::ScenarioFile file(testing::kSmallest);
+  const scenario::Scenario s = file.load({{"rig.load", "5000"}});
+  EXPECT_NEAR(scenario::wheel_scales(s).front().load, 5000.0, 1e-9);
+  const nlohmann::json rig = nlohmann::json::parse(s.completed)["rig"];
+  EXPECT_EQ(rig["load"], 5000.0);
+  EXPECT_TRUE(rig["carrier_mass"].is_null());
+  EXPECT_EQ(rig["rim_mass"], 15.0);
+  const scenario::Scenario again = testing::ScenarioFile(s.completed).load();
+  EXPECT_EQ(again.digest, s.digest);
+  EXPECT_EQ(again.completed, s.completed);
+  EXPECT_EQ(file.complaint({{"rig.load", "5000"}, {"rig.carrier_mass", "450"}}),
+            ": key 'rig.load': is given beside 'rig.carrier_mass', expected one of the two");
+}
+
+/// A rim of 15 kg and a carrier of 450 kg stood on whatever wheel there was.
+TEST(Scenario, a_tire_file_without_a_rim_leaves_the_masses_to_the_scenario) {
+  nlohmann::json tire = load_json(data_folder() / "tire" / "data" / "hmmwv_layered.json", "a tire");
+  tire.erase("rim");
+  const testing::ScenarioFile bare(tire.dump());
+  const testing::ScenarioFile file(R"({"tire": {"file": ")" + bare.path().string() + R"("}, "terrain": {}})");
+  const std::string told = file.complaint();
+  for (const char* word : {"'rig.load'", "rig.carrier_mass", "rig.rim_mass", "rig.rim_spin_inertia", "'rim'"})
+    EXPECT_NE(told.find(word), std::string::npos) << told;
+  EXPECT_EQ(file.complaint({{"rig.load", "4600"}, {"rig.rim_mass", "12"}, {"rig.rim_spin_inertia", "0.5"}}),
+            "");
+  tire["rim"] = {{"mass", 12}, {"weight", 3}};
+  const testing::ScenarioFile wrong(tire.dump());
+  const testing::ScenarioFile other(R"({"tire": {"file": ")" + wrong.path().string() +
+                                    R"("}, "terrain": {}})");
+  EXPECT_NE(other.complaint({}, wrong.path()).find("key 'rim.weight': is unknown"), std::string::npos);
+}
+
+std::set<std::string> bounding_keys(const scenario::Scenario& s) {
+  std::set<std::string> keys;
+  for (const scenario::Bound& bound : scenario::scale_bounds(s)) keys.insert(bound.key);
+  return keys;
+}
+
+TEST(Scales, what_binds_the_wheel_of_a_laboratory_is_named_by_its_key) {
+  const auto load = [](const std::vector<std::pair<std::string, std::string>>& settings) {
+    return scenario::load_scenario(data_folder() / "rigs" / "small_wheel.json", settings);
+  };
+  using Keys = std::set<std::string>;
+  EXPECT_EQ(bounding_keys(load({})), Keys{});
+  EXPECT_EQ(bounding_keys(load({{"terrain.radius", "0.006"}, {"terrain.layers", "50"}})),
+            Keys{"terrain.radius"});
+  EXPECT_EQ(bounding_keys(load({{"terrain.layers", "40"}})), Keys{"terrain.layers"});
+  EXPECT_EQ(bounding_keys(load({{"terrain.width", "0.08"}, {"terrain.layers", "90"}})),
+            Keys{"terrain.width"});
+  EXPECT_EQ(bounding_keys(
+                load({{"terrain.width", "0.08"}, {"terrain.layers", "90"}, {"terrain.sides", "periodic"}})),
+            Keys{});
+  EXPECT_EQ(bounding_keys(load({{"terrain.length", "0.28"}})), Keys{"terrain.length"});
+  EXPECT_EQ(bounding_keys(load({{"rig.lowering_speed", "0.01"}})), Keys{"rig.move_from"});
+  const Keys fast = bounding_keys(load({{"rig.angular_speed", "35"}, {"terrain.length", "4"}}));
+  EXPECT_TRUE(fast.count("rig.slip") == 1 && fast.count("rig.speed") == 1);
+}
+
+TEST(Scales, sinkage_by_bearing_capacity_is_near_that_of_the_runs) {
+  const auto sinkage = [](const char* cohesion, const char* carrier) {
+    const scenario::Scenario s =
+        scenario::load_scenario(data_folder() / "rigs" / "drawbar_pull_small.json",
+                                {{"terrain.cohesion", cohesion}, {"rig.carrier_mass", carrier}});
+    return scenario::wheel_scales(s).front().grains->sinkage;
+  };
+  // tests/studies/README.md, slip 0.3: 20, 35 and, on a deep bed, 77 mm; 33 mm with twice the load.
+  EXPECT_NEAR(sinkage("80e3", "450") / 0.020, 1.0, 0.4);
+  EXPECT_NEAR(sinkage("40e3", "450") / 0.035, 1.0, 0.4);
+  EXPECT_NEAR(sinkage("20e3", "450") / 0.077, 1.0, 0.4);
+  EXPECT_NEAR(sinkage("80e3", "900") / 0.033, 1.0, 0.6);
+}
+
+TEST(Scales, a_report_for_programs_holds_them_for_each_wheel) {
+  const auto report =
+      scenario::validation_report(scenario::load_scenario(data_folder() / "rigs" / "four_wheels.json", {}));
+  ASSERT_EQ(report["wheels"].size(), 4U);
+  for (const char* key :
+       {"load_N", "contact_pressure_Pa", "width_in_grains", "contact_length_in_grains", "expected_sinkage_m",
+        "bed_height_over_sinkage", "beside_m", "ahead_at_end_m", "froude_number", "inertial_number"})
+    EXPECT_TRUE(report["wheels"][3].contains(key)) << key;
+  EXPECT_NEAR(report["wheels"][3]["load_N"].get<double>() - report["wheels"][0]["load_N"].get<double>(),
+              500.0 * 9.81, 1e-9);
+  EXPECT_TRUE(report["bound_by"].is_array());
 }
 
 TEST(Scenario, expected_result_is_void_once_the_physics_is_changed) {

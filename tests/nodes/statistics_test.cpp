@@ -79,7 +79,7 @@ TEST(Steadiness, every_broken_condition_is_said_in_words) {
   output::SeriesStatistics pull;
   pull.sem = 50.0;
   pull.halves_agree = true;
-  const output::SteadyWindow good{4609.0, 0.9, 1.9, 0.4673, true};
+  const output::SteadyWindow good{4609.0, 0.25, 0.9, 1.9, 0.4673, true};
   EXPECT_TRUE(output::unsteady_because(pull, good).empty());
 
   output::SteadyWindow bad = good;
@@ -93,6 +93,19 @@ TEST(Steadiness, every_broken_condition_is_said_in_words) {
   EXPECT_EQ(output::unsteady_because(pull, bad).size(), 4u);
   pull.halves_agree = false;
   EXPECT_EQ(output::unsteady_because(pull, bad).size(), 5u);
+}
+
+/// k = κ W/z and T = 2π √(m/k): the wheel of a laboratory bounces faster than that of a truck.
+TEST(Steadiness, the_bounce_period_follows_from_what_tire_and_soil_give_under_the_load) {
+  const double deep = output::bounce_period(0.028, 9.81), shallow = output::bounce_period(0.007, 9.81);
+  EXPECT_NEAR(deep / shallow, 2.0, 1e-12);
+  EXPECT_NEAR(deep, 0.25, 0.03);
+  EXPECT_EQ(output::bounce_period(-0.01, 9.81), 0.0);
+  EXPECT_EQ(output::bounce_period(std::nan(""), 9.81), 0.0);
+  output::SeriesStatistics pull;
+  pull.halves_agree = true;
+  const output::SteadyWindow small{24.5, shallow, 0.5, 0.2, 0.058, true};
+  EXPECT_TRUE(output::unsteady_because(pull, small).empty());
 }
 
 }  // namespace

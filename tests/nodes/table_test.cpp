@@ -18,6 +18,7 @@
 #include "rigs/drawbar_rig.hpp"
 #include "rigs/rig_row.hpp"
 #include "temporary_folder.hpp"
+#include "tests/rigs/reference_options.hpp"
 
 namespace furrow {
 
@@ -137,7 +138,7 @@ TEST(WheelRow, every_column_is_measured_in_every_interval) {
 }
 
 TEST(Table, a_drawbar_rigs_columns_that_users_script_against_come_first) {
-  const auto rig = rigs::make_drawbar_rig({});
+  const auto rig = rigs::make_drawbar_rig(testing::reference_options());
   const output::SubjectSeries series(rig->subjects().front(), output::SeriesBuilder(0.5, 0.0, 1e-3));
   std::string header;
   for (const Column& column : series.columns()) header += std::string(column.name) + ",";

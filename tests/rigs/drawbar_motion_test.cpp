@@ -28,7 +28,7 @@ TEST(Place, rim_stands_at_height_and_start_with_the_imposed_velocities) {
 TEST(Modes, slip_is_what_was_asked_for_during_and_after_the_ramp) {
   for (const char* mode : {"fixed_angular_speed", "fixed_speed"}) {
     for (const double slip : {-0.2, 0.0, 0.3, 0.6}) {
-      rigs::DrawbarRigOptions options;
+      rigs::DrawbarRigOptions options = reference_options();
       options.mode = mode;
       options.slip = slip;
       options.ramp = 0.05;
@@ -52,7 +52,7 @@ TEST(Modes, slip_is_what_was_asked_for_during_and_after_the_ramp) {
 }
 
 TEST(Modes, imposed_position_and_angle_are_followed_without_drift) {
-  rigs::DrawbarRigOptions options;
+  rigs::DrawbarRigOptions options = reference_options();
   const auto rig = placed_rig(options);
   advance(*rig, wrench(Vec3(1500, 60, carried_mass(options) * kStandardGravity), Vec3(30, -500, 20)),
           25000);                                // 1 s
@@ -77,7 +77,7 @@ TEST(FreeRolling, moment_spins_rim_and_tire_up_with_their_sum_of_inertia) {
 }
 
 TEST(FreeRolling, starts_at_rest_under_a_ramp_and_reports_a_bounded_slip) {
-  rigs::DrawbarRigOptions options;
+  rigs::DrawbarRigOptions options = reference_options();
   options.mode = "free_rolling";
   const auto rig = placed_rig(options);
   advance(*rig, Wrench{}, 500);
@@ -126,7 +126,7 @@ TEST(Vertical, touchdown_damper_acts_for_its_time_only) {
 }
 
 TEST(Travel, mirrored_travel_mirrors_everything) {
-  rigs::DrawbarRigOptions options;
+  rigs::DrawbarRigOptions options = reference_options();
   options.toe_angle = 0.1;
   const auto forward = placed_rig(options);
   options.travel_sign = -1.0;
@@ -178,7 +178,7 @@ TEST(Camber, wheel_leans_about_its_forward_axis_and_keeps_to_it) {
 }
 
 TEST(Camber, mirrored_camber_and_toe_mirror_everything) {
-  rigs::DrawbarRigOptions options;
+  rigs::DrawbarRigOptions options = reference_options();
   options.toe_angle = 0.1;
   options.camber_angle = -0.07;
   options.toe_time = 0.05;
@@ -225,19 +225,50 @@ TEST(Steering, wheel_runs_straight_until_its_time_then_turns_smoothly_to_the_toe
   EXPECT_LT(rig->report(0).joint_drift, 1e-12);
 }
 
+/// As in a laboratory: the wheel is let down and stands until it moves, and moves as it would have from t = 0.
+TEST(Phases, a_wheel_stands_until_move_from_and_moves_as_from_zero_after_it) {
+  rigs::DrawbarRigOptions options = reference_options(), late = options;
+  const int wait = 500, moving = 1000;
+  late.move_from = wait * kStep;
+  const auto rig = placed_rig(options), waiting = placed_rig(late);
+  const Wrench weight = wrench(Vec3(0.0, 0.0, 9.81 * carried_mass(options)));
+  for (int i = 0; i < wait; ++i) {
+    advance(*waiting, weight, 1);
+    ASSERT_EQ(waiting->report(0).slip, 0.0) << i;
+    ASSERT_NEAR(waiting->report(0).speed, 0.0, 1e-12) << i;
+    ASSERT_NEAR(waiting->rim(0).angular_velocity.norm(), 0.0, 1e-12) << i;
+  }
+  advance(*waiting, weight, moving);
+  advance(*rig, weight, moving);
+  EXPECT_NEAR(waiting->rim(0).position.x(), rig->rim(0).position.x(), 1e-12);
+  EXPECT_NEAR(waiting->report(0).spin, rig->report(0).spin, 1e-9);
+  EXPECT_GT(rig->report(0).speed, 0.1);
+}
+
+/// m dv/dt = −W − c v from rest: v(t) = −W/c (1 − exp(−c t/m)).
+TEST(Phases, the_damper_lets_a_wheel_down_at_load_over_damping) {
+  rigs::DrawbarRigOptions options = steady_options();
+  options.touchdown_damping = 4e4;
+  options.touchdown_time = 1.0;
+  const double weight = 9.81 * carried_mass(options);
+  const auto rig = placed_rig(options);
+  advance(*rig, wrench(Vec3::Zero()), 5000);  // 17 time constants
+  EXPECT_NEAR(rig->report(0).vertical_speed, -weight / options.touchdown_damping, 1e-5);
+}
+
 TEST(Refusals, bad_options_and_states_name_themselves) {
-  rigs::DrawbarRigOptions options;
+  rigs::DrawbarRigOptions options = reference_options();
   options.mode = "fast";
   EXPECT_THROW(rigs::make_drawbar_rig(options), Error);
-  options = {};
+  options = reference_options();
   options.mode = "fixed_speed";
   options.slip = 1.0;
   EXPECT_THROW(rigs::make_drawbar_rig(options), Error);
-  options = {};
+  options = reference_options();
   options.carrier_mass = -1.0;
   EXPECT_THROW(rigs::make_drawbar_rig(options), Error);
-  const auto rig = placed_rig({});
+  const auto rig = placed_rig(reference_options());
   const Wrench broken = wrench(Vec3(std::nan(""), 0, 0));
   EXPECT_EQ(rig->advance({&broken, 1}, kStep, 1).what, "was pulled with a wrench that is not finite");
-  EXPECT_THROW(rigs::make_drawbar_rig({})->rim(0), Error);
+  EXPECT_THROW(rigs::make_drawbar_rig(reference_options())->rim(0), Error);
 }

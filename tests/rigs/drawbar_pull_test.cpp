@@ -25,7 +25,7 @@ TEST(DrawbarPull, equals_the_force_on_the_rim_in_steady_state) {
 }
 
 TEST(DrawbarPull, without_tire_force_a_ramp_shows_only_in_the_raw_pull) {
-  rigs::DrawbarRigOptions options;
+  rigs::DrawbarRigOptions options = reference_options();
   options.ramp = 0.2;
   const auto rig = placed_rig(options);
   const double speed = options.angular_speed * kRadius * (1.0 - options.slip);
@@ -46,7 +46,7 @@ TEST(DrawbarPull, without_tire_force_a_ramp_shows_only_in_the_raw_pull) {
 }
 
 TEST(DrawbarPull, is_exact_in_the_ramp_with_substeps_and_force) {
-  rigs::DrawbarRigOptions options;
+  rigs::DrawbarRigOptions options = reference_options();
   const auto rig = placed_rig(options);
   for (int i = 0; i < 300; ++i) {
     advance(*rig, wrench(Vec3(-820.0, 30.0, 4000.0), Vec3(10, -200, 5)), 1, 4e-4, 5);
@@ -62,7 +62,7 @@ TEST(DriveTorque, equals_minus_the_moment_on_the_rim_in_steady_state) {
 }
 
 TEST(DriveTorque, carries_the_spin_up_of_rim_and_tire_during_the_ramp) {
-  rigs::DrawbarRigOptions options;
+  rigs::DrawbarRigOptions options = reference_options();
   options.ramp = 0.2;
   const auto rig = placed_rig(options);
   double impulse = 0.0;

@@ -33,7 +33,7 @@ void expect_equal(const rigs::Rig& a, const rigs::Rig& b) {
 
 TEST(Restart, continues_bit_for_bit_whether_placed_before_or_not) {
   for (const char* mode : {"fixed_angular_speed", "fixed_speed", "free_rolling"}) {
-    rigs::DrawbarRigOptions options;
+    rigs::DrawbarRigOptions options = reference_options();
     options.mode = mode;
     options.toe_angle = 0.05;
     options.toe_time = 0.004;
@@ -65,7 +65,7 @@ TEST(Restart, the_list_of_fields_of_a_report_forgets_no_member) {
 }
 
 TEST(Restart, a_report_without_one_of_its_fields_is_refused_by_name) {
-  const auto rig = placed_rig({});
+  const auto rig = placed_rig(reference_options());
   Archive saved, lacking;
   rig->save(saved);
   for (const auto& [name, values] : saved.arrays())
@@ -80,9 +80,9 @@ TEST(Restart, a_report_without_one_of_its_fields_is_refused_by_name) {
 }
 
 TEST(Restart, refuses_the_state_of_another_tire) {
-  const auto original = placed_rig({});
+  const auto original = placed_rig(reference_options());
   Archive archive;
   original->save(archive);
-  const auto other = placed_rig({}, tire_mass(2.0));
+  const auto other = placed_rig(reference_options(), tire_mass(2.0));
   EXPECT_THROW(other->restore(archive), Error);
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "rigs/drawbar_rig.hpp"
+#include "tests/rigs/reference_options.hpp"
 
 namespace furrow::testing {
 inline constexpr double kRadius = 0.4673;  // m
@@ -53,7 +54,7 @@ inline Wrench wrench(const Vec3& force, const Vec3& moment = Vec3::Zero()) { ret
 
 /// Full speed from the start, no touch-down damper.
 inline rigs::DrawbarRigOptions steady_options() {
-  rigs::DrawbarRigOptions options;
+  rigs::DrawbarRigOptions options = reference_options();
   options.ramp = 0.0;
   options.touchdown_damping = 0.0;
   return options;

@@ -16,12 +16,31 @@ using nlohmann::json;
 namespace {
 
 const ReadContext kContext{"test.json", "rig"};
-constexpr double kRadius = 0.5;  // m
-constexpr double kWidth = 0.3;   // m
+constexpr double kRadius = 0.5;    // m
+constexpr double kWidth = 0.3;     // m
+constexpr double kTireMass = 4.0;  // kg
+constexpr double kGravity = 9.81;  // m/s²
 
-std::string complaint(const json& section) {
+rigs::MountedTire bare_tire() { return {kRadius, kTireMass, {}, "tire.json"}; }
+/// Of a file that says everything of its rim.
+rigs::MountedTire tire_on_rim() { return {kRadius, kTireMass, {15.0, 0.7, 0.4, 450.0}, "tire.json"}; }
+
+/// The rig on tires that are all alike.
+std::unique_ptr<rigs::RigSpec> mounted_rig(const json& section,
+                                           const rigs::MountedTire& tire = tire_on_rim()) {
+  auto rig = rigs::read_rig(section, kContext);
+  rig->mount(std::vector<rigs::MountedTire>(rig->wheel_count(), tire));
+  return rig;
+}
+
+json completed(json section, const rigs::MountedTire& tire = tire_on_rim()) {
+  mounted_rig(section, tire)->complete(section);
+  return section;
+}
+
+std::string complaint(const json& section, const rigs::MountedTire& tire = tire_on_rim()) {
   try {
-    rigs::read_rig(section, kContext);
+    mounted_rig(section, tire);
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ExitCode::bad_input);
     return error.what();
@@ -31,13 +50,13 @@ std::string complaint(const json& section) {
 
 rigs::WheelDescription only_wheel(const json& section, double duration = 2.0) {
   const std::vector<rigs::WheelSize> tires{{kRadius, kWidth}};
-  return rigs::read_rig(section, kContext)->describe(tires, duration).wheels.at(0);
+  return mounted_rig(section)->describe(tires, duration).wheels.at(0);
 }
 
 }  // namespace
 
 TEST(Rigs, a_section_without_a_type_is_a_drawbar_rig) {
-  const auto rig = rigs::read_rig(json::object(), kContext);
+  const auto rig = mounted_rig(json::object());
   EXPECT_EQ(rig->wheel_count(), 1U);
   EXPECT_EQ(rig->make()->kind(), "drawbar");
 }
@@ -55,13 +74,12 @@ TEST(Rigs, full_slip_at_an_imposed_speed_is_refused_with_its_key) {
 }
 
 TEST(Rigs, entries_of_wheels_take_from_the_rig_what_they_leave_out) {
-  const auto rig = rigs::read_rig(
-      {{"slip", 0.1},
-       {"carrier_mass", 100.0},
-       {"rim_mass", 10.0},
-       {"start", 3.0},
-       {"wheels", {{{"lateral", -0.4}}, {{"lateral", 0.4}, {"slip", 0.2}, {"start", nullptr}}}}},
-      kContext);
+  const auto rig =
+      mounted_rig({{"slip", 0.1},
+                   {"carrier_mass", 100.0},
+                   {"rim_mass", 10.0},
+                   {"start", 3.0},
+                   {"wheels", {{{"lateral", -0.4}}, {{"lateral", 0.4}, {"slip", 0.2}, {"start", nullptr}}}}});
   const std::vector<rigs::WheelSize> tires(2, {kRadius, kWidth});
   const rigs::RigDescription d = rig->describe(tires, 1.0);
   EXPECT_EQ(d.kind, rig->make()->kind());
@@ -80,7 +98,7 @@ TEST(Rigs, description_is_that_of_the_made_rig) {
   const json section = {{"travel_sign", -1}, {"start", 4.0}, {"ramp", 0.2},        {"camber_angle", 0.1},
                         {"rim_mass", 20.0},  {"slip", 0.25}, {"carrier_mass", 300}};
   const rigs::WheelDescription d = only_wheel(section, 0.5);
-  const auto rig = rigs::read_rig(section, kContext)->make();
+  const auto rig = mounted_rig(section)->make();
   rig->add_tire_mass(0, {}, kRadius);
   const std::vector<double> height{1.0};
   rig->place(height);
@@ -116,7 +134,7 @@ TEST(Rigs, starts_are_filled_in_clear_of_the_wall_behind) {
   const std::vector<rigs::WheelSize> tires{{kRadius, kWidth}};
   const auto start = [&](const json& section, std::optional<double> length) {
     const auto rig = rigs::read_rig(section, kContext);
-    rig->fill_starts(tires, 1.0, length, 0.1);
+    rig->fill_starts(tires, 1.0, length, std::vector<double>{0.1});
     json completed = json::object();
     rig->complete(completed);
     EXPECT_EQ(completed["start"].get<double>(), rig->describe(tires, 1.0).wheels[0].from);
@@ -126,4 +144,89 @@ TEST(Rigs, starts_are_filled_in_clear_of_the_wall_behind) {
   EXPECT_DOUBLE_EQ(start({{"travel_sign", -1}}, 9.0), 8.4);
   EXPECT_EQ(start({{"start", nullptr}}, std::nullopt), 0.0);
   EXPECT_EQ(start({{"start", 2.0}}, 9.0), 2.0);
+}
+
+TEST(Masses, the_carrier_follows_from_the_load) {
+  EXPECT_NEAR(only_wheel({{"load", 1000.0}}).carried_mass, 1000.0 / kGravity - kTireMass, 1e-12);
+  const auto rig = mounted_rig({{"load", 3000.0}, {"rim_mass", 2.0}})->make();
+  rig->add_tire_mass(0, {kTireMass, Mat3::Zero()}, kRadius);
+  const std::vector<double> height{1.0};
+  rig->place(height);
+  EXPECT_NEAR(rig->report(0).load(), 3000.0, 1e-9);
+}
+
+TEST(Masses, of_load_and_carrier_one_is_said) {
+  EXPECT_EQ(complaint({{"load", 100.0}, {"carrier_mass", 5.0}}),
+            "test.json: key 'rig.load': is given beside 'rig.carrier_mass', expected one of the two");
+  EXPECT_EQ(
+      complaint({{"wheels", {{{"lateral", 0.1}}, {{"load", 900.0}, {"carrier_mass", 5.0}}}}}),
+      "test.json: key 'rig.wheels.1.load': is given beside 'rig.wheels.1.carrier_mass', expected one of "
+      "the two");
+  EXPECT_EQ(
+      complaint({{"lowering_speed", 0.1}, {"touchdown_damping", 5.0}}),
+      "test.json: key 'rig.lowering_speed': is given beside 'rig.touchdown_damping', expected one of the "
+      "two");
+}
+
+TEST(Masses, a_load_below_the_weight_of_rim_and_tire_says_the_least) {
+  const std::string told = complaint({{"load", 24.5}});
+  EXPECT_TRUE(told.starts_with("test.json: key 'rig.load': is 24.5 N, expected above 186.39 N: ")) << told;
+}
+
+/// A car's masses under a wheel of a laboratory were silent before.
+TEST(Masses, what_neither_scenario_nor_tire_file_says_is_asked_for_by_its_keys) {
+  std::string told = complaint({{"slip", 0.1}}, bare_tire());
+  EXPECT_TRUE(
+      told.starts_with("test.json: key 'rig.load': is missing and so is rig.rim_mass, "
+                       "rig.rim_spin_inertia, expected here"))
+      << told;
+  told = complaint({{"load", 60.0}, {"rim_mass", 0.1}}, bare_tire());
+  EXPECT_TRUE(told.starts_with("test.json: key 'rig.rim_spin_inertia': is missing, expected here")) << told;
+  const json given = completed({{"load", 60.0}, {"rim_mass", 0.1}, {"rim_spin_inertia", 1e-4}}, bare_tire());
+  EXPECT_EQ(given["rim_diametral_inertia"], 0.5e-4);
+}
+
+TEST(Masses, the_tire_file_says_what_the_scenario_does_not) {
+  const json given = completed({{"rim_mass", 12.0}});
+  EXPECT_EQ(given["rim_mass"], 12.0);
+  EXPECT_EQ(given["rim_spin_inertia"], 0.7);
+  EXPECT_EQ(given["carrier_mass"], 450.0);
+  EXPECT_EQ(completed(given), given);
+  const json by_load = completed({{"load", 3000.0}});
+  EXPECT_FALSE(by_load.contains("carrier_mass"));
+  EXPECT_EQ(completed(by_load), by_load);
+}
+
+TEST(Masses, an_entry_of_wheels_has_its_own_load) {
+  const auto rig =
+      mounted_rig({{"carrier_mass", 100.0}, {"wheels", {{{"lateral", 0.4}}, {{"load", 2000.0}}}}});
+  const std::vector<rigs::WheelSize> tires(2, {kRadius, kWidth});
+  const rigs::RigDescription d = rig->describe(tires, 1.0);
+  EXPECT_EQ(d.wheels[0].carried_mass, 115.0);
+  EXPECT_NEAR(d.wheels[1].carried_mass, 2000.0 / kGravity - kTireMass, 1e-12);
+}
+
+/// Equal Froude number: v/√(g R) and t √(g/R) are the same for wheels of any size.
+TEST(Touchdown, speed_and_time_of_lowering_go_with_the_wheels_size) {
+  for (const double radius : {0.05, 0.5}) {
+    rigs::MountedTire tire = tire_on_rim();
+    tire.radius = radius;
+    const json given = completed({{"load", 1000.0}}, tire);
+    const double speed = 1000.0 / given["touchdown_damping"].get<double>(),
+                 time = given["touchdown_time"].get<double>();
+    EXPECT_NEAR(speed / std::sqrt(kGravity * radius), 0.18, 1e-12);
+    EXPECT_NEAR(time * std::sqrt(kGravity / radius), 1.6, 1e-12);
+  }
+  const json slow = {{"lowering_speed", 0.01}, {"move_from", 0.7}};
+  EXPECT_NEAR(only_wheel(slow).lowering_speed, 0.01, 1e-12);
+  EXPECT_EQ(completed(slow)["touchdown_time"], 0.7);
+}
+
+TEST(Touchdown, a_wheel_that_moves_later_travels_less) {
+  const json at_once = {{"mode", "fixed_speed"}, {"speed", 2.0}, {"ramp", 0.1}, {"start", 1.0}};
+  json later = at_once;
+  later["move_from"] = 0.5;
+  EXPECT_NEAR(only_wheel(at_once).to - only_wheel(later).to, 2.0 * 0.5, 1e-12);
+  later["move_from"] = 5.0;
+  EXPECT_EQ(only_wheel(later).to, 1.0);
 }

@@ -50,8 +50,14 @@ class Commands(SystemTest):
 
     def test_validate_tells_people(self):
         text = self.output("validate", write_scenario(self.folder))
-        for word in ("of the stable", "grains", "coordinates" if "layered" not in text else "radius", "memory", "disk", "terrain"):
+        for word in ("of the stable", "grains", "coordinates" if "layered" not in text else "radius", "memory", "disk", "terrain",
+                     "load         4609 N", "sinkage", "Froude number", "bound by     terrain.radius: the contact is about"):
             self.assertIn(word, text)
+
+    def test_a_wheel_of_a_laboratory_is_bound_by_nothing(self):
+        report = json.loads(self.output("validate", ROOT / "rigs" / "small_wheel.json", "--json"))
+        self.assertEqual(report["bound_by"], [])
+        self.assertAlmostEqual(report["wheels"][0]["load_N"], 24.5)
 
     def test_validate_writes_nothing(self):
         self.output("validate", write_scenario(self.folder))

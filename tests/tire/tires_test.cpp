@@ -73,6 +73,26 @@ TEST_F(TiresTest, an_unknown_model_lists_the_valid_ones) {
   EXPECT_EQ(complaint(file).substr(0, 11), "key 'model'");
 }
 
+TEST_F(TiresTest, a_file_may_say_what_rim_the_tire_is_on) {
+  json file = file_text("hmmwv_layered.json");
+  for (const bool rigid : {false, true}) {
+    TireOptions options = written(file);
+    options.rigid = rigid;
+    EXPECT_EQ(read_tire(options)->rim().mass, 15.0);
+    EXPECT_EQ(read_tire(options)->rim().spin_inertia, 0.7);
+  }
+  file["rim"].erase("mass");
+  EXPECT_LT(read_tire(written(file))->rim().mass, 0.0);
+  file["rim"]["mass"] = -1;
+  EXPECT_EQ(complaint(file).substr(0, 14), "key 'rim.mass'");
+  file["rim"] = {{"weight", 3}};
+  EXPECT_EQ(complaint(file).substr(0, 16), "key 'rim.weight'");
+  file["rim"] = 15;
+  EXPECT_EQ(complaint(file).substr(0, 9), "key 'rim'");
+  file.erase("rim");
+  EXPECT_LT(read_tire(written(file))->rim().carrier_mass, 0.0);
+}
+
 TEST_F(TiresTest, description_is_that_of_the_made_tire) {
   for (const bool rigid : {false, true})
     for (const char* name : {"hmmwv_layered.json", "passenger_205_55r16.json"}) {

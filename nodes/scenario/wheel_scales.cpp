@@ -1,0 +1,198 @@
+#include "nodes/scenario/wheel_scales.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "nodes/scenario/wheel_geometry.hpp"
+#include "protocol/core/assert.hpp"
+#include "protocol/core/constants.hpp"
+#include "protocol/files/digits.hpp"
+#include "terrain/dem/dem_options.hpp"
+
+namespace furrow::scenario {
+namespace {
+
+using terrain::dem::DemOptions;
+
+constexpr double kG = kStandardGravity;
+// Strength of grains, see the header.
+constexpr double kAngle = 26.0 * std::numbers::pi / 180.0, kAngleOfRolling = 25.0 * std::numbers::pi / 180.0;
+constexpr double kRough = 0.5;           // friction from which the angle does not grow any more
+constexpr double kCohesionShare = 0.08;  // of the contact cohesion
+constexpr double kSolid = 0.55;          // solid fraction of a bed
+constexpr double kShearBand = 10.0;      // grain diameters
+constexpr double kTimesToSettle = 4.0;   // z/v: F grows with depth while the damper lets the wheel down
+// μ(I) = μ_s + (μ_2 − μ_s)/(1 + I_0/I) [Jop, Forterre & Pouliquen 2006, doi:10.1038/nature04801].
+constexpr double kStatic = 0.38, kFast = 0.64, kInertial0 = 0.279;
+
+// Where what binds the answer.
+constexpr double kGrains = 5.0;       // diameters in the contact, either way
+constexpr double kDepth = 8.0;        // sinkages
+constexpr double kBeside = 0.5;       // tread widths
+constexpr double kNearEnd = 0.1;      // of the averaging window
+constexpr double kRateEffect = 0.05;  // of the friction, of the pressure
+
+struct Strength {
+  double cohesion = 0.0, angle = 0.0, weight = 0.0;  // Pa; rad; N/m³
+};
+
+Strength strength_of(const DemOptions& o) {
+  const double rough = std::min(1.0, std::sqrt(o.friction / kRough));
+  return {kCohesionShare * o.cohesion,
+          rough * (kAngle + kAngleOfRolling * std::pow(std::min(o.rolling_friction, kRough), 2)),
+          kSolid * o.density * kG};
+}
+
+double contact_length(double radius, double sinkage) { return std::sqrt(2.0 * radius * sinkage); }
+
+double bearing_pressure(const Strength& s, double radius, double width, double sinkage) {
+  const double t = std::tan(s.angle);
+  if (!(t > 1e-6)) return s.cohesion * (std::numbers::pi + 2.0) + s.weight * sinkage;
+  const double n_q =
+      std::exp(std::numbers::pi * t) * std::pow(std::tan(0.25 * std::numbers::pi + 0.5 * s.angle), 2);
+  const double n_c = (n_q - 1.0) / t, n_gamma = 2.0 * (n_q + 1.0) * t;
+  return s.cohesion * n_c + s.weight * sinkage * n_q +
+         0.5 * s.weight * std::min(width, contact_length(radius, sinkage)) * n_gamma;
+}
+
+/// By bisection; at most one radius.
+double sinkage_of(const Strength& s, double load, double radius, double width) {
+  FURROW_ASSERT(radius > 0.0 && width > 0.0, radius, width);
+  double low = 0.0, high = radius;
+  for (int i = 0; i < 60; ++i) {
+    const double z = 0.5 * (low + high);
+    const bool carried = width * contact_length(radius, z) * bearing_pressure(s, radius, width, z) >= load;
+    (carried ? high : low) = z;
+  }
+  return high;
+}
+
+/// How far a footing of this length moves the soil in front of it: Prandtl's mechanism.
+double reach_of_failure(double angle, double length) {
+  return length * std::tan(0.25 * std::numbers::pi + 0.5 * angle) *
+         std::exp(0.5 * std::numbers::pi * std::tan(angle));
+}
+
+WheelScales::OnGrains on_grains(const Scenario& s, const DemOptions& o, const tire::TireDescription& tire,
+                                const rigs::WheelDescription& wheel, double load, double height) {
+  const Strength soil = strength_of(o);
+  const double diameter = 2.0 * o.radius, width = tire.tread_width;
+  WheelScales::OnGrains g;
+  g.sinkage = sinkage_of(soil, load, tire.radius, width);
+  g.contact_length = contact_length(tire.radius, g.sinkage);
+  g.pressure = load / (width * g.contact_length);
+  g.grains_wide = width / diameter;
+  g.grains_long = g.contact_length / diameter;
+  g.depth_ratio = height / g.sinkage;
+  if (!o.periodic_y()) g.beside = 0.5 * o.width - std::abs(wheel.lateral) - wheel.across;
+  const bool forward = wheel.to >= wheel.from;
+  g.ahead = (forward ? o.length - wheel.to : wheel.to) - wheel.along;
+  const double contact_to_wall = g.ahead + wheel.along - g.contact_length,
+               reach = reach_of_failure(soil.angle, std::min(width, g.contact_length)),
+               averaged = std::abs(wheel.speed) * (s.run.end - s.run.average_from);
+  if (averaged > 0.0) g.near_end = std::clamp((reach - contact_to_wall) / averaged, 0.0, 1.0);
+  const double sliding = std::abs(wheel.tread_speed - wheel.speed);
+  g.inertial = sliding / kShearBand * std::sqrt(o.density / g.pressure);
+  const double entering = std::abs(wheel.speed) * std::sqrt(2.0 * g.sinkage / tire.radius);
+  g.impact = kSolid * o.density * entering * entering / g.pressure;
+  return g;
+}
+
+/// Wheels that are alike say the same once.
+class Bounds {
+ public:
+  void add(bool binds, const std::string& key, const std::string& what) {
+    const auto same = [&](const Bound& bound) { return bound.key == key && bound.what == what; };
+    if (binds && std::none_of(all_.begin(), all_.end(), same)) all_.push_back({key, what});
+  }
+  std::vector<Bound> take() { return std::move(all_); }
+
+ private:
+  std::vector<Bound> all_;
+};
+
+void add_bin(const WheelScales::OnGrains& g, double width, Bounds& to) {
+  to.add(std::min(g.grains_wide, g.grains_long) < kGrains, "terrain.radius",
+         fmt::format(
+             "the contact is about {:.1f} grains long and {:.1f} wide, expected {:g} or more: under a "
+             "wheel of 58 mm on dry sand grains of 5 instead of 7 mm changed the pull by 8 % of the load",
+             g.grains_long, g.grains_wide, kGrains));
+  to.add(
+      g.depth_ratio < kDepth, "terrain.layers",
+      fmt::format("the bed is about {:.1f} times as deep as the wheel will sink ({} mm), expected {:g} or "
+                  "more: the floor carries too; at 5 to 6 times a bed twice as deep gave 38 % more sinkage "
+                  "and 10 % less pull",
+                  g.depth_ratio, digits(1e3 * g.sinkage), kDepth));
+  to.add(
+      g.beside && *g.beside < kBeside * width, "terrain.width",
+      fmt::format("{} m are left between wheel and side wall, expected half a tread width, {} m, or "
+                  "terrain.sides periodic: with 0.6 tread widths left, a bin half as wide again changed the "
+                  "pull by -4.5 ± 4.0 %",
+                  digits(g.beside.value_or(0.0)), digits(kBeside * width)));
+  to.add(
+      g.near_end > kNearEnd, "terrain.length",
+      fmt::format("{} m are left ahead of the wheel at the end: in {:.0f} % of the averaging window the end "
+                  "wall lies within the soil that fails in front of it (Prandtl), expected at most {:.0f} %",
+                  digits(g.ahead), 100.0 * g.near_end, 100.0 * kNearEnd));
+}
+
+void add_rates(const WheelScales::OnGrains& g, Bounds& to) {
+  const double rate = (kFast - kStatic) / kStatic / (1.0 + kInertial0 / std::max(g.inertial, 1e-12));
+  to.add(
+      rate > kRateEffect, "rig.slip",
+      fmt::format("the inertial number is about {:.2g}: grains sheared so fast have {:.0f} % more friction "
+                  "than slow ones (Jop, Forterre & Pouliquen 2006), expected below {:.0f} %",
+                  g.inertial, 100.0 * rate, 100.0 * kRateEffect));
+  to.add(
+      g.impact > kRateEffect, "rig.speed",
+      fmt::format("the wheel enters the soil so fast that its inertia adds about {:.0f} % to the pressure, "
+                  "expected below {:.0f} %: drive more slowly",
+                  100.0 * g.impact, 100.0 * kRateEffect));
+}
+
+}  // namespace
+
+std::vector<WheelScales> wheel_scales(const Scenario& s) {
+  const std::vector<tire::TireDescription> tires = describe_tires(s);
+  const rigs::RigDescription rig = describe_rig(s);
+  const DemOptions* grains = s.terrain->grains();
+  const double height = s.terrain->estimate(s.terrain_context()).expected_height;
+  std::vector<WheelScales> all;
+  for (std::size_t k = 0; k < tires.size(); ++k) {
+    const rigs::WheelDescription& wheel = rig.wheels[k];
+    WheelScales w;
+    w.load = (wheel.carried_mass + tires[k].mass.mass) * kG;
+    w.froude = std::max(std::abs(wheel.speed), std::abs(wheel.tread_speed)) / std::sqrt(kG * tires[k].radius);
+    if (grains) w.grains = on_grains(s, *grains, tires[k], wheel, w.load, height);
+    if (wheel.lowering_time > 0.0 && wheel.lowering_speed > 0.0)
+      w.lowering_needs =
+          (s.drop_height + kTimesToSettle * (w.grains ? w.grains->sinkage : 0.0)) / wheel.lowering_speed;
+    all.push_back(w);
+  }
+  return all;
+}
+
+std::vector<Bound> scale_bounds(const Scenario& s) {
+  const std::vector<WheelScales> scales = wheel_scales(s);
+  const std::vector<tire::TireDescription> tires = describe_tires(s);
+  const rigs::RigDescription rig = describe_rig(s);
+  Bounds bounds;
+  for (std::size_t k = 0; k < scales.size(); ++k) {
+    const WheelScales& w = scales[k];
+    const double until = rig.wheels[k].lowering_time;
+    bounds.add(
+        w.lowering_needs > until, "rig.move_from",
+        fmt::format("the wheel moves from {} s on, but lowering it takes about {} s: expected to stand "
+                    "by then; lower it faster or move later",
+                    digits(until), digits(w.lowering_needs)));
+    if (!w.grains) continue;
+    add_bin(*w.grains, tires[k].tread_width, bounds);
+    add_rates(*w.grains, bounds);
+  }
+  return bounds.take();
+}
+
+}  // namespace furrow::scenario

@@ -1,0 +1,54 @@
+// How large a wheel is beside its grains, its bed and its walls, and how fast beside gravity and pressure, before any
+// model is made: what tells a result from an artefact of the bin. Estimates, for `furrow validate` alone.
+//
+// Sinkage z of a rigid wheel (R, b, W) on a strip footing's bearing capacity [Terzaghi 1943; N_γ of Vesić 1973]:
+//   W = b ℓ (c N_c + γ z N_q + ½ γ min(b, ℓ) N_γ),   ℓ = √(2 R z), the contact in front of the axle
+// with the strength that soil tests of this program found for its grains: φ = 26° (26.5 ± 1.0° at friction 0.9, 26.8 ±
+// 0.7° at 0.5 with rolling friction 0.2, 34 ± 2° with 0.5), c = 0.08 × the contact cohesion (6.8 ± 1.4 kPa at 80 kPa).
+// Beside runs of the reference wheel, 4.6 kN: 15 mm at 80 kPa (runs: 15 to 20 mm, 30 mm on a bed twice as deep), 42 mm
+// at 40 kPa (35), 80 mm at 20 kPa (77 on a deep bed).
+//
+// [Terzaghi 1943] Theoretical Soil Mechanics, ch. 8. [Vesić 1973] J. Soil Mech. Found. Div. ASCE 99(1), 45–73.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "nodes/scenario/scenario.hpp"
+
+namespace furrow::scenario {
+
+struct WheelScales {
+  double load = 0.0;            // W, N
+  double froude = 0.0;          // v/√(g R) at full speed, v the faster of axle and tread
+  double lowering_needs = 0.0;  // s until the load is carried, with rig.move_from; 0: not asked for
+
+  /// On grains.
+  struct OnGrains {
+    double sinkage = 0.0;          // z, m
+    double contact_length = 0.0;   // ℓ, m
+    double pressure = 0.0;         // W/(b ℓ), Pa
+    double grains_wide = 0.0;      // tread width in grain diameters
+    double grains_long = 0.0;      // contact length in grain diameters
+    double depth_ratio = 0.0;      // bed height over sinkage
+    std::optional<double> beside;  // from the wheel to the nearest side wall, m; none: periodic
+    double ahead = 0.0;            // from the wheel to the end wall at the end of its travel, m
+    double near_end = 0.0;         // share of the averaging window in which the end wall is within reach
+    double inertial = 0.0;         // I = γ̇ d √(ρ/p), with the slip speed over a band of 10 d
+    double impact = 0.0;           // ρ w² over the pressure, w the speed at which the rim enters the soil
+  };
+  std::optional<OnGrains> grains;
+};
+
+/// Of each wheel.
+std::vector<WheelScales> wheel_scales(const Scenario& scenario);
+
+/// A scale that binds the answer, and what the effect is known to be.
+struct Bound {
+  std::string key;  // of the scenario, that moves it
+  std::string what;
+};
+std::vector<Bound> scale_bounds(const Scenario& scenario);
+
+}  // namespace furrow::scenario

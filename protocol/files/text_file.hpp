@@ -1,6 +1,7 @@
 // Whole files. Written, they appear or do not: under a temporary name, flushed to the disk, then renamed.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -8,8 +9,11 @@
 
 namespace furrow {
 
-/// All bytes of a file. @throws Error(io)
-std::string read_whole_file(const std::filesystem::path& file);
+/// Bytes that a text which a person wrote has at most.
+inline constexpr std::uintmax_t kMaxText = 16 << 20;
+
+/// All bytes of a file. @throws Error(io), also when there are more than `most`
+std::string read_whole_file(const std::filesystem::path& file, std::uintmax_t most = UINTMAX_MAX);
 
 /// The bytes of a text file in UTF-8 that a user wrote.
 /// @param expected what should be there, for messages: "a scenario in JSON"
@@ -38,7 +42,10 @@ std::filesystem::path temporary_name(const std::filesystem::path& file);
 /// As temporary_name, and no other process of any machine has it: for files that several may write at once.
 std::filesystem::path own_temporary_name(const std::filesystem::path& file);
 
-/// Offset of the first byte that is not UTF-8 (RFC 3629), or npos.
+/// Bytes of the UTF-8 character (RFC 3629) that begins at `at`; 0 where none does. @pre at < text.size()
+std::size_t utf8_length(const std::string& text, std::size_t at);
+
+/// Offset of the first byte that is not UTF-8, or is zero, or npos.
 std::size_t find_invalid_utf8(const std::string& text);
 
 /// "line:column" of a byte, both from 1, the column in characters.

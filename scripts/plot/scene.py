@@ -5,7 +5,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from .raster import Buffers, Camera, occlusion, shade, shadow
-from .run_data import Missing
+from .run_data import Damaged, Missing, table
 
 WIDTH, HEIGHT = 1500, 860  # pixels of the picture; rendered at twice that
 BEHIND, AHEAD = 1.45, 0.75  # m of the bed that are shown, from the axle
@@ -44,7 +44,9 @@ class Soil:
 
     def __init__(self, path, centre, sign):
         with h5py.File(path, "r") as file:
-            position, radius = file["position"][()].astype(float), file["radius"][()].astype(float)
+            position, radius = table(file, "position", 3).astype(float), table(file, "radius", 0).astype(float)
+        if len(position) != len(radius) or not (np.isfinite(position).all() and (radius > 0.0).all()):
+            raise Damaged(f"{path.name} holds no grains that could be drawn")
         self.lateral = (position[:, 1].min(), position[:, 1].max())
         ahead = sign * (position[:, 0] - centre[0])
         inside = (ahead > -BEHIND) & (ahead < AHEAD)
@@ -146,7 +148,9 @@ def annotate(axis, run, time, camera, centre, sign, ground):
     axis.annotate("0.5 m", left, xytext=(6, -12), textcoords="offset points", ha="left", fontsize=11)
     lines = [f"t = {time:.2f} s"]
     pull = run.summary.get("drawbar_pull_N") or {}
-    if pull.get("mean") is not None:
+    if not run.measured:
+        lines.append("the tire did not touch the terrain: nothing measured")
+    elif pull.get("mean") is not None:
         lines.append(f"drawbar pull {pull['mean']:.0f} ± {pull.get('sem') or float('nan'):.0f} N"
                      + ("" if pull.get("steady") else " (not steady)"))
     for name, label in (("sinkage_m", "sinkage"), ("rut_depth_m", "rut depth")):
@@ -160,8 +164,11 @@ def annotate(axis, run, time, camera, centre, sign, ground):
 def scene(run):
     tire_file, grain_file = last_frames(run)
     with h5py.File(tire_file, "r") as file:
-        tire = file["position"][()].astype(float), file["triangle"][()].astype(int)
+        tire = table(file, "position", 3).astype(float), table(file, "triangle", 3).astype(int)
         time = float(file.attrs["time_s"])
+    vertex, triangle = tire
+    if not (len(vertex) and len(triangle) and np.isfinite(vertex).all() and 0 <= triangle.min() and triangle.max() < len(vertex)):
+        raise Damaged(f"{tire_file.name} holds no surface that could be drawn")
     centre, sign = 0.5 * (tire[0].min(0) + tire[0].max(0)), run.travel_sign
     soil = colours = None
     ground, span = run.number("surface_height_m", 0.0), 1e-3

@@ -23,6 +23,7 @@ using nlohmann::json;
 struct Place {
   DrawbarRigOptions rig;
   bool start_given = true;
+  bool start_listed = false;  // by its own entry of rig.wheels
 };
 
 bool says(const json& section, const char* name) {
@@ -132,7 +133,9 @@ class DrawbarSpec final : public RigSpec {
     d.tread_speed = tread_speed(rig, tire.radius);
     d.lowering_time = rig.move_from;
     if (rig.touchdown_damping > 0.0) d.lowering_speed = rig.load / rig.touchdown_damping;
-    d.start_key = "rig." + wheel_key(k) + "start";
+    // Where several start, each in its own entry; of a single one it is where the value stands.
+    const bool in_list = places_[k].start_listed || places_.size() > 1;
+    d.start_key = listed_ && in_list ? fmt::format("rig.wheels.{}.start", k) : "rig.start";
     return d;
   }
 
@@ -175,13 +178,14 @@ std::unique_ptr<RigSpec> read_drawbar(const json& section, const ReadContext& co
     DrawbarWheel wheel{common};
     if (says(entry, "load") || says(entry, "carrier_mass")) wheel.rig.load = wheel.rig.carrier_mass = -1.0;
     read_fields(entry, wheel);
-    places.push_back({wheel.rig, says(section, "start") || says(entry, "start")});
+    places.push_back({wheel.rig, says(section, "start") || says(entry, "start"), says(entry, "start")});
   }
   if (wheels.empty()) places.push_back({common, says(section, "start")});
   for (std::size_t k = 0; k < places.size(); ++k)
     if (const DrawbarRigOptions& rig = places[k].rig; rig.mode == "fixed_speed" && rig.slip >= 1.0)
       throw input_error(
-          context.file, context.key(places.size() > 1 ? fmt::format("wheels.{}.slip", k) : "slip"),
+          context.file,
+          context.key(!wheels.empty() && says(wheels[k], "slip") ? fmt::format("wheels.{}.slip", k) : "slip"),
           fmt::format("is {}, expected below 1 in mode fixed_speed: a carriage that moves cannot slip fully",
                       number_text(rig.slip)));
   return std::make_unique<DrawbarSpec>(std::move(places), !wheels.empty(), context);
@@ -189,8 +193,8 @@ std::unique_ptr<RigSpec> read_drawbar(const json& section, const ReadContext& co
 
 std::unique_ptr<RigSpec> drawbar_spec(std::vector<DrawbarRigOptions> rigs) {
   std::vector<Place> places;
+  const bool listed = rigs.size() > 1;
   for (DrawbarRigOptions& rig : rigs) places.push_back({std::move(rig), true});
-  const bool listed = places.size() > 1;
   return std::make_unique<DrawbarSpec>(std::move(places), listed, ReadContext{"scenario", "rig"});
 }
 

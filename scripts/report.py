@@ -7,6 +7,7 @@ Every plot is made from what the directory holds; a plot whose data are missing 
 Exit codes: 0 at least one plot was written, 5 a file could not be read or written.
 """
 import argparse
+import csv
 import json
 import os
 import pathlib
@@ -20,7 +21,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 from plot import charts, ground, press, scene, soil, sweep  # noqa: E402
 from plot.digits import with_error  # noqa: E402
-from plot.run_data import Missing, Run  # noqa: E402
+from plot.run_data import Damaged, Missing, Run, printable  # noqa: E402
 
 PLOTS = {
     "pull_slip_sinkage": charts.pull_slip_sinkage,
@@ -57,10 +58,16 @@ def words(run):
     pull = run.summary.get("drawbar_pull_N") or {}
     if pull.get("mean") is None:
         return
+    if not run.measured:
+        print("report: the tire did not touch the terrain in the averaging window: nothing was measured", file=sys.stderr)
+        return
+    if run.window is None:
+        raise Damaged("summary.json: key 'drawbar_pull_N': lacks from_s and to_s, the window of the mean")
     print(f"report: drawbar pull {with_error(pull['mean'], pull.get('sem'))} N (standard error) "
-          f"from {pull['from_s']:.3g} to {pull['to_s']:.3g} s", file=sys.stderr)
+          f"from {run.window[0]:.3g} to {run.window[1]:.3g} s", file=sys.stderr)
     if not pull.get("steady", False):
-        reasons = "; ".join(pull.get("unsteady_because") or ["the averaging window is not long or even enough"])
+        reasons = "; ".join(map(printable, pull.get("unsteady_because") or
+                                ["the averaging window is not long or even enough"]))
         print(f"report: this pull is NOT STEADY: {reasons}", file=sys.stderr)
 
 
@@ -79,7 +86,10 @@ def main():
         run = of(arguments.directory)
         out.mkdir(parents=True, exist_ok=True)
     except (OSError, ValueError) as error:
-        print(f"furrow: error: {arguments.directory}: {error}", file=sys.stderr)
+        print(f"furrow: error: {arguments.directory}: {printable(error)}", file=sys.stderr)
+        return 5
+    except (AttributeError, LookupError, TypeError, csv.Error) as error:
+        print(f"furrow: error: {arguments.directory}: a file in it is damaged: {printable(repr(error))}", file=sys.stderr)
         return 5
     written = []
     plots = SOIL_PLOTS if of_soil else SWEEP_PLOTS if of_sweep else PRESS_PLOTS if of_press else PLOTS
@@ -89,11 +99,14 @@ def main():
         except Missing as reason:
             print(f"report: no {name}.png: {reason}", file=sys.stderr)
             continue
-        except (KeyError, TypeError, ValueError) as error:
-            print(f"report: no {name}.png: {error!r}", file=sys.stderr)
+        except Damaged as error:
+            print(f"report: no {name}.png: {printable(error)}", file=sys.stderr)
             continue
-        except OSError as error:  # h5py's error for a damaged file
-            print(f"report: no {name}.png: a file in {arguments.directory} is damaged: {error}", file=sys.stderr)
+        except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+            print(f"report: no {name}.png: {printable(repr(error))}", file=sys.stderr)
+            continue
+        except (OSError, RuntimeError) as error:  # h5py's errors for a damaged file
+            print(f"report: no {name}.png: a file in {arguments.directory} is damaged: {printable(error)}", file=sys.stderr)
             continue
         try:
             if not may_write(out, f"{name}.png"):
@@ -107,7 +120,11 @@ def main():
         matplotlib.pyplot.close(figure)
         written.append(str(out / f"{name}.png"))
     if not (of_soil or of_sweep or of_press):
-        words(run)
+        try:
+            words(run)
+        except Damaged as error:
+            print(f"furrow: error: {arguments.directory}: {printable(error)}", file=sys.stderr)
+            return 5
     print(json.dumps(written))
     if not written:
         print(f"furrow: error: {arguments.directory}: holds nothing to plot", file=sys.stderr)

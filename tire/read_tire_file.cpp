@@ -20,6 +20,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int kFormatVersion = 1;
+constexpr std::size_t kMaxBranches = 100;
 
 /// A number for an isotropic material, three for an orthotropic one.
 Vec3 one_or_three(JsonReader& reader, const std::string& key) {
@@ -48,7 +49,7 @@ LayerMaterial read_material(JsonReader reader, const std::string& name) {
 
 Section read_section(JsonReader reader, const std::vector<LayerMaterial>& materials) {
   Section section;
-  section.elements_per_side = reader.count("elements_per_side", 1);
+  section.elements_per_side = reader.count("elements_per_side", 1, kMaxPerSide);
   const json& layers = reader.array("layers");
   if (layers.empty()) reader.fail("layers", "is empty, expected at least one layer");
   for (std::size_t i = 0; i < layers.size(); ++i) {
@@ -93,6 +94,8 @@ std::vector<MaxwellBranch> read_prony(JsonReader& reader) {
   const json& rows = reader.array("prony");
   for (std::size_t i = 0; i < rows.size(); ++i) {
     JsonReader row(rows[i], reader.file(), reader.full(fmt::format("prony[{}]", i)));
+    if (branches.size() == kMaxBranches)
+      reader.fail("prony", fmt::format("has {} branches, expected at most {}", rows.size(), kMaxBranches));
     branches.push_back({row.positive("relative_modulus"), row.positive("relaxation_time")});
     row.finish();
   }
@@ -115,7 +118,7 @@ TireFile read_own(JsonReader& reader) {
   f.structural_damping = reader.not_negative("structural_damping");
   f.prony = read_prony(reader);
   f.tread_mass_per_area = reader.not_negative_or("tread_mass_per_area", 0.0);
-  f.elements_circumference = reader.count("elements_circumference", 8);
+  f.elements_circumference = reader.count("elements_circumference", 8, kMaxAround);
   f.contact = read_contact(reader.child("contact"));
   JsonReader materials = reader.child("materials");
   for (const auto& [name, value] : materials.object().items())

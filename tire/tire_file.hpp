@@ -10,6 +10,9 @@
 
 namespace furrow::tire {
 
+/// Elements that a file may ask for: around, and of a band on each side; a mesh has at most kMaxElements.
+inline constexpr int kMaxAround = 10000, kMaxPerSide = 500, kMaxElements = 1000000;
+
 /// Orthotropic linear elastic material; x along the fibre, y across it in the layer, z through the thickness.
 struct LayerMaterial {
   std::string name;

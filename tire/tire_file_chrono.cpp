@@ -46,7 +46,7 @@ LayerMaterial material(JsonReader reader, int index) {
 
 Section section(JsonReader reader, std::size_t materials) {
   Section s;
-  s.elements_per_side = reader.count("Number Elements", 1);
+  s.elements_per_side = reader.count("Number Elements", 1, kMaxPerSide);
   const auto thickness = reader.numbers("Layer Thickness");
   const int layers = static_cast<int>(thickness.size());
   if (layers == 0) reader.fail("Layer Thickness", "is empty, expected at least one layer");
@@ -117,7 +117,7 @@ TireFile read_chrono(JsonReader& reader) {
   f.bead = section(reader.child("Bead Section"), f.materials.size());
   f.sidewall = section(reader.child("Sidewall Section"), f.materials.size());
   f.tread = section(reader.child("Tread Section"), f.materials.size());
-  f.elements_circumference = reader.count("Number Elements Circumference", 8);
+  f.elements_circumference = reader.count("Number Elements Circumference", 8, kMaxAround);
   f.profile = read_profile(reader, "Profile");
   reader.finish();
   return f;

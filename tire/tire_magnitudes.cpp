@@ -18,39 +18,67 @@ constexpr Range kDensity{100.0, 2e4, "kg/m³"}, kYoungModulus{1e5, 1e12, "Pa"}, 
 constexpr double kMaxAngle = 95.0;       // degrees
 constexpr double kMaxTreadMass = 100.0;  // kg/m²: 8 cm of rubber
 
+/// What is odd about a file: the first place of each kind, and how many more there are.
+class Oddities {
+ public:
+  /// @param kind what is said once: the same quantity of all layers of a section, of all materials
+  void add(const std::string& kind, const std::string& key, const std::string& what) {
+    for (Oddity& one : found_)
+      if (one.kind == kind) return void(++one.more);
+    found_.push_back({kind, key, what, 0});
+  }
+  void look(const std::string& kind, const std::string& key, double value, const Range& range) {
+    if (value < range.low || value > range.high)
+      add(kind, key,
+          fmt::format("is {:g} {}, tires have {:g} to {:g}: another unit?", value, range.unit, range.low, range.high));
+  }
+  std::vector<std::pair<std::string, std::string>> all() const {
+    std::vector<std::pair<std::string, std::string>> texts;
+    for (const Oddity& one : found_)
+      texts.emplace_back(one.key, one.what + (one.more == 0 ? "" : fmt::format(" (and {} more like it)", one.more)));
+    return texts;
+  }
+
+ private:
+  struct Oddity {
+    std::string kind, key, what;
+    std::size_t more = 0;
+  };
+  std::vector<Oddity> found_;
+};
+
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> unlikely_values(const TireFile& file) {
-  std::vector<std::pair<std::string, std::string>> found;
+  Oddities found;
   const auto look = [&](const std::string& key, double value, const Range& range) {
-    if (value < range.low || value > range.high)
-      found.emplace_back(key, fmt::format("is {:g} {}, tires have {:g} to {:g}: another unit?", value,
-                                          range.unit, range.low, range.high));
+    found.look(key, key, value, range);
   };
   for (const LayerMaterial& m : file.materials) {
-    look("materials." + m.name + ".density", m.density, kDensity);
+    found.look("density", "materials." + m.name + ".density", m.density, kDensity);
     for (int i = 0; i < 3; ++i)
       if (i == 0 || m.young_modulus[i] != m.young_modulus[i - 1])
-        look("materials." + m.name + ".young_modulus", m.young_modulus[i], kYoungModulus);
+        found.look("young_modulus", "materials." + m.name + ".young_modulus", m.young_modulus[i], kYoungModulus);
   }
   for (const auto& [name, section] : {std::pair{"bead", &file.bead}, std::pair{"sidewall", &file.sidewall},
                                       std::pair{"tread", &file.tread}})
     for (std::size_t k = 0; k < section->layers.size(); ++k) {
       const std::string key = fmt::format("sections.{}.layers.{}", name, k);
-      look(key + ".thickness", section->layers[k].thickness, kThickness);
+      found.look(fmt::format("{}.thickness", name), key + ".thickness", section->layers[k].thickness, kThickness);
       if (const double angle = section->layers[k].angle * 180.0 / std::numbers::pi;
           std::abs(angle) > kMaxAngle)
-        found.emplace_back(key + ".angle_deg", fmt::format("is {:g}°, cords lie within ±90°", angle));
+        found.add(fmt::format("{}.angle", name), key + ".angle_deg",
+                  fmt::format("is {:g}°, cords lie within ±90°", angle));
     }
   look("radius", file.radius, kRadius);
   look("rim_radius", file.rim_radius, kRadius);
   look("rim_width", file.rim_width, kRimWidth);
   if (file.pressure != 0.0) look("pressure", file.pressure, kPressure);
   if (file.tread_mass_per_area > kMaxTreadMass)
-    found.emplace_back("tread_mass_per_area",
-                       fmt::format("is {:g} kg/m², tires have up to {:g}: another unit?",
-                                   file.tread_mass_per_area, kMaxTreadMass));
-  return found;
+    found.add("tread_mass_per_area", "tread_mass_per_area",
+              fmt::format("is {:g} kg/m², tires have up to {:g}: another unit?", file.tread_mass_per_area,
+                          kMaxTreadMass));
+  return found.all();
 }
 
 }  // namespace furrow::tire

@@ -77,7 +77,9 @@ ResumePoint newest_whole(const fs::path& run, std::vector<std::string>& problems
 /// Step at which the finished run ended; negative while there is no summary.
 std::int64_t finished_at(const fs::path& run) {
   const auto segments = value_at(read_summary(run), "segments");
-  return segments.empty() ? -1 : segments.back().value("to_step", std::int64_t{-1});
+  if (!segments.is_array() || segments.empty()) return -1;
+  const auto step = value_at(segments.back(), "to_step");
+  return step.is_number_integer() ? step.get<std::int64_t>() : -1;
 }
 
 }  // namespace

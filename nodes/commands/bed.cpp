@@ -72,7 +72,7 @@ ExitCode bed_command(const scenario::Scenario& scenario) {
         display.show({.phase = what, .share = share});
       });
   terrain::dem::GrainSolver solver(terrain::dem::solver_params(grains));
-  solver.restore(prepared.bed);
+  terrain::dem::restore_bed(solver, prepared);
   const terrain::dem::BedStatistics statistics =
       terrain::dem::bed_statistics(terrain::dem::positions_by_id(solver), solver.params().bin, grains.radius);
   const double wall = wall_clock() - begin;

@@ -19,6 +19,7 @@
 #include "nodes/scenario/rank_table.hpp"
 #include "nodes/scenario/validate.hpp"
 #include "protocol/files/nearest_words.hpp"
+#include "protocol/files/printable.hpp"
 #include "protocol/mpi_transport.hpp"
 #include "terrain/soil/soil_estimate.hpp"
 
@@ -31,6 +32,8 @@ struct Typed {
   std::vector<std::string> settings;
   bool overwrite = false, profile = false, json = false, no_plots = false;
 };
+
+constexpr std::size_t kMaxShown = 400;  // bytes of what the command line has wrong
 
 Error usage_error(const std::string& what) { return input_error("command line", "", what); }
 
@@ -124,7 +127,7 @@ Settings settings_of(const Typed& typed) {
   for (const std::string& text : typed.settings) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals == 0)
-      throw input_error("command line", "--set", "is '" + text + "', expected the form key=value");
+      throw input_error("command line", "--set", "is '" + excerpt(text) + "', expected the form key=value");
     settings.emplace_back(text.substr(0, equals), text.substr(equals + 1));
   }
   if (!typed.threads.empty()) settings.emplace_back("run.threads", typed.threads);
@@ -212,19 +215,29 @@ std::string parse_problem(const CLI::App& app, const CLI::ParseError& error, int
     return fmt::format("no command is given, expected one of: {}; see furrow --help", fmt::join(commands, ", "));
   if (first[0] != '-' && std::find(commands.begin(), commands.end(), first) == commands.end()) {
     const std::vector<std::string> similar = nearest_words(first, commands);
-    return fmt::format("unknown command '{}'; {}", first,
+    return fmt::format("unknown command '{}'; {}", excerpt(first),
                        similar.empty()
                            ? fmt::format("expected one of: {}; see furrow --help", fmt::join(commands, ", "))
                            : "did you mean '" + similar.front() + "'?");
   }
-  return fmt::format("{}, see furrow {}--help", error.what(), asked_command(app));
+  return fmt::format("{}, see furrow {}--help", excerpt(error.what(), kMaxShown), asked_command(app));
+}
+
+/// Names with control characters would make two messages of one. Values of keys may be of several lines.
+void check_arguments(int argc, char** argv) {
+  for (int k = 1; k < argc; ++k) {
+    const std::string text = argv[k];
+    if (std::string(argv[k - 1]) == "--set" || text.starts_with("--set=")) continue;
+    if (std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }))
+      throw usage_error("the argument '" + excerpt(text) + "' holds a control character, expected none");
+  }
 }
 
 void print_lines(const char* kind, const std::string& text) {
   std::size_t from = 0;
   for (std::size_t end; from <= text.size(); from = end + 1) {
     end = std::min(text.find('\n', from), text.size());
-    std::fprintf(stderr, "furrow: %s: %s\n", kind, text.substr(from, end - from).c_str());
+    std::fprintf(stderr, "furrow: %s: %s\n", kind, printable(text.substr(from, end - from)).c_str());
   }
 }
 
@@ -245,6 +258,7 @@ class CommandLine {
   }
 
   ExitCode execute() {
+    check_arguments(argc_, argv_);
     try {
       app_.parse(argc_, argv_);
     } catch (const CLI::Success& asked) {  // --help, --version

@@ -27,6 +27,10 @@ ExitCode sweep_command(const SweepArguments& arguments) {
   } else {
     std::fprintf(stderr, "furrow: stopped by a signal; run the same command to continue\n");
   }
+  if (code != ExitCode::done && code != ExitCode::stopped)
+    print_error((folder / "sweep.csv").string() +
+                ": not every run came to its end; the first that failed has exit code " +
+                std::to_string(static_cast<int>(code)));
   std::cout << folder.string() << "\n";
   return code;
 }

@@ -23,13 +23,19 @@ struct Frame {
   hsize_t points = 0, triangles = 0;
 };
 
+/// Of a table; 0 where there is none.
+hsize_t rows(const Hdf5Reader& file, const std::string& name) {
+  const std::vector<hsize_t> shape = file.shape(name);
+  return shape.size() == 2 ? shape.front() : 0;
+}
+
 /// False for a file that cannot be read: it is left out.
 bool read_frame(const std::filesystem::path& path, Frame& frame) {
   try {
     const Hdf5Reader file(path);
     frame.time = file.number("time_s");
-    frame.points = file.shape("position").at(0);
-    if (file.has("triangle")) frame.triangles = file.shape("triangle").at(0);
+    frame.points = rows(file, "position");
+    if (file.has("triangle")) frame.triangles = rows(file, "triangle");
     frame.file = "frames/" + path.filename().string();
     return frame.points > 0;
   } catch (const Error&) {

@@ -2,9 +2,6 @@
 
 #include <unistd.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include <fmt/format.h>
 
 #include "protocol/core/assert.hpp"
@@ -28,15 +25,9 @@ std::string when(const StepHeader& header) {
   return fmt::format(" at t = {:.6g} s, step {}", header.time, header.step);
 }
 
-std::int64_t steps_between(double interval, double step) {
-  FURROW_ASSERT(step > 0.0, step);
-  if (interval <= 0.0) return 0;
-  return std::max<std::int64_t>(1, std::llround(interval / step));
-}
-
 checkpoint::FrameClock frame_clock(const scenario::Scenario& scenario, const RunContext& context) {
   const std::int64_t every =
-      context.directory.empty() ? 0 : steps_between(scenario.output.frame_interval, scenario.run.step);
+      context.directory.empty() ? 0 : scenario.run.steps_in(scenario.output.frame_interval);
   if (!context.resume) return {every, 0, 0};
   return context.resume->manifest.frames.continued(context.resume->manifest.step, every);
 }

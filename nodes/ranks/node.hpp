@@ -76,9 +76,6 @@ checkpoint::FrameClock frame_clock(const scenario::Scenario& scenario, const Run
 /// " at t = 0.1 s, step 7": where a step that failed began, for physics_error(outcome, who, where).
 std::string when(const StepHeader& header);
 
-/// Number of communication steps between two outputs that are `interval` seconds apart; 0: never. @pre step > 0
-std::int64_t steps_between(double interval, double step);
-
 /// Step number of the messages by which rims and tires are placed, before synchronization 0.
 inline constexpr std::int64_t kPlacement = -1;
 

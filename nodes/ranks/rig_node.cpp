@@ -60,7 +60,7 @@ class RigNode : public Node {
     for (int k = 0; k < wheels; ++k)
       send(transport, Address{Role::tire, k}, RimMotion{{kPlacement, 0.0}, rig_->rim(k)});
     wrenches_.resize(wheels);
-    series_steps_ = steps_between(scenario_.output.series_interval, scenario_.run.step);
+    series_steps_ = scenario_.run.steps_in(scenario_.output.series_interval);
     if (context.saved) restore(*context.saved);
     wall_start_ = last_checkpoint_ = wall_clock();
     if (context.resume) time_start_ = context.resume->manifest.time;
@@ -132,7 +132,7 @@ class RigNode : public Node {
     if (next_ == Order::stop) return Order::stop;
     if (context_.stop_requested && context_.stop_requested()) return Order::stop;
     const scenario::CheckpointOptions& o = scenario_.checkpoint;
-    const std::int64_t every = steps_between(o.interval, scenario_.run.step);
+    const std::int64_t every = scenario_.run.steps_in(o.interval);
     const bool by_wall = o.wall_interval > 0.0 && wall_clock() - last_checkpoint_ >= o.wall_interval;
     if (!by_wall && (every == 0 || step % every != 0)) return Order::go_on;
     last_checkpoint_ = wall_clock();

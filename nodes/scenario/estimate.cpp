@@ -14,8 +14,14 @@ constexpr double kBytesPerRank = 40e6;        // program, MPI and libraries
 constexpr double kBytesPerFrameVertex = 100.0;
 constexpr double kBytesPerLine = 900.0;  // of timeseries.csv, and the same again in results.h5
 
+/// Of what is written once in every interval, at most once per step.
+double times(const Scenario& s, double interval) {
+  const std::int64_t every = s.run.steps_in(interval);
+  return every > 0 ? static_cast<double>(s.run.steps() / every) : 0.0;
+}
+
 double frames(const Scenario& s) {
-  return s.output.frame_interval > 0.0 ? 1.0 + std::floor(s.run.end / s.output.frame_interval) : 0.0;
+  return s.output.frame_interval > 0.0 ? 1.0 + times(s, s.output.frame_interval) : 0.0;
 }
 
 }  // namespace
@@ -34,7 +40,7 @@ Estimate estimate(const Scenario& s) {
   const auto ranks = static_cast<double>(1 + s.tires.size() + static_cast<std::size_t>(s.terrain_ranks));
   e.memory = e.terrain.memory_bytes + tires + kBytesPerRank * ranks;
   e.disk = frames(s) * (e.terrain.frame_bytes + kBytesPerFrameVertex * vertices) +
-           kBytesPerLine * s.run.end / s.output.series_interval +
+           kBytesPerLine * times(s, s.output.series_interval) +
            s.checkpoint.keep * (e.terrain.checkpoint_bytes + saved);
   return e;
 }

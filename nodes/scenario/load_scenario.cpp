@@ -17,6 +17,7 @@
 #include "protocol/files/data_files.hpp"
 #include "protocol/files/json_fields.hpp"
 #include "protocol/files/json_text.hpp"
+#include "protocol/files/printable.hpp"
 #include "protocol/files/text_file.hpp"
 #include "protocol/host.hpp"
 #include "rigs/rigs.hpp"
@@ -29,6 +30,7 @@ using nlohmann::json;
 using Settings = std::vector<std::pair<std::string, std::string>>;
 
 constexpr int kFormatVersion = 1;
+constexpr std::size_t kMaxKey = 256;  // bytes
 
 std::vector<std::string> split(const std::string& key) {
   std::vector<std::string> parts(1);
@@ -43,8 +45,9 @@ std::vector<std::string> split(const std::string& key) {
 /// Puts the value of `--set key=value` into the document, making sections that it lacks.
 void set_value(json& document, const std::string& key, const std::string& text, const std::string& file) {
   const std::vector<std::string> parts = split(key);
-  if (std::find(parts.begin(), parts.end(), "") != parts.end())
-    throw input_error(file, key, "is no key, expected --set section.key=value");
+  if (std::find(parts.begin(), parts.end(), "") != parts.end() || parts.size() >= kMaxDepth ||
+      excerpt(key, kMaxKey) != key)
+    throw input_error(file, excerpt(key), "is no key, expected --set section.key=value");
   const json value = parse_value(text, file, key);
   json* at = &document;
   for (const std::string& part : parts) {
@@ -73,6 +76,14 @@ Error all_problems(const std::string& file, const std::vector<Problem>& problems
   for (const Problem& problem : problems)
     text += (text.empty() ? "" : "\n") + std::string(input_error(file, problem.key, problem.what).what());
   return Error(ExitCode::bad_input, text);
+}
+
+/// The file that a scenario's name stands for: as it is, or one of those that come with the program.
+std::filesystem::path named_scenario(const std::filesystem::path& name) {
+  std::error_code error;
+  if (name.empty() || name.has_parent_path() || std::filesystem::exists(name, error)) return name;
+  const std::filesystem::path shipped = data_folder() / "rigs" / name;
+  return std::filesystem::is_regular_file(shipped, error) ? shipped : name;
 }
 
 json read_document(const std::string& file, const Settings& settings) {
@@ -238,7 +249,8 @@ void make_movable(json& document, const Scenario& s) {
 
 }  // namespace
 
-Scenario load_scenario(const std::filesystem::path& file, const Settings& settings) {
+Scenario load_scenario(const std::filesystem::path& name, const Settings& settings) {
+  const std::filesystem::path file = named_scenario(name);
   Scenario s;
   s.file = file;
   s.name = file.stem().string();

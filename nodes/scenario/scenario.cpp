@@ -1,7 +1,9 @@
 #include "nodes/scenario/scenario.hpp"
 
+#include <algorithm>
 #include <cmath>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/text_file.hpp"
 #include "terrain/dem/dem_options.hpp"
@@ -34,5 +36,11 @@ terrain::dem::DemOptions Scenario::grains(const std::string& what) const {
 }
 
 std::int64_t RunOptions::steps() const { return std::llround(end / step); }
+
+std::int64_t RunOptions::steps_in(double interval) const {
+  FURROW_ASSERT(step > 0.0, step);
+  if (interval <= 0.0) return 0;
+  return std::max<std::int64_t>(1, std::llround(interval / step));
+}
 
 }  // namespace furrow::scenario

@@ -25,6 +25,8 @@ struct RunOptions {
   std::uint64_t seed = 1;
   double peer_timeout = 60.0;  // s
   std::int64_t steps() const;  // round(end / step)
+  /// In an interval, which is rounded to a whole number of steps, at least one; 0 for an interval of 0.
+  std::int64_t steps_in(double interval) const;
 };
 
 template <class Visit>

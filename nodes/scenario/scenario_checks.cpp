@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -19,6 +21,10 @@ constexpr double kMinGrains = 4.0;    // radii that the bin must measure at leas
 constexpr double kCoarseGrain = 0.1;  // of the tire radius
 constexpr double kGigabyte = 1e9;
 constexpr double kWallShare = 0.05, kMostWallMargin = 0.02;  // of the tire's radius; m
+constexpr double kRounding = 1e-9;  // relative, of times that people write as decimals
+
+/// Without what binary rounding added: 0.30000000000000004 as 0.3.
+double short_decimal(double value) { return std::stod(fmt::format("{:.9g}", value)); }
 
 class Checks {
  public:
@@ -26,11 +32,15 @@ class Checks {
       : s_(scenario), rig_(rig), file_(scenario.file.string()), terrain_(scenario.terrain->describe()) {}
 
   Error wrong(const std::string& key, const std::string& what) const { return input_error(file_, key, what); }
-  void warn(const std::string& key, const std::string& what) {
-    s_.warnings.push_back(wrong(key, what).what());
+  void warn(const std::string& key, const std::string& what) { warn(file_, key, what); }
+  /// Once: of several wheels on the same tire each has the same to say.
+  void warn(const std::string& file, const std::string& key, const std::string& what) {
+    const std::string text = input_error(file, key, what).what();
+    if (std::find(s_.warnings.begin(), s_.warnings.end(), text) == s_.warnings.end()) s_.warnings.push_back(text);
   }
 
   void times();
+  void whole_steps(const char* key, double given, std::int64_t steps);
   void rig();
   void tires();
   void room();
@@ -68,6 +78,21 @@ void Checks::times() {
     throw wrong("output.series_interval",
                 fmt::format("is {} s, expected at most the averaging window of {} s", number_text(first_line),
                             number_text(run.end - run.average_from)));
+  whole_steps("run.end", run.end, run.steps());
+  // The defaults mean about as often as that.
+  for (const auto& [key, interval, usual] :
+       {std::tuple{"output.series_interval", s_.output.series_interval, OutputOptions().series_interval},
+        {"output.frame_interval", s_.output.frame_interval, OutputOptions().frame_interval},
+        {"checkpoint.interval", s_.checkpoint.interval, CheckpointOptions().interval}})
+    if (interval != usual) whole_steps(key, interval, run.steps_in(interval));
+}
+
+/// Says so where a time is not what it will be, beyond the rounding of numbers.
+void Checks::whole_steps(const char* key, double given, std::int64_t steps) {
+  const double taken = static_cast<double>(steps) * s_.run.step;
+  if (std::abs(taken - given) > kRounding * given)
+    warn(key, fmt::format("is {} s, which is no whole number of steps of {} s: {} s is taken", number_text(given),
+                          number_text(s_.run.step), number_text(short_decimal(taken))));
 }
 
 void Checks::rig() {
@@ -77,14 +102,22 @@ void Checks::rig() {
 }
 
 void Checks::tires() {
-  for (const auto& tire : s_.tires)
-    for (const auto& [key, what] : tire->unlikely_values())
-      s_.warnings.push_back(input_error(tire->options().file.string(), key, what).what());
+  for (std::size_t k = 0; k < s_.tires.size(); ++k) {
+    const auto same = [&](const auto& tire) { return tire == s_.tires[k]; };
+    if (std::any_of(s_.tires.begin(), s_.tires.begin() + static_cast<std::ptrdiff_t>(k), same)) continue;
+    for (const auto& [key, what] : s_.tires[k]->unlikely_values())
+      warn(s_.tires[k]->options().file.string(), key, what);
+  }
   tires_ = describe_tires(s_);
   rig_.mount(mounted_tires(s_, tires_));
   for (std::size_t k = 0; k < tires_.size(); ++k) {
     const double share = tires_[k].step_share, tau = tires_[k].damping_time;
-    if (share > 0.0 && s_.run.step > share * tau)
+    if (share > 0.0 && tau == 0.0)
+      warn("tire.structural_damping",
+           fmt::format("is 0 s: contact forces come one step late and can feed a tire that damps nothing; expected at "
+                       "least {} s for a run.step of {} s",
+                       number_text(short_decimal(2.0 * s_.run.step / share)), number_text(s_.run.step)));
+    else if (share > 0.0 && s_.run.step > share * tau)
       warn("run.step",
            fmt::format("{} s is more than {:g} of the tire's damping time of {} s: contact forces come one "
                        "step late and can feed the tire; expected at most {} s{}",

@@ -24,6 +24,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double kMaxWhole = 9007199254740992.0;  // 2^53
+constexpr std::size_t kMaxProblems = 20;          // that are told at once
 
 std::string joined(const std::string& path, const std::string& name) {
   return path.empty() ? name : path + "." + name;
@@ -186,6 +187,7 @@ void Schema::describe(const json& node, const json& value, const std::string& pa
   if (!value.is_object()) return;
   for (const auto& [name, unused] : value.items()) {
     if (member(node, name)) continue;
+    if (out.size() >= kMaxProblems) return;
     const std::string key = joined(path, name);
     std::vector<std::string> known;
     for (const auto& [known_name, known_node] : node["properties"].items()) known.push_back(known_name);
@@ -213,7 +215,7 @@ std::vector<Problem> Schema::problems(const json& document) const {
   std::set<std::string> seen;
   valijson::ValidationResults::Error error;
   std::string fallback = "does not follow the schema";
-  while (results.popError(error)) {
+  while (found.size() < kMaxProblems && results.popError(error)) {
     fallback = error.description;
     const json *node = &root_, *value = &document;
     std::string path;
@@ -226,6 +228,8 @@ std::vector<Problem> Schema::problems(const json& document) const {
     if (node && seen.insert(path).second) describe(*node, *value, path, found);
   }
   if (found.empty()) found.push_back({"", fallback});
+  if (found.size() >= kMaxProblems)
+    found.push_back({"", fmt::format("these are the first {} mistakes, there are more", kMaxProblems)});
   return found;
 }
 

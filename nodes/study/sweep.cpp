@@ -119,7 +119,7 @@ fs::path Sweep::log_of(const Run& run) const { return options_.folder / "runs" /
 
 bool Sweep::finished(const Run& run) const {
   const Json summary = read_summary(folder_of(run));
-  return summary.is_object() && summary.value("scenario_digest", "") == run.digest;
+  return summary.is_object() && value_at(summary, "scenario_digest") == run.digest;
 }
 
 std::vector<std::string> Sweep::command(const Run& run) const {

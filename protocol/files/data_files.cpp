@@ -4,8 +4,14 @@
 #include <vector>
 
 #include "protocol/core/error.hpp"
+#include "protocol/files/printable.hpp"
 
 namespace furrow {
+namespace {
+
+constexpr std::size_t kMaxPath = 4095;  // bytes: PATH_MAX
+
+}  // namespace
 
 std::filesystem::path data_folder() {
   if (const char* home = std::getenv("FURROW_HOME"); home && *home) return home;
@@ -22,6 +28,9 @@ std::filesystem::path data_folder() {
 
 std::filesystem::path find_file(const std::string& name, const std::string& key,
                                 const std::filesystem::path& scenario) {
+  // A zero byte would end the name for the system, and a path that long is none.
+  if (name.size() > kMaxPath || printable(name) != name)
+    throw input_error(scenario.string(), key, "is '" + excerpt(name) + "', expected the name of a file");
   const std::filesystem::path given(name);
   std::vector<std::filesystem::path> places;
   if (given.is_absolute()) {

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <mutex>
 #include <span>
 #include <string>
@@ -55,20 +56,27 @@ class Hdf5Writer {
 /// How the numbers of a dataset are stored.
 enum class Hdf5Type { float64, float32, int64, int32, uint64, uint8, other };
 
+/// Files of other programs as well as ours. Nothing that a file says of itself is believed: a dataset is read when it
+/// is of plain numbers that stand in this very file, and no larger than what is stored of it. So no file can take more
+/// memory than it has bytes (compressed: kMaxRatio times as much), make another file be read, or run a program.
 class Hdf5Reader {
  public:
-  /// Takes files of other programs as well: only those of ours have the attribute format_version.
+  static constexpr std::uintmax_t kMaxRatio = 64;  // positions of grains compress by less than 10
+
+  /// Only files of ours have the attribute format_version.
   /// @throws Error(io) when `file` cannot be opened, is cut short, or its format_version is newer than ours
   explicit Hdf5Reader(const std::filesystem::path& file);
   ~Hdf5Reader();
   Hdf5Reader(const Hdf5Reader&) = delete;
   Hdf5Reader& operator=(const Hdf5Reader&) = delete;
 
-  bool has(const std::string& name) const;  // a dataset or group; groups on the way must exist
+  /// A dataset or group of that name, groups as in "a/b". @throws Error(io) for links to somewhere else
+  bool has(const std::string& name) const;
   bool has_attribute(const std::string& name) const;
 
-  /// Names of all datasets, those in groups as "a/b".
+  /// Names of all datasets, those in groups as "a/b". @throws Error(io) when there are links to somewhere else
   std::vector<std::string> datasets() const;
+  /// Lengths along its axes, at most 2³¹ numbers in all.
   std::vector<hsize_t> shape(const std::string& name) const;
   Hdf5Type type(const std::string& name) const;
 
@@ -81,11 +89,14 @@ class Hdf5Reader {
   std::string text(const std::string& attribute) const;
 
  private:
-  void read_attribute(const std::string& name, hid_t type, void* value) const;
+  class Set;
+  void read_number(const std::string& attribute, hid_t type, void* value) const;
   void check(bool ok, const std::string& what) const;
 
   std::unique_lock<std::recursive_mutex> lock_;
   std::filesystem::path file_;
+  std::uintmax_t size_ = 0;                       // of the file, bytes
+  mutable std::map<std::string, hsize_t> taken_;  // bytes of the file that each dataset was read from
   hid_t handle_ = -1;
 };
 

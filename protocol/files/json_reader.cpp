@@ -6,8 +6,14 @@
 
 #include "protocol/files/json_text.hpp"
 #include "protocol/files/nearest_words.hpp"
+#include "protocol/files/printable.hpp"
 
 namespace furrow {
+namespace {
+
+constexpr std::size_t kMaxName = 4096;  // bytes of a text that names something
+
+}  // namespace
 
 template <class Json>
 BasicJsonReader<Json>::BasicJsonReader(const Json& object, std::string file, std::string path)
@@ -43,7 +49,10 @@ const Json& BasicJsonReader<Json>::array(const std::string& key) {
 
 template <class Json>
 std::string BasicJsonReader<Json>::text(const std::string& key) {
-  return at(key, &Json::is_string, "a text").template get<std::string>();
+  const std::string text = at(key, &Json::is_string, "a text").template get<std::string>();
+  if (text.size() > kMaxName || printable(text) != text)
+    fail(key, fmt::format("is '{}', expected one line of at most {} bytes", excerpt(text), kMaxName));
+  return text;
 }
 
 template <class Json>

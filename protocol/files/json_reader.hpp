@@ -27,7 +27,7 @@ class BasicJsonReader {
   /// The object under this key; an empty one where the key is not given.
   Json object_or_empty(const std::string& key);
   const Json& array(const std::string& key);
-  std::string text(const std::string& key);
+  std::string text(const std::string& key);  // one line, that can be shown as it is
   std::string text_or(const std::string& key, const std::string& otherwise);
   bool flag_or(const std::string& key, bool otherwise);
   int count(const std::string& key, int least, int most = 100000);

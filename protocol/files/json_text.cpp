@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "protocol/core/error.hpp"
+#include "protocol/files/printable.hpp"
 #include "protocol/files/text_file.hpp"
 
 namespace furrow {
@@ -15,7 +16,35 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMaxValue = 60;  // characters shown of a value
+constexpr std::size_t kMaxKey = 256;  // bytes of a key
+
+/// Offset of the bracket that opens level kMaxDepth + 1, or npos. Brackets within texts do not count.
+std::size_t find_too_deep(const std::string& text) {
+  std::size_t depth = 0;
+  bool quoted = false;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const char c = text[at];
+    if (quoted)
+      at += c == '\\';  // whatever is escaped does not end the text
+    else if (c == '[' || c == '{')
+      ++depth;
+    else if ((c == ']' || c == '}') && depth > 0)
+      --depth;
+    if (c == '"') quoted = !quoted;
+    if (depth > kMaxDepth) return at;
+  }
+  return std::string::npos;
+}
+
+std::string too_deep() {
+  return fmt::format("lists and objects are nested deeper than {} levels, expected fewer", kMaxDepth);
+}
+
+/// Whether a comment of another language begins there.
+bool is_comment(const std::string& text, std::size_t at) {
+  return at < text.size() && (text[at] == '#' || (text[at] == '/' && at + 1 < text.size() &&
+                                                  (text[at + 1] == '/' || text[at + 1] == '*')));
+}
 
 /// Builds a document event by event, so that keys can be checked as they come.
 template <class Json>
@@ -41,6 +70,10 @@ class Builder final : public nlohmann::json_sax<Json> {
 
   bool key(std::string& name) override {
     Level& level = levels_.back();
+    if (name.size() > kMaxKey || printable(name) != name)
+      throw input_error(name_, path_to(excerpt(name)),
+                        fmt::format("has a control character or is longer than {} bytes, expected the name of a key",
+                                    kMaxKey));
     level.key = name;
     if (level.value->contains(name)) throw input_error(name_, path(), "is given twice, expected once");
     return true;
@@ -48,17 +81,22 @@ class Builder final : public nlohmann::json_sax<Json> {
 
   bool parse_error(std::size_t position, const std::string&,
                    const nlohmann::detail::exception& error) override {
-    const std::string where = name_ + ":" + place_in_text(text_, position == 0 ? 0 : position - 1);
+    const std::size_t at = position == 0 ? 0 : position - 1;
+    const std::string where = name_ + ":" + place_in_text(text_, at);
     constexpr int kOverflow = 406;
     if (error.id == kOverflow)
       throw input_error(where, path(),
                         "is a number too large for a double, expected at most 1.8e308 in magnitude");
+    // The library looks one character beyond a slash.
+    if (is_comment(text_, at) || (at > 0 && is_comment(text_, at - 1)))
+      throw input_error(where, "",
+                        "is a comment, which JSON has not, expected it to be left out or to stand as a text under the "
+                        "key 'description'");
     std::string what = error.what();
-    // "[json.exception.parse_error.101] parse error at line 1, column 2: syntax error while parsing value -
-    // …"
-    if (const std::size_t at = what.find(" - "); at != std::string::npos) what = what.substr(at + 3);
-    if (const std::size_t at = what.find("; last read: '"); at != std::string::npos && what.size() > 120)
-      what.resize(at);
+    // "[json.exception.parse_error.101] parse error at line 1, column 2: syntax error while parsing value - …"
+    if (const std::size_t from = what.find(" - "); from != std::string::npos) what = what.substr(from + 3);
+    if (const std::size_t from = what.find("; last read: '"); from != std::string::npos && what.size() > 120)
+      what.resize(from);
     throw input_error(where, "", "is not valid JSON: " + what);
   }
 
@@ -92,11 +130,15 @@ class Builder final : public nlohmann::json_sax<Json> {
     levels_.pop_back();
     return true;
   }
-  std::string path() const {
+  std::string path() const { return path_to(levels_.empty() ? "" : levels_.back().key); }
+  /// Of a key of the innermost object.
+  std::string path_to(const std::string& key) const {
     std::string text;
-    for (const Level& level : levels_) {
-      const std::string part = level.value->is_array() ? std::to_string(level.value->size()) : level.key;
-      text += (text.empty() ? "" : ".") + part;
+    for (std::size_t k = 0; k < levels_.size(); ++k) {
+      const bool last = k + 1 == levels_.size();
+      const Json& value = *levels_[k].value;
+      text += (text.empty() ? "" : ".") +
+              (value.is_array() ? std::to_string(value.size()) : last ? key : levels_[k].key);
     }
     return text;
   }
@@ -111,6 +153,8 @@ class Builder final : public nlohmann::json_sax<Json> {
 
 template <class Json>
 Json parse_json(const std::string& text, const std::string& name) {
+  if (const std::size_t at = find_too_deep(text); at != std::string::npos)
+    throw input_error(name + ":" + place_in_text(text, at), "", too_deep());
   Builder<Json> builder(text, name);
   Json::sax_parse(text, &builder);
   return builder.take();
@@ -130,7 +174,9 @@ template nlohmann::ordered_json load_json(const std::filesystem::path&, const st
 nlohmann::ordered_json read_json_if_whole(const std::filesystem::path& file) {
   using Json = nlohmann::ordered_json;
   try {
-    Json document = Json::parse(read_whole_file(file), nullptr, false);
+    const std::string text = read_whole_file(file, kMaxText);
+    if (find_too_deep(text) != std::string::npos) return {};
+    Json document = Json::parse(text, nullptr, false);
     return document.is_discarded() ? Json() : document;
   } catch (const Error&) {
     return {};
@@ -139,6 +185,7 @@ nlohmann::ordered_json read_json_if_whole(const std::filesystem::path& file) {
 
 json parse_value(const std::string& text, const std::string& name, const std::string& key) {
   if (find_invalid_utf8(text) != std::string::npos) throw input_error(name, key, "the value is not UTF-8");
+  if (find_too_deep(text) != std::string::npos) throw input_error(name, key, too_deep());
   if (!json::accept(text)) {
     // A number that overflows is not accepted either, but no string was meant.
     char* end = nullptr;
@@ -169,12 +216,9 @@ std::string number_text(double value) {
 template <class Json>
 std::string value_text(const Json& value) {
   if (value.is_number()) return number_text(value.template get<double>());
-  std::string text = value.is_string() ? "'" + value.template get<std::string>() + "'"
-                                       : value.dump(-1, ' ', false, Json::error_handler_t::replace);
-  if (text.size() <= kMaxValue) return text;
-  std::size_t cut = kMaxValue - 3;
-  while (cut > 0 && (static_cast<unsigned char>(text[cut]) & 0xC0U) == 0x80U) --cut;
-  return text.substr(0, cut) + "…";
+  const std::string text = value.is_string() ? "'" + value.template get_ref<const std::string&>() + "'"
+                                             : value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return excerpt(text);
 }
 template std::string value_text(const nlohmann::json&);
 template std::string value_text(const nlohmann::ordered_json&);

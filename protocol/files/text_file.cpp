@@ -11,13 +11,12 @@
 
 #include <fmt/format.h>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/new_file.hpp"
 
 namespace furrow {
 namespace {
-
-constexpr std::uintmax_t kMaxText = 16 << 20;  // bytes
 
 Error failed(const std::filesystem::path& file, const std::string& what) {
   return io_error(file.string(), what + ": " + std::strerror(errno));
@@ -61,14 +60,15 @@ void check_text_file(const std::filesystem::path& file, const std::string& expec
 
 }  // namespace
 
-std::string read_whole_file(const std::filesystem::path& file) {
+std::string read_whole_file(const std::filesystem::path& file, std::uintmax_t most) {
   std::string bytes;
   std::ifstream in(file, std::ios::binary);
   const bool good = in && read_blocks(in, [&](const char* block, std::size_t count) {
                       bytes.append(block, count);
-                      return true;
+                      return bytes.size() <= most;
                     });
   if (!good) throw unreadable(file);
+  if (bytes.size() > most) throw io_error(file.string(), fmt::format("is larger than {} MB", most >> 20));
   return bytes;
 }
 
@@ -119,24 +119,27 @@ std::string read_text_file(const std::filesystem::path& file, const std::string&
   return text;
 }
 
+std::size_t utf8_length(const std::string& text, std::size_t at) {
+  FURROW_ASSERT(at < text.size(), at, text.size());
+  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[at + k]); };
+  const unsigned lead = byte(0);
+  if (lead < 0x80) return 1;
+  const std::size_t length = lead < 0xC2 ? 0 : lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : lead < 0xF5 ? 4 : 0;
+  if (length == 0 || at + length > text.size()) return 0;
+  unsigned code = lead & (0x7FU >> length);
+  for (std::size_t k = 1; k < length; ++k) {
+    if ((byte(k) & 0xC0U) != 0x80U) return 0;
+    code = code << 6 | (byte(k) & 0x3FU);
+  }
+  const bool overlong = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
+  return overlong || (code >= 0xD800 && code < 0xE000) || code > 0x10FFFF ? 0 : length;
+}
+
 std::size_t find_invalid_utf8(const std::string& text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  for (std::size_t i = 0; i < text.size();) {
-    const unsigned lead = byte(i);
-    const int more = lead < 0x80                   ? 0
-                     : lead >= 0xC2 && lead < 0xE0 ? 1
-                     : lead >= 0xE0 && lead < 0xF0 ? 2
-                     : lead >= 0xF0 && lead < 0xF5 ? 3
-                                                   : -1;
-    if (more < 0 || lead == 0 || i + static_cast<std::size_t>(more) >= text.size()) return i;
-    unsigned code = more == 0 ? lead : lead & (0x3FU >> more);
-    for (int k = 1; k <= more; ++k) {
-      if ((byte(i + static_cast<std::size_t>(k)) & 0xC0U) != 0x80U) return i;
-      code = code << 6 | (byte(i + static_cast<std::size_t>(k)) & 0x3FU);
-    }
-    const bool overlong = (more == 2 && code < 0x800) || (more == 3 && code < 0x10000);
-    if (overlong || (code >= 0xD800 && code < 0xE000) || code > 0x10FFFF) return i;
-    i += 1 + static_cast<std::size_t>(more);
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = utf8_length(text, at);
+    if (length == 0 || text[at] == '\0') return at;
+    at += length;
   }
   return std::string::npos;
 }

@@ -1,6 +1,7 @@
 // Whole files. Written, they appear or do not (new_file.hpp).
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -8,8 +9,11 @@
 
 namespace furrow {
 
-/// All bytes of a file. @throws Error(io)
-std::string read_whole_file(const std::filesystem::path& file);
+/// Bytes that a text which a person wrote has at most.
+inline constexpr std::uintmax_t kMaxText = 16 << 20;
+
+/// All bytes of a file. @throws Error(io), also when there are more than `most`
+std::string read_whole_file(const std::filesystem::path& file, std::uintmax_t most = UINTMAX_MAX);
 
 /// The bytes of a text file in UTF-8 that a user wrote.
 /// @param expected what should be there, for messages: "a scenario in JSON"
@@ -29,7 +33,10 @@ void write_whole_file(const std::filesystem::path& file, const std::string& text
 /// Flushes what was renamed, made or removed in a folder to the disk. @throws Error(io)
 void sync_folder(const std::filesystem::path& folder);
 
-/// Offset of the first byte that is not UTF-8 (RFC 3629), or npos.
+/// Bytes of the UTF-8 character (RFC 3629) that begins at `at`; 0 where none does. @pre at < text.size()
+std::size_t utf8_length(const std::string& text, std::size_t at);
+
+/// Offset of the first byte that is not UTF-8, or is zero, or npos.
 std::size_t find_invalid_utf8(const std::string& text);
 
 /// "line:column" of a byte, both from 1, the column in characters.

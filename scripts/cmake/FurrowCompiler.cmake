@@ -25,6 +25,13 @@ if(FURROW_SANITIZE)
   target_link_options(furrow_options INTERFACE -fsanitize=address,undefined)
 endif()
 
+# libFuzzer's targets need libraries that tell it where it has been, and coverage can be told afterwards (tests/fuzz).
+if(FURROW_FUZZ)
+  target_compile_options(furrow_options INTERFACE -g -O1 -fno-omit-frame-pointer -fsanitize=fuzzer-no-link,address,undefined
+    -fno-sanitize-recover=undefined -fprofile-instr-generate -fcoverage-mapping)
+  target_link_options(furrow_options INTERFACE -fsanitize=address,undefined -fprofile-instr-generate)
+endif()
+
 # Precompiled headers save a third of the build. Sources include what they use all the same: the audit preset
 # builds without.
 if(FURROW_PCH)

@@ -55,7 +55,7 @@ def pull_slip_sinkage(run):
     noisy(top, time, pull, BLUE, "corrected for the inertia of what the rig carries (running mean 50 ms)")
     statistics = run.summary.get("drawbar_pull_N") or {}
     mark_window(top, run, "averaging window")
-    if run.window and statistics.get("mean") is not None:
+    if run.measured and run.window and statistics.get("mean") is not None:
         mean, sem = statistics["mean"], statistics.get("sem") or np.nan
         share = run.number("drawbar_coefficient")
         text = f"mean {with_error(mean, sem)} N (standard error)" + (f" = {100 * share:.1f} % of load" if share else "")

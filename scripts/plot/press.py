@@ -1,9 +1,8 @@
 """A tire pressed on a plate or a cleat: what `furrow press` leaves in its directory."""
-import json
-
 import matplotlib.pyplot as plt
 import numpy as np
 
+from .run_data import check_types, read_object
 from .soil import Soil
 from .style import BLUE, GREY, ORANGE
 
@@ -13,10 +12,11 @@ class Press(Soil):
 
     def __init__(self, directory):
         self.directory = directory
-        try:
-            self.values = json.loads((directory / "summary.json").read_text(encoding="utf-8"))
-        except ValueError as error:
-            raise ValueError(f"summary.json is no valid JSON: {error}") from error
+        self.values = read_object(directory / "summary.json")
+        check_types(self.values, "summary.json", texts=("scenario", "tire", "obstacle"), objects=("footprint",),
+                    numbers=("deflection_m", "load_N", "secant_stiffness_N_per_m"))
+        check_types(self.values.get("footprint") or {}, "summary.json: key 'footprint'",
+                    numbers=("force_N", "length_m", "width_m", "mean_pressure_Pa"))
 
     def title(self, figure, what):
         figure.suptitle(f"{self.values['scenario']} · {self.values['tire']} on a {self.values['obstacle']} · {what}",

@@ -1,5 +1,7 @@
 """What a run directory holds, read as far as it exists."""
 import json
+import os
+import pathlib
 import re
 
 import h5py
@@ -12,10 +14,93 @@ class Missing(Exception):
     """What a plot needs is not in the run directory."""
 
 
+class Damaged(ValueError):
+    """A file in the run directory does not hold what it should."""
+
+
+RATIO = 64  # that datasets are compressed by, at most
+LARGEST = 64 << 20  # bytes of a JSON file
+LARGEST_NUMBER = 10 ** 300  # beyond it no float can be made of a whole number
+
+
+def printable(text):
+    """One line that a terminal only shows."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in str(text))
+
+
+def read_object(path):
+    """The object that a JSON file holds."""
+    if path.stat().st_size > LARGEST:
+        raise Damaged(f"{path.name} is larger than {LARGEST >> 20} MB")
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise Damaged(f"{path.name} is no valid JSON: {error}") from error
+    except RecursionError as error:
+        raise Damaged(f"{path.name} is nested too deeply") from error
+    if not isinstance(content, dict):
+        raise Damaged(f"{path.name} is not a JSON object")
+    return content
+
+
+def check_types(content, name, texts=(), numbers=(), objects=(), flags=(), lists=()):
+    """Values of other types than these keys have, null aside, are errors that name the key."""
+    kinds = ((texts, str, "a text"), (numbers, (int, float), "a number"), (objects, dict, "an object"),
+             (flags, bool, "true or false"), (lists, list, "a list"))
+    for keys, kind, expected in kinds:
+        for key in keys:
+            value = content.get(key)
+            right = value is None or (isinstance(value, kind) and (kind is bool or not isinstance(value, bool)))
+            if not right or (isinstance(value, int) and abs(value) > LARGEST_NUMBER):
+                raise Damaged(f"{name}: key '{key}': is {printable(json.dumps(value))[:60]}, expected {expected}")
+
+
+def read_dataset(file, name):
+    """All numbers of an HDF5 dataset. Nothing that the file says of itself is believed: they must stand in this very
+    file, and be no larger than what is stored of them."""
+    what = f"{pathlib.Path(file.filename).name}: the dataset '{name}'"
+    group = file
+    for part in name.split("/"):
+        if not isinstance(group, h5py.Group) or part not in group:
+            raise Damaged(f"{what} is missing")
+        if not isinstance(group.get(part, getlink=True), h5py.HardLink):
+            raise Damaged(f"{what} is a link, expected the numbers themselves in this file")
+        group = group[part]
+    if not isinstance(group, h5py.Dataset):
+        raise Damaged(f"{what} is a group, expected numbers")
+    if group.external or group.is_virtual:
+        raise Damaged(f"{what} stands in another file, expected the numbers themselves in this file")
+    if group.dtype.kind not in "iuf":
+        raise Damaged(f"{what} holds no plain numbers")
+    stored = group.id.get_storage_size()
+    most = stored * (RATIO if group.id.get_create_plist().get_nfilters() else 1)
+    if stored > os.path.getsize(file.filename) or group.size * group.dtype.itemsize > most:
+        raise Damaged(f"{what} is said to have {group.size} numbers, but {stored} bytes are stored: it was never written, "
+                      "or the file is cut short or damaged")
+    return group[()]
+
+
+def table(file, name, columns):
+    """A dataset of as many columns; a vector where `columns` is 0."""
+    values = read_dataset(file, name)
+    if (values.ndim != 1) if columns == 0 else (values.ndim != 2 or values.shape[1] != columns):
+        raise Damaged(f"{pathlib.Path(file.filename).name}: the dataset '{name}' has the shape {values.shape}, expected "
+                      + (f"N × {columns}" if columns else "N numbers"))
+    return values
+
+
+# Keys of summary.json that plots read.
+NUMBERS = ("slip", "vertical_load_N", "travel_sign", "drawbar_coefficient", "tread_width_m", "rut_depth_m", "rut_width_m",
+           "surface_height_m", "sinkage_m", "grains", "bed_clearance_m")
+OBJECTS = ("drawbar_pull_N", "power_balance")
+
+
 class HeightField:
     """Surface heights z (m) over cell centres x, y (m); NaN where no grain is."""
 
     def __init__(self, z, grid):
+        if np.shape(grid) != (3,) or np.ndim(z) != 2 or not np.all(np.isfinite(grid)):
+            raise Damaged("results.h5 holds no height field")
         x0, y0, cell = grid
         self.z, self.cell = np.asarray(z, float), cell
         self.x = x0 + cell * np.arange(self.z.shape[0])
@@ -34,21 +119,25 @@ class Run:
 
     def _json(self, name):
         path = self.directory / name
-        if not path.exists():
-            return {}
-        try:
-            content = json.loads(path.read_text(encoding="utf-8"))
-        except ValueError as error:
-            raise ValueError(f"{name} is no valid JSON: {error}") from error
-        if not isinstance(content, dict):
-            raise ValueError(f"{name} is not a JSON object")
-        return content
+        return read_object(path) if path.exists() else {}
 
     def _summary(self):
         """Of several wheels, wheel 0's keys stand beside those of the run, as they do of a single one."""
-        summary = self._json("summary.json")
+        name = "summary.json"
+        summary = self._json(name)
+        check_types(summary, name, lists=("wheels",))
         wheels = summary.get("wheels") or [{}]
-        return {**wheels[0], **summary}
+        if not isinstance(wheels[0], dict):
+            raise Damaged(f"{name}: key 'wheels.0': expected an object")
+        summary = {**wheels[0], **summary}
+        check_types(summary, name, texts=("scenario", "terrain_engine", "law"), numbers=NUMBERS, objects=OBJECTS,
+                    lists=("net_terrain_force_N", "ranks"))
+        pull = summary.get("drawbar_pull_N") or {}
+        check_types(pull, name + ": key 'drawbar_pull_N'", numbers=("mean", "sem", "from_s", "to_s"), flags=("steady",),
+                    lists=("unsteady_because",))
+        check_types(summary.get("power_balance") or {}, name + ": key 'power_balance'",
+                    numbers=[key for key in summary.get("power_balance") or {}])
+        return summary
 
     def _read_series(self):
         """Columns of the table of wheel 0."""
@@ -80,7 +169,8 @@ class Run:
         with h5py.File(path, "r") as file:
             if "terrain/height_after" not in file:
                 raise Missing("this ground has no surface that deforms")
-            return tuple(HeightField(file[f"terrain/height_{when}"][()], file[f"terrain/height_{when}_grid"][()])
+            return tuple(HeightField(read_dataset(file, f"terrain/height_{when}"),
+                                     read_dataset(file, f"terrain/height_{when}_grid"))
                          for when in ("before", "after"))
 
     def frames(self, kind):
@@ -98,14 +188,37 @@ class Run:
 
     @property
     def travel_sign(self):
-        rig = self.scenario.get("rig", {})
+        rig = self.rig
         return float(rig.get("travel_sign", self.number("travel_sign", 1.0)) or 1.0)
 
     @property
     def lateral(self):
         """y of wheel 0's mid-plane, m."""
-        wheels = self.scenario.get("rig", {}).get("wheels") or [{}]
-        return float(wheels[0].get("lateral") or 0.0)
+        return float(self.wheels[0].get("lateral") or 0.0) if self.wheels else 0.0
+
+    @property
+    def rig(self):
+        rig = self.scenario.get("rig") or {}
+        if not isinstance(rig, dict):
+            raise Damaged("scenario.json: key 'rig': expected an object")
+        check_types(rig, "scenario.json: key 'rig'", numbers=("travel_sign",), lists=("wheels",))
+        return rig
+
+    @property
+    def wheels(self):
+        """Entries of rig.wheels."""
+        wheels = self.rig.get("wheels") or []
+        for wheel in wheels:
+            if not isinstance(wheel, dict):
+                raise Damaged("scenario.json: key 'rig.wheels': expected objects")
+            check_types(wheel, "scenario.json: key 'rig.wheels'", numbers=("lateral",))
+        return wheels
+
+    @property
+    def measured(self):
+        """False for a tire that did not touch the ground in the averaging window."""
+        force = self.summary.get("net_terrain_force_N") or []
+        return not (len(force) == 3 and force[2] == 0)
 
     @property
     def window(self):
@@ -126,7 +239,7 @@ class Run:
             what.append(f"slip {self.number('slip'):g}")
         if self.number("vertical_load_N") is not None:
             what.append(f"load {digits(self.number('vertical_load_N'))} N")
-        wheels = len(self.scenario.get("rig", {}).get("wheels") or [])
+        wheels = len(self.wheels)
         if wheels > 1:
             what.append(f"wheel 0 of {wheels}")
         if self.scenario and not self.summary:

@@ -6,7 +6,7 @@ import numpy as np
 
 from .digits import digits, with_error
 from .raster import Buffers, Camera, occlusion, shade, shadow
-from .run_data import Missing
+from .run_data import Damaged, Missing, table
 
 WIDTH, HEIGHT = 1500, 860  # pixels of the picture; rendered at twice that
 BEHIND, AHEAD = 1.45, 0.75  # m of the bed that are shown, from the axle of a tire as high as this one:
@@ -46,7 +46,10 @@ class Soil:
 
     def __init__(self, path, centre, sign, scale):
         with h5py.File(path, "r") as file:
-            position, radius = scale * file["position"][()].astype(float), scale * file["radius"][()].astype(float)
+            position = scale * table(file, "position", 3).astype(float)
+            radius = scale * table(file, "radius", 0).astype(float)
+        if len(position) != len(radius) or not (np.isfinite(position).all() and (radius > 0.0).all()):
+            raise Damaged(f"{path.name} holds no grains that could be drawn")
         self.lateral = (position[:, 1].min(), position[:, 1].max())
         ahead = sign * (position[:, 0] - centre[0])
         inside = (ahead > -BEHIND) & (ahead < AHEAD)
@@ -154,7 +157,9 @@ def annotate(axis, run, time, camera, centre, sign, ground, scale):
     axis.annotate(f"{bar:g} m", left, xytext=(6, -12), textcoords="offset points", ha="left", fontsize=11)
     lines = [f"t = {time:.2f} s"]
     pull = run.summary.get("drawbar_pull_N") or {}
-    if pull.get("mean") is not None:
+    if not run.measured:
+        lines.append("the tire did not touch the terrain: nothing measured")
+    elif pull.get("mean") is not None:
         lines.append(f"drawbar pull {with_error(pull['mean'], pull.get('sem'))} N"
                      + ("" if pull.get("steady") else " (not steady)"))
     for name, label in (("sinkage_m", "sinkage"), ("rut_depth_m", "rut depth")):
@@ -168,10 +173,14 @@ def annotate(axis, run, time, camera, centre, sign, ground, scale):
 def scene(run):
     tire_file, grain_file = last_frames(run)
     with h5py.File(tire_file, "r") as file:
-        tire = file["position"][()].astype(float), file["triangle"][()].astype(int)
+        tire = table(file, "position", 3).astype(float), table(file, "triangle", 3).astype(int)
         time = float(file.attrs["time_s"])
-    scale = scale_of(float(np.ptp(tire[0][:, 2])))
-    tire = scale * tire[0], tire[1]
+    vertex, triangle = tire
+    if not (len(vertex) and len(triangle) and np.isfinite(vertex).all() and 0 <= triangle.min()
+            and triangle.max() < len(vertex)):
+        raise Damaged(f"{tire_file.name} holds no surface that could be drawn")
+    scale = scale_of(float(np.ptp(vertex[:, 2])))
+    tire = scale * vertex, triangle
     centre, sign = 0.5 * (tire[0].min(0) + tire[0].max(0)), run.travel_sign
     soil = colours = None
     ground, span = scale * run.number("surface_height_m", 0.0), 1e-3

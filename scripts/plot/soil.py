@@ -1,10 +1,8 @@
 """Virtual soil tests: what `furrow soil` leaves in its directory."""
-import json
-
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .run_data import Missing
+from .run_data import Missing, check_types, read_object
 from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED
 
 COLOURS = [BLUE, ORANGE, GREEN, RED, PURPLE]
@@ -15,12 +13,11 @@ class Soil:
 
     def __init__(self, directory):
         self.directory = directory
-        try:
-            self.values = json.loads((directory / "soil.json").read_text(encoding="utf-8"))
-        except ValueError as error:
-            raise ValueError(f"soil.json is no valid JSON: {error}") from error
-        if not isinstance(self.values, dict):
-            raise ValueError("soil.json is not a JSON object")
+        self.values = read_object(directory / "soil.json")
+        check_types(self.values, "soil.json", texts=("scenario",), objects=("grains", "standard_error"), flags=("quick",))
+        for key in ("grains", "standard_error"):
+            values = self.values.get(key) or {}
+            check_types(values, f"soil.json: key '{key}'", numbers=[name for name in values if key != "grains" or name.endswith(("_m", "_Pa"))])
 
     def table(self, name):
         """The columns of a CSV file as arrays."""

@@ -1,12 +1,11 @@
 """Studies: what `furrow sweep` leaves in its directory."""
 import csv
-import json
 import math
 
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .run_data import Missing
+from .run_data import Missing, check_types, read_dataset, read_object
 from .student import half_interval
 from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY
 
@@ -18,13 +17,14 @@ class Sweep:
 
     def __init__(self, directory):
         self.directory = directory
-        self.values = json.loads((directory / "sweep.json").read_text(encoding="utf-8"))
+        self.values = read_object(directory / "sweep.json")
+        check_types(self.values, "sweep.json", texts=("study",), objects=("plot",), lists=("results",))
         with open(directory / "sweep.csv", newline="", encoding="utf-8") as file:
             self.rows = [row for row in csv.DictReader(line for line in file if not line.startswith("#")) if row["state"] == "done"]
         self.plot = self.values.get("plot") or {}
 
     def summary(self, row):
-        return json.loads((self.directory / row["folder"] / "summary.json").read_text(encoding="utf-8"))
+        return read_object(self.directory / row["folder"] / "summary.json")
 
     def title(self):
         return f"{self.values.get('study', self.directory.name)}"
@@ -141,8 +141,8 @@ def heights(sweep, row):
     """x, y of the cells, undisturbed and final height of a pass, m."""
     import h5py
     with h5py.File(sweep.directory / row["folder"] / "results.h5", "r") as file:
-        x0, y0, cell = file["terrain/height_before_grid"][()]
-        before, after = file["terrain/height_before"][()], file["terrain/height_after"][()]
+        x0, y0, cell = read_dataset(file, "terrain/height_before_grid")
+        before, after = read_dataset(file, "terrain/height_before"), read_dataset(file, "terrain/height_after")
     x = x0 + cell * np.arange(after.shape[0])
     y = y0 + cell * np.arange(after.shape[1])
     return x, y, before, after

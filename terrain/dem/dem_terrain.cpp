@@ -70,7 +70,7 @@ class DemTerrain : public Terrain {
     const double begin = wall_clock();
     const dem::PreparedBed prepared = dem::prepare_bed(options_, progress);
     // A run from a cached bed and the run that settled it both start here, from the same archive.
-    solver_.restore(prepared.bed);
+    dem::restore_bed(solver_, prepared);
     solver_.set_threads(std::max(1, options_.threads));
     solver_.set_coefficients(dem::run_coefficients(options_, dt_));
     solver_.reset_accounts();

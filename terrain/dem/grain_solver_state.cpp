@@ -6,6 +6,7 @@
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
 #include "terrain/dem/grain_solver.hpp"
+#include "terrain/dem/solver_state_check.hpp"
 
 namespace furrow::terrain::dem {
 namespace {
@@ -91,6 +92,7 @@ void GrainSolver::save(Archive& archive) const {
 }
 
 void GrainSolver::restore(const Archive& archive) {
+  check_solver_state(archive, strips_);
   const auto n = static_cast<std::size_t>(archive.get_int("count"));
   grains_.resize(static_cast<int>(n));
   get_quads(archive, "position", grains_.position.data(), n);

@@ -9,7 +9,6 @@
 namespace furrow::terrain::dem {
 namespace {
 
-constexpr int kMaxCellsZ = 512;  // higher grains share the top cell
 constexpr int padded(int n) { return (n + kFloatLanes - 1) / kFloatLanes * kFloatLanes; }
 
 /// Cells of at least `size` along a side; three where the side is periodic, so that no two neighbours are the same.

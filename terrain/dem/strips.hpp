@@ -187,9 +187,12 @@ class Strips {
   /// What the lists hold in memory, with what a rebuild needs.
   std::size_t bytes() const;
 
+  static constexpr int kMaxCellsZ = 512;  // higher grains share the top cell
+
   /// Gives a strip its arrays for `pairs` pairs.
   void size_lists(Strip& strip, int pairs) const;
   /// After strips were read from a saved state: cells along z, and what follows from the grains.
+  int cells_y() const { return ny_; }
   int cells_z() const { return nz_; }
   void restore_shape(int cells_z, std::int64_t resorted);
 

@@ -9,6 +9,7 @@
 #include "protocol/core/error.hpp"
 #include "terrain/dem/contact_tangent.hpp"
 #include "terrain/dem/size_scale.hpp"
+#include "terrain/surface/surface_check.hpp"
 
 namespace furrow::terrain::dem {
 namespace {
@@ -251,6 +252,11 @@ void SurfaceContacts::save(Archive& archive) const {
 void SurfaceContacts::restore(const Archive& archive, const Strips& strips) {
   FURROW_ASSERT(static_cast<int>(strips_.size()) == strips.count(), strips_.size(), strips.count());
   const auto count = archive.get_int("surfaces/count");
+  std::vector<int> expected;  // vertices of the surfaces that were attached before
+  for (const Surface& s : surfaces_) expected.push_back(s.collider->mesh().vertex_count);
+  if (count < 0 || (!expected.empty() && static_cast<std::size_t>(count) != expected.size()))
+    throw Error(ExitCode::io, "saved state holds " + std::to_string(count) + " surfaces, expected " +
+                                  std::to_string(expected.size()));
   surfaces_.clear();
   for (std::int64_t k = 0; k < count; ++k) {
     Archive::Scope scope(archive, "surface" + std::to_string(k) + "/");
@@ -260,6 +266,9 @@ void SurfaceContacts::restore(const Archive& archive, const Strips& strips) {
     restore_fields(archive, "mesh", mesh);
     restore_value(archive, "position", start.position, mesh.vertex_count);
     restore_fields(archive, "material", material);
+    check_surface(mesh, start, static_cast<int>(k));
+    if (!expected.empty() && mesh.vertex_count != expected[static_cast<std::size_t>(k)])
+      throw Error(ExitCode::io, "saved state of surface " + std::to_string(k) + " is of another tire");
     attach(mesh, material, {}, start);
   }
   for (SurfaceStrip& strip : strips_) strip = {};
@@ -267,7 +276,10 @@ void SurfaceContacts::restore(const Archive& archive, const Strips& strips) {
   restore_value(archive, "surfaces/history", history);
   int s = 0;
   for (const SurfaceHistory& one : history) {
-    while (one.grain >= strips[s].last) ++s;
+    while (s < strips.count() && one.grain >= strips[s].last) ++s;
+    if (s == strips.count() || one.grain < strips[s].first || one.surface < 0 || one.surface >= count)
+      throw Error(ExitCode::io, "saved state 'surfaces/history' names a grain or a surface that there is not, or not in "
+                                "their order: it is damaged");
     strips_[s].history.push_back(one);
   }
 }

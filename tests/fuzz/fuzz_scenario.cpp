@@ -1,16 +1,8 @@
 // Scenario files: JSON as people write it, the schema's mistakes, defaults and warnings.
-#include <set>
-
-#include "nodes/scenario/scenario.hpp"
 #include "nodes/scenario/schema.hpp"
 #include "protocol/core/error.hpp"
-#include "protocol/files/data_files.hpp"
 #include "protocol/files/json_text.hpp"
 #include "tests/fuzz/input_file.hpp"
-
-namespace furrow {
-std::filesystem::path data_folder() { return FURROW_SOURCE_FOLDER; }
-}  // namespace furrow
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace furrow;

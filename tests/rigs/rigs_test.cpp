@@ -94,6 +94,22 @@ TEST(Rigs, entries_of_wheels_take_from_the_rig_what_they_leave_out) {
   EXPECT_EQ(d.wheels[1].start_key, "rig.wheels.1.start");
 }
 
+TEST(Rigs, of_a_list_with_one_wheel_the_start_is_named_where_it_stands) {
+  const std::vector<rigs::WheelSize> one(1, {kRadius, kWidth});
+  const auto key = [&](const json& section) {
+    return rigs::read_rig(section, kContext)->describe(one, 1.0).wheels[0].start_key;
+  };
+  EXPECT_EQ(key({{"wheels", {{{"start", -5.0}}}}}), "rig.wheels.0.start");
+  EXPECT_EQ(key({{"start", -5.0}, {"wheels", {{{"lateral", 0.1}}}}}), "rig.start");
+  EXPECT_EQ(key({{"start", -5.0}}), "rig.start");
+  try {
+    rigs::read_rig({{"mode", "fixed_speed"}, {"wheels", {{{"slip", 1.0}}}}}, kContext);
+    ADD_FAILURE() << "was read";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("key 'rig.wheels.0.slip'"), std::string::npos) << error.what();
+  }
+}
+
 TEST(Rigs, description_is_that_of_the_made_rig) {
   const json section = {{"travel_sign", -1}, {"start", 4.0}, {"ramp", 0.2},        {"camber_angle", 0.1},
                         {"rim_mass", 20.0},  {"slip", 0.25}, {"carrier_mass", 300}};

@@ -74,7 +74,17 @@ SCENARIOS = [
     ("missing_comma", '{\n  "rig": {}\n  "run": {}\n}', [], ":3:"),
     ("cut_short", json.dumps(SMALL)[:-20], [], "is not valid JSON"),
     ("a_list", "[1, 2]", [], "is [1,2], expected an object"),
-    ("comment", "// a comment\n{}", [], ":1:"),
+    ("comment", "// a comment\n{}", [], ":1:1: is a comment, which JSON has not"),
+    ("deep_list", "[" * 100000 + "]" * 100000, [], "in.json:1:65: lists and objects are nested deeper than 64 levels"),
+    ("deep_value", json.dumps(SMALL)[:-1] + ', "description": ' + "[" * 100000 + "]" * 100000 + "}", [], "nested deeper than 64 levels"),
+    ("deep_setting", json.dumps(SMALL), ["--set", "tire.pressure=" + "[" * 50000 + "]" * 50000],
+     "key 'tire.pressure': lists and objects are nested deeper than 64 levels"),
+    ("deep_key", json.dumps(SMALL), ["--set", ".".join("a" * 50000) + "=1"], "': is no key, expected --set section.key=value"),
+    ("terminal_codes_in_a_key", '{"\\u001b]0;owned\\u0007": 1}', [], "key '\\x1b]0;owned\\x07': has a control character"),
+    ("terminal_codes_in_a_value", text(terrain={"law": "\x1b[31m\n"}), [], "key 'terrain.law': is '\\x1b[31m\\n', expected 'mindlin'"),
+    ("terminal_codes_in_a_name", text(tire={"file": "\x1b[31m"}), [], "key 'tire.file': is '\\x1b[31m', expected the name of a file"),
+    ("terminal_codes_in_an_argument", json.dumps(SMALL), ["\x1b[31m"], "the argument '\\x1b[31m' holds a control character"),
+    ("one_listed_wheel_outside", text(rig={"wheels": [{"start": -5}]}), [], "key 'rig.wheels.0.start': is -5 m, expected 0.467 to"),
     ("set_without_value", json.dumps(SMALL), ["--set", "rig.slip"], "key '--set': is 'rig.slip', expected the form key=value"),
     ("set_unknown", json.dumps(SMALL), ["--set", "rig.slpi=0.1"], "key 'rig.slpi': is unknown, expected 'rig.slip'?"),
     ("set_overflow", json.dumps(SMALL), ["--set", "rig.slip=1e400"], "key 'rig.slip': '1e400' is a number too large"),
@@ -123,6 +133,10 @@ BEDS = [
     ("outside", "0.1,0,0.1\n1.5,0,0.1", "bed.csv: key 'line 3': the grain stands at (1.5, 0, 0.1) m, expected a centre inside the bin"),
     ("in_each_other", "0.1,0,0.1\n0.11,0,0.1", "key 'line 3': the grain at (0.11, 0, 0.1) m is 0.01 m from that of line 2, expected at least 0.054 m"),
     ("no_grain", "", "bed.csv: holds no grain"),
+    ("in_the_sky", "0.1,0,0.1\n0.3,0,5000", "key 'line 3': the grain stands at (0.3, 0, 5000) m, 5000 m above all that is below it, "
+     "expected at most 3 m, 100 radii"),
+    ("terminal_codes", "\x1b[31m,0,0.1", "key 'line 2': '\\x1b[31m,0,0.1', expected three finite numbers, m"),
+    ("one_long_line", "0" * 100000, "key 'line 2': is longer than 1023 bytes, expected a CSV file of positions"),
 ]
 
 
@@ -274,6 +288,26 @@ class BadFile(SystemTest):
         self.assertIn("soil.json: key 'k_c': is null, expected a number", self.error_of("report", "run", "--soil", "soil.json"))
         (self.folder / "soil.json").write_text('{"format_version": 2}')
         self.assertIn("soil.json: key 'format_version': is 2: the file is newer", self.error_of("report", "run", "--soil", "soil.json"))
+
+    def test_a_text_file_as_bed_is_not_printed(self):
+        (self.folder / "bed.csv").write_text("root:x:0:0:root:/root:/bin/bash and much more\n")
+        path = write_scenario(self.folder, changed(terrain={"bed": "bed.csv"}))
+        line = self.error_of("validate", path)
+        self.assertIn("key 'line 1': 'root:x:0:0:root:/root:/bin/…', expected the header", line)
+
+    def test_deep_files_of_every_kind(self):
+        deep = '{"a": ' + "[" * 100000 + "]" * 100000 + "}"
+        (self.folder / "deep.json").write_text(deep)
+        tire = write_scenario(self.folder, changed(tire={"file": "deep.json"}), "tire.json")
+        soil = write_scenario(self.folder, changed(terrain={"material": "deep.json"}), "soil.json")
+        for arguments in (("sweep", "deep.json"), ("validate", tire), ("validate", soil), ("bed", "deep.json")):
+            self.assertIn("deep.json:1:70: lists and objects are nested deeper than 64 levels", self.error_of(*arguments))
+        run = self.folder / "run"
+        run.mkdir()
+        (run / "scenario.json").write_text(deep)
+        (run / "summary.json").write_text(deep)
+        self.assertIn("summary.json:1:70: lists and objects are nested", self.error_of("report", "run", "--soil", "deep.json"))
+        self.assertIn("scenario.json:1:70: lists and objects are nested", self.error_of("resume", "run"))
 
     def test_no_launcher(self):
         path = write_scenario(self.folder)

@@ -59,6 +59,15 @@ class Commands(SystemTest):
         self.assertEqual(report["bound_by"], [])
         self.assertAlmostEqual(report["wheels"][0]["load_N"], 24.5)
 
+    def test_shipped_scenarios_are_found_by_their_names(self):
+        self.assertIn("first_look.json", self.output("validate", "first_look.json"))
+        (self.folder / "first_look.json").write_text(json.dumps(changed(run={"end": 0.04})))
+        self.assertIn("0.04 s in 400 steps", self.output("validate", "first_look.json"), "a file that is here comes first")
+
+    def test_rounded_times_are_explained(self):
+        for key in ("run.end", "output.series_interval", "output.frame_interval", "checkpoint.interval"):
+            self.assertIn("rounded to a whole number of run.step", self.output("explain", key))
+
     def test_validate_writes_nothing(self):
         self.output("validate", write_scenario(self.folder))
         self.assertEqual(self.names(), ["small.json"])

@@ -48,6 +48,8 @@ class Sweep(SystemTest):
         done = furrow("sweep", study, cwd=self.folder)
         rows = self.table()
         self.assertEqual([row["state"] for row in rows], ["done", "failed", "done"], done.stderr)
+        self.assertEqual(done.stderr.count("furrow: error: "), 1, done.stderr)
+        self.assertIn("sweep.csv: not every run came to its end; the first that failed has exit code", done.stderr)
         self.assertEqual(done.returncode, 3, done.stderr)
         self.assertEqual(rows[1]["exit_code"], "3")
         self.assertIn("was lost", rows[1]["problem"])

@@ -10,6 +10,7 @@
 #include "protocol/files/hdf5_handle.hpp"
 #include "terrain/dem/beds/bed_cache.hpp"
 #include "terrain/dem/beds/bed_compaction.hpp"
+#include "terrain/dem/beds/bed_csv.hpp"
 #include "terrain/dem/beds/bed_generators.hpp"
 #include "terrain/dem/beds/bed_preparation.hpp"
 #include "terrain/dem/beds/bed_statistics.hpp"
@@ -239,12 +240,65 @@ TEST_F(Beds, bad_positions_are_refused_by_line) {
            {"0.1,0,1e400", "expected three finite numbers"},
            {"0.4,0,0.05", "line 3': the grain stands at (0.4, 0, 0.05) m, expected a centre inside the bin"},
            {"0.1,0,-0.05", "inside the bin"},
+           {"0.1,0,5000", "line 3': the grain stands at (0.1, 0, 5000) m, 5000 m above all that is below it, expected at "
+                          "most 1 m, 100 radii"},
+           {"\x1b[31m,0,0.05", "line 3': '\\x1b[31m,0,0.05', expected three finite numbers"},
            {"0.101,0,0.05", "line 3': the grain at (0.101, 0, 0.05) m is 0.001 m from that of line 2"}}) {
     options_.bed = write("bad.csv", std::string("x_m,y_m,z_m\n0.1,0,0.05\n") + row + "\n");
     EXPECT_NE(refusal().find(what), std::string::npos) << refusal();
   }
   options_.bed = write("bad.csv", "x,y,z\n0.1,0,0.05\n");
   EXPECT_NE(refusal().find("expected the header x_m,y_m,z_m"), std::string::npos);
+  // Of a file that is no bed only the beginning is shown.
+  options_.bed = write("bad.csv", "root:x:0:0:root:/root:/bin/bash and more that is nobody's business\n");
+  EXPECT_NE(refusal().find("line 1': 'root:x:0:0:root:/root:/bin/…', expected"), std::string::npos) << refusal();
+  for (const std::string& text : {"x_m,y_m,z_m\n0.1,0," + std::string(5000, '0') + "1\n", std::string(1 << 20, 'x')}) {
+    options_.bed = write("bad.csv", text);
+    EXPECT_NE(refusal().find("': is longer than 1023 bytes, expected a CSV file"), std::string::npos) << refusal();
+  }
+  options_.bed = write("bad.csv", std::string("x_m,y_m,z_m\n0.1,0,0.05\0,0.1,0,0.05\n", 35));
+  EXPECT_NE(refusal().find("line 2': holds a zero byte"), std::string::npos) << refusal();
+  options_.bed = write("bad.csv", "");
+  EXPECT_NE(refusal().find("is empty"), std::string::npos) << refusal();
+}
+
+/// One upon the other, and high above a floor that is far away.
+TEST_F(Beds, grains_may_stand_high_when_others_stand_below) {
+  std::string text = "x_m,y_m,z_m";
+  for (int k = 0; k < 200; ++k) text += "\n0.1,0," + std::to_string(0.02 + 0.02 * k);
+  const std::string file = write("high.csv", text);  // and no end of its last line
+  std::vector<Quad> grains = read_positions_csv(file);
+  EXPECT_EQ(grains.size(), 200U);
+  check_positions(options_, file, grains);
+  grains.push_back({0.1, 0.0, 5.2, 0.0});
+  EXPECT_THROW(check_positions(options_, file, grains), Error);
+}
+
+/// A bed whose checksum fits, but whose lists name grains that there are not.
+TEST_F(Beds, a_bed_that_does_not_hold_together_is_refused_by_file_and_array) {
+  options_.bed = write("mine.csv", "x_m,y_m,z_m\n0.05,0,0.02\n0.1,0,0.02\n0.15,0,0.02\n");
+  const Archive bed = prepare_bed(options_, {}).bed;
+  const auto told = [&](const Archive& forged) -> std::string {
+    write_bed(folder_ / "forged.h5", forged);
+    DemOptions options = options_;
+    options.bed = (folder_ / "forged.h5").string();
+    options.allow_unstable_step = true;
+    try {
+      make_dem_terrain(options)->prepare({});
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::io);
+      EXPECT_NE(std::string(error.what()).find("forged.h5: "), std::string::npos) << error.what();
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(told(bed), "");
+  Archive forged = bed;
+  forged.put("strips/last", std::vector<std::int32_t>(bed.get<std::int32_t>("strips/last").size(), 1 << 30));
+  EXPECT_NE(told(forged).find("saved state 'strips/"), std::string::npos);
+  forged = bed;
+  forged.put("surfaces/count", std::int64_t{1});
+  EXPECT_NE(told(forged).find("holds a tire besides its grains"), std::string::npos);
 }
 
 TEST_F(Beds, compaction_makes_the_bed_denser_and_leaves_it_at_rest) {

@@ -106,7 +106,15 @@ TEST_F(TireFileTest, every_mistake_names_its_key) {
             "key 'pressure': is -1, expected a number of zero or above");
   EXPECT_EQ(with([](json& j) { j["pressure"] = nullptr; }), "key 'pressure': is null, expected a number");
   EXPECT_EQ(with([](json& j) { j["elements_circumference"] = 4.5; }),
-            "key 'elements_circumference': is 4.5, expected a whole number from 8 to 100000");
+            "key 'elements_circumference': is 4.5, expected a whole number from 8 to 10000");
+  EXPECT_EQ(with([](json& j) { j["elements_circumference"] = 1000000000; }),
+            "key 'elements_circumference': is 1e9, expected a whole number from 8 to 10000");
+  EXPECT_EQ(with([](json& j) { j["sections"]["tread"]["elements_per_side"] = 1000000; }),
+            "key 'sections.tread.elements_per_side': is 1e6, expected a whole number from 1 to 500");
+  EXPECT_EQ(with([](json& j) {
+              j["prony"] = json(std::vector<json>(101, {{"relative_modulus", 0.1}, {"relaxation_time", 0.1}}));
+            }),
+            "key 'prony': has 101 branches, expected at most 100");
   EXPECT_EQ(with([](json& j) { j["sections"]["tread"]["layers"][1]["material"] = "steel"; }),
             "key 'sections.tread.layers[1].material': is 'steel', expected one of: carcass cord, rubber, "
             "steel cord");
@@ -136,6 +144,35 @@ TEST_F(TireFileTest, every_mistake_names_its_key) {
             0u);
   EXPECT_EQ(with([](json& j) { j["format_version"] = 99; }),
             "key 'format_version': is 99: the file is newer than this program, expected at most 1");
+}
+
+/// x = r (1 − s²), y = w (s³ − c s)/(1 − c) with s from −1 to 1 has a loop for c > 0: y turns back between ±√(c/3).
+TEST_F(TireFileTest, a_meridian_that_crosses_itself_is_refused_where_it_does) {
+  const auto with_loop = [&](double c) {
+    json changed = good_;
+    changed["profile"] = json::array();
+    for (int k = 0; k <= 60; ++k) {
+      const double s = k / 30.0 - 1.0;
+      changed["profile"].push_back({k / 60.0, 0.2 * (1.0 - s * s), 0.127 * (s * s * s - c * s) / (1.0 - c)});
+    }
+    changed["radius"] = changed["rim_radius"].get<double>() + 0.2;
+    return complaint(changed.dump());
+  };
+  // s = ±√c is passed twice, at y = 0 and x = 0.2 (1 − c), and t = (1 ± √c)/2.
+  EXPECT_EQ(with_loop(0.6), "key 'profile': crosses itself at x = 0.08 m, y = 0 m, between t = 0.11 and t = 0.89, "
+                            "expected a meridian without a loop");
+  EXPECT_EQ(with_loop(-0.6), "no error");
+  json many = good_;
+  many["profile"] = json(std::vector<json>(2001, {0.0, 0.0, 0.0}));
+  for (std::size_t k = 0; k < 2001; ++k) many["profile"][k][0] = static_cast<double>(k) / 2000.0;
+  EXPECT_EQ(complaint(many.dump()), "key 'profile': has 2001 knots, expected 4 to 2000");
+}
+
+TEST_F(TireFileTest, names_that_are_no_single_line_are_refused) {
+  json changed = good_;
+  changed["template"] = "ring\n\x1b[31m";
+  EXPECT_EQ(complaint(changed.dump()),
+            "key 'template': is 'ring\\n\\x1b[31m', expected one line of at most 4096 bytes");
 }
 
 TEST_F(TireFileTest, files_that_are_not_json_objects_are_refused) {

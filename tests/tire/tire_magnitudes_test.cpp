@@ -31,5 +31,18 @@ TEST(TireMagnitudes, another_unit_is_named_with_its_key) {
     EXPECT_NE(keys.find(key), std::string::npos) << key << " is not among " << keys;
 }
 
+TEST(TireMagnitudes, what_is_odd_about_many_layers_is_said_once) {
+  TireFile tire = file("hmmwv_layered.json");
+  Layer thin = tire.tread.layers.front();
+  thin.thickness = 1e-7;
+  thin.angle = 2.0;
+  tire.tread.layers.assign(100000, thin);
+  const auto found = unlikely_values(tire);
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[0].first, "sections.tread.layers.0.thickness");
+  EXPECT_EQ(found[0].second, "is 1e-07 m, tires have 1e-05 to 0.05: another unit? (and 99999 more like it)");
+  EXPECT_EQ(found[1].first, "sections.tread.layers.0.angle_deg");
+}
+
 }  // namespace
 }  // namespace furrow::tire

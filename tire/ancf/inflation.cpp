@@ -151,12 +151,17 @@ Field inflate(const ShellCarcass& shell, const ShellMesh& mesh, InflationReport&
     report.residual = creep.static_residual();
     if (report.steps >= kRampSteps && report.residual < kTolerance) break;
   }
-  if (report.steps < kRampSteps || !(report.residual < kAccepted))
+  const std::string way_out = "try a lower pressure or stiffer layers";
+  if (report.steps < kRampSteps)
     throw physics_error(fmt::format(
-        "tire inflation to {:g} Pa did not converge: it came to {:.3g} Pa, residual {:.3g} of the pressure "
-        "force after {} steps; try a lower pressure or stiffer layers",
-        shell.pressure(), shell.pressure() * std::min(1.0, report.steps / double{kRampSteps}),
-        report.residual, report.steps));
+        "tire inflation to {:g} Pa did not converge: it came to {:.3g} Pa, residual {:.3g} of the pressure force after "
+        "{} steps; {}",
+        shell.pressure(), shell.pressure() * report.steps / kRampSteps, report.residual, report.steps, way_out));
+  if (!(report.residual < kAccepted))
+    throw physics_error(fmt::format(
+        "tire inflation to {:g} Pa did not converge: the pressure was reached, but the tire does not come to rest under "
+        "it; a residual of {:.3g} of the pressure force is left after {} steps, expected below {:g}; {}",
+        shell.pressure(), report.residual, report.steps, kAccepted, way_out));
   return creep.q();
 }
 

@@ -106,6 +106,10 @@ TireFile tire_file_of(const TireOptions& options, TireFile file) {
     file.elements_circumference = options.elements_circumference;
   }
   if (options.elements_width != 0) set_elements_width(file, options.elements_width);
+  if (file.elements_circumference > kMaxElements / file.elements_width())
+    throw input_error(file.path, "elements_circumference",
+                      fmt::format("is {}, with {} elements across, expected at most {} elements in all",
+                                  file.elements_circumference, file.elements_width(), kMaxElements));
   return file;
 }
 

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <optional>
 #include <random>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -22,6 +25,8 @@ constexpr double kMinDistance =
     1.8;  // mean radii between centres in a user's bed: overlaps of 10 % of the diameter
 constexpr double kSingle = 1e-7;  // relative round-off of a float
 constexpr double kMinWall = 0.8;  // radii between a centre and a wall
+constexpr double kMaxFall = 100.0;  // largest radii between a grain's centre and that of the next one below it
+constexpr std::size_t kMaxGrains = 500'000'000;
 
 Bin bin_of(const DemOptions& o) { return {o.length, o.width, o.periodic_x, o.periodic_y()}; }
 
@@ -89,6 +94,25 @@ const Generator& generator_of(const DemOptions& o) {
 
 std::string place_text(const Quad& p) { return fmt::format("({:g}, {:g}, {:g}) m", p.x, p.y, p.z); }
 
+/// The first grain that hangs in the air, and by how much; nothing where none does.
+struct Hanging {
+  std::size_t grain = 0;
+  double height = 0.0;  // above the next one below it, or above the floor, m
+};
+std::optional<Hanging> find_hanging(const std::vector<Quad>& grains, double most) {
+  std::vector<std::size_t> order(grains.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(grains[a].z, a) < std::pair(grains[b].z, b);
+  });
+  double below = 0.0;
+  for (const std::size_t g : order) {
+    if (grains[g].z - below > most) return Hanging{g, grains[g].z - below};
+    below = grains[g].z;
+  }
+  return {};
+}
+
 std::vector<Quad> positions_of(const DemOptions& o) {
   std::vector<Quad> grains = is_hdf5(o.bed) ? read_positions_h5(o.bed) : read_positions_csv(o.bed);
   check_positions(o, o.bed, grains);
@@ -104,6 +128,8 @@ void check_positions(const DemOptions& o, const std::filesystem::path& file, std
     return input_error(file.string(), hdf5 ? fmt::format("grain {}", g) : fmt::format("line {}", g + 2),
                        what);
   };
+  if (grains.size() > kMaxGrains)
+    throw input_error(file.string(), "", fmt::format("holds {} grains, expected at most {}", grains.size(), kMaxGrains));
   for (std::size_t g = 0; g < grains.size(); ++g) {
     double& radius = grains[g].w;
     if (radius == 0.0) radius = o.radius;
@@ -129,6 +155,12 @@ void check_positions(const DemOptions& o, const std::filesystem::path& file, std
                    place_text(grains[g]), least, o.length - least, least - 0.5 * o.width,
                    0.5 * o.width - least, least));
   }
+  const double fall = kMaxFall * largest_radius(o);
+  if (const std::optional<Hanging> hanging = find_hanging(grains, fall))
+    throw wrong(hanging->grain,
+                fmt::format("the grain stands at {}, {:.4g} m above all that is below it, expected at most {:g} m, {:g} "
+                            "radii: it would fall too fast to be at rest as a bed",
+                            place_text(grains[hanging->grain]), hanging->height, fall, kMaxFall));
   const double reach = kMinDistance * largest_radius(o);
   for_close_pairs(grains, bin, reach, [&](std::size_t a, std::size_t b, double distance) {
     const double mean = 0.5 * (grains[a].w + grains[b].w), least = kMinDistance * mean;

@@ -21,6 +21,8 @@ const char* sides(bool periodic) { return periodic ? "periodic" : "walls"; }
 
 /// A bed from a file must be one of this bin, these grains and this law.
 void check_bed(const Archive& bed, const DemOptions& o) {
+  if (bed.get_int("surfaces/count") != 0)
+    throw io_error(o.bed, "holds a tire besides its grains, expected a bed");
   const auto& made = bed.get<double>("bed/geometry", 4);
   constexpr const char* kKey[] = {"radius", "density", "length", "width"};
   const std::vector<double> wanted = geometry(o);
@@ -115,6 +117,14 @@ Archive bed_archive(const GrainSolver& solver, const DemOptions& options, const 
   const std::string law = law_name(law_from(options.law));
   bed.put("bed/law", std::vector<std::uint8_t>(law.begin(), law.end()));
   return bed;
+}
+
+void restore_bed(GrainSolver& solver, const PreparedBed& prepared) {
+  try {
+    solver.restore(prepared.bed);
+  } catch (const Error& error) {
+    throw Error(error.code(), prepared.file.string() + ": " + error.what());
+  }
 }
 
 void check_bed_options(const DemOptions& o) {

@@ -19,6 +19,9 @@ struct PreparedBed {
 /// @throws Error(bad_input) for what options or the user's file have wrong, Error(physics) when a grain is lost.
 PreparedBed prepare_bed(const DemOptions& options, const ProgressCall& progress);
 
+/// Gives the solver the bed. @throws Error(io) naming its file when it does not hold together
+void restore_bed(GrainSolver& solver, const PreparedBed& prepared);
+
 /// False for a settled bed from the user's file, which is taken as it is.
 bool bed_is_settled_anew(const DemOptions& options);
 

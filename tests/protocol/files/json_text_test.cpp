@@ -58,9 +58,47 @@ TEST(JsonText, numbers_beyond_a_double_are_refused) {
   EXPECT_EQ(complaint(R"({"a": 1e-400})"), "");  // rounds to zero
 }
 
-TEST(JsonText, deep_nesting_is_no_danger) {
-  const std::string deep(200000, '[');
-  EXPECT_NE(complaint(deep), "");
+TEST(JsonText, nesting_beyond_64_levels_is_refused_where_it_begins) {
+  const auto nested = [](std::size_t levels) { return std::string(levels, '[') + std::string(levels, ']'); };
+  EXPECT_EQ(complaint(nested(64)), "");
+  EXPECT_EQ(complaint(nested(65)), "f:1:65: lists and objects are nested deeper than 64 levels, expected fewer");
+  EXPECT_EQ(complaint(nested(1000000)).substr(0, 7), "f:1:65:");
+  EXPECT_EQ(complaint(std::string(200000, '[')).substr(0, 7), "f:1:65:");
+  std::string objects = "{\n\"a\": ";
+  for (int k = 0; k < 100000; ++k) objects += "{\"a\": ";
+  EXPECT_NE(complaint(objects).find("nested deeper"), std::string::npos);
+  EXPECT_EQ(complaint("[\"" + std::string(100, '[') + "\\\"" + std::string(100, '{') + "\"]"), "") << "in a text";
+}
+
+TEST(JsonText, comments_are_told_by_name) {
+  for (const char* text : {"{\n// note\n}", "{\n/* note */\n}", "{\n# note\n}", "{\"a\": 1 // note\n}"})
+    EXPECT_NE(complaint(text).find("is a comment, which JSON has not"), std::string::npos) << complaint(text);
+  EXPECT_TRUE(complaint("{\n// note\n}").starts_with("f:2:")) << complaint("{\n// note\n}");
+  EXPECT_EQ(complaint("{\"a\": 1/2}").find("comment"), std::string::npos);
+}
+
+TEST(JsonText, keys_that_nobody_could_type_are_refused) {
+  EXPECT_EQ(complaint("{\"a\": {\"b\\u001b[31m\\n\": 1}}"),
+            "f: key 'a.b\\x1b[31m\\n': has a control character or is longer than 256 bytes, expected the name of a key");
+  EXPECT_EQ(complaint("{\"" + std::string(256, 'k') + "\": 1}"), "");
+  EXPECT_NE(complaint("{\"" + std::string(257, 'k') + "\": 1}").find("longer than 256 bytes"), std::string::npos);
+}
+
+TEST(JsonText, values_in_messages_are_short_and_of_one_line) {
+  EXPECT_EQ(value_text(nlohmann::json("a\nb\x1b")), "'a\\nb\\x1b'");
+  EXPECT_LE(value_text(nlohmann::json(std::string(100000, 'x'))).size(), 60U);
+  EXPECT_LE(value_text(nlohmann::json(std::vector<int>(100000))).size(), 60U);
+}
+
+TEST(JsonText, files_of_our_own_that_are_too_deep_or_too_large_count_as_damaged) {
+  const testing::TemporaryFolder folder;
+  const auto file = folder.path() / "f";
+  std::ofstream(file) << "{\"a\": " << std::string(100000, '[') << std::string(100000, ']') << "}";
+  EXPECT_TRUE(read_json_if_whole(file).is_null());
+  std::ofstream(file) << "{\"a\": 1}";
+  EXPECT_TRUE(read_json_if_whole(file).is_object());
+  std::filesystem::resize_file(file, 17 << 20);
+  EXPECT_TRUE(read_json_if_whole(file).is_null());
 }
 
 TEST(JsonText, files_must_be_utf8) {
@@ -81,6 +119,7 @@ TEST(JsonText, command_line_values_are_json_or_text) {
   EXPECT_EQ(parse_value("", "f", "k"), "");
   EXPECT_THROW(parse_value("1e999", "f", "k"), Error);
   EXPECT_THROW(parse_value(R"({"a": 1, "a": 2})", "f", "k"), Error);
+  EXPECT_THROW(parse_value(std::string(100000, '[') + std::string(100000, ']'), "f", "k"), Error);
 }
 
 TEST(JsonText, numbers_read_well_and_read_back) {

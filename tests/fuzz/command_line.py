@@ -1,0 +1,198 @@
+#!/usr/bin/python3
+"""The whole command line with random arguments: an exit code that the program documents, and either a result or an error
+message; never a crash, never silence.
+
+usage: command_line.py [--cases N] [--seed S] [--state FILE] [--only CASE]
+
+Case k of a seed is always the same. With --state a series goes on where it left off, and what was found stays in that file.
+The program is $FURROW. No ranks are started: the launcher is one that does not exist.
+"""
+import argparse
+import collections
+import json
+import os
+import pathlib
+import random
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PROGRAM = os.environ.get("FURROW", str(ROOT / "build" / "furrow"))
+CODES = {0, 2, 3, 4, 5, 6, 75}
+PATIENCE = 10.0  # s until a case is asked to stop, and as long again until it is a finding
+
+SMALL = {
+    "rig": {"slip": 0.3, "ramp": 0.01},
+    "tire": {"file": "hmmwv_layered.json", "rigid": True},
+    "terrain": {"radius": 0.03, "cohesion": 80e3, "layers": 2, "length": 1.4, "width": 0.4},
+    "run": {"step": 1e-4, "end": 0.02, "average_from": 0},
+}
+COMMANDS = ["run", "resume", "validate", "ranks", "explain", "bed", "soil", "press", "sweep", "report", "bench", "bench grains",
+            "bench tire", "help", "rnu", "", "--", "-", "RUN", "validate validate"]
+# Those that compute get rarely what they need to begin.
+WEIGHTS = [4, 4, 10, 4, 6, 1, 1, 1, 3, 4, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1]
+FLAGS = ["--set", "--threads", "--out", "--overwrite", "--profile", "--no-plots", "--json", "--until", "--seeds", "--speed", "--only",
+         "--quick", "--on", "--deflection", "--points", "--load", "--cleat-height", "--cleat-width", "--jobs", "--soil", "--bed",
+         "--law", "--precision", "--cohesion", "--steps", "--warm", "--settle", "--save-bed", "--step", "--tire", "--pressure",
+         "--tolerance", "--renewal", "--elements-width", "--help", "-h", "--version", "--fast", "-x", "--set=", "--out="]
+FILES = ["small.json", "study.json", "tire.json", "soil.json", "deep.json", "empty.json", "list.json", "binary.json", "folder", "run",
+         "bed.csv", "bed.h5", "nowhere.json", "first_look.json", "study_slip.json", "hmmwv_layered.json", "/dev/null", "/proc/self/mem", "/",
+         ".", "..", "", " ", "a" * 300, "a" * 5000, "folder/", "run/summary.json", "-", "--", "$(touch pwn)", "~"]
+ODD = ["0", "1", "-1", "1e400", "-1e400", "nan", "inf", "1e-320", "0x10", "1e9", "4e-5", "0.3", "true", "null", "[]", "{}", "[[0, 1]]",
+       "[1, 2, 3]", "\"\"", "'x'", "x", "", " ", "[" * 70, "{\"a\": {\"a\": 1}}", "9" * 400, "1,5", "ü", "🚙", "plate", "cleat", "auto", "mindlin",
+       "2147483648", "9223372036854775808", "18446744073709551616", "-0", "+1", "1.", ".5", "1e", "%s%n", "\\", "\n", "\x1b[31m", "\udcff", "a=b"]
+
+
+def leaves(schema, node, path=""):
+    """Dotted keys of the scenario schema."""
+    if "$ref" in node:
+        node = schema["definitions"][node["$ref"].rsplit("/", 1)[1]]
+    for name, child in node.get("properties", {}).items():
+        yield path + name
+        yield from leaves(schema, child, path + name + ".")
+        if "items" in child:
+            yield from leaves(schema, child["items"], path + name + ".0.")
+
+
+def make_files(folder):
+    (folder / "small.json").write_text(json.dumps(SMALL))
+    (folder / "study.json").write_text(json.dumps({"scenario": "small.json", "grid": {"rig.slip": [0.1, 0.2]}}))
+    (folder / "tire.json").write_text((ROOT / "tire" / "data" / "toroidal.json").read_text())
+    (folder / "soil.json").write_text((ROOT / "terrain" / "data" / "loose_sand.json").read_text())
+    (folder / "deep.json").write_text("[" * 100000)
+    (folder / "empty.json").write_text("")
+    (folder / "list.json").write_text("[1, 2]")
+    (folder / "binary.json").write_bytes(bytes(range(256)))
+    (folder / "folder").mkdir()
+    (folder / "bed.csv").write_text("x_m,y_m,z_m\n0.1,0,0.1\n")
+    (folder / "bed.h5").write_bytes(b"\x89HDF\r\n\x1a\n" + bytes(100))
+    (folder / "run").mkdir()
+    (folder / "run" / "scenario.json").write_text(json.dumps(SMALL))
+    (folder / "run" / "summary.json").write_text('{"drawbar_pull_N": 3}')
+
+
+def arguments_of(chance, keys):
+    """A command line that is neither always wrong nor often right."""
+    def value():
+        return chance.choice(ODD) if chance.random() < 0.7 else repr(chance.uniform(-10, 10) * 10.0 ** chance.randint(-12, 12))
+
+    def setting():
+        key = chance.choice(keys)
+        if chance.random() < 0.15:
+            place = chance.randrange(len(key) + 1)
+            key = key[:place] + chance.choice("._ =x9ü") + key[place:]
+        return f"{key}={value()}"
+
+    arguments = chance.choices(COMMANDS, WEIGHTS)[0].split(" ")
+    if chance.random() < 0.8:
+        arguments.append(chance.choice(FILES[:2]) if chance.random() < 0.5 else chance.choice(FILES))
+    if arguments[0] == "explain" and chance.random() < 0.6:
+        arguments[1:] = [chance.choice(keys)]
+    for _ in range(chance.choice([0, 0, 1, 1, 2, 3, 6])):
+        flag = "--set" if chance.random() < 0.5 else chance.choice(FLAGS)
+        arguments.append(flag)
+        if flag == "--set":
+            arguments.append(setting())
+        elif chance.random() < 0.6:
+            arguments.append(chance.choice(FILES) if chance.random() < 0.4 else value())
+    if chance.random() < 0.1:
+        chance.shuffle(arguments)
+    return [argument.replace("\0", "") for argument in arguments]
+
+
+def finding(arguments, code, out, err):
+    """What is wrong with an answer; None when nothing is."""
+    if code not in CODES:
+        return f"exit code {code}" if code >= 0 else f"killed by {signal.Signals(-code).name}"
+    for word in ("unexpected:", "Traceback", "terminate called", "Sanitizer", "runtime error", "nlohmann", "bad_alloc", "basic_string"):
+        if word in err or word in out:
+            return f"says '{word}'"
+    if re.search(r"[\x00-\x08\x0b-\x1f\x7f]", err):
+        return "control characters on stderr"
+    errors = [line for line in err.split("\n") if line.startswith("furrow: error: ")]
+    if any(line == "furrow: error: " for line in errors):
+        return "an empty message"
+    if code == 0:
+        return f"success with an error message: {errors[0]}" if errors else None if out else "silent success"
+    if not errors:
+        return "no error message"
+    if out and code != 75 and "sweep" not in arguments:  # whose table tells of runs that failed
+        return "a result beside an error"
+    if len(errors) != len(set(errors)):
+        return "the same message twice"
+    if len(errors) > 1 and not all("key '" in line or "mistakes" in line for line in errors):
+        return f"{len(errors)} messages"
+    return None
+
+
+def run_case(arguments, folder):
+    """(exit code, stdout, stderr, whether it had to be asked to stop)"""
+    environment = {**os.environ, "FURROW_MPIRUN": "/no/mpirun", "FURROW_HOME": str(ROOT), "XDG_CACHE_HOME": str(folder / "cache"),
+                   "OMP_NUM_THREADS": "2"}
+    raw = [argument.encode("utf-8", "surrogateescape") for argument in arguments]
+    with subprocess.Popen([PROGRAM.encode(), *raw], cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          env=environment, start_new_session=True) as process:
+        asked = False
+        try:
+            out, err = process.communicate(timeout=PATIENCE)
+        except subprocess.TimeoutExpired:
+            asked = True
+            process.terminate()
+            try:
+                out, err = process.communicate(timeout=PATIENCE)
+            except subprocess.TimeoutExpired:
+                os.killpg(process.pid, signal.SIGKILL)
+                out, err = process.communicate()
+                return -signal.SIGKILL, "", "does not answer TERM", True
+        return process.returncode, out.decode(errors="replace"), err.decode(errors="replace"), asked
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--cases", type=int, default=10000)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--state", type=pathlib.Path, help="JSON file of what is done; made, or gone on from")
+    parser.add_argument("--seconds", type=float, default=float("inf"), help="stop after this time")
+    parser.add_argument("--only", type=int, help="this case, with its output")
+    options = parser.parse_args()
+    schema = json.loads((ROOT / "rigs" / "scenario.schema.json").read_text())
+    keys = sorted(set(leaves(schema, schema)))
+    state = {"seed": options.seed, "done": 0, "codes": {}, "findings": []}
+    if options.state and options.state.exists():
+        state = json.loads(options.state.read_text())
+    codes = collections.Counter(state["codes"])
+    cases = [options.only] if options.only is not None else range(state["done"], options.cases)
+    begin = time.monotonic()
+    for k in cases:
+        if time.monotonic() - begin > options.seconds:
+            break
+        chance = random.Random(f"{state['seed']}:{k}")
+        arguments = arguments_of(chance, keys)
+        with tempfile.TemporaryDirectory(prefix="furrow fuzz ") as name:
+            folder = pathlib.Path(name)
+            make_files(folder)
+            code, out, err, asked = run_case(arguments, folder)
+        wrong = finding(arguments, code, out, err)
+        codes[str(code)] += 1
+        state["done"] = k + 1
+        if options.only is not None:
+            print(arguments, "\nexit", code, "\n--- stdout\n" + out, "\n--- stderr\n" + err)
+        if wrong:
+            state["findings"].append({"case": k, "arguments": arguments, "what": wrong, "stderr": err[-500:]})
+            print(f"case {k}: {wrong}: {arguments}\n  {err[-300:]!r}", flush=True)
+        if asked and not wrong:
+            codes["asked to stop"] += 1
+        if options.state and options.only is None and (k % 50 == 49 or wrong):
+            options.state.write_text(json.dumps({**state, "codes": codes}, indent=1))
+    if options.state and options.only is None:
+        options.state.write_text(json.dumps({**state, "codes": codes}, indent=1))
+    print(f"{state['done']} cases of seed {state['seed']}, exit codes {dict(codes)}, {len(state['findings'])} findings")
+    return 1 if state["findings"] else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,178 @@
+// Saved states with numbers changed, arrays cut, renamed and exchanged, and a checksum that fits: what a bed file or the
+// part of a checkpoint may hold that somebody forged. Read back from disk, restored and stepped.
+#include <fuzzer/FuzzedDataProvider.h>
+
+#include <cmath>
+#include <limits>
+
+#include "protocol/core/error.hpp"
+#include "protocol/files/archive_file.hpp"
+#include "terrain/dem/beds/bed_cache.hpp"
+#include "terrain/dem/beds/bed_preparation.hpp"
+#include "terrain/dem/dem_terrain.hpp"
+#include "tests/fuzz/input_file.hpp"
+#include "tire/tires.hpp"
+
+namespace {
+
+using namespace furrow;
+
+terrain::dem::DemOptions options() {
+  terrain::dem::DemOptions o;
+  o.radius = 0.03, o.layers = 2, o.length = 0.5, o.width = 0.3, o.step = 1e-4;
+  o.threads = o.settle_threads = 1;
+  o.cache = false;
+  o.allow_unstable_step = true;
+  return o;
+}
+
+struct Seeds {
+  Archive bed, terrain, shell, rigid;
+};
+
+tire::TireOptions tire_options(bool rigid) {
+  tire::TireOptions o;
+  o.file = FURROW_SOURCE_FOLDER "/tire/data/toroidal.json";
+  o.elements_circumference = 12, o.elements_width = 6;
+  o.rigid = rigid;
+  return o;
+}
+
+SurfaceState square(double z) {
+  SurfaceState s;
+  s.position = {Vec3(0.1, -0.1, z), Vec3(0.3, -0.1, z), Vec3(0.3, 0.1, z), Vec3(0.1, 0.1, z)};
+  s.velocity.assign(4, Vec3::Zero());
+  return s;
+}
+const SurfaceMesh kSquare{4, {{0, 1, 2}, {0, 2, 3}}};
+
+/// A terrain with one surface that touches it.
+std::unique_ptr<terrain::Terrain> made_terrain() {
+  auto terrain = terrain::make_dem_terrain(options());
+  terrain->prepare({});
+  ContactMaterial rubber;
+  rubber.young_modulus = 1e7, rubber.poisson_ratio = 0.4, rubber.friction = 0.8, rubber.restitution = 0.2;
+  terrain->attach(kSquare, rubber, square(0.11));
+  return terrain;
+}
+
+void advance(terrain::Terrain& terrain) {
+  std::vector<NodalForces> forces(1);
+  std::vector<ContactSums> sums(1);
+  const std::vector<SurfaceState> target{square(0.109)};
+  terrain.advance(target, 1e-4, 1, forces, sums);
+}
+
+const Seeds& seeds() {
+  static const Seeds all = [] {
+    Seeds s;
+    s.bed = terrain::dem::prepare_bed(options(), {}).bed;
+    const auto terrain = made_terrain();
+    advance(*terrain);
+    terrain->save(s.terrain);
+    for (const bool rigid : {false, true}) {
+      const auto tire = tire::make_tire(tire_options(rigid));
+      RimState rim;
+      rim.position = Vec3(0.0, 0.0, 1.0);
+      tire->place(rim);
+      tire->save(rigid ? s.rigid : s.shell);
+    }
+    return s;
+  }();
+  return all;
+}
+
+Archive changed(FuzzedDataProvider& in, Archive archive) {
+  std::vector<std::string> names;
+  for (const auto& [name, array] : archive.arrays()) names.push_back(name);
+  const auto any = [&] { return names[in.ConsumeIntegralInRange<std::size_t>(0, names.size() - 1)]; };
+  for (int k = 0; k < 6 && in.remaining_bytes() > 4; ++k) {
+    const std::string name = any();
+    Archive::Array array = archive.arrays().at(name);
+    switch (in.ConsumeIntegralInRange(0, 7)) {
+      case 0:
+        array = archive.arrays().at(any());
+        break;
+      case 1:
+        std::visit(
+            [&](auto& values) {
+              values.resize(in.ConsumeIntegralInRange<std::size_t>(0, 2 * values.size() + 2));
+            },
+            array);
+        break;
+      default:
+        std::visit(
+            [&]<class T>(std::vector<T>& values) {
+              if (values.empty()) return;
+              T& value = values[in.ConsumeIntegralInRange<std::size_t>(0, values.size() - 1)];
+              if constexpr (std::is_floating_point_v<T>) {
+                constexpr double kOdd[] = {0.0,
+                                           -1.0,
+                                           1e300,
+                                           -1e300,
+                                           5e-324,
+                                           1e6,
+                                           std::numeric_limits<double>::infinity(),
+                                           std::numeric_limits<double>::quiet_NaN()};
+                value = in.ConsumeBool() ? in.PickValueInArray(kOdd)
+                                         : value * in.ConsumeFloatingPointInRange(-4.0, 4.0);
+              } else {
+                value = in.ConsumeBool() ? in.ConsumeIntegral<T>()
+                                         : static_cast<T>(value + in.ConsumeIntegralInRange(0, 8));
+              }
+            },
+            array);
+    }
+    archive.put_array(name, std::move(array));
+  }
+  return archive;
+}
+
+void read_bed(FuzzedDataProvider& in) {
+  terrain::dem::DemOptions o = options();
+  o.bed = (fuzz::folder() / "bed.h5").string();
+  terrain::dem::write_bed(o.bed, changed(in, seeds().bed));
+  const auto terrain = terrain::make_dem_terrain(o);
+  terrain->prepare({});
+  terrain::TerrainFrame frame;
+  terrain->frame(frame);
+  terrain->attach(kSquare, {1e7, 0.4, 0.8, 0.2, 0, 0, 0, 0}, square(0.11));
+  advance(*terrain);
+}
+
+void read_terrain(FuzzedDataProvider& in) {
+  const auto file = fuzz::folder() / "terrain.h5";
+  write_archive(file, changed(in, seeds().terrain));
+  static const auto made = made_terrain();
+  made->restore(read_archive(file));
+  advance(*made);
+}
+
+void read_tire(FuzzedDataProvider& in) {
+  const bool rigid = in.ConsumeIntegralInRange(0, 4) == 0;
+  const auto file = fuzz::folder() / "tire.h5";
+  write_archive(file, changed(in, rigid ? seeds().rigid : seeds().shell));
+  const auto tire = tire::make_tire(tire_options(rigid));
+  tire->restore(read_archive(file));
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  FuzzedDataProvider in(data, size);
+  try {
+    switch (in.ConsumeIntegralInRange(0, 4)) {
+      case 0:
+        read_tire(in);
+        break;
+      case 1:
+      case 2:
+        read_terrain(in);
+        break;
+      default:
+        read_bed(in);
+    }
+  } catch (const Error&) {
+  }
+  return 0;
+}

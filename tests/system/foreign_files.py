@@ -1,0 +1,202 @@
+#!/usr/bin/python3
+"""HDF5 files and results of strangers: no memory beyond the file's size, no other file, one message; and summaries, frames
+and height fields of any content before `furrow report`."""
+import json
+import os
+import pathlib
+import resource
+import subprocess
+import sys
+import unittest
+
+import h5py
+import numpy as np
+
+from program import PROGRAM, ROOT, SystemTest, changed, furrow, main, write_scenario
+
+ENOUGH = 2 << 30  # bytes of address space; a bomb asks for more
+REPORT = ROOT / "scripts" / "report.py"
+
+
+def positions(file, name="position"):
+    file[name] = np.array([[0.1, 0.0, 0.05], [0.3, 0.0, 0.05]])
+
+
+class Beds(SystemTest):
+    def setUp(self):
+        super().setUp()
+        self.scenario = write_scenario(self.folder, changed(terrain={"bed": "bed.h5"}))
+
+    def made(self):
+        return h5py.File(self.folder / "bed.h5", "w")
+
+    def refused(self, expected, commands=("validate", "bed", "run")):
+        for command in commands:
+            done = subprocess.run([PROGRAM, command, str(self.scenario)], cwd=self.folder, capture_output=True, text=True, timeout=60,
+                                  stdin=subprocess.DEVNULL, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (ENOUGH, ENOUGH)))
+            lines = done.stderr.splitlines()
+            self.assertIn(done.returncode, (2, 5), done.stderr)
+            self.assertEqual(done.stdout, "")
+            self.assertEqual(len(lines), 1, done.stderr)
+            self.assertTrue(lines[0].startswith("furrow: error: "), lines[0])
+            self.assertIn(str(self.folder / "bed.h5"), lines[0])
+            self.assertIn(expected, lines[0])
+
+    def test_what_h5py_writes_by_itself_is_a_bed(self):
+        with self.made() as file:
+            file.create_dataset("position", data=np.array([[0.1, 0.0, 0.05], [0.3, 0.0, 0.05]]), compression="gzip", shuffle=True)
+        done = furrow("validate", self.scenario, cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_declared_huge_checksum(self):
+        with self.made() as file:
+            file["format_version"] = np.array([4])
+            file.create_dataset("checksum", shape=(10 ** 15,), dtype="u8", chunks=(1024,))
+        self.refused("'checksum' is said to have more than", commands=("bed",))
+
+    def test_declared_huge_positions(self):
+        with self.made() as file:
+            file.create_dataset("position", shape=(4 * 10 ** 8, 3), dtype="f8", chunks=(1024, 3))
+        self.refused("'position' is said to have 9600000000 bytes, but 0 are stored")
+
+    def test_external_storage(self):
+        with self.made() as file:
+            file.create_dataset("position", shape=(1, 3), dtype="f8", external=[("/etc/passwd", 0, 24)])
+        self.refused("'position' stands in another file")
+
+    def test_external_link(self):
+        with h5py.File(self.folder / "other.h5", "w") as file:
+            positions(file)
+        with self.made() as file:
+            file["position"] = h5py.ExternalLink(str(self.folder / "other.h5"), "/position")
+        self.refused("'position' is a link to another file")
+
+    def test_soft_link(self):
+        with self.made() as file:
+            positions(file, "real")
+            file["position"] = h5py.SoftLink("/real")
+        self.refused("'position' is a soft link")
+
+    def test_virtual_dataset(self):
+        with h5py.File(self.folder / "other.h5", "w") as file:
+            positions(file)
+        layout = h5py.VirtualLayout((2, 3), "f8")
+        layout[:] = h5py.VirtualSource(str(self.folder / "other.h5"), "position", (2, 3))
+        with self.made() as file:
+            file.create_virtual_dataset("position", layout)
+        self.refused("'position' is made of other datasets")
+
+    def test_attribute_of_a_thousand_numbers(self):
+        with self.made() as file:
+            positions(file)
+            file.attrs["format_version"] = np.ones(1000, "i8")
+        self.refused("holds the attribute 'format_version' as something else than one number", commands=("bed",))
+
+    def test_texts_for_numbers(self):
+        with self.made() as file:
+            file["position"] = [["x", "y", "z"]]
+        self.refused("dataset 'position'': expected N × 3 numbers, m")
+
+    def test_cut_short_anywhere(self):
+        with self.made() as file:
+            positions(file)
+        whole = (self.folder / "bed.h5").read_bytes()
+        for length in range(8, len(whole), 97):
+            (self.folder / "bed.h5").write_bytes(whole[:length])
+            self.refused("bed.h5", commands=("bed",))
+
+
+class Reports(SystemTest):
+    """What scripts/report.py says of results that are none; it is what `furrow report` runs."""
+
+    def setUp(self):
+        super().setUp()
+        self.run = self.folder / "run"
+        (self.run / "frames").mkdir(parents=True)
+        (self.run / "scenario.json").write_text(json.dumps(changed()))
+        self.summary({})
+
+    def summary(self, values):
+        usual = {"format_version": 1, "scenario": "small", "terrain_engine": "dem", "law": "mindlin", "slip": 0.3,
+                 "vertical_load_N": 4600.0, "drawbar_pull_N": {"mean": 100.0, "sem": 5.0, "from_s": 0.02, "to_s": 0.05, "steady": True},
+                 "net_terrain_force_N": [100.0, 0.0, 4600.0], "surface_height_m": 0.1}
+        (self.run / "summary.json").write_text(json.dumps({**usual, **values}))
+
+    def report(self, *arguments):
+        return subprocess.run(["/usr/bin/python3", str(REPORT), str(self.run), *arguments], capture_output=True, text=True, timeout=120,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (2 * ENOUGH, 2 * ENOUGH)),
+                              env={**os.environ, "OPENBLAS_NUM_THREADS": "1"})
+
+    def told(self, expected, *arguments):
+        done = self.report(*arguments)
+        self.assertNotIn("Traceback", done.stderr)
+        self.assertEqual(done.returncode, 5, done.stderr)
+        self.assertIn(expected, done.stderr)
+        return done.stderr
+
+    def test_wrong_types_in_the_summary_are_named(self):
+        for values, expected in (({"drawbar_pull_N": 3}, "key 'drawbar_pull_N': is 3, expected an object"),
+                                 ({"drawbar_pull_N": {"mean": "much"}}, "summary.json: key 'drawbar_pull_N': key 'mean': is \"much\", expected a number"),
+                                 ({"drawbar_pull_N": {"mean": 1.0}}, "lacks from_s and to_s"),
+                                 ({"drawbar_pull_N": {"mean": 10 ** 400}}, "expected a number"),
+                                 ({"wheels": [3]}, "key 'wheels.0': expected an object"),
+                                 ({"wheels": 3}, "key 'wheels': is 3, expected a list"),
+                                 ({"slip": [1]}, "key 'slip': is [1], expected a number"),
+                                 ({"scenario": {}}, "key 'scenario': is {}, expected a text"),
+                                 ({"net_terrain_force_N": 3}, "key 'net_terrain_force_N': is 3, expected a list"),
+                                 ({"power_balance": {"residual_W": "x"}}, "key 'residual_W': is \"x\", expected a number")):
+            with self.subTest(values):
+                self.summary(values)
+                lines = [line for line in self.told(expected).splitlines() if line.startswith("furrow: error: ")]
+                self.assertEqual(len([line for line in lines if "nothing to plot" not in line]), 1, lines)
+
+    def test_summary_that_is_none(self):
+        for text in ("[1, 2]", "{", "", '{"a": ' + "[" * 100000 + "]" * 100000 + "}"):
+            (self.run / "summary.json").write_text(text)
+            self.told("summary.json")
+
+    def test_nothing_was_measured(self):
+        self.summary({"net_terrain_force_N": [0.0, 0.0, 0.0], "drawbar_pull_N": {"mean": 0.0, "sem": 0.0, "from_s": 0.0, "to_s": 0.01}})
+        self.assertNotIn("0.0 ± 0.0", self.told("nothing was measured"))
+
+    def test_reasons_are_shown_and_not_obeyed(self):
+        self.summary({"drawbar_pull_N": {"mean": 1.0, "from_s": 0.0, "to_s": 0.01, "unsteady_because": ["\x1b]0;owned\x07"]}})
+        self.assertNotIn("\x1b", self.told("NOT STEADY: \\x1b]0;owned\\x07"))
+
+    def test_height_fields_that_are_none(self):
+        (self.run / "timeseries.csv").write_text("time_s,position_m\n0,0\n1,1\n")
+
+        def tell(make, expected):
+            with h5py.File(self.run / "results.h5", "w") as file:
+                for when in ("before", "after"):
+                    make(file, f"terrain/height_{when}")
+                    file[f"terrain/height_{when}_grid"] = [0.0, 0.0, 0.1]
+            self.told("report: no rut.png: " + expected, "--only", "rut")
+
+        tell(lambda file, name: file.create_dataset(name, shape=(10 ** 6, 10 ** 6), dtype="f8", chunks=(1, 1024)),
+             "results.h5: the dataset 'terrain/height_before' is said to have 1000000000000 numbers, but 0 bytes are stored")
+        tell(lambda file, name: file.create_dataset(name, shape=(1, 3), dtype="f8", external=[("/etc/passwd", 0, 24)]),
+             "results.h5: the dataset 'terrain/height_before' stands in another file")
+        tell(lambda file, name: file.__setitem__(name, h5py.SoftLink("/x")), "results.h5: the dataset 'terrain/height_before' is a link")
+        tell(lambda file, name: file.__setitem__(name, ["a", "b"]), "results.h5: the dataset 'terrain/height_before' holds no plain numbers")
+        tell(lambda file, name: file.__setitem__(name, [1.0, 2.0]), "results.h5 holds no height field")
+
+    def test_frames_that_are_none(self):
+        triangle = np.array([[0, 1, 2]])
+        vertex = np.array([[0.0, 0, 0], [1, 0, 0], [0, 0, 1]])
+        for content, expected in (({"position": vertex, "triangle": triangle + 7}, "holds no surface that could be drawn"),
+                                  ({"position": vertex * np.nan, "triangle": triangle}, "holds no surface that could be drawn"),
+                                  ({"position": vertex[:, :2], "triangle": triangle}, "has the shape (3, 2), expected N × 3"),
+                                  ({"position": vertex}, "the dataset 'triangle' is missing")):
+            with h5py.File(self.run / "frames" / "tire0_000000.h5", "w") as file:
+                file.attrs["time_s"] = 0.0
+                for name, values in content.items():
+                    file[name] = values
+            self.told("tire0_000000.h5", "--only", "scene")
+            self.told(expected, "--only", "scene")
+        (self.run / "frames" / "tire0_000000.h5").write_bytes(b"\x89HDF\r\n\x1a\n" + bytes(500))
+        self.told("is damaged", "--only", "scene")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,139 @@
+// Saved states whose checksums fit but whose numbers do not: refused by the array, never followed.
+#include "terrain/dem/solver_state_check.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+
+#include "protocol/core/error.hpp"
+#include "tests/terrain/few_grains.hpp"
+
+namespace furrow::terrain::dem {
+namespace {
+
+constexpr double kStep = 1e-6;  // s
+
+FewGrains rough_grains() {
+  FewGrains few;
+  few.gravity = 9.81;
+  few.options.rolling_friction = 0.1;
+  few.options.radius = 0.02;
+  return few;
+}
+
+/// Of two layers of grains that touch one another and the floor, with histories.
+Archive saved() {
+  std::vector<Quad> positions;
+  for (int i = 0; i < 10; ++i)
+    for (int j = 0; j < 4; ++j)
+      for (int k = 0; k < 2; ++k)
+        positions.push_back({0.05 + 0.0399 * i, -0.1 + 0.0399 * j, 0.0199 + 0.0399 * k, 0.02});
+  GrainSolver solver = rough_grains().make(positions);
+  for (int step = 0; step < 20; ++step) solver.step(kStep);
+  Archive archive;
+  solver.save(archive);
+  return archive;
+}
+
+/// What restoring complains of; empty when it does not, and the state can be stepped.
+std::string complaint(const Archive& archive) {
+  GrainSolver solver = rough_grains().make({});
+  try {
+    solver.restore(archive);
+    for (int step = 0; step < 3; ++step) solver.step(kStep);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::io);
+    return error.what();
+  }
+  return {};
+}
+
+template <class T>
+Archive with(const Archive& good, const std::string& name, std::size_t at, T value) {
+  Archive archive = good;
+  std::vector<T> values = good.get<T>(name);
+  values.at(at) = value;
+  archive.put(name, values);
+  return archive;
+}
+
+TEST(SolverState, a_saved_one_comes_back) {
+  const Archive archive = saved();
+  EXPECT_EQ(complaint(archive), "");
+  EXPECT_FALSE(archive.get<double>("pairs/tangential").empty());
+  EXPECT_FALSE(archive.get<std::int32_t>("walls/grain").empty());
+}
+
+TEST(SolverState, every_index_that_is_wild_is_refused_by_its_array) {
+  const Archive good = saved();
+  const auto refused = [&](const Archive& archive, const std::string& array) {
+    EXPECT_TRUE(complaint(archive).starts_with("saved state '" + array + "'"))
+        << array << ": " << complaint(archive);
+  };
+  constexpr std::int32_t kWild = 1 << 30;
+  for (const std::int32_t value : {-1, kWild}) {
+    refused(with(good, "id", 3, value), "id");
+    refused(with(good, "strips/pairs", 1, value), value < 0 ? "strips/pairs" : "pairs/partners");
+    refused(with(good, "strips/walls", 1, value), value < 0 ? "strips/walls" : "walls/grain");
+    refused(with(good, "walls/grain", 0, value), "walls/grain");
+    refused(with(good, "walls/wall", 0, value), "walls/wall");
+    refused(with(good, "strips/cells", 5, value), "strips/cells");
+  }
+  refused(with(good, "strips/first", 1, std::int32_t{7}), "strips/first");
+  refused(with(good, "strips/last", good.get<std::int32_t>("strips/last").size() - 1, kWild), "strips/last");
+  refused(with(good, "pairs/partners", 0, ~std::uint64_t{0}), "pairs/partners");
+  refused(with(good, "pairs/partners", 0, std::uint64_t{1}), "pairs/partners");
+  refused(with(good, "position", 0, std::nan("")), "position");
+  refused(with(good, "position", 2, 1e7), "position");
+  refused(with(good, "count", 0, std::int64_t{-1}), "count");
+  refused(with(good, "count", 0, std::int64_t{1} << 62), "count");
+  refused(with(good, "strips/cells_z", 0, std::numeric_limits<std::int64_t>::max()), "strips/cells_z");
+  refused(with(good, "strips/cells_z", 0, std::int64_t{0}), "strips/cells_z");
+  refused(with(good, "strips/resorted", 0, std::int64_t{-5}), "strips/resorted");
+  for (const char* name : {"pairs/tangential", "pairs/rolling"}) {
+    Archive archive = good;
+    archive.put(name, std::vector<double>(4));
+    refused(archive, name);
+  }
+  Archive archive = good;
+  archive.put("samples/strips", std::vector<double>{1.0, 2.0, 3.0});
+  refused(archive, "samples/strips");
+}
+
+/// Numbers anywhere, changed to anything, and arrays cut short: a message, or a state that can be stepped.
+TEST(SolverState, random_changes_are_refused_or_harmless) {
+  const Archive good = saved();
+  std::mt19937_64 random(1);
+  std::vector<std::string> names;
+  for (const auto& [name, array] : good.arrays()) names.push_back(name);
+  int refused = 0;
+  for (int k = 0; k < 1000; ++k) {
+    const std::string& name = names[random() % names.size()];
+    Archive::Array array = good.arrays().at(name);
+    std::visit(
+        [&]<class T>(std::vector<T>& values) {
+          if (values.empty() || random() % 8 == 0) return values.resize(random() % (values.size() + 3));
+          constexpr std::int64_t kOdd[] = {0,
+                                           1,
+                                           -1,
+                                           2,
+                                           127,
+                                           255,
+                                           1 << 20,
+                                           std::numeric_limits<std::int32_t>::max(),
+                                           std::numeric_limits<std::int32_t>::min()};
+          T& value = values[random() % values.size()];
+          value =
+              random() % 2 ? static_cast<T>(kOdd[random() % std::size(kOdd)]) : static_cast<T>(value + T{1});
+        },
+        array);
+    Archive archive = good;
+    archive.put_array(name, array);
+    refused += !complaint(archive).empty();
+  }
+  EXPECT_GT(refused, 100);
+}
+
+}  // namespace
+}  // namespace furrow::terrain::dem

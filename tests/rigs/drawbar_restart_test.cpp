@@ -32,9 +32,11 @@ void expect_equal(const rigs::Rig& a, const rigs::Rig& b) {
 }  // namespace
 
 TEST(Restart, continues_bit_for_bit_whether_placed_before_or_not) {
-  for (const char* mode : {"fixed_angular_speed", "fixed_speed", "free_rolling"}) {
+  for (const auto& [mode, move_from] : {std::pair{"fixed_angular_speed", 0.0}, {"fixed_speed", 0.0},
+                                        {"free_rolling", 0.0}, {"fixed_speed", 0.012}}) {
     rigs::DrawbarRigOptions options = reference_options();
     options.mode = mode;
+    options.move_from = move_from;
     options.toe_angle = 0.05;
     options.toe_time = 0.004;
     options.camber_angle = -0.03;

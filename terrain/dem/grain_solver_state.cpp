@@ -99,6 +99,7 @@ void GrainSolver::restore(const Archive& archive) {
   grains_.id = archive.get<std::int32_t>("id", n);
   restore_fields(archive, "accounts", accounts_);
   mean_contact_force_ = archive.get_double("mean_contact_force");
+  overlap_bound_.clear();
   // Cached beds of older programs hold no samples: the first step takes them.
   samples_.clear();
   until_sample_ = 0;

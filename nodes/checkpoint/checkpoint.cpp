@@ -240,6 +240,7 @@ std::vector<Segment> segments_until(std::int64_t step, double wall_s, int thread
     segments = resume->manifest.segments;
     now.from_step = resume->manifest.step;
     now.changed = resume->changed;
+    now.finer_than = resume->finer_than;
   }
   now.to_step = step;
   now.wall_s = wall_s;

@@ -40,6 +40,7 @@ struct ResumePoint {
   std::filesystem::path folder;  // of the checkpoint
   CheckpointManifest manifest;
   std::string changed;  // JSON object: keys that are changed from here on
+  std::string finer_than;  // Segment::finer_than
 };
 
 /// The segments before this one, and this one until `step`.

@@ -27,7 +27,8 @@ std::string dotted(const std::string& pointer) {
 }
 
 /// Keys whose values differ, with the new ones. @throws Error(bad_input) at the first that may not.
-json changes(const fs::path& run, const json& before, const json& now) {
+/// @param failed the run has, and may be stepped more finely
+json changes(const fs::path& run, const json& before, const json& now, bool failed) {
   json changed = json::object(), keys = before.flatten();
   keys.update(now.flatten());
   const json old_values = before.flatten(), new_values = now.flatten();
@@ -35,13 +36,15 @@ json changes(const fs::path& run, const json& before, const json& now) {
     const json was = old_values.value(pointer, json()), is = new_values.value(pointer, json());
     if (was == is) continue;
     const std::string key = dotted(pointer);
-    if (!scenario::may_change_on_resume(key))
+    const bool finer = failed && scenario::steps_finer(key);
+    if (!finer && !scenario::may_change_on_resume(key))
       throw input_error(
           run.string(), key,
           fmt::format("is {} but the run was computed with {}, expected the same: a run that is continued "
                       "may change run.end, run.average_from, run.threads, run.peer_timeout, output.* and "
-                      "checkpoint.*, not its physics",
-                      value_text(is), value_text(was)));
+                      "checkpoint.*, not its physics{}",
+                      value_text(is), value_text(was),
+                      scenario::steps_finer(key) ? "; only one that failed may be stepped more finely" : ""));
     changed[key] = is;
   }
   return changed;
@@ -60,7 +63,7 @@ void check_files(const scenario::Scenario& scenario, const CheckpointManifest& m
 ResumePoint newest_whole(const fs::path& run, std::vector<std::string>& problems) {
   for (const fs::path& folder : list_checkpoints(run)) {
     try {
-      return {folder, read_checkpoint(folder), ""};
+      return {folder, read_checkpoint(folder), "", ""};
     } catch (const Error& error) {
       problems.push_back(error.what());
     }
@@ -72,6 +75,51 @@ ResumePoint newest_whole(const fs::path& run, std::vector<std::string>& problems
   std::string text;
   for (const std::string& problem : problems) text += problem + "\n";
   throw Error(ExitCode::io, text + run.string() + ": no checkpoint is whole, nothing can be continued");
+}
+
+/// Counts the checkpoint's steps in those of the run that goes on, which are an equal part of them.
+/// @throws Error(bad_input) when they are not
+void count_in_steps_of(double step, double before, const fs::path& run, CheckpointManifest& manifest) {
+  const auto ratio = static_cast<std::int64_t>(std::llround(before / step));
+  if (ratio < 1 || std::abs(before - static_cast<double>(ratio) * step) > 1e-9 * before)
+    throw input_error(
+        run.string(), "run.step",
+        fmt::format("is {} s but the run was computed with {} s, expected a half, a third, … of it",
+                    number_text(step), number_text(before)));
+  manifest.step *= ratio;
+  manifest.frames.every *= ratio;
+  manifest.frames.first_step *= ratio;
+  for (Segment& segment : manifest.segments) segment.from_step *= ratio, segment.to_step *= ratio;
+}
+
+/// Every substeps key may only grow. @throws Error(bad_input)
+void check_finer(const fs::path& run, const json& before, const json& changed) {
+  for (const auto& [key, value] : changed.items()) {
+    if (!key.ends_with(".substeps")) continue;
+    const json::json_pointer pointer("/" + key.substr(0, key.find('.')) + "/substeps");
+    const auto was = before.value(pointer, 1);
+    if (value.is_number_integer() && value.get<int>() < was)
+      throw input_error(
+          run.string(), key,
+          fmt::format("is {} but the run was computed with {}, expected more", value.get<int>(), was));
+  }
+}
+
+bool only_finer(const json& changed) {
+  bool any = false;
+  for (const auto& [key, value] : changed.items()) {
+    if (key == "run.end" || key == "run.average_from") return false;
+    any = any || scenario::steps_finer(key);
+  }
+  return any;
+}
+
+/// What to expect of a run that failed and goes on with nothing changed. @param failed summary_failed.json
+std::string failure_ahead(const fs::path& run, const nlohmann::ordered_json& failed) {
+  const auto text = value_at(failed, "failed.error"), time = value_at(failed, "failed.time_s");
+  return fmt::format("{}: failed at t = {} s and will fail again, as nothing is changed: {}", run.string(),
+                     time.is_number() ? number_text(time.get<double>()) : "?",
+                     text.is_string() ? text.get<std::string>() : "");
 }
 
 /// Step at which the finished run ended; negative while there is no summary.
@@ -101,9 +149,9 @@ ResumePlan plan_resume(const fs::path& run,
   ResumePlan plan;
   plan.scenario = scenario::load_scenario(file, settings);
   const std::int64_t steps = plan.scenario.run.steps(), ended = finished_at(run);
+  const json now = json::parse(plan.scenario.completed);
   if (ended == steps) {
-    changes(run, json::parse(scenario::load_scenario(file, {}).completed),
-            json::parse(plan.scenario.completed));
+    changes(run, json::parse(scenario::load_scenario(file, {}).completed), now, false);
     plan.finished = true;
     return plan;
   }
@@ -112,8 +160,17 @@ ResumePlan plan_resume(const fs::path& run,
   plan.scenario.name = manifest.name;
   json before = json::parse(manifest.scenario);
   scenario::remove_keys_of_other_engines(before);  // of a run that began with an earlier version
-  const json changed = changes(run, before, json::parse(plan.scenario.completed));
+  const nlohmann::ordered_json failed = read_failed_summary(run);
+  const bool physics = value_at(failed, "failed.exit_code") == static_cast<int>(ExitCode::physics);
+  const json changed = changes(run, before, now, physics);
   if (!changed.empty()) plan.point.changed = changed.dump();
+  check_finer(run, before, changed);
+  if (only_finer(changed)) plan.point.finer_than = manifest.scenario_digest;
+  if (physics && value_at(failed, "scenario_digest") == plan.scenario.digest)
+    plan.warnings.push_back(failure_ahead(run, failed));
+  if (changed.contains("run.step"))
+    count_in_steps_of(plan.scenario.run.step, before.at("run").at("step").get<double>(), run,
+                      plan.point.manifest);
   check_files(plan.scenario, manifest);
   const std::int64_t reached = std::max(ended, manifest.step);
   if (steps < reached)

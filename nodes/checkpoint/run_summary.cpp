@@ -8,14 +8,25 @@ namespace furrow::checkpoint {
 
 using Json = nlohmann::ordered_json;
 
-Json read_summary(const std::filesystem::path& run) {
-  Json summary = read_json_if_whole(run / "summary.json");
+namespace {
+
+Json read_one(const std::filesystem::path& file) {
+  Json summary = read_json_if_whole(file);
   if (!summary.is_object()) return {};
   const Json wheels = summary.value("wheels", Json::array());
   if (wheels.is_array() && !wheels.empty())
     for (const auto& [key, value] : wheels.front().items())
       if (!summary.contains(key)) summary[key] = value;
   return summary;
+}
+
+}  // namespace
+
+Json read_summary(const std::filesystem::path& run) { return read_one(run / "summary.json"); }
+
+Json read_failed_summary(const std::filesystem::path& run) {
+  Json summary = read_one(run / "summary_failed.json");
+  return summary.is_object() && summary.value("failed", Json()).is_object() ? summary : Json();
 }
 
 Json value_at(const Json& summary, const std::string& path) {

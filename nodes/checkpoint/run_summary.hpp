@@ -1,4 +1,4 @@
-// What a finished run found, for those that come after it: results on the terminal, sweeps, resume.
+// What a run found, for those that come after it: results on the terminal, sweeps, resume.
 #pragma once
 
 #include <filesystem>
@@ -11,6 +11,9 @@ namespace furrow::checkpoint {
 /// The summary of a run; null while the run has not ended, and when the file is damaged. Of several wheels, wheel 0's
 /// keys can be asked for as if it were the only one.
 nlohmann::ordered_json read_summary(const std::filesystem::path& run);
+
+/// The same of a run that has failed: means of what there is, and why under `failed`; null while it has not.
+nlohmann::ordered_json read_failed_summary(const std::filesystem::path& run);
 
 /// summary["a"]["b"][1] for "a.b.1"; null where there is no such entry.
 nlohmann::ordered_json value_at(const nlohmann::ordered_json& summary, const std::string& path);

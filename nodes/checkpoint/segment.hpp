@@ -9,12 +9,14 @@
 
 namespace furrow::checkpoint {
 
-/// A stretch of a run that was computed without interruption.
+/// A stretch of a run that was computed without interruption. Steps are those of the last stretch's run.step.
 struct Segment {
   std::int64_t from_step = 0, to_step = 0;
   double wall_s = 0.0;
   int threads = 1;      // of the terrain
   std::string changed;  // JSON object: keys that were changed when it began, with their new values
+  // Digest of the scenario until then, where this is the same run after a failure, stepped more finely.
+  std::string finer_than;
 };
 
 inline nlohmann::ordered_json segments_json(const std::vector<Segment>& segments) {
@@ -23,6 +25,7 @@ inline nlohmann::ordered_json segments_json(const std::vector<Segment>& segments
     list.push_back(
         {{"from_step", s.from_step}, {"to_step", s.to_step}, {"wall_s", s.wall_s}, {"threads", s.threads}});
     if (!s.changed.empty()) list.back()["changed"] = nlohmann::ordered_json::parse(s.changed);
+    if (!s.finer_than.empty()) list.back()["finer_than"] = s.finer_than;
   }
   return list;
 }
@@ -31,8 +34,9 @@ inline nlohmann::ordered_json segments_json(const std::vector<Segment>& segments
 inline std::vector<Segment> segments_from_json(const nlohmann::ordered_json& list) {
   std::vector<Segment> segments;
   for (const auto& j : list) {
-    Segment s{j.at("from_step"), j.at("to_step"), j.at("wall_s"), j.at("threads"), ""};
+    Segment s{j.at("from_step"), j.at("to_step"), j.at("wall_s"), j.at("threads"), "", ""};
     if (j.contains("changed")) s.changed = j.at("changed").dump();
+    if (j.contains("finer_than")) s.finer_than = j.at("finer_than").get<std::string>();
     segments.push_back(s);
   }
   return segments;

@@ -118,6 +118,13 @@ void add_soil_options(CLI::App& command, SoilArguments& soil) {
   command.add_option("--only", soil.only, "this test only: plate, shear, cone or repose; may be repeated")
       ->take_all()
       ->allow_extra_args(false);
+  command
+      .add_option(
+          "--stress", soil.stresses,
+          "normal stress of a shear test, Pa; two or more, repeated (default: 20, 50 and 100 kPa, less "
+          "for soft grains)")
+      ->take_all()
+      ->allow_extra_args(false);
   command.add_flag("--quick", soil.quick,
                    "use small boxes and one seed: an impression within seconds, not a result to quote");
 }

@@ -57,6 +57,7 @@ struct SoilArguments {
   int seeds = 3;
   double speed = 0.1;             // of the tools, m/s
   std::vector<std::string> only;  // plate, shear, cone, repose; empty: all
+  std::vector<double> stresses;   // of the shear tests, Pa; empty: the usual ones
 };
 
 /// `furrow soil` (commands_soil.cpp). @throws Error

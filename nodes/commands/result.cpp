@@ -83,6 +83,12 @@ std::string result_text(const std::filesystem::path& run, const scenario::Scenar
       text += ", no rut measured: " + why.get<std::string>();
     text += "\n";
   }
+  if (const double added = number(summary, "substeps_added"); added > 0.0)
+    text += fmt::format(
+        "furrow: hard contacts: the terrain took {:.0f} more substeps, in {:.2g} % of the time, of at least "
+        "1/{:.0f} "
+        "of the step\n",
+        added, 100.0 * number(summary, "substeps_refined_share"), number(summary, "substeps_most_parts"));
   text += fmt::format("furrow: {:.1f} s for {:g} simulated s, {:.1f} s to prepare the bed{}\n",
                       number(summary, "wall_s"), number(summary, "simulated_s"),
                       number(summary, "settle_wall_s"), ranks_line(summary));

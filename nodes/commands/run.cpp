@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "nodes/checkpoint/checkpoint.hpp"
 #include "nodes/checkpoint/resume.hpp"
@@ -12,6 +13,9 @@
 #include "nodes/launch/signals.hpp"
 #include "nodes/launch/supervisor.hpp"
 #include "nodes/scenario/load_scenario.hpp"
+#include "protocol/core/no_step_helps.hpp"
+#include "protocol/files/json_text.hpp"
+#include "protocol/files/text_file.hpp"
 
 namespace furrow::commands {
 namespace {
@@ -36,20 +40,57 @@ void tell_result(const scenario::Scenario& scenario, const std::filesystem::path
     std::fprintf(stderr, "furrow: plots: %s and %zu more\n", made.front().c_str(), made.size() - 1);
 }
 
-/// What can be done with a run that did not come to its end.
-void tell_how_to_continue(const std::filesystem::path& directory) {
-  if (checkpoint::list_checkpoints(directory).empty())
-    std::fprintf(stderr, "furrow: there is no checkpoint yet; start again with furrow run\n");
+/// What can be done with a run that did not come to its end. Physics that failed fails again where nothing is changed.
+void tell_how_to_continue(const std::filesystem::path& directory, const launch::LaunchResult& result,
+                          const scenario::Scenario& scenario) {
+  const std::string folder = scenario::shell_quoted(directory.string());
+  const bool physics = result.code == ExitCode::physics;
+  if (physics && result.error.find(kNoStepHelps) != std::string::npos)
+    std::fputs("furrow: continued, it would fail at the same step; start again with furrow run\n", stderr);
+  else if (checkpoint::list_checkpoints(directory).empty())
+    std::fprintf(stderr, "furrow: there is no checkpoint yet; start again with furrow run%s\n",
+                 physics ? ", perhaps with a smaller run.step" : "");
+  else if (physics)
+    std::fprintf(
+        stderr,
+        "furrow: continued as it is, it would fail at the same step; to continue from the last checkpoint "
+        "with a smaller one: furrow resume %s --set run.step=%s\n",
+        folder.c_str(), number_text(0.5 * scenario.run.step).c_str());
   else
-    std::fprintf(stderr, "furrow: to continue from the last checkpoint: furrow resume %s\n",
-                 scenario::shell_quoted(directory.string()).c_str());
+    std::fprintf(stderr, "furrow: to continue from the last checkpoint: furrow resume %s\n", folder.c_str());
+}
+
+/// When the file was written; the beginning of time if it is not there.
+std::filesystem::file_time_type written(const std::filesystem::path& file) {
+  std::error_code error;
+  const auto at = std::filesystem::last_write_time(file, error);
+  return error ? std::filesystem::file_time_type::min() : at;
+}
+
+/// summary_failed.json of a run whose rig could not write it: why, without means.
+void write_failure(const std::filesystem::path& file, const scenario::Scenario& scenario,
+                   const launch::LaunchResult& result) {
+  const nlohmann::ordered_json json{
+      {"format_version", 1},
+      {"version", FURROW_VERSION},
+      {"scenario", scenario.name},
+      {"scenario_digest", scenario.digest},
+      {"failed",
+       {{"exit_code", static_cast<int>(result.code)}, {"error", result.error}, {"time_s", nullptr}}}};
+  try {
+    write_whole_file(file, json.dump(2) + "\n");
+  } catch (const Error&) {
+    // The failure itself is told; that the disk is full as well is in its text, or comes with the next command.
+  }
 }
 
 ExitCode supervise_run(const scenario::Scenario& scenario, launch::RunDirectory& directory,
                        const RunArguments& arguments) {
   launch::LaunchResult result;
+  const std::filesystem::path failed = directory.path() / "summary_failed.json";
+  const auto failed_before = written(failed);
   try {
-    directory.add({"run.log"});
+    directory.add({"run.log", "summary_failed.json"});
     directory.lock().share();
     launch::ProgressDisplay display;
     result = launch::supervise({rank_arguments(arguments, directory.path()), scenario::rank_table(scenario),
@@ -68,12 +109,15 @@ ExitCode supervise_run(const scenario::Scenario& scenario, launch::RunDirectory&
   if (result.code == ExitCode::stopped) {
     std::fprintf(stderr, "furrow: %s; partial results are in %s\n", result.error.c_str(),
                  directory.path().c_str());
-    tell_how_to_continue(directory.path());
+    tell_how_to_continue(directory.path(), result, scenario);
   } else if (result.code != ExitCode::done) {
     print_error(result.error);
     if (result.code != ExitCode::bad_input) {
+      const bool measured = written(failed) != failed_before;
+      if (!measured) write_failure(failed, scenario, result);
       std::fprintf(stderr, "furrow: the log of the ranks is %s\n", (directory.path() / "run.log").c_str());
-      tell_how_to_continue(directory.path());
+      if (measured) std::fprintf(stderr, "furrow: what was measured until then is in %s\n", failed.c_str());
+      tell_how_to_continue(directory.path(), result, scenario);
     }
     return result.code;
   } else {

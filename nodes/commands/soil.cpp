@@ -9,6 +9,7 @@
 #include "nodes/launch/signals.hpp"
 #include "nodes/scenario/scenario.hpp"
 #include "protocol/core/clock.hpp"
+#include "protocol/files/json_text.hpp"
 #include "protocol/files/text_file.hpp"
 #include "terrain/soil/soil_output.hpp"
 
@@ -29,6 +30,13 @@ terrain::soil::SoilOptions soil_options(const terrain::dem::DemOptions& grains,
   o.speed = arguments.speed;
   o.quick = arguments.quick;
   o.threads = grains.settle_threads;
+  o.stresses = arguments.stresses;
+  std::sort(o.stresses.begin(), o.stresses.end());
+  for (const double stress : o.stresses)
+    require(stress > 0.0 && stress <= 1e7, "--stress",
+            "is " + number_text(stress) + " Pa, expected above 0 up to 1e7 Pa");
+  require(o.stresses.empty() || o.stresses.front() < o.stresses.back(), "--stress",
+          "is given once, expected two stresses or more: c and φ are of a line through them");
   const auto& only = arguments.only;
   const auto asked = [&](const char* test) {
     return only.empty() || std::find(only.begin(), only.end(), test) != only.end();

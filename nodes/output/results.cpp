@@ -1,5 +1,6 @@
 #include "nodes/output/results.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -102,31 +103,44 @@ void Results::write_hdf5(std::span<const FinalReport> reports) const {
     for (const Column& column : table.columns)
       file.put(fmt::format("series/{}/{}", table.subject, column.name), table.column(column.name),
                {table.lines()});
-  put_heights(file, "terrain/height_before", reports.back().height_before);
-  put_heights(file, "terrain/height_after", reports.back().height_after);
+  if (!reports.empty()) {
+    put_heights(file, "terrain/height_before", reports.back().height_before);
+    put_heights(file, "terrain/height_after", reports.back().height_after);
+  }
   file.finish();
 }
 
-void Results::finish(std::span<const FinalReport> reports, std::span<const WheelEnd> wheels, double wall,
-                     bool stopped) {
-  FURROW_ASSERT(reports.size() == cards_.size(), reports.size(), cards_.size());
-  FURROW_ASSERT((stopped || !wheels.empty()) && wheels.size() <= tables_.size(), wheels.size(),
+SummaryInput Results::summary_input(const RunEnd& end) const {
+  std::int64_t steps = std::llround(end.time / scenario_.run.step);
+  if (resume_) steps = std::max(steps, resume_->manifest.step);
+  return {scenario_, cards_, setup_,
+          tables_,   end,    checkpoint::segments_until(steps, end.wall, cards_.back().threads, resume_)};
+}
+
+void Results::finish(const RunEnd& end, bool stopped) {
+  FURROW_ASSERT(end.reports.size() == cards_.size(), end.reports.size(), cards_.size());
+  FURROW_ASSERT((stopped || !end.wheels.empty()) && end.wheels.size() <= tables_.size(), end.wheels.size(),
                 tables_.size());
-  FURROW_ASSERT(wall >= 0.0, wall);
+  FURROW_ASSERT(end.wall >= 0.0, end.wall);
   for (auto& writer : writers_) writer->flush();
-  write_hdf5(reports);
+  write_hdf5(end.reports);
   write_xdmf_index(directory_);
   if (stopped) return;
-  const auto steps =
-      static_cast<std::int64_t>(std::llround(wheels.front().series.now().time / scenario_.run.step));
-  const SummaryInput input{scenario_,
-                           cards_,
-                           setup_,
-                           reports,
-                           tables_,
-                           wheels,
-                           checkpoint::segments_until(steps, wall, reports.back().threads, resume_)};
-  write_whole_file(directory_ / "summary.json", summary_text(input));
+  // Of an earlier failure: until now it said that the run may be stepped more finely.
+  std::error_code ignored;
+  std::filesystem::remove(directory_ / "summary_failed.json", ignored);
+  write_whole_file(directory_ / "summary.json", summary_text(summary_input(end)));
+}
+
+void Results::fail(const RunEnd& end, const Failure& failure) {
+  FURROW_ASSERT(end.reports.empty() && end.wheels.size() <= tables_.size(), end.reports.size(),
+                end.wheels.size());
+  for (auto& writer : writers_) writer->flush();
+  SummaryInput input = summary_input(end);
+  input.failure = &failure;
+  write_whole_file(directory_ / "summary_failed.json", summary_text(input));
+  write_hdf5({});
+  write_xdmf_index(directory_);
 }
 
 }  // namespace furrow::output

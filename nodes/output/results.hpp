@@ -1,5 +1,5 @@
 // What a run leaves behind, written by the rig's rank: the tables of results as CSV and in results.h5, results.xdmf,
-// summary.json.
+// summary.json; summary_failed.json if it failed, so that summary.json means done.
 #pragma once
 
 #include <filesystem>
@@ -24,19 +24,35 @@ struct WheelEnd {
   Vec3 heading = Vec3::UnitX();  // unit, W
 };
 
+/// How a run ended, as the rig's rank knows it.
+struct RunEnd {
+  std::span<const FinalReport> reports;  // rig, tires, terrain; empty: the run has failed
+  std::span<const WheelEnd> wheels;      // empty: it failed before its first step
+  const TerrainState& terrain;           // the last one
+  double time = 0.0;                     // simulated, s
+  double wall = 0.0;                     // of this segment, s
+};
+
+/// Why a run failed.
+struct Failure {
+  ExitCode code = ExitCode::physics;
+  std::string text;
+};
+
 /// Everything the summary is computed from.
 struct SummaryInput {
   const scenario::Scenario& scenario;
   std::span<const NodeCard> cards;  // rig, tires, terrain
   const TerrainSetup& setup;
-  std::span<const FinalReport> reports;  // as cards
-  std::span<const Table> tables;         // those of the wheels come first
-  std::span<const WheelEnd> wheels;
+  std::span<const Table> tables;  // those of the wheels come first
+  const RunEnd& end;
   std::vector<checkpoint::Segment> segments;
+  const Failure* failure = nullptr;
 };
 
 /// summary.json's text: what holds for the run, and `wheels`, one entry per wheel. Where there is one wheel, its keys
-/// stand beside those of the run as well. Values that could not be measured are null.
+/// stand beside those of the run as well. Values that could not be measured are null. Of a run that has failed:
+/// summary_failed.json's text, with the means of what there is, and why under `failed`.
 std::string summary_text(const SummaryInput& input);
 
 /// "timeseries.csv" for the only wheel of a run, "timeseries_<subject>.csv" for any other table.
@@ -59,14 +75,16 @@ class Results {
   std::vector<checkpoint::SeriesMark> mark_series();
 
   /// Writes results.h5, results.xdmf and, unless the run was stopped early, summary.json. @throws Error(io)
-  void finish(std::span<const FinalReport> reports, std::span<const WheelEnd> wheels, double wall,
-              bool stopped);
+  void finish(const RunEnd& end, bool stopped);
+  /// The run has failed: writes results.h5 and summary_failed.json of what there is. @throws Error(io)
+  void fail(const RunEnd& end, const Failure& failure);
 
  private:
   std::filesystem::path file_of(const Table& table) const;
   void list_files() const;
   void continue_from(const checkpoint::ResumePoint& resume);
   void write_hdf5(std::span<const FinalReport> reports) const;
+  SummaryInput summary_input(const RunEnd& end) const;
 
   scenario::Scenario scenario_;
   std::vector<NodeCard> cards_;

@@ -140,6 +140,7 @@ Json pull_statistics(const WheelInput& in, const Window& w, double load) {
   const double bounce = bounce_period(settlement(in, w), kStandardGravity);
   auto reasons =
       unsteady_because(s, {load, bounce, w.duration(), std::max(travel, turned), radius, w.whole_facets});
+  if (in.run.failure) reasons.emplace_back("the run failed before its end");
   const double late = w.rate([](const WheelRow& r) { return r.energy_error_abs; });
   const double rolling = load * std::max(travel, turned) / w.duration();
   if (late > kMaxLate * rolling)
@@ -206,10 +207,10 @@ Json tire_axes_means(const Window& w) {
 }
 
 void add_rut(const WheelInput& in, Json& json) {
-  const FinalReport& terrain = in.run.reports.back();
   terrain::Rut rut;
-  rut.missing = "the series has no lines";
-  if (!in.rows.empty()) {
+  rut.missing = in.rows.empty() ? "the series has no lines" : "the run failed before its end";
+  if (!in.rows.empty() && !in.run.end.reports.empty()) {
+    const FinalReport& terrain = in.run.end.reports.back();
     terrain::RutOptions options;
     options.direction = in.end.heading.x() < 0.0 ? -1.0 : 1.0;
     options.lateral = scenario::describe_rig(in.run.scenario).wheels[in.wheel].lateral;
@@ -261,8 +262,8 @@ void add_mobility(const WheelInput& in, const Window& w, Json& json) {
 
 Json rank_table(const SummaryInput& in) {
   Json ranks = Json::array();
-  for (std::size_t i = 0; i < in.reports.size(); ++i) {
-    const FinalReport& r = in.reports[i];
+  for (std::size_t i = 0; i < in.end.reports.size(); ++i) {
+    const FinalReport& r = in.end.reports[i];
     ranks.push_back({{"rank", i},
                      {"node", to_string(r.self)},
                      {"kind", in.cards[i].node_kind},
@@ -280,7 +281,8 @@ void add_accounts(const WheelInput& in, const Window& w, Json& json) {
   const SpindleReport& tire = in.end.tire;
   const WheelRow end = series.now();
   const double sent = series.impulse_sent_abs();
-  if (in.run.wheels.size() == 1) json["power_balance"] = power_balance(w);  // the soil's share is all wheels'
+  if (in.run.end.wheels.size() == 1)
+    json["power_balance"] = power_balance(w);  // the soil's share is all wheels'
   json["interface_energy_error_J"] = number(end.energy_error);
   json["interface_energy_error_abs_J"] = number(end.energy_error_abs);
   json["rim_energy_error_J"] = number(end.rim_energy_error);
@@ -320,14 +322,14 @@ Json wheel_summary(const WheelInput& in) {
 
 /// @param rows of any wheel: what they say of the terrain is the same
 void add_cost(const SummaryInput& in, std::span<const WheelRow> rows, Json& json) {
-  const double time = in.wheels.front().series.now().time;
+  const double time = in.end.time;
   json["simulated_s"] = time;
   double wall = 0.0;
   for (const checkpoint::Segment& segment : in.segments) wall += segment.wall_s;
   json["wall_s"] = wall;
   json["settle_wall_s"] = in.setup.settle_wall_s;
   json["wall_s_per_simulated_s"] = number(wall / time);
-  json["ranks"] = rank_table(in);
+  if (!in.end.reports.empty()) json["ranks"] = rank_table(in);
   json["segments"] = checkpoint::segments_json(in.segments);
   json["grains"] = in.setup.grains;
   double contacts = 0.0, active = 0.0;
@@ -338,6 +340,9 @@ void add_cost(const SummaryInput& in, std::span<const WheelRow> rows, Json& json
   const auto lines = static_cast<double>(rows.size());
   json["contacts_mean"] = number(contacts / lines);
   json["active_share_mean"] = number(active / lines);
+  json["substeps_added"] = in.end.terrain.substeps_added;
+  json["substeps_refined_share"] = number(in.end.terrain.refined_time / time);
+  json["substeps_most_parts"] = in.end.terrain.most_parts;
   json["compiler"] = "g++ " __VERSION__;
   json["cpu"] = checkpoint::cpu_model();
 }
@@ -345,24 +350,30 @@ void add_cost(const SummaryInput& in, std::span<const WheelRow> rows, Json& json
 }  // namespace
 
 std::string summary_text(const SummaryInput& in) {
-  FURROW_ASSERT(in.reports.size() == in.cards.size(), in.reports.size(), in.cards.size());
-  FURROW_ASSERT(in.tables.size() >= in.wheels.size() && !in.wheels.empty(), in.tables.size(),
-                in.wheels.size());
+  FURROW_ASSERT(in.failure || in.end.reports.size() == in.cards.size(), in.end.reports.size(),
+                in.cards.size());
+  FURROW_ASSERT(in.tables.size() >= in.end.wheels.size(), in.tables.size(), in.end.wheels.size());
+  FURROW_ASSERT(in.failure || !in.end.wheels.empty(), in.end.wheels.size());
   Hash state;
-  for (const FinalReport& report : in.reports) state.add(&report.state_hash, sizeof report.state_hash);
+  for (const FinalReport& report : in.end.reports) state.add(&report.state_hash, sizeof report.state_hash);
   Json json;
   json["format_version"] = 1;
   json["version"] = FURROW_VERSION;
   json["scenario"] = in.scenario.name;
   json["scenario_digest"] = in.scenario.digest;
-  json["state_hash"] = state.hex();
+  if (in.failure)
+    json["failed"] = {{"exit_code", static_cast<int>(in.failure->code)},
+                      {"error", in.failure->text},
+                      {"time_s", in.end.time}};
+  else
+    json["state_hash"] = state.hex();
   const terrain::TerrainDescription terrain = in.scenario.terrain->describe();
   json["terrain_engine"] = terrain.engine;
   if (!terrain.law.empty()) json["law"] = terrain.law;
   Json wheels = Json::array();
-  for (std::size_t k = 0; k < in.wheels.size(); ++k)
+  for (std::size_t k = 0; k < in.end.wheels.size(); ++k)
     wheels.push_back(
-        wheel_summary({in, static_cast<int>(k), in.tables[k], wheel_rows(in.tables[k]), in.wheels[k]}));
+        wheel_summary({in, static_cast<int>(k), in.tables[k], wheel_rows(in.tables[k]), in.end.wheels[k]}));
   if (wheels.size() == 1) json.update(wheels.front());
   add_cost(in, wheel_rows(in.tables.front()), json);
   json["wheels"] = wheels;

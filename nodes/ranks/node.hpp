@@ -41,6 +41,9 @@ class Node {
   /// Sends (tire, terrain) or gathers and writes (rig) the results. `stopped`: before the planned end.
   virtual void finish(Transport& transport, FinalReport own, bool stopped) = 0;
 
+  /// The run has failed, here or elsewhere: writes what there is of its results (rig). Does what it can.
+  virtual void fail(ExitCode, const std::string&) noexcept {}
+
   virtual void save(Archive& archive) const = 0;
   virtual void restore(const Archive& archive) = 0;
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 
+#include "nodes/checkpoint/wall_schedule.hpp"
 #include "nodes/launch/run_list.hpp"
 #include "nodes/output/profile.hpp"
 #include "nodes/output/results.hpp"
@@ -62,8 +63,9 @@ class RigNode : public Node {
     wrenches_.resize(wheels);
     series_steps_ = scenario_.run.steps_in(scenario_.output.series_interval);
     if (context.saved) restore(*context.saved);
-    wall_start_ = last_checkpoint_ = wall_clock();
-    if (context.resume) time_start_ = context.resume->manifest.time;
+    wall_start_ = wall_clock();
+    checkpoints_ = {scenario_.checkpoint.wall_interval, wall_start_};
+    if (context.resume) time_start_ = time_ = context.resume->manifest.time;
   }
 
   void synchronize(Transport& transport, const StepHeader& header) override {
@@ -79,6 +81,8 @@ class RigNode : public Node {
       wrenches_[k] = tires_[k].wrench;
     }
     const auto terrain = receive_step<TerrainReport>(transport, kTerrain, header.step);
+    terrain_ = terrain.state;
+    time_ = header.time;
     if (header.step > 0) measure(header, terrain);
     const bool line = header.step > 0 && series_steps_ > 0 && header.step % series_steps_ == 0;
     if (line) record();
@@ -106,10 +110,19 @@ class RigNode : public Node {
     check_folder();
     if (context_.profile) launch::add_to_run_list(context_.directory, {"profile.json"});
     if (context_.profile) output::write_profile(context_.directory / "profile.json", reports);
-    std::vector<output::WheelEnd> wheels;
-    for (int k = 0; k < rig_->wheel_count(); ++k)
-      wheels.push_back({series_[k].wheel(), tires_[k], rig_->report(k).load(), rig_->heading(k)});
-    results_->finish(reports, wheels, wall_clock() - wall_start_, stopped);
+    const std::vector<output::WheelEnd> wheels = wheel_ends();
+    results_->finish({reports, wheels, terrain_, time_, wall_clock() - wall_start_}, stopped);
+  }
+
+  void fail(ExitCode code, const std::string& text) noexcept override {
+    try {
+      if (!results_) return;
+      std::vector<output::WheelEnd> wheels;
+      if (time_ > time_start_) wheels = wheel_ends();
+      results_->fail({{}, wheels, terrain_, time_, wall_clock() - wall_start_}, {code, text});
+    } catch (...) {
+      // The failure itself is told; what else went wrong with the disk is not worth hiding it.
+    }
   }
 
   void save(Archive& archive) const override {
@@ -126,6 +139,13 @@ class RigNode : public Node {
   static constexpr Address kSelf{Role::rig, 0};
   static constexpr Address kTerrain{Role::terrain, 0};
 
+  std::vector<output::WheelEnd> wheel_ends() const {
+    std::vector<output::WheelEnd> wheels;
+    for (int k = 0; k < rig_->wheel_count(); ++k)
+      wheels.push_back({series_[k].wheel(), tires_[k], rig_->report(k).load(), rig_->heading(k)});
+    return wheels;
+  }
+
   /// What shall be done when all stand at `step`.
   Order order(std::int64_t step) {
     FURROW_ASSERT(step >= 0, step);
@@ -133,9 +153,9 @@ class RigNode : public Node {
     if (context_.stop_requested && context_.stop_requested()) return Order::stop;
     const scenario::CheckpointOptions& o = scenario_.checkpoint;
     const std::int64_t every = scenario_.run.steps_in(o.interval);
-    const bool by_wall = o.wall_interval > 0.0 && wall_clock() - last_checkpoint_ >= o.wall_interval;
-    if (!by_wall && (every == 0 || step % every != 0)) return Order::go_on;
-    last_checkpoint_ = wall_clock();
+    const double now = wall_clock();
+    if (!checkpoints_.due(now) && (every == 0 || step % every != 0)) return Order::go_on;
+    checkpoints_.written(now);
     return Order::checkpoint;
   }
 
@@ -200,8 +220,11 @@ class RigNode : public Node {
   std::unique_ptr<output::Results> results_;
   std::vector<double> last_;  // line of wheel 0
   std::int64_t series_steps_ = 0;
-  double wall_start_ = 0.0, shown_ = 0.0, last_checkpoint_ = 0.0, checked_ = 0.0;  // wall time, s
-  double time_start_ = 0.0;                                        // simulated, when this segment began, s
+  checkpoint::WallSchedule checkpoints_;
+  double wall_start_ = 0.0, shown_ = 0.0, checked_ = 0.0;  // wall time, s
+  double time_start_ = 0.0;                                // simulated, when this segment began, s
+  double time_ = 0.0;                                      // simulated, of the last synchronization, s
+  TerrainState terrain_;                                   // then
   Order next_ = Order::go_on, due_ = Order::go_on;
 };
 

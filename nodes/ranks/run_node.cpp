@@ -56,6 +56,11 @@ class RunLoop {
   RunLoop(const scenario::Scenario& scenario, Transport& transport, const RunContext& context)
       : scenario_(scenario), transport_(transport), context_(context) {}
 
+  /// Tells what there is of results after a failure that is none of the user's input or wish.
+  void fail(ExitCode code, const std::string& text) noexcept {
+    if (node_ && code != ExitCode::bad_input && code != ExitCode::stopped) node_->fail(code, text);
+  }
+
   ExitCode run() {
     transport_.set_peer_timeout(scenario_.run.peer_timeout);
     Archive saved;
@@ -123,15 +128,19 @@ class RunLoop {
 }  // namespace
 
 ExitCode run_node(const scenario::Scenario& scenario, Transport& transport, const RunContext& context) {
+  RunLoop loop(scenario, transport, context);
   try {
-    return RunLoop(scenario, transport, context).run();
-  } catch (const PeerFailure&) {
+    return loop.run();
+  } catch (const PeerFailure& failure) {
+    loop.fail(failure.code(), failure.what());
     throw;
   } catch (const Error& error) {
     transport.announce_failure(error.code(), error.what());
+    loop.fail(error.code(), error.what());
     throw;
   } catch (const std::exception& error) {
     transport.announce_failure(ExitCode::physics, error.what());
+    loop.fail(ExitCode::physics, error.what());
     throw;
   }
 }

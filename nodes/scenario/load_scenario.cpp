@@ -289,4 +289,8 @@ bool may_change_on_resume(const std::string& key) {
   return is_harmless(key) || is_output(key) || key == "run.end" || key == "run.average_from";
 }
 
+bool steps_finer(const std::string& key) {
+  return key == "run.step" || key == "terrain.substeps" || key == "tire.substeps" || key == "rig.substeps";
+}
+
 }  // namespace furrow::scenario

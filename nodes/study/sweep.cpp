@@ -32,7 +32,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-using checkpoint::read_summary, checkpoint::value_at;
+using checkpoint::read_summary, checkpoint::read_failed_summary, checkpoint::value_at;
 
 constexpr int kPoll = 100000;     // µs
 constexpr double kDeepRut = 0.4;  // of the bed's depth: a tire this deep feels the floor
@@ -119,7 +119,12 @@ fs::path Sweep::log_of(const Run& run) const { return options_.folder / "runs" /
 
 bool Sweep::finished(const Run& run) const {
   const Json summary = read_summary(folder_of(run));
-  return summary.is_object() && value_at(summary, "scenario_digest") == run.digest;
+  if (!summary.is_object()) return false;
+  if (value_at(summary, "scenario_digest") == run.digest) return true;
+  // After a failure it was continued with a smaller step.
+  const Json segments = value_at(summary, "segments");
+  return std::any_of(segments.begin(), segments.end(),
+                     [&](const Json& segment) { return value_at(segment, "finer_than") == run.digest; });
 }
 
 std::vector<std::string> Sweep::command(const Run& run) const {
@@ -318,7 +323,9 @@ void Sweep::write_table() const {
         run.state == State::done || run.state == State::failed ? std::to_string(run.exit_code) : "");
     if (run.pass > 0) text += fmt::format(",{}", run.pass);
     for (const std::string& key : keys) text += "," + (run.keys.contains(key) ? cell(run.keys[key]) : "");
-    const Json summary = run.state == State::done ? read_summary(folder_of(run)) : Json();
+    const Json summary = run.state == State::done                   ? read_summary(folder_of(run))
+                         : run.state == State::failed && run.loaded ? read_failed_summary(folder_of(run))
+                                                                    : Json();
     for (const std::string& name : study_.results) text += "," + cell(value_at(summary, name));
     text += "," + cell(run.problem) + "\n";
   }

@@ -48,6 +48,9 @@ struct TerrainState {
   std::int64_t contacts = 0;            // now
   std::int64_t active = 0;              // grains awake
   std::int64_t list_rebuilds = 0;
+  std::int64_t substeps_added = 0;  // beyond terrain.substeps, where contacts were too hard for them
+  double refined_time = 0.0;        // in which substeps were taken in parts, s
+  std::int32_t most_parts = 1;      // of one substep
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<TerrainState> auto& s) {
@@ -64,6 +67,9 @@ void visit_fields(Visit&& visit, FieldsOf<TerrainState> auto& s) {
   visit(Field{"contacts"}, s.contacts);
   visit(Field{"active"}, s.active);
   visit(Field{"list_rebuilds"}, s.list_rebuilds);
+  visit(Field{"substeps_added"}, s.substeps_added);
+  visit(Field{"refined_time", "s"}, s.refined_time);
+  visit(Field{"most_parts"}, s.most_parts);
 }
 
 /// Terrain surface on a regular grid: mean of the highest grain tops per cell; NaN where no grain is.

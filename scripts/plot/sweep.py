@@ -20,7 +20,9 @@ class Sweep:
         self.values = read_object(directory / "sweep.json")
         check_types(self.values, "sweep.json", texts=("study",), objects=("plot",), lists=("results",))
         with open(directory / "sweep.csv", newline="", encoding="utf-8") as file:
-            self.rows = [row for row in csv.DictReader(line for line in file if not line.startswith("#")) if row["state"] == "done"]
+            rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+        self.rows = [row for row in rows if row["state"] == "done"]
+        self.failed = [row for row in rows if row["state"] == "failed"]
         self.plot = self.values.get("plot") or {}
 
     def summary(self, row):
@@ -74,12 +76,24 @@ def bar_meaning(plot):
     return " (bars: standard error)" if plot.get("error") else ""
 
 
+def mark_failed(axis, sweep):
+    """A cross for each run that failed: at the mean of what there is, at the foot of the figure where there is none."""
+    x, y = (np.array([number(row.get(sweep.plot[name])) for row in sweep.failed]) for name in ("x", "y"))
+    known = np.isfinite(x) & np.isfinite(y)
+    if known.any():
+        axis.plot(x[known], y[known], ls="none", marker="x", ms=9, mew=2, color=RED, label="failed: mean until then")
+    lost = np.isfinite(x) & ~np.isfinite(y)
+    if lost.any():
+        axis.plot(x[lost], np.full(lost.sum(), 0.03), ls="none", marker="x", ms=9, mew=2, color=GREY,
+                  transform=axis.get_xaxis_transform(), label="failed: nothing measured")
+
+
 def curve(sweep):
     """y over x with error bars, one line per value of a third key, as the study's plot says."""
     plot = sweep.plot
     if not plot.get("x") or not plot.get("y"):
         raise Missing("the study asks for no such plot")
-    if not sweep.rows:
+    if not sweep.rows and not sweep.failed:
         raise Missing("no run is done")
     groups = {}
     for row in sweep.rows:
@@ -90,10 +104,11 @@ def curve(sweep):
         axis.errorbar(x, y, yerr=bars(error), marker="o", capsize=3,
                       color=COLOURS[i % len(COLOURS)], label=f"{plot['lines']} = {label}" if label else None)
     axis.axhline(0.0, color=GREY, lw=0.8)
+    mark_failed(axis, sweep)
     axis.set_xlabel(plot["x"])
     axis.set_ylabel(plot["y"] + bar_meaning(plot))
     axis.set_title(sweep.title(), loc="left", fontweight="bold")
-    if any(groups):
+    if any(groups) or sweep.failed:
         axis.legend()
     return figure
 

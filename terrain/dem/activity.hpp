@@ -1,7 +1,8 @@
 // Which strips are stepped: far from the tire a bed at rest costs nothing.
 //
 // A strip sleeps when for `kCalmSteps` steps its grains were slow, the net force on each stayed below a share of the
-// mean contact force of the bed, and no tire was near. Spin does not count: a grain that only spins in its place loads
+// mean contact force of the bed, and no tire was near. A step that is taken in parts (step_refinement.hpp) counts once,
+// and was calm if all its parts were. Spin does not count: a grain that only spins in its place loads
 // nobody. Its grains then stand still: they are not moved, contacts among them keep their forces and histories. The
 // strips beside it that are awake still feel it, with all contacts across, and it feels them: as long as a neighbour
 // is awake the net force on every sleeping grain is evaluated in every step, and since the grain stands still that
@@ -65,14 +66,15 @@ class Activity {
 
   /// Calm strips where `busy(k)` is false fall asleep, strips pushed too hard or busy wake.
   /// Sets what stops moving to rest and returns the motion that this took away.
+  /// @param counts the step is over, rather than a part of it: it counts for strips that were calm
   template <class Busy>
-  Stopped update(Strips& strips, Grains& grains, const Busy& busy) const {
+  Stopped update(Strips& strips, Grains& grains, bool counts, const Busy& busy) const {
     Stopped stopped;
     for (int k = 0; k < strips.count(); ++k) {
       Strip& strip = strips[k];
       if (strip.asleep ? woken(strip) : !calm(strip)) {
         strip.asleep = false, strip.calm = 0;
-      } else if (strip.asleep || ++strip.calm >= kCalmSteps) {
+      } else if (strip.asleep || (strip.calm += counts ? 1 : 0) >= kCalmSteps) {
         if (busy(strip)) {
           strip.asleep = false, strip.calm = 0;
         } else if (!strip.asleep) {

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/clock.hpp"
 #include "protocol/core/error.hpp"
@@ -15,6 +16,7 @@
 #include "terrain/dem/beds/bed_preparation.hpp"
 #include "terrain/dem/grain_sizes.hpp"
 #include "terrain/dem/solver_setup.hpp"
+#include "terrain/dem/step_refinement.hpp"
 #include "terrain/surface/surface_check.hpp"
 
 namespace furrow::terrain {
@@ -25,6 +27,7 @@ using namespace dem;
 constexpr double kLooseFraction = 0.50;        // solid fraction of a bed that settled with cohesion, estimate
 constexpr double kBytesPerGrain = 900.0;       // state, list with history, and what a rebuild holds twice
 constexpr double kBytesPerFrameGrain = 20.0;   // position, speed, radius in single precision
+constexpr char kRefinement[] = "refinement";   // in the saved state
 constexpr double kBytesPerSavedGrain = 300.0;  // in a checkpoint: state, pair list, contact history
 
 void check(const DemOptions& o) {
@@ -61,9 +64,13 @@ void check(const DemOptions& o) {
 class DemTerrain : public Terrain {
  public:
   explicit DemTerrain(const DemOptions& options)
-      : options_(options), solver_(dem::solver_params(options)), dt_(options.step) {
+      : options_(options),
+        solver_(dem::solver_params(options)),
+        refinement_(options),
+        dt_(options.step),
+        part_(options.step) {
     solver_.surfaces().give_tangents(options.contact_tangents);
-    solver_.set_coefficients(dem::run_coefficients(options_, dt_));
+    set_step(dt_);
   }
 
   double prepare(const ProgressCall& progress) override {
@@ -72,7 +79,7 @@ class DemTerrain : public Terrain {
     // A run from a cached bed and the run that settled it both start here, from the same archive.
     dem::restore_bed(solver_, prepared);
     solver_.set_threads(std::max(1, options_.threads));
-    solver_.set_coefficients(dem::run_coefficients(options_, dt_));
+    set_step(dt_);
     solver_.reset_accounts();
     if (progress && !prepared.settled.settled) progress("bed not settled", 1.0);
     return wall_clock() - begin;
@@ -114,15 +121,13 @@ class DemTerrain : public Terrain {
         return Outcome::failure("is too small", fmt::format("tire {} reached {} of the bin", k, wall));
     }
     if (surfaces.any()) surfaces.restrict_to(grain_box());
-    for (int s = 0; s < substeps; ++s) {
-      surfaces.move_to(static_cast<double>(s) / substeps);
-      const int lost = solver_.step(dt);
-      time_ += dt;
-      if (lost >= 0) return lost_grain(lost);
-    }
+    for (int s = 0; s < substeps; ++s)
+      if (const Outcome outcome = substep(s, substeps); !outcome.ok) return outcome;
     surfaces.move_to(1.0);
     surfaces.finish(duration, forces, contact);
-    return still_stable();
+    if (const double met = solver_.accounts().max_overlap; met > dem::stated_overlap(options_))
+      stable_overlap_ = std::max(stable_overlap_, met);
+    return {};
   }
 
   TerrainState state() const override {
@@ -142,6 +147,9 @@ class DemTerrain : public Terrain {
     s.contacts = a.contacts;
     s.active = a.active;
     s.list_rebuilds = std::llround(solver_.rebuilds());
+    s.substeps_added = refinement_.state().added;
+    s.refined_time = refinement_.state().time;
+    s.most_parts = 1 << refinement_.state().finest;
     return s;
   }
 
@@ -169,6 +177,8 @@ class DemTerrain : public Terrain {
     archive.put("time", time_);
     archive.put("step", dt_);
     archive.put("stable_overlap", stable_overlap_);
+    // Left out while there is nothing to say: a run that never needs it has the state that it always had.
+    if (refinement_.used()) save_fields(archive, kRefinement, refinement_.state());
     solver_.save(archive);
   }
 
@@ -178,12 +188,15 @@ class DemTerrain : public Terrain {
     solver_.restore(archive);
     set_step(archive.get_double("step"));
     stable_overlap_ = archive.get_double("stable_overlap");
+    dem::StepRefinement::State refined;
+    if (archive.has(std::string(kRefinement) + "/level")) restore_fields(archive, kRefinement, refined);
+    refinement_.restore(refined);
   }
 
  private:
   dem::ContactCoefficients surface_coefficients(const ContactMaterial& material) const {
     dem::LawSettings law = dem::law_settings(options_);
-    law.step = dt_;
+    law.step = part_;
     law.rolling_friction = 0.0;  // a couple could not be handed to vertices
     return dem::mix(dem::grain_material(options_), material, dem::Partner::surface, solver_.params().grain,
                     law);
@@ -192,9 +205,36 @@ class DemTerrain : public Terrain {
   void set_step(double dt) {
     FURROW_ASSERT(dt > 0.0, dt);
     dt_ = dt;
+    refinement_.set_step(dt);
+    set_part(dt);
+  }
+
+  /// Contacts are evaluated for parts of `dt` from now on.
+  void set_part(double dt) {
+    FURROW_ASSERT(dt > 0.0 && dt <= dt_, dt, dt_);
+    part_ = dt;
     solver_.set_coefficients(dem::run_coefficients(options_, dt));
     for (int k = 0; k < solver_.surfaces().count(); ++k)
       solver_.surfaces().set_coefficients(k, surface_coefficients(solver_.surfaces().material(k)));
+  }
+
+  /// One step of dt_, in as many parts as its hardest contact needs.
+  Outcome substep(int s, int substeps) {
+    constexpr int kWhole = 1 << dem::kFinestLevel;
+    int parts = 0;
+    for (int done = 0; done < kWhole; ++parts) {
+      solver_.surfaces().move_to((s + static_cast<double>(done) / kWhole) / substeps);
+      if (Outcome outcome = refinement_.choose(solver_, done == 0); !outcome.ok) return outcome;
+      const double dt = std::ldexp(dt_, -refinement_.level());
+      if (dt != part_) set_part(dt);
+      done += kWhole >> refinement_.level();
+      const int lost = solver_.step_part({dt, refinement_.since(), dt_, done == kWhole});
+      refinement_.took(dt);
+      if (lost >= 0) return lost_grain(lost);
+    }
+    refinement_.count(parts);
+    time_ += dt_;
+    return {};
   }
 
   /// The side of the bin that the box (lo, hi) crosses, or null. Surfaces may stand out of periodic sides; they have
@@ -223,23 +263,10 @@ class DemTerrain : public Terrain {
         fmt::format("it left the bin or is not finite, x = ({:.6g}, {:.6g}, {:.6g}) m", x.x, x.y, x.z));
   }
 
-  /// Looks again at the stable step when a larger overlap than ever was met.
-  Outcome still_stable() {
-    const double overlap = solver_.accounts().max_overlap;
-    if (overlap <= std::max(stable_overlap_, dem::stated_overlap(options_))) return {};
-    stable_overlap_ = overlap;
-    const dem::StableStep stable = dem::stable_at(options_, overlap);
-    if (dt_ <= stable.step || options_.allow_unstable_step) return {};
-    return Outcome::failure(
-        "needs a smaller step",
-        fmt::format("grains overlap by {:.3g} m ({:.1f} % of their diameter), where the stable "
-                    "step is {:.3g} s ({}) and the step is {:.3g} s",
-                    overlap, 50.0 * overlap / options_.radius, stable.step, stable.reason, dt_));
-  }
-
   dem::DemOptions options_;
   dem::GrainSolver solver_;
-  double dt_;                    // s
+  dem::StepRefinement refinement_;
+  double dt_, part_;             // the step, and the part of it that contacts are evaluated for, s
   double time_ = 0.0;            // advanced, s
   double stable_overlap_ = 0.0;  // largest overlap that the step was checked against, m
 };

@@ -82,6 +82,7 @@ void GrainSolver::place(const std::vector<Quad>& positions) {
                       params_.sizes() ? params_.smallest : params_.grain.radius, params_.largest_radius()));
   }
   surfaces_.resize(strips_.count());
+  overlap_bound_.clear();
   strips_.rebuild_all(grains_, params_.threads);
   reset_accounts();
 }
@@ -199,7 +200,7 @@ void GrainSolver::contacts_of_strip(Scratch<Real>& s, int k, int offset, double 
 }
 
 template <class Real, class Law, bool kRolling, bool kSizes>
-void GrainSolver::run_chunk(Chunk& chunk, double dt, bool measure) {
+void GrainSolver::run_chunk(Chunk& chunk, const StepPart& part, bool measure) {
   FURROW_ASSERT(chunk.from < chunk.to && chunk.to <= strips_.count(), chunk.from, chunk.to, strips_.count());
   Scratch<Real>& s = scratch<Real>();
   const int first = strips_[chunk.from].first, last = strips_[chunk.to - 1].last;
@@ -219,7 +220,7 @@ void GrainSolver::run_chunk(Chunk& chunk, double dt, bool measure) {
     if (evaluated) {
       if (const int next = strips_.next(k); next >= 0)
         gather<Real, kSizes>(s, next, strip.last - first), gathered = true;
-      contacts_of_strip<Real, Law, kRolling, kSizes>(s, k, offset, dt, measure);
+      contacts_of_strip<Real, Law, kRolling, kSizes>(s, k, offset, part.since, measure);
     } else {
       strip.contact.power = strip.motion.step_work = 0.0;
     }
@@ -227,34 +228,34 @@ void GrainSolver::run_chunk(Chunk& chunk, double dt, bool measure) {
     if (k == chunk.from) {
       chunk.own.assign(all.from(offset), strip.grains());
     } else {
-      finish_strip(k, all.from(offset), dt, measure);
+      finish_strip(k, all.from(offset), part, measure);
     }
   }
   if (gathered && activity_.complete(beyond)) chunk.ahead.assign(all.from(last - first), ahead);
 }
 
-void GrainSolver::finish_chunk(Chunk& chunk, const Chunk* before, double dt, bool measure) {
+void GrainSolver::finish_chunk(Chunk& chunk, const Chunk* before, const StepPart& part, bool measure) {
   if (!activity_.complete(chunk.from)) return;
   if (before)
     for (std::size_t g = 0; g < chunk.own.force.size(); ++g) {
       add(chunk.own.force[g], load(before->ahead.force[g]));
       add(chunk.own.torque[g], load(before->ahead.torque[g]));
     }
-  finish_strip(chunk.from, {chunk.own.force.data(), chunk.own.torque.data()}, dt, measure);
+  finish_strip(chunk.from, {chunk.own.force.data(), chunk.own.torque.data()}, part, measure);
 }
 
-void GrainSolver::finish_strip(int k, const Loads& loads, double dt, bool measure) {
+void GrainSolver::finish_strip(int k, const Loads& loads, const StepPart& part, bool measure) {
   FURROW_ASSERT(in_range(k, strips_.count()), k, strips_.count());
   FURROW_ASSERT(loads.force != nullptr || strips_[k].grains() == 0, k, strips_[k].grains());
   Strip& strip = strips_[k];
   if (strip.asleep) {
     load_sleeper(strip, loads);
   } else if (params_.sizes()) {
-    params_.activity ? integrate<true, true>(strip, loads, dt, measure)
-                     : integrate<false, true>(strip, loads, dt, measure);
+    params_.activity ? integrate<true, true>(strip, loads, part, measure)
+                     : integrate<false, true>(strip, loads, part, measure);
   } else {
-    params_.activity ? integrate<true, false>(strip, loads, dt, measure)
-                     : integrate<false, false>(strip, loads, dt, measure);
+    params_.activity ? integrate<true, false>(strip, loads, part, measure)
+                     : integrate<false, false>(strip, loads, part, measure);
   }
 }
 
@@ -274,12 +275,13 @@ void GrainSolver::load_sleeper(Strip& strip, const Loads& loads) const {
 }
 
 template <bool kMaySleep, bool kSizes>
-void GrainSolver::integrate(Strip& strip, const Loads& loads, double dt, bool measure) {
+void GrainSolver::integrate(Strip& strip, const Loads& loads, const StepPart& part, bool measure) {
+  const double dt = part.dt, kick = part.kick();
   const double mass = params_.grain.mass, inertia = params_.grain.inertia;
   const double radius = params_.grain.radius;
   double per_mass = 1.0 / mass, per_inertia = 1.0 / inertia;
   double m = 1.0, i = 1.0;  // of a grain, in those of the reference radius
-  const double keep = 1.0 / (1.0 + dt * drag_);
+  const double keep = 1.0 / (1.0 + kick * drag_);
   const Double4 gravity = lanes_of(params_.gravity);
   const int n = strip.grains();
   const double *const force = flat(loads.force), *const torque = flat(loads.torque);
@@ -296,8 +298,8 @@ void GrainSolver::integrate(Strip& strip, const Loads& loads, double dt, bool me
       per_mass = 1.0 / (mass * m), per_inertia = 1.0 / (inertia * i);
     }
     const Double4 a = f * per_mass + gravity, alpha = t * per_inertia;
-    const Double4 v = (load_lanes<Double4>(velocity + g) + dt * a) * keep;
-    const Double4 w = (load_lanes<Double4>(spin + g) + dt * alpha) * keep;
+    const Double4 v = (load_lanes<Double4>(velocity + g) + kick * a) * keep;
+    const Double4 w = (load_lanes<Double4>(spin + g) + kick * alpha) * keep;
     const Double4 x = load_lanes<Double4>(position + g) + dt * v;
     store_lanes(velocity + g, v);
     store_lanes(spin + g, w);
@@ -344,17 +346,39 @@ void GrainSolver::take_samples() {
   until_sample_ = kSampleSteps;
 }
 
-void GrainSolver::change_activity() {
+void GrainSolver::change_activity(bool counts) {
   if (!params_.activity) return;
   const double speed = std::sqrt(params_.gravity.norm() * params_.grain.radius);
   activity_.limit({kSleepMeanSpeed * speed, kSleepSpeed * speed, kSleepForce * mean_contact_force_,
                    kWakeForce * mean_contact_force_});
   const double margin = 2.0 * strips_.options().reach;
-  const Activity::Stopped stopped = activity_.update(strips_, grains_, [&](const Strip& strip) {
+  const Activity::Stopped stopped = activity_.update(strips_, grains_, counts, [&](const Strip& strip) {
     return surfaces_.any() && surfaces_.low_between(strip.x_min - margin, strip.x_max + margin);
   });
   accounts_.slept += stopped.kinetic;
   accounts_.momentum_removed += params_.grain.mass * stopped.velocity;
+}
+
+/// A contact that was δ deep when the forces were taken is by now at most δ + dt (v_i + v_j) deep; a pair that did not
+/// touch then counts with δ = 0. The same with the speed of a surface.
+void GrainSolver::bound_overlaps(double dt) {
+  overlap_bound_.resize(strips_.count());
+  for (int k = 0; k < strips_.count(); ++k) {
+    const Strip& strip = strips_[k];
+    const int next = strips_.next(k);
+    const double own = strip.motion.max_speed, other = next < 0 ? 0.0 : strips_[next].motion.max_speed;
+    double speed = own + (own > other ? own : other);
+    if (surfaces_.any()) speed += surfaces_.speed_near(strip);
+    overlap_bound_[k] = strip.contact.max_overlap + dt * speed;
+  }
+}
+
+void GrainSolver::spread_bounds(const Resorted& range) {
+  const int from = std::max(range.from - 1, 0), to = std::min(range.to + 1, strips_.count());
+  double most = 0.0;
+  for (int k = from; k < to; ++k)
+    if (!(overlap_bound_[k] <= most)) most = overlap_bound_[k];
+  std::fill(overlap_bound_.begin() + from, overlap_bound_.begin() + to, most);
 }
 
 double GrainSolver::top() const {
@@ -403,28 +427,29 @@ void GrainSolver::reduce(double dt, bool measure) {
 }
 
 template <class Real, class Law, bool kRolling, bool kSizes>
-void GrainSolver::evaluate(double dt, bool measure) {
+void GrainSolver::evaluate(const StepPart& part, bool measure) {
   const int count = static_cast<int>(chunks_.size());
 #pragma omp parallel for num_threads(params_.threads) schedule(dynamic, 1)
-  for (int c = 0; c < count; ++c) run_chunk<Real, Law, kRolling, kSizes>(chunks_[c], dt, measure);
+  for (int c = 0; c < count; ++c) run_chunk<Real, Law, kRolling, kSizes>(chunks_[c], part, measure);
 }
 
 template <class Real>
-void GrainSolver::evaluate(double dt, bool measure) {
+void GrainSolver::evaluate(const StepPart& part, bool measure) {
   if (params_.law == LawKind::hertz_tanh) {
-    params_.rolling ? evaluate<Real, HertzTanhLaw, true, false>(dt, measure)
-                    : evaluate<Real, HertzTanhLaw, false, false>(dt, measure);
+    params_.rolling ? evaluate<Real, HertzTanhLaw, true, false>(part, measure)
+                    : evaluate<Real, HertzTanhLaw, false, false>(part, measure);
   } else if (params_.sizes()) {
-    params_.rolling ? evaluate<Real, MindlinLaw, true, true>(dt, measure)
-                    : evaluate<Real, MindlinLaw, false, true>(dt, measure);
+    params_.rolling ? evaluate<Real, MindlinLaw, true, true>(part, measure)
+                    : evaluate<Real, MindlinLaw, false, true>(part, measure);
   } else {
-    params_.rolling ? evaluate<Real, MindlinLaw, true, false>(dt, measure)
-                    : evaluate<Real, MindlinLaw, false, false>(dt, measure);
+    params_.rolling ? evaluate<Real, MindlinLaw, true, false>(part, measure)
+                    : evaluate<Real, MindlinLaw, false, false>(part, measure);
   }
 }
 
-int GrainSolver::step(double dt, bool measure) {
-  FURROW_ASSERT(dt > 0.0 && std::isfinite(dt), dt);
+int GrainSolver::step_part(const StepPart& part, bool measure) {
+  FURROW_ASSERT(part.dt > 0.0 && std::isfinite(part.dt) && part.since > 0.0, part.dt, part.since);
+  FURROW_ASSERT(part.whole >= part.dt && (part.last || part.whole > part.dt), part.dt, part.whole);
   FURROW_ASSERT(grains_.position.size() == static_cast<std::size_t>(grains_.count + Grains::kBeyond),
                 grains_.position.size());
   const auto threads = static_cast<std::size_t>(std::max(1, params_.threads));
@@ -433,12 +458,12 @@ int GrainSolver::step(double dt, bool measure) {
   activity_.plan(strips_);
   if (params_.precision == Precision::mixed) {
     if (single_.size() < threads) single_.resize(threads);
-    evaluate<float>(dt, measure);
+    evaluate<float>(part, measure);
   } else {
     if (full_.size() < threads) full_.resize(threads);
-    evaluate<double>(dt, measure);
+    evaluate<double>(part, measure);
   }
-  if (surfaces_.any()) accounts_.surface_impulse += surfaces_.add_substep_forces(dt);
+  if (surfaces_.any()) accounts_.surface_impulse += surfaces_.add_substep_forces(part.kick(), part.dt);
 
   const int count = static_cast<int>(chunks_.size());
 #pragma omp parallel for num_threads(params_.threads) schedule(dynamic, 1)
@@ -446,14 +471,16 @@ int GrainSolver::step(double dt, bool measure) {
     const Chunk* const before = c > 0                    ? &chunks_[c - 1]
                                 : params_.bin.periodic_x ? &chunks_[count - 1]
                                                          : nullptr;
-    finish_chunk(chunks_[c], before, dt, measure);
+    finish_chunk(chunks_[c], before, part, measure);
   }
-  reduce(dt, measure);
+  reduce(part.kick(), measure);
   if (sample) take_samples();
-  if (params_.activity) --until_sample_;
-  change_activity();
+  if (params_.activity && part.last) --until_sample_;
+  bound_overlaps(part.dt);
+  change_activity(part.last);
   // A grain that is not a number or went far is met when its strip is sorted, one that slips out when its wall pushes.
-  for (const Resorted& range : strips_.rebuild_moved(grains_, dt, params_.threads)) {
+  for (const Resorted& range : strips_.rebuild_moved(grains_, part.whole, params_.threads)) {
+    spread_bounds(range);
     surfaces_.reorder(range, strips_);
     Activity::wake_moving(range, strips_, grains_);
   }

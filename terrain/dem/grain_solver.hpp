@@ -90,6 +90,17 @@ void visit_fields(Visit&& visit, FieldsOf<Accounts> auto& s) {
   visit(Field{"active"}, s.active);
 }
 
+/// A part of a step, or all of it: x ← x + dt v after v ← v + kick (F/m + g).
+struct StepPart {
+  double dt = 0.0;     // s
+  double since = 0.0;  // of the part before, over which grains moved since the forces were last taken, s
+  double whole = 0.0;  // the step that it is a part of, s
+  bool last = true;    // it ends the step
+
+  /// Velocities are those of the middle between two positions, so that a change of dt does not change the energy.
+  double kick() const { return 0.5 * (since + dt); }
+};
+
 class GrainSolver {
  public:
   /// @pre radius, mass, inertia, bin and threads are positive; grains of several sizes have law mindlin
@@ -137,7 +148,17 @@ class GrainSolver {
 
   /// One step. With `measure`, the force sums of Accounts are taken too.
   /// Returns the index of a grain that left the bin or is not finite, or −1. @pre dt > 0
-  int step(double dt, bool measure = false);
+  int step(double dt, bool measure = false) { return step_part({dt, dt, dt, true}, measure); }
+  /// One of the parts in which a step is taken. Whatever counts steps counts whole ones, and the neighbour lists stay
+  /// good for a whole step after it.
+  int step_part(const StepPart& part, bool measure = false);
+
+  /// Whether any contact that strip k lists may overlap by more than `overlap` where the grains stand now, m: by the
+  /// overlaps of the last step and the way that grains and surfaces went since. True when nothing is known.
+  bool may_overlap(int k, double overlap) const {
+    FURROW_ASSERT(in_range(k, strips_.count()), k, strips_.count());
+    return overlap_bound_.empty() || !(overlap_bound_[k] <= overlap);
+  }
 
   void save(Archive& archive) const;
   void restore(const Archive& archive);
@@ -169,18 +190,21 @@ class GrainSolver {
   template <class Real, class Law, bool kRolling, bool kSizes>
   void contacts_of_strip(Scratch<Real>& scratch, int strip, int offset, double dt, bool measure);
   template <class Real, class Law, bool kRolling, bool kSizes>
-  void run_chunk(Chunk& chunk, double dt, bool measure);
-  void finish_chunk(Chunk& chunk, const Chunk* before, double dt, bool measure);
+  void run_chunk(Chunk& chunk, const StepPart& part, bool measure);
+  void finish_chunk(Chunk& chunk, const Chunk* before, const StepPart& part, bool measure);
   template <class Real, class Law, bool kRolling, bool kSizes>
-  void evaluate(double dt, bool measure);
+  void evaluate(const StepPart& part, bool measure);
   template <class Real>
-  void evaluate(double dt, bool measure);
+  void evaluate(const StepPart& part, bool measure);
   /// Moves the grains of strip k, or sees whether they are pushed awake.
-  void finish_strip(int k, const Loads& loads, double dt, bool measure);
+  void finish_strip(int k, const Loads& loads, const StepPart& part, bool measure);
   template <bool kMaySleep, bool kSizes>
-  void integrate(Strip& strip, const Loads& loads, double dt, bool measure);
+  void integrate(Strip& strip, const Loads& loads, const StepPart& part, bool measure);
   void load_sleeper(Strip& strip, const Loads& loads) const;  // of a sleeping strip
-  void change_activity();
+  void change_activity(bool counts);
+  void bound_overlaps(double dt);
+  /// After strips were sorted again: what was listed by one may be listed by another.
+  void spread_bounds(const Resorted& range);
   bool sample_now() const { return params_.activity && until_sample_ == 0; }
   /// Takes samples of the contact forces of the strips that this step evaluated. Those of sleeping strips stay: nothing
   /// moves there.
@@ -204,6 +228,7 @@ class GrainSolver {
   std::int64_t until_sample_ = 0;     // steps
   double mean_contact_force_ = 0.0;   // of the bed, by the samples, N
   Accounts accounts_;
+  std::vector<double> overlap_bound_;  // per strip, m; empty: not known
   std::vector<Chunk> chunks_;
   std::vector<Scratch<float>> single_;  // per thread
   std::vector<Scratch<double>> full_;

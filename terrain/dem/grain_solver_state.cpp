@@ -58,6 +58,13 @@ void GrainSolver::save(Archive& archive) const {
   for (const ForceSample& s : samples_) samples.insert(samples.end(), {s.force, double(s.contacts)});
   archive.put("samples/strips", samples);
   archive.put("samples/until", until_sample_);
+  // A strip that sleeps beside sleepers is not evaluated: what last pressed on it may yet wake it, when the mean
+  // contact force falls.
+  std::vector<double> pressed(strips_.count(), 0.0);
+  for (int k = 0; k < strips_.count(); ++k)
+    if (strips_[k].asleep) pressed[k] = strips_[k].motion.max_net_force;
+  if (std::any_of(pressed.begin(), pressed.end(), [](double force) { return force != 0.0; }))
+    archive.put("strips/pressed", pressed);
   archive.put("strips/resorted", strips_.resorted());
   archive.put("strips/cells_z", static_cast<std::int64_t>(strips_.cells_z()));
 
@@ -101,6 +108,7 @@ void GrainSolver::restore(const Archive& archive) {
   grains_.id = archive.get<std::int32_t>("id", n);
   restore_fields(archive, "accounts", accounts_);
   mean_contact_force_ = archive.get_double("mean_contact_force");
+  overlap_bound_.clear();
   // Cached beds of older programs hold no samples: the first step takes them.
   samples_.clear();
   until_sample_ = 0;
@@ -115,6 +123,8 @@ void GrainSolver::restore(const Archive& archive) {
 
   const std::size_t count = strips_.count();
   ColumnReader<Strip> strips(archive, "strips", count);
+  const auto* const pressed =
+      archive.has("strips/pressed") ? &archive.get<double>("strips/pressed", count) : nullptr;
   const auto& walls = archive.get<std::int32_t>("strips/walls", count);
   const auto& cells = archive.get<std::int32_t>("strips/cells");
   const auto& partners = archive.get<std::uint64_t>("pairs/partners");
@@ -130,6 +140,7 @@ void GrainSolver::restore(const Archive& archive) {
     Strip& strip = strips_[static_cast<int>(k)];
     strip = {};
     strips.take(strip);
+    if (pressed) strip.motion.max_net_force = (*pressed)[k];
     strip.cell_start.assign(cells.begin() + k * per_strip, cells.begin() + (k + 1) * per_strip);
     strips_.size_lists(strip, strip.pairs);
     for (int p = 0; p < strip.pairs; ++p) {

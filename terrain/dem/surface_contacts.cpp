@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 
 #include "protocol/core/archive_fields.hpp"
@@ -76,8 +77,12 @@ void SurfaceContacts::set_targets(std::span<const SurfaceState> targets, double 
   for (std::size_t k = 0; k < surfaces_.size(); ++k) {
     Surface& s = surfaces_[k];
     s.start.swap(s.end);
-    for (std::size_t a = 0; a < s.end.size(); ++a)
+    double farthest2 = 0.0;
+    for (std::size_t a = 0; a < s.end.size(); ++a) {
       s.end[a] = targets[k].position[a] + duration * targets[k].velocity[a];
+      farthest2 = std::max(farthest2, (s.end[a] - s.start[a]).squaredNorm());
+    }
+    s.fastest = std::sqrt(farthest2) / duration;
     s.collider->set_motion(s.start, s.end, duration);
   }
 }
@@ -96,6 +101,13 @@ void SurfaceContacts::move_to(double share) {
         s.low_max = std::max(s.low_max, x.x());
       }
   }
+}
+
+double SurfaceContacts::speed_near(const Strip& strip) const {
+  double fastest = 0.0;
+  for (const Surface& s : surfaces_)
+    if (near(s, strip)) fastest = std::max(fastest, s.fastest);
+  return fastest;
 }
 
 bool SurfaceContacts::low_between(double x_min, double x_max) const {
@@ -192,36 +204,30 @@ void SurfaceContacts::evaluate(const Grains& grains, Strip& strip, int s, double
   SurfaceStrip& mine = strips_[s];
   mine.next.clear();
   mine.touches.clear();
-  const double slack = largest_;  // grains stray from where they were sorted by less
-  bool near = false;
-  for (const Surface& surface : surfaces_)
-    near = near || (surface.near.lo.x() < strip.x_max + slack && surface.near.hi.x() > strip.x_min - slack);
-  if (near)
+  const bool any_near = std::any_of(surfaces_.begin(), surfaces_.end(),
+                                    [&](const Surface& surface) { return near(surface, strip); });
+  if (any_near)
     for (int g = strip.first; g < strip.last; ++g)
-      for (int k = 0; k < count(); ++k) {
-        const SurfaceBox& box = surfaces_[k].near;
-        const Quad& p = grains.position[g];
-        if (p.z > box.lo.z() && p.x > box.lo.x() && p.x < box.hi.x() && p.y > box.lo.y() &&
-            p.y < box.hi.y() && p.z < box.hi.z())
+      for (int k = 0; k < count(); ++k)
+        if (inside(surfaces_[k].near, grains.position[g]))
           touch<Law>(grains, strip, mine, k, g, dt, loads.from(g - strip.first));
-      }
   mine.history.swap(mine.next);
 }
 
 template void SurfaceContacts::evaluate<MindlinLaw>(const Grains&, Strip&, int, double, const Loads&);
 template void SurfaceContacts::evaluate<HertzTanhLaw>(const Grains&, Strip&, int, double, const Loads&);
 
-Vec3 SurfaceContacts::add_substep_forces(double dt) {
-  FURROW_ASSERT(dt > 0.0, dt);
+Vec3 SurfaceContacts::add_substep_forces(double kick, double dt) {
+  FURROW_ASSERT(kick > 0.0 && dt > 0.0, kick, dt);
   Vec3 on_grains = Vec3::Zero();
   for (Surface& s : surfaces_) s.forces.clear();
   for (const SurfaceStrip& strip : strips_)
     for (const SurfaceTouch& touch : strip.touches) {
       FURROW_ASSERT(in_range(touch.surface, surfaces_.size()), touch.surface, surfaces_.size());
       surfaces_[touch.surface].forces.push_back(touch.force);
-      on_grains -= dt * (touch.force.normal + touch.force.tangential);
+      on_grains -= kick * (touch.force.normal + touch.force.tangential);
     }
-  for (Surface& s : surfaces_) s.sum->add_substep(s.forces, *s.collider, dt);
+  for (Surface& s : surfaces_) s.sum->add_substep(s.forces, *s.collider, kick, dt);
   return on_grains;
 }
 

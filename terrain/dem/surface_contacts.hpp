@@ -6,6 +6,7 @@
 // a crease splits one point into two; it ends when the grain leaves the surface.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -74,6 +75,25 @@ class SurfaceContacts {
   void move_to(double share);
   void restrict_to(const SurfaceBox& grains);
 
+  /// Speed that no vertex of a surface near the strip exceeds in this interval, m/s; 0: none is near.
+  double speed_near(const Strip& strip) const;
+  /// Calls f(grain, surface, hit) for all points where grains of the strip touch surfaces as both stand now.
+  template <class F>
+  void each_hit(const Grains& grains, const Strip& strip, F&& f) const {
+    std::array<SurfaceHit, kMaxSurfaceHits> hits;
+    for (int g = strip.first; g < strip.last; ++g)
+      for (int k = 0; k < count(); ++k) {
+        const Quad& x = grains.position[g];
+        if (!inside(surfaces_[k].near, x)) continue;
+        const int found = surfaces_[k].collider->hits(Vec3(x.x, x.y, x.z), x.w, hits);
+        for (int h = 0; h < found; ++h) f(g, k, hits[h]);
+      }
+  }
+  Vec3 velocity_at(int k, const SurfaceHit& hit) const {
+    FURROW_ASSERT(in_range(k, count()), k, count());
+    return surfaces_[k].collider->velocity_at(hit);
+  }
+
   /// Whether a vertex low enough to reach grains stands between these x now, m.
   bool low_between(double x_min, double x_max) const;
 
@@ -90,8 +110,8 @@ class SurfaceContacts {
   void evaluate(const Grains& grains, Strip& strip, int s, double dt, const Loads& loads);
 
   /// Adds this substep's forces to the vertices, in the order of strips and grains. Returns the impulse that the
-  /// grains received, N s. @pre dt > 0
-  Vec3 add_substep_forces(double dt);
+  /// grains received, N s. @param kick for which the forces act, s  @param dt by which the substep advances, s
+  Vec3 add_substep_forces(double kick, double dt);
   /// Means over the interval. @pre one entry of forces and sums for each surface; duration > 0
   void finish(double duration, std::span<NodalForces> forces, std::span<ContactSums> sums);
 
@@ -118,9 +138,18 @@ class SurfaceContacts {
     double mass_share = 0.0;                   // of surface_scale
     std::vector<Vec3> start, end;              // m
     SurfaceBox near;                           // bounds now, grown by the largest radius
+    double fastest = 0.0;                      // vertex in this interval, m/s
     double low_min = -1e300, low_max = 1e300;  // x of the vertices that may reach grains, m
     std::vector<SurfaceContactForce> forces;
   };
+  static bool inside(const SurfaceBox& box, const Quad& p) {
+    return p.z > box.lo.z() && p.x > box.lo.x() && p.x < box.hi.x() && p.y > box.lo.y() && p.y < box.hi.y() &&
+           p.z < box.hi.z();
+  }
+  bool near(const Surface& surface, const Strip& strip) const {
+    const double slack = largest_;  // grains stray from where they were sorted by less
+    return surface.near.lo.x() < strip.x_max + slack && surface.near.hi.x() > strip.x_min - slack;
+  }
   template <class Law>
   void touch(const Grains& grains, Strip& strip, SurfaceStrip& mine, int k, int g, double dt,
              const Loads& load);

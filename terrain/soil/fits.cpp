@@ -192,6 +192,19 @@ Line fit_line(std::span<const double> x, std::span<const double> y) {
   return line;
 }
 
+Measured fit_friction(std::span<const double> normal, std::span<const double> shear) {
+  FURROW_ASSERT(normal.size() == shear.size() && !normal.empty(), normal.size(), shear.size());
+  double nn = 0.0, nt = 0.0, off = 0.0;
+  for (std::size_t k = 0; k < normal.size(); ++k) nn += square(normal[k]), nt += normal[k] * shear[k];
+  FURROW_ASSERT(nn > 0.0, nn);
+  const double slope = nt / nn;
+  for (std::size_t k = 0; k < normal.size(); ++k) off += square(shear[k] - slope * normal[k]);
+  const double freedom = static_cast<double>(normal.size()) - 1.0;
+  const double error = freedom > 0.0 ? std::sqrt(off / freedom / nn) : kUnknown;
+  // dφ = cos² φ d(tan φ)
+  return {std::atan(slope), error / (1.0 + square(slope)), static_cast<int>(normal.size()), freedom};
+}
+
 CoulombFit fit_coulomb(std::span<const double> normal, std::span<const double> shear) {
   FURROW_ASSERT(normal.size() == shear.size() && normal.size() >= 2, normal.size(), shear.size());
   FURROW_ASSERT(std::adjacent_find(normal.begin(), normal.end(), std::not_equal_to<>()) != normal.end(),

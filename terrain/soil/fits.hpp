@@ -67,6 +67,10 @@ struct CoulombFit {
 /// Least squares line, standard errors from the scatter about it. @pre two different σ or more
 CoulombFit fit_coulomb(std::span<const double> normal, std::span<const double> shear);
 
+/// τ = σ tan φ, for soil that is known to have no cohesion: least squares, error of φ in rad from the scatter about it.
+/// @pre one value or more, some σ above 0
+Measured fit_friction(std::span<const double> normal, std::span<const double> shear);
+
 /// Straight line y = a + s x.
 struct Line {
   double offset = 0.0, slope = 0.0;

@@ -42,14 +42,16 @@ SoilStrength strength_of(JsonReader& soil, double width) {
   return s;
 }
 
-/// Error of the pull from the parameters' standard errors, as if they were independent, N.
+/// Error of the pull from the parameters' standard errors, as if they were independent, N; NaN where none is known.
 double pull_error(const json& soil, const SoilStrength& s, const RigidWheel& wheel, double slip) {
   const json errors = soil.value("standard_error", json::object());
   const double pull = soil::rigid_wheel(s, wheel, slip).pull;
   double sum = 0.0;
+  bool known = false;
   const auto vary = [&](const char* key, double SoilStrength::*member, double unit) {
     const json error = errors.value(key, json(nullptr));
     if (!error.is_number()) return;
+    known = true;
     SoilStrength other = s;
     other.*member += unit * error.get<double>();
     const auto estimate = soil::rigid_wheel(other, wheel, slip);
@@ -61,7 +63,7 @@ double pull_error(const json& soil, const SoilStrength& s, const RigidWheel& whe
   vary("cohesion_Pa", &SoilStrength::cohesion, 1.0);
   vary("friction_angle_deg", &SoilStrength::phi, kDegree);
   vary("janosi_K_m", &SoilStrength::K, 1.0);
-  return std::sqrt(sum);
+  return known ? std::sqrt(sum) : NAN;
 }
 
 void require_grains(const json& scenario, const std::filesystem::path& file) {
@@ -118,14 +120,14 @@ std::string write_soil_estimate(const std::filesystem::path& run, const std::fil
   if (e.found) {
     const double error = pull_error(soil, s, wheel, slip);
     j["drawbar_pull_N"] = e.pull;
-    j["drawbar_pull_standard_error_N"] = error;
+    j["drawbar_pull_standard_error_N"] = std::isfinite(error) ? json(error) : json(nullptr);
     j["sinkage_m"] = e.sinkage;
     j["thrust_N"] = e.thrust;
     j["compaction_resistance_N"] = e.resistance;
     j["drive_torque_Nm"] = e.torque;
     j["largest_pressure_Pa"] = e.pressure;
     text = fmt::format("soil theory (rigid wheel): drawbar pull {} N, sinkage {} mm",
-                       with_error(e.pull, error), digits(1e3 * e.sinkage));
+                       std::isfinite(error) ? with_error(e.pull, error) : digits(e.pull), digits(1e3 * e.sinkage));
     if (quick) text += "; from a quick look at the soil, no result to quote";
     const json sinkage = summary.value("sinkage_m", json()),
                clearance = summary.value("bed_clearance_m", json());

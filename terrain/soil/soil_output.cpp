@@ -17,29 +17,52 @@ constexpr double kDegree = std::numbers::pi / 180.0;  // rad
 
 json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
-/// The parameters: values flat, errors beside them under the same names.
+constexpr double kLeastFreedom = 2.0;  // of an interval: with one, it is wider than what is known without
+constexpr double kWidestAngle = 10.0 * kDegree;  // half an interval of an angle that says something, rad
+constexpr char kQuickWarning[] =
+    "a quick look: one bed in small boxes, with a bias that is larger than its scatter; not to be quoted";
+
+/// Why there is no standard error, or no interval; empty where there is one.
+std::string no_error_because(const Measured& m, bool quick) {
+  if (m.samples == 0) return "not tested";
+  if (quick) return kQuickWarning;
+  return std::isfinite(m.standard_error) ? ""
+                                         : "one bed alone: nothing to compare it with; take more --seeds";
+}
+std::string no_interval_because(const Measured& m, bool quick, bool angle) {
+  if (const std::string why = no_error_because(m, quick); !why.empty()) return why;
+  if (m.freedom < kLeastFreedom) return "two values alone; take more --seeds";
+  if (angle && m.half_interval() > kWidestAngle) return "wider than 10° to either side; take more --seeds";
+  return "";
+}
+
+/// The parameters: values flat, errors beside them under the same names, or why there is none.
 class Parameters {
  public:
-  explicit Parameters(json& target) : target_(target) {}
+  Parameters(json& target, bool quick) : target_(target), quick_(quick) {}
   void add(const char* name, const Measured& m, double unit = 1.0) {
-    const bool known = m.samples > 0;
-    target_[name] = known ? number(m.value / unit) : json(nullptr);
-    error_[name] = known ? number(m.standard_error / unit) : json(nullptr);
-    const double half = m.half_interval();
-    interval_[name] = known && std::isfinite(half)
-                          ? json{number((m.value - half) / unit), number((m.value + half) / unit)}
-                          : json(nullptr);
+    target_[name] = m.samples > 0 ? number(m.value / unit) : json(nullptr);
     samples_[name] = m.samples;
+    error_[name] = interval_[name] = nullptr;
+    if (no_error_because(m, quick_).empty()) error_[name] = number(m.standard_error / unit);
+    const std::string why = no_interval_because(m, quick_, unit == kDegree);
+    const double half = m.half_interval();
+    if (why.empty())
+      interval_[name] = {number((m.value - half) / unit), number((m.value + half) / unit)};
+    else
+      because_[name] = why;
   }
   void finish() {
     target_["standard_error"] = error_;
     target_["interval_95"] = interval_;
+    target_["no_interval_because"] = because_;
     target_["samples"] = samples_;
   }
 
  private:
   json& target_;
-  json error_, interval_, samples_;
+  bool quick_;
+  json error_, interval_, samples_, because_ = json::object();
 };
 
 json box_json(const SpecimenFacts& s, const Box& box) {
@@ -47,6 +70,8 @@ json box_json(const SpecimenFacts& s, const Box& box) {
           {"width_m", s.width},
           {"height_m", s.height},
           {"grains", s.grains},
+          {"solid_fraction", s.solid_fraction},
+          {"bulk_density_kg_m3", s.bulk_density},
           {"periodic", box.periodic_x   ? box.periodic_y ? "xy" : "x"
                        : box.periodic_y ? "y"
                                         : "none"},
@@ -97,15 +122,17 @@ json shear_json(const SoilRun& run, double goodness) {
     const double density = run.options.material.density;
     // I = γ̇ d √(ρ/p)
     const double rate = test.speed / t.result.height;
-    j["tests"].push_back({{"seed", t.specimen.seed},
-                          {"normal_stress_Pa", t.result.normal_mean},
-                          {"tau_max_Pa", t.result.janosi.tau_max},
-                          {"janosi_K_m", t.result.janosi.K},
-                          {"r_squared", t.result.janosi.goodness},
-                          {"final_shear_stress_Pa", t.result.final_shear},
-                          {"height_m", t.result.height},
-                          {"rise_m", t.result.rise.back()},
-                          {"inertial_number", rate * 2.0 * r * std::sqrt(density / t.result.normal_mean)}});
+    j["tests"].push_back(
+        {{"seed", t.specimen.seed},
+         {"normal_stress_Pa", t.result.normal_mean},
+         {"tau_max_Pa", t.result.janosi.tau_max},
+         {"secant_friction_angle_deg", std::atan(t.result.janosi.tau_max / t.result.normal_mean) / kDegree},
+         {"janosi_K_m", t.result.janosi.K},
+         {"r_squared", t.result.janosi.goodness},
+         {"final_shear_stress_Pa", t.result.final_shear},
+         {"height_m", t.result.height},
+         {"rise_m", t.result.rise.back()},
+         {"inertial_number", rate * 2.0 * r * std::sqrt(density / t.result.normal_mean)}});
   }
   j["floor_force_error"] = floor;
   j["shear_force_error"] = shear;
@@ -160,14 +187,16 @@ json soil_json(const SoilRun& run) {
   j["scenario"] = run.scenario;
   j["scenario_digest"] = run.scenario_digest;
   j["quick"] = run.options.quick;
+  j["not_to_be_quoted"] = run.options.quick ? json(kQuickWarning) : json(nullptr);
   j["seeds"] = run.options.seeds;
   j["first_seed"] = o.seed;
-  Parameters parameters(j);
+  Parameters parameters(j, run.options.quick);
   parameters.add("k_c", p.k_c);
   parameters.add("k_phi", p.k_phi);
   parameters.add("n", p.n);
   parameters.add("cohesion_Pa", p.cohesion);
   parameters.add("friction_angle_deg", p.phi, kDegree);
+  parameters.add("friction_angle_without_cohesion_deg", p.phi_alone, kDegree);
   parameters.add("janosi_K_m", p.K);
   parameters.add("final_cohesion_Pa", p.final_cohesion);
   parameters.add("final_friction_angle_deg", p.final_phi, kDegree);
@@ -247,21 +276,24 @@ void write_soil_tables(const std::filesystem::path& folder, const SoilRun& run) 
 }
 
 std::string soil_text(const json& soil) {
+  const bool quick = soil.value("quick", false);
   std::string text;
   const auto value = [&](const char* name, double factor) {
     const auto in = [&](const json& from) {
       return from.contains(name) && from[name].is_number() ? factor * from[name].get<double>() : NAN;
     };
     const double error = in(soil["standard_error"]);
-    return std::isfinite(error) ? fmt::format("{:.4g} ± {:.2g}", in(soil), error)
-                                : fmt::format("{:.4g}", in(soil));
+    if (std::isfinite(error)) return fmt::format("{:.4g} ± {:.2g}", in(soil), error);
+    // Two digits of what is not known better.
+    return quick ? fmt::format("about {:.2g}", in(soil)) : fmt::format("{:.4g} (no error)", in(soil));
   };
   if (soil["k_phi"].is_number())
     text += fmt::format("furrow: plate sinkage: n {}, k_c {} kN/m^(n+1), k_φ {} kN/m^(n+2)\n",
                         value("n", 1.0), value("k_c", 1e-3), value("k_phi", 1e-3));
   if (soil["cohesion_Pa"].is_number())
-    text += fmt::format("furrow: direct shear: c {} kPa, φ {}°, K {} mm\n", value("cohesion_Pa", 1e-3),
-                        value("friction_angle_deg", 1.0), value("janosi_K_m", 1e3));
+    text += fmt::format("furrow: direct shear: c {} kPa, φ {}°, K {} mm; with c = 0: φ {}°\n",
+                        value("cohesion_Pa", 1e-3), value("friction_angle_deg", 1.0),
+                        value("janosi_K_m", 1e3), value("friction_angle_without_cohesion_deg", 1.0));
   if (soil["cone_index_Pa"].is_number())
     text += fmt::format("furrow: cone index {} kPa\n", value("cone_index_Pa", 1e-3));
   if (soil["repose_angle_deg"].is_number()) {
@@ -275,7 +307,8 @@ std::string soil_text(const json& soil) {
       text += fmt::format("; without cohesion {}°", value("repose_angle_without_cohesion_deg", 1.0));
     text += "\n";
   }
-  return text + "furrow: ± is one standard error\n";
+  if (quick) return text + "furrow: " + kQuickWarning + "\n";
+  return text + "furrow: ± is one standard error; 'no error': one bed alone says nothing of it (--seeds)\n";
 }
 
 }  // namespace furrow::terrain::soil

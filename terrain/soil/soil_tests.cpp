@@ -105,7 +105,11 @@ class JobPool {
 };
 
 SpecimenFacts facts(const Specimen& s) {
-  return {s.options().seed, s.grains(), s.length(), s.width(), s.height(), s.step(), s.settled()};
+  SpecimenFacts f{s.options().seed, s.grains(), s.length(), s.width(), s.height(), s.step()};
+  f.bulk_density = s.weight() / (s.options().gravity.norm() * s.length() * s.width() * s.height());
+  f.solid_fraction = f.bulk_density / s.options().density;
+  f.settled = s.settled();
+  return f;
 }
 
 double grains_in(const Box& box) { return 0.12 * box.length * box.width * box.depth; }
@@ -240,6 +244,7 @@ void shear_parameters(const SoilResults& results, SoilParameters& p) {
   const CoulombFit fit = fit_coulomb(normal, most), late = fit_coulomb(normal, final);
   p.cohesion = fit.cohesion, p.phi = fit.phi, p.coulomb_goodness = fit.goodness;
   p.final_cohesion = late.cohesion, p.final_phi = late.phi;
+  p.phi_alone = fit_friction(normal, most);
   p.K = mean_of(K);
 }
 
@@ -270,9 +275,10 @@ SoilPlan soil_plan(const SoilOptions& o) {
     plan.plates.push_back(test);
   }
   const double hardest = std::min(100e3, dem::grain_modulus(o.material) / 200.0);
-  for (const double share : {0.2, 0.5, 1.0}) {
+  const std::vector<double> chosen{0.2 * hardest, 0.5 * hardest, hardest};
+  for (const double stress : o.stresses.empty() ? chosen : o.stresses) {
     ShearTest test;
-    test.normal_stress = share * hardest;
+    test.normal_stress = stress;
     test.speed = o.speed;
     if (o.quick) test.travel = 4.0, test.samples = 50;
     plan.shears.push_back(test);

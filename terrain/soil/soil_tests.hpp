@@ -19,6 +19,7 @@ struct SoilOptions {
   double speed = 0.1;  // of plate, shear and cone, m/s
   bool quick = false;  // small boxes, short ways: a look, no result to quote
   int threads = 1;     // tests that run at the same time
+  std::vector<double> stresses;  // of the shear tests, Pa; empty: soil_plan() chooses
   bool plate = true, shear = true, cone = true, repose = true;
 };
 
@@ -34,7 +35,8 @@ struct SoilPlan {
   ReposeTest repose;
   double plate_from = 0.5;  // sinkage from which Bekker's curve is fitted, radii
 };
-/// Sizes do not depend on the grains; normal stresses are 20, 50 and 100 kPa, less for soft grains (at most E/200).
+/// Sizes do not depend on the grains; normal stresses are the ones asked for, or 20, 50 and 100 kPa, less for soft
+/// grains (at most E/200).
 SoilPlan soil_plan(const SoilOptions& options);
 
 struct SpecimenFacts {
@@ -42,6 +44,8 @@ struct SpecimenFacts {
   std::int64_t grains = 0;
   double length = 0.0, width = 0.0, height = 0.0;  // m
   double step = 0.0;                               // s
+  double solid_fraction = 0.0;                     // volume of the grains over that below the surface
+  double bulk_density = 0.0;                       // kg/m³
   bool settled = true;
 };
 template <class Result>
@@ -67,6 +71,7 @@ struct SoilParameters {
   Measured k_c, k_phi, n;  // errors from fits of each seed alone
   double bekker_goodness = 0.0;
   Measured cohesion, phi;  // of the fitted τ_max, Pa, rad
+  Measured phi_alone;      // of the fitted τ_max if there is no cohesion, rad
   double coulomb_goodness = 0.0;
   Measured final_cohesion, final_phi;  // of the stress at the end of the travel
   Measured K;                          // mean over all shear tests, m

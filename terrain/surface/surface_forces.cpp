@@ -49,12 +49,12 @@ void NodalForceSum::finish_tangents(double duration, NodalForces& forces) {
 }
 
 void NodalForceSum::add_substep(std::span<const SurfaceContactForce> contacts, const SurfaceNow& surface,
-                                double dt) {
-  FURROW_ASSERT(dt > 0.0, dt);
+                                double dt, double advance) {
+  FURROW_ASSERT(dt > 0.0 && advance > 0.0, dt, advance);
   FURROW_ASSERT(surface.position.size() == impulse_.size(), surface.position.size(), impulse_.size());
   FURROW_ASSERT(surface.velocity.size() == impulse_.size(), surface.velocity.size(), impulse_.size());
   sums_.contacts = static_cast<std::int64_t>(contacts.size());
-  if (!tangent_.empty()) add_tangents(contacts, surface, dt);
+  if (!tangent_.empty()) add_tangents(contacts, surface, advance);
   if (contacts.empty()) return;
   const auto& [triangles, position, velocity] = surface;
 

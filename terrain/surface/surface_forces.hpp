@@ -51,10 +51,19 @@ class NodalForceSum {
 
   /// Adds the forces of one substep of length dt. Serial, in the order given: the caller keeps that order fixed
   /// (for example by grain), then the bits do not depend on threads. Touches only vertices of touched triangles.
-  /// @pre dt > 0; the surface has a position and a velocity for each vertex
-  void add_substep(std::span<const SurfaceContactForce> contacts, const SurfaceNow& surface, double dt);
+  /// @param advance of the interval, of which tangents are means, s: where the forces act for another time
+  /// @pre dt > 0, advance > 0; the surface has a position and a velocity for each vertex
+  void add_substep(std::span<const SurfaceContactForce> contacts, const SurfaceNow& surface, double dt,
+                   double advance);
+  void add_substep(std::span<const SurfaceContactForce> contacts, const SurfaceNow& surface, double dt) {
+    add_substep(contacts, surface, dt, dt);
+  }
+  void add_substep(std::span<const SurfaceContactForce> contacts, const SurfaceCollider& surface, double dt,
+                   double advance) {
+    add_substep(contacts, {surface.mesh().triangles, surface.positions(), surface.velocities()}, dt, advance);
+  }
   void add_substep(std::span<const SurfaceContactForce> contacts, const SurfaceCollider& surface, double dt) {
-    add_substep(contacts, {surface.mesh().triangles, surface.positions(), surface.velocities()}, dt);
+    add_substep(contacts, surface, dt, dt);
   }
 
   /// Interval means: impulses divided by `duration`; clears the sums for the next interval. @pre duration > 0

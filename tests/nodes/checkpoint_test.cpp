@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "nodes/checkpoint/checkpoint.hpp"
+#include "nodes/checkpoint/wall_schedule.hpp"
 #include "nodes/output/frames.hpp"
 #include "nodes/scenario/load_scenario.hpp"
 #include "protocol/files/archive_file.hpp"
@@ -32,7 +33,7 @@ checkpoint::CheckpointManifest write_example(const fs::path& run, std::int64_t s
   m.time = 1e-4 * static_cast<double>(step);
   m.series = {{100, 7, "s", "wheel0"}};
   m.frames = {20, 0, 0};
-  m.segments = {{0, 50, 1.25, 2, ""}, {50, step, 0.1, 1, R"({"run.threads":1})"}};
+  m.segments = {{0, 50, 1.25, 2, "", ""}, {50, step, 0.1, 1, R"({"run.threads":1})", "0123"}};
   const fs::path folder = checkpoint::unfinished_checkpoint(run, step);
   fs::create_directories(folder);
   for (const char* name : {"rig.h5", "terrain.h5"}) {
@@ -70,6 +71,7 @@ TEST(Checkpoint, what_was_written_is_read) {
   EXPECT_EQ(read.file_hashes, written.file_hashes);
   ASSERT_EQ(read.segments.size(), 2U);
   EXPECT_EQ(read.segments[1].changed, R"({"run.threads":1})");
+  EXPECT_EQ(read.segments[1].finer_than, "0123");
   EXPECT_EQ(std::distance(fs::directory_iterator(checkpoint::checkpoints_folder(folder.path())), {}), 1);
 }
 
@@ -145,6 +147,25 @@ TEST(FrameClock, numbers_go_on_without_gap_when_the_interval_changes) {
   EXPECT_EQ(second.continued(200, 0).index(999), 7);
   EXPECT_EQ(second.continued(200, 0).continued(300, 100).index(300), 7);
   EXPECT_EQ(second.continued(200, 50).index(200), 7) << "the frame of the step itself is still to come";
+}
+
+TEST(FrameClock, numbers_stay_when_steps_are_counted_in_parts) {
+  const checkpoint::FrameClock whole{5, 10, 3}, thirds{15, 30, 3};
+  for (std::int64_t step = 10; step < 60; ++step) EXPECT_EQ(thirds.index(3 * step), whole.index(step)) << step;
+}
+
+/// A run of a minute has a checkpoint; one of an hour has no more of them than it asked for.
+TEST(WallSchedule, begins_early_and_slows_down_to_its_interval) {
+  const auto times = [](double interval, double until) {
+    checkpoint::WallSchedule schedule{interval, 100.0};
+    std::vector<double> at;
+    for (double t = 100.0; t <= 100.0 + until; t += 1.0)
+      if (schedule.due(t)) at.push_back(t - 100.0), schedule.written(t);
+    return at;
+  };
+  EXPECT_EQ(times(600.0, 2800.0), (std::vector<double>{30, 90, 210, 450, 930, 1530, 2130, 2730}));
+  EXPECT_EQ(times(10.0, 45.0), (std::vector<double>{10, 20, 30, 40}));
+  EXPECT_TRUE(times(0.0, 1000.0).empty());
 }
 
 TEST(Resume, what_decides_the_results_may_not_change) {

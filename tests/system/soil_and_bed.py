@@ -94,8 +94,12 @@ class Soil(WithCache):
         self.assertTrue(soil["quick"])
         for key in ("k_c", "k_phi", "n", "cohesion_Pa", "friction_angle_deg", "janosi_K_m", "cone_index_Pa", "repose_angle_deg"):
             self.assertTrue(math.isfinite(soil[key]), key)
-            self.assertIn(key, soil["standard_error"])
-            self.assertIn(key, soil["interval_95"])
+            self.assertIsNone(soil["standard_error"][key], key)  # small boxes have a bias that no scatter shows
+            self.assertIsNone(soil["interval_95"][key], key)
+            self.assertIn("not to be quoted", soil["no_interval_because"][key])
+        self.assertIn("not to be quoted", soil["not_to_be_quoted"])
+        self.assertIn("not to be quoted", told)
+        self.assertNotIn("±", told)
         self.assertTrue(0 < soil["friction_angle_deg"] < 60, soil)
         self.assertGreater(soil["janosi_K_m"], 0)
         for test in ("plate", "shear", "cone"):
@@ -108,6 +112,26 @@ class Soil(WithCache):
             lines = (self.work / "out" / f"{name}.csv").read_text().splitlines()
             self.assertEqual(lines[0], header)
             self.assertTrue(all(math.isfinite(float(value)) for line in lines[1:] for value in line.split(",")), name)
+
+    def test_stresses_are_chosen_and_every_value_without_an_error_says_why(self):
+        path = write_scenario(self.work, changed(terrain={"radius": 0.01, "layers": 3, "length": 1.0, "width": 0.2}))
+        soil, told = self.run_json("soil", path, "--seeds", "1", "--only", "shear", "--speed", "0.5", "--stress", "4e3", "--stress", "2e3",
+                                   "--stress", "8e3", "--out", "out")
+        tests = soil["shear"]["tests"]
+        for test, stress in zip(tests, (2e3, 4e3, 8e3)):
+            self.assertAlmostEqual(test["normal_stress_Pa"], stress, delta=0.2 * stress)
+            self.assertAlmostEqual(math.tan(math.radians(test["secant_friction_angle_deg"])), test["tau_max_Pa"] / test["normal_stress_Pa"])
+        self.assertTrue(0 < soil["friction_angle_without_cohesion_deg"] < 80)
+        self.assertTrue(0.3 < soil["shear"]["box"]["solid_fraction"] < 0.7, soil["shear"]["box"])
+        self.assertAlmostEqual(soil["shear"]["box"]["bulk_density_kg_m3"], 2500 * soil["shear"]["box"]["solid_fraction"], places=6)
+        # c and φ are of three points: one degree of freedom gives no interval.
+        self.assertIsNotNone(soil["standard_error"]["friction_angle_deg"])
+        self.assertIsNone(soil["interval_95"]["friction_angle_deg"])
+        self.assertIn("--seeds", soil["no_interval_because"]["friction_angle_deg"])
+        self.assertEqual(soil["no_interval_because"]["k_c"], "not tested")
+        refused = furrow("soil", path, "--stress", "1e3", cwd=self.work)
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("--stress", refused.stderr)
 
     def test_soil_files_with_grains_of_several_sizes_fit_the_small_boxes(self):
         path = write_scenario(self.work)

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -137,8 +138,50 @@ TEST_F(Beds, smooth_grains_pack_denser_and_are_rough_afterwards) {
   EXPECT_TRUE(prepared.settled.settled);
   EXPECT_GT(smooth.solid_fraction_bulk, rough.solid_fraction_bulk + 0.03);
   EXPECT_LT(smooth.solid_fraction_bulk, 0.66);
-  options_.settling_friction = 2.0;  // above the grains' own: no effect
-  EXPECT_EQ(statistics_of(prepare_bed(options_, {})).depth, rough.depth);
+}
+
+TEST_F(Beds, grains_that_fall_rougher_than_they_are_lie_looser) {
+  options_.cache = false;
+  options_.cohesion = 0.0;
+  options_.friction = 0.5;
+  options_.rolling_friction = 0.1;
+  const PreparedBed plain = prepare_bed(options_, {});
+  options_.settling_friction = 2.0;
+  const PreparedBed loose = prepare_bed(options_, {});
+  EXPECT_TRUE(plain.settled.settled && loose.settled.settled);
+  const double before = statistics_of(plain).solid_fraction_bulk, after = statistics_of(loose).solid_fraction_bulk;
+  std::printf("solid fraction %.4f, rougher while falling %.4f\n", before, after);
+  EXPECT_LT(after, before - 0.01);
+  options_.settling_friction = options_.friction;
+  EXPECT_EQ(statistics_of(prepare_bed(options_, {})).depth, statistics_of(plain).depth);
+}
+
+/// At rest by forces and energy, whatever the number of contacts.
+TEST_F(Beds, one_grain_a_row_and_columns_come_to_rest) {
+  options_.cache = false;
+  options_.cohesion = 0.0;
+  const auto settled = [&](const std::string& rows) {
+    options_.bed = write("few.csv", "x_m,y_m,z_m\n" + rows);
+    return prepare_bed(options_, {}).settled;
+  };
+  const SettleResult one = settled("0.15,0,0.02\n");
+  EXPECT_TRUE(one.settled) << one.force_ratio << ' ' << one.floor_error;
+  EXPECT_LT(one.time, 2.0);
+  std::string row, columns;
+  for (int k = 0; k < 10; ++k) row += std::to_string(0.02 + 0.025 * k) + ",0,0.011\n";
+  EXPECT_TRUE(settled(row).settled);
+  for (int k = 0; k < 12; ++k)
+    columns += std::to_string(0.05 + 0.04 * (k / 3)) + ",0," + std::to_string(0.011 + 0.021 * (k % 3)) + "\n";
+  EXPECT_TRUE(settled(columns).settled);
+}
+
+/// A grain in the air is not at rest, though it stands still: nothing holds it.
+TEST_F(Beds, falling_grains_are_not_at_rest) {
+  options_.cache = false;
+  options_.bed = write("high.csv", "x_m,y_m,z_m\n0.15,0,0.3\n");
+  GrainSolver solver(settling_params(options_));
+  solver.place(starting_positions(options_, {}));
+  EXPECT_FALSE(settle(solver, options_, {}, 0.1).settled);
 }
 
 /// No side is left: grains lean on those that stand at the other side, as if the bed went on.

@@ -35,6 +35,8 @@ std::string bed_digest(const DemOptions& o) {
   add(o.periodic_x);
   add(o.seed);
   add(settle_step(o));
+  // Rougher while they fall: beds kept before that was honoured were made without.
+  if (o.settling_friction > o.friction) hash.add("rougher while falling");
   if (o.gravity != standard_gravity()) hash.add(o.gravity.data(), 3 * sizeof(double));
   if (!o.bed.empty()) add_file(hash, o.bed);
   return hash.hex();

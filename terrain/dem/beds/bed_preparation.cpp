@@ -61,22 +61,23 @@ bool from_cache(const std::filesystem::path& file, const DemOptions& options, Ar
   }
 }
 
-/// Smoother grains come to rest more closely packed [Agnolin & Roux 2007, doi:10.1103/PhysRevE.76.061302].
-DemOptions smoothed(DemOptions o) {
-  if (o.settling_friction < 0.0 || o.settling_friction >= o.friction) return o;
-  o.rolling_friction *= o.settling_friction / o.friction;
+/// The grains while they fall. Smoother ones come to rest more closely packed, rougher ones more loosely [Agnolin & Roux
+/// 2007, doi:10.1103/PhysRevE.76.061302].
+DemOptions falling(DemOptions o) {
+  if (o.settling_friction < 0.0) return o;
+  if (o.friction > 0.0) o.rolling_friction *= o.settling_friction / o.friction;
   o.friction = o.settling_friction;
   return o;
 }
 
 Archive made_bed(const DemOptions& options, const ProgressCall& progress, SettleResult& result) {
-  const DemOptions smooth = smoothed(options);
+  const DemOptions first = falling(options);
   GrainSolver solver(settling_params(options));
   solver.place(starting_positions(options, progress));
-  result = settle(solver, smooth, progress);
-  if (options.compaction_pressure > 0.0 || smooth.friction != options.friction) {
+  result = settle(solver, first, progress);
+  if (options.compaction_pressure > 0.0 || first.friction != options.friction) {
     const std::vector<Quad> positions = options.compaction_pressure > 0.0
-                                            ? compacted_positions(solver, smooth, progress)
+                                            ? compacted_positions(solver, first, progress)
                                             : positions_by_id(solver);
     const SettleResult before = result;
     solver = GrainSolver(settling_params(options));

@@ -1,4 +1,11 @@
 // Lets a new bed fall and come to rest.
+//
+// At rest are one grain or a million alike when what moves them has vanished against what holds them, whatever the
+// number of contacts, in the manner of [Agnolin & Roux 2007, doi:10.1103/PhysRevE.76.061302, §II.C], who ask for net
+// forces and kinetic energy small against the scales of the load:
+//   Σ|net force| / Σ|contact force| < kSettledForceRatio,   |floor force − weight| / weight < kSettledFloorError,
+//   E_kin < ½ m kRestSpeed²,   E_kin < kRestEnergy m g r,   m: all grains.
+// The second bound on the kinetic energy is the stricter one for grains below 0.2 mm.
 #pragma once
 
 #include "terrain/dem/dem_options.hpp"
@@ -6,7 +13,6 @@
 
 namespace furrow::terrain::dem {
 
-/// "Settled" means Σ|net force|/Σ|contact force| below the first and |floor force − weight|/weight below the second.
 inline constexpr double kSettledForceRatio = 1e-3;
 inline constexpr double kSettledFloorError = 1e-3;
 
@@ -29,6 +35,7 @@ inline constexpr double kMaxSettleTime = 4.0;  // s
 inline constexpr double kRestDrag =
     20.0;  // 1/s, once the grains lie; those on top must still roll to their places
 inline constexpr double kRestSpeed = 0.002;   // rms, m/s: slower counts as at rest
+inline constexpr double kRestEnergy = 1e-3;   // kinetic, of m g r: less counts as at rest
 inline constexpr int kSettleCheckEvery = 40;  // steps
 
 /// Runs the solver until the bed is settled or `most` seconds have passed. May throw what `progress` throws.

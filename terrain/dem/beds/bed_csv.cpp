@@ -7,9 +7,12 @@
 #include <string>
 
 #include "protocol/core/error.hpp"
+#include "protocol/core/paced_call.hpp"
 
 namespace furrow::terrain::dem {
 namespace {
+
+constexpr std::size_t kCheckEvery = 1024;  // lines
 
 /// Reads one number and the character after it.
 bool number(const char*& at, char end, double& value) {
@@ -24,7 +27,7 @@ bool number(const char*& at, char end, double& value) {
 
 }  // namespace
 
-std::vector<Quad> read_positions_csv(const std::filesystem::path& file) {
+std::vector<Quad> read_positions_csv(const std::filesystem::path& file, const ProgressCall& progress) {
   if (std::error_code error; !std::filesystem::exists(file, error))
     throw input_error(file.string(), "", "does not exist, expected a CSV file of positions");
   std::ifstream in(file);
@@ -38,7 +41,9 @@ std::vector<Quad> read_positions_csv(const std::filesystem::path& file) {
         file.string(), "line 1",
         "'" + line.substr(0, 60) + "', expected the header x_m,y_m,z_m or x_m,y_m,z_m,radius_m");
   std::vector<Quad> positions;
+  PacedCall tell(progress);
   for (std::size_t row = 2; std::getline(in, line); ++row) {
+    if (row % kCheckEvery == 0) tell("reading the bed", 0.0);
     if (line.empty() || line == "\r") continue;
     Quad p;
     const char* at = line.c_str();

@@ -86,7 +86,7 @@ ExitCode press_command(const scenario::Scenario& scenario, const PressArguments&
           "footprint is that of this force; see --load and --deflection",
           options.load, results.at_load.force));
     std::cout << directory.path().string() << std::endl;
-  } catch (const Error&) {
+  } catch (...) {
     directory.discard();
     throw;
   }

@@ -1,31 +1,42 @@
 // furrow: the program. Every error ends here, as one message and the exit code that users script against.
 #include <exception>
 #include <iostream>
+#include <new>
 #include <string>
 
 #include "nodes/commands/commands.hpp"
+#include "nodes/launch/limits.hpp"
 #include "nodes/launch/thread_setup.hpp"
+#include "nodes/scenario/memory_check.hpp"
 #include "protocol/mpi_transport.hpp"
 
+namespace {
+
+int fail(const furrow::Error& error, bool as_rank) {
+  if (as_rank && furrow::launched_rank() != 0) furrow::commands::let_first_rank_speak();
+  furrow::commands::print_error(error.what());
+  return static_cast<int>(error.code());
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
-  // Threads that spin while they wait make a short bed slow as soon as the machine has something else to do.
-  const std::string command = argc > 1 ? argv[1] : "";
-  const bool settles = command == "bed" || command == "sweep";
-  if (settles || furrow::launched_by_mpi()) furrow::launch::wait_passively(argv);
-  furrow::ExitCode code = furrow::ExitCode::done;
+  const bool as_rank = furrow::commands::runs_as_rank(argc, argv);
   try {
-    code = furrow::commands::run_command_line(argc, argv);
-    if (!std::cout.flush())
+    furrow::launch::end_where_memory_runs_out(furrow::launch::kOutOfMemory);
+    furrow::launch::require_stack(argv);
+    // Threads that spin while they wait make a short bed slow as soon as the machine has something else to do.
+    const std::string command = argc > 1 ? argv[1] : "";
+    if (command == "bed" || command == "sweep" || as_rank) furrow::launch::wait_passively(argv);
+    const furrow::ExitCode code = furrow::commands::run_command_line(argc, argv);
+    if (!std::cout.flush() && !furrow::launch::reader_is_gone())
       throw furrow::io_error("standard output", "cannot be written, expected room for the result");
+    return static_cast<int>(code);
   } catch (const furrow::Error& error) {
-    if (!furrow::launched_by_mpi() || furrow::launched_rank() == 0)
-      furrow::commands::print_error(error.what());
-    else
-      furrow::commands::let_first_rank_speak();
-    code = error.code();
+    return fail(error, as_rank);
+  } catch (const std::bad_alloc&) {
+    return fail(furrow::scenario::out_of_memory(), as_rank);
   } catch (const std::exception& error) {
-    furrow::commands::print_error(std::string("unexpected: ") + error.what());
-    code = furrow::ExitCode::physics;
+    return fail(furrow::physics_error(std::string("unexpected: ") + error.what()), as_rank);
   }
-  return static_cast<int>(code);
 }

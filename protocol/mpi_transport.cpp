@@ -2,10 +2,12 @@
 
 #include <mpi.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "protocol/core/assert.hpp"
 #include "protocol/mpi_session.hpp"
@@ -48,19 +50,37 @@ std::vector<HostNode> gather_host_nodes(int tire_count) {
   return nodes;
 }
 
+/// "PMI_RANK=1" and how to be rid of it; empty where no launcher's variables are set.
+std::string launcher_text(const std::vector<std::string>& names) {
+  if (names.empty()) return {};
+  return fmt::format("the environment has {}={}, which a launcher of MPI sets; without a launcher unset {}",
+                     names.front(), std::getenv(names.front().c_str()), fmt::join(names, " "));
+}
+
+/// A single rank may be one that no launcher started: it only found the variables of one.
+Error wrong_count(int needed, int tires, int terrain_ranks, const std::string& found) {
+  FURROW_ASSERT(needed > 1, needed);
+  std::string text = fmt::format(
+      "this scenario needs {} ranks ({} rig, {} tire(s), {} terrain), but mpirun started {}; "
+      "start it with mpirun -n {}",
+      needed, 1, tires, terrain_ranks, world_size(), needed);
+  if (world_size() == 1 && !found.empty())
+    text = fmt::format(
+        "this scenario needs {} ranks ({} rig, {} tire(s), {} terrain), but was started as a single "
+        "one: {}, with one start mpirun -n {}",
+        needed, 1, tires, terrain_ranks, found, needed);
+  return Error(ExitCode::bad_input, text);
+}
+
 }  // namespace
 
 std::unique_ptr<Transport> make_mpi_transport(int* argc, char*** argv, int tire_count, int terrain_ranks) {
   // MPI ends with the process, not with the transport: a launcher ends all ranks as soon as one has ended with an
   // error, so none may end before the one that tells the user has done so.
+  const std::string found = launcher_text(launcher_variables());  // MPI sets them too once it has begun
   static MpiSession session(argc, argv);
-  const int needed = 1 + tire_count + terrain_ranks, given = world_size();
-  if (given != needed)
-    throw Error(
-        ExitCode::bad_input,
-        fmt::format("this scenario needs {} ranks ({} rig, {} tire(s), {} terrain), but mpirun started {}; "
-                    "start it with mpirun -n {}",
-                    needed, 1, tire_count, terrain_ranks, given, needed));
+  if (const int needed = 1 + tire_count + terrain_ranks; world_size() != needed)
+    throw wrong_count(needed, tire_count, terrain_ranks, found);
   const int role = static_cast<int>(address_of(world_rank(), tire_count).role);
   std::vector<HostNode> host = gather_host_nodes(tire_count);
   return std::make_unique<NodeTransport>(std::make_unique<MpiWire>(session, role), tire_count,
@@ -74,14 +94,22 @@ int role_communicator(const Transport& transport) {
   return MPI_Comm_c2f(wire->role().get());
 }
 
-bool launched_by_mpi() {
-  return std::getenv("OMPI_COMM_WORLD_RANK") || std::getenv("PMIX_RANK") || std::getenv("PMI_RANK");
+std::vector<std::string> launcher_variables() {
+  std::vector<std::string> found;
+  for (const char* name : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"})
+    if (const char* value = std::getenv(name); value && *value) found.emplace_back(name);
+  return found;
 }
 
+bool launched_by_mpi() { return !launcher_variables().empty(); }
+
 int launched_rank() {
-  for (const char* name : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"})
-    if (const char* value = std::getenv(name)) return std::atoi(value);
-  return 0;
+  int begun = 0, ended = 0;
+  MPI_Initialized(&begun);
+  MPI_Finalized(&ended);
+  if (begun && !ended) return world_rank();
+  const std::vector<std::string> variables = launcher_variables();
+  return variables.empty() ? 0 : std::max(0, std::atoi(std::getenv(variables.front().c_str())));
 }
 
 }  // namespace furrow

@@ -1,7 +1,5 @@
 #include "protocol/mpi_wire.hpp"
 
-#include <sched.h>
-
 #include <algorithm>
 #include <climits>
 #include <cmath>
@@ -14,7 +12,8 @@
 namespace furrow {
 namespace {
 
-constexpr int kYields = 4;                  // polls before the first sleep
+constexpr int kTests = 4;                   // polls before the first sleep
+constexpr double kRungSleep = 50e-3;        // s; longest sleep where every message rings
 constexpr double kFirstSleep = 20e-6;       // s
 constexpr double kSleepGrowth = 1.5;        // from one sleep to the next
 constexpr double kShortWaitSleep = 200e-6;  // s; longest sleep while the wait is short
@@ -42,6 +41,12 @@ void sleep_for(double seconds) {
   nanosleep(&length, nullptr);
 }
 
+/// The n-th of a wait that has lasted `waited` s.
+double short_sleep(int n, double waited) {
+  const double longest = std::clamp(kShareOfWait * waited, kShortWaitSleep, kMaxSleep);
+  return std::min(kFirstSleep * std::pow(kSleepGrowth, std::min(n, 20)), longest);
+}
+
 }  // namespace
 
 MpiWire::MpiWire(MpiSession& session, int role)
@@ -49,6 +54,7 @@ MpiWire::MpiWire(MpiSession& session, int role)
       data_(Communicator::duplicate(MPI_COMM_WORLD)),
       control_(Communicator::duplicate(MPI_COMM_WORLD)),
       role_(Communicator::split(MPI_COMM_WORLD, role)),
+      doorbells_(MPI_COMM_WORLD),
       self_(world_rank()),
       nodes_(world_size()) {}
 
@@ -78,6 +84,7 @@ void MpiWire::post(std::deque<PendingSend>& sends, const Communicator& comm, int
   send.payload = std::move(payload);
   MPI_Isend(send.payload.data(), static_cast<int>(send.payload.size()), MPI_BYTE, to, tag, comm.get(),
             &send.request);
+  doorbells_.ring(to);
 }
 
 void MpiWire::complete(std::deque<PendingSend>& sends) {
@@ -90,6 +97,7 @@ void MpiWire::complete(std::deque<PendingSend>& sends) {
 }
 
 void MpiWire::progress() {
+  rung_ = doorbells_.own_count();
   int from = 0, tag = 0;
   Bytes payload;
   while (receive_any(data_, from, tag, payload)) arrived_[{from, tag}].push_back(std::move(payload));
@@ -121,12 +129,13 @@ std::optional<ControlBytes> MpiWire::take_control() {
 
 void MpiWire::idle(int polls, double waited) {
   FURROW_ASSERT(polls >= 0 && waited >= 0.0, polls, waited);
-  if (polls < kYields) {
-    sched_yield();
-    return;
-  }
-  const double longest = std::clamp(kShareOfWait * waited, kShortWaitSleep, kMaxSleep);
-  sleep_for(std::min(kFirstSleep * std::pow(kSleepGrowth, std::min(polls - kYields, 20)), longest));
+  if (polls < kTests) return;
+  doorbells_.sleep(rung_, every_message_rings() ? kRungSleep : short_sleep(polls - kTests, waited));
+}
+
+/// What this rank sends may need it to come back to MPI, unless the receivers fetch it.
+bool MpiWire::every_message_rings() const {
+  return doorbells_.everyone() && (session_.receivers_pull() || (sends_.empty() && control_sends_.empty()));
 }
 
 void MpiWire::expect_losses(double patience, int exit_code) noexcept {

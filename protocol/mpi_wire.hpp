@@ -2,15 +2,20 @@
 // what it sends until MPI is done with it, and takes in whatever arrives at every opportunity, so that no peer waits
 // for this node to ask for just its message.
 //
-// Idling: a few tests with yields, for what is about to come, then sleeps that grow with the wait. A waiting rank
-// leaves its core to a working one (more ranks than cores is the usual case on a laptop). It may notice a message one
-// sleep late, which costs the run nothing unless that rank is the slowest one, and that one hardly waits.
+// Idling: a few tests for what is about to come, then sleep. A waiting rank leaves its core to a working one (more ranks
+// than cores is the usual case on a laptop). Whoever sends to a rank of the same machine rings its doorbell, which ends
+// its sleep. It must not look around by itself in between where others want the core: each time it would stand at the
+// end of their queue, for milliseconds; and sched_yield() is the same. Messages from other machines, and those that move
+// only while their sender is inside MPI, ring no bell: for them it sleeps in short pieces that grow with the wait, and
+// may notice them one piece late.
 #pragma once
 
+#include <cstdint>
 #include <deque>
 #include <map>
 #include <utility>
 
+#include "protocol/mpi_doorbells.hpp"
 #include "protocol/mpi_session.hpp"
 #include "protocol/wire.hpp"
 
@@ -41,13 +46,16 @@ class MpiWire final : public Wire {
     Bytes payload;
     MPI_Request request = MPI_REQUEST_NULL;
   };
-  static void post(std::deque<PendingSend>& sends, const Communicator& comm, int to, int tag, Bytes payload);
+  void post(std::deque<PendingSend>& sends, const Communicator& comm, int to, int tag, Bytes payload);
   static void complete(std::deque<PendingSend>& sends);
   void drain(double longest);
+  bool every_message_rings() const;
 
   MpiSession& session_;
   Communicator data_, control_, role_;
+  MpiDoorbells doorbells_;
   int self_, nodes_;
+  std::uint32_t rung_ = 0;  // own doorbell's count before the last look around
   std::deque<PendingSend> sends_, control_sends_;
   std::map<std::pair<int, int>, std::deque<Bytes>> arrived_;  // by rank and tag
   std::deque<ControlBytes> control_arrived_;

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Plots of a run, of soil tests, of a pressed tire or of a study: PNG files in the run directory, their names as a JSON list on stdout.
+"""Plots of a run, of soil tests, of a pressed tire or of a study: PNG files in the run directory; their names, without the folder, as a JSON list on stdout.
 
 usage: report.py DIR [--out FOLDER] [--only NAME]...
 
@@ -118,7 +118,7 @@ def main():
             print(f"furrow: error: {out / (name + '.png')}: {error}", file=sys.stderr)
             return 5
         matplotlib.pyplot.close(figure)
-        written.append(str(out / f"{name}.png"))
+        written.append(f"{name}.png")
     if not (of_soil or of_sweep or of_press):
         try:
             words(run)

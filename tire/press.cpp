@@ -45,7 +45,10 @@ PressResults press_tire(const TireFile& file, const PressOptions& options, const
   const ShellMesh mesh = make_shell_mesh(file);
   const ShellCarcass shell(file, mesh);
   InflationReport inflation;
-  PressSolver solver(file, mesh, inflate(shell, mesh, inflation), options.obstacle);
+  const auto inflating = [&] {
+    if (progress) progress("inflating", 0.0);
+  };
+  PressSolver solver(file, mesh, inflate(shell, mesh, inflation, inflating), options.obstacle);
   PressResults results;
   results.pressure = file.pressure;
   results.mass = rigid_mass(mesh, element_masses(file, mesh));

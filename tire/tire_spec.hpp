@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -83,6 +84,7 @@ struct TireContext {
   std::optional<double> tolerance;  // of the solver's residual, relative
   std::optional<double> renewal;    // change of shape at which the solver renews its factors
   Vec3 gravity = standard_gravity();  // m/s²
+  std::function<void()> alive = {};   // called now and then while the tire is inflated; may throw to stop
 };
 
 class StaticTest;

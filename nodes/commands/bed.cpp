@@ -7,6 +7,7 @@
 #include "nodes/commands/commands.hpp"
 #include "nodes/launch/progress.hpp"
 #include "nodes/launch/signals.hpp"
+#include "nodes/scenario/memory_check.hpp"
 #include "nodes/scenario/scenario.hpp"
 #include "protocol/core/clock.hpp"
 #include "terrain/dem/beds/bed_compaction.hpp"
@@ -62,19 +63,20 @@ json bed_json(const scenario::Scenario& s, const terrain::dem::DemOptions& o,
 
 ExitCode bed_command(const scenario::Scenario& scenario) {
   const terrain::dem::DemOptions grains = scenario.grains("only grains make a bed");
+  scenario::require_memory(scenario);
   launch::catch_stop_signals();
   launch::ProgressDisplay display;
   const double begin = wall_clock();
-  const terrain::dem::PreparedBed prepared =
-      terrain::dem::prepare_bed(grains, [&](const std::string& what, double share) {
-        if (launch::stop_signalled())
-          throw Error(ExitCode::stopped, "stopped by a signal while the bed was being prepared");
-        display.show({.phase = what, .share = share});
-      });
+  const ProgressCall progress = [&](const std::string& what, double share) {
+    if (launch::stop_signalled())
+      throw Error(ExitCode::stopped, "stopped by a signal while the bed was being prepared");
+    display.show({.phase = what, .share = share});
+  };
+  const terrain::dem::PreparedBed prepared = terrain::dem::prepare_bed(grains, progress);
   terrain::dem::GrainSolver solver(terrain::dem::solver_params(grains));
   terrain::dem::restore_bed(solver, prepared);
-  const terrain::dem::BedStatistics statistics =
-      terrain::dem::bed_statistics(terrain::dem::positions_by_id(solver), solver.params().bin, grains.radius);
+  const terrain::dem::BedStatistics statistics = terrain::dem::bed_statistics(
+      terrain::dem::positions_by_id(solver), solver.params().bin, grains.radius, progress);
   const double wall = wall_clock() - begin;
   display.clear();
   if (!prepared.settled.settled)

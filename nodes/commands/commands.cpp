@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <functional>
 #include <iostream>
+#include <new>
 #include <utility>
 
 #include <fmt/format.h>
@@ -16,6 +17,7 @@
 #include "nodes/launch/signals.hpp"
 #include "nodes/scenario/explain.hpp"
 #include "nodes/scenario/load_scenario.hpp"
+#include "nodes/scenario/memory_check.hpp"
 #include "nodes/scenario/rank_table.hpp"
 #include "nodes/scenario/validate.hpp"
 #include "protocol/files/nearest_words.hpp"
@@ -31,6 +33,7 @@ struct Typed {
   std::string scenario, out, threads, key, directory, soil, until;
   std::vector<std::string> settings;
   bool overwrite = false, profile = false, json = false, no_plots = false;
+  double memory = 0.0;  // that the scenario needs, bytes; 0: not known yet
 };
 
 constexpr std::size_t kMaxShown = 400;  // bytes of what the command line has wrong
@@ -142,20 +145,21 @@ Settings settings_of(const Typed& typed) {
   return settings;
 }
 
-scenario::Scenario load(const Typed& typed) {
+scenario::Scenario load(Typed& typed) {
   scenario::Scenario scenario = scenario::load_scenario(typed.scenario, settings_of(typed));
+  typed.memory = scenario.memory.all;
   for (const std::string& warning : scenario.warnings) print_warning(warning);
   return scenario;
 }
 
-ExitCode validate_command(const Typed& typed) {
+ExitCode validate_command(Typed& typed) {
   const scenario::Scenario scenario = load(typed);
   std::cout << (typed.json ? scenario::validation_report(scenario).dump(2) + "\n"
                            : scenario::validation_text(scenario));
   return ExitCode::done;
 }
 
-ExitCode ranks_command(const Typed& typed, const std::vector<std::string>& command_line) {
+ExitCode ranks_command(Typed& typed, const std::vector<std::string>& command_line) {
   const scenario::Scenario scenario = load(typed);
   std::vector<std::string> arguments = command_line;
   *std::find(arguments.begin(), arguments.end(), "ranks") = "run";
@@ -255,8 +259,9 @@ class CommandLine {
     app_.set_version_flag("--version", "furrow " FURROW_VERSION);
     app_.require_subcommand(1);
     app_.footer(
-        "Exit codes: 0 done, 2 bad input, 3 the physics failed, 4 a rank was lost, 5 input/output, 75 stopped "
-        "by a signal.");
+        "Exit codes: 0 done, 2 bad input, 3 the physics failed, 4 a rank was lost, 5 input/output, 6 memory "
+        "or "
+        "another limit ran out, 75 stopped by a signal.");
     add_runs();
     add_questions();
     add_virtual_tests();
@@ -274,7 +279,11 @@ class CommandLine {
     } catch (const CLI::ParseError& error) {
       throw usage_error(parse_problem(app_, error, argc_, argv_));
     }
-    return chosen_();
+    try {
+      return chosen_();
+    } catch (const std::bad_alloc&) {
+      throw scenario::out_of_memory(typed_.memory);
+    }
   }
 
  private:
@@ -392,6 +401,11 @@ void CommandLine::add_benches() {
 
 void print_error(const std::string& text) { print_lines("error", text); }
 void print_warning(const std::string& text) { print_lines("warning", text); }
+
+bool runs_as_rank(int argc, char** argv) {
+  const std::string command = argc > 1 ? argv[1] : "";
+  return (command == "run" || command == "resume") && launched_by_mpi();
+}
 
 ExitCode run_command_line(int argc, char** argv) { return CommandLine(argc, argv).execute(); }
 

@@ -33,7 +33,12 @@ ExitCode run_supervised(const RunArguments& arguments);
 ExitCode resume_supervised(const RunArguments& arguments);
 ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv);
 
-/// mpirun ends all ranks as soon as one has failed, even the one that is about to say why: the others wait here.
+/// Whether this command line runs as a rank of MPI: run and resume do where a launcher's variables are set. All other
+/// commands pay no regard to them.
+bool runs_as_rank(int argc, char** argv);
+
+/// mpirun ends all ranks as soon as one has failed, even the one that is about to say why: the others wait here. Who
+/// comes back from it was not ended, and should say it too.
 void let_first_rank_speak();
 
 /// `furrow report`: makes the plots of a run (commands_report.cpp). @throws Error

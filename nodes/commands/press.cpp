@@ -88,7 +88,7 @@ ExitCode press_command(const scenario::Scenario& scenario, const PressArguments&
           "tire/README.md, \"Static pressing\"",
           options.load, results.at_load.force));
     std::cout << directory.path().string() << std::endl;
-  } catch (const Error&) {
+  } catch (...) {
     directory.discard();
     throw;
   }

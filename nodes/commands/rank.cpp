@@ -3,23 +3,27 @@
 #include <csignal>
 #include <cstdlib>
 #include <iostream>
+#include <new>
 #include <string>
 
 #include <chrono>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "nodes/checkpoint/resume.hpp"
 #include "nodes/commands/commands.hpp"
 #include "nodes/launch/held_folder.hpp"
+#include "nodes/launch/limits.hpp"
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
 #include "nodes/launch/supervisor_lines.hpp"
 #include "nodes/launch/thread_setup.hpp"
 #include "nodes/ranks/run_node.hpp"
 #include "nodes/scenario/load_scenario.hpp"
+#include "nodes/scenario/memory_check.hpp"
 #include "protocol/abandon_mpi.hpp"
 #include "protocol/mpi_transport.hpp"
 
@@ -36,8 +40,18 @@ class RankReporter {
   bool supervised() const { return supervised_; }
   int rank() const { return rank_; }
 
-  void started() const {
-    if (supervised_) send({launch::RankLine::Kind::started, rank_, {}, ExitCode::done, {}});
+  /// How far it has come on its way to work: begun, read, started.
+  void stage(launch::RankLine::Kind kind) const {
+    if (supervised_) send({kind, rank_, {}, ExitCode::done, {}});
+  }
+  /// Memory may run out where nothing can be said any more.
+  void prepare_last_words(const Error& words) const {
+    if (supervised_)
+      launch::end_where_memory_runs_out(
+          launch::encode({launch::RankLine::Kind::error, rank_, words.what(), words.code(), {}}),
+          STDOUT_FILENO);
+    else
+      launch::end_where_memory_runs_out(std::string("furrow: error: ") + words.what() + "\n");
   }
   void note(const std::string& text) {
     if (supervised_)
@@ -159,10 +173,39 @@ ExitCode run_this_node(Transport& transport, const scenario::Scenario& scenario,
     if (!told_by_another(transport, error)) reporter.error(error);
     if (error.code() == ExitCode::rank_lost) abandon_mpi(static_cast<int>(error.code()));
     return error.code();
+  } catch (const std::bad_alloc&) {
+    const Error error = scenario::out_of_memory(scenario.memory.all);
+    reporter.error(error);
+    return error.code();
   } catch (const std::exception& error) {
     reporter.error(physics_error(std::string("unexpected: ") + error.what()));
     return ExitCode::physics;
   }
+}
+
+/// What a rank computes, and from where.
+struct Task {
+  std::optional<scenario::Scenario> scenario;
+  checkpoint::ResumePlan plan;
+};
+
+/// The terrain's machine must have room for it.
+void read_task(const RunArguments& arguments, Task& task) try {
+  if (arguments.resume) task.plan = checkpoint::plan_resume(arguments.out, arguments.settings);
+  if (task.plan.finished) return;
+  task.scenario =
+      arguments.resume ? task.plan.scenario : scenario::load_scenario(arguments.scenario, arguments.settings);
+  if (launched_rank() > static_cast<int>(task.scenario->tires.size()))
+    scenario::require_memory(*task.scenario);
+} catch (const std::bad_alloc&) {
+  throw scenario::out_of_memory();
+}
+
+/// A run that is over leaves nothing to do: told as `furrow resume` tells it without a launcher.
+void tell_finished(const checkpoint::ResumePlan& plan, const RunArguments& arguments) {
+  std::cerr << fmt::format("furrow: {} has come to its end at {:g} s, there is nothing to do\n",
+                           arguments.out.string(), plan.scenario.run.end);
+  std::cout << arguments.out.string() << std::endl;
 }
 
 }  // namespace
@@ -173,36 +216,38 @@ ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
   launch::die_with_parent(SIGKILL, getppid());
   launch::catch_stop_signals();
   RankReporter reporter;
-  std::optional<scenario::Scenario> scenario;
+  reporter.stage(launch::RankLine::Kind::begun);
+  Task task;
   std::optional<launch::HeldFolder> held;
-  checkpoint::ResumePlan plan;
   try {
     if (reporter.supervised()) held.emplace(arguments.out);
-    if (arguments.resume) plan = checkpoint::plan_resume(arguments.out, arguments.settings);
-    if (plan.finished) return ExitCode::done;
-    scenario =
-        arguments.resume ? plan.scenario : scenario::load_scenario(arguments.scenario, arguments.settings);
+    read_task(arguments, task);
   } catch (const Error& error) {
-    if (first_on_machine())
-      reporter.error(error);
-    else
-      let_first_rank_speak();
+    if (!first_on_machine()) let_first_rank_speak();
+    reporter.error(error);
     return error.code();
   }
+  if (task.plan.finished) {
+    if (reporter.rank() == 0) tell_finished(task.plan, arguments);
+    return ExitCode::done;
+  }
+  const scenario::Scenario& scenario = *task.scenario;
+  reporter.prepare_last_words(scenario::out_of_memory(scenario.memory.all));
   if (!reporter.supervised() && reporter.rank() == 0)
-    for (const auto* warnings : {&scenario->warnings, &plan.warnings})
+    for (const auto* warnings : {&scenario.warnings, &std::as_const(task.plan).warnings})
       for (const std::string& warning : *warnings) print_warning(warning);
+  reporter.stage(launch::RankLine::Kind::read);
   std::unique_ptr<Transport> transport;
   try {
     transport =
-        make_mpi_transport(&argc, &argv, static_cast<int>(scenario->tires.size()), scenario->terrain_ranks);
+        make_mpi_transport(&argc, &argv, static_cast<int>(scenario.tires.size()), scenario.terrain_ranks);
   } catch (const Error& error) {
-    if (reporter.rank() == 0) reporter.error(error);
+    if (launched_rank() == 0) reporter.error(error);
     return error.code();
   }
-  reporter.started();
-  return run_this_node(*transport, *scenario, arguments.resume ? &plan.point : nullptr, arguments, reporter,
-                       held);
+  reporter.stage(launch::RankLine::Kind::started);
+  return run_this_node(*transport, scenario, arguments.resume ? &task.plan.point : nullptr, arguments,
+                       reporter, held);
 }
 
 }  // namespace furrow::commands

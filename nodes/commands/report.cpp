@@ -1,5 +1,5 @@
-// The plots of a run, made by scripts/report.py with Debian's own Python, whatever python stands first on
-// PATH.
+// The plots of a run, made by scripts/report.py with Debian's own Python, whatever python stands first on PATH, and
+// isolated (-I) from what the user's environment and folders have for Python.
 #include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -15,7 +15,7 @@
 #include "nodes/launch/child_process.hpp"
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
-#include "nodes/scenario/scenario.hpp"
+#include "nodes/scenario/rank_table.hpp"
 #include "protocol/files/data_files.hpp"
 
 namespace furrow::commands {
@@ -64,15 +64,15 @@ std::vector<std::filesystem::path> make_report(const std::filesystem::path& run,
     throw io_error(
         script.string(),
         "is missing, expected the plotting script (FURROW_HOME names the folder that holds scripts/)");
-  const Finished finished = run_program({kPython, script.string(), run.string()}, quiet);
+  const Finished finished = run_program({kPython, "-I", script.string(), "--", run.string()}, quiet);
   const auto list = nlohmann::json::parse(finished.output, nullptr, false);
   if (!WIFEXITED(finished.status) || WEXITSTATUS(finished.status) != 0 || !list.is_array())
     throw io_error(run.string(), launch::stop_signalled() ? "the plots were interrupted"
-                                 : quiet
-                                     ? fmt::format("made no plots; 'furrow report {}' says why", run.string())
-                                     : "made no plots, expected the results of a run");
+                                 : quiet ? fmt::format("made no plots; 'furrow report {}' says why",
+                                                       scenario::shell_path(run.string()))
+                                         : "made no plots, expected the results of a run");
   std::vector<std::filesystem::path> plots;
-  for (const auto& name : list) plots.emplace_back(name.get<std::string>());
+  for (const auto& name : list) plots.push_back(run / name.get<std::string>());
   return plots;
 }
 

@@ -9,10 +9,13 @@
 #include "nodes/checkpoint/checkpoint.hpp"
 #include "nodes/checkpoint/resume.hpp"
 #include "nodes/commands/commands.hpp"
+#include "nodes/launch/limits.hpp"
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
+#include "nodes/launch/start_watch.hpp"
 #include "nodes/launch/supervisor.hpp"
 #include "nodes/scenario/load_scenario.hpp"
+#include "nodes/scenario/memory_check.hpp"
 #include "protocol/core/no_step_helps.hpp"
 #include "protocol/files/json_text.hpp"
 #include "protocol/files/text_file.hpp"
@@ -22,13 +25,12 @@ namespace {
 
 std::vector<std::string> rank_arguments(const RunArguments& arguments,
                                         const std::filesystem::path& directory) {
-  std::vector<std::string> list{"run", arguments.scenario.string(), "--out", directory.string()};
-  if (arguments.resume) list = {"resume", directory.string()};
-  for (const auto& [key, value] : arguments.settings) {
-    list.push_back("--set");
-    list.push_back(key + "=" + value);
-  }
+  std::vector<std::string> list{arguments.resume ? "resume" : "run"};
+  if (!arguments.resume) list.push_back("--out=" + directory.string());
+  for (const auto& [key, value] : arguments.settings) list.push_back("--set=" + key + "=" + value);
   if (arguments.profile) list.push_back("--profile");
+  list.push_back("--");  // names may begin with a hyphen
+  list.push_back(arguments.resume ? directory.string() : arguments.scenario.string());
   return list;
 }
 
@@ -94,7 +96,8 @@ ExitCode supervise_run(const scenario::Scenario& scenario, launch::RunDirectory&
     directory.lock().share();
     launch::ProgressDisplay display;
     result = launch::supervise({rank_arguments(arguments, directory.path()), scenario::rank_table(scenario),
-                                directory.path() / "run.log", directory.lock().descriptor()},
+                                directory.path() / "run.log", directory.lock().descriptor(),
+                                launch::start_patience()},
                                display);
   } catch (const Error&) {
     directory.discard();
@@ -105,14 +108,15 @@ ExitCode supervise_run(const scenario::Scenario& scenario, launch::RunDirectory&
                                      : result.error);
     return result.code == ExitCode::done ? ExitCode::io : result.code;
   }
-  if (result.code == ExitCode::bad_input) directory.discard();
+  const bool nothing_done = result.code == ExitCode::limit && result.started == 0;
+  if (result.code == ExitCode::bad_input || nothing_done) directory.discard();
   if (result.code == ExitCode::stopped) {
     std::fprintf(stderr, "furrow: %s; partial results are in %s\n", result.error.c_str(),
                  directory.path().c_str());
     tell_how_to_continue(directory.path(), result, scenario);
   } else if (result.code != ExitCode::done) {
     print_error(result.error);
-    if (result.code != ExitCode::bad_input) {
+    if (result.code != ExitCode::bad_input && !nothing_done) {
       const bool measured = written(failed) != failed_before;
       if (!measured) write_failure(failed, scenario, result);
       std::fprintf(stderr, "furrow: the log of the ranks is %s\n", (directory.path() / "run.log").c_str());
@@ -127,12 +131,20 @@ ExitCode supervise_run(const scenario::Scenario& scenario, launch::RunDirectory&
   return result.code;
 }
 
+/// What can be said against starting the ranks on this machine.
+void require_launch(const scenario::Scenario& scenario) {
+  scenario::require_memory(scenario);
+  launch::start_patience();
+  launch::find_mpirun();
+  launch::require_files(scenario::rank_table(scenario).size());
+}
+
 }  // namespace
 
 ExitCode run_supervised(const RunArguments& arguments) {
   const scenario::Scenario scenario = scenario::load_scenario(arguments.scenario, arguments.settings);
   for (const std::string& warning : scenario.warnings) print_warning(warning);
-  launch::find_mpirun();
+  require_launch(scenario);
   launch::RunDirectory directory(scenario.name, arguments.out, arguments.overwrite, arguments.scenario);
   launch::catch_stop_signals();
   std::fprintf(stderr, "furrow: %s, results in %s\n", scenario.name.c_str(), directory.path().c_str());
@@ -150,7 +162,7 @@ ExitCode resume_supervised(const RunArguments& arguments) {
     std::cout << directory.path().string() << "\n";
     return ExitCode::done;
   }
-  launch::find_mpirun();
+  require_launch(plan.scenario);
   launch::catch_stop_signals();
   std::fprintf(stderr, "furrow: continuing %s from t = %g s, results in %s\n", plan.scenario.name.c_str(),
                plan.point.manifest.time, directory.path().c_str());

@@ -87,7 +87,7 @@ ExitCode soil_command(const scenario::Scenario& scenario, const SoilArguments& a
     write_whole_file(directory.path() / "soil.json", soil.dump(2) + "\n");
     std::fputs(terrain::soil::soil_text(soil).c_str(), stderr);
     std::cout << soil.dump(2) << "\n";
-  } catch (const Error&) {
+  } catch (...) {
     directory.discard();
     throw;
   }

@@ -3,9 +3,13 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <string_view>
 
 #include "nodes/launch/signals.hpp"
 #include "protocol/core/error.hpp"
@@ -14,6 +18,40 @@ namespace furrow::launch {
 namespace {
 
 constexpr int kCannotRun = 127;
+
+/// Whether mpirun, srun and the like set this to tell a rank what it is; not what users choose for all their runs.
+bool is_of_launcher(std::string_view variable) {
+  constexpr std::array kBeginnings{"OMPI_COMM_WORLD_",
+                                   "OMPI_UNIVERSE_",
+                                   "OMPI_APP_CTX_",
+                                   "OMPI_NUM_APP_CTX",
+                                   "OMPI_FIRST_RANKS",
+                                   "OMPI_FILE_LOCATION",
+                                   "OMPI_COMMAND",
+                                   "OMPI_ARGV",
+                                   "OMPI_MCA_ess=",
+                                   "OMPI_MCA_ess_base_",
+                                   "OMPI_MCA_initial_wdir",
+                                   "OMPI_MCA_mpi_oversubscribe",
+                                   "OMPI_MCA_orte_app_num",
+                                   "OMPI_MCA_orte_bound_at_launch",
+                                   "OMPI_MCA_orte_ess_",
+                                   "OMPI_MCA_orte_hnp_uri",
+                                   "OMPI_MCA_orte_jobfam_",
+                                   "OMPI_MCA_orte_jobid",
+                                   "OMPI_MCA_orte_launch=",
+                                   "OMPI_MCA_orte_local_daemon_uri",
+                                   "OMPI_MCA_orte_num_nodes",
+                                   "OMPI_MCA_orte_precondition_",
+                                   "OMPI_MCA_orte_top_session_",
+                                   "OMPI_MCA_pmix=",
+                                   "OMPI_MCA_shmem_RUNTIME_",
+                                   "PMIX_",
+                                   "PMI_"};
+  return !variable.starts_with("PMIX_MCA_") &&
+         std::any_of(kBeginnings.begin(), kBeginnings.end(),
+                     [&](const char* beginning) { return variable.starts_with(beginning); });
+}
 
 /// In the child: becomes the program.
 [[noreturn]] void become(const Child& child, const std::vector<char*>& arguments, pid_t parent) {
@@ -33,7 +71,8 @@ constexpr int kCannotRun = 127;
 
 Pipe::Pipe() {
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) throw io_error("pipe", std::strerror(errno));
+  if (pipe2(ends, O_CLOEXEC) != 0)
+    throw limit_error(std::string("a pipe cannot be opened: ") + std::strerror(errno) + " (ulimit -n)");
   read = ends[0];
   write = ends[1];
 }
@@ -43,13 +82,22 @@ void Pipe::close_end(int& end) {
   end = -1;
 }
 
+void forget_launcher() {
+  std::vector<std::string> names;
+  for (char** entry = environ; *entry; ++entry)
+    if (const std::string_view variable(*entry); is_of_launcher(variable))
+      names.emplace_back(variable.substr(0, variable.find('=')));
+  for (const std::string& name : names) unsetenv(name.c_str());
+}
+
 pid_t start_child(Child child) {
   std::vector<char*> arguments;
   for (std::string& argument : child.command) arguments.push_back(argument.data());
   arguments.push_back(nullptr);
   const pid_t parent = getpid(), process = fork();
   if (process < 0)
-    throw io_error(child.command.front(), std::string("cannot be started: ") + std::strerror(errno));
+    throw limit_error(child.command.front() + ": cannot be started: " + std::strerror(errno) +
+                      " (ulimit -u, ulimit -v, or no memory)");
   if (process == 0) become(child, arguments, parent);
   if (child.own_group) setpgid(process, process);  // whoever of the two comes first
   return process;

@@ -11,7 +11,7 @@ namespace furrow::launch {
 /// The two ends of a pipe, which children do not inherit unless they are given one as a stream.
 struct Pipe {
   int read = -1, write = -1;
-  Pipe();  // @throws Error(io)
+  Pipe();  // @throws Error(limit)
   ~Pipe() {
     close_read();
     close_write();
@@ -34,8 +34,12 @@ struct Child {
   std::function<void()> prepare = {};  // called in the child before the program begins
 };
 
+/// Takes out of the environment what mpirun, srun and the like tell the processes that they start: a program that is
+/// started with a launcher of its own, or that is no rank, must not find it.
+void forget_launcher();
+
 /// @returns its process id. A program that cannot be run ends with status 127, after a line on its standard error.
-/// @throws Error(io) when no process can be made
+/// @throws Error(limit) when no process can be made
 pid_t start_child(Child child);
 
 }  // namespace furrow::launch

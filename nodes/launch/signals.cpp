@@ -11,10 +11,13 @@ namespace {
 
 constexpr int kStopSignals[] = {SIGTERM, SIGINT, SIGHUP, SIGUSR1};
 std::atomic<int> stop_count{0};
+std::atomic<bool> pause_wanted{false};
 bool catching = false;
 static_assert(std::atomic<int>::is_always_lock_free);  // safe in a signal handler
 
 void count_stop(int) { stop_count.fetch_add(1, std::memory_order_relaxed); }
+
+void want_pause(int) { pause_wanted.store(true, std::memory_order_relaxed); }
 
 void set_handler(int signal, void (*handler)(int)) {
   struct sigaction action = {};
@@ -42,7 +45,16 @@ bool catches_stop_signals() { return catching; }
 
 int stop_signals() { return stop_count.load(std::memory_order_relaxed); }
 
+void catch_pause() {
+  if (!ignored(SIGTSTP)) set_handler(SIGTSTP, want_pause);
+}
+
+bool pause_asked() { return pause_wanted.exchange(false, std::memory_order_relaxed); }
+
+void pause_here() { raise(SIGSTOP); }
+
 void restore_signals() {
+  set_handler(SIGTSTP, SIG_DFL);
   for (const int signal : kStopSignals) set_handler(signal, SIG_DFL);
   set_handler(SIGPIPE, SIG_DFL);
   sigset_t none;

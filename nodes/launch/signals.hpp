@@ -1,4 +1,5 @@
-// Signals that ask for a stop: TERM, INT, HUP and USR1 only raise a flag, which loops look at.
+// Signals that ask for a stop: TERM, INT, HUP and USR1 only raise a flag, which loops look at. So does Ctrl-Z where it
+// must reach others too.
 #pragma once
 
 namespace furrow::launch {
@@ -12,6 +13,13 @@ bool catches_stop_signals();
 /// How many have come.
 int stop_signals();
 inline bool stop_signalled() { return stop_signals() > 0; }
+
+/// Ctrl-Z raises a flag from now on, unless this process was started to ignore it: who started others stops them first.
+void catch_pause();
+/// Whether it came since this was last asked.
+bool pause_asked();
+/// Stops this process until it is continued.
+void pause_here();
 
 /// As a new program wants them, in a child between fork and exec.
 void restore_signals();

@@ -11,13 +11,14 @@
 #include <cstring>
 #include <fstream>
 #include <optional>
-#include <set>
 #include <sstream>
 
 #include <fmt/format.h>
 
 #include "nodes/launch/child_process.hpp"
+#include "nodes/launch/limits.hpp"
 #include "nodes/launch/signals.hpp"
+#include "nodes/launch/start_watch.hpp"
 #include "nodes/launch/supervisor_lines.hpp"
 #include "nodes/launch/supervisor_text.hpp"
 #include "nodes/launch/thread_setup.hpp"
@@ -75,10 +76,24 @@ std::vector<std::string> mpirun_command(const Launch& launch) {
   return command;
 }
 
+std::optional<std::filesystem::path> on_path(const std::string& program) {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path ? path : "/usr/bin:/bin");
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const std::filesystem::path candidate = std::filesystem::path(folder.empty() ? "." : folder) / program;
+    if (access(candidate.c_str(), X_OK) == 0) return candidate;
+  }
+  return std::nullopt;
+}
+
 void set_environment() {
+  forget_launcher();
   setenv(kSupervisedVariable, "1", 1);
   setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
   setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
+  setenv("OMPI_MCA_orte_forward_job_control", "1", 0);  // mpirun hands stops and continuations on
+  // Open MPI will not begin without a way to other machines, even where it needs none.
+  if (!on_path("ssh") && !on_path("rsh")) setenv("OMPI_MCA_plm_rsh_agent", "/bin/false", 0);
   for (const std::string& pair : passive_environment()) {
     const std::size_t equals = pair.find('=');
     setenv(pair.substr(0, equals).c_str(), pair.substr(equals + 1).c_str(), 0);
@@ -88,7 +103,10 @@ void set_environment() {
 class Supervisor {
  public:
   Supervisor(const Launch& launch, ProgressDisplay& display)
-      : launch_(launch), display_(display), log_(launch.log, std::ios::app) {
+      : launch_(launch),
+        display_(display),
+        log_(launch.log, std::ios::app),
+        start_(launch.ranks.size(), launch.patience) {
     if (!log_) throw io_error(launch.log.string(), "cannot be written");
   }
   ~Supervisor() {
@@ -103,11 +121,16 @@ class Supervisor {
     while (!(reaped_ && (both_closed() || wall_clock() - reaped_at_ > kDrainPatience))) {
       read_some();
       reap();
-      if (!reaped_) pass_on_stop();
+      if (reaped_) continue;
+      pass_on_stop();
+      pass_on_pause();
+      end_late_start();
+      if (ended_ > 0.0 && wall_clock() - ended_ > kKillPatience) kill(-child_, SIGKILL);
     }
     kill(-child_, SIGKILL);  // whatever is left of its group
     display_.clear();
-    const LaunchResult result = outcome();
+    LaunchResult result = outcome();
+    result.started = start_.count();
     if (!result.error.empty()) log_ << result.error << '\n';
     return result;
   }
@@ -122,7 +145,10 @@ class Supervisor {
   }
   void reap();
   void pass_on_stop();
+  void pass_on_pause();
+  void end_late_start();
   LaunchResult outcome() const;
+  std::string launcher_said() const;
   LaunchResult lost_rank(int rank, const std::string& how) const;
   bool both_closed() const { return out_.read < 0 && err_.read < 0; }
 
@@ -131,11 +157,11 @@ class Supervisor {
   std::ofstream log_;
   Pipe out_, err_;
   Lines out_lines_, err_lines_;
-  LauncherText launcher_;
-  std::set<int> started_;
+  LauncherText launcher_, other_;  // standard error, and what is no rank's line of standard output
+  StartWatch start_;
   std::optional<RankLine> error_;  // the first; one that tells a cause replaces one that tells of a loss
   pid_t child_ = -1;
-  bool reaped_ = false;
+  bool reaped_ = false, late_ = false;
   int status_ = 0;
   double logged_ = 0.0;  // wall time of the last progress in the log, s
   double reaped_at_ = 0.0, stop_seen_ = 0.0, asked_ = 0.0, ended_ = 0.0;  // wall time, s; 0: not yet
@@ -181,11 +207,18 @@ void Supervisor::take_output(std::string_view text) {
   const auto line = decode(text);
   if (!line) {
     log_ << text << '\n';
+    other_.add(text);
     return;
   }
   switch (line->kind) {
+    case RankLine::Kind::begun:
+      start_.begun(line->rank);
+      break;
+    case RankLine::Kind::read:
+      start_.read(line->rank);
+      break;
     case RankLine::Kind::started:
-      started_.insert(line->rank);
+      start_.started(line->rank);
       break;
     case RankLine::Kind::progress:
       if (asked_ == 0.0) display_.show(line->progress);
@@ -221,7 +254,7 @@ void Supervisor::pass_on_stop() {
     stop_seen_ = now;
     display_.say("furrow: stopping; once more to stop at once");
   }
-  const bool all_started = started_.size() == launch_.ranks.size();
+  const bool all_started = start_.all_started();
   // A rank that has not caught its signals yet would die of USR1.
   if (asked_ == 0.0 && (all_started || now - stop_seen_ > kStartPatience)) {
     asked_ = now;
@@ -233,7 +266,27 @@ void Supervisor::pass_on_stop() {
     ended_ = now;
     kill(child_, SIGTERM);
   }
-  if (ended_ > 0.0 && now - ended_ > kKillPatience) kill(-child_, SIGKILL);
+}
+
+/// Ctrl-Z reaches this process alone: the ranks have a group of their own.
+void Supervisor::pass_on_pause() {
+  if (!pause_asked()) return;
+  display_.clear();
+  kill(child_, SIGTSTP);
+  pause_here();
+  kill(child_, SIGCONT);
+}
+
+void Supervisor::end_late_start() {
+  if (late_ || ended_ > 0.0 || !start_.too_late()) return;
+  late_ = true;
+  ended_ = wall_clock();
+  kill(child_, SIGTERM);
+}
+
+std::string Supervisor::launcher_said() const {
+  const std::string words = launcher_.words().empty() ? other_.words() : launcher_.words();
+  return words.empty() ? "said nothing" : "said: " + words;
 }
 
 LaunchResult Supervisor::lost_rank(int rank, const std::string& how) const {
@@ -245,35 +298,30 @@ LaunchResult Supervisor::lost_rank(int rank, const std::string& how) const {
 LaunchResult Supervisor::outcome() const {
   const bool exited = WIFEXITED(status_);
   const int status = exited ? WEXITSTATUS(status_) : -1;
+  if (late_ && stop_seen_ == 0.0)
+    return {ExitCode::io, fmt::format("{} within {:g} s (FURROW_START_TIMEOUT sets another time): mpirun {}",
+                                      start_.standing(), launch_.patience, launcher_said())};
   if (error_ && error_->code != ExitCode::rank_lost) return {error_->code, error_->text};
   if (stop_seen_ > 0.0 && (status == static_cast<int>(ExitCode::stopped) || ended_ > 0.0))
     return {ExitCode::stopped,
             ended_ > 0.0 ? "stopped by a signal before the ranks could finish" : "stopped by a signal"};
   if (launcher_.lost()) {
     const int signal = launcher_.lost()->signal;
-    return lost_rank(
-        launcher_.lost()->rank,
-        signal_name(signal) + (signal == SIGKILL ? "; the system does that when memory runs out" : ""));
+    bool limit = false;
+    const std::string cause = cause_of(signal, processor_time_of_children(), limit);
+    LaunchResult lost =
+        lost_rank(launcher_.lost()->rank, signal_name(signal) + (cause.empty() ? "" : "; " + cause));
+    if (limit) lost.code = ExitCode::limit;
+    return lost;
   }
   if (error_) return {error_->code, error_->text};
-  if (status == 0 && started_.size() == launch_.ranks.size()) return {};
+  if (status == 0 && start_.all_started()) return {};
   const std::string how = exited ? fmt::format("mpirun ended with status {}", status)
                                  : "mpirun was " + signal_name(WTERMSIG(status_));
-  const std::string words = launcher_.words();
-  const std::string text = words.empty() ? how + " and said nothing" : how + ": " + words;
-  if (!started_.empty()) return {ExitCode::rank_lost, text};
+  const std::string text = how + " and " + launcher_said();
+  if (start_.count() > 0) return {ExitCode::rank_lost, text};
   return {ExitCode::io,
           "no rank could be started (are PATH and TMPDIR right, is FURROW_MPIRUN Open MPI's?): " + text};
-}
-
-std::optional<std::filesystem::path> on_path(const std::string& program) {
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path ? path : "/usr/bin:/bin");
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    const std::filesystem::path candidate = std::filesystem::path(folder.empty() ? "." : folder) / program;
-    if (access(candidate.c_str(), X_OK) == 0) return candidate;
-  }
-  return std::nullopt;
 }
 
 }  // namespace
@@ -291,6 +339,7 @@ std::filesystem::path find_mpirun() {
 
 LaunchResult supervise(const Launch& launch, ProgressDisplay& display) {
   FURROW_ASSERT(catches_stop_signals());
+  catch_pause();
   return Supervisor(launch, display).run();
 }
 

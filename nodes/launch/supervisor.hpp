@@ -18,11 +18,13 @@ struct Launch {
   std::vector<scenario::RankEntry> ranks;
   std::filesystem::path log;  // everything that ranks and launcher say
   int hold = -1;  // descriptor of the folder's lock, which the launcher keeps as long as it lives; −1: none
+  double patience = 120.0;    // s without news of ranks that are to start
 };
 
 struct LaunchResult {
   ExitCode code = ExitCode::done;
-  std::string error;  // for the user, unless done
+  std::string error;        // for the user, unless done
+  std::size_t started = 0;  // ranks that began to work
 };
 
 /// The launcher: FURROW_MPIRUN, else the one of the MPI that this program was built with, else the first on
@@ -31,7 +33,7 @@ struct LaunchResult {
 std::filesystem::path find_mpirun();
 
 /// @pre catch_stop_signals was called
-/// @throws Error(io) when mpirun or the log cannot be opened
+/// @throws Error(io) when the log cannot be opened, Error(limit) when no process can be made
 LaunchResult supervise(const Launch& launch, ProgressDisplay& display);
 
 }  // namespace furrow::launch

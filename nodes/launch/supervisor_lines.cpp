@@ -12,7 +12,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::string_view kMark = "@furrow ";
-constexpr std::array<const char*, 4> kKinds{"started", "progress", "note", "error"};
+constexpr std::array<const char*, 6> kKinds{"started", "progress", "note", "error", "begun", "read"};
 constexpr std::size_t kMaxLine = 4096;  // bytes: PIPE_BUF of Linux, what a write keeps together
 
 }  // namespace

@@ -12,7 +12,7 @@
 namespace furrow::launch {
 
 struct RankLine {
-  enum class Kind { started, progress, note, error };
+  enum class Kind { started, progress, note, error, begun, read };
   Kind kind = Kind::started;
   int rank = 0;
   std::string text;                // note, error

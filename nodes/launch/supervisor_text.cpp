@@ -8,6 +8,7 @@ namespace {
 
 constexpr std::size_t kMaxLines = 40;
 constexpr std::size_t kMaxWords = 600;  // characters
+constexpr std::size_t kMaxLine = 2000;  // characters: a search in a longer one would take the stack
 
 bool is_rule(std::string_view line) {
   return line.size() > 10 &&
@@ -24,6 +25,7 @@ std::string trimmed(std::string_view line) {
 void LauncherText::add(std::string_view line) {
   // "mpirun noticed that process rank 2 with PID 0 on node host exited on signal 9 (Killed)."
   static const std::regex kDead("process rank ([0-9]+) with PID [0-9]+ on node .* exited on signal ([0-9]+)");
+  line = line.substr(0, kMaxLine);
   std::match_results<std::string_view::const_iterator> found;
   if (std::regex_search(line.begin(), line.end(), found, kDead)) {
     if (!lost_) lost_ = LostRank{std::stoi(found[1].str()), std::stoi(found[2].str())};

@@ -2,6 +2,8 @@
 
 #include <unistd.h>
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "protocol/core/assert.hpp"
@@ -32,12 +34,13 @@ checkpoint::FrameClock frame_clock(const scenario::Scenario& scenario, const Run
   return context.resume->manifest.frames.continued(context.resume->manifest.step, every);
 }
 
-std::unique_ptr<Node> make_node(const scenario::Scenario& scenario, Address self, int threads) {
+std::unique_ptr<Node> make_node(const scenario::Scenario& scenario, Address self, int threads,
+                                std::function<void()> alive) {
   switch (self.role) {
     case Role::rig:
       return make_rig_node(scenario);
     case Role::tire:
-      return make_tire_node(scenario, self.index);
+      return make_tire_node(scenario, self.index, std::move(alive));
     case Role::terrain:
       return make_terrain_node(scenario, threads);
   }

@@ -54,11 +54,14 @@ class Node {
 };
 
 std::unique_ptr<Node> make_rig_node(const scenario::Scenario& scenario);
-std::unique_ptr<Node> make_tire_node(const scenario::Scenario& scenario, int index);
+std::unique_ptr<Node> make_tire_node(const scenario::Scenario& scenario, int index,
+                                     std::function<void()> alive);
 std::unique_ptr<Node> make_terrain_node(const scenario::Scenario& scenario, int threads);
 
 /// The node that `self` is in this scenario.
-std::unique_ptr<Node> make_node(const scenario::Scenario& scenario, Address self, int threads);
+/// @param alive  called now and then while it makes itself ready; may throw to stop
+std::unique_ptr<Node> make_node(const scenario::Scenario& scenario, Address self, int threads,
+                                std::function<void()> alive = {});
 
 /// Synchronizes and advances for n = from … to − 1; calls `checkpoint(n)` when one falls due. Ends early when ordered
 /// to.

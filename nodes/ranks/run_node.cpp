@@ -1,10 +1,12 @@
 #include "nodes/ranks/run_node.hpp"
 
 #include <ctime>
+#include <new>
 
 #include "nodes/output/profile.hpp"
 #include "nodes/ranks/checkpoint_writer.hpp"
 #include "nodes/ranks/node.hpp"
+#include "nodes/scenario/memory_check.hpp"
 #include "protocol/core/archive_hash.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/clock.hpp"
@@ -70,7 +72,7 @@ class RunLoop {
       before_ = restore_cost(saved);
       from_ = context_.resume->manifest.step;
     }
-    node_ = make_node(scenario_, transport_.self(), context_.threads);
+    node_ = make_node(scenario_, transport_.self(), context_.threads, [this] { show_life(); });
     NodeCard card = node_->card();
     card.threads = context_.threads;
     card.from_step = from_;
@@ -82,6 +84,14 @@ class RunLoop {
   }
 
  private:
+  /// While a node makes itself ready the others must not take it for lost, nor it miss that they are.
+  void show_life() {
+    transport_.heartbeat();
+    transport_.check_peers();
+    if (context_.stop_requested && context_.stop_requested())
+      throw Error(ExitCode::stopped, "stopped by a signal while the tire was being inflated");
+  }
+
   ExitCode step(const std::vector<NodeCard>& cards) {
     const std::int64_t steps = scenario_.run.steps();
     output::StepProfile profile(context_.profile ? steps : 0);
@@ -138,6 +148,10 @@ ExitCode run_node(const scenario::Scenario& scenario, Transport& transport, cons
     transport.announce_failure(error.code(), error.what());
     loop.fail(error.code(), error.what());
     throw;
+  } catch (const std::bad_alloc&) {
+    const Error error = scenario::out_of_memory(scenario.memory.all);
+    transport.announce_failure(error.code(), error.what());
+    throw error;
   } catch (const std::exception& error) {
     transport.announce_failure(ExitCode::physics, error.what());
     loop.fail(ExitCode::physics, error.what());

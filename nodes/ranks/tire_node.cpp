@@ -6,6 +6,7 @@
 // reports is booked and handed back (nodes/impulse_ledger.hpp).
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -22,12 +23,12 @@ namespace {
 
 class TireNode : public Node {
  public:
-  TireNode(const scenario::Scenario& scenario, int index)
+  TireNode(const scenario::Scenario& scenario, int index, std::function<void()> alive)
       : scenario_(scenario),
         index_(index),
         kind_(scenario.tires.at(index)->describe().kind),
         pressure_(scenario.tires.at(index)->options().pressure),
-        tire_(scenario.tires.at(index)->make()),
+        tire_(scenario.tires.at(index)->make({.alive = std::move(alive)})),
         reach_(tire::inflated_reach(*tire_, scenario::describe_rig(scenario).wheels.at(index).camber_angle)) {
     report_.contact_tangent = scenario.tires.at(index)->options().contact_tangent;
     if (report_.contact_tangent) ledger_ = ImpulseLedger(tire_->mesh().vertex_count);
@@ -192,8 +193,9 @@ class TireNode : public Node {
 
 }  // namespace
 
-std::unique_ptr<Node> make_tire_node(const scenario::Scenario& scenario, int index) {
-  return std::make_unique<TireNode>(scenario, index);
+std::unique_ptr<Node> make_tire_node(const scenario::Scenario& scenario, int index,
+                                     std::function<void()> alive) {
+  return std::make_unique<TireNode>(scenario, index, std::move(alive));
 }
 
 }  // namespace furrow::ranks

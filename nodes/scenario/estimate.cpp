@@ -1,11 +1,13 @@
 #include "nodes/scenario/estimate.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
 #include "nodes/scenario/wheel_geometry.hpp"
+#include "protocol/memory_limit.hpp"
 
 namespace furrow::scenario {
 namespace {
@@ -50,7 +52,7 @@ MachineState machine_state() {
   std::ifstream info("/proc/meminfo");
   double kib = 0.0;
   for (std::string name, unit; info >> name >> kib; std::getline(info, unit))
-    if (name == "MemAvailable:") state.memory_free = 1024.0 * kib;
+    if (name == "MemAvailable:") state.memory_free = std::min(1024.0 * kib, memory_limit().bytes);
   std::error_code error;
   const auto space = std::filesystem::space(std::filesystem::current_path(error), error);
   if (!error) state.disk_free = static_cast<double>(space.available);

@@ -42,6 +42,12 @@ std::vector<std::string> split(const std::string& key) {
   return parts;
 }
 
+/// Results tell names, in JSON. `what`: "has a name"
+void require_utf8(const std::string& name, const std::string& file, const std::string& key, const char* what) {
+  if (find_invalid_utf8(name) != std::string::npos)
+    throw input_error(file, key, std::string(what) + " that is not UTF-8, expected one that is: results keep it");
+}
+
 /// Puts the value of `--set key=value` into the document, making sections that it lacks.
 void set_value(json& document, const std::string& key, const std::string& text, const std::string& file) {
   const std::vector<std::string> parts = split(key);
@@ -234,17 +240,21 @@ std::string digest_of(json completed, const Scenario& s) {
 
 /// Files that stand beside the scenario get their full names; those of the data folders are found from anywhere.
 void make_movable(json& document, const Scenario& s) {
-  const auto full = [&](json& name) {
+  const auto full = [&](json& name, const std::string& key) {
     std::error_code error;
     if (!name.is_string() || std::filesystem::path(name.get<std::string>()).is_absolute()) return;
     const std::filesystem::path beside = s.file.parent_path() / name.get<std::string>();
-    if (std::filesystem::is_regular_file(beside, error))
-      name = std::filesystem::absolute(beside, error).lexically_normal().string();
+    if (!std::filesystem::is_regular_file(beside, error)) return;
+    const std::string whole = std::filesystem::absolute(beside, error).lexically_normal().string();
+    require_utf8(whole, s.file.string(), key, "stands in a folder with a name");
+    name = whole;
   };
-  for (const terrain::TerrainFile& file : s.terrain->files()) full(document["terrain"][file.key]);
-  if (document.contains("tire")) full(document["tire"]["file"]);
+  for (const terrain::TerrainFile& file : s.terrain->files())
+    full(document["terrain"][file.key], std::string("terrain.") + file.key);
+  if (document.contains("tire")) full(document["tire"]["file"], "tire.file");
   if (document.contains("tires"))
-    for (json& tire : document["tires"]) full(tire["file"]);
+    for (std::size_t k = 0; k < document["tires"].size(); ++k)
+      full(document["tires"][k]["file"], fmt::format("tires.{}.file", k));
 }
 
 }  // namespace
@@ -254,6 +264,7 @@ Scenario load_scenario(const std::filesystem::path& name, const Settings& settin
   Scenario s;
   s.file = file;
   s.name = file.stem().string();
+  require_utf8(s.name, file.string(), "", "has a name");
   json document = read_document(file.string(), settings);
   if (const std::string set_aside = complete(document, file.string(), settings); !set_aside.empty())
     s.warnings.push_back(set_aside);

@@ -1,5 +1,7 @@
 #include "nodes/scenario/rank_table.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cctype>
 
@@ -51,12 +53,18 @@ std::string shell_quoted(const std::string& argument) {
   return quoted;
 }
 
+std::string shell_path(const std::string& path) {
+  return shell_quoted(path.starts_with('-') ? "./" + path : path);
+}
+
 std::string launch_lines(const Scenario& scenario, const std::vector<std::string>& arguments) {
   const std::size_t ranks = rank_table(scenario).size();
   std::string tail;
   for (const std::string& argument : arguments) tail += " " + shell_quoted(argument);
-  return fmt::format("mpirun -n {} --bind-to none{}\nsrun -n {} --mpi=pmix --cpu-bind=none{}\n", ranks, tail,
-                     ranks, tail);
+  const char* as_root = geteuid() == 0 ? " --allow-run-as-root" : "";
+  return fmt::format(
+      "mpirun -n {} --oversubscribe --bind-to none{}{}\nsrun -n {} --mpi=pmix --cpu-bind=none{}\n", ranks,
+      as_root, tail, ranks, tail);
 }
 
 }  // namespace furrow::scenario

@@ -25,5 +25,7 @@ std::string launch_lines(const Scenario& scenario, const std::vector<std::string
 
 /// An argument as a shell takes it.
 std::string shell_quoted(const std::string& argument);
+/// A file or folder as one may type it after a command: no option, even if its name begins with a hyphen.
+std::string shell_path(const std::string& path);
 
 }  // namespace furrow::scenario

@@ -80,6 +80,12 @@ void visit_fields(Visit&& visit, FieldsOf<ExpectedResult> auto& s) {
   visit(Field{"drawbar_pull_spread", "N", role::key | role::harmless}, s.drawbar_pull_spread);
 }
 
+/// What a run will take, about, bytes.
+struct MemoryNeed {
+  double all = 0.0;      // ranks together
+  double terrain = 0.0;  // a rank of the terrain
+};
+
 struct Scenario {
   std::filesystem::path file;
   std::string name;  // file name without extension
@@ -99,6 +105,7 @@ struct Scenario {
   OutputOptions output;
   CheckpointOptions checkpoint;
   ExpectedResult expected;
+  MemoryNeed memory;
   std::vector<std::string> warnings;  // what looks wrong but is allowed
 
   double terrain_step() const { return run.step / terrain_substeps; }  // s

@@ -222,6 +222,7 @@ void Checks::step() {
 void Checks::machine() {
   const Estimate estimate = scenario::estimate(s_);
   const MachineState here = machine_state();
+  s_.memory = {estimate.memory, estimate.terrain.memory_bytes / s_.terrain_ranks};
   if (here.memory_free > 0.0 && estimate.memory > here.memory_free)
     warn("", fmt::format("needs about {:.1f} GB of memory, this machine has {:.1f} GB free",
                          estimate.memory / kGigabyte, here.memory_free / kGigabyte));

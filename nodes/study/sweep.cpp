@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <new>
 #include <utility>
 
 #include <fmt/format.h>
@@ -20,6 +21,7 @@
 #include "nodes/launch/run_list.hpp"
 #include "nodes/launch/signals.hpp"
 #include "nodes/scenario/load_scenario.hpp"
+#include "nodes/scenario/memory_check.hpp"
 #include "nodes/study/pass_bed.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/files/digits.hpp"
@@ -132,17 +134,15 @@ std::vector<std::string> Sweep::command(const Run& run) const {
   const std::string program = fs::read_symlink("/proc/self/exe", error).string();
   const fs::path folder = folder_of(run);
   if (!checkpoint::list_checkpoints(folder).empty())
-    return {program, "resume", folder.string(), "--no-plots"};
-  std::vector<std::string> list{program, "run",           study_.scenario.string(),
-                                "--out", folder.string(), "--no-plots"};
+    return {program, "resume", "--no-plots", "--", folder.string()};
+  std::vector<std::string> list{program, "run", "--no-plots", "--out=" + folder.string()};
   if (fs::exists(folder, error)) list.emplace_back("--overwrite");
   Json all = study_.common;
   all.update(run.keys);
   all.update(run.passes_on);
-  for (const auto& [key, value] : settings_of(all)) {
-    list.emplace_back("--set");
-    list.push_back(key + "=" + value);
-  }
+  for (const auto& [key, value] : settings_of(all)) list.push_back("--set=" + key + "=" + value);
+  list.emplace_back("--");  // names may begin with a hyphen
+  list.push_back(study_.scenario.string());
   return list;
 }
 
@@ -197,14 +197,21 @@ bool Sweep::prepare_bed(Run& run) try {
   run.passes_on["terrain.undisturbed_height"] = value_at(read_summary(folder_of(first)), "surface_height_m");
   load(run);
   return true;
+} catch (const std::bad_alloc&) {
+  fail(run, scenario::out_of_memory());
+  return false;
 } catch (const Error& error) {
   if (error.code() == ExitCode::stopped) return false;
+  fail(run, error);
+  return false;
+}
+
+void Sweep::fail(Run& run, const Error& error) {
   run.state = State::failed;
   run.exit_code = static_cast<int>(error.code());
   run.problem = error.what();
   tell(run, fmt::format("FAILED with exit code {}: {}", run.exit_code, run.problem));
   write_table();
-  return false;
 }
 
 void Sweep::start(Run& run, std::size_t share) {
@@ -216,9 +223,16 @@ void Sweep::start(Run& run, std::size_t share) {
   launch::wait_until_free(folder_of(run));  // ranks outlive a supervisor that was killed by a second or two
   const std::vector<std::string> list = command(run);
   const int log = open(log_of(run).c_str(), O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW | O_CLOEXEC, 0666);
-  const auto pin = [cores = shares_[share]] { sched_setaffinity(0, sizeof cores, &cores); };
-  run.process = launch::start_child(
-      {.command = list, .out = log, .err = log, .own_group = true, .death_signal = SIGTERM, .prepare = pin});
+  const auto prepare = [cores = shares_[share]] {
+    sched_setaffinity(0, sizeof cores, &cores);
+    launch::forget_launcher();
+  };
+  run.process = launch::start_child({.command = list,
+                                     .out = log,
+                                     .err = log,
+                                     .own_group = true,
+                                     .death_signal = SIGTERM,
+                                     .prepare = prepare});
   close(log);
   run.share = share;
   run.state = State::running;
@@ -273,8 +287,19 @@ void Sweep::stop_all() {
     if (run.process > 0) kill(run.process, SIGTERM);
 }
 
+/// Ctrl-Z reaches this process alone: the runs have groups of their own.
+void Sweep::pause_all() {
+  if (!launch::pause_asked()) return;
+  for (const Run& run : runs_)
+    if (run.process > 0) kill(run.process, SIGTSTP);
+  launch::pause_here();
+  for (const Run& run : runs_)
+    if (run.process > 0) kill(run.process, SIGCONT);
+}
+
 ExitCode Sweep::run() {
   launch::add_to_run_list(options_.folder, {"sweep.json", "sweep.csv"});
+  launch::catch_pause();
   write_whole_file(options_.folder / "sweep.json", Json{{"format_version", 1},
                                                         {"study", study_.name},
                                                         {"passes", study_.passes},
@@ -302,6 +327,7 @@ ExitCode Sweep::run() {
     }
     if (running) usleep(kPoll);
     stop_all();
+    pause_all();
   }
   write_table();
   return outcome();

@@ -58,6 +58,8 @@ class Sweep {
   void start(Run& run, std::size_t share);
   void poll(Run& run);
   void stop_all();
+  void pause_all();
+  void fail(Run& run, const Error& error);
   void tell(const Run& run, const std::string& what) const;
   void write_table() const;
   ExitCode outcome() const;

@@ -13,6 +13,7 @@ enum class ExitCode : int {
   physics = 3,    // no convergence, NaN, a grain lost
   rank_lost = 4,  // a rank died or stopped answering
   io = 5,         // a file could not be read or written
+  limit = 6,      // memory or another limit of the system ran out
   stopped = 75,   // stopped by a signal
 };
 
@@ -32,6 +33,7 @@ inline Error input_error(const std::string& file, const std::string& key, const 
 }
 
 inline Error physics_error(const std::string& what) { return Error(ExitCode::physics, what); }
+inline Error limit_error(const std::string& what) { return Error(ExitCode::limit, what); }
 inline Error io_error(const std::string& file, const std::string& what) {
   return Error(ExitCode::io, file + ": " + what);
 }

@@ -86,12 +86,14 @@ void check_label(const Label& label, const std::filesystem::path& path, const Ar
 
 }  // namespace
 
-void write_archive(const std::filesystem::path& path, const Archive& archive, const ArchiveKind& kind) {
+void write_archive(const std::filesystem::path& path, const Archive& archive, const ArchiveKind& kind,
+                   const std::function<void()>& each) {
   Hdf5Writer file(path);
   file.attribute("kind", std::string(kind.name));
   file.attribute("kind_version", kind.version);
   file.attribute("checksum", archive_hash(archive).hex());
   for (const auto& [name, array] : archive.arrays()) {
+    if (each) each();
     const std::string stored = stored_name(name, kind);
     if (array_name(stored, kind) != name)
       throw io_error(path.string(), "an array may not be called '" + name + "'");
@@ -100,15 +102,18 @@ void write_archive(const std::filesystem::path& path, const Archive& archive, co
   file.finish();
 }
 
-Archive read_archive(const std::filesystem::path& path, const ArchiveKind& kind, std::int64_t* version) {
+Archive read_archive(const std::filesystem::path& path, const ArchiveKind& kind, std::int64_t* version,
+                     const std::function<void()>& each) {
   const Hdf5Reader file(path);
   const Label label = label_of(file);
   check_label(label, path, kind);
   if (version) *version = label.version;
   Archive archive;
-  for (const std::string& stored : file.datasets())
+  for (const std::string& stored : file.datasets()) {
+    if (each) each();
     if (const std::string name = array_name(stored, kind); !name.empty())
       archive.put_array(name, read_array(file, path, stored));
+  }
   if (label.checksum && archive_hash(archive).hex() != *label.checksum)
     throw io_error(path.string(), "the checksum does not fit the contents: the file is damaged");
   return archive;

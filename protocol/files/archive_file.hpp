@@ -7,6 +7,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 
 #include "protocol/core/archive.hpp"
 
@@ -24,15 +25,16 @@ struct ArchiveKind {
 
 inline constexpr ArchiveKind kSavedState{"state", "a saved state", 1, 1, "state"};
 
-/// The file appears whole or not at all. Of several processes that write it at once the last one wins.
-/// @throws Error(io)
+/// The file appears whole or not at all. Of several processes that write it at once the last one wins. `each` is called
+/// before every array and may throw to stop. @throws Error(io)
 void write_archive(const std::filesystem::path& file, const Archive& archive,
-                   const ArchiveKind& kind = kSavedState);
+                   const ArchiveKind& kind = kSavedState, const std::function<void()>& each = {});
 
 /// @param version receives the version of the arrays
+/// @param each    is called before every array and may throw to stop
 /// @throws Error(io) naming the file when it is missing, cut short, damaged, of another kind or of another version
 Archive read_archive(const std::filesystem::path& file, const ArchiveKind& kind = kSavedState,
-                     std::int64_t* version = nullptr);
+                     std::int64_t* version = nullptr, const std::function<void()>& each = {});
 
 /// Whether an HDF5 file is of this kind, or so damaged that it cannot be told.
 bool may_be_archive(const std::filesystem::path& file, const ArchiveKind& kind);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "protocol/core/assert.hpp"
+#include "protocol/core/paced_call.hpp"
 #include "terrain/dem/bin.hpp"
 #include "terrain/dem/quad.hpp"
 
@@ -20,10 +21,12 @@ inline Quad shortest(const Bin& bin, const Quad& a, const Quad& b) {
   return d;
 }
 
-/// Calls f(a, b, distance) with a < b once for each pair nearer than `reach`, in ascending a, then b.
+/// Calls f(a, b, distance) with a < b once for each pair nearer than `reach`, in ascending a, then b. May throw what
+/// `progress` throws.
 /// @pre all points lie in the bin, and a periodic side is at least two reaches long.
 template <class F>
-void for_close_pairs(const std::vector<Quad>& points, const Bin& bin, double reach, F&& f) {
+void for_close_pairs(const std::vector<Quad>& points, const Bin& bin, double reach, F&& f,
+                     const ProgressCall& progress = {}) {
   FURROW_ASSERT(reach > 0.0 && std::isfinite(reach), reach);
   FURROW_ASSERT(!bin.periodic_x || bin.length >= 2.0 * reach, bin.length, reach);
   FURROW_ASSERT(!bin.periodic_y || bin.width >= 2.0 * reach, bin.width, reach);
@@ -64,7 +67,9 @@ void for_close_pairs(const std::vector<Quad>& points, const Bin& bin, double rea
     return count;
   };
   std::vector<std::int64_t> near;
+  PacedCall tell(progress);
   for (std::size_t a = 0; a < points.size(); ++a) {
+    if (a % 1024 == 0) tell("comparing grains", static_cast<double>(a) / static_cast<double>(points.size()));
     const Cell c = cell_of(points[a]);
     std::int64_t xs[3], ys[3], zs[3];
     const int cx = around(c.x, nx, bin.periodic_x, xs), cy = around(c.y, ny, bin.periodic_y, ys),

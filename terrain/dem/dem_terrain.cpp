@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -24,6 +25,7 @@ namespace {
 
 using namespace dem;
 
+constexpr double kMostGrains = 2e9;            // numbers of grains are of 32 bits
 constexpr double kLooseFraction = 0.50;        // solid fraction of a bed that settled with cohesion, estimate
 constexpr double kBytesPerGrain = 900.0;       // state, list with history, and what a rebuild holds twice
 constexpr double kBytesPerFrameGrain = 20.0;   // position, speed, radius in single precision
@@ -63,8 +65,9 @@ void check(const DemOptions& o) {
 
 class DemTerrain : public Terrain {
  public:
-  explicit DemTerrain(const DemOptions& options)
+  DemTerrain(const DemOptions& options, std::function<void()> each_substep)
       : options_(options),
+        each_substep_(std::move(each_substep)),
         solver_(dem::solver_params(options)),
         refinement_(options),
         dt_(options.step),
@@ -121,8 +124,10 @@ class DemTerrain : public Terrain {
         return Outcome::failure("is too small", fmt::format("tire {} reached {} of the bin", k, wall));
     }
     if (surfaces.any()) surfaces.restrict_to(grain_box());
-    for (int s = 0; s < substeps; ++s)
+    for (int s = 0; s < substeps; ++s) {
+      if (each_substep_) each_substep_();
       if (const Outcome outcome = substep(s, substeps); !outcome.ok) return outcome;
+    }
     surfaces.move_to(1.0);
     surfaces.finish(duration, forces, contact);
     if (const double met = solver_.accounts().max_overlap; met > dem::stated_overlap(options_))
@@ -264,6 +269,7 @@ class DemTerrain : public Terrain {
   }
 
   dem::DemOptions options_;
+  std::function<void()> each_substep_;
   dem::GrainSolver solver_;
   dem::StepRefinement refinement_;
   double dt_, part_;             // the step, and the part of it that contacts are evaluated for, s
@@ -273,7 +279,7 @@ class DemTerrain : public Terrain {
 
 }  // namespace
 
-std::unique_ptr<Terrain> make_dem_terrain(const DemOptions& options) {
+std::unique_ptr<Terrain> make_dem_terrain(const DemOptions& options, std::function<void()> each_substep) {
   check(options);
   const dem::StableStep stable = dem::stable_at(options, dem::stated_overlap(options));
   if (options.step > stable.step && !options.allow_unstable_step)
@@ -281,7 +287,7 @@ std::unique_ptr<Terrain> make_dem_terrain(const DemOptions& options) {
                       fmt::format("{} s is above the stable step {:.3g} s ({}); expected a smaller step, "
                                   "more terrain.substeps, or softer grains",
                                   options.step, stable.step, stable.reason));
-  return std::make_unique<DemTerrain>(options);
+  return std::make_unique<DemTerrain>(options, std::move(each_substep));
 }
 
 TerrainEstimate estimate_dem_terrain(const dem::DemOptions& options) {
@@ -291,6 +297,9 @@ TerrainEstimate estimate_dem_terrain(const dem::DemOptions& options) {
   e.stable_step = stable.step;
   e.stable_reason = stable.reason;
   const double grains = dem::expected_grains(options);
+  if (grains > kMostGrains)
+    throw input_error(options.scenario, "terrain.length",
+                      fmt::format("gives about {:.2g} grains, expected at most {:g}", grains, kMostGrains));
   e.grains = static_cast<std::int64_t>(std::llround(grains));
   e.memory_bytes = kBytesPerGrain * grains;
   e.frame_bytes = kBytesPerFrameGrain * static_cast<double>(e.grains);

@@ -37,7 +37,7 @@ std::vector<Quad> reference_bed(const DemOptions& options, const ProgressCall& p
 std::vector<Quad> bed_of(const GrainBench& bench, DemOptions& options, const ProgressCall& progress) {
   options.width = kReferenceWidth;
   if (bench.bed == "default") return reference_bed(options, progress);
-  std::vector<Quad> grains = read_positions_csv(bench.bed);
+  std::vector<Quad> grains = read_positions_csv(bench.bed, progress);
   double longest = 0.0;
   for (std::size_t k = 0; k < grains.size(); ++k) {
     Quad& p = grains[k];
@@ -53,7 +53,7 @@ std::vector<Quad> bed_of(const GrainBench& bench, DemOptions& options, const Pro
   }
   options.length = std::max(1.0, std::ceil(longest));
   options.periodic_x = true;
-  check_positions(options, bench.bed, grains);
+  check_positions(options, bench.bed, grains, progress);
   return grains;
 }
 

@@ -14,7 +14,8 @@ ConeResult cone_penetration(const Specimen& specimen, const ConeTest& test, cons
                 test.diameter);
   const double r = specimen.options().radius, diameter = test.diameter * r;
   const double middle = 0.5 * specimen.length(), reach = 0.5 * diameter;
-  const auto terrain = specimen.terrain();
+  double share = 0.0;
+  const auto terrain = specimen.terrain([&] { work(share); });
   const double top = terrain->top_height(middle - reach, middle + reach, -reach, reach);
   const double cone = cone_height(diameter, kConeAngle), surface = specimen.height();
   const double path = top - surface + cone + test.depth * r;
@@ -33,7 +34,7 @@ ConeResult cone_penetration(const Specimen& specimen, const ConeTest& test, cons
     const Outcome outcome = terrain->advance({&tool.state(), 1}, interval, steps, forces, sums);
     if (!outcome.ok) throw physics_error(outcome, "cone penetration test: terrain");
     tool.moved(interval);
-    work(static_cast<double>(k + 1) / test.samples);
+    share = static_cast<double>(k + 1) / test.samples;
     const double depth = (k + 0.5) * interval * test.speed - (top - surface) - cone;
     result.depth.push_back(depth);
     result.pressure.push_back(sums[0].force.z() / area);

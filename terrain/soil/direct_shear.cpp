@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <utility>
 
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
@@ -24,12 +26,12 @@ constexpr double kBulkShare = 0.5;    // solid fraction for the lid's mass
 /// The cell with its two plates; lower first.
 class ShearCell {
  public:
-  ShearCell(const Specimen& specimen, const ShearTest& test)
+  ShearCell(const Specimen& specimen, const ShearTest& test, std::function<void()> each_step)
       : specimen_(specimen),
         r_(specimen.options().radius),
         area_(specimen.length() * specimen.width()),
         load_(test.normal_stress * area_),
-        terrain_(specimen.terrain()),
+        terrain_(specimen.terrain(std::move(each_step))),
         tools_{lower(specimen, test, r_), upper(specimen, test, r_)},
         lid_(area_, test.normal_stress, kBulkShare * specimen.options().density, specimen.height(),
              dem::grain_modulus(specimen.options())) {
@@ -124,12 +126,12 @@ ShearResult direct_shear(const Specimen& specimen, const ShearTest& test, const 
                 test.travel);
   constexpr double kPreparation = 0.35;  // of the work
   const double r = specimen.options().radius, dt = specimen.step(), travel = test.travel * r;
-  ShearCell cell(specimen, test);
-  work(0.0);
+  double share = 0.0;
+  ShearCell cell(specimen, test, [&] { work(share); });
   cell.grow(test);
-  work(0.1);
+  share = 0.1;
   cell.consolidate();
-  work(kPreparation);
+  share = kPreparation;
 
   ShearResult result;
   result.normal_nominal = test.normal_stress;
@@ -148,7 +150,7 @@ ShearResult direct_shear(const Specimen& specimen, const ShearTest& test, const 
       sum.across += cell.lower_sums().force.x();
       sum.below += cell.floor_force() - cell.lower_sums().force.z();
     }
-    work(kPreparation + (1.0 - kPreparation) * (k + 1) / test.samples);
+    share = kPreparation + (1.0 - kPreparation) * (k + 1) / test.samples;
     result.travel.push_back(0.5 * (begun + j));
     begun = j;
     result.shear.push_back(sum.shear / steps / cell.area());

@@ -18,7 +18,8 @@ PlateResult plate_sinkage(const Specimen& specimen, const PlateTest& test, const
   FURROW_ASSERT(test.samples > 0 && test.speed > 0.0, test.samples, test.speed);
   const double r = specimen.options().radius, half = 0.5 * specimen.width();
   const double width = test.width * r, middle = 0.5 * specimen.length();
-  const auto terrain = specimen.terrain();
+  double share = 0.0;
+  const auto terrain = specimen.terrain([&] { work(share); });
   const double from = terrain->top_height(middle - 0.5 * width, middle + 0.5 * width, -half, half);
   const double surface = specimen.height(), to = surface - test.sinkage * r;
   Tool plate = strip_plate(middle, width, half, from, (test.sinkage + kSides) * r);
@@ -36,7 +37,7 @@ PlateResult plate_sinkage(const Specimen& specimen, const PlateTest& test, const
     const Outcome outcome = terrain->advance({&plate.state(), 1}, interval, steps, forces, sums);
     if (!outcome.ok) throw physics_error(outcome, "plate sinkage test: terrain");
     plate.moved(interval);
-    work(static_cast<double>(k + 1) / test.samples);
+    share = static_cast<double>(k + 1) / test.samples;
     const double force = sums[0].force.z();
     // The force is the mean over the interval and belongs to its middle.
     result.curve.sinkage.push_back(surface - from + (k + 0.5) * interval * test.speed);

@@ -80,12 +80,12 @@ ReposeResult angle_of_repose(const Specimen& specimen, const ReposeTest& test, c
   std::int64_t steps = 0;
   result.at_rest = false;
   while (steps < most && !result.at_rest) {
+    work(static_cast<double>(steps) / static_cast<double>(most));
     if (const int lost = solver.step(dt); lost >= 0)
       throw physics_error("repose test: grain " + std::to_string(solver.grains().id[lost]) + " was lost");
     if (++steps % kCheckEvery != 0) continue;
     const double speed = std::sqrt(2.0 * solver.accounts().kinetic / mass);
     result.at_rest = steps > least && speed < kRestShare * std::sqrt(gravity * r);
-    work(static_cast<double>(steps) / static_cast<double>(most));
   }
   result.time = static_cast<double>(steps) * dt;
   result.after = profile(solver.grains(), specimen, result.x);

@@ -6,8 +6,11 @@
 #include <exception>
 #include <functional>
 #include <mutex>
+#include <string>
+#include <system_error>
 #include <thread>
 
+#include "protocol/core/error.hpp"
 #include "terrain/dem/beds/loaded_lid.hpp"
 #include "terrain/dem/grain_sizes.hpp"
 #include "terrain/dem/solver_setup.hpp"
@@ -49,7 +52,12 @@ class JobPool {
 
   void run() {
     std::vector<std::thread> threads;
-    for (int t = 0; t < threads_; ++t) threads.emplace_back([this] { take_jobs(); });
+    try {
+      for (int t = 0; t < threads_; ++t) threads.emplace_back([this] { take_jobs(); });
+    } catch (const std::system_error& error) {
+      threads_ = static_cast<int>(threads.size());  // those that the system grants do the work
+      if (threads_ == 0) throw limit_error(std::string("no thread could be started: ") + error.what());
+    }
     while (working_ < threads_) {
       std::this_thread::sleep_for(kTick);
       try {

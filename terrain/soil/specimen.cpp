@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "protocol/core/assert.hpp"
 #include "terrain/dem/dem_terrain.hpp"
@@ -55,8 +56,8 @@ Specimen::Specimen(const dem::DemOptions& material, const Box& box, std::uint64_
   top_ = made->top_height(0.0, options_.length, -half, half);
 }
 
-std::unique_ptr<Terrain> Specimen::terrain() const {
-  auto copy = make_dem_terrain(options_);
+std::unique_ptr<Terrain> Specimen::terrain(std::function<void()> each_substep) const {
+  auto copy = make_dem_terrain(options_, std::move(each_substep));
   copy->restore(bed_);
   return copy;
 }

@@ -30,7 +30,8 @@ class Specimen {
   Specimen(const dem::DemOptions& material, const Box& box, std::uint64_t seed, const WorkCall& work);
 
   /// The settled bed, ready for tools. Each call gives a new one in the same state.
-  std::unique_ptr<Terrain> terrain() const;
+  /// @param each_substep is called in every substep of its advances and may throw to stop
+  std::unique_ptr<Terrain> terrain(std::function<void()> each_substep = {}) const;
 
   const dem::DemOptions& options() const { return options_; }
   double length() const { return options_.length; }  // m

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
@@ -26,8 +27,9 @@ double shell_area(const ShellMesh& ring, const SurfaceMesh& surface, const Shell
 
 }  // namespace
 
-AncfTire::AncfTire(const TireFile& file, const ShellIntegratorParams& params)
-    : ring_(make_shell_mesh(file)),
+AncfTire::AncfTire(const TireFile& file, const ShellIntegratorParams& params, std::function<void()> alive)
+    : alive_(std::move(alive)),
+      ring_(make_shell_mesh(file)),
       surface_mesh_(make_surface_mesh(ring_)),
       material_(file.contact),
       rigid_mass_(furrow::tire::rigid_mass(ring_, element_masses(file, ring_))),
@@ -60,7 +62,7 @@ void AncfTire::set_pressure(double pressure) {
 
 void AncfTire::place(const RimState& rim) {
   const ShellLayout& layout = integrator_.layout();
-  const Field shape = inflate(integrator_.shell(), ring_, inflation_);
+  const Field shape = inflate(integrator_.shell(), ring_, inflation_, alive_);
   const Mat3 turn = rim.orientation.toRotationMatrix();
   Field q(layout.size()), v(layout.size());
   for (int j = 0; j < layout.rows; ++j)

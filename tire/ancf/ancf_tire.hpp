@@ -14,7 +14,9 @@ namespace furrow::tire {
 
 class AncfTire final : public Tire {
  public:
-  explicit AncfTire(const TireFile& file, const ShellIntegratorParams& params = {});
+  /// @param alive  called now and then while the tire is inflated; may throw to stop
+  explicit AncfTire(const TireFile& file, const ShellIntegratorParams& params = {},
+                    std::function<void()> alive = {});
 
   const SurfaceMesh& mesh() const override { return surface_mesh_; }
   ContactMaterial material() const override { return material_; }
@@ -43,6 +45,7 @@ class AncfTire final : public Tire {
  private:
   Outcome step(const RimTrajectory& rim, double from, double to, int substeps, int halvings);
 
+  std::function<void()> alive_;
   ShellMesh ring_;
   SurfaceMesh surface_mesh_;
   ContactMaterial material_;

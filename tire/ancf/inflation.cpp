@@ -26,8 +26,8 @@ constexpr int kMaxNewton = 12;
 
 class ColumnCreep {
  public:
-  ColumnCreep(const ShellCarcass& shell, const ShellMesh& mesh)
-      : shell_(shell), mesh_(mesh), layout_(shell.layout()) {
+  ColumnCreep(const ShellCarcass& shell, const ShellMesh& mesh, const std::function<void()>& each_step)
+      : shell_(shell), mesh_(mesh), layout_(shell.layout()), each_step_(each_step) {
     q_ = undeformed(mesh);
     force_.assign(layout_.size(), 0.0);
     shell_.strains(q_, strains_);
@@ -41,6 +41,7 @@ class ColumnCreep {
     const double c = 1.0 + kCreepTime / h;
     Eigen::VectorXd r = residual(c);
     for (int n = 0; n < kMaxNewton; ++n) {
+      if (each_step_) each_step_();
       const Eigen::LLT<Eigen::MatrixXd> factor(tangent(c));
       if (factor.info() != Eigen::Success) break;
       const Eigen::VectorXd change = -factor.solve(r);
@@ -115,6 +116,7 @@ class ColumnCreep {
   ShellCarcass shell_;
   const ShellMesh& mesh_;
   ShellLayout layout_;
+  const std::function<void()>& each_step_;
   Field q_, before_, strains_, force_;
   double reference_ = 0.0;  // norm of the pressure forces on the undeformed column, N
 };
@@ -133,10 +135,11 @@ Field undeformed(const ShellMesh& mesh) {
   return q;
 }
 
-Field inflate(const ShellCarcass& shell, const ShellMesh& mesh, InflationReport& report) {
+Field inflate(const ShellCarcass& shell, const ShellMesh& mesh, InflationReport& report,
+              const std::function<void()>& each_step) {
   report = {};
   if (shell.pressure() == 0.0) return undeformed(mesh);
-  ColumnCreep creep(shell, mesh);
+  ColumnCreep creep(shell, mesh, each_step);
   double h = kFirstStep;
   for (report.steps = 0; report.steps < kMaxSteps;) {
     creep.set_pressure(shell.pressure() * std::min(1.0, (report.steps + 1.0) / kRampSteps));

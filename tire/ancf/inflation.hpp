@@ -5,6 +5,8 @@
 // tangent stays positive definite and shrinks when its Cholesky factorization fails.
 #pragma once
 
+#include <functional>
+
 #include "tire/ancf/shell_carcass.hpp"
 
 namespace furrow::tire {
@@ -16,8 +18,10 @@ struct InflationReport {
 };
 
 /// Coordinates in rim axes, padding filled.
+/// @param each_step is called before every step of Newton's method and may throw to stop
 /// @throws Error(physics) when the creep ends far from equilibrium.
-Field inflate(const ShellCarcass& shell, const ShellMesh& mesh, InflationReport& report);
+Field inflate(const ShellCarcass& shell, const ShellMesh& mesh, InflationReport& report,
+              const std::function<void()>& each_step = {});
 
 /// The undeformed ring in rim axes, padding filled.
 Field undeformed(const ShellMesh& mesh);

@@ -55,7 +55,7 @@ class ShellSpec final : public TireSpec {
     params.threads = context.threads;
     params.tolerance = context.tolerance.value_or(params.tolerance);
     params.age = context.renewal.value_or(params.age);
-    return std::make_unique<AncfTire>(file_, params);
+    return std::make_unique<AncfTire>(file_, params, context.alive);
   }
   TireShape shape() const override { return shell_shape(file_); }
   std::vector<std::pair<std::string, std::string>> unlikely_values() const override {

@@ -7,6 +7,7 @@
 
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
+#include "protocol/core/paced_call.hpp"
 #include "terrain/dem/beds/bed_preparation.hpp"
 #include "terrain/dem/beds/bed_settling.hpp"
 #include "terrain/dem/solver_setup.hpp"
@@ -43,7 +44,9 @@ Archive bed_after_run(const Archive& state, const DemOptions& options, double re
   const double mass = params.grain.mass * solver.relative_mass(), weight = -mass * params.gravity.z();
   const auto resting = static_cast<std::int64_t>(std::ceil(rest / dt));
   const auto most = resting + static_cast<std::int64_t>(kMaxSettleTime / dt);
+  PacedCall tell(progress);
   for (std::int64_t n = 0; n < most && !result.settled; ++n) {
+    tell("letting the bed lie", static_cast<double>(n) / static_cast<double>(most));
     if (n == resting) solver.set_drag(kRestDrag);
     const bool check = (n + 1) % kSettleCheckEvery == 0;
     if (const int lost = solver.step(dt, check); lost >= 0)
@@ -56,7 +59,6 @@ Archive bed_after_run(const Archive& state, const DemOptions& options, double re
     result.floor_error = std::abs(a.floor_force - weight) / weight;
     result.speed = std::sqrt(2.0 * a.kinetic / mass);
     result.settled = n >= resting && result.speed < kRestSpeed && result.force_ratio < kSettledForceRatio;
-    if (progress) progress("letting the bed lie", static_cast<double>(n + 1) / static_cast<double>(most));
   }
   solver.set_drag(0.0);
   SettleResult settled;

@@ -7,6 +7,7 @@
 
 #include "protocol/core/field_hash.hpp"
 #include "protocol/core/hash.hpp"
+#include "protocol/core/paced_call.hpp"
 #include "protocol/files/archive_file.hpp"
 #include "protocol/files/text_file.hpp"
 #include "terrain/dem/beds/bed_format_4.hpp"
@@ -54,15 +55,17 @@ std::filesystem::path bed_cache_file(const std::string& digest) {
   return folder / "furrow" / "beds" / (digest + ".h5");
 }
 
-void write_bed(const std::filesystem::path& file, const Archive& archive) {
+void write_bed(const std::filesystem::path& file, const Archive& archive, const ProgressCall& progress) {
   std::error_code failed;  // if the folder cannot be made, creating the file says so
   std::filesystem::create_directories(file.parent_path(), failed);
-  write_archive(file, archive, kBed);
+  PacedCall tell(progress, PacedCall::kInterval);
+  write_archive(file, archive, kBed, [&] { tell("keeping the bed", 0.0); });
 }
 
-Archive read_bed(const std::filesystem::path& file) {
+Archive read_bed(const std::filesystem::path& file, const ProgressCall& progress) {
   std::int64_t version = 0;
-  Archive bed = read_archive(file, kBed, &version);
+  PacedCall tell(progress, PacedCall::kInterval);
+  Archive bed = read_archive(file, kBed, &version, [&] { tell("reading the bed", 0.0); });
   if (version != kBedFormat) return from_format_4(bed);
   if (!bed.has("accounts/momentum_removed")) {  // kept before it was booked: a settled bed lost none
     bed.put("accounts/momentum_removed", std::vector<double>(3));

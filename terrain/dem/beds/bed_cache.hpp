@@ -15,12 +15,12 @@ std::string bed_digest(const DemOptions& options);
 /// ${XDG_CACHE_HOME:-~/.cache}/furrow/beds/<digest>.h5; empty when neither variable names a directory.
 std::filesystem::path bed_cache_file(const std::string& digest);
 
-/// Complete or absent, also with two writers. @throws Error(io)
-void write_bed(const std::filesystem::path& file, const Archive& archive);
+/// Complete or absent, also with two writers. @throws Error(io), and what `progress` throws
+void write_bed(const std::filesystem::path& file, const Archive& archive, const ProgressCall& progress = {});
 
 /// @throws Error(io) when the file is missing, not one of ours, damaged (checksum), of a newer format or of one before
-/// 4.
-Archive read_bed(const std::filesystem::path& file);
+/// 4; and what `progress` throws
+Archive read_bed(const std::filesystem::path& file, const ProgressCall& progress = {});
 
 /// Whether an HDF5 file is a settled bed of furrow, or too damaged to tell.
 bool may_be_bed(const std::filesystem::path& file);

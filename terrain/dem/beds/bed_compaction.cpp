@@ -6,6 +6,7 @@
 
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
+#include "protocol/core/paced_call.hpp"
 #include "terrain/dem/beds/bed_settling.hpp"
 #include "terrain/dem/beds/loaded_lid.hpp"
 
@@ -71,6 +72,7 @@ std::vector<Quad> compacted_positions(GrainSolver& solver, const DemOptions& opt
   std::vector<NodalForces> forces(1);
   std::vector<ContactSums> sums(1);
   const double grow = depth / kPressSpeed;
+  PacedCall tell(progress);
   double force = 0.0;
   const auto step = [&](double share) {
     const double velocity = body.step(force, share * load, dt);
@@ -90,7 +92,7 @@ std::vector<Quad> compacted_positions(GrainSolver& solver, const DemOptions& opt
     for (std::int64_t k = 0; k < steps; ++k) {
       const double done = static_cast<double>(k + 1) / static_cast<double>(steps);
       step(share(done));
-      if (progress && k % 50 == 0) progress("compacting the bed", from + 0.3 * done);
+      tell("compacting the bed", from + 0.3 * done);
       const bool bears = std::abs(force - load) < 0.01 * load;
       if (until_rest && bears && std::abs(body.velocity()) < kLidAtRest) return;
     }

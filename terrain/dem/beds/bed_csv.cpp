@@ -9,12 +9,14 @@
 #include <string>
 
 #include "protocol/core/error.hpp"
+#include "protocol/core/paced_call.hpp"
 #include "protocol/files/printable.hpp"
 
 namespace furrow::terrain::dem {
 namespace {
 
 constexpr std::size_t kMaxLine = 1024;  // bytes
+constexpr std::size_t kCheckEvery = 1024;  // lines
 constexpr std::size_t kShown = 30;      // of a line in messages: files that are no beds are nobody's to print
 
 /// The lines of a file, none of them longer than kMaxLine.
@@ -60,7 +62,7 @@ bool number(const char*& at, char end, double& value) {
 
 }  // namespace
 
-std::vector<Quad> read_positions_csv(const std::filesystem::path& file) {
+std::vector<Quad> read_positions_csv(const std::filesystem::path& file, const ProgressCall& progress) {
   if (std::error_code error; !std::filesystem::exists(file, error))
     throw input_error(file.string(), "", "does not exist, expected a CSV file of positions");
   Lines lines(file);
@@ -74,7 +76,9 @@ std::vector<Quad> read_positions_csv(const std::filesystem::path& file) {
     throw lines.wrong("'" + excerpt(header, kShown) +
                       "', expected the header x_m,y_m,z_m or x_m,y_m,z_m,radius_m");
   std::vector<Quad> positions;
-  while (const char* const line = lines.next()) {
+  PacedCall tell(progress);
+  for (std::size_t row = 2; const char* const line = lines.next(); ++row) {
+    if (row % kCheckEvery == 0) tell("reading the bed", 0.0);
     if (*line == '\0' || std::strcmp(line, "\r") == 0) continue;
     Quad p;
     const char* at = line;

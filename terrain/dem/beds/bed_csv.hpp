@@ -5,13 +5,15 @@
 #include <span>
 #include <vector>
 
+#include "protocol/core/progress_call.hpp"
 #include "terrain/dem/quad.hpp"
 
 namespace furrow::terrain::dem {
 
 /// Reads rows `x_m,y_m,z_m` or `x_m,y_m,z_m,radius_m` (header line first), m; w: radius, 0 where the file has none.
 /// @throws Error(io) when the file cannot be read, Error(bad_input) naming the line that is not as many finite numbers.
-std::vector<Quad> read_positions_csv(const std::filesystem::path& file);
+/// May throw what `progress` throws.
+std::vector<Quad> read_positions_csv(const std::filesystem::path& file, const ProgressCall& progress = {});
 
 /// Writes such a file, shifted by (0, y, 0), 17 digits, with radii where they differ. @throws Error(io)
 void write_positions_csv(const std::filesystem::path& file, std::span<const Quad> positions, double y = 0.0);

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "protocol/core/error.hpp"
+#include "protocol/core/paced_call.hpp"
 #include "terrain/dem/beds/bed_cache.hpp"
 #include "terrain/dem/beds/bed_csv.hpp"
 #include "terrain/dem/beds/bed_layers.hpp"
@@ -50,8 +51,9 @@ Lattice lattice_of(const Bin& bin, double radius) {
 
 std::vector<Quad> lattice_layers(const DemOptions& o, const ProgressCall& progress) {
   std::vector<Quad> all;
+  PacedCall tell(progress);
   for (int layer = 0; layer < o.layers; ++layer) {
-    if (progress) progress("placing the grains", static_cast<double>(layer) / o.layers);
+    tell("placing the grains", static_cast<double>(layer) / o.layers);
     const auto seed = o.seed * 1000003ULL + static_cast<std::uint64_t>(layer);
     for (Quad p : lattice_layer(bin_of(o), largest_radius(o), seed, layer % 2 == 1)) {
       p.z = (layer + 0.5) * kSpacing * largest_radius(o);
@@ -113,15 +115,16 @@ std::optional<Hanging> find_hanging(const std::vector<Quad>& grains, double most
   return {};
 }
 
-std::vector<Quad> positions_of(const DemOptions& o) {
-  std::vector<Quad> grains = is_hdf5(o.bed) ? read_positions_h5(o.bed) : read_positions_csv(o.bed);
-  check_positions(o, o.bed, grains);
+std::vector<Quad> positions_of(const DemOptions& o, const ProgressCall& progress = {}) {
+  std::vector<Quad> grains = is_hdf5(o.bed) ? read_positions_h5(o.bed) : read_positions_csv(o.bed, progress);
+  check_positions(o, o.bed, grains, progress);
   return grains;
 }
 
 }  // namespace
 
-void check_positions(const DemOptions& o, const std::filesystem::path& file, std::vector<Quad>& grains) {
+void check_positions(const DemOptions& o, const std::filesystem::path& file, std::vector<Quad>& grains,
+                     const ProgressCall& progress) {
   const bool hdf5 = is_hdf5(file);
   const Bin bin = bin_of(o);
   const auto wrong = [&](std::size_t g, const std::string& what) {
@@ -162,7 +165,7 @@ void check_positions(const DemOptions& o, const std::filesystem::path& file, std
                             "radii: it would fall too fast to be at rest as a bed",
                             place_text(grains[hanging->grain]), hanging->height, fall, kMaxFall));
   const double reach = kMinDistance * largest_radius(o);
-  for_close_pairs(grains, bin, reach, [&](std::size_t a, std::size_t b, double distance) {
+  const auto check_pair = [&](std::size_t a, std::size_t b, double distance) {
     const double mean = 0.5 * (grains[a].w + grains[b].w), least = kMinDistance * mean;
     if (distance >= least) return;
     throw wrong(std::max(a, b),
@@ -170,7 +173,8 @@ void check_positions(const DemOptions& o, const std::filesystem::path& file, std
                             "least {:g} m for grains of radius {:g} m",
                             place_text(grains[std::max(a, b)]), distance, hdf5 ? "of number" : "of line",
                             std::min(a, b) + (hdf5 ? 0 : 2), least, mean));
-  });
+  };
+  for_close_pairs(grains, bin, reach, check_pair, progress);
 }
 
 std::vector<Quad> lattice_layer(const Bin& bin, double radius, std::uint64_t seed, bool shifted) {
@@ -195,7 +199,7 @@ bool is_positions_file(const std::filesystem::path& bed) {
 }
 
 std::vector<Quad> starting_positions(const DemOptions& options, const ProgressCall& progress) {
-  if (!options.bed.empty()) return positions_of(options);
+  if (!options.bed.empty()) return positions_of(options, progress);
   std::vector<Quad> grains = generator_of(options).make(options, progress);
   draw_radii(options, grains);
   return grains;

@@ -25,7 +25,8 @@ std::vector<Quad> starting_positions(const DemOptions& options, const ProgressCa
 
 /// The grains of a user's `file` must stand in the bin and not in each other; radii that it does not give become
 /// `radius`. Lines are counted as if none were blank. @throws Error(bad_input) naming file and line, or grain
-void check_positions(const DemOptions& options, const std::filesystem::path& file, std::vector<Quad>& grains);
+void check_positions(const DemOptions& options, const std::filesystem::path& file, std::vector<Quad>& grains,
+                     const ProgressCall& progress = {});
 
 /// How many grains starting_positions will give, without making them. @throws Error as starting_positions
 double expected_grains(const DemOptions& options);

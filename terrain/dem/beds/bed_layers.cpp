@@ -6,10 +6,13 @@
 #include <random>
 
 #include "protocol/core/assert.hpp"
+#include "protocol/core/paced_call.hpp"
 
 namespace furrow::terrain::dem {
 namespace {
 
+constexpr const char* kPlacing = "placing the grains";
+constexpr std::size_t kCheckEvery = 1024;  // samples
 constexpr int kTries = 30;  // candidates around a sample before it is retired [Bridson 2007]
 constexpr double kDiskCoverage =
     0.491;  // share of the area covered by discs of the spacing's diameter, measured
@@ -25,23 +28,27 @@ class Uniform {
 
 }  // namespace
 
-std::vector<Quad> poisson_layer(const Bin& bin, double radius, std::uint64_t seed) {
+std::vector<Quad> poisson_layer(const Bin& bin, double radius, std::uint64_t seed,
+                                const std::function<void()>& each) {
   FURROW_ASSERT(radius > 0.0 && bin.length > 2.0 * radius && bin.width > 2.0 * radius, radius, bin.length,
                 bin.width);
   const double spacing = kSpacing * radius;
   const double length = bin.length - 2.0 * radius, width = bin.width - 2.0 * radius;
   const double cell = spacing / std::numbers::sqrt2;  // at most one sample per cell
-  const int nx = static_cast<int>(length / cell) + 1, ny = static_cast<int>(width / cell) + 1;
-  std::vector<int> grid(static_cast<std::size_t>(nx) * ny, -1);
+  const auto nx = static_cast<std::int64_t>(length / cell) + 1,
+             ny = static_cast<std::int64_t>(width / cell) + 1;
+  std::vector<int> grid(static_cast<std::size_t>(nx * ny), -1);
   std::vector<Quad> samples;
   std::vector<int> active;
   Uniform uniform(seed);
 
-  const auto cell_of = [&](double v, int n) { return std::clamp(static_cast<int>(v / cell), 0, n - 1); };
+  const auto cell_of = [&](double v, std::int64_t n) {
+    return std::clamp<std::int64_t>(static_cast<std::int64_t>(v / cell), 0, n - 1);
+  };
   const auto free = [&](double x, double y) {
-    const int cx = cell_of(x, nx), cy = cell_of(y, ny);
-    for (int ix = std::max(cx - 2, 0); ix <= std::min(cx + 2, nx - 1); ++ix)
-      for (int iy = std::max(cy - 2, 0); iy <= std::min(cy + 2, ny - 1); ++iy)
+    const std::int64_t cx = cell_of(x, nx), cy = cell_of(y, ny);
+    for (std::int64_t ix = std::max<std::int64_t>(cx - 2, 0); ix <= std::min(cx + 2, nx - 1); ++ix)
+      for (std::int64_t iy = std::max<std::int64_t>(cy - 2, 0); iy <= std::min(cy + 2, ny - 1); ++iy)
         if (const int s = grid[ix * ny + iy]; s >= 0) {
           const double dx = samples[s].x - x, dy = samples[s].y - y;
           if (dx * dx + dy * dy < spacing * spacing) return false;
@@ -57,6 +64,7 @@ std::vector<Quad> poisson_layer(const Bin& bin, double radius, std::uint64_t see
   const double first_x = length * uniform(), first_y = width * uniform();
   accept(first_x, first_y);
   while (!active.empty()) {
+    if (each) each();
     const auto pick = static_cast<std::size_t>(uniform() * static_cast<double>(active.size()));
     const Quad from = samples[active[pick]];
     bool found = false;
@@ -84,10 +92,15 @@ std::vector<Quad> bed_layers(const Bin& bin, double radius, int layers, std::uin
                              const ProgressCall& progress) {
   FURROW_ASSERT(layers >= 0, layers);
   std::vector<Quad> all;
+  PacedCall tell(progress);
   for (int layer = 0; layer < layers; ++layer) {
-    if (progress) progress("placing the grains", static_cast<double>(layer) / layers);
+    const double share = static_cast<double>(layer) / layers;
+    tell(kPlacing, share);
+    std::size_t samples_made = 0;
     std::vector<Quad> samples =
-        poisson_layer(bin, radius, seed * 1000003ULL + static_cast<std::uint64_t>(layer));
+        poisson_layer(bin, radius, seed * 1000003ULL + static_cast<std::uint64_t>(layer), [&] {
+          if (++samples_made % kCheckEvery == 0) tell(kPlacing, share);
+        });
     for (Quad& s : samples) s.z = (layer + 0.5) * kSpacing * radius;
     all.insert(all.end(), samples.begin(), samples.end());
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "terrain/dem/bin.hpp"
@@ -15,10 +16,12 @@ inline constexpr double kSpacing = 2.02;
 
 /// Points of one layer, no two nearer than kSpacing · radius, each at least a radius from the bin's walls
 /// [Bridson 2007, Fast Poisson disk sampling in arbitrary dimensions, doi:10.1145/1278780.1278807]. z = 0.
+/// `each` is called for every sample and may throw to stop.
 /// @pre 0 < 2 radius < length and width of the bin
-std::vector<Quad> poisson_layer(const Bin& bin, double radius, std::uint64_t seed);
+std::vector<Quad> poisson_layer(const Bin& bin, double radius, std::uint64_t seed,
+                                const std::function<void()>& each = {});
 
-/// All layers, the lowest one spacing half above the floor; each layer has its own samples. `progress` hears of each.
+/// All layers, the lowest one spacing half above the floor; each layer has its own samples.
 std::vector<Quad> bed_layers(const Bin& bin, double radius, int layers, std::uint64_t seed,
                              const ProgressCall& progress = {});
 

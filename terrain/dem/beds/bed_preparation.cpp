@@ -50,13 +50,15 @@ void check_bed(const Archive& bed, const DemOptions& o) {
                       fmt::format("is {} but the bed '{}' was settled without", o.rolling_friction, o.bed));
 }
 
-bool from_cache(const std::filesystem::path& file, const DemOptions& options, Archive& bed) {
+bool from_cache(const std::filesystem::path& file, const DemOptions& options, Archive& bed,
+                const ProgressCall& progress) {
   if (file.empty()) return false;
   try {
-    bed = read_bed(file);
+    bed = read_bed(file, progress);
     check_bed(bed, options);
     return true;
-  } catch (const Error&) {
+  } catch (const Error& error) {
+    if (error.code() != ExitCode::io && error.code() != ExitCode::bad_input) throw;
     return false;  // absent or damaged: made anew
   }
 }
@@ -93,9 +95,10 @@ Archive made_bed(const DemOptions& options, const ProgressCall& progress, Settle
 bool keep(const std::filesystem::path& file, const Archive& bed, const ProgressCall& progress) {
   if (file.empty()) return false;
   try {
-    write_bed(file, bed);
+    write_bed(file, bed, progress);
     return true;
   } catch (const Error& error) {
+    if (error.code() != ExitCode::io) throw;
     if (progress) progress(std::string("bed not cached: ") + error.what(), 1.0);
     return false;
   }
@@ -143,12 +146,12 @@ PreparedBed prepare_bed(const DemOptions& options, const ProgressCall& progress)
   check_bed_options(options);
   PreparedBed prepared;
   if (!bed_is_settled_anew(options)) {
-    prepared.bed = read_bed(options.bed);
+    prepared.bed = read_bed(options.bed, progress);
     check_bed(prepared.bed, options);
     prepared.file = options.bed;
   } else {
     prepared.file = options.cache ? bed_cache_file(bed_digest(options)) : std::filesystem::path();
-    prepared.from_cache = from_cache(prepared.file, options, prepared.bed);
+    prepared.from_cache = from_cache(prepared.file, options, prepared.bed, progress);
     if (!prepared.from_cache) {
       prepared.bed = made_bed(options, progress, prepared.settled);
       if (!keep(prepared.file, prepared.bed, progress)) prepared.file.clear();

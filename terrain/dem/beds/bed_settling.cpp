@@ -6,6 +6,7 @@
 
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
+#include "protocol/core/paced_call.hpp"
 #include "terrain/dem/solver_setup.hpp"
 
 namespace furrow::terrain::dem {
@@ -45,9 +46,11 @@ SettleResult settle(GrainSolver& solver, const DemOptions& options, const Progre
   solver.set_coefficients(settle_coefficients(options));
   solver.set_drag(kFallDrag);
   bool lying = false;
-  double best = 1.0;
+  double best = 1.0, share = 0.0;
+  PacedCall tell(progress);
   const auto most = static_cast<std::int64_t>(most_time / dt);
   while (result.steps < most && !result.settled) {
+    tell("settling the bed", share);
     const bool check = ++result.steps % kSettleCheckEvery == 0;
     if (const int lost = solver.step(dt, check); lost >= 0)
       throw physics_error("grain " + std::to_string(solver.grains().id[lost]) +
@@ -66,10 +69,8 @@ SettleResult settle(GrainSolver& solver, const DemOptions& options, const Progre
     result.settled = speed < kRestSpeed && a.kinetic < kRestEnergy * weight * grain.radius &&
                      result.force_ratio < kSettledForceRatio && result.floor_error < kSettledFloorError;
     best = std::min(best, std::max(result.force_ratio, result.floor_error));
-    if (progress) {
-      const double decades = std::log10(1.0 / std::max(best, kSettledForceRatio)) / 3.0;
-      progress("settling the bed", std::clamp(std::max(decades, dt * result.steps / most_time), 0.0, 1.0));
-    }
+    const double decades = std::log10(1.0 / std::max(best, kSettledForceRatio)) / 3.0;
+    share = std::clamp(std::max(decades, dt * result.steps / most_time), 0.0, 1.0);
   }
   solver.set_drag(0.0);
   return result;

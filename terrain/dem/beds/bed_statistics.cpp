@@ -25,7 +25,8 @@ double volume_below(double radius, double z, double height) {
   return std::numbers::pi * h * h * (3.0 * radius - h) / 3.0;
 }
 
-BedStatistics bed_statistics(const std::vector<Quad>& positions, const Bin& bin, double radius) {
+BedStatistics bed_statistics(const std::vector<Quad>& positions, const Bin& bin, double radius,
+                             const ProgressCall& progress) {
   FURROW_ASSERT(radius > 0.0, radius);
   BedStatistics s;
   s.grains = static_cast<std::int64_t>(positions.size());
@@ -48,7 +49,7 @@ BedStatistics bed_statistics(const std::vector<Quad>& positions, const Bin& bin,
     for (int wall = 0; wall < kWalls; ++wall)
       s.wall_contacts += bin.has_wall(wall) && bin.distance(wall, p) < p.w;
   }
-  for_close_pairs(positions, bin, 2.0 * largest, [&](std::size_t a, std::size_t b, double distance) {
+  const auto count_pair = [&](std::size_t a, std::size_t b, double distance) {
     const double overlap = positions[a].w + positions[b].w - distance;
     if (overlap <= 0.0) return;
     const double lens = lens_volume(positions[a].w, positions[b].w, distance);
@@ -57,7 +58,8 @@ BedStatistics bed_statistics(const std::vector<Quad>& positions, const Bin& bin,
     solid -= lens;
     if (z > low && z < high) bulk -= lens;
     s.max_overlap = std::max(s.max_overlap, overlap);
-  });
+  };
+  for_close_pairs(positions, bin, 2.0 * largest, count_pair, progress);
   s.coordination = 2.0 * static_cast<double>(s.pairs) / static_cast<double>(s.grains);
   s.solid_fraction = solid / (bin.length * bin.width * s.depth);
   s.solid_fraction_bulk = bulk / (bin.length * bin.width * (high - low));

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "protocol/core/progress_call.hpp"
 #include "terrain/dem/bin.hpp"
 #include "terrain/dem/quad.hpp"
 
@@ -22,8 +23,9 @@ struct BedStatistics {
   double max_overlap = 0.0;          // of two grains, m
 };
 
-/// Of grains that stand at x y z with radius w, m. `radius`: r of the cells, m.
-BedStatistics bed_statistics(const std::vector<Quad>& grains, const Bin& bin, double radius);
+/// Of grains that stand at x y z with radius w, m. `radius`: r of the cells, m. May throw what `progress` throws.
+BedStatistics bed_statistics(const std::vector<Quad>& grains, const Bin& bin, double radius,
+                             const ProgressCall& progress = {});
 
 /// Volume that spheres of radii a and b share at this distance of their centres, m³:
 /// π (a + b − d)² (d² + 2 d (a + b) − 3 (a − b)²) / (12 d). @pre a, b, distance > 0, or 0 for equal spheres

@@ -1,0 +1,112 @@
+#include "nodes/launch/limits.hpp"
+
+#include <poll.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <csignal>
+
+#include <algorithm>
+#include <array>
+#include <climits>
+#include <exception>
+#include <new>
+
+#include <fmt/format.h>
+
+#include "protocol/core/error.hpp"
+
+namespace furrow::launch {
+namespace {
+
+constexpr long kFilesPerRank = 4;  // of mpirun
+
+/// "1 s", of a limit that is set; empty where there is none.
+std::string seconds_of_processor_time(rlim_t& seconds) {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_CPU, &limit) != 0) return {};
+  seconds = std::min(limit.rlim_cur, limit.rlim_max);
+  return seconds == RLIM_INFINITY ? std::string() : fmt::format("{} s", seconds);
+}
+
+std::array<char, 4096> last_line;  // said where memory has run out
+std::size_t last_line_length = 0;
+int last_descriptor = STDERR_FILENO;
+std::terminate_handler usual_end = nullptr;
+
+[[noreturn]] void end_program() {
+  if (const std::exception_ptr cause = std::current_exception()) try {
+      std::rethrow_exception(cause);
+    } catch (const std::bad_alloc&) {
+      const ssize_t written = write(last_descriptor, last_line.data(), last_line_length);
+      (void)written;
+      _exit(static_cast<int>(ExitCode::limit));
+    } catch (...) {
+    }
+  if (usual_end) usual_end();
+  std::abort();
+}
+
+}  // namespace
+
+void require_stack(char** argv) {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || limit.rlim_cur >= kStack)
+    return;
+  const rlim_t given = limit.rlim_cur;
+  limit.rlim_cur = kStack;
+  limit.rlim_max = std::max<rlim_t>(limit.rlim_max, kStack);  // root may
+  if (setrlimit(RLIMIT_STACK, &limit) != 0)
+    throw limit_error(fmt::format("the stack may take {} kB (ulimit -s), expected {} kB or more", given >> 10,
+                                  kStack >> 10));
+  std::array<char, PATH_MAX> path{};
+  if (readlink("/proc/self/exe", path.data(), path.size() - 1) > 0) execv(path.data(), argv);
+}
+
+void require_files(std::size_t ranks) {
+  const auto needed = static_cast<rlim_t>(kFiles + kFilesPerRank * static_cast<long>(ranks));
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= needed) return;
+  const rlim_t given = limit.rlim_cur;
+  limit.rlim_cur = std::min(needed, limit.rlim_max);
+  if (limit.rlim_max >= needed && setrlimit(RLIMIT_NOFILE, &limit) == 0) return;
+  throw limit_error(
+      fmt::format("a process may open {} files (ulimit -n), expected {} or more to start {} ranks", given,
+                  needed, ranks));
+}
+
+std::string cause_of(int signal, double processor_time, bool& certain) {
+  rlim_t seconds = RLIM_INFINITY;
+  const std::string limit = seconds_of_processor_time(seconds);
+  const bool used_up = !limit.empty() && processor_time >= static_cast<double>(seconds);
+  certain = signal == SIGXCPU || (signal == SIGKILL && used_up);
+  if (certain)
+    return limit.empty() ? "a limit of processor time is reached (ulimit -t)"
+                         : "a process may use " + limit + " of processor time (ulimit -t)";
+  if (signal == SIGKILL) return "the system does that when memory runs out";
+  return {};
+}
+
+double processor_time_of_children() {
+  rusage used{};
+  if (getrusage(RUSAGE_CHILDREN, &used) != 0) return 0.0;
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return seconds(used.ru_utime) + seconds(used.ru_stime);
+}
+
+bool reader_is_gone() {
+  struct stat kind {};
+  pollfd end{STDOUT_FILENO, 0, 0};
+  return fstat(STDOUT_FILENO, &kind) == 0 && (S_ISFIFO(kind.st_mode) || S_ISSOCK(kind.st_mode)) &&
+         poll(&end, 1, 0) > 0 && (end.revents & (POLLERR | POLLHUP)) != 0;
+}
+
+void end_where_memory_runs_out(const std::string& line, int descriptor) {
+  last_line_length = line.copy(last_line.data(), last_line.size());
+  last_descriptor = descriptor;
+  if (std::get_terminate() != end_program) usual_end = std::set_terminate(end_program);
+}
+
+}  // namespace furrow::launch

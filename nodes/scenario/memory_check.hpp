@@ -1,0 +1,17 @@
+// Whether the memory that a scenario needs is to be had here, and what to say when it has run out.
+#pragma once
+
+#include "nodes/scenario/scenario.hpp"
+#include "protocol/core/error.hpp"
+
+namespace furrow::scenario {
+
+/// @throws Error(limit) when the terrain's rank surely does not fit into what this machine gives one process, however
+/// little else is running. Where it is not sure there is at most a warning (scenario_checks.cpp).
+void require_memory(const Scenario& scenario);
+
+/// "out of memory: needs about 1.2 GB, limit 0.3 GB (ulimit -v)", exit code 6.
+/// @param needed  bytes; 0: unknown
+Error out_of_memory(double needed = 0.0);
+
+}  // namespace furrow::scenario

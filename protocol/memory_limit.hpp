@@ -1,0 +1,23 @@
+// How much memory the system lets a process have.
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <string>
+
+namespace furrow {
+
+struct MemoryLimit {
+  double bytes = std::numeric_limits<double>::infinity();
+  std::string name;  // for people: "ulimit -v", "control group", "this machine"
+};
+
+/// Of the address space of one process (ulimit -v).
+MemoryLimit address_space_limit();
+
+/// Of all processes together, whoever uses how much of it now: memory and swap of this machine, or of the control
+/// group (version 2 or 1) that this process belongs to, whichever is less.
+/// @param root  where /proc and /sys are
+MemoryLimit memory_limit(const std::filesystem::path& root = "/");
+
+}  // namespace furrow

@@ -1,0 +1,157 @@
+// Ranks that do not come, and limits of the system.
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+#include <csignal>
+#include <cstdlib>
+
+#include "nodes/launch/child_process.hpp"
+#include "nodes/launch/limits.hpp"
+#include "nodes/launch/start_watch.hpp"
+#include "nodes/launch/supervisor_lines.hpp"
+#include "nodes/launch/supervisor_text.hpp"
+#include "nodes/scenario/memory_check.hpp"
+#include "nodes/scenario/rank_table.hpp"
+
+namespace furrow {
+namespace {
+
+constexpr double kPatience = 0.05;  // s
+
+void let_pass(double seconds) { usleep(static_cast<useconds_t>(1e6 * seconds)); }
+
+TEST(StartWatch, ranks_that_do_not_begin_are_too_late) {
+  launch::StartWatch watch(3, kPatience);
+  EXPECT_FALSE(watch.too_late());
+  watch.begun(0);
+  EXPECT_EQ(watch.standing(), "1 of 3 ranks began");
+  let_pass(2.0 * kPatience);
+  EXPECT_TRUE(watch.too_late());
+}
+
+TEST(StartWatch, news_of_any_rank_gives_the_others_time_again) {
+  launch::StartWatch watch(3, 10.0 * kPatience);
+  for (int rank = 0; rank < 2; ++rank) {
+    let_pass(6.0 * kPatience);
+    watch.too_late();
+    watch.begun(rank);
+  }
+  EXPECT_FALSE(watch.too_late());
+}
+
+TEST(StartWatch, reading_may_take_as_long_as_it_takes) {
+  launch::StartWatch watch(2, kPatience);
+  for (int rank = 0; rank < 2; ++rank) watch.begun(rank);
+  watch.read(0);
+  let_pass(2.0 * kPatience);
+  EXPECT_FALSE(watch.too_late());
+  watch.read(1);
+  EXPECT_EQ(watch.standing(), "all 2 ranks began, but MPI connected none of 2 ranks");
+  let_pass(2.0 * kPatience);
+  EXPECT_TRUE(watch.too_late());
+}
+
+TEST(StartWatch, who_has_started_is_watched_no_more) {
+  launch::StartWatch watch(1, kPatience);
+  watch.begun(0), watch.read(0), watch.started(0);
+  let_pass(2.0 * kPatience);
+  EXPECT_FALSE(watch.too_late());
+  EXPECT_TRUE(watch.all_started());
+  EXPECT_EQ(watch.count(), 1U);
+}
+
+TEST(StartPatience, is_read_from_the_environment) {
+  unsetenv("FURROW_START_TIMEOUT");
+  EXPECT_EQ(launch::start_patience(), 120.0);
+  setenv("FURROW_START_TIMEOUT", "7.5", 1);
+  EXPECT_EQ(launch::start_patience(), 7.5);
+  for (const char* wrong : {"soon", "0", "-1", "nan", "inf", "5 s"}) {
+    setenv("FURROW_START_TIMEOUT", wrong, 1);
+    EXPECT_THROW(launch::start_patience(), Error) << wrong;
+  }
+  unsetenv("FURROW_START_TIMEOUT");
+}
+
+TEST(RankLine, the_stages_of_a_start_come_through) {
+  for (const auto kind :
+       {launch::RankLine::Kind::begun, launch::RankLine::Kind::read, launch::RankLine::Kind::started}) {
+    const auto line = launch::decode(launch::encode({kind, 2, {}, ExitCode::done, {}}));
+    ASSERT_TRUE(line);
+    EXPECT_EQ(line->kind, kind);
+  }
+}
+
+TEST(LauncherText, a_line_without_end_does_not_take_the_stack) {
+  launch::LauncherText text;
+  text.add("process rank " + std::string(10000000, '1'));
+  EXPECT_FALSE(text.lost());
+}
+
+TEST(Cause, of_a_death_by_the_limit_of_processor_time_is_that_limit) {
+  bool certain = false;
+  EXPECT_NE(launch::cause_of(SIGXCPU, 0.0, certain).find("ulimit -t"), std::string::npos);
+  EXPECT_TRUE(certain);
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_CPU, &before), 0);
+  if (before.rlim_cur != RLIM_INFINITY) GTEST_SKIP() << "this test runs under a limit itself";
+  EXPECT_NE(launch::cause_of(SIGKILL, 1e6, certain).find("memory"), std::string::npos);
+  EXPECT_FALSE(certain);
+  rlimit limited = before;
+  limited.rlim_cur = 100000;
+  ASSERT_EQ(setrlimit(RLIMIT_CPU, &limited), 0);
+  EXPECT_NE(launch::cause_of(SIGKILL, 1e6, certain).find("100000 s of processor time (ulimit -t)"),
+            std::string::npos);
+  EXPECT_TRUE(certain);
+  EXPECT_NE(launch::cause_of(SIGKILL, 10.0, certain).find("memory"), std::string::npos);
+  EXPECT_FALSE(certain);
+  setrlimit(RLIMIT_CPU, &before);
+  EXPECT_EQ(launch::cause_of(SIGSEGV, 0.0, certain), "");
+}
+
+TEST(ForgetLauncher, takes_a_launchers_variables_and_leaves_the_users) {
+  setenv("PMIX_RANK", "3", 1);
+  setenv("PMIX_MCA_gds", "hash", 1);
+  setenv("OMPI_MCA_ess", "pmi", 1);
+  setenv("OMPI_MCA_btl", "^openib", 1);
+  launch::forget_launcher();
+  EXPECT_EQ(std::getenv("PMIX_RANK"), nullptr);
+  EXPECT_EQ(std::getenv("OMPI_MCA_ess"), nullptr);
+  EXPECT_STREQ(std::getenv("PMIX_MCA_gds"), "hash");
+  EXPECT_STREQ(std::getenv("OMPI_MCA_btl"), "^openib");
+  unsetenv("PMIX_MCA_gds"), unsetenv("OMPI_MCA_btl");
+}
+
+TEST(OutOfMemory, says_what_is_needed_and_what_there_is) {
+  const Error error = scenario::out_of_memory(1.2e12);
+  EXPECT_EQ(error.code(), ExitCode::limit);
+  EXPECT_NE(std::string(error.what()).find("out of memory: needs about 1200"), std::string::npos)
+      << error.what();
+  EXPECT_NE(std::string(error.what()).find(", limit "), std::string::npos) << error.what();
+}
+
+TEST(RequireMemory, refuses_what_surely_does_not_fit) {
+  scenario::Scenario scenario;
+  scenario.file = "large.json";
+  scenario.memory.terrain = 1e9;
+  EXPECT_NO_THROW(scenario::require_memory(scenario));
+  scenario.memory.terrain = 1e18;
+  try {
+    scenario::require_memory(scenario);
+    FAIL() << "an exabyte fits";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::limit);
+    EXPECT_EQ(std::string(error.what())
+                  .find("large.json: out of memory: the terrain needs about 1000000000.0 GB, limit"),
+              0U)
+        << error.what();
+  }
+}
+
+TEST(ShellPath, a_name_that_begins_with_a_hyphen_is_no_option) {
+  EXPECT_EQ(scenario::shell_path("-out"), "./-out");
+  EXPECT_EQ(scenario::shell_path("a b"), "'a b'");
+  EXPECT_EQ(scenario::shell_path("results/x-001"), "results/x-001");
+}
+
+}  // namespace
+}  // namespace furrow

@@ -1,0 +1,300 @@
+#!/usr/bin/python3
+"""What surrounds the program: variables of launchers, launchers that hang, limits of the system, signals in long work, odd
+names, the user's Python."""
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import time
+import unittest
+
+from program import PROGRAM, SystemTest, changed, furrow, main, ranks, start, survivors, wait_for, write_scenario
+
+VARIABLES = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK")
+SHORT = ["--set", "run.end=0.004", "--set", "run.average_from=0", "--set", "terrain.engine=rigid", "--no-plots"]
+
+
+def limited(limits, *arguments, cwd, timeout=120, env=None):
+    """The program under a shell's ulimit."""
+    command = f'ulimit {limits} && exec "$@"'
+    return subprocess.run(["bash", "-c", command, "bash", PROGRAM, *map(str, arguments)], cwd=cwd, timeout=timeout, text=True,
+                          errors="replace", stdin=subprocess.DEVNULL, capture_output=True, env={**os.environ, **(env or {})})
+
+
+def errors(done):
+    return [line for line in done.stderr.splitlines() if line.startswith("furrow: error: ")]
+
+
+class EnvironmentTest(SystemTest):
+    def setUp(self):
+        super().setUp()
+        self.path = write_scenario(self.folder)
+
+    def one_error(self, done, code):
+        self.assertEqual(done.returncode, code, done.stderr)
+        lines = errors(done)
+        self.assertEqual(len(lines), 1, done.stderr)
+        return lines[0]
+
+
+class LauncherVariables(EnvironmentTest):
+    """Left over from a shell that mpirun or srun started."""
+
+    def test_commands_that_are_no_ranks_pay_no_regard(self):
+        for variable in VARIABLES:
+            with self.subTest(variable):
+                env = {variable: "3"}
+                self.assertEqual(furrow("validate", self.path, cwd=self.folder, env=env).returncode, 0)
+                self.assertEqual(furrow("explain", "rig.slip", cwd=self.folder, env=env).returncode, 0)
+                self.assertIn("does not exist", self.one_error(furrow("validate", "no.json", cwd=self.folder, env=env), 2))
+                self.assertIn("unknown command", self.one_error(furrow("rnu", cwd=self.folder, env=env), 2))
+
+    def test_run_names_the_variable_and_how_to_be_rid_of_it(self):
+        for variable, value in (("PMI_RANK", "1"), ("PMIX_RANK", "0"), ("OMPI_COMM_WORLD_RANK", "3")):
+            with self.subTest(variable):
+                line = self.one_error(furrow("run", self.path, cwd=self.folder, env={variable: value}), 2)
+                self.assertIn(f"the environment has {variable}={value}", line)
+                self.assertIn(f"unset {variable}", line)
+        self.assertEqual(self.names(), ["small.json"])
+
+    def test_no_rank_ends_without_a_word(self):
+        env = {"PMI_RANK": "2", "OMPI_COMM_WORLD_LOCAL_RANK": "2"}
+        self.assertIn("does not exist", self.one_error(furrow("run", "no.json", cwd=self.folder, env=env), 2))
+        self.assertIn("does not exist", self.one_error(furrow("resume", "no", cwd=self.folder, env=env), 2))
+        self.assertIn("--fast", self.one_error(furrow("run", self.path, "--fast", cwd=self.folder, env=env), 2))
+
+    def test_an_empty_variable_is_none(self):
+        done = furrow("run", self.path, *SHORT, "--out", "out", cwd=self.folder, env={"PMI_RANK": ""})
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_a_finished_run_under_mpirun_says_so(self):
+        self.assertEqual(furrow("run", self.path, *SHORT, "--out", "out", cwd=self.folder).returncode, 0)
+        done = subprocess.run([shutil.which("mpirun"), "-q", "--allow-run-as-root", "--oversubscribe", "-n", "3", PROGRAM,
+                               "resume", "out"], cwd=self.folder, capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stderr.count("there is nothing to do"), 1, done.stderr)
+        self.assertEqual(done.stdout, "out\n")
+
+    def test_a_sweep_as_a_rank_starts_its_runs_all_the_same(self):
+        study = {"scenario": "small.json", "set": {"run.end": 0.004, "run.average_from": 0, "terrain.engine": "rigid"},
+                 "grid": {"rig.slip": [0.2]}}
+        (self.folder / "study.json").write_text(json.dumps(study))
+        done = subprocess.run([shutil.which("mpirun"), "-q", "--allow-run-as-root", "-n", "1", PROGRAM, "sweep", "study.json"],
+                              cwd=self.folder, capture_output=True, text=True, timeout=120)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+
+class Launcher(EnvironmentTest):
+    def launcher(self, script):
+        path = self.folder / "launcher"
+        path.write_text("#!/bin/bash\n" + script)
+        path.chmod(0o755)
+        return {"FURROW_MPIRUN": str(path), "FURROW_START_TIMEOUT": "1"}
+
+    def check(self, script, words, longest):
+        begin = time.monotonic()
+        line = self.one_error(furrow("run", self.path, "--out", "out", cwd=self.folder, env=self.launcher(script)), 5)
+        self.assertLess(time.monotonic() - begin, longest)
+        self.assertIn("none of 3 ranks began within 1 s (FURROW_START_TIMEOUT sets another time)", line)
+        self.assertIn(words, line)
+        self.assertEqual(survivors(self.folder), [])
+
+    def test_that_hangs_is_ended_and_its_words_are_told(self):
+        self.check("echo no room for pipes >&2; sleep 1000\n", "mpirun said: no room for pipes", 30)
+        self.assertIn("no room for pipes", (self.folder / "out" / "run.log").read_text())
+
+    def test_words_on_standard_output_count_too(self):
+        self.check("echo all nodes are busy; sleep 1000\n", "mpirun said: all nodes are busy", 30)
+
+    def test_that_hangs_and_will_not_end_is_killed(self):
+        self.check("trap '' TERM; while true; do sleep 0.1; done\n", "mpirun said nothing", 40)
+
+    def test_bad_time_out(self):
+        done = furrow("run", self.path, "--out", "out", cwd=self.folder, env={"FURROW_START_TIMEOUT": "soon"})
+        self.assertIn("key 'FURROW_START_TIMEOUT': is 'soon', expected a number of seconds", self.one_error(done, 2))
+        self.assertEqual(self.names(), ["small.json"])
+
+    def test_without_ssh_on_path(self):
+        (self.folder / "empty").mkdir()
+        done = furrow("run", self.path, *SHORT, "--out", "out", cwd=self.folder, env={"PATH": str(self.folder / "empty")})
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+
+class Limits(EnvironmentTest):
+    def test_open_files(self):
+        line = self.one_error(limited("-n 30", "run", self.path, *SHORT, "--out", "out", cwd=self.folder), 6)
+        self.assertIn("may open 30 files (ulimit -n), expected ", line)
+        self.assertEqual(self.names(), ["small.json"])
+        done = limited("-S -n 30", "run", self.path, *SHORT, "--out", "out", cwd=self.folder)  # may be raised
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_stack(self):
+        done = limited("-S -s 64", "run", self.path, *SHORT, "--out", "out", cwd=self.folder)  # may be raised
+        self.assertEqual(done.returncode, 0, done.stderr)
+        if os.geteuid() != 0:
+            line = self.one_error(limited("-s 64", "validate", self.path, cwd=self.folder), 6)
+            self.assertIn("the stack may take 64 kB (ulimit -s)", line)
+
+    def test_processor_time(self):
+        done = limited("-t 2", "run", self.path, "--set", "run.end=1", "--set", "terrain.radius=0.012", "--set", "terrain.layers=12",
+                       "--out", "out", cwd=self.folder)
+        self.assertIn("a process may use 2 s of processor time (ulimit -t)", self.one_error(done, 6))
+        self.assertEqual(survivors(self.folder), [])
+
+    def test_a_terrain_that_cannot_fit_is_refused_before_anything_begins(self):
+        large = ["--set", "terrain.radius=0.006", "--set", "terrain.layers=15", "--set", "terrain.length=100", "--set", "terrain.width=40"]
+        for command in ("run", "bed"):
+            begin = time.monotonic()
+            line = self.one_error(limited("-v 4000000", command, self.path, *large, cwd=self.folder), 6)
+            self.assertRegex(line, r"small.json: out of memory: the terrain needs about \d+\.\d GB, limit 4.1 GB \(ulimit -v\)")
+            self.assertLess(time.monotonic() - begin, 20)
+        self.assertEqual(self.names(), ["small.json"])
+        self.assertEqual(limited("-v 4000000", "validate", self.path, *large, cwd=self.folder).returncode, 0)
+
+    def test_memory_that_runs_out_on_the_way_is_no_failure_of_the_physics(self):
+        # About 1.1 million grains: half of the estimate is below the limit, so it is tried.
+        many = ["--set", "terrain.radius=0.006", "--set", "terrain.layers=15", "--set", "terrain.length=29", "--set", "terrain.width=0.6",
+                "--set", "run.step=2e-5"]
+        for command in ("bed", "run"):
+            with self.subTest(command):
+                done = limited("-v 700000", command, self.path, *many, cwd=self.folder, timeout=300)
+                self.assertRegex(self.one_error(done, 6), r"out of memory: needs about \d+\.\d GB, limit 0.7 GB \(ulimit -v\)")
+        self.assertEqual(survivors(self.folder), [])
+
+
+class LongWork(EnvironmentTest):
+    def check(self, *arguments, phase, longest=4.0, code=75):
+        """The goal is a second; the limit leaves room for a busy machine and a slow build."""
+        process = start(*arguments, cwd=self.folder)
+        self.addCleanup(process.kill)
+        os.set_blocking(process.stderr.fileno(), False)
+        said = []
+        wait_for(lambda: said.append(process.stderr.read() or "") or phase in "".join(said), 60, phase)
+        time.sleep(0.3)
+        begin = time.monotonic()
+        process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=60)
+        self.assertLess(time.monotonic() - begin, longest)
+        self.assertEqual(process.returncode, code)
+
+    def test_placing_one_huge_layer(self):
+        self.check("bed", self.path, "--set", "terrain.radius=0.006", "--set", "terrain.length=400", "--set", "terrain.width=20",
+                   "--set", "terrain.layers=1", phase="placing the grains")
+
+    def test_settling_many_grains(self):
+        self.check("bed", self.path, "--set", "terrain.radius=0.01", "--set", "terrain.length=12", "--set", "terrain.layers=12",
+                   phase="settling the bed")
+
+    def test_soil_tests(self):
+        self.check("soil", self.path, "--only", "plate", "--speed", "0.001", "--out", "out", phase="soil tests")
+        self.assertEqual(self.names(), ["small.json"])
+
+    def test_pressing(self):
+        path = write_scenario(self.folder, changed(tire={"rigid": False, "elements_width": 60}), "soft.json")
+        self.check("press", path, "--out", "out", phase="in")  # inflating
+        self.assertEqual(self.names(), ["small.json", "soft.json"])
+
+
+class Pause(EnvironmentTest):
+    def states(self):
+        found = {}
+        for rank, pid in ranks(self.path).items():
+            found[rank] = pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0]
+        return found
+
+    def test_ctrl_z_stops_the_ranks_and_fg_lets_them_go_on(self):
+        process = start("run", self.path, "--set", "run.end=0.3", "--out", "out", "--set", "terrain.engine=rigid", "--no-plots",
+                        "--set", "run.step=1e-6", cwd=self.folder)
+        self.addCleanup(process.kill)
+        wait_for(lambda: (self.folder / "out" / "timeseries.csv").exists(), 60, "the run begins")
+        process.send_signal(signal.SIGTSTP)
+        wait_for(lambda: set(self.states().values()) == {"T"} and len(self.states()) == 3, 20, "all ranks are stopped")
+        state = pathlib.Path(f"/proc/{process.pid}/stat")
+        wait_for(lambda: state.read_text().rsplit(")", 1)[1].split()[0] == "T", 20, "the program is stopped")
+        process.send_signal(signal.SIGCONT)
+        wait_for(lambda: "T" not in self.states().values(), 20, "all ranks go on")
+        process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 75)
+
+
+class Names(EnvironmentTest):
+    def test_that_begin_with_a_hyphen(self):
+        self.path.rename(self.folder / "-b.json")
+        done = furrow("run", *SHORT, "--out=-dd", "--", "-b.json", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stdout, "-dd\n")
+        done = furrow("resume", "--until", "0.006", "--no-plots", "--", "-dd", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        done = furrow("report", "--", "-dd", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("-dd/forces.png", done.stdout)
+
+    def test_that_are_not_utf_8(self):
+        folder = os.fsencode(self.folder) + b"/caf\xe9"
+        done = subprocess.run([os.fsencode(PROGRAM), b"run", os.fsencode(self.path), *(word.encode() for word in SHORT), b"--out", folder],
+                              cwd=self.folder, capture_output=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        done = subprocess.run([os.fsencode(PROGRAM), b"report", folder], cwd=self.folder, capture_output=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        plots = done.stdout.split(b"\n")[:-1]
+        self.assertTrue(plots)
+        for plot in plots:
+            self.assertTrue(os.path.exists(plot), plot)
+
+    def test_a_scenario_in_a_folder_that_is_not_utf_8_with_its_own_tire(self):
+        folder = os.fsencode(self.folder) + b"/caf\xe9"
+        os.mkdir(folder)
+        tire = pathlib.Path(__file__).resolve().parents[2] / "tire" / "data" / "hmmwv_layered.json"
+        with open(folder + b"/own.json", "wb") as file:
+            file.write(tire.read_bytes())
+        with open(folder + b"/s.json", "w") as file:
+            json.dump(changed(tire={"file": "own.json"}), file)
+        done = subprocess.run([os.fsencode(PROGRAM), b"run", folder + b"/s.json", *(word.encode() for word in SHORT), b"--out", b"out"],
+                              cwd=self.folder, capture_output=True)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn(b"key 'tire.file': stands in a folder with a name that is not UTF-8", done.stderr)
+
+    def test_of_plots_do_not_depend_on_the_users_python(self):
+        self.assertEqual(furrow("run", self.path, *SHORT, "--out", "out", cwd=self.folder).returncode, 0)
+        evil = self.folder / "evil"
+        evil.mkdir()
+        for module in ("json", "matplotlib", "h5py"):
+            (evil / f"{module}.py").write_text("raise SystemExit('the user's own code ran')")
+            shutil.copy(evil / f"{module}.py", self.folder)
+        for env in ({"PYTHONPATH": str(evil)}, {"PYTHONHOME": "/nowhere"}, {"PYTHONSTARTUP": str(evil / "json.py")}):
+            done = furrow("report", "out", cwd=self.folder, env=env)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertNotIn("Python", done.stderr)
+
+
+class Output(EnvironmentTest):
+    def test_a_reader_that_leaves_is_no_error(self):
+        for command in (["bed"], ["bench", "tire", "--steps", "1", "--warm", "0"]):
+            read, write = os.pipe()
+            os.close(read)
+            arguments = [*command] if command[0] == "bench" else [*command, str(self.path)]
+            done = subprocess.run([PROGRAM, *arguments], cwd=self.folder, stdout=write, stderr=subprocess.PIPE, text=True, timeout=120)
+            os.close(write)
+            self.assertEqual(errors(done), [], done.stderr)
+            self.assertEqual(done.returncode, 0)
+
+    def test_a_full_disk_is_one(self):
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([PROGRAM, "explain"], cwd=self.folder, stdout=full, stderr=subprocess.PIPE, text=True)
+        self.assertIn("standard output: cannot be written", self.one_error(done, 5))
+
+    def test_the_printed_line_of_ranks_works(self):
+        done = furrow("ranks", self.path, *SHORT[:-1], "--out", "out", cwd=self.folder)
+        self.assertEqual(done.returncode, 2)  # ranks has no --out: the line is completed by hand
+        done = furrow("ranks", self.path, *SHORT[:-1], cwd=self.folder)
+        line = next(line for line in done.stdout.splitlines() if line.startswith("mpirun "))
+        done = subprocess.run(["bash", "-c", line + " --out out"], cwd=self.folder, capture_output=True, text=True, timeout=120)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue((self.folder / "out" / "summary.json").exists())
+
+
+if __name__ == "__main__":
+    main()

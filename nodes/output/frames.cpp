@@ -1,6 +1,7 @@
 #include "nodes/output/frames.hpp"
 
 #include <algorithm>
+#include <regex>
 
 #include <fmt/format.h>
 
@@ -16,7 +17,7 @@ std::filesystem::path frame_file(const std::filesystem::path& run, const std::st
   FURROW_ASSERT(index >= 0, what, index);
   const auto folder = run / "frames";
   std::error_code ignored;  // if the folder cannot be made, creating the file says so
-  std::filesystem::create_directories(folder, ignored);
+  std::filesystem::create_directory(folder, ignored);  // never the run's: it was moved or removed
   return folder / fmt::format("{}_{:06d}.h5", what, index);
 }
 
@@ -71,15 +72,22 @@ void write_terrain_frame(const std::filesystem::path& run, std::int64_t index, d
   file.finish();
 }
 
+std::optional<FrameName> frame_name(const std::string& file) {
+  static const std::regex pattern(R"((tire\d+|terrain)_(\d{6,18})\.h5)");
+  std::smatch match;
+  if (!std::regex_match(file, match, pattern)) return std::nullopt;
+  return FrameName{match[1], std::stoll(match[2])};
+}
+
 void remove_frames_from(const std::filesystem::path& run, std::int64_t index) {
   FURROW_ASSERT(index >= 0, index);
+  static const std::regex unfinished(R"(\.(tire\d+|terrain)_\d+\.h5.*\.part)");
   std::vector<std::filesystem::path> doomed;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(run / "frames", error)) {
-    const std::string name = entry.path().stem().string();
-    const std::size_t digits = name.rfind('_') + 1;  // 0 where there is none
-    const bool numbered = digits > 0 && name.find_first_not_of("0123456789", digits) == std::string::npos;
-    if (entry.path().extension() == ".part" || (numbered && std::stoll(name.substr(digits)) >= index))
+    const std::string name = entry.path().filename().string();
+    const auto frame = frame_name(name);
+    if ((frame && frame->index >= index) || std::regex_match(name, unfinished))
       doomed.push_back(entry.path());
   }
   for (const auto& file : doomed) std::filesystem::remove(file, error);

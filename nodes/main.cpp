@@ -1,4 +1,5 @@
 // furrow: the program. Every error ends here, as one message and the exit code that users script against.
+#include <csignal>
 #include <exception>
 #include <iostream>
 #include <string>
@@ -12,6 +13,8 @@ int main(int argc, char** argv) {
   const std::string command = argc > 1 ? argv[1] : "";
   const bool settles = command == "bed" || command == "sweep";
   if (settles || furrow::launched_by_mpi()) furrow::launch::wait_passively(argv);
+  // A file that outgrows the limit of file sizes is told; a rank is lost of it, and its supervisor tells that.
+  if (!furrow::launched_by_mpi()) std::signal(SIGXFSZ, SIG_IGN);
   furrow::ExitCode code = furrow::ExitCode::done;
   try {
     code = furrow::commands::run_command_line(argc, argv);

@@ -45,6 +45,7 @@ int stop_signals() { return stop_count.load(std::memory_order_relaxed); }
 void restore_signals() {
   for (const int signal : kStopSignals) set_handler(signal, SIG_DFL);
   set_handler(SIGPIPE, SIG_DFL);
+  set_handler(SIGXFSZ, SIG_DFL);  // main.cpp; Open MPI waits for ever where it is ignored
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);

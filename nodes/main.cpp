@@ -1,4 +1,5 @@
 // furrow: the program. Every error ends here, as one message and the exit code that users script against.
+#include <csignal>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -22,6 +23,8 @@ int fail(const furrow::Error& error, bool as_rank) {
 
 int main(int argc, char** argv) {
   const bool as_rank = furrow::commands::runs_as_rank(argc, argv);
+  // A file that outgrows the limit of file sizes is told; a rank is lost of it, and its supervisor tells that.
+  if (!as_rank) std::signal(SIGXFSZ, SIG_IGN);
   try {
     furrow::launch::end_where_memory_runs_out(furrow::launch::kOutOfMemory);
     furrow::launch::require_stack(argv);

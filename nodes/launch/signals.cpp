@@ -57,6 +57,7 @@ void restore_signals() {
   set_handler(SIGTSTP, SIG_DFL);
   for (const int signal : kStopSignals) set_handler(signal, SIG_DFL);
   set_handler(SIGPIPE, SIG_DFL);
+  set_handler(SIGXFSZ, SIG_DFL);  // main.cpp; Open MPI waits for ever where it is ignored
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);

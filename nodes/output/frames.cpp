@@ -1,6 +1,7 @@
 #include "nodes/output/frames.hpp"
 
 #include <algorithm>
+#include <regex>
 
 #include <fmt/format.h>
 
@@ -18,19 +19,11 @@ std::filesystem::path frame_file(const std::filesystem::path& run, const std::st
   FURROW_ASSERT(index >= 0, what, index);
   const auto folder = run / "frames";
   std::error_code ignored;  // if the folder cannot be made, creating the file says so
-  std::filesystem::create_directory(folder, ignored);
+  std::filesystem::create_directory(folder, ignored);  // never the run's: it was moved or removed
   return folder / fmt::format("{}_{:06d}.h5", what, index);
 }
 
 constexpr const char* kForms[] = {"tire%1d_%06d.h5", "terrain_%06d.h5"};  // what frame_file makes
-
-/// The number of a frame by its file's name; negative for any other file.
-std::int64_t number_of(const std::string& name) {
-  std::int64_t number = -1;
-  for (const char* form : kForms)
-    if (launch::is_of_form(name, form, &number)) return number;
-  return -1;
-}
 
 std::vector<float> flatten(const std::vector<Vec3>& vectors) {
   std::vector<float> flat;
@@ -89,13 +82,21 @@ void write_terrain_frame(const std::filesystem::path& run, std::int64_t index, d
   file.finish();
 }
 
+std::optional<FrameName> frame_name(const std::string& file) {
+  static const std::regex pattern(R"((tire\d+|terrain)_(\d{6,18})\.h5)");
+  std::smatch match;
+  if (!std::regex_match(file, match, pattern)) return std::nullopt;
+  return FrameName{match[1], std::stoll(match[2])};
+}
+
 void remove_frames_from(const std::filesystem::path& run, std::int64_t index) {
   FURROW_ASSERT(index >= 0, index);
   std::vector<std::filesystem::path> doomed;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(run / "frames", error)) {
     const std::string name = entry.path().filename().string();
-    if (number_of(name) >= index || number_of(name_in_the_making(name)) >= 0) doomed.push_back(entry.path());
+    const auto frame = frame_name(name);
+    if ((frame && frame->index >= index) || frame_name(name_in_the_making(name))) doomed.push_back(entry.path());
   }
   for (const auto& file : doomed) std::filesystem::remove(file, error);
 }

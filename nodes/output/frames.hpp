@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,7 @@ namespace furrow::output {
 /// Their folder and their names, for the run's list (launch/run_list.hpp).
 std::vector<std::string> frame_forms();
 
-/// @throws Error(io)
+/// @pre the run's folder exists, here and below @throws Error(io)
 void write_tire_frame(const std::filesystem::path& run, int tire, std::int64_t index, double time,
                       const SurfaceMesh& mesh, const SurfaceState& surface, const NodalForces& forces);
 
@@ -25,7 +26,15 @@ void write_tire_frame(const std::filesystem::path& run, int tire, std::int64_t i
 void write_terrain_frame(const std::filesystem::path& run, std::int64_t index, double time,
                          const terrain::TerrainFrame& frame);
 
-/// Removes the frames whose number is `index` or more, and those never finished; no other file. Errors are ignored.
+struct FrameName {
+  std::string kind;  // "tire0", "terrain"
+  std::int64_t index = 0;
+};
+/// What the name of a file in <run>/frames says; none for a file that is no frame.
+std::optional<FrameName> frame_name(const std::string& file);
+
+/// Removes the frames whose number is `index` or more, and what was never finished; files of the user's stay.
+/// Errors are ignored.
 void remove_frames_from(const std::filesystem::path& run, std::int64_t index);
 
 }  // namespace furrow::output

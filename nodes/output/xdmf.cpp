@@ -3,12 +3,12 @@
 #include "nodes/output/xdmf.hpp"
 
 #include <map>
-#include <regex>
 #include <set>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "nodes/output/frames.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/hdf5_file.hpp"
@@ -74,17 +74,18 @@ std::string grid(const Frame& f, const std::string& name) {
 }  // namespace
 
 void write_xdmf_index(const std::filesystem::path& run) {
-  if (!std::filesystem::is_directory(run / "frames")) return;
-  static const std::regex pattern(R"((tire\d+|terrain)_(\d+)\.h5)");
-  std::map<std::string, std::map<std::string, Frame>> series;  // by index, then by kind
-  for (const auto& entry : std::filesystem::directory_iterator(run / "frames")) {
-    std::smatch match;
-    const std::string name = entry.path().filename().string();
+  std::map<std::int64_t, std::map<std::string, Frame>> series;  // by index, then by kind
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(run / "frames", error)) {
     Frame frame;
-    if (std::regex_match(name, match, pattern) && read_frame(entry.path(), frame))
-      series[match[2]][match[1]] = frame;
+    if (const auto name = frame_name(entry.path().filename().string());
+        name && read_frame(entry.path(), frame))
+      series[name->index][name->kind] = frame;
   }
-  if (series.empty()) return;
+  if (series.empty()) {
+    std::filesystem::remove(run / "results.xdmf", error);  // of frames that are gone
+    return;
+  }
   std::set<std::string> kinds;
   for (const auto& [index, frames] : series)
     for (const auto& [kind, frame] : frames) kinds.insert(kind);
@@ -94,7 +95,7 @@ void write_xdmf_index(const std::filesystem::path& run) {
   for (const auto& [index, frames] : series) {
     if (frames.size() < kinds.size()) continue;
     text += fmt::format(
-        "<Grid Name=\"{}\" GridType=\"Collection\" CollectionType=\"Spatial\"><Time Value=\"{:.9g}\"/>\n",
+        "<Grid Name=\"{:06d}\" GridType=\"Collection\" CollectionType=\"Spatial\"><Time Value=\"{:.9g}\"/>\n",
         index, frames.begin()->second.time);
     for (const auto& [kind, frame] : frames) text += grid(frame, kind);
     text += "</Grid>\n";

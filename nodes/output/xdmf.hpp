@@ -6,7 +6,7 @@
 namespace furrow::output {
 
 /// Writes <run>/results.xdmf for the frames under <run>/frames: the instants at which every tire and the terrain left a
-/// readable file. Nothing when there are no frames. @throws Error(io)
+/// readable file. None when there are no frames. @throws Error(io)
 void write_xdmf_index(const std::filesystem::path& run);
 
 }  // namespace furrow::output

@@ -43,7 +43,8 @@ CheckpointPart CheckpointWriter::write_part(std::int64_t step) const {
     node_.save_setup(archive);
     save_cost(archive, cost_());
     const std::filesystem::path folder = checkpoint::unfinished_checkpoint(context_.directory, step);
-    std::error_code ignored;  // if it cannot be made, the file says so
+    // The run's own folder is never made: it was moved or removed. What cannot be made is told by the file in it.
+    std::error_code ignored;
     std::filesystem::create_directory(folder.parent_path(), ignored);
     std::filesystem::create_directory(folder, ignored);
     fault_point("checkpoint.write");

@@ -31,7 +31,8 @@ checkpoint::FrameClock frame_clock(const scenario::Scenario& scenario, const Run
   const std::int64_t every =
       context.directory.empty() ? 0 : scenario.run.steps_in(scenario.output.frame_interval);
   if (!context.resume) return {every, 0, 0};
-  return context.resume->manifest.frames.continued(context.resume->manifest.step, every);
+  const checkpoint::CheckpointManifest& manifest = context.resume->manifest;
+  return manifest.frames.every == every ? manifest.frames : manifest.frames.continued(manifest.step, every);
 }
 
 std::unique_ptr<Node> make_node(const scenario::Scenario& scenario, Address self, int threads,

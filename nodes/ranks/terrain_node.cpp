@@ -1,8 +1,7 @@
 // The terrain's rank: prepares the bed, says how high it stands under each tire, then pushes back.
-#include <fmt/format.h>
-
 #include "nodes/output/frames.hpp"
 #include "nodes/ranks/node.hpp"
+#include "nodes/ranks/saved_forces.hpp"
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
 
@@ -14,16 +13,6 @@ constexpr double kFootprintShare =
 
 std::string forces_name(std::size_t tire) { return "node/forces" + std::to_string(tire); }
 std::string contact_name(std::size_t tire) { return "node/contact" + std::to_string(tire); }
-
-/// @throws Error(io) unless every force has its vertex, and its tangent where there are any
-void restore_forces(const Archive& archive, const std::string& name, NodalForces& forces) {
-  restore_fields(archive, name, forces);
-  const std::size_t count = forces.vertex.size();
-  if (forces.force.size() != count || (!forces.tangent.empty() && forces.tangent.size() != count))
-    throw Error(ExitCode::io,
-                fmt::format("saved state '{}' has {} forces and {} tangents, expected {} of each", name,
-                            forces.force.size(), forces.tangent.size(), count));
-}
 
 class TerrainNode : public Node {
  public:
@@ -118,7 +107,7 @@ class TerrainNode : public Node {
   void restore(const Archive& archive) override {
     terrain_->restore(archive);
     for (std::size_t k = 0; k < forces_.size(); ++k) {
-      restore_forces(archive, forces_name(k), forces_[k]);
+      restore_forces(archive, forces_name(k), targets_[k].position.size(), forces_[k]);
       restore_fields(archive, contact_name(k), report_.contact[k]);
     }
     report_.state = terrain_->state();

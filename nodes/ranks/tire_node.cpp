@@ -13,6 +13,7 @@
 #include "nodes/output/frames.hpp"
 #include "nodes/ranks/carried_wrench.hpp"
 #include "nodes/ranks/impulse_ledger.hpp"
+#include "nodes/ranks/saved_forces.hpp"
 #include "nodes/scenario/wheel_geometry.hpp"
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
@@ -50,6 +51,7 @@ class TireNode : public Node {
     directory_ = context.directory;
     held_ = context.held;
     frames_ = frame_clock(scenario_, context);
+    if (context.saved) restore_shown_forces(context);  // before anybody touches the results of the run
     send(transport, kTerrain, SurfaceSetup{tire_->mesh(), tire_->material()});
     const auto start = receive_step<RimMotion>(transport, kRig, kPlacement);
     trajectory_ = tire::RimTrajectory(start.rim);
@@ -99,6 +101,11 @@ class TireNode : public Node {
     save_fields(archive, kReport, report_);
   }
 
+  /// The next forces come from the terrain; those that acted last are shown by the frame of the checkpoint's step.
+  void save_setup(Archive& archive) const override {
+    save_fields(archive, kShown, NodalForces{forces_.vertex, forces_.force});
+  }
+
   void restore(const Archive& archive) override {
     tire_->restore(archive);
     trajectory_.restore(archive);
@@ -114,7 +121,22 @@ class TireNode : public Node {
  private:
   static constexpr Address kRig{Role::rig, 0};
   static constexpr Address kTerrain{Role::terrain, 0};
-  static constexpr char kReport[] = "node/report";  // in the saved state
+  static constexpr char kReport[] = "node/report", kShown[] = "shown_forces";  // in the saved state
+
+  /// @throws Error(io) for a checkpoint of an earlier version that lacks them, where a frame would show them
+  void restore_shown_forces(const RunContext& context) {
+    FURROW_ASSERT(context.resume != nullptr);
+    const checkpoint::ResumePoint& point = *context.resume;
+    if (context.saved->has(std::string(kShown) + "/force"))
+      return restore_forces(*context.saved, kShown, tire_->mesh().vertex_count, forces_);
+    if (!frames_.due(point.manifest.step)) return;
+    throw io_error(
+        (point.folder / checkpoint::part_name({Role::tire, index_})).string(),
+        fmt::format("lacks '{}', which the frame at t = {:.6g} s shows: the checkpoint is of an earlier "
+                    "version of furrow; continue with that version, or without that frame (another "
+                    "output.frame_interval)",
+                    kShown, point.manifest.time));
+  }
 
   void account(double duration) {
     const RimState &from = trajectory_.start(), &to = trajectory_.end();

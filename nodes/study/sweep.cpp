@@ -5,6 +5,7 @@
 #include <unistd.h>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 
 #include <algorithm>
 #include <fstream>
@@ -48,14 +49,16 @@ std::string cell(const Json& value) {
   return quoted + "\"";
 }
 
-/// What the user was told of a failure: the error lines of the log's last part.
-std::string last_error(const fs::path& log) {
+/// Why a run ended: what its user was told, the last error in the log.
+std::string last_error(const fs::path& log, int status) {
+  if (WIFSIGNALED(status))
+    return fmt::format("killed by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
   std::ifstream in(log);
   std::string found;
   const std::string mark = "furrow: error: ";
   for (std::string line; std::getline(in, line);)
     if (line.starts_with(mark)) found = line.substr(mark.size());
-  return found;
+  return found.empty() ? "it left no message in " + log.string() : found;
 }
 
 /// As many shares of the cores this process may use, as even as they come; all of them where there are too few.
@@ -272,7 +275,7 @@ void Sweep::poll(Run& run) {
         run.exit_code == 0
             ? "holds the results of another scenario: it was resumed with other keys, or files were "
               "changed meanwhile; remove it to run it again"
-            : last_error(log_of(run));
+            : last_error(log_of(run), status);
     if (run.exit_code == 0) run.exit_code = static_cast<int>(ExitCode::bad_input);
     tell(run, fmt::format("FAILED with exit code {}: {}; see {}", run.exit_code, run.problem,
                           log_of(run).string()));

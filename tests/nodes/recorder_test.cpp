@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <set>
 
 #include "nodes/output/frames.hpp"
 #include "nodes/output/xdmf.hpp"
+#include "protocol/core/error.hpp"
 #include "protocol/files/hdf5_file.hpp"
 #include "temporary_folder.hpp"
 
@@ -40,6 +42,37 @@ TEST(Frames, a_terrain_without_grains_leaves_no_file) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
+TEST(Frames, the_folder_of_a_run_that_was_moved_is_not_made_anew) {
+  const testing::TemporaryFolder folder;
+  const std::filesystem::path run = folder.path() / "moved";
+  const terrain::TerrainFrame grains{{0, 0, 0}, {0.5f}, {0.01f}};
+  EXPECT_THROW(output::write_terrain_frame(run, 0, 0.0, grains), Error);
+  EXPECT_FALSE(std::filesystem::exists(run));
+}
+
+TEST(Frames, going_on_removes_later_frames_and_no_file_of_the_users) {
+  const testing::TemporaryFolder folder;
+  const std::filesystem::path frames = folder.path() / "frames";
+  std::filesystem::create_directory(frames);
+  const auto names = [&] {
+    std::set<std::string> found;
+    for (const auto& entry : std::filesystem::directory_iterator(frames))
+      found.insert(entry.path().filename().string());
+    return found;
+  };
+  const std::set<std::string> stay{"terrain_000001.h5",
+                                   "tire12_000001.h5",
+                                   "view_000007.png",
+                                   "tire_2026.h5",
+                                   "tire0_99999999999999999999.h5",
+                                   "mine.part"};
+  for (const std::string& name : stay) std::ofstream(frames / name) << "x";
+  for (const char* name : {"terrain_000002.h5", "tire12_1000000.h5", ".tire0_000001.h5.part"})
+    std::ofstream(frames / name) << "x";
+  output::remove_frames_from(folder.path(), 2);
+  EXPECT_EQ(names(), stay);
+}
+
 TEST(Xdmf, holds_complete_instants_only) {
   const testing::TemporaryFolder folder;
   const SurfaceMesh mesh{3, {{0, 1, 2}}};
@@ -58,6 +91,7 @@ TEST(Xdmf, holds_complete_instants_only) {
 
 TEST(Xdmf, is_not_written_without_frames) {
   const testing::TemporaryFolder folder;
+  std::ofstream(folder.path() / "results.xdmf") << "of frames that are gone";
   output::write_xdmf_index(folder.path());
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }

@@ -4,16 +4,21 @@ import json
 import os
 import pathlib
 import shutil
+import sys
 import tempfile
 
 from program import ROOT, SystemTest, changed, furrow, start, survivors, wait_for, write_scenario
+
+sys.path.insert(0, str(ROOT / "tests" / "campaign"))
+from compare_runs import differences  # noqa: E402
 
 FAULTY = os.environ.get("FURROW_FAULTY", str(ROOT / "build" / "furrow_faults"))
 INTERVAL, STEPS = 100, 500  # steps between checkpoints, steps of the run
 RANKS = {"rig": 0, "tire": 1, "terrain": 2}
 
-RUN = changed(rig={"touchdown_damping": 0}, run={"step": 1e-4, "end": 0.05, "average_from": 0.02, "peer_timeout": 20},
-              output={"frame_interval": 0.005}, checkpoint={"interval": 0.01, "keep": 3})
+# The wheel comes down within the first half: frames of a wheel in the air would show no forces whatever is saved.
+RUN = changed(rig={"touchdown_damping": 0}, run={"step": 2e-4, "end": 0.1, "average_from": 0.04, "peer_timeout": 20},
+              output={"series_interval": 0.002, "frame_interval": 0.01}, checkpoint={"interval": 0.02, "keep": 3})
 FLEXIBLE = changed(tire={"file": "hmmwv_layered.json", "rigid": False, "elements_circumference": 30, "elements_width": 12},
                    run=RUN["run"], output=RUN["output"], checkpoint=RUN["checkpoint"])
 
@@ -89,14 +94,6 @@ class CheckpointTest(SystemTest):
             (self.run_folder / name).unlink()
         return self.run_folder
 
-    def same_as_whole(self, run=None):
-        run = run or self.run_folder
-        self.assertEqual((run / "timeseries.csv").read_bytes(), (self.whole / "timeseries.csv").read_bytes())
-        for key in ("state_hash", "scenario_digest", "drawbar_pull_N", "rut_depth_m", "momentum_residual", "factorizations"):
-            self.assertEqual(summary(run)[key], summary(self.whole)[key], key)
-        frames = sorted(path.name for path in (self.whole / "frames").iterdir())
-        self.assertEqual(sorted(path.name for path in (run / "frames").iterdir()), frames)
-        for name in frames:
-            self.assertEqual((run / "frames" / name).read_bytes(), (self.whole / "frames" / name).read_bytes(), name)
-        self.assertEqual((run / "results.xdmf").read_bytes(), (self.whole / "results.xdmf").read_bytes())
-        self.assertEqual([entry.name for entry in (run / "checkpoints").iterdir() if entry.name.startswith(".")], [])
+    def same_as_whole(self, run=None, leave_out=()):
+        """@param leave_out files that differ by intent"""
+        self.assertEqual(differences(self.whole, run or self.run_folder, leave_out), [])

@@ -39,6 +39,8 @@ class Killed(CheckpointTest):
         self.assertEqual(steps(self.run_folder)[-1], step)
         if point == "checkpoint.done":  # what there is can be read
             self.assertEqual(furrow("report", self.run_folder, cwd=self.folder).returncode, 0)
+            for plot in self.run_folder.glob("*.png"):
+                plot.unlink()
         self.resume()
         self.same_as_whole()
         self.assertEqual(summary(self.run_folder)["segments"][1]["from_step"], step)
@@ -53,7 +55,7 @@ class Stopped(CheckpointTest):
         done = self.run_with_fault("step", 1, 250, "stop", flags=["--set", "run.peer_timeout=2"])
         self.assertRegex(done.stderr, r"furrow: error: .*waited 2 s for tire 0 .*tire 0 does not answer")
         self.resume()
-        self.same_as_whole()
+        self.same_as_whole(leave_out=["scenario.json", "checkpoints/*/manifest.json"])  # they hold the key
 
 
 class FullDisk(CheckpointTest):
@@ -92,7 +94,7 @@ class FullDisk(CheckpointTest):
 
     def test_in_a_checkpoint_it_is_told_and_the_last_one_stays(self):
         # the frame of the same step may fail before the rig tells of the checkpoint
-        told = r"the checkpoint at t = 0.02 s could not be written: .*terrain.h5|frames/terrain_000004.h5: cannot create"
+        told = r"the checkpoint at t = 0.04 s could not be written: .*terrain.h5|frames/terrain_000004.h5: cannot create"
         self.check("checkpoint.write", 2, 2, told, 100)
 
     def test_in_a_frame(self):
@@ -164,7 +166,7 @@ class Damaged(CheckpointTest):
     def test_series_that_was_written_on(self):
         shutil.rmtree(self.newest)
         with open(self.run / "timeseries.csv", "a") as series:
-            series.write("0.06,0.3,")  # a line cut short
+            series.write("0.102,0.3,")  # a line cut short
         self.resume()
         self.same_as_whole()
 

@@ -2,11 +2,17 @@
 """`furrow sweep`: a table of runs that goes on where it was interrupted, and passes over one bed."""
 import csv
 import json
+import os
+import pathlib
 import shutil
 import signal
+import sys
 import unittest
 
 from program import ROOT, SystemTest, changed, furrow, main, start, survivors, wait_for, write_scenario
+
+sys.path.insert(0, str(ROOT / "tests" / "campaign"))
+from compare_runs import differences  # noqa: E402
 
 
 class Sweep(SystemTest):
@@ -71,6 +77,20 @@ class Sweep(SystemTest):
         self.assertEqual([row["state"] for row in self.table()], ["done", "done"])
         folders = [self.folder / "results" / "study" / row["folder"] for row in self.table()]
         self.assertEqual([len(json.loads((run / "summary.json").read_text())["segments"]) for run in folders], [2, 1])
+        whole = furrow("sweep", study, "--out", "whole", cwd=self.folder)
+        self.assertEqual(whole.returncode, 0, whole.stderr)
+        self.assertEqual(differences(self.folder / "whole", self.folder / "results" / "study"), [])
+
+    def test_a_run_whose_supervisor_was_killed_says_so(self):
+        study = self.study(list=[{"rig.slip": 0.1}], set={"run.end": 0.2})
+        process = start("sweep", study, cwd=self.folder)
+        self.addCleanup(process.kill)
+        children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children")
+        supervisor = int(wait_for(lambda: children.read_text().split(), 60, "the run begins")[0])
+        os.kill(supervisor, signal.SIGKILL)
+        _, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 4, err)
+        self.assertIn("FAILED with exit code 4: killed by signal 9 (Killed)", err)
 
     def test_mistakes_are_told_before_anything_runs(self):
         for keys, words in (({"grid": {"rig.slpi": [1]}}, "key 'rig.slpi': is unknown, expected 'rig.slip'?"),

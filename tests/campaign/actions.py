@@ -1,0 +1,275 @@
+"""What a case does to a run at its moment. Each action leaves a folder that can be continued, unless it says so."""
+import os
+import resource
+import shutil
+import signal
+import subprocess
+import time
+
+import processes
+from case import DOCUMENTED, Deviation
+
+ALL = {}
+GONE = "gone"  # returned by an action after which the run starts anew
+
+
+def action(function):
+    ALL[function.__name__] = function
+    return function
+
+
+def is_root():
+    return os.geteuid() == 0
+
+
+def mount(*words):
+    return is_root() and subprocess.run(["mount", *map(str, words)], capture_output=True).returncode == 0
+
+
+def unmount(folder):
+    subprocess.run(["umount", "-l", str(folder)], capture_output=True)
+
+
+def begin(case, **options):
+    """@returns (what was started, whether it still runs at the moment)"""
+    started = case.start(case.first, **options)
+    alive = case.wait(started, case.notes["moment_s"])
+    case.notes["in_time"] = alive
+    return started, alive
+
+
+def strike(case, started, number):
+    pid, role = case.target(started)
+    case.notes["target"] = role
+    case.send(started, pid, number)
+    return pid
+
+
+@action
+def kill(case):
+    started, alive = begin(case)
+    if alive:
+        strike(case, started, signal.SIGKILL)
+    case.finish(started)
+    case.until_done()
+
+
+@action
+def kill_all(case):
+    """As when the machine goes down, but for what the disk had not got yet."""
+    started, _ = begin(case)
+    everyone = list(processes.living(str(case.work)))
+    case.rng.shuffle(everyone)
+    for pid in everyone:
+        case.send(started, pid, signal.SIGKILL)
+    case.finish(started)
+    case.until_done()
+
+
+@action
+def kill_and_kill(case):
+    """Each continuation is killed as well, without a pause."""
+    started, alive = begin(case)
+    ends = {0}
+    for _ in range(case.rng.randint(2, 4)):
+        if alive:
+            strike(case, started, signal.SIGKILL)
+        case.finish(started, DOCUMENTED if alive else ends)
+        if not case.newest_checkpoints():
+            return case.until_done()
+        started, ends = case.start(case.again), {0, 2}  # it may find the folder taken by those that are ending
+        alive = case.wait(started, case.rng.uniform(0.1, 1.0))
+    case.finish(started, ends)
+    case.until_done()
+
+
+@action
+def term(case):
+    started, alive = begin(case)
+    if alive:
+        strike(case, started, signal.SIGTERM)
+    case.finish(started)
+    case.until_done()
+
+
+@action
+def stop_and_continue(case):
+    started, alive = begin(case)
+    if alive:
+        pid = strike(case, started, signal.SIGSTOP)
+        time.sleep(case.rng.uniform(0.05, 1.0))
+        processes.send(pid, signal.SIGCONT)
+    case.finish(started, {0})
+
+
+@action
+def disk_full(case):
+    """A small disk that is filled at the moment; without root, or where nothing can be mounted, a limit of file sizes."""
+    case.work.mkdir(parents=True, exist_ok=True)
+    if not mount("-t", "tmpfs", "-o", "size=64m", "tmpfs", case.work):
+        return file_limit(case)
+    case.clean_up.append(lambda: unmount(case.work))
+    started, _ = begin(case)
+    ballast = case.work / "ballast"
+    with open(ballast, "wb", buffering=0) as file:
+        try:
+            for size in (1 << 20, 4096, 1):
+                while file.write(bytes(size)) == size:
+                    pass
+        except OSError:
+            pass
+    case.finish(started)
+    ballast.unlink()
+    case.until_done()
+
+
+@action
+def file_limit(case):
+    """RLIMIT_FSIZE of all processes: every file that grows beyond it."""
+    size = int(2 ** case.rng.uniform(10, 22))
+    case.notes["limit_bytes"] = size
+    started, _ = begin(case, limits=[(resource.RLIMIT_FSIZE, size)])
+    case.finish(started)
+    case.until_done()
+
+
+@action
+def memory_limit(case):
+    """RLIMIT_AS of all processes from the start, or of one of them at the moment."""
+    size = int(2 ** case.rng.uniform(26, 31))
+    case.notes["limit_bytes"] = size
+    if case.rng.random() < 0.5:
+        started, _ = begin(case, limits=[(resource.RLIMIT_AS, size)])
+    else:
+        started, alive = begin(case)
+        if alive:
+            pid, case.notes["target"] = case.target(started)
+            try:
+                resource.prlimit(pid, resource.RLIMIT_AS, (size, size))
+            except ProcessLookupError:
+                pass
+    case.finish(started)
+    case.until_done()
+
+
+@action
+def moved(case):
+    """The folder is given another name, and back."""
+    started, _ = begin(case)
+    elsewhere = case.work / "elsewhere"
+    if not case.out.exists():
+        case.notes["in_time"] = False
+        case.finish(started)
+        return case.until_done()
+    case.out.rename(elsewhere)
+    wait_for_end = case.rng.random() < 0.5
+    code = None
+    if wait_for_end:
+        code = case.finish(started)
+    else:
+        time.sleep(case.rng.uniform(0.0, 0.5))
+    if case.out.exists():
+        raise Deviation(f"the moved folder was made anew with {sorted(path.name for path in case.out.iterdir())}")
+    elsewhere.rename(case.out)
+    if code is None:
+        case.finish(started)
+    case.until_done()
+
+
+@action
+def read_only(case):
+    """A read-only mount over the folder; without root its mode."""
+    started, _ = begin(case)
+    if not case.out.exists():
+        case.notes["in_time"] = False
+    elif mount("--bind", case.out, case.out):
+        case.clean_up.append(lambda: unmount(case.out))
+        mount("-o", "remount,ro,bind", case.out)
+    else:
+        os.chmod(case.out, 0o555)
+    case.finish(started)
+    if case.clean_up:
+        case.clean_up.pop()()
+    if case.out.exists():
+        os.chmod(case.out, 0o755)
+    case.until_done()
+
+
+@action
+def removed(case):
+    """The folder is gone: that is told, nothing is continued, and the run starts anew."""
+    started, alive = begin(case)
+    had_begun = alive and case.out.exists()
+    shutil.rmtree(case.out, ignore_errors=True)
+    gone = time.monotonic()
+    code = case.finish(started)
+    if code == 0 and had_begun:
+        if time.monotonic() - gone > 1.0:
+            raise Deviation("ended with 0 though its folder was removed a while ago")
+        case.notes["ended_meanwhile"] = True
+        shutil.rmtree(case.out, ignore_errors=True)
+    processes.wait_until_gone(str(case.work), 10)
+    if not case.newest_checkpoints() and case.again != case.first and not (case.out / "summary.json").exists():
+        case.finish(case.start(case.again), {2})
+        case.finish(case.start(case.anew), {0})
+    else:
+        case.until_done()
+
+
+@action
+def clock(case):
+    """All is killed and continued where the clock since boot is another, as after a reboot; needs root."""
+    started, _ = begin(case)
+    for pid in processes.living(str(case.work)):
+        case.send(started, pid, signal.SIGKILL)
+    case.finish(started)
+    offset = case.rng.choice([-int(time.monotonic() * 0.9), 3600, 10 ** 8])
+    case.notes["offset_s"] = offset
+    prefix = ["unshare", "--time", "--fork", "--monotonic", str(offset), "--boottime", str(offset)]
+    if not is_root() or subprocess.run([*prefix, "true"], capture_output=True).returncode != 0:
+        case.notes["no_time_namespace"] = True
+        prefix = []
+    case.until_done(prefix=prefix)
+
+
+@action
+def second_user(case):
+    """Somebody else continues or overwrites the folder while it is written: refused, and the first one goes on."""
+    started, alive = begin(case)
+    if alive and case.out.exists():
+        words = case.rng.choice([case.again, case.anew])
+        case.notes["second"] = words[0] + (" --overwrite" if "--overwrite" in words else "")
+        code = case.finish(case.start(words), {0, 2})
+        if code == 0 and not started.ended():
+            raise Deviation(f"{words[0]} was let into a folder that is taken")
+    case.finish(started, {0} if alive else DOCUMENTED)
+    case.until_done()
+
+
+@action
+def second_user_of_the_cache(case):
+    """Two runs settle the same bed into one empty cache, and one of them is killed."""
+    case.cache = case.work / "cache"
+    other = [str(word).replace(str(case.out), str(case.work / "other")) for word in case.first]
+    started = case.start(case.first)
+    second = case.start(other)
+    if case.wait(second, case.notes["moment_s"]) and not second.ended():
+        case.send(second, second.process.pid, signal.SIGKILL)
+    case.finish(second)
+    case.finish(started, {0})
+
+
+@action
+def double_resume(case):
+    """Two continue it at once: one does, the other is refused."""
+    started, alive = begin(case)
+    if alive:
+        for pid in processes.living(str(case.work)):
+            case.send(started, pid, signal.SIGKILL)
+    case.finish(started)
+    if case.newest_checkpoints():
+        pair = [case.start(case.again), case.start(case.again)]
+        codes = [case.finish(one, {0, 2}) for one in pair]
+        if 0 not in codes:
+            case.notes["both_refused"] = True
+    case.until_done()

@@ -1,0 +1,121 @@
+#!/usr/bin/python3
+"""compare_runs.py sees every difference that counts, and none of those that it lists."""
+import json
+import pathlib
+import shutil
+import tempfile
+import unittest
+
+import h5py
+import numpy as np
+
+from compare_runs import differences
+
+SUMMARY = {"state_hash": "a", "sinkage_m": 0.0, "wall_s": 1.0, "ranks": [{"cpu_s": 1.0}], "wheels": [{"slip": None}]}
+
+
+def write_h5(path, **datasets):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with h5py.File(path, "w", track_order=False) as file:
+        file.attrs["time_s"] = 0.1
+        file.attrs["checksum"] = "1"
+        for name, values in datasets.items():
+            file.create_dataset(name.replace("__", "/"), data=np.asarray(values), track_times=False)
+
+
+def write_checkpoint(run, step, **wall):
+    folder = run / "checkpoints" / f"{step:012}"
+    write_h5(folder / "tire0.h5", state__x=[1.0 * step], **{"state__run:cost:cpu_s": [wall.get("cpu", 1.0)]})
+    (folder / "manifest.json").write_text(json.dumps({"step": step, "write_s": wall.get("write", 0.1), "parts": []}))
+
+
+def write_run(run):
+    run.mkdir(parents=True)
+    (run / "timeseries.csv").write_text("time_s\n0.1\n")
+    (run / "summary.json").write_text(json.dumps(SUMMARY))
+    (run / "run.log").write_text("said")
+    write_h5(run / "frames" / "tire0_000001.h5", force=np.float32([0.0, np.nan]))
+    write_checkpoint(run, 100)
+    write_checkpoint(run, 200)
+
+
+class CompareRuns(unittest.TestCase):
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory()
+        self.addCleanup(holder.cleanup)
+        self.a, self.b = pathlib.Path(holder.name) / "a", pathlib.Path(holder.name) / "b"
+        write_run(self.a)
+        self.again()
+
+    def again(self):
+        shutil.rmtree(self.b, ignore_errors=True)
+        write_run(self.b)
+        return self.b
+
+    def found(self, words, leave_out=()):
+        text = "\n".join(differences(self.a, self.b, leave_out))
+        self.assertIn(words, text)
+        self.assertEqual(text.count("\n"), 0, text)
+
+    def test_equal_runs(self):
+        self.assertEqual(differences(self.a, self.b), [])
+
+    def test_what_may_differ(self):
+        (self.b / "run.log").write_text("said otherwise")
+        (self.b / "profile.json").write_text("{}")
+        (self.b / "summary.json").write_text(json.dumps({**SUMMARY, "wall_s": 2.0, "ranks": [], "cpu": "another"}))
+        write_checkpoint(self.b, 200, cpu=2.0, write=0.2)
+        write_checkpoint(self.b, 150)
+        shutil.rmtree(self.b / "checkpoints" / f"{100:012}")
+        self.assertEqual(differences(self.a, self.b), [])
+
+    def test_files(self):
+        (self.b / "timeseries.csv").write_text("time_s\n0.2\n")
+        self.found("timeseries.csv: differs from byte 9, line 2")
+        self.found_after(lambda run: (run / "timeseries.csv").unlink(), "timeseries.csv: only in")
+        self.found_after(lambda run: (run / ".summary.json.part").write_text(""), ".summary.json.part: only in")
+        self.found_after(lambda run: (run / "checkpoints" / ".000000000200.part").write_text(""), ".part: only in")
+        self.found_after(lambda run: (run / "checkpoints" / f"{100:012}" / "rig.h5").write_text(""), "rig.h5: only in")
+
+    def found_after(self, change, words):
+        change(self.again())
+        self.found(words)
+
+    def test_summary(self):
+        for keys, words in (({"state_hash": "b"}, "summary.json: state_hash: a and b"), ({"sinkage_m": -0.0}, "sinkage_m"),
+                            ({"wheels": [{"slip": 0.1}]}, "wheels.0.slip: None and 0.1"), ({"more": 1}, "more: only in the second")):
+            self.found_after(lambda run, keys=keys: (run / "summary.json").write_text(json.dumps({**SUMMARY, **keys})), words)
+
+    def test_hdf5(self):
+        frame = "frames/tire0_000001.h5"
+        self.found_after(lambda run: write_h5(run / frame, force=np.float32([-0.0, np.nan])), "dataset force: ")
+        self.found_after(lambda run: write_h5(run / frame, force=[0.0, np.nan]), "dataset force: float32[2] and float64[2]")
+        self.found_after(lambda run: write_h5(run / frame, force=np.float32([0.0, np.nan]), more=[1]), "more: only in the second")
+
+        def attribute(run):
+            with h5py.File(run / frame, "a") as file:
+                file.attrs["time_s"] = 0.2
+        self.found_after(attribute, "attribute /@time_s")
+
+    def test_checkpoints(self):
+        self.found_after(lambda run: shutil.rmtree(run / "checkpoints" / f"{200:012}"), "checkpoints: the newest is 000000000200")
+
+        def other_state(run):
+            with h5py.File(run / "checkpoints" / f"{200:012}" / "tire0.h5", "a") as file:
+                file["state/x"][0] = 3.0
+        self.found_after(other_state, "tire0.h5: dataset state/x")
+
+    def test_a_run_of_a_study_and_files_left_out_by_intent(self):
+        for folder in (self.a, self.b):
+            shutil.copytree(folder, folder / "runs" / "1f")
+            (folder / "sweep.csv").write_text(f"run,state,wall_s\n1,done,{folder.name}\n")
+            (folder / "runs" / "1f.log").write_text(folder.name)
+        (self.b / "runs" / "1f" / "run.log").write_text("otherwise")
+        self.assertEqual(differences(self.a, self.b), [])
+        (self.b / "runs" / "1f" / "scenario.json").write_text("{}")
+        self.found("runs/1f/scenario.json: only in")
+        self.assertEqual(differences(self.a, self.b, ["scenario.json"]), [])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,83 @@
+#!/usr/bin/python3
+"""Every file of a run that was continued is that of the run that was not interrupted, also where a frame falls on the step
+of the checkpoint, for every kind of tire. tests/campaign/compare_runs.py compares them."""
+import shutil
+import sys
+
+import h5py
+
+from checkpoint_runs import CheckpointTest, steps
+from program import ROOT, main
+
+sys.path.insert(0, str(ROOT / "tests" / "campaign"))
+from scenarios import SINGLE  # noqa: E402
+
+
+def kept(name):
+    """A scenario of the campaign that keeps all its checkpoints."""
+    scenario = SINGLE[name]
+    return {**scenario, "checkpoint": {**scenario["checkpoint"], "keep": 1000}}
+
+
+class Exact:
+    """Frames and checkpoints fall on the same steps. `LOADED`: that the terrain pushes at the frame of this number."""
+    WHEELS = 1
+    LOADED = 4
+
+    def test_the_terrain_pushes_in_the_frames_of_the_checkpoints(self):
+        for wheel in range(self.WHEELS):
+            with h5py.File(self.whole / "frames" / f"tire{wheel}_{self.LOADED:06}.h5") as frame:
+                self.assertGreater(abs(frame["force"][()]).max(), 1.0)
+
+    def test_from_a_checkpoint_whose_step_has_a_frame(self):
+        all_steps = steps(self.whole)
+        interval = all_steps[0]
+        for step in (interval * self.LOADED, all_steps[-1]):
+            with self.subTest(step=step):
+                shutil.rmtree(self.run_folder, ignore_errors=True)
+                self.copy_of_whole()
+                for later in [s for s in all_steps if s > step]:
+                    shutil.rmtree(self.run_folder / "checkpoints" / f"{later:012}")
+                self.resume()
+                self.same_as_whole()
+
+    def test_after_kill_of_each_rank(self):
+        interval = steps(self.whole)[0]
+        for rank in range(self.WHEELS + 2):
+            with self.subTest(rank=rank):
+                shutil.rmtree(self.run_folder, ignore_errors=True)
+                self.mark.unlink(missing_ok=True)
+                self.run_with_fault("step", rank, interval * self.LOADED + 7, "kill")
+                self.resume()
+                self.same_as_whole()
+
+    def test_a_finished_run_with_a_later_end(self):
+        end = self.SCENARIO["run"]["end"]
+        interval = self.SCENARIO["checkpoint"]["interval"]
+        self.program("run", self.path, "--out", self.run_folder, "--no-plots", "--set", f"run.end={interval * self.LOADED:.3g}")
+        self.resume("--until", end)
+        self.same_as_whole(leave_out=["checkpoints/*/manifest.json"])  # those of the first part hold the earlier end
+
+
+class RigidTireOnGrains(Exact, CheckpointTest):
+    SCENARIO = kept("rigid")
+    LOADED = 7
+
+
+class FlexibleTireUnderAPressureSchedule(Exact, CheckpointTest):
+    SCENARIO = kept("shell")
+
+
+class ContactTangents(Exact, CheckpointTest):
+    SCENARIO = kept("tangents")
+    LOADED = 6
+
+
+class SeveralWheels(Exact, CheckpointTest):
+    SCENARIO = kept("wheels")
+    WHEELS = 2
+    LOADED = 6
+
+
+if __name__ == "__main__":
+    main()

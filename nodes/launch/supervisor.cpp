@@ -75,8 +75,8 @@ std::vector<std::string> mpirun_command(const Launch& launch) {
   return command;
 }
 
-void set_environment() {
-  setenv(kSupervisedVariable, "1", 1);
+void set_environment(const std::string& supervisor) {
+  setenv(kSupervisedVariable, supervisor.c_str(), 1);
   setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
   setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
   for (const std::string& pair : passive_environment()) {
@@ -151,8 +151,8 @@ void Supervisor::start() {
                         .err = err_.write,
                         .own_group = true,
                         .death_signal = SIGUSR1,
-                        .prepare = [hold = launch_.hold] {
-                          set_environment();
+                        .prepare = [hold = launch_.hold, self = supervisor_name()] {
+                          set_environment(self);
                           if (hold >= 0) fcntl(hold, F_SETFD, 0);
                         }});
   close(nothing);

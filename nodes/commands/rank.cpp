@@ -215,6 +215,8 @@ void let_first_rank_speak() { std::this_thread::sleep_for(std::chrono::seconds(1
 ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
   launch::die_with_parent(SIGKILL, getppid());
   launch::catch_stop_signals();
+  if (!launch::supervisor_lives())
+    return ExitCode::stopped;  // killed while mpirun could not hand the signal on yet
   RankReporter reporter;
   reporter.stage(launch::RankLine::Kind::begun);
   Task task;

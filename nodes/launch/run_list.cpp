@@ -162,7 +162,9 @@ bool RunList::holds(std::string_view name) const {
 
 RunList::Found RunList::find(const fs::path& folder, const std::string& inside) const {
   Found found;
-  find(folder, inside, found);
+  std::error_code error;
+  const bool linked = fs::is_symlink(fs::symlink_status(folder / inside.substr(0, inside.rfind('/')), error));
+  if (inside.empty() || !linked) find(folder, inside, found);
   return found;
 }
 

@@ -86,9 +86,9 @@ std::optional<std::filesystem::path> on_path(const std::string& program) {
   return std::nullopt;
 }
 
-void set_environment() {
+void set_environment(const std::string& supervisor) {
   forget_launcher();
-  setenv(kSupervisedVariable, "1", 1);
+  setenv(kSupervisedVariable, supervisor.c_str(), 1);
   setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
   setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
   setenv("OMPI_MCA_orte_forward_job_control", "1", 0);  // mpirun hands stops and continuations on
@@ -177,8 +177,8 @@ void Supervisor::start() {
                         .err = err_.write,
                         .own_group = true,
                         .death_signal = SIGUSR1,
-                        .prepare = [hold = launch_.hold] {
-                          set_environment();
+                        .prepare = [hold = launch_.hold, self = supervisor_name()] {
+                          set_environment(self);
                           if (hold >= 0) fcntl(hold, F_SETFD, 0);
                         }});
   close(nothing);

@@ -1,6 +1,11 @@
 #include "nodes/launch/supervisor_lines.hpp"
 
+#include <unistd.h>
+#include <csignal>
+
 #include <array>
+#include <cerrno>
+#include <cstdlib>
 
 #include <nlohmann/json.hpp>
 
@@ -61,6 +66,21 @@ std::optional<RankLine> decode(std::string_view text) {
     return std::nullopt;
   }
   return line;
+}
+
+std::string supervisor_name() {
+  std::array<char, 256> host{};
+  gethostname(host.data(), host.size() - 1);
+  return std::string(host.data()) + ":" + std::to_string(getpid());
+}
+
+bool supervisor_lives() {
+  const char* value = std::getenv(kSupervisedVariable);
+  const std::string name = value ? value : "", self = supervisor_name();
+  const std::size_t colon = name.rfind(':');
+  if (colon == std::string::npos || name.substr(0, colon) != self.substr(0, self.rfind(':'))) return true;
+  const int process = std::atoi(name.c_str() + colon + 1);
+  return process <= 0 || kill(process, 0) == 0 || errno != ESRCH;
 }
 
 }  // namespace furrow::launch

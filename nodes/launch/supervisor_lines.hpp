@@ -25,7 +25,12 @@ std::string encode(const RankLine& line);
 /// Nothing for a line that is not ours.
 std::optional<RankLine> decode(std::string_view line);
 
-/// The environment variable that tells a rank that a supervisor listens.
+/// The environment variable that tells a rank that a supervisor listens, and which process that is.
 inline constexpr const char* kSupervisedVariable = "FURROW_SUPERVISED";
+
+/// This process as supervisor: "host:4711".
+std::string supervisor_name();
+/// False when the variable names a process of this machine that is gone: it was killed before it could be heard.
+bool supervisor_lives();
 
 }  // namespace furrow::launch

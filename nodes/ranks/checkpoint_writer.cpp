@@ -47,6 +47,8 @@ CheckpointPart CheckpointWriter::write_part(std::int64_t step) const {
     std::error_code ignored;
     std::filesystem::create_directory(folder.parent_path(), ignored);
     std::filesystem::create_directory(folder, ignored);
+    if (!std::filesystem::is_directory(std::filesystem::symlink_status(folder, ignored)))
+      throw io_error(folder.string(), "is no folder, expected one for the parts of the checkpoint");
     fault_point("checkpoint.write");
     write_archive(folder / part.file, archive);
     part.checksum = checkpoint::part_checksum(folder / part.file);

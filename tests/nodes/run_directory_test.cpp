@@ -130,6 +130,7 @@ TEST(RunList, links_are_not_followed) {
   write(elsewhere / "terrain_000001.h5", "mine");
   fs::create_directory_symlink(elsewhere, run / "frames");
   launch::remove_listed(run, RunList::read(run));
+  launch::remove_listed(run, RunList::read(run), "frames/");
   EXPECT_EQ(read(elsewhere / "terrain_000001.h5"), "mine");
 }
 

@@ -1,4 +1,9 @@
 // The supervisor's two ears: lines of the ranks, and mpirun's own words.
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+
 #include <gtest/gtest.h>
 
 #include "nodes/launch/progress.hpp"
@@ -43,6 +48,24 @@ TEST(RankLine, what_is_not_ours_is_left_alone) {
                            "@furrow {\"kind\":\"x\",\"rank\":0}", "@furrow {\"kind\":\"note\"}",
                            "@furrow {\"kind\":\"progress\",\"rank\":0,\"phase\":\"a\",\"values\":[1]}"})
     EXPECT_FALSE(launch::decode(text)) << text;
+}
+
+TEST(Supervisor, is_missed_by_ranks_on_its_machine_when_it_is_gone) {
+  const auto lives = [](const std::string& name) {
+    setenv(launch::kSupervisedVariable, name.c_str(), 1);
+    const bool lives = launch::supervisor_lives();
+    unsetenv(launch::kSupervisedVariable);
+    return lives;
+  };
+  const std::string own = launch::supervisor_name(), host = own.substr(0, own.rfind(':') + 1);
+  EXPECT_TRUE(lives(own));
+  const pid_t child = fork();
+  if (child == 0) _exit(0);
+  waitpid(child, nullptr, 0);
+  EXPECT_FALSE(lives(host + std::to_string(child)));
+  EXPECT_TRUE(lives("another-" + host + std::to_string(child))) << "who can tell from here";
+  EXPECT_TRUE(lives("1"));
+  EXPECT_TRUE(launch::supervisor_lives()) << "nobody was named";
 }
 
 TEST(LauncherText, names_the_rank_that_died) {

@@ -181,6 +181,19 @@ class Gone(CheckpointTest):
                 self.goes_on(process, 5, f"furrow: error: .*out/{name}: was moved or removed while the run was under way")
                 self.assertFalse((self.run_folder / name).exists())
 
+    def test_a_link_where_the_parts_of_a_checkpoint_are_to_be(self):
+        process = self.start_waiting("step", 0, 220)
+        elsewhere = self.folder / "elsewhere"
+        elsewhere.mkdir()
+        (elsewhere / "rig.h5").write_text("mine")
+        (self.run_folder / "checkpoints" / ".000000000300.part").symlink_to(elsewhere)
+        self.mark.unlink()
+        _, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 0, err)
+        self.assertIn("the checkpoint at t = 0.03 s could not be written", err)
+        self.assertEqual({path.name: path.read_text() for path in elsewhere.iterdir()}, {"rig.h5": "mine"})
+        self.assertEqual(steps(self.run_folder), [100, 200, 400, 500][-3:])
+
     def test_another_run_in_its_place(self):
         process = self.start_waiting("step", 0, 220)
         self.run_folder.rename(self.folder / "elsewhere")

@@ -20,8 +20,10 @@ namespace {
 constexpr std::int64_t kMaxGrains = std::numeric_limits<std::int32_t>::max() / 4;
 constexpr double kFar = 1e6;  // m; Bin::holds() has the same limit
 
-void require(bool ok, const char* array, const std::string& what) {
-  if (!ok) throw Error(ExitCode::io, fmt::format("saved state '{}' {}: it is damaged", array, what));
+/// @param what is called for the text only where something is wrong: most of this is asked of every pair of grains
+template <class What>
+void require(bool ok, const char* array, const What& what) {
+  if (!ok) throw Error(ExitCode::io, fmt::format("saved state '{}' {}: it is damaged", array, what()));
 }
 
 std::size_t lanes(std::int64_t pairs) {
@@ -48,22 +50,22 @@ class Check {
 
   void grains() {
     n_ = archive_.get_int("count");
-    require(n_ >= 0 && n_ <= kMaxGrains, "count", fmt::format("is {}", n_));
+    require(n_ >= 0 && n_ <= kMaxGrains, "count", [&] { return fmt::format("is {}", n_); });
     const auto n = static_cast<std::size_t>(n_);
     for (const double x : archive_.get<double>("position", 4 * n))
-      require(std::abs(x) < kFar, "position", "holds what is no position");
+      require(std::abs(x) < kFar, "position", [&] { return "holds what is no position"; });
     for (const std::int32_t id : archive_.get<std::int32_t>("id", n))
-      require(id >= 0 && id < n_, "id", fmt::format("names grain {} of {}", id, n_));
+      require(id >= 0 && id < n_, "id", [&] { return fmt::format("names grain {} of {}", id, n_); });
   }
 
   void samples() {
     if (!archive_.has("samples/until")) return;
     const auto& samples = archive_.get<double>("samples/strips");
     require(samples.empty() || samples.size() == 2 * count_, "samples/strips",
-            fmt::format("has {} numbers, expected {}", samples.size(), 2 * count_));
+            [&] { return fmt::format("has {} numbers, expected {}", samples.size(), 2 * count_); });
     for (std::size_t k = 1; k < samples.size(); k += 2)
       require(samples[k] >= 0.0 && samples[k] < 1e15, "samples/strips",
-              "holds what is no number of contacts");
+              [&] { return "holds what is no number of contacts"; });
   }
 
   /// The strips share out the grains without a gap.
@@ -73,23 +75,25 @@ class Check {
     std::int64_t next = 0;
     for (std::size_t k = 0; k < count_; ++k) {
       require(first_[k] == next && last_[k] >= first_[k], "strips/first",
-              fmt::format("begins strip {} with grain {}, expected {}", k, first_[k], next));
+              [&] { return fmt::format("begins strip {} with grain {}, expected {}", k, first_[k], next); });
       next = last_[k];
     }
-    require(next == n_, "strips/last", fmt::format("ends with grain {}, expected {}", next, n_));
+    require(next == n_, "strips/last",
+            [&] { return fmt::format("ends with grain {}, expected {}", next, n_); });
   }
 
   void cells() {
     const std::int64_t along_z = archive_.get_int("strips/cells_z");
-    require(along_z >= 1 && along_z <= Strips::kMaxCellsZ, "strips/cells_z", fmt::format("is {}", along_z));
-    require(archive_.get_int("strips/resorted") >= 0, "strips/resorted", "is negative");
+    require(along_z >= 1 && along_z <= Strips::kMaxCellsZ, "strips/cells_z",
+            [&] { return fmt::format("is {}", along_z); });
+    require(archive_.get_int("strips/resorted") >= 0, "strips/resorted", [&] { return "is negative"; });
     const auto each = static_cast<std::size_t>(strips_.cells_y() * along_z + 1);
     const auto& cells = archive_.get<std::int32_t>("strips/cells", each * count_);
     for (std::size_t k = 0; k < count_; ++k) {
       const auto from = cells.begin() + static_cast<std::ptrdiff_t>(k * each),
                  to = from + static_cast<std::ptrdiff_t>(each);
       require(*from == 0 && *(to - 1) == grains_of(k) && std::is_sorted(from, to), "strips/cells",
-              fmt::format("does not share out the grains of strip {}", k));
+              [&] { return fmt::format("does not share out the grains of strip {}", k); });
     }
   }
 
@@ -97,7 +101,8 @@ class Check {
     const auto& pairs = archive_.get<std::int32_t>("strips/pairs", count_);
     std::size_t all = 0, groups = 0;
     for (std::size_t k = 0; k < count_; ++k) {
-      require(pairs[k] >= 0, "strips/pairs", fmt::format("has {} pairs for strip {}", pairs[k], k));
+      require(pairs[k] >= 0, "strips/pairs",
+              [&] { return fmt::format("has {} pairs for strip {}", pairs[k], k); });
       all += static_cast<std::size_t>(pairs[k]), groups += lanes(pairs[k]);
     }
     const auto& partners = archive_.get<std::uint64_t>("pairs/partners", all);
@@ -112,7 +117,7 @@ class Check {
                             j = partners[pair + static_cast<std::size_t>(p)] & 0xFFFFFFFFU;
         require(i % kQuad == 0 && j % kQuad == 0 && i / kQuad < static_cast<std::uint64_t>(own) &&
                     j / kQuad < static_cast<std::uint64_t>(reach),
-                "pairs/partners", fmt::format("names a grain that strip {} has not", k));
+                "pairs/partners", [&] { return fmt::format("names a grain that strip {} has not", k); });
         touches += touching[group + static_cast<std::size_t>(p) / kFloatLanes] >> p % kFloatLanes & 1;
       }
       pair += static_cast<std::size_t>(pairs[k]), group += lanes(pairs[k]);
@@ -120,17 +125,18 @@ class Check {
     // Beds may bring histories that a run does not use.
     const Strips::Options& options = strips_.options();
     require(!options.history || archive_.get<double>("pairs/tangential").size() >= 4 * touches,
-            "pairs/tangential", fmt::format("is too short for {} contacts", touches));
+            "pairs/tangential", [&] { return fmt::format("is too short for {} contacts", touches); });
     const bool rolling = options.history && options.rolling;
     require(archive_.get<double>("pairs/rolling").size() >= (rolling ? 4 * touches : 0), "pairs/rolling",
-            fmt::format("is too short for {} contacts", touches));
+            [&] { return fmt::format("is too short for {} contacts", touches); });
   }
 
   void walls() {
     const auto& walls = archive_.get<std::int32_t>("strips/walls", count_);
     std::size_t all = 0;
     for (std::size_t k = 0; k < count_; ++k) {
-      require(walls[k] >= 0, "strips/walls", fmt::format("has {} contacts for strip {}", walls[k], k));
+      require(walls[k] >= 0, "strips/walls",
+              [&] { return fmt::format("has {} contacts for strip {}", walls[k], k); });
       all += static_cast<std::size_t>(walls[k]);
     }
     const auto& grain = archive_.get<std::int32_t>("walls/grain", all);
@@ -139,9 +145,9 @@ class Check {
     for (std::size_t k = 0; k < count_; ++k)
       for (std::int32_t c = 0; c < walls[k]; ++c, ++contact) {
         require(grain[contact] >= 0 && grain[contact] < grains_of(k), "walls/grain",
-                fmt::format("names a grain that strip {} has not", k));
+                [&] { return fmt::format("names a grain that strip {} has not", k); });
         require(wall[contact] >= 0 && wall[contact] < kWalls, "walls/wall",
-                fmt::format("names wall {}", wall[contact]));
+                [&] { return fmt::format("names wall {}", wall[contact]); });
       }
   }
 

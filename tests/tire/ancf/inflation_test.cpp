@@ -1,7 +1,6 @@
 // Static inflation: known growth of the layered tire, membrane theory for the torus.
 #include "tire/ancf/inflation.hpp"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -61,7 +60,7 @@ TEST(Inflation, at_low_pressure_growth_is_linear_on_fine_meshes_too) {
   EXPECT_NEAR(growth[1] / growth[0], 2.0, 0.02);
 }
 
-TEST(Inflation, at_ten_times_the_pressure_it_converges_and_beyond_it_says_how_far_it_came) {
+TEST(Inflation, at_ten_times_the_pressure_it_converges_and_beyond_it_says_what_is_missing) {
   tire::TireFile file = small_file();
   file.pressure = 2e6;
   const tire::ShellMesh mesh = tire::make_shell_mesh(file);
@@ -75,27 +74,9 @@ TEST(Inflation, at_ten_times_the_pressure_it_converges_and_beyond_it_says_how_fa
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ExitCode::physics);
     const std::string what = error.what();
-    EXPECT_EQ(what.rfind("tire inflation to 1e+08 Pa did not converge: it came to ", 0), 0u) << what;
+    EXPECT_EQ(what.rfind("tire inflation to 1e+08 Pa did not converge: the pressure was reached, but", 0), 0u) << what;
     EXPECT_NE(what.find("; try "), std::string::npos) << what;
   }
-}
-
-/// A pressure that is reached is not told as one that was not.
-TEST(Inflation, a_tire_that_never_rests_under_its_pressure_is_told_so) {
-  tire::TireFile file = small_file();
-  std::string what;
-  for (const double pressure : {2e7, 5e7, 1e8, 1e9}) {
-    file.pressure = pressure;
-    const tire::ShellMesh mesh = tire::make_shell_mesh(file);
-    tire::InflationReport report;
-    try {
-      tire::inflate(tire::ShellCarcass(file, mesh), mesh, report);
-    } catch (const Error& error) {
-      what = error.what();
-      EXPECT_EQ(what.find(fmt::format("it came to {:.3g} Pa", pressure)), std::string::npos) << what;
-    }
-  }
-  EXPECT_NE(what, "");
 }
 
 TEST(Inflation, all_shipped_tires_inflate_at_low_and_full_pressure) {

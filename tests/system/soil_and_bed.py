@@ -113,21 +113,18 @@ class Soil(WithCache):
             self.assertEqual(lines[0], header)
             self.assertTrue(all(math.isfinite(float(value)) for line in lines[1:] for value in line.split(",")), name)
 
-    def test_stresses_are_chosen_and_every_value_without_an_error_says_why(self):
-        path = write_scenario(self.work, changed(terrain={"radius": 0.01, "layers": 3, "length": 1.0, "width": 0.2}))
-        soil, told = self.run_json("soil", path, "--seeds", "1", "--only", "shear", "--speed", "0.5", "--stress", "4e3", "--stress", "2e3",
-                                   "--stress", "8e3", "--out", "out")
+    def test_stresses_are_chosen_and_every_value_without_an_interval_says_why(self):
+        path = write_scenario(self.work)
+        soil, _ = self.run_json("soil", path, "--quick", "--only", "shear", "--speed", "0.3", "--stress", "40e3", "--stress", "10e3", "--out", "out")
         tests = soil["shear"]["tests"]
-        for test, stress in zip(tests, (2e3, 4e3, 8e3)):
+        self.assertEqual(len(tests), 2)
+        for test, stress in zip(tests, (10e3, 40e3)):
             self.assertAlmostEqual(test["normal_stress_Pa"], stress, delta=0.2 * stress)
             self.assertAlmostEqual(math.tan(math.radians(test["secant_friction_angle_deg"])), test["tau_max_Pa"] / test["normal_stress_Pa"])
         self.assertTrue(0 < soil["friction_angle_without_cohesion_deg"] < 80)
-        self.assertTrue(0.3 < soil["shear"]["box"]["solid_fraction"] < 0.7, soil["shear"]["box"])
-        self.assertAlmostEqual(soil["shear"]["box"]["bulk_density_kg_m3"], 2500 * soil["shear"]["box"]["solid_fraction"], places=6)
-        # c and φ are of three points: one degree of freedom gives no interval.
-        self.assertIsNotNone(soil["standard_error"]["friction_angle_deg"])
-        self.assertIsNone(soil["interval_95"]["friction_angle_deg"])
-        self.assertIn("--seeds", soil["no_interval_because"]["friction_angle_deg"])
+        box = soil["shear"]["box"]
+        self.assertTrue(0.3 < box["solid_fraction"] < 0.7, box)
+        self.assertAlmostEqual(box["bulk_density_kg_m3"], 2500 * box["solid_fraction"], places=6)
         self.assertEqual(soil["no_interval_because"]["k_c"], "not tested")
         refused = furrow("soil", path, "--stress", "1e3", cwd=self.work)
         self.assertEqual(refused.returncode, 2)

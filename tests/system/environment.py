@@ -144,7 +144,8 @@ class Limits(EnvironmentTest):
         self.assertEqual(survivors(self.folder), [])
 
     def test_a_terrain_that_cannot_fit_is_refused_before_anything_begins(self):
-        large = ["--set", "terrain.radius=0.006", "--set", "terrain.layers=15", "--set", "terrain.length=100", "--set", "terrain.width=40"]
+        large = ["--set", "terrain.radius=0.006", "--set", "terrain.layers=15", "--set", "terrain.length=100", "--set", "terrain.width=40",
+                 "--set", "run.step=2e-5"]
         for command in ("run", "bed"):
             begin = time.monotonic()
             line = self.one_error(limited("-v 4000000", command, self.path, *large, cwd=self.folder), 6)
@@ -154,13 +155,11 @@ class Limits(EnvironmentTest):
         self.assertEqual(limited("-v 4000000", "validate", self.path, *large, cwd=self.folder).returncode, 0)
 
     def test_memory_that_runs_out_on_the_way_is_no_failure_of_the_physics(self):
-        # About 1.1 million grains: half of the estimate is below the limit, so it is tried.
-        many = ["--set", "terrain.radius=0.006", "--set", "terrain.layers=15", "--set", "terrain.length=29", "--set", "terrain.width=0.6",
-                "--set", "run.step=2e-5"]
-        for command in ("bed", "run"):
-            with self.subTest(command):
-                done = limited("-v 700000", command, self.path, *many, cwd=self.folder, timeout=300)
-                self.assertRegex(self.one_error(done, 6), r"out of memory: needs about \d+\.\d GB, limit 0.7 GB \(ulimit -v\)")
+        # About 620,000 grains: half of the estimate is below the limit, so it is tried.
+        many = ["--set", "terrain.radius=0.006", "--set", "terrain.layers=15", "--set", "terrain.length=13.3", "--set", "terrain.width=0.6",
+                "--set", "run.step=2e-5", "--set", "terrain.bed_generator=lattice"]
+        done = limited("-v 300000", "run", self.path, *many, cwd=self.folder, timeout=300)
+        self.assertRegex(self.one_error(done, 6), r"out of memory: needs about \d+\.\d GB, limit 0.3 GB \(ulimit -v\)")
         self.assertEqual(survivors(self.folder), [])
 
 

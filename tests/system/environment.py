@@ -138,7 +138,7 @@ class Limits(EnvironmentTest):
             self.assertIn("the stack may take 64 kB (ulimit -s)", line)
 
     def test_processor_time(self):
-        done = limited("-t 2", "run", self.path, "--set", "run.end=1", "--set", "terrain.radius=0.012", "--set", "terrain.layers=12",
+        done = limited("-t 2", "run", self.path, "--set", "run.end=0.3", "--set", "terrain.radius=0.012", "--set", "terrain.layers=12", "--set", "run.step=2e-5",
                        "--out", "out", cwd=self.folder)
         self.assertIn("a process may use 2 s of processor time (ulimit -t)", self.one_error(done, 6))
         self.assertEqual(survivors(self.folder), [])

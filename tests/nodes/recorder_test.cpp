@@ -67,7 +67,8 @@ TEST(Frames, going_on_removes_later_frames_and_no_file_of_the_users) {
                                    "tire0_99999999999999999999.h5",
                                    "mine.part"};
   for (const std::string& name : stay) std::ofstream(frames / name) << "x";
-  for (const char* name : {"terrain_000002.h5", "tire12_1000000.h5", ".tire0_000001.h5.part"})
+  for (const char* name :
+       {"terrain_000002.h5", "tire12_1000000.h5", ".tire0_000001.h5.0123456789abcdef.part"})
     std::ofstream(frames / name) << "x";
   output::remove_frames_from(folder.path(), 2);
   EXPECT_EQ(names(), stay);

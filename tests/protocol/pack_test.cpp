@@ -217,7 +217,7 @@ TEST(Pack, every_field_is_there) {
   EXPECT_EQ(pack(spindle_report()).size(), kHeader + 2 * kWrench + 3 * kVec + 12 * 8 + 1);
   EXPECT_EQ(pack(surface_motion(4)).size(), kHeader + 2 * (kLength + 4 * kVec) + 4);
   EXPECT_EQ(pack(terrain_forces()).size(), kHeader + 3 * kLength + 3 * 4 + 3 * kVec + 3 * 2 * (kMat + kVec));
-  EXPECT_EQ(pack(terrain_report()).size(), kHeader + 9 * 8 + 4 * kVec + kLength + 2 * kSums);
+  EXPECT_EQ(pack(terrain_report()).size(), kHeader + 11 * 8 + 4 + 4 * kVec + kLength + 2 * kSums);
   EXPECT_EQ(pack(run_folder()).size(), kLength + 22);
   EXPECT_EQ(pack(checkpoint_part()).size(), 8 + (kLength + 8) + (kLength + 16) + (kLength + 9));
   EXPECT_EQ(pack(final_report()).size(),

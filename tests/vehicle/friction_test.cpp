@@ -49,6 +49,21 @@ TEST(Brake, holds_a_weight_for_ten_seconds_without_creep_and_alike_at_two_steps)
   }
 }
 
+TEST(Brake, hold_that_is_resumed_continues_bit_for_bit) {
+  HeldArm original(250.0), copy(250.0);
+  for (int i = 0; i < 300; ++i) ASSERT_TRUE(original.system.step(1e-3).ok);
+  Archive archive;
+  original.system.save(archive);
+  copy.brake.engage(copy.system, 0.0);  // the saved state holds how far it is engaged
+  copy.system.restore(archive);
+  for (int i = 0; i < 300; ++i) ASSERT_TRUE(original.system.step(1e-3).ok && copy.system.step(1e-3).ok);
+  Archive a, b;
+  original.system.save(a);
+  copy.system.save(b);
+  EXPECT_EQ(a.arrays(), b.arrays());
+  EXPECT_TRUE(copy.brake.holds(copy.system));
+}
+
 TEST(Brake, too_weak_by_one_percent_slips_with_its_capacity) {
   const double weight = HeldArm::m * kStandardGravity * HeldArm::arm;
   HeldArm held(0.99 * weight);

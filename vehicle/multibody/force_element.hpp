@@ -4,15 +4,19 @@
 #include <functional>
 #include <string>
 
+#include "protocol/core/fields.hpp"
 #include "vehicle/multibody/row.hpp"
 
 namespace furrow::vehicle {
 
 /// Force in the coordinate (positive pushes the points apart, or B along the axis, or turns B positively), N
-/// or N m, and its damping −∂f/∂rate ≥ 0, N s/m or N m s.
+/// or N m, and its damping −∂f/∂rate ≥ 0, N s/m or N m s. A law that is asked for its energies says which part of the
+/// force is the negative slope of an energy, and that energy (J).
 struct ElementForce {
   double force = 0.0;
   double damping = 0.0;
+  double elastic = 0.0;
+  double energy = 0.0;
 };
 
 /// f(value, rate, time): value in m or rad, rate in m/s or rad/s.
@@ -29,5 +33,18 @@ struct ForceElement {
   ForceLaw law;
   double last_force = 0.0;  // mean over the last step, N or N m
 };
+
+/// Energies of a force element whose law tells them (System::track_energy).
+struct ElementEnergy {
+  double stored = 0.0;      // of the elastic part now, J
+  double elastic = 0.0;     // work that the elastic part has done since the start, J
+  double dissipated = 0.0;  // what the other part has taken since the start, J
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<ElementEnergy> auto& s) {
+  visit(Field{"stored", "J"}, s.stored);
+  visit(Field{"elastic", "J"}, s.elastic);
+  visit(Field{"dissipated", "J"}, s.dissipated);
+}
 
 }  // namespace furrow::vehicle

@@ -53,17 +53,26 @@ Mat3 axes_about(const Vec3& direction) {
   return axes;
 }
 
-std::vector<Row> make_joint_rows(Joint& joint, const Pose& A, const Pose& B, const JointPlace& place) {
-  const Vec3 point_b = joint.kind == JointKind::distance ? place.second_point : place.point;
+namespace {
+
+Mat3 joint_axes(const Joint& joint, const JointPlace& place) {
   Mat3 axes = axes_about(place.axis);
-  if (joint.kind == JointKind::universal) {
-    // x fixed in A, y fixed in B, z across both: the joint's cross at assembly.
-    const Vec3 normal = place.axis.normalized().cross(place.second_axis.normalized());
-    if (!(normal.norm() > 1e-6)) throw physics_error("joint '" + joint.name + "': its two axes are parallel");
-    axes.col(0) = place.axis.normalized();
-    axes.col(2) = normal.normalized();
-    axes.col(1) = axes.col(2).cross(axes.col(0));
-  }
+  if (joint.kind != JointKind::universal) return axes;
+  // x fixed in A, y fixed in B, z across both: the joint's cross at assembly.
+  const Vec3 normal = place.axis.normalized().cross(place.second_axis.normalized());
+  if (!(normal.norm() > 1e-6)) throw physics_error("joint '" + joint.name + "': its two axes are parallel");
+  axes.col(0) = place.axis.normalized();
+  axes.col(2) = normal.normalized();
+  axes.col(1) = axes.col(2).cross(axes.col(0));
+  return axes;
+}
+
+}  // namespace
+
+std::vector<Row> make_joint_rows(Joint& joint, const Pose& A, const Pose& B, const JointPlace& place) {
+  const bool rod = joint.kind == JointKind::distance || joint.kind == JointKind::revolute_spherical;
+  const Vec3 point_b = rod ? place.second_point : place.point;
+  const Mat3 axes = joint_axes(joint, place);
   joint.frame_a = in_body(A, place.point, axes);
   joint.frame_b = in_body(B, point_b, axes);
   std::vector<Row> rows;
@@ -106,6 +115,17 @@ std::vector<Row> make_joint_rows(Joint& joint, const Pose& A, const Pose& B, con
       if (!(rows.back().reference > 0.0))
         throw physics_error("joint '" + joint.name + "': its length is zero");
       break;
+    case JointKind::revolute_spherical: {
+      // Along the hinge nothing moves; across it the length stays.
+      const Vec3 across = axes.transpose() * (point_b - place.point);
+      if (!(across.head<2>().norm() > 1e-9))
+        throw physics_error("joint '" + joint.name + "': its two ends lie on the hinge");
+      rows.push_back(offset_row(joint, 2));
+      rows.back().reference = across.z();
+      rows.push_back(base_row(joint, RowKind::distance));
+      rows.back().reference = across.norm();
+      break;
+    }
   }
   return rows;
 }

@@ -10,15 +10,27 @@
 namespace furrow::vehicle {
 
 /// Rows (constrained degrees of freedom): fixed 6, revolute 5, prismatic 5, cylindrical 4, universal 4,
-/// spherical 3, distance 1.
-enum class JointKind { fixed, revolute, prismatic, cylindrical, universal, spherical, distance };
+/// spherical 3, distance 1, revolute–spherical 2.
+///
+/// Two kinds stand for a massless rod: distance, with a ball at one end and a ball or a universal joint at the other;
+/// revolute–spherical, with a hinge on A and a ball on B, so that B's point stays on a circle about the hinge.
+enum class JointKind {
+  fixed,
+  revolute,
+  prismatic,
+  cylindrical,
+  universal,
+  spherical,
+  distance,
+  revolute_spherical
+};
 
 /// Where a joint sits in the configuration in which it is defined, W.
 struct JointPlace {
-  Vec3 point = Vec3::Zero();  // m; of a distance joint: its end on A
-  Vec3 axis = Vec3::UnitZ();  // revolute, prismatic, cylindrical: the axis; universal: the axis fixed in A
+  Vec3 point = Vec3::Zero();  // m; of a rod: its end on A
+  Vec3 axis = Vec3::UnitZ();  // revolute, prismatic, cylindrical: the axis; universal, rod: the axis in A
   Vec3 second_axis = Vec3::UnitX();  // universal: the axis fixed in B
-  Vec3 second_point = Vec3::Zero();  // distance: its end on B, m
+  Vec3 second_point = Vec3::Zero();  // of a rod: its end on B, m
 };
 
 /// Frame of a joint in body axes: z along the joint axis.
@@ -47,7 +59,7 @@ void visit_fields(Visit&& visit, FieldsOf<Reaction> auto& s) {
 }
 
 /// Fills the joint's frames from the poses of its bodies and the place, and returns its rows.
-/// @throws Error(physics) for a zero axis or parallel axes of a universal joint.
+/// @throws Error(physics) for a zero axis, parallel axes of a universal joint, a rod without length or along its hinge.
 std::vector<Row> make_joint_rows(Joint& joint, const Pose& A, const Pose& B, const JointPlace& place);
 
 /// Right-handed axes with z along the given direction.

@@ -55,4 +55,25 @@ inline bool midpoint_angular_velocity(const Mat3& R, const Mat3& inertia_inverse
   return (next - W).cwiseAbs().maxCoeff() <= 1e-13 * W.cwiseAbs().maxCoeff();
 }
 
+/// The same for a body that carries rotors of momentum p (body axes), which turn with it:
+///   R½ (J R½ᵀ ω + p) = ℓ + R₀ p,   so   J W = exp(−h/2 [W]×) (R₀ᵀℓ + p) − p.
+inline bool midpoint_angular_velocity(const Mat3& R, const Mat3& inertia_inverse, const Vec3& momentum_W,
+                                      const Vec3& rotor, double h, Vec3& omega_W) {
+  FURROW_ASSERT(h >= 0.0, h);
+  const Vec3 L = R.transpose() * momentum_W + rotor;
+  Vec3 W = inertia_inverse * (L - rotor);
+  double before = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 next = inertia_inverse * (rotation_exp(-0.5 * h * W) * L - rotor);
+    const double change = (next - W).cwiseAbs().maxCoeff();
+    const double size = W.cwiseAbs().maxCoeff() + (inertia_inverse * rotor).cwiseAbs().maxCoeff();
+    W = next;
+    omega_W = R * W;
+    // Round-off of the difference of two large momenta: no longer falling.
+    if (change <= 1e-15 * size || (i > 2 && change <= 1e-13 * size && change >= before)) return true;
+    before = change;
+  }
+  return false;
+}
+
 }  // namespace furrow::vehicle

@@ -98,9 +98,17 @@ int System::add_joint_element(const std::string& name, int joint, ForceLaw law) 
 
 int System::add_line_element(const std::string& name, int a, int b, const Vec3& point_a, const Vec3& point_b,
                              ForceLaw law) {
+  FURROW_ASSERT(law != nullptr, name);
+  const Row row = line_row(name, a, b, point_a, point_b);
+  elements_.push_back({name, row, std::move(law), 0.0});
+  prepared_ = false;
+  return static_cast<int>(elements_.size()) - 1;
+}
+
+Row System::line_row(const std::string& name, int a, int b, const Vec3& point_a, const Vec3& point_b) const {
   FURROW_ASSERT(a >= kGround && a < body_count() && b >= kGround && b < body_count(), name, a, b,
                 body_count());
-  FURROW_ASSERT(a != b && law != nullptr, name, a);
+  FURROW_ASSERT(a != b, name, a);
   FURROW_ASSERT((point_b - point_a).norm() > 0.0, name);
   Row row;
   row.kind = RowKind::distance;
@@ -108,9 +116,7 @@ int System::add_line_element(const std::string& name, int a, int b, const Vec3& 
   row.b = b;
   row.point_a = pose(a).R->transpose() * (point_a - *pose(a).position);
   row.point_b = pose(b).R->transpose() * (point_b - *pose(b).position);
-  elements_.push_back({name, row, std::move(law), 0.0});
-  prepared_ = false;
-  return static_cast<int>(elements_.size()) - 1;
+  return row;
 }
 
 void System::set_state(int index, const BodyState& state) {
@@ -173,6 +179,7 @@ double System::kinetic_energy() const {
   for (const Body& body : bodies_)
     energy += 0.5 * body.mass * body.state.velocity.squaredNorm() +
               0.5 * body.state.angular_velocity.dot(body.angular_momentum);
+  if (!rates_.empty()) energy += rates_.kinetic_energy();
   return energy;
 }
 
@@ -192,6 +199,7 @@ Vec3 System::angular_momentum(const Vec3& about) const {
   Vec3 sum = Vec3::Zero();
   for (const Body& body : bodies_)
     sum += body.angular_momentum + body.mass * (body.state.position - about).cross(body.state.velocity);
+  if (!rates_.empty()) sum += rates_.angular_momentum(bodies_);
   return sum;
 }
 
@@ -204,6 +212,7 @@ void System::save(Archive& archive) const {
   archive.put("step", step_);
   archive.put("count", count_);
   archive.put("redundant", static_cast<std::int64_t>(redundant_count_));
+  save_drives(archive);
 }
 
 void System::restore(const Archive& archive) {
@@ -220,6 +229,7 @@ void System::restore(const Archive& archive) {
   step_ = archive.get_double("step");
   count_ = archive.get_int("count");
   prepare();
+  restore_drives(archive);
   update_jacobians();
   if (const Outcome outcome = factorize(false); !outcome.ok)
     throw physics_error(outcome, "restored multibody system");
@@ -228,8 +238,8 @@ void System::restore(const Archive& archive) {
 }
 
 std::string System::row_name(int row) const {
-  FURROW_ASSERT(in_range(row, constraint_rows_.size() + elements_.size()), row, constraint_rows_.size(),
-                elements_.size());
+  FURROW_ASSERT(in_range(row, first_rate() + rate_count()), row, constraint_rows_.size(), elements_.size());
+  if (row >= first_rate()) return rates_.row(row - first_rate()).name;
   if (row >= static_cast<int>(constraint_rows_.size())) return elements_[row - constraint_rows_.size()].name;
   if (row_motor_[row] >= 0) return motors_[row_motor_[row]].name;
   for (const Joint& joint : joints_)

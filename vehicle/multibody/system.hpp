@@ -7,8 +7,9 @@
 //   M (v₁ − v½) = h/2 [f(x₁, v½) + G₁ᵀμ]     μ such that G₁ v₁ + ∂φ/∂t = 0
 // Symmetric, so second order; springs are explicit (stable for h < 2 √(m/k)), dampers act by the implicit
 // midpoint rule (stable for any h); no drift, because nothing is integrated that a constraint does not bring
-// back. Loads are constant over a step. Reactions are means over the step, so that mass × change of velocity
-// / h equals load + reaction to round-off: this is what makes a drawbar pull corrected by m·a exact.
+// back. Shafts and rows in speeds (rate_set.hpp) are part of the same two solutions. Loads are constant over a step.
+// Reactions are means over the step, so that mass × change of velocity / h equals load + reaction to round-off: this
+// is what makes a drawbar pull corrected by m·a exact.
 //
 // H. C. Andersen, Rattle: a "velocity" version of the Shake algorithm, J. Comput. Phys. 52 (1983) 24–34,
 // doi:10.1016/0021-9991(83)90014-1.
@@ -16,6 +17,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,10 +25,12 @@
 #include "protocol/core/constants.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/outcome.hpp"
+#include "vehicle/multibody/actuator.hpp"
 #include "vehicle/multibody/body.hpp"
 #include "vehicle/multibody/force_element.hpp"
 #include "vehicle/multibody/joint.hpp"
 #include "vehicle/multibody/motion.hpp"
+#include "vehicle/multibody/rate_set.hpp"
 #include "vehicle/multibody/schur_solver.hpp"
 
 namespace furrow::vehicle {
@@ -49,6 +53,30 @@ class System {
   /// Acts on the distance between two points, W, m. @pre the points differ
   int add_line_element(const std::string& name, int a, int b, const Vec3& point_a, const Vec3& point_b,
                        ForceLaw law);
+  /// Keeps the energies of an element whose law tells its elastic part.
+  void track_energy(int element);
+  /// In the free coordinate of a joint; the force is the law's, or what set_actuator() says where there is none.
+  int add_joint_actuator(const std::string& name, int joint, ActuatorLaw law = nullptr);
+  /// Along the line between two points, W, m; positive pushes them apart. @pre the points differ
+  int add_line_actuator(const std::string& name, int a, int b, const Vec3& point_a, const Vec3& point_b,
+                        ActuatorLaw law = nullptr);
+  /// A torque about an axis fixed in A (W now); positive turns B positively relative to A.
+  int add_torque_actuator(const std::string& name, int a, int b, const Vec3& axis, ActuatorLaw law = nullptr);
+  void set_actuator(int actuator, double force);
+
+  // Shafts and rows in speeds: see shaft.hpp and rate_row.hpp.
+  /// `axis` in W now; `speed` absolute, about the axis, rad/s. @throws Error(physics) for inertia ≤ 0
+  int add_shaft(const std::string& name, double inertia, int carrier, const Vec3& axis, double speed = 0.0);
+  int add_rate_row(const RateRow& row, const RateControl& control = {});
+  int add_rate_law(const RateRow& row, RateLaw law);
+  /// One law for several rows, which it takes in this order.
+  std::vector<int> add_rate_law(const std::vector<RateRow>& rows, RateLaw law);
+  /// From the next step on. Nothing is assembled anew: see recheck_rank().
+  void set_rate_control(int row, const RateControl& control) { rates_.set_control(row, control); }
+  void set_rate_factor(int row, int term, double factor);
+  void set_shaft_speed(int shaft, double speed) { rates_.set_speed(shaft, speed); }
+  /// Looks for redundant constraints with the rows in speeds as they are held now, at an event that changed them.
+  void recheck_rank();
 
   /// Puts a body somewhere; assemble() must follow.
   void set_state(int body, const BodyState& state);
@@ -65,6 +93,8 @@ class System {
   Outcome step(double h);
 
   double time() const { return start_time_ + static_cast<double>(count_) * step_; }
+  /// Rows of joints and motors.
+  int constraint_count() const { return static_cast<int>(constraint_rows_.size()); }
   int body_count() const { return static_cast<int>(bodies_.size()); }
   const Body& body(int index) const {
     FURROW_ASSERT(in_range(index, bodies_.size()), index, bodies_.size());
@@ -89,11 +119,27 @@ class System {
     return elements_[element].last_force;
   }
 
+  const ActuatorState& actuator(int index) const {
+    FURROW_ASSERT(in_range(index, actuators_.size()), index, actuators_.size());
+    return actuators_[index].state;
+  }
+  /// @pre track_energy() was called
+  ElementEnergy element_energy(int element) const;
+  const Shaft& shaft(int index) const {
+    FURROW_ASSERT(in_range(index, rates_.shafts().size()), index, rates_.shafts().size());
+    return rates_.shafts()[index];
+  }
+  const RateRow& rate_row(int row) const { return rates_.row(row); }
+  const RateControl& rate_control(int row) const { return rates_.control(row); }
+  const RateState& rate_state(int row) const { return rates_.state(row); }
+  /// u of a row now, rad/s.
+  double rate_speed(int row) const;
+
   /// Value and rate of a joint's free coordinate now (angles in (−π, π]).
   Motion coordinate(int joint) const;
   /// Largest violation of a position constraint now, m or rad (dot rows: sine of the angle).
   double max_violation() const;
-  double kinetic_energy() const;                   // J
+  double kinetic_energy() const;                   // with the shafts', J
   double gravity_energy() const;                   // −Σ m g·x, J
   Vec3 momentum() const;                           // kg m/s
   Vec3 angular_momentum(const Vec3& about) const;  // kg m²/s
@@ -129,11 +175,26 @@ class System {
   Outcome solve_velocities(double end_time);
   Outcome move(double h);  // poses ← start poses moved by h v½
   void element_forces(double h, bool implicit);
+  Row line_row(const std::string& name, int a, int b, const Vec3& point_a, const Vec3& point_b) const;
+  int add_actuator(const std::string& name, const Row& row, ActuatorLaw law);
+  double row_rate(const Row& row, const RowJacobian& J) const;
+  void actuator_forces(double h, bool first_half);
+  void finish_work(double h, bool first_half);  // of actuators and tracked elements
+  void turn_rotors();  // carriers feel what their rotors' turn with them takes
+  Outcome solve_half(bool first_half, double h, double end_time);
+  bool rates_done(double& before, int iteration);
+  int rate_count() const { return rates_.row_count(); }
+  int first_rate() const { return static_cast<int>(constraint_rows_.size() + elements_.size()); }
+  std::span<double> rate_part(Eigen::VectorXd& all) const {
+    return {all.data() + first_rate(), static_cast<std::size_t>(rate_count())};
+  }
   void collect_reactions(double h, bool first_half);
   Outcome satisfy_constraints(double time);  // at the present poses and velocities, mass-weighted
   Outcome project_positions(double time);
   void find_redundancy();
   void remove_null_impulses();
+  void save_drives(Archive& archive) const;  // writes nothing where there is none of them
+  void restore_drives(const Archive& archive);
   Outcome check_finite() const;
   std::string row_name(int row) const;
   Outcome failure(const std::string& what, int row, double residual) const;
@@ -143,6 +204,8 @@ class System {
   std::vector<Joint> joints_;
   std::vector<Motor> motors_;
   std::vector<ForceElement> elements_;
+  std::vector<Actuator> actuators_;
+  RateSet rates_;
   std::vector<Row> constraint_rows_;  // of joints and motors
   std::vector<int> row_motor_;        // motor that drives the row, or −1
   std::vector<Reaction> reactions_;
@@ -162,6 +225,13 @@ class System {
   std::vector<RowJacobian> jacobians_;
   std::vector<double> compliance_;
   std::vector<double> damping_;  // of element rows, this step
+  // A tracked element, with what its work in the present half step follows from.
+  struct Tracked {
+    int element = 0;
+    ElementEnergy energy;
+    double elastic_impulse = 0.0, other_impulse = 0.0, rate_before = 0.0;
+  };
+  std::vector<Tracked> tracked_;
   std::vector<Base> base_;
   std::vector<Motion> targets_;
   Eigen::VectorXd impulses_, residual_, correction_;

@@ -33,20 +33,23 @@ void System::prepare() {
   rows_ = constraint_rows_;
   for (const ForceElement& element : elements_) rows_.push_back(element.row);
   jacobians_.resize(rows_.size());
-  compliance_.assign(rows_.size(), 0.0);
+  const std::size_t all = rows_.size() + rates_.row_count();
+  compliance_.assign(all, 0.0);
   damping_.assign(elements_.size(), 0.0);
   base_.resize(bodies_.size());
   targets_.resize(constraint_rows_.size());
-  impulses_.setZero(rows_.size());
-  residual_.setZero(rows_.size());
-  correction_.setZero(rows_.size());
-  solver_.analyze(rows_);
+  impulses_.setZero(all);
+  residual_.setZero(all);
+  correction_.setZero(all);
+  rates_.prepare(static_cast<int>(rows_.size()), bodies_.size());
+  solver_.analyze(rows_, rates_.sides());
   prepared_ = true;
 }
 
 void System::update_jacobians() {
   for (std::size_t i = 0; i < rows_.size(); ++i)
     jacobians_[i] = row_jacobian(rows_[i], pose(rows_[i].a), pose(rows_[i].b));
+  if (!rates_.empty()) rates_.update_axes(bodies_);
 }
 
 // Compliance of a damper row: p = −(h c/2) g·v½ is a constraint row g·v½ + p · 2/(h c) = 0.
@@ -57,7 +60,8 @@ Outcome System::factorize(bool with_dampers) {
   for (std::size_t e = 0; e < elements_.size(); ++e)
     compliance_[first + e] = with_dampers && damping_[e] > 0.0 ? 2.0 / (step_ * damping_[e]) : -1.0;
   dampers_factored_ = with_dampers;
-  if (!solver_.factorize(jacobians_, bodies_, compliance_))
+  rates_.fill_compliance(std::span(compliance_).subspan(rows_.size()));
+  if (!solver_.factorize(jacobians_, bodies_, compliance_, rates_.sides(), rates_.shafts()))
     return Outcome::failure("has a constraint matrix that cannot be factored", "");
   return {};
 }
@@ -105,6 +109,12 @@ void System::element_forces(double h, bool implicit) {
       element.last_force = 0.0;
     }
     element.last_force += 0.5 * force;
+    for (Tracked& tracked : tracked_)
+      if (tracked.element == static_cast<int>(e)) {
+        tracked.rate_before = speed;
+        tracked.elastic_impulse = 0.5 * h * law.elastic;
+        tracked.other_impulse = 0.5 * h * (force - law.elastic);
+      }
     const auto add = [&](int body, const Vec3& v, const Vec3& w) {
       if (body == kGround) return;
       base_[body].velocity += (0.5 * h * force / bodies_[body].mass) * v;
@@ -132,6 +142,7 @@ void System::apply_impulses() {
     add(rows_[i].a, J.v_a, J.w_a);
     add(rows_[i].b, J.v_b, J.w_b);
   }
+  if (!rates_.empty()) rates_.apply(rate_part(impulses_), bodies_);
 }
 
 void System::set_angular_velocities() {
@@ -140,10 +151,14 @@ void System::set_angular_velocities() {
 
 Outcome System::move(double h) {
   FURROW_ASSERT(h > 0.0, h);
+  if (!rates_.empty()) rates_.move(h), rates_.update_rotors();
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     Body& body = bodies_[i];
-    if (!midpoint_angular_velocity(base_[i].R, body.inertia_inverse, body.angular_momentum, h,
-                                   body.state.angular_velocity))
+    const Vec3* rotor = rates_.rotor_momentum(static_cast<int>(i));
+    Vec3& omega = body.state.angular_velocity;
+    const Mat3& R = base_[i].R;
+    if (!(rotor ? midpoint_angular_velocity(R, body.inertia_inverse, body.angular_momentum, *rotor, h, omega)
+                : midpoint_angular_velocity(R, body.inertia_inverse, body.angular_momentum, h, omega)))
       return Outcome::failure("has a body that turns too fast",
                               "'" + body.name + "', for a step of " + scientific(h) + " s");
     body.state.position = base_[i].position + h * body.state.velocity;
@@ -160,7 +175,8 @@ Outcome System::solve_positions(double h, double end_time) {
   const int count = static_cast<int>(rows_.size());
   for (int i = 0; i < constraints; ++i) targets_[i] = target(i, end_time);
   impulses_.setZero();
-  double scale = 0.0, worst = 0.0;
+  rates_.known_impulses(rate_part(impulses_));
+  double scale = 0.0, worst = 0.0, worst_rate = 0.0;
   int worst_row = 0;
   for (const Base& base : base_) scale = std::max(scale, base.velocity.cwiseAbs().maxCoeff());
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
@@ -184,6 +200,7 @@ Outcome System::solve_positions(double h, double end_time) {
       residual_[i] = -(speed + flow);
       done = done && std::abs(residual_[i]) <= 1e-13 * (std::abs(speed) + std::abs(flow)) + 1e-14 * scale;
     }
+    if (rate_count() > 0 && !rates_done(worst_rate, iteration)) done = false;
     if (done) return {};
     if (!std::isfinite(worst)) break;
     solver_.solve(residual_, correction_);
@@ -198,7 +215,8 @@ Outcome System::solve_velocities(double end_time) {
   for (int i = 0; i < constraints; ++i) targets_[i] = target(i, end_time);
   impulses_.setZero();
   residual_.setZero();
-  double before = 0.0;
+  rates_.known_impulses(rate_part(impulses_));
+  double before = 0.0, worst_rate = 0.0;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     apply_impulses();
     set_angular_velocities();
@@ -211,6 +229,12 @@ Outcome System::solve_velocities(double end_time) {
       residual_[i] = targets_[i].rate - rate(i);
       scale = std::max(scale, std::abs(targets_[i].rate));
       if (!(std::abs(residual_[i]) <= worst)) worst = std::abs(residual_[i]), worst_row = i;
+    }
+    if (rate_count() > 0 && !rates_done(worst_rate, iteration)) {
+      before = worst;
+      solver_.solve(residual_, correction_);
+      impulses_ += correction_;
+      continue;
     }
     if (worst <= kVelocityTolerance * scale) return {};
     // No longer falling: round-off reached, or the rates contradict each other.
@@ -279,25 +303,34 @@ Outcome System::step(double h) {
   const double end_time = start_time_ + static_cast<double>(count_ + 1) * step_;
   begin_velocities(h);
   element_forces(h, true);
-  if (std::any_of(damping_.begin(), damping_.end(), [](double c) { return c > 0.0; }))
+  if (!actuators_.empty()) actuator_forces(h, true);
+  if (!rates_.empty()) rates_.begin(RateStage::first_half, h, time() + 0.5 * h, bodies_);
+  if (rate_count() > 0 || std::any_of(damping_.begin(), damping_.end(), [](double c) { return c > 0.0; }))
     if (Outcome outcome = factorize(true); !outcome.ok) return outcome;
-  if (Outcome outcome = solve_positions(h, end_time); !outcome.ok) return outcome;
+  if (Outcome outcome = solve_half(true, h, end_time); !outcome.ok) return outcome;
   remove_null_impulses();
   collect_reactions(h, true);
+  finish_work(h, true);
 
+  if (!rates_.empty()) turn_rotors();
   for (Body& body : bodies_) body.refresh();
   update_jacobians();
   begin_velocities(h);
   element_forces(h, false);
+  if (!actuators_.empty()) actuator_forces(h, false);
+  if (!rates_.empty()) rates_.begin(RateStage::second_half, h, time() + 0.5 * h, bodies_);
   if (Outcome outcome = factorize(false); !outcome.ok) return outcome;
-  if (Outcome outcome = solve_velocities(end_time); !outcome.ok) return outcome;
+  if (Outcome outcome = solve_half(false, h, end_time); !outcome.ok) return outcome;
   remove_null_impulses();
   collect_reactions(h, false);
+  finish_work(h, false);
   ++count_;
   return check_finite();
 }
 
 Outcome System::check_finite() const {
+  if (!rates_.finite())
+    return Outcome::failure("has a state that is not finite", "a shaft; try a smaller run.step");
   for (const Body& body : bodies_) {
     const double sum = body.state.position.sum() + body.state.velocity.sum() + body.angular_momentum.sum() +
                        body.state.orientation.coeffs().sum();
@@ -321,6 +354,7 @@ void System::assemble(double time) {
 Outcome System::satisfy_constraints(double time) {
   if (Outcome outcome = project_positions(time); !outcome.ok) return outcome;
   begin_velocities(0.0);
+  if (!rates_.empty()) rates_.begin(RateStage::assembly, 0.0, time, bodies_);
   if (Outcome outcome = factorize(false); !outcome.ok) return outcome;
   if (Outcome outcome = solve_velocities(time); !outcome.ok) return outcome;
   return check_finite();
@@ -331,6 +365,7 @@ Outcome System::project_positions(double time) {
   const int constraints = static_cast<int>(constraint_rows_.size());
   double worst = 0.0;
   int worst_row = 0;
+  rates_.rest();
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     update_jacobians();
     worst = 0.0;
@@ -364,8 +399,19 @@ void System::find_redundancy() {
   const int constraints = static_cast<int>(constraint_rows_.size());
   redundant_count_ = 0;
   redundant_names_.clear();
-  if (constraints == 0 || bodies_.empty()) return;
-  Eigen::MatrixXd G_transpose = Eigen::MatrixXd::Zero(6 * bodies_.size(), constraints);
+  std::vector<int> held;  // rows in speeds
+  for (int i = 0; i < rate_count(); ++i)
+    if (rates_.is_ideal(i)) held.push_back(first_rate() + i);
+  const int all = constraints + static_cast<int>(held.size());
+  const std::size_t freedoms = 6 * bodies_.size() + rates_.shafts().size();
+  if (all == 0 || freedoms == 0) return;
+  Eigen::MatrixXd G_transpose = Eigen::MatrixXd::Zero(freedoms, all);
+  for (int k = 0; k < static_cast<int>(held.size()); ++k) {
+    for (const SpinSide& side : rates_.sides().spins)
+      if (side.row == held[k]) G_transpose.block<3, 1>(6 * side.body + 3, constraints + k) = side.w;
+    for (const ShaftSide& side : rates_.sides().shafts)
+      if (side.row == held[k]) G_transpose(6 * bodies_.size() + side.shaft, constraints + k) = side.factor;
+  }
   for (int i = 0; i < constraints; ++i) {
     const RowJacobian& J = jacobians_[i];
     const auto put = [&](int body, const Vec3& v, const Vec3& w) {
@@ -379,9 +425,10 @@ void System::find_redundancy() {
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(G_transpose.rows(), G_transpose.cols());
   qr.setThreshold(1e-9);
   qr.compute(G_transpose);
-  redundant_count_ = constraints - static_cast<int>(qr.rank());
-  for (int k = static_cast<int>(qr.rank()); k < constraints; ++k) {
-    const std::string name = row_name(qr.colsPermutation().indices()[k]);
+  redundant_count_ = all - static_cast<int>(qr.rank());
+  for (int k = static_cast<int>(qr.rank()); k < all; ++k) {
+    const int column = qr.colsPermutation().indices()[k];
+    const std::string name = row_name(column < constraints ? column : held[column - constraints]);
     if (std::find(redundant_names_.begin(), redundant_names_.end(), name) == redundant_names_.end())
       redundant_names_.push_back(name);
   }

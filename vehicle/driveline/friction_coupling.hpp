@@ -1,0 +1,34 @@
+// A brake or clutch: dry friction in a row in speeds. It holds the two sides together as long as that takes no more
+// than its capacity, and slips with its capacity beyond, as a set-valued law: what holds does not creep, whatever the step.
+#pragma once
+
+#include <string>
+
+#include "vehicle/multibody/system.hpp"
+
+namespace furrow::vehicle {
+
+class FrictionCoupling {
+ public:
+  /// A clutch between two shafts.
+  static FrictionCoupling clutch(System& system, const std::string& name, int first, int second,
+                                 double capacity);
+  /// A brake of body `b` against body `a`, about an axis fixed in b (W now). The torque acts on both.
+  static FrictionCoupling brake(System& system, const std::string& name, int a, int b, const Vec3& axis,
+                                double capacity);
+
+  /// `share` of the capacity from the next step on, 0 to 1. The system's saved state holds it.
+  void engage(System& system, double share) const;
+  bool holds(const System& system) const;     // engaged and not slipping
+  double torque(const System& system) const;  // on the first shaft or on b, mean over the last step, N m
+  double slip(const System& system) const;    // speed difference now, rad/s
+  double heat(const System& system) const;    // what it has taken since the start, J
+  int row() const { return row_; }
+
+ private:
+  FrictionCoupling(System& system, const RateRow& row, double capacity);
+  int row_ = 0;
+  double capacity_ = 0.0;  // N m
+};
+
+}  // namespace furrow::vehicle

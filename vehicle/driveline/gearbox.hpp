@@ -1,0 +1,82 @@
+// A gearbox: one ratio at a time between an input and an output shaft, u_out = g u_in, changed in a shift of stated
+// duration T. With s = u_out − g_new u_in, the slip in the new gear:
+//
+//   torque phase, ≤ T/2  the old gear holds like a freewheel; the new one slips and takes the torque over along the C²
+//                        smoothstep, until the old one carries nothing. Left out where friction could not: without an
+//                        old gear, between forward and reverse, or where it would have to drive the slip (a down-shift
+//                        under power).
+//   speed phase, rest    the old gear is free; the new one slips, s → 0 along the C² smoothstep, with a torque that
+//                        only opposes s. It ends early when s passes 0.
+//   end                  the new gear holds; what is left of s goes at once, inelastically.
+//
+// T = 0 is the last line alone. What the slip takes is on the gearbox's own account. Nothing is assembled anew; the
+// rank of the constraints is looked at whenever a gear takes hold.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "vehicle/multibody/system.hpp"
+
+namespace furrow::vehicle {
+
+inline constexpr int kNeutral = -1;
+
+enum class ShiftPhase { none, torque, speed };
+
+struct GearboxState {
+  int gear = kNeutral;      // that holds, or will
+  int old_gear = kNeutral;  // during a shift
+  ShiftPhase phase = ShiftPhase::none;
+  int row = 0;                                // of the two, that of `gear`
+  double phase_start = 0.0, phase_end = 0.0;  // s
+  double slip = 0.0;                          // s at the start of the speed phase, rad/s
+  double hand_over = 0.0;                     // torque of the new gear at the end of the torque phase, N m
+  int redundant = 0;                          // redundant constraints before the shift
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<GearboxState> auto& s) {
+  visit(Field{"gear"}, s.gear);
+  visit(Field{"old_gear"}, s.old_gear);
+  visit(Field{"phase", ""}, s.phase);
+  visit(Field{"row"}, s.row);
+  visit(Field{"phase_start", "s"}, s.phase_start);
+  visit(Field{"phase_end", "s"}, s.phase_end);
+  visit(Field{"slip", "rad/s"}, s.slip);
+  visit(Field{"hand_over", "N m"}, s.hand_over);
+  visit(Field{"redundant"}, s.redundant);
+}
+
+class Gearbox {
+ public:
+  /// `ratios`: g of each gear, output over input, a reverse gear negative. `gear`: the one engaged at the start.
+  /// @throws Error(physics) for a ratio 0 or a negative shift time
+  Gearbox(System& system, const std::string& name, int in, int out, const std::vector<double>& ratios,
+          double shift_time, int gear = kNeutral);
+
+  /// Starts a shift with the next step. @pre not shifting
+  Outcome shift(System& system, int gear);
+  /// Before every step of size h. @returns failure when the new gear closes a loop of gears
+  Outcome advance(System& system, double h);
+
+  int gear() const { return state_.gear; }
+  bool shifting() const { return state_.phase != ShiftPhase::none; }
+  int gear_count() const { return static_cast<int>(ratios_.size()); }
+  double output_torque(const System& system) const;  // mean over the last step, N m
+  double loss(const System& system) const;           // what shifts have taken since the start, J
+
+  void save(Archive& archive) const;
+  void restore(const Archive& archive);
+
+ private:
+  Outcome engage(System& system);  // the new gear holds
+  void begin_speed_phase(System& system, double start, double end);
+
+  std::string name_;
+  std::vector<double> ratios_;
+  double shift_time_ = 0.0;  // s
+  int rows_[2] = {0, 0};
+  GearboxState state_;
+};
+
+}  // namespace furrow::vehicle

@@ -1,0 +1,32 @@
+// When an automatic gearbox shifts: up above one speed, down below another, at most once in a given time.
+#pragma once
+
+#include "protocol/core/fields.hpp"
+
+namespace furrow::vehicle {
+
+struct ShiftLogicOptions {
+  double up_speed = 0.0, down_speed = 0.0;  // rad/s of the gearbox's input
+  double latency = 0.0;                     // between the starts of two shifts, s
+};
+
+struct ShiftLogic {
+  ShiftLogicOptions options;
+  double last_shift = -1e300;  // s
+
+  /// The gear wanted at a time (s), between 0 and gears − 1; the present one unless it is time for another.
+  int wanted(int gear, int gears, double speed, double time) {
+    if (time - last_shift < options.latency) return gear;
+    int next = gear;
+    if (speed > options.up_speed && gear + 1 < gears) next = gear + 1;
+    if (speed < options.down_speed && gear > 0) next = gear - 1;
+    if (next != gear) last_shift = time;
+    return next;
+  }
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<ShiftLogic> auto& s) {
+  visit(Field{"last_shift", "s"}, s.last_shift);
+}
+
+}  // namespace furrow::vehicle

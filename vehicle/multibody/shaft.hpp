@@ -1,0 +1,32 @@
+// A shaft: a rotor that turns about an axis fixed in the body that carries it. Its angular momentum along the axis,
+// p = J Ω, belongs to the shaft; all else of its mass and inertia is counted with the carrier. Ω is the absolute
+// angular speed about the axis, so that a torque M about the axis gives J dΩ/dt = M, and the carrier feels, besides
+// the reaction −M, the gyroscopic moment −ω × p a.
+#pragma once
+
+#include <string>
+
+#include "protocol/core/fields.hpp"
+#include "vehicle/multibody/body.hpp"
+
+namespace furrow::vehicle {
+
+struct ShaftState {
+  double angle = 0.0;  // ∫ Ω dt, rad
+  double speed = 0.0;  // Ω, rad/s
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<ShaftState> auto& s) {
+  visit(Field{"angle", "rad"}, s.angle);
+  visit(Field{"speed", "rad/s"}, s.speed);
+}
+
+struct Shaft {
+  std::string name;
+  double inertia = 1.0;       // J about the axis, kg m²
+  int carrier = kGround;      // the body in whose bearings it turns
+  Vec3 axis = Vec3::UnitX();  // a, unit vector in the carrier's axes
+  ShaftState state;
+};
+
+}  // namespace furrow::vehicle

@@ -259,9 +259,8 @@ class CommandLine {
     app_.set_version_flag("--version", "furrow " FURROW_VERSION);
     app_.require_subcommand(1);
     app_.footer(
-        "Exit codes: 0 done, 2 bad input, 3 the physics failed, 4 a rank was lost, 5 input/output, 6 memory "
-        "or "
-        "another limit ran out, 75 stopped by a signal.");
+        "Exit codes: 0 done, 2 bad input, 3 the physics failed, 4 a rank was lost, 5 input/output, "
+        "6 memory or another limit ran out, 75 stopped by a signal.");
     add_runs();
     add_questions();
     add_virtual_tests();

@@ -14,8 +14,8 @@
 namespace {
 
 int fail(const furrow::Error& error, bool as_rank) {
-  if (as_rank && furrow::launched_rank() != 0) furrow::commands::let_first_rank_speak();
-  furrow::commands::print_error(error.what());
+  const bool first = !as_rank || furrow::launched_rank() == 0;
+  if (first || !furrow::commands::first_rank_speaks()) furrow::commands::print_error(error.what());
   return static_cast<int>(error.code());
 }
 

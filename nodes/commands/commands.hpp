@@ -37,9 +37,9 @@ ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv);
 /// commands pay no regard to them.
 bool runs_as_rank(int argc, char** argv);
 
-/// mpirun ends all ranks as soon as one has failed, even the one that is about to say why: the others wait here. Who
-/// comes back from it was not ended, and should say it too.
-void let_first_rank_speak();
+/// mpirun ends all ranks as soon as one has failed, even the one that is about to say why: the others wait here.
+/// @returns false when nobody ended this rank meanwhile: then it should say it, too
+bool first_rank_speaks();
 
 /// `furrow report`: makes the plots of a run (commands_report.cpp). @throws Error
 std::vector<std::filesystem::path> make_report(const std::filesystem::path& run, bool quiet);

@@ -31,6 +31,7 @@ namespace furrow::commands {
 namespace {
 
 constexpr auto kTimeForNews = std::chrono::milliseconds(300);
+constexpr std::chrono::milliseconds kTimeToSpeak(1500), kTick(50);
 
 /// Reports to the supervisor, or to the user where there is none.
 class RankReporter {
@@ -210,7 +211,13 @@ void tell_finished(const checkpoint::ResumePlan& plan, const RunArguments& argum
 
 }  // namespace
 
-void let_first_rank_speak() { std::this_thread::sleep_for(std::chrono::seconds(1)); }
+bool first_rank_speaks() {
+  for (auto left = kTimeToSpeak; left > kTick; left -= kTick) {
+    if (launch::stop_signalled()) return true;
+    std::this_thread::sleep_for(kTick);
+  }
+  return launch::stop_signalled();
+}
 
 ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
   launch::die_with_parent(SIGKILL, getppid());
@@ -225,8 +232,7 @@ ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
     if (reporter.supervised()) held.emplace(arguments.out);
     read_task(arguments, task);
   } catch (const Error& error) {
-    if (!first_on_machine()) let_first_rank_speak();
-    reporter.error(error);
+    if (first_on_machine() || !first_rank_speaks()) reporter.error(error);
     return error.code();
   }
   if (task.plan.finished) {

@@ -306,6 +306,7 @@ class BadFile(SystemTest):
         run.mkdir()
         (run / "scenario.json").write_text(deep)
         (run / "summary.json").write_text(deep)
+        (run / ".furrow-run").write_text("furrow-run 1\nscenario.json\nsummary.json\n")
         self.assertIn("summary.json:1:70: lists and objects are nested", self.error_of("report", "run", "--soil", "deep.json"))
         self.assertIn("scenario.json:1:70: lists and objects are nested", self.error_of("resume", "run"))
 

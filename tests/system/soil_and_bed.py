@@ -86,7 +86,7 @@ class Soil(WithCache):
         soil, told = self.run_json("soil", path, "--quick", "--speed", "0.3", "--out", "out")
         self.assertLess(time.monotonic() - begin, 60.0)
         self.assertEqual(soil, json.loads((self.work / "out" / "soil.json").read_text()))
-        names = {"soil.json", "scenario.json", "plate.csv", "shear.csv", "cone.csv", "repose.csv"}
+        names = {".furrow-run", "soil.json", "scenario.json", "plate.csv", "shear.csv", "cone.csv", "repose.csv"}
         if "no plots" not in told:
             names |= {"plate.png", "shear.png", "cone.png", "repose.png"}
         self.assertEqual({p.name for p in (self.work / "out").iterdir()}, names)

@@ -81,8 +81,8 @@ struct TireShape {
 /// How a model computes, and under which gravity; what is not given is as the model takes it by itself.
 struct TireContext {
   int threads = 1;
-  std::optional<double> tolerance;  // of the solver's residual, relative
-  std::optional<double> renewal;    // change of shape at which the solver renews its factors
+  std::optional<double> tolerance = {};  // of the solver's residual, relative
+  std::optional<double> renewal = {};    // change of shape at which the solver renews its factors
   Vec3 gravity = standard_gravity();  // m/s²
   std::function<void()> alive = {};   // called now and then while the tire is inflated; may throw to stop
 };

@@ -10,6 +10,7 @@
 #include "protocol/files/fault_point.hpp"
 #include "protocol/files/hdf5_file.hpp"
 #include "protocol/files/new_file.hpp"
+#include "protocol/files/text_file.hpp"
 
 namespace furrow::output {
 namespace {
@@ -80,6 +81,11 @@ void write_terrain_frame(const std::filesystem::path& run, std::int64_t index, d
   file.put("speed", frame.speed, {count});
   file.put("radius", frame.radius, {count});
   file.finish();
+}
+
+void sync_frames(const std::filesystem::path& run) {
+  std::error_code none;
+  if (std::filesystem::is_directory(run / "frames", none)) sync_folder(run / "frames");
 }
 
 std::optional<FrameName> frame_name(const std::string& file) {

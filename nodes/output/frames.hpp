@@ -26,6 +26,9 @@ void write_tire_frame(const std::filesystem::path& run, int tire, std::int64_t i
 void write_terrain_frame(const std::filesystem::path& run, std::int64_t index, double time,
                          const terrain::TerrainFrame& frame);
 
+/// Flushes the names of all frames to the disk. @throws Error(io)
+void sync_frames(const std::filesystem::path& run);
+
 struct FrameName {
   std::string kind;  // "tire0", "terrain"
   std::int64_t index = 0;

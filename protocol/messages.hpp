@@ -17,10 +17,11 @@
 #include "protocol/core/fields.hpp"
 #include "protocol/core/surface.hpp"
 #include "protocol/core/terrain_state.hpp"
+#include "protocol/core/tire_diagnostics.hpp"
 
 namespace furrow {
 
-inline constexpr std::int32_t kProtocolVersion = 5;
+inline constexpr std::int32_t kProtocolVersion = 6;
 
 enum class Role : std::int32_t { rig = 0, tire = 1, terrain = 2 };
 /// "rig", "tire", "terrain".
@@ -170,14 +171,11 @@ struct SpindleReport {
   Wrench wrench;   // on the rim by the tire + m (a − g): what the rig, carrying the added mass, needs
   Wrench spindle;  // on the rim by the tire, complete
   double lowest_point = 0.0;             // lowest contact-surface vertex z, m
-  Vec3 momentum = Vec3::Zero();          // of the tire, kg m/s
+  TireDiagnostics diagnostics;           // of the model
   Vec3 impulse_received = Vec3::Zero();  // cumulative, N s
   double impulse_received_abs = 0.0;     // cumulative Σ|impulse per interval|, N s
   double terrain_work = 0.0;             // cumulative Σ f̄·Δx_tire at the vertices, J
   double rim_work = 0.0;        // cumulative work done by the rim on the tire, ∫ −(F·v + M·ω), J
-  double dissipation = 0.0;     // cumulative, structural damping, J
-  double kinetic_energy = 0.0;  // J
-  double strain_energy = 0.0;   // elastic + pressure potential, J
   std::int64_t newton_iterations = 0;  // cumulative
   std::int64_t factorizations = 0;     // cumulative
   double residual = 0.0;               // last converged free residual / reference
@@ -193,14 +191,11 @@ void visit_fields(Visit&& visit, FieldsOf<SpindleReport> auto& s) {
   visit(Field{"wrench", ""}, s.wrench);
   visit(Field{"spindle", ""}, s.spindle);
   visit(Field{"lowest_point", "m"}, s.lowest_point);
-  visit(Field{"momentum", "kg m/s"}, s.momentum);
+  visit_fields(visit, s.diagnostics);  // under their own names
   visit(Field{"impulse_received", "N s"}, s.impulse_received);
   visit(Field{"impulse_received_abs", "N s"}, s.impulse_received_abs);
   visit(Field{"terrain_work", "J"}, s.terrain_work);
   visit(Field{"rim_work", "J"}, s.rim_work);
-  visit(Field{"dissipation", "J"}, s.dissipation);
-  visit(Field{"kinetic_energy", "J"}, s.kinetic_energy);
-  visit(Field{"strain_energy", "J"}, s.strain_energy);
   visit(Field{"newton_iterations"}, s.newton_iterations);
   visit(Field{"factorizations"}, s.factorizations);
   visit(Field{"residual"}, s.residual);

@@ -4,8 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
+#include "protocol/files/json_fields.hpp"
 #include "protocol/files/read_context.hpp"
 #include "rigs/drawbar_rig.hpp"
 #include "rigs/rig_spec.hpp"
@@ -27,6 +26,9 @@ void visit_fields(Visit&& visit, FieldsOf<DrawbarWheel> auto& s) {
   visit(Field{"load", "N", role::key}, s.rig.load);
   visit(Field{"carrier_mass", "kg", role::key}, s.rig.carrier_mass);
 }
+
+/// Those of DrawbarRigOptions, and the list `wheels`.
+std::vector<Field> drawbar_fields();
 
 /// @throws Error(bad_input) naming file and key
 std::unique_ptr<RigSpec> read_drawbar(const nlohmann::json& section, const ReadContext& context);

@@ -3,33 +3,39 @@
 #include <array>
 #include <vector>
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_fields.hpp"
+#include "protocol/files/json_text.hpp"
 #include "rigs/drawbar_spec.hpp"
 
 namespace furrow::rigs {
 namespace {
 
-constexpr std::array<RigKind, 1> kKinds{{{"drawbar", read_drawbar}}};
+constexpr auto kKinds = std::to_array<RigKind>({
+    {"drawbar", {drawbar_fields, changed_fields<DrawbarRigOptions>}, read_drawbar},
+});
 
 }  // namespace
 
 std::span<const RigKind> rig_kinds() { return kKinds; }
 
+std::vector<std::string> kinds_of_key(const std::string& key) {
+  std::vector<std::string> kinds;
+  for (const RigKind& kind : kKinds)
+    for (const Field& field : kind.keys.fields())
+      if (field.is(role::key) && key == field.name) kinds.emplace_back(kind.name);
+  return kinds;
+}
+
 std::unique_ptr<RigSpec> read_rig(const nlohmann::json& section, const ReadContext& context) {
   RigOptions options;
   read_fields(section, options);
-  std::vector<std::string_view> valid;
+  std::vector<std::string> valid;
   for (const RigKind& kind : kKinds) {
-    if (kind.name == options.type) return kind.read(section, context);
-    valid.push_back(kind.name);
+    if (options.type == kind.name) return kind.read(section, context);
+    valid.emplace_back(kind.name);
   }
-  throw input_error(context.file, context.key("type"),
-                    fmt::format("is '{}', expected {}{}", options.type, valid.size() > 1 ? "one of: " : "",
-                                fmt::join(valid, ", ")));
+  throw input_error(context.file, context.key("type"), "is '" + options.type + "', expected " + one_of(valid));
 }
 
 }  // namespace furrow::rigs

@@ -4,11 +4,10 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <string_view>
-
-#include <nlohmann/json_fwd.hpp>
+#include <vector>
 
 #include "protocol/core/fields.hpp"
+#include "protocol/files/json_fields.hpp"
 #include "protocol/files/read_context.hpp"
 #include "rigs/rig_spec.hpp"
 
@@ -29,12 +28,16 @@ void visit_fields(Visit&& visit, FieldsOf<RigOptions> auto& s) {
 }
 
 struct RigKind {
-  std::string_view name;  // of the key rig.type
+  const char* name;  // rig.type
+  KeyList keys;      // of its options
   /// @pre the section was checked against the schema. @throws Error(bad_input) naming file and key
   std::unique_ptr<RigSpec> (*read)(const nlohmann::json& section, const ReadContext& context);
 };
 
 std::span<const RigKind> rig_kinds();
+
+/// The kinds that take this key of the section; empty for the keys that all share and for those that none has.
+std::vector<std::string> kinds_of_key(const std::string& key);
 
 /// Reads the section of a scenario that describes its rig. @throws Error(bad_input); an unknown type lists the valid
 /// ones

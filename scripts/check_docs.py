@@ -2,28 +2,35 @@
 """Checks the pages: no prose line over 120 columns, no relative link and no path in backticks that leads nowhere.
 
 Tables, code blocks and lines without a space to break at may be longer. A link's #part must be a heading of the page
-that it names. A path in backticks counts if it begins with a folder of the top level; `*` and `{a,b}` are expanded, and
-`<name>` stands for any name. Every term of the glossary names at least one file, and
-every recipe of CONTRIBUTING.md at most five.
+that it names. A path in backticks counts if it begins with a folder of the top level; `*` and `{a,b}` are expanded,
+`<name>` stands for any name, and `path:12` must have such a line. A source or script without its folder must exist
+somewhere. Every term of the glossary names at least one file, and every recipe of CONTRIBUTING.md at most five; what a
+step names in parentheses is to be read, not touched, and does not count.
 
-usage: scripts/check_docs.py [PAGE ...]
+usage: scripts/check_docs.py [--root FOLDER] [PAGE ...]
 Prints every mistake as PAGE:LINE and exits with 1 if there is one. Without arguments it reads all pages.
 """
+import argparse
 import pathlib
 import re
 import sys
 
 WIDTH = 120
-ROOT = pathlib.Path(__file__).resolve().parent.parent
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 CODE = re.compile(r"`([^`]+)`")
 MOST_FILES = 5  # of a recipe
 TOP = {"nodes", "protocol", "tire", "terrain", "vehicle", "rigs", "tests", "scripts"}
-PATH = re.compile(r"[\w.<>*{},-]+(/[\w.<>*{},-]+)+/?$")
+PATH = re.compile(r"([\w.<>*{},-]+(?:/[\w.<>*{},-]+)+/?)(?::(\d+))?$")
+BARE = re.compile(r"[\w-]+\.(cpp|hpp|py|sh)$")
 
 
-def pages():
-    return sorted(ROOT.glob("*.md")) + [page for folder in sorted(TOP) for page in sorted((ROOT / folder).rglob("*.md"))]
+def pages(root):
+    return sorted(root.glob("*.md")) + [page for folder in sorted(TOP) for page in sorted((root / folder).rglob("*.md"))]
+
+
+def bare_names(root):
+    """Names of all sources and scripts."""
+    return {file.name for folder in TOP for file in (root / folder).rglob("*") if BARE.match(file.name)}
 
 
 def lines_of(page):
@@ -56,7 +63,7 @@ def anchors(page):
     return found
 
 
-def link_problem(page, target):
+def link_problem(root, page, target):
     if re.match(r"[a-z]+:", target):
         return ""
     path, _, part = target.partition("#")
@@ -64,7 +71,7 @@ def link_problem(page, target):
     if not file.exists():
         return f"link to '{target}', which does not exist"
     if part and part not in anchors(file):
-        return f"link to '{target}', but {file.relative_to(ROOT)} has no such heading"
+        return f"link to '{target}', but {file.relative_to(root)} has no such heading"
     return ""
 
 
@@ -76,50 +83,71 @@ def alternatives(path):
     return [name for word in match[1].split(",") for name in alternatives(path[:match.start()] + word + path[match.end():])]
 
 
-def path_problem(text):
-    if not PATH.match(text) or text.split("/")[0] not in TOP:
+def path_problem(root, text, bare):
+    if BARE.match(text) and text not in bare:
+        return f"names '{text}', which does not exist in any folder"
+    match = PATH.match(text)
+    if not match or text.split("/")[0] not in TOP:
         return ""
-    for name in alternatives(re.sub(r"<[^>]*>", "*", text.rstrip("/"))):
-        if not any(ROOT.glob(name)):
+    for name in alternatives(re.sub(r"<[^>]*>", "*", match[1].rstrip("/"))):
+        found = list(root.glob(name))
+        if not found:
             return f"names '{name}', which does not exist"
+        if match[2] and not any(file.is_file() and len(file.read_text().splitlines()) >= int(match[2]) for file in found):
+            return f"names line {match[2]} of '{name}', which has no such line"
     return ""
 
 
-def problems(page):
+def problems(root, page, bare):
     for number, text, kind in lines_of(page):
         if kind == "prose" and len(text) > WIDTH and " " in text.strip():
             yield number, f"is {len(text)} columns wide, expected at most {WIDTH}"
         if kind == "code":
             continue
         for target in LINK.findall(CODE.sub("", text)):
-            if problem := link_problem(page, target):
+            if problem := link_problem(root, page, target):
                 yield number, problem
         for code in CODE.findall(text):
-            if problem := path_problem(code):
+            if problem := path_problem(root, code, bare):
                 yield number, problem
-        if page == ROOT / "GLOSSARY.md" and kind == "table" and not re.match(r"\| term \||\|-", text):
-            if not any((ROOT / code).is_file() for code in CODE.findall(text.rsplit("|", 2)[1])):
+        if page == root / "GLOSSARY.md" and kind == "table" and not re.match(r"\| term \||\|-", text):
+            if not any((root / code).is_file() for code in CODE.findall(text.rsplit("|", 2)[1])):
                 yield number, "names no file"
+
+
+def touched(text):
+    """Files that the text of a step names outside parentheses."""
+    return {code for code in CODE.findall(re.sub(r"\([^()]*\)", "", text)) if PATH.match(code)}
 
 
 def recipe_problems(page):
     """Recipes are the sections 'Add …': a numbered list whose entries begin with a file."""
-    title, count = None, 0
+    title, files, step = None, set(), False
     for number, text, kind in lines_of(page):
         if kind == "prose" and text.startswith("#"):
-            title, count = text.lstrip("# "), 0
-        if title and title.startswith("Add ") and re.match(r"\d+\. ", text):
-            count += 1
-            if not re.match(r"\d+\. `[^`]*/[^`]*`", text):
-                yield number, "begins with no file"
-            if count > MOST_FILES:
-                yield number, f"is file {count} of '{title}', expected at most {MOST_FILES}"
+            title, files = text.lstrip("# "), set()
+        begins = re.match(r"\d+\. ", text)
+        step = bool(begins) or (step and text.startswith("   "))
+        if not (title and title.startswith("Add ") and step):
+            continue
+        if begins and not re.match(r"\d+\. `[^`]*/[^`]*`", text):
+            yield number, "begins with no file"
+        before, files = len(files), files | touched(text)
+        if len(files) > max(before, MOST_FILES):
+            yield number, f"names file {len(files)} of '{title}', expected at most {MOST_FILES}"
 
 
 def main():
-    chosen = [pathlib.Path(name).resolve() for name in sys.argv[1:]] or pages()
-    found = [f"{page.relative_to(ROOT)}:{number}: {text}" for page in chosen for number, text in problems(page)]
-    found += [f"CONTRIBUTING.md:{number}: {text}" for number, text in recipe_problems(ROOT / "CONTRIBUTING.md")]
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parent.parent)
+    parser.add_argument("pages", nargs="*", type=pathlib.Path)
+    options = parser.parse_args()
+    root = options.root.resolve()
+    bare = bare_names(root)
+    chosen = [page.resolve() for page in options.pages] or pages(root)
+    found = [f"{page.relative_to(root)}:{number}: {text}" for page in chosen for number, text in problems(root, page, bare)]
+    if (root / "CONTRIBUTING.md").exists():
+        found += [f"CONTRIBUTING.md:{number}: {text}" for number, text in recipe_problems(root / "CONTRIBUTING.md")]
     print("\n".join(found), end="\n" if found else "")
     return 1 if found else 0
 

@@ -2,13 +2,15 @@
 """Checks how the sources include each other: no circle, no arrow up, no folder that outgrew its purpose.
 
 A unit is a header together with its source. Rooms are the folders of FLOORS, lowest first; a file belongs to the longest entry
-that begins its path. A room may include itself, rooms of lower floors, and nothing else.
+that begins its path. A room may include itself, rooms of lower floors, and nothing else; of tests nothing. MPI is the
+business of protocol/ alone. The dummies of tests/dummies/ follow the rules of the room that they would stand in.
 
-usage: scripts/check_includes.py [--summary]
+usage: scripts/check_includes.py [--summary] [--root FOLDER]
 Prints every offending include as FILE:LINE and exits with 1 if there is one.
 """
 import argparse
 import collections
+import os.path
 import pathlib
 import re
 import sys
@@ -32,17 +34,28 @@ FLOORS = [
 # Physics rooms do not know what crosses ranks: of protocol/ they may include core and files alone.
 PHYSICS = ("tire", "terrain", "terrain/surface", "vehicle", "rigs")
 LARGEST_FOLDER = 45  # sources
+# Top-level folders that hold no room.
+NO_ROOMS = {"tests", "scripts"}
+# Dummies of models: the room that each would stand in, and the unit with the table that would list it.
+DUMMIES = {
+    "tests/dummies/spring_wheel": ("tire", "tire/tires"),
+    "tests/dummies/spring_mat": ("terrain", "terrain/terrains"),
+    "tests/dummies/held_hub": ("rigs", "rigs/rigs"),
+}
+INCLUDE = re.compile(r'\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
 FLOOR_OF = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}
+TOPS = sorted({room.split("/")[0] for room in FLOOR_OF})
 
 
-def sources():
-    tops = sorted({room.split("/")[0] for room in FLOOR_OF})
-    return [str(file.relative_to(ROOT)) for top in tops for file in sorted((ROOT / top).rglob("*.[ch]pp"))]
+def sources(root):
+    found = [str(file.relative_to(root)) for top in TOPS for file in sorted((root / top).rglob("*.[ch]pp"))]
+    return found + [unit + end for unit in DUMMIES for end in (".hpp", ".cpp") if (root / (unit + end)).exists()]
 
 
 def room_of(file):
+    if unit_of(file) in DUMMIES:
+        return DUMMIES[unit_of(file)][0]
     return max((room for room in FLOOR_OF if file.startswith(room + "/")), key=len)
 
 
@@ -85,46 +98,78 @@ def circles(edges):
     return found
 
 
+def includes(root, files):
+    """@returns (file, line number, included file as written, the same from the root)"""
+    for file in files:
+        for number, line in enumerate((root / file).read_text().split("\n"), 1):
+            if match := INCLUDE.match(line):
+                beside = os.path.normpath(os.path.join(os.path.dirname(file), match[2]))
+                by_place = match[1] == '"' and not (root / match[2]).is_file() and (root / beside).is_file()
+                yield file, number, match[2], beside if by_place else os.path.normpath(match[2])
+
+
+def include_problems(root, files, edges, lines):
+    for file, number, written, target in includes(root, files):
+        here, place = room_of(file), f"{file}:{number}"
+        if re.match(r"(open)?mpi(ext)?\.h$|mpi/", written) and not file.startswith("protocol/"):
+            yield f"{place}: {here} includes <{written}>; only protocol/ knows MPI"
+        if not (root / target).is_file():
+            continue
+        if written != target:
+            yield f"{place}: includes \"{written}\", expected the path from the root: \"{target}\""
+        if target.startswith("tests/") and unit_of(target) != unit_of(file):
+            yield f"{place}: {here} includes {target}; tests are no part of the program"
+        if target not in files:
+            continue
+        if unit_of(target) != unit_of(file):
+            edges[unit_of(file)].add(unit_of(target))
+            lines.setdefault((unit_of(file), unit_of(target)), place)
+        there = room_of(target)
+        if here != there and FLOOR_OF[there] >= FLOOR_OF[here]:
+            yield f"{place}: {here} includes {target} of {there}, which is not below it"
+        elif here in PHYSICS and there == "protocol":
+            yield f"{place}: {here} includes {target}; physics may include only protocol/core and files"
+
+
+def circle_problems(edges, lines):
+    for unit, (_, table) in DUMMIES.items():  # as if it stood in its room
+        if unit in edges and table in edges:
+            edges[table].add(unit)
+            lines.setdefault((table, unit), f"{table}.cpp")
+    for members in circles(edges):
+        inside = [f"  {lines[a, b]} includes {b}" for a in sorted(members) for b in sorted(edges[a] & members)]
+        yield "circle of includes:\n" + "\n".join(inside)
+
+
+def folder_problems(root, files):
+    for folder in sorted(path for path in root.iterdir() if path.is_dir() and not path.name.startswith(".")):
+        if folder.name in NO_ROOMS or folder.name in TOPS or folder.name.startswith("build"):
+            continue
+        if any(folder.rglob("*.[ch]pp")):
+            yield f"{folder.name}/: holds sources, but FLOORS does not say on which floor it is"
+    for folder, count in collections.Counter(str(pathlib.Path(file).parent) for file in files).items():
+        if count > LARGEST_FOLDER:
+            yield f"{folder}: {count} sources, expected at most {LARGEST_FOLDER}"
+    for file in files:
+        if file.startswith("nodes/") and room_of(file) == "nodes" and file != "nodes/main.cpp":
+            yield f"{file}: is in no room of nodes/ that FLOORS lists; nodes/ itself holds main alone"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--summary", action="store_true", help="print the figures even if all is well")
-    summary = parser.parse_args().summary
-    files = sources()
-    known, problems, arrows_up = set(files), [], 0
-    edges, lines = collections.defaultdict(set), {}
-    for file in files:
-        edges[unit_of(file)]
-        for number, line in enumerate((ROOT / file).read_text().split("\n"), 1):
-            match = re.match(r'#include "([^"]+)"', line)
-            if not match or match[1] not in known:
-                continue
-            target = match[1]
-            if unit_of(target) != unit_of(file):
-                edges[unit_of(file)].add(unit_of(target))
-                lines.setdefault((unit_of(file), unit_of(target)), f"{file}:{number}")
-            here, there = room_of(file), room_of(target)
-            if here != there and FLOOR_OF[there] >= FLOOR_OF[here]:
-                problems.append(f"{file}:{number}: {here} includes {target} of {there}, which is not below it")
-                arrows_up += 1
-            elif here in PHYSICS and there == "protocol":
-                problems.append(f"{file}:{number}: {here} includes {target}; physics may include only protocol/core and files")
-                arrows_up += 1
-    found = circles(edges)
-    for members in found:
-        inside = [f"  {lines[a, b]} includes {b}" for a in sorted(members) for b in sorted(edges[a] & members)]
-        problems.append("circle of includes:\n" + "\n".join(inside))
-    folders = collections.Counter(str(pathlib.Path(file).parent) for file in files)
-    for folder, count in folders.items():
-        if count > LARGEST_FOLDER:
-            problems.append(f"{folder}: {count} sources, expected at most {LARGEST_FOLDER}")
-    for file in files:
-        if str(pathlib.Path(file).parent) == "nodes" and file != "nodes/main.cpp":
-            problems.append(f"{file}: nodes/ itself holds main alone")
+    parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parent.parent)
+    options = parser.parse_args()
+    files = sources(options.root)
+    edges, lines = collections.defaultdict(set, {unit_of(file): set() for file in files}), {}
+    arrows_up = list(include_problems(options.root, files, edges, lines))
+    found = list(circle_problems(edges, lines))
+    problems = arrows_up + found + list(folder_problems(options.root, files))
     for problem in problems:
         print(problem)
-    if summary or problems:
-        folder, count = folders.most_common(1)[0]
-        print(f"{len(files)} sources, {len(edges)} units; circles: {len(found)}; arrows up: {arrows_up}; "
+    if (options.summary or problems) and files:
+        folder, count = collections.Counter(str(pathlib.Path(file).parent) for file in files).most_common(1)[0]
+        print(f"{len(files)} sources, {len(edges)} units; circles: {len(found)}; arrows up: {len(arrows_up)}; "
               f"largest folder: {folder}, {count}")
     return 1 if problems else 0
 

@@ -37,8 +37,8 @@ class Terrain {
   virtual HeightField height_field() const = 0;
 
   /// Declares the surface of tire `k` (k = 0, 1, … in order) before the first advance.
-  /// @throws Error(bad_input) when mesh and positions do not belong together (terrain/surface/surface_check.hpp), or
-  /// the surface starts inside the terrain's solid boundary.
+  /// @throws Error(bad_input) when mesh and positions do not belong together (terrain/surface/surface_check.hpp), the
+  /// terrain's law has no use for the material, or the surface starts inside the terrain's solid boundary.
   virtual void attach(const SurfaceMesh& mesh, const ContactMaterial& material,
                       const SurfaceState& start) = 0;
 

@@ -55,6 +55,7 @@ struct TerrainDescription {
   std::string law;                           // of contact between grains; empty: there are none
   double grain_radius = 0.0;                 // m; 0: there are none
   bool exact_restart = true;                 // a run continued from a checkpoint has the same bits
+  bool gives_tangents = false;               // sends contact tangents beside forces where tires ask for them
   bool unstable_step_allowed = false;        // a step above the stable one is warned of, not refused
   std::optional<TerrainBounds> bounds;       // none: unbounded
   std::optional<double> undisturbed_height;  // of the surface that sinkage counts from, m; none: measured

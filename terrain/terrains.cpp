@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "protocol/core/error.hpp"
+#include "protocol/files/json_text.hpp"
 #include "terrain/dem/dem_options.hpp"
 #include "terrain/dem/dem_spec.hpp"
 #include "terrain/rigid/ground_options.hpp"
@@ -14,26 +15,18 @@
 namespace furrow::terrain {
 namespace {
 
-template <HasFields T>
-std::vector<Field> fields_of() {
-  std::vector<Field> fields;
-  const T options{};
-  visit_fields([&](const Field& field, const auto&) { fields.push_back(field); }, options);
-  return fields;
-}
-
-constexpr std::array<TerrainEntry, 2> kTerrains{{
-    {"dem", fields_of<dem::DemOptions>, dem::read_dem_spec},
-    {"rigid", fields_of<GroundOptions>, read_ground_spec},
-}};
+constexpr auto kTerrains = std::to_array<TerrainEntry>({
+    {"dem", key_list<dem::DemOptions>(), dem::read_dem_spec},
+    {"rigid", key_list<GroundOptions>(), read_ground_spec},
+});
 
 /// "'dem' or 'rigid'", of the engines that `wanted` takes.
 template <class Wanted>
 std::string names_of(const Wanted& wanted) {
-  std::string names;
+  std::vector<std::string> names;
   for (const TerrainEntry& entry : kTerrains)
-    if (wanted(entry)) names += (names.empty() ? "'" : " or '") + std::string(entry.name) + "'";
-  return names;
+    if (wanted(entry)) names.emplace_back(entry.name);
+  return one_of(names);
 }
 
 }  // namespace
@@ -52,7 +45,7 @@ std::vector<Field> common_terrain_fields() { return fields_of<CommonOptions>(); 
 std::vector<std::string> engines_of_key(const std::string& key) {
   std::vector<std::string> engines;
   for (const TerrainEntry& entry : kTerrains)
-    for (const Field& field : entry.fields())
+    for (const Field& field : entry.keys.fields())
       if (field.is(role::key) && key == field.name) engines.emplace_back(entry.name);
   return engines;
 }
@@ -60,7 +53,7 @@ std::vector<std::string> engines_of_key(const std::string& key) {
 std::vector<std::string> terrain_keys(unsigned roles) {
   std::vector<std::string> keys;
   for (const TerrainEntry& entry : kTerrains)
-    for (const Field& field : entry.fields())
+    for (const Field& field : entry.keys.fields())
       if (field.is(role::key | roles) && std::find(keys.begin(), keys.end(), field.name) == keys.end())
         keys.emplace_back(field.name);
   return keys;

@@ -6,17 +6,16 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "protocol/core/fields.hpp"
+#include "protocol/files/json_fields.hpp"
 #include "protocol/files/read_context.hpp"
 #include "terrain/terrain_spec.hpp"
 
 namespace furrow::terrain {
 
 struct TerrainEntry {
-  const char* name;                // terrain.engine
-  std::vector<Field> (*fields)();  // of its options; its keys are those with role::key
+  const char* name;  // terrain.engine
+  KeyList keys;      // of its options
   /// @pre the section was checked against the schema. @throws Error(bad_input) for a file that does not exist
   std::unique_ptr<TerrainSpec> (*read)(const nlohmann::json& section, const ReadContext& context);
 };
@@ -35,7 +34,7 @@ std::vector<std::string> engines_of_key(const std::string& key);
 /// Keys of all engines that have this role, in order, each once.
 std::vector<std::string> terrain_keys(unsigned roles);
 
-/// Names of the engines whose terrain has grains, quoted: "'dem'".
+/// Names of the engines whose terrain has grains, for messages: "'dem'".
 std::string engines_with_grains();
 
 /// Of a scenario that says nothing of its terrain.

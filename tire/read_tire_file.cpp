@@ -11,6 +11,7 @@
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_reader.hpp"
 #include "protocol/files/json_text.hpp"
+#include "tire/tire_file_reader.hpp"
 #include "tire/tire_file_chrono.hpp"
 #include "tire/tire_profile.hpp"
 
@@ -19,7 +20,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kFormatVersion = 1;
 constexpr std::size_t kMaxBranches = 100;
 
 /// A number for an isotropic material, three for an orthotropic one.
@@ -103,14 +103,10 @@ std::vector<MaxwellBranch> read_prony(JsonReader& reader) {
 }
 
 TireFile read_own(JsonReader& reader) {
-  reader.check_version(kFormatVersion, true);
+  take_common_keys(reader);
   TireFile f;
   f.name = reader.text_or("name", "tire");
-  reader.skip("model");
-  reader.skip("rim");  // read by tires.cpp, whatever the model
   reader.skip("template");
-  reader.skip("source");
-  reader.skip("$schema");
   f.radius = reader.positive("radius");
   f.rim_radius = reader.positive("rim_radius");
   f.rim_width = reader.positive("rim_width");

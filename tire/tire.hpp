@@ -7,18 +7,13 @@
 #include "protocol/core/hash.hpp"
 #include "protocol/core/outcome.hpp"
 #include "protocol/core/surface.hpp"
+#include "protocol/core/tire_diagnostics.hpp"
 #include "tire/named_values.hpp"
 #include "tire/rim_trajectory.hpp"
 
 namespace furrow::tire {
 
-/// Cumulative account of what a tire did since it was placed.
-struct TireDiagnostics {
-  double kinetic_energy = 0.0;   // J, now
-  double strain_energy = 0.0;    // elastic − work of the pressure on the volume, J, now
-  double dissipation = 0.0;      // structural damping and relaxation, J, cumulative
-  Vec3 momentum = Vec3::Zero();  // kg m/s, now
-};
+using furrow::TireDiagnostics;
 
 class Tire {
  public:
@@ -58,6 +53,7 @@ class Tire {
   /// with them.
   virtual void acted(NodalForces&) const {}
 
+  /// @post every member is set and finite
   virtual TireDiagnostics diagnostics() const = 0;
 
   /// What the model's own method counts, cumulative, and how good its last step was: "newton_iterations",

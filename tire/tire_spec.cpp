@@ -1,9 +1,39 @@
 #include "tire/tire_spec.hpp"
 
+#include <algorithm>
+#include <array>
+#include <type_traits>
+
 #include "tire/press.hpp"
 
 namespace furrow::tire {
+namespace {
+
+// What concerns every model: its file, how it is coupled, and tangents, which have a check of their own.
+constexpr std::array<std::string_view, 4> kOfEveryModel{"file", "rigid", "contact_tangent", "substeps"};
+
+}  // namespace
 
 std::unique_ptr<StaticTest> TireSpec::static_test() const { return nullptr; }
+
+std::vector<std::string> idle_keys(const TireSpec& tire) {
+  const std::vector<std::string> takes = tire.describe().takes;
+  const TireOptions defaults;
+  std::vector<const void*> members;  // of the defaults, in the order of the list
+  visit_fields([&](const furrow::Field&, const auto& value) { members.push_back(&value); }, defaults);
+  std::vector<std::string> idle;
+  std::size_t place = 0;
+  visit_fields(
+      [&](const furrow::Field& field, const auto& value) {
+        using Value = std::remove_cvref_t<decltype(value)>;
+        const bool stated = !(value == *static_cast<const Value*>(members[place++]));
+        const auto named = [&](const auto& names) {
+          return std::find(names.begin(), names.end(), field.name) != names.end();
+        };
+        if (stated && !named(takes) && !named(kOfEveryModel)) idle.emplace_back(field.name);
+      },
+      tire.options());
+  return idle;
+}
 
 }  // namespace furrow::tire

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -61,6 +62,7 @@ struct TireDescription {
   double memory = 0.0;          // that the model needs, bytes
   double saved_bytes = 0.0;     // in a checkpoint
   bool takes_tangents = false;  // contact forces may answer to its motion
+  std::vector<std::string> takes;  // names in TireOptions of what the model takes from the scenario: "pressure"
   /// Contact forces come one step late, which feeds a tire whose own damping is slower: steps of at most
   /// `step_share` of `damping_time` are good; with a share of 0 any step is.
   double damping_time = 0.0;  // s
@@ -86,6 +88,11 @@ struct TireContext {
   Vec3 gravity = standard_gravity();  // m/s²
   std::function<void()> alive = {};   // called now and then while the tire is inflated; may throw to stop
 };
+
+class TireSpec;
+
+/// What the scenario states of a tire although its model does not take it: names in TireOptions.
+std::vector<std::string> idle_keys(const TireSpec& tire);
 
 class StaticTest;
 

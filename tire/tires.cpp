@@ -6,7 +6,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "protocol/core/error.hpp"
 #include "protocol/files/data_files.hpp"
@@ -21,7 +20,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array<TireModel, 1> kModels{{{"shell", read_shell}}};
+constexpr auto kModels = std::to_array<TireModel>({
+    {"shell", read_shell},
+});
 // Names that tire files may come to use.
 constexpr std::array<std::string_view, 3> kLater{"ring", "planar", "wheel"};
 
@@ -29,15 +30,15 @@ const TireModel& model_of(const json& document, const std::string& file) {
   JsonReader reader(document, file);
   if (!reader.has("model")) return kModels.front();
   const std::string name = reader.text("model");
-  std::vector<std::string_view> valid;
+  std::vector<std::string> valid;
   for (const TireModel& model : kModels) {
     if (model.name == name) return model;
-    valid.push_back(model.name);
+    valid.emplace_back(model.name);
   }
   const bool later = std::find(kLater.begin(), kLater.end(), name) != kLater.end();
   reader.fail("model",
-              fmt::format("is '{}', {}expected one of: {}", name,
-                          later ? "which is not available in this version, " : "", fmt::join(valid, ", ")));
+              fmt::format("is '{}', {}expected {}", name,
+                          later ? "which is not available in this version, " : "", one_of(valid)));
 }
 
 /// The block `rim` of any model's file.

@@ -1,5 +1,6 @@
 #include "nodes/checkpoint/resume.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -7,8 +8,8 @@
 
 #include "nodes/checkpoint/run_summary.hpp"
 #include "nodes/launch/run_directory.hpp"
-#include "nodes/scenario/engine_keys.hpp"
 #include "nodes/scenario/load_scenario.hpp"
+#include "nodes/scenario/model_keys.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_text.hpp"
 
@@ -32,7 +33,12 @@ json changes(const fs::path& run, const json& before, const json& now, bool fail
   json changed = json::object(), keys = before.flatten();
   keys.update(now.flatten());
   const json old_values = before.flatten(), new_values = now.flatten();
-  for (const auto& [pointer, unused] : keys.items()) {
+  std::vector<std::string> pointers;
+  for (const auto& [pointer, unused] : keys.items()) pointers.push_back(pointer);
+  // Another model brings other keys with it: what chose it is what is wrong.
+  std::stable_partition(pointers.begin(), pointers.end(),
+                        [](const std::string& pointer) { return scenario::chooses_model(dotted(pointer)); });
+  for (const std::string& pointer : pointers) {
     const json was = old_values.value(pointer, json()), is = new_values.value(pointer, json());
     if (was == is) continue;
     const std::string key = dotted(pointer);
@@ -158,8 +164,7 @@ ResumePlan plan_resume(const fs::path& run,
   plan.point = newest_whole(run, plan.warnings);
   const CheckpointManifest& manifest = plan.point.manifest;
   plan.scenario.name = manifest.name;
-  json before = json::parse(manifest.scenario);
-  scenario::remove_keys_of_other_engines(before);  // of a run that began with an earlier version
+  const json before = scenario::completed_now(manifest.scenario);  // the run may have begun with an earlier version
   const nlohmann::ordered_json failed = read_failed_summary(run);
   const bool physics = value_at(failed, "failed.exit_code") == static_cast<int>(ExitCode::physics);
   const json changed = changes(run, before, now, physics);

@@ -10,6 +10,7 @@
 #include "nodes/scenario/memory_check.hpp"
 #include "nodes/scenario/scenario.hpp"
 #include "protocol/core/clock.hpp"
+#include "protocol/files/fields_json.hpp"
 #include "terrain/dem/beds/bed_compaction.hpp"
 #include "terrain/dem/beds/bed_preparation.hpp"
 #include "terrain/dem/beds/bed_statistics.hpp"
@@ -36,6 +37,7 @@ json bed_json(const scenario::Scenario& s, const terrain::dem::DemOptions& o,
   j["size_spread"] = o.size_spread;
   j["settling_friction"] = o.settling_friction < 0.0 ? json(nullptr) : json(o.settling_friction);
   j["compaction_pressure_Pa"] = o.compaction_pressure;
+  j["terrain"] = fields_json(o, role::bed);  // all keys that make the bed
   j["grains"] = bed.grains;
   j["depth_m"] = bed.depth;
   j["top_m"] = bed.top;

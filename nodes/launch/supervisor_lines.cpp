@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstdlib>
 
 #include <nlohmann/json.hpp>
@@ -60,7 +61,7 @@ std::optional<RankLine> decode(std::string_view text) {
       const json& v = j.at("values");
       double* const fields[] = {&p.share, &p.time, &p.end, &p.pull, &p.sinkage, &p.speed, &p.eta};
       for (std::size_t i = 0; i < std::size(fields); ++i)
-        *fields[i] = v.at(i).is_number() ? v.at(i).get<double>() : 0.0;
+        *fields[i] = v.at(i).is_number() ? v.at(i).get<double>() : NAN;  // null: was not measured
     }
   } catch (const json::exception&) {
     return std::nullopt;

@@ -120,15 +120,15 @@ void SeriesBuilder::measure_instants(const StepReports& r) {
   row.sinkage = ground_ - r.tire.lowest_point;
   row.sinkage_kinematic = ground_ - r.wheel.axle_height + radius_;
   row.vertical_momentum = r.wheel.vertical_momentum;
-  row.momentum_x_tire = r.tire.momentum.dot(r.heading);
+  row.momentum_x_tire = r.tire.diagnostics.momentum.dot(r.heading);
   row.impulse_sent = memory_.sent;
   row.impulse_received = r.tire.impulse_received;
   row.soil_dissipation = r.terrain.dissipation;
-  row.tire_dissipation = r.tire.dissipation;
+  row.tire_dissipation = r.tire.diagnostics.dissipation;
   row.terrain_kinetic_energy = r.terrain.kinetic_energy;
   row.terrain_potential_energy = r.terrain.potential_energy;
   row.terrain_elastic_energy = r.terrain.elastic_energy;
-  row.tire_energy = r.tire.kinetic_energy + r.tire.strain_energy;
+  row.tire_energy = r.tire.diagnostics.kinetic_energy + r.tire.diagnostics.strain_energy;
   // Vertical motion and height of the carried mass; its imposed horizontal motion exchanges no net energy at
   // constant speed and is in the raw pull's work while it changes.
   const double mass = r.wheel.carried_mass, w = r.wheel.vertical_speed, u = r.wheel.speed;

@@ -21,6 +21,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kMaxLate =
     0.05;  // of load × speed: energy error of the interface of a run that can be trusted
+constexpr double kLeastRolled = 1e-3;  // of the radius: a wheel that went less stands
 constexpr char kPull[] = "drawbar_pull_N";  // the rig's, if it has one
 // At the window's beginning lines may be left out for a whole number of facets: those of one facet, of which this
 // many are always allowed, but this share of the window never lost.
@@ -142,8 +143,13 @@ Json pull_statistics(const WheelInput& in, const Window& w, double load) {
       unsteady_because(s, {load, bounce, w.duration(), std::max(travel, turned), radius, w.whole_facets});
   if (in.run.failure) reasons.emplace_back("the run failed before its end");
   const double late = w.rate([](const WheelRow& r) { return r.energy_error_abs; });
-  const double rolling = load * std::max(travel, turned) / w.duration();
-  if (late > kMaxLate * rolling)
+  const double rolled = std::max(travel, turned), rolling = load * rolled / w.duration();
+  if (rolled < kLeastRolled * radius && !w.rows.empty())
+    reasons.push_back(fmt::format(
+        "the wheel neither rolls nor slips: {:.2g} mm in the averaging window, expected at least {:g} % of "
+        "its radius; so the share of load × speed that late contact forces feed is not told",
+        1e3 * rolled, 100.0 * kLeastRolled));
+  else if (late > kMaxLate * rolling)
     reasons.push_back(fmt::format(
         "contact forces that come one step late feed the tire: {:.3g} W at its interface, {:.0f} % of "
         "load × speed; take a smaller run.step or tire.contact_tangent",
@@ -299,6 +305,23 @@ void add_accounts(const WheelInput& in, const Window& w, Json& json) {
   json["transfer_moment_residual"] = number(end.transfer_moment_residual);
 }
 
+/// What a table says from line `first` on, by the names of its columns: the means of the lines, and where a column counts
+/// since the start of the run its last value. So every column reaches the summary, those of rigs too.
+Json column_figures(const Table& table, std::size_t first) {
+  Json json;
+  for (const Column& column : table.columns) {
+    if (std::string_view(column.name) == "time_s") continue;
+    const std::vector<double> values = table.column(column.name);
+    const bool since_start = column.kind == ColumnKind::cumulative || column.kind == ColumnKind::largest;
+    double sum = 0.0;
+    for (std::size_t i = first; i < values.size(); ++i) sum += values[i];
+    const bool any = first < values.size();
+    json[column.name] =
+        number(!any ? NAN : since_start ? values.back() : sum / static_cast<double>(values.size() - first));
+  }
+  return json;
+}
+
 Json wheel_summary(const WheelInput& in) {
   Json json;
   const rigs::WheelDescription wheel = scenario::describe_rig(in.run.scenario).wheels[in.wheel];
@@ -317,6 +340,7 @@ Json wheel_summary(const WheelInput& in) {
   json["tire_coordinates"] = in.card().size;
   json["newton_iterations_mean"] = number(end.newton_iterations / steps);
   json["factorizations"] = end.factorizations;
+  json["columns"] = column_figures(in.table, window.rows.empty() ? in.rows.size() : window.first);
   return json;
 }
 
@@ -377,6 +401,12 @@ std::string summary_text(const SummaryInput& in) {
   if (wheels.size() == 1) json.update(wheels.front());
   add_cost(in, wheel_rows(in.tables.front()), json);
   json["wheels"] = wheels;
+  for (const Table& table : in.tables.subspan(std::min(in.scenario.tires.size(), in.tables.size()))) {
+    const std::vector<double> times = table.column("time_s");
+    std::size_t first = 1;
+    while (first < times.size() && times[first] < in.scenario.run.average_from) ++first;
+    json["subjects"][table.subject] = column_figures(table, first);
+  }
   return json.dump(2) + "\n";
 }
 

@@ -17,6 +17,7 @@
 #include "nodes/scenario/wheel_geometry.hpp"
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
+#include "tire/outward.hpp"
 #include "tire/reach.hpp"
 
 namespace furrow::ranks {
@@ -57,6 +58,8 @@ class TireNode : public Node {
     trajectory_ = tire::RimTrajectory(start.rim);
     tire_->place(start.rim);
     tire_->surface(motion_.surface);
+    tire::require_outward(tire_->mesh(), motion_.surface.position, start.rim.position,
+                          scenario_.tires[index_]->options().file.string());
     motion_.header = {kPlacement, 0.0};
     send(transport, kTerrain, motion_);
     describe_state();
@@ -171,11 +174,10 @@ class TireNode : public Node {
   }
 
   void describe_state() {
-    const tire::TireDiagnostics d = tire_->diagnostics();
-    report_.kinetic_energy = d.kinetic_energy;
-    report_.strain_energy = d.strain_energy;
-    report_.dissipation = d.dissipation;
-    report_.momentum = d.momentum;
+    report_.diagnostics = tire_->diagnostics();
+    if (const char* missing = first_missing(report_.diagnostics))
+      throw physics_error(fmt::format("{}: its {} is not finite, or its model {} does not say it",
+                                      to_string(Address{Role::tire, index_}), missing, kind_));
     const tire::NamedValues figures = tire_->figures();
     report_.newton_iterations = static_cast<std::int64_t>(figures.of("newton_iterations"));
     report_.factorizations = static_cast<std::int64_t>(figures.of("factorizations"));

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "nodes/scenario/model_keys.hpp"
 #include "nodes/scenario/schema.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_text.hpp"
-#include "terrain/terrains.hpp"
 
 namespace furrow::scenario {
 namespace {
@@ -33,10 +33,12 @@ std::string value_help(const std::string& key, const json& node) {
     line("usual",
          number_text(node["usual"][0].get<double>()) + " to " + number_text(node["usual"][1].get<double>()));
   line("default", node.contains("default") ? value_text(node["default"]) : std::string("none"));
-  const std::string section = "terrain.";
-  if (key.starts_with(section))
-    if (const auto engines = terrain::engines_of_key(key.substr(section.size())); !engines.empty())
-      line("engine", fmt::format("{}", fmt::join(engines, ", ")));
+  for (const ModelSection& of : model_sections()) {
+    const std::string section = std::string(of.name) + ".";
+    if (!key.starts_with(section)) continue;
+    if (const auto owners = of.owners(key.substr(section.size())); !owners.empty())
+      line(of.chooser, fmt::format("{}", fmt::join(owners, ", ")));
+  }
   return text;
 }
 

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "nodes/scenario/engine_keys.hpp"
+#include "nodes/scenario/model_keys.hpp"
 #include "nodes/scenario/scenario_checks.hpp"
 #include "nodes/scenario/schema.hpp"
 #include "nodes/scenario/soil_material.hpp"
@@ -116,8 +116,8 @@ json read_document(const std::string& file, const Settings& settings) {
   return document;
 }
 
-/// Returns a warning of keys that were set aside; empty if none were.
-std::string complete(json& document, const std::string& file, const Settings& settings) {
+/// Returns warnings of keys that were set aside.
+std::vector<std::string> complete(json& document, const std::string& file, const Settings& settings) {
   const Schema schema = Schema::load();
   schema.normalize(document);
   if (const auto problems = schema.problems(document); !problems.empty()) throw all_problems(file, problems);
@@ -125,10 +125,10 @@ std::string complete(json& document, const std::string& file, const Settings& se
     throw input_error(file, "tires", "is given beside 'tire', expected one of the two");
   if (!document.contains("tire") && !document.contains("tires"))
     throw input_error(file, "tire", "is missing, expected an object { } with the tire's file");
-  const std::string set_aside = set_aside_keys(document, schema, file, settings);
+  std::vector<std::string> set_aside = set_aside_keys(document, schema, file, settings);
   schema.fill_defaults(document);
   schema.normalize(document);
-  remove_keys_of_other_engines(document);
+  remove_foreign_keys(document);
   return set_aside;
 }
 
@@ -145,6 +145,7 @@ std::shared_ptr<rigs::RigSpec> take_rig(const json& j, Scenario& s) {
 
 /// All wheels share a single `tire`.
 void take_tires(const json& document, Scenario& s) {
+  s.tires_listed = document.contains("tires");
   if (document.contains("tire"))
     s.tires.assign(s.rig->wheel_count(), tire::read_tire(document["tire"], {s.file.string(), "tire"}));
   else
@@ -184,7 +185,8 @@ void take_terrain(const json& j, Scenario& s) {
 }
 
 // Keys beside the sections that say something to people and editors alone.
-constexpr std::array<const char*, 2> kRemarks{"description", "$schema"};
+constexpr const char* kCompletedBy = "completed_by";
+constexpr std::array<const char*, 3> kRemarks{"description", "$schema", kCompletedBy};
 
 /// Keys that change no result, as the structs' lists of fields say; with their sections.
 const std::vector<std::string>& harmless_keys() {
@@ -225,14 +227,22 @@ void erase(json& document, const std::string& key) {
   if (dot == std::string::npos || section->empty()) document.erase(section);
 }
 
+// Raised when a default changes: scenarios that leave the key out mean something else from then on.
+constexpr int kDigestVersion = 2;
+
+/// What differs from the default counts, by name: a key that is added later changes no digest of those that do not use
+/// it.
 std::string digest_of(json completed, const Scenario& s) {
   for (const std::string& key : harmless_keys()) erase(completed, key);
+  erase(completed, std::string("terrain.") + kSoilKey);  // its values stand in the other keys
   // Files count by what they hold, wherever they stand.
   for (const terrain::TerrainFile& file : s.terrain->files()) completed["terrain"].erase(file.key);
   if (completed.contains("tire")) completed["tire"].erase("file");
   if (completed.contains("tires"))
     for (json& tire : completed["tires"]) tire.erase("file");
+  Schema::load().remove_defaults(completed);
   Hash hash;
+  hash.add(&kDigestVersion, sizeof kDigestVersion);
   hash.add(completed.dump());
   for (const std::string& file : s.file_hashes()) hash.add(file);
   return hash.hex();
@@ -251,6 +261,8 @@ void make_movable(json& document, const Scenario& s) {
   };
   for (const terrain::TerrainFile& file : s.terrain->files())
     full(document["terrain"][file.key], std::string("terrain.") + file.key);
+  if (document["terrain"].contains(kSoilKey))
+    full(document["terrain"][kSoilKey], std::string("terrain.") + kSoilKey);
   if (document.contains("tire")) full(document["tire"]["file"], "tire.file");
   if (document.contains("tires"))
     for (std::size_t k = 0; k < document["tires"].size(); ++k)
@@ -266,14 +278,14 @@ Scenario load_scenario(const std::filesystem::path& name, const Settings& settin
   s.name = file.stem().string();
   require_utf8(s.name, file.string(), "", "has a name");
   json document = read_document(file.string(), settings);
-  if (const std::string set_aside = complete(document, file.string(), settings); !set_aside.empty())
-    s.warnings.push_back(set_aside);
+  s.warnings = complete(document, file.string(), settings);
   take_run(document["run"], s);
   read_fields(document["output"], s.output);
   read_fields(document["checkpoint"], s.checkpoint);
+  std::vector<std::string> unusual;
   for (const Problem& problem : Schema::load().unusual(document))
-    s.warnings.push_back(input_error(file.string(), problem.key, problem.what).what());
-  const std::vector<std::string> unusual = s.warnings;
+    unusual.emplace_back(input_error(file.string(), problem.key, problem.what).what());
+  s.warnings.insert(s.warnings.end(), unusual.begin(), unusual.end());
   try {
     const std::shared_ptr<rigs::RigSpec> rig = take_rig(document["rig"], s);
     take_tires(document, s);
@@ -292,8 +304,18 @@ Scenario load_scenario(const std::filesystem::path& name, const Settings& settin
   }
   s.digest = digest_of(document, s);
   make_movable(document, s);
+  document[kCompletedBy] = std::string("furrow ") + FURROW_VERSION;
   s.completed = document.dump(2);
   return s;
+}
+
+json completed_now(const std::string& completed) {
+  json document = json::parse(completed);
+  const Schema schema = Schema::load();
+  schema.fill_defaults(document);
+  schema.normalize(document);
+  remove_foreign_keys(document);
+  return document;
 }
 
 bool may_change_on_resume(const std::string& key) {

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "nodes/scenario/scenario.hpp"
 
 namespace furrow::scenario {
@@ -14,6 +16,10 @@ namespace furrow::scenario {
 /// @throws Error(bad_input) naming file, key, what is wrong and what is expected; one line per mistake.
 Scenario load_scenario(const std::filesystem::path& file,
                        const std::vector<std::pair<std::string, std::string>>& settings);
+
+/// A completed scenario of a run, perhaps of an earlier version, as this version would have completed it: keys that are
+/// missing mean their defaults, and those of other models are gone.
+nlohmann::json completed_now(const std::string& completed);
 
 /// Which keys may differ when a run is continued: they say how long, how it is computed and what is written, and leave
 /// the physics alone.

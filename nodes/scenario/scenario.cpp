@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/text_file.hpp"
@@ -16,6 +18,11 @@ std::vector<std::string> Scenario::file_hashes() const {
     hashes.push_back(text_hash(read_text_file(tire->options().file, "a tire file in JSON")));
   for (const terrain::TerrainFile& file : terrain->files()) hashes.push_back(file_hash(file.path));
   return hashes;
+}
+
+std::string Scenario::tire_key(std::size_t wheel, const std::string& name) const {
+  FURROW_ASSERT(in_range(wheel, tires.size()), wheel, tires.size());
+  return tires_listed ? fmt::format("tires.{}.{}", wheel, name) : "tire." + name;
 }
 
 terrain::TerrainContext Scenario::terrain_context() const {

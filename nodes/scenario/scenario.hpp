@@ -96,6 +96,7 @@ struct Scenario {
   int rig_substeps = 1;
   double drop_height = 0.0;                                  // of all tires above the ground at t = 0, m
   std::vector<std::shared_ptr<const tire::TireSpec>> tires;  // one per wheel
+  bool tires_listed = false;                                 // as entries of `tires`, not by one `tire` for all
   int tire_substeps = 1;
   std::shared_ptr<const terrain::TerrainSpec> terrain = terrain::default_terrain();
   int terrain_ranks = 1;
@@ -108,6 +109,8 @@ struct Scenario {
   MemoryNeed memory;
   std::vector<std::string> warnings;  // what looks wrong but is allowed
 
+  /// Key of the tire of wheel k: "tire.pressure", "tires.2.pressure".
+  std::string tire_key(std::size_t wheel, const std::string& name) const;
   double terrain_step() const { return run.step / terrain_substeps; }  // s
   /// What the run supplies to its terrain, with as many threads as a bed settles with.
   terrain::TerrainContext terrain_context() const;

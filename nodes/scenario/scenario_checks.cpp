@@ -43,6 +43,7 @@ class Checks {
   void whole_steps(const char* key, double given, std::int64_t steps);
   void rig();
   void tires();
+  void tire_options(std::size_t wheel);
   void room();
   void bin();
   void start();
@@ -51,7 +52,7 @@ class Checks {
   void machine();
 
  private:
-  rigs::RigDescription describe() const { return s_.rig->describe(wheel_sizes(tires_), s_.run.end); }
+  rigs::RigDescription describe() const { return describe_rig(s_, tires_); }
 
   Scenario& s_;
   rigs::RigSpec& rig_;
@@ -109,11 +110,13 @@ void Checks::tires() {
       warn(s_.tires[k]->options().file.string(), key, what);
   }
   tires_ = describe_tires(s_);
+  for (std::size_t k = 0; k < tires_.size(); ++k)
+    if (k == 0 || s_.tires[k] != s_.tires[k - 1]) tire_options(k);
   rig_.mount(mounted_tires(s_, tires_));
   for (std::size_t k = 0; k < tires_.size(); ++k) {
     const double share = tires_[k].step_share, tau = tires_[k].damping_time;
     if (share > 0.0 && tau == 0.0)
-      warn("tire.structural_damping",
+      warn(s_.tire_key(k, "structural_damping"),
            fmt::format("is 0 s: contact forces come one step late and can feed a tire that damps nothing; expected at "
                        "least {} s for a run.step of {} s",
                        number_text(short_decimal(2.0 * s_.run.step / share)), number_text(s_.run.step)));
@@ -131,6 +134,18 @@ void Checks::tires() {
     warn("run.average_from",
          fmt::format("the window begins at {} s, while the wheel still speeds up until {} = {} s",
                      number_text(s_.run.average_from), rig.speeds_up_key, number_text(rig.speeds_up_until)));
+}
+
+/// What the scenario says of the tire of one wheel must be something to its model and to the terrain.
+void Checks::tire_options(std::size_t wheel) {
+  const tire::TireSpec& tire = *s_.tires[wheel];
+  if (tire.options().contact_tangent && !terrain_.gives_tangents)
+    throw wrong(s_.tire_key(wheel, "contact_tangent"),
+                fmt::format("is true, expected false: {} (terrain.engine '{}') gives no contact tangents",
+                            terrain_.name, terrain_.engine));
+  for (const std::string& key : tire::idle_keys(tire))
+    warn(s_.tire_key(wheel, key),
+         fmt::format("is set aside: it says nothing to a {} tire", tires_[wheel].name));
 }
 
 void Checks::room() {

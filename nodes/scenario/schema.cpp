@@ -295,6 +295,20 @@ void Schema::fill_defaults(json& value, const json& node) const {
   }
 }
 
+void Schema::remove_defaults(json& document) const { remove_defaults(document, root_); }
+
+void Schema::remove_defaults(json& value, const json& node) const {
+  if (value.is_array() && node.contains("items"))
+    for (json& entry : value) remove_defaults(entry, resolved(node["items"]));
+  if (!value.is_object() || !node.contains("properties")) return;
+  for (const auto& [name, entry] : node["properties"].items()) {
+    if (!value.contains(name)) continue;
+    const json& child = resolved(entry);
+    remove_defaults(value[name], child);
+    if (child.contains("default") && value[name] == child["default"]) value.erase(name);
+  }
+}
+
 void Schema::add_keys(const json& node, const std::string& path, std::vector<std::string>& out) const {
   for (const auto& [name, entry] : node["properties"].items()) {
     const json& child = resolved(entry);

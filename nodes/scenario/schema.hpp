@@ -28,6 +28,8 @@ class Schema {
   /// Values outside the magnitudes that are usual; to warn of.
   std::vector<Problem> unusual(const nlohmann::json& document) const;
   void fill_defaults(nlohmann::json& document) const;
+  /// Takes away what fill_defaults would add; entries of lists stay, empty perhaps.
+  void remove_defaults(nlohmann::json& document) const;
 
   /// The schema of a dotted key, references resolved; null when there is none.
   const nlohmann::json* find(const std::string& key) const;
@@ -50,6 +52,7 @@ class Schema {
   void unusual(const nlohmann::json& value, const nlohmann::json& node, const std::string& path,
                std::vector<Problem>& out) const;
   void fill_defaults(nlohmann::json& value, const nlohmann::json& node) const;
+  void remove_defaults(nlohmann::json& value, const nlohmann::json& node) const;
   void add_keys(const nlohmann::json& node, const std::string& path, std::vector<std::string>& out) const;
 
   nlohmann::json root_;

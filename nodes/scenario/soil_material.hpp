@@ -10,6 +10,9 @@
 
 namespace furrow::scenario {
 
+/// The key of the section `terrain` that names a soil file.
+inline constexpr const char* kSoilKey = "material";
+
 /// The values of a soil file by their key in `terrain`.
 /// @throws Error(io) when it cannot be read, Error(bad_input) naming file and key.
 nlohmann::json read_soil_material(const std::filesystem::path& file);

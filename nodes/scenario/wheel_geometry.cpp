@@ -1,6 +1,9 @@
 #include "nodes/scenario/wheel_geometry.hpp"
 
+#include <fmt/format.h>
+
 #include "protocol/core/assert.hpp"
+#include "protocol/core/error.hpp"
 
 namespace furrow::scenario {
 
@@ -30,7 +33,17 @@ std::vector<rigs::MountedTire> mounted_tires(const Scenario& scenario,
 }
 
 rigs::RigDescription describe_rig(const Scenario& scenario) {
-  return scenario.rig->describe(wheel_sizes(describe_tires(scenario)), scenario.run.end);
+  return describe_rig(scenario, describe_tires(scenario));
+}
+
+rigs::RigDescription describe_rig(const Scenario& scenario, const std::vector<tire::TireDescription>& tires) {
+  rigs::RigDescription rig = scenario.rig->describe(wheel_sizes(tires), scenario.run.end);
+  if (rig.wheels.size() != scenario.rig->wheel_count())
+    throw input_error(scenario.file.string(), "rig.type",
+                      fmt::format("the rig '{}' describes {} of its {} wheels, expected all: "
+                                  "RigSpec::describe of this type is wrong",
+                                  rig.kind, rig.wheels.size(), scenario.rig->wheel_count()));
+  return rig;
 }
 
 }  // namespace furrow::scenario

@@ -19,5 +19,7 @@ std::vector<rigs::MountedTire> mounted_tires(const Scenario& scenario,
 
 /// The rig under the scenario's tires, over its whole run. @throws Error(bad_input) naming file and key
 rigs::RigDescription describe_rig(const Scenario& scenario);
+/// The same with the tires described already.
+rigs::RigDescription describe_rig(const Scenario& scenario, const std::vector<tire::TireDescription>& tires);
 
 }  // namespace furrow::scenario

@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <new>
 #include <utility>
@@ -261,8 +262,10 @@ void Sweep::poll(Run& run) {
     for (const std::string& name : study_.results)
       if (study_.results_chosen && value_at(summary, name).is_null())
         tell(run, "has no result '" + name + "'");
-    tell(run, fmt::format("is done: pull {} N",
-                          with_error(number("drawbar_pull_N.mean"), number("drawbar_pull_N.sem"))));
+    const double pull = number("drawbar_pull_N.mean");  // not every rig has one
+    tell(run, std::isfinite(pull)
+                  ? fmt::format("is done: pull {} N", with_error(pull, number("drawbar_pull_N.sem")))
+                  : "is done");
     if (const double deep = number("sinkage_m") / number("surface_height_m"); run.pass > 0 && deep > kDeepRut)
       tell(run,
            fmt::format(

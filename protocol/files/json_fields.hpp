@@ -42,4 +42,43 @@ std::vector<std::string> field_names(unsigned roles) {
   return names;
 }
 
+/// The fields of T and nothing else of it: what a table of models holds of a section's keys.
+template <HasFields T>
+std::vector<Field> fields_of() {
+  std::vector<Field> fields;
+  const T defaults{};
+  visit_fields([&](const Field& field, const auto&) { fields.push_back(field); }, defaults);
+  return fields;
+}
+
+/// Names of the keys of T that the object gives another value than T has by default.
+/// @pre as for read_fields
+template <HasFields T>
+std::vector<std::string> changed_fields(const nlohmann::json& object) {
+  std::vector<std::string> changed;
+  const T defaults{};
+  T values{};
+  read_fields(object, values);
+  std::vector<const void*> standards;
+  visit_fields([&](const Field&, const auto& value) { standards.push_back(&value); }, defaults);
+  std::size_t place = 0;
+  visit_fields(
+      [&](const Field& field, const auto& value) {
+        using Value = std::remove_cvref_t<decltype(value)>;
+        if (!(value == *static_cast<const Value*>(standards[place++]))) changed.emplace_back(field.name);
+      },
+      values);
+  return changed;
+}
+
+/// Whose keys a model's are: the entry of a table of models has one, made by key_list<Options>().
+struct KeyList {
+  std::vector<Field> (*fields)() = nullptr;  // the keys are those with role::key
+  std::vector<std::string> (*changed)(const nlohmann::json& section) = nullptr;  // changed_fields
+};
+template <HasFields T>
+constexpr KeyList key_list() {
+  return {fields_of<T>, changed_fields<T>};
+}
+
 }  // namespace furrow

@@ -62,9 +62,14 @@ std::string BasicJsonReader<Json>::text_or(const std::string& key, const std::st
 }
 
 template <class Json>
+bool BasicJsonReader<Json>::flag(const std::string& key) {
+  return at(key, &Json::is_boolean, "true or false").template get<bool>();
+}
+
+template <class Json>
 bool BasicJsonReader<Json>::flag_or(const std::string& key, bool otherwise) {
   skip(key);
-  return has(key) ? at(key, &Json::is_boolean, "true or false").template get<bool>() : otherwise;
+  return has(key) ? flag(key) : otherwise;
 }
 
 template <class Json>

@@ -29,6 +29,7 @@ class BasicJsonReader {
   const Json& array(const std::string& key);
   std::string text(const std::string& key);  // one line, that can be shown as it is
   std::string text_or(const std::string& key, const std::string& otherwise);
+  bool flag(const std::string& key);
   bool flag_or(const std::string& key, bool otherwise);
   int count(const std::string& key, int least, int most = 100000);
 

@@ -19,6 +19,7 @@ class DemSpec final : public TerrainSpec {
     d.name = "grains, law " + options_.law;
     d.law = options_.law;
     d.grain_radius = options_.radius;
+    d.gives_tangents = true;
     d.unstable_step_allowed = options_.allow_unstable_step;
     d.bounds = {options_.length, options_.width};
     if (options_.undisturbed_height >= 0.0) d.undisturbed_height = options_.undisturbed_height;

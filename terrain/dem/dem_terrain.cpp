@@ -16,6 +16,7 @@
 #include "terrain/dem/beds/bed_height.hpp"
 #include "terrain/dem/beds/bed_preparation.hpp"
 #include "terrain/dem/grain_sizes.hpp"
+#include "terrain/dem/material_check.hpp"
 #include "terrain/dem/solver_setup.hpp"
 #include "terrain/dem/step_refinement.hpp"
 #include "terrain/surface/surface_check.hpp"
@@ -102,6 +103,7 @@ class DemTerrain : public Terrain {
 
   void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) override {
     check_surface(mesh, start, solver_.surfaces().count());
+    dem::check_material(material, options_.law, solver_.surfaces().count());
     for (const Vec3& x : start.position)
       if (const char* wall = beyond(x, x))
         throw input_error(options_.scenario, "terrain",

@@ -16,6 +16,7 @@ class GroundSpec final : public TerrainSpec {
     TerrainDescription d;
     d.engine = "rigid";
     d.name = "rigid ground";
+    d.gives_tangents = true;
     return d;
   }
   TerrainEstimate estimate(const TerrainContext&) const override {

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "protocol/files/fields_json.hpp"
 #include "protocol/files/text_file.hpp"
 
 namespace furrow::terrain::soil {
@@ -217,6 +218,7 @@ json soil_json(const SoilRun& run) {
                  {"young_modulus_Pa", o.young_modulus},
                  {"bed_generator", o.bed_generator},
                  {"compaction_pressure_Pa", o.compaction_pressure}};
+  j["terrain"] = fields_json(o, role::soil);  // all that soil files may say
   if (run.options.plate) j["plate"] = plate_json(run, p.bekker_goodness);
   if (run.options.shear) j["shear"] = shear_json(run, p.coulomb_goodness);
   if (run.options.cone) j["cone"] = cone_json(run);

@@ -7,14 +7,20 @@
 #include <nlohmann/json.hpp>
 
 #include "nodes/output/line_builder.hpp"
+#include "nodes/scenario/scenario_checks.hpp"
 #include "nodes/scenario/schema.hpp"
+#include "nodes/scenario/wheel_geometry.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/core/field_hash.hpp"
 #include "protocol/files/json_fields.hpp"
+#include "rigs/rigs.hpp"
+#include "terrain/dem/material_check.hpp"
 #include "terrain/terrains.hpp"
 #include "tests/dummies/held_hub.hpp"
 #include "tests/dummies/spring_mat.hpp"
 #include "tests/dummies/spring_wheel.hpp"
+#include "tire/outward.hpp"
+#include "tire/tires.hpp"
 
 namespace furrow {
 namespace {
@@ -23,19 +29,47 @@ using nlohmann::json;
 
 constexpr double kStep = 1e-3;  // communication step, s
 
-template <HasFields T>
-std::vector<Field> fields_of() {
-  std::vector<Field> fields;
-  const T options{};
-  visit_fields([&](const Field& field, const auto&) { fields.push_back(field); }, options);
-  return fields;
-}
-
 // The lines that would stand in tire/tires.cpp, terrain/terrains.cpp and rigs/rigs.cpp.
 constexpr tire::TireModel kTire{"spring_wheel", tire::read_spring_wheel};
-constexpr rigs::RigKind kRig{"held_hub", rigs::read_held_hub};
-constexpr terrain::TerrainEntry kTerrain{"spring_mat", fields_of<terrain::SpringMatOptions>,
+constexpr rigs::RigKind kRig{"held_hub", key_list<rigs::HeldHubOptions>(), rigs::read_held_hub};
+constexpr terrain::TerrainEntry kTerrain{"spring_mat", key_list<terrain::SpringMatOptions>(),
                                          terrain::read_spring_mat};
+
+/// The tire file "spring_wheel.json".
+json wheel_file() {
+  return {{"format_version", 1}, {"model", "spring_wheel"}, {"radius", 0.4},   {"width", 0.2},
+          {"spokes", 36},        {"stiffness", 2e4},        {"damping", 200.0}, {"mass", 30.0}};
+}
+
+std::unique_ptr<tire::TireSpec> read_wheel(const json& file) {
+  tire::TireOptions options;
+  options.file = "spring_wheel.json";
+  return kTire.read(file, options);
+}
+
+/// Two springs and a rigid wheel in a scenario, as load_scenario would have made it.
+scenario::Scenario small_scenario() {
+  scenario::Scenario s;
+  s.file = "scenario.json";
+  s.run.end = 0.9;
+  s.tires = {read_wheel(wheel_file())};
+  s.terrain = kTerrain.read(json::object(), {"scenario.json", "terrain"});
+  s.rig = kRig.read(json::object(), {"scenario.json", "rig"});
+  return s;
+}
+
+/// What the checks of a scenario say; its warnings, if it is not refused.
+std::string checked(scenario::Scenario s) {
+  const std::shared_ptr<rigs::RigSpec> rig = kRig.read(json::object(), {"scenario.json", "rig"});
+  try {
+    scenario::check_scenario(s, *rig);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  std::string text;
+  for (const std::string& warning : s.warnings) text += warning + "\n";
+  return text;
+}
 
 /// The three dummies coupled as ranks couple them: forces one step late.
 struct Bench {
@@ -47,9 +81,7 @@ struct Bench {
   std::vector<ContactSums> contact{1};
 
   explicit Bench(const json& rig_section) {
-    tire::TireOptions options;
-    options.file = "spring_wheel.json";
-    tire = kTire.read(json{{"radius", 0.4}, {"width", 0.2}}, options)->make();
+    tire = read_wheel(wheel_file())->make();
     terrain = kTerrain.read(json{{"mat_stiffness", 1e7}}, {"scenario.json", "terrain"})->make({});
     rig = kRig.read(rig_section, {"scenario.json", "rig"})->make();
   }
@@ -143,6 +175,98 @@ TEST(Dummies, key_out_of_range_is_refused_by_its_name) {
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("terrain.mat_stiffness"), std::string::npos) << error.what();
   }
+}
+
+TEST(Dummies, tire_file_is_refused_by_file_key_and_value) {
+  const auto complaint = [](const char* key, const json& value) {
+    json file = wheel_file();
+    file[key] = value;
+    if (value.is_null()) file.erase(key);
+    try {
+      read_wheel(file);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::bad_input);
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  const std::string file = "spring_wheel.json: key ";
+  EXPECT_EQ(complaint("radius", "big"), file + "'radius': is 'big', expected a number");
+  EXPECT_EQ(complaint("radius", -1.0), file + "'radius': is -1, expected 0.01 or more");
+  EXPECT_EQ(complaint("width", nullptr), file + "'width': is missing, expected a number");
+  EXPECT_EQ(complaint("stifness", 1.0), file + "'stifness': is unknown, expected 'stiffness'?");
+  EXPECT_TRUE(complaint("spokes", 35.5).starts_with(file + "'spokes': is 35.5, expected a whole number"));
+  EXPECT_TRUE(
+      complaint("format_version", 99).starts_with(file + "'format_version': is 99: the file is newer"));
+  EXPECT_EQ(complaint("name", "a wheel of springs"), "accepted");
+}
+
+TEST(Dummies, what_a_tire_does_not_take_from_the_scenario_is_told) {
+  scenario::Scenario s = small_scenario();
+  EXPECT_EQ(checked(s), "");
+  tire::TireOptions options;
+  options.file = "spring_wheel.json";
+  options.friction = 0.5;
+  options.pressure.knots = {{0.0, 2e5}};
+  s.tires = {kTire.read(wheel_file(), options)};
+  EXPECT_EQ(checked(s),
+            "scenario.json: key 'tire.pressure': is set aside: it says nothing to a spring wheel tire\n");
+}
+
+TEST(Dummies, a_terrain_without_contact_tangents_refuses_tires_that_ask_for_them) {
+  scenario::Scenario s = small_scenario();
+  tire::TireOptions options;
+  options.contact_tangent = true;
+  s.tires = {kTire.read(wheel_file(), options)};
+  EXPECT_EQ(checked(s),
+            "scenario.json: key 'tire.contact_tangent': is true, expected false: spring mat (terrain.engine "
+            "'spring_mat') gives no contact tangents");
+  s.tires_listed = true;
+  EXPECT_NE(checked(s).find("key 'tires.0.contact_tangent'"), std::string::npos) << checked(s);
+}
+
+/// A rig that forgets a wheel.
+class HalfDescribed final : public rigs::RigSpec {
+ public:
+  std::size_t wheel_count() const override { return 2; }
+  rigs::RigDescription describe(std::span<const rigs::WheelSize>, double) const override {
+    rigs::RigDescription d;
+    d.kind = "half";
+    d.wheels.resize(1);
+    return d;
+  }
+  std::unique_ptr<rigs::Rig> make() const override { return nullptr; }
+  void fill_starts(std::span<const rigs::WheelSize>, double, std::optional<double>,
+                   std::span<const double>) override {}
+  void complete(json&) const override {}
+};
+
+TEST(Dummies, a_rig_that_describes_fewer_wheels_than_it_has_is_refused_by_name) {
+  scenario::Scenario s = small_scenario();
+  s.tires.push_back(s.tires.front());
+  s.rig = std::make_shared<HalfDescribed>();
+  try {
+    scenario::describe_rig(s);
+    FAIL() << "not refused";
+  } catch (const Error& error) {
+    EXPECT_TRUE(std::string(error.what()).starts_with(
+        "scenario.json: key 'rig.type': the rig 'half' describes 1 of its 2 wheels, expected all"))
+        << error.what();
+  }
+}
+
+TEST(Dummies, wheel_says_all_of_its_diagnostics_has_its_outside_outside_and_a_material_for_grains) {
+  const auto wheel = read_wheel(wheel_file())->make();
+  wheel->place(RimState());
+  EXPECT_EQ(first_missing(wheel->diagnostics()), nullptr);
+  SurfaceState state;
+  wheel->surface(state);
+  EXPECT_NO_THROW(tire::require_outward(wheel->mesh(), state.position, Vec3::Zero(), "spring_wheel.json"));
+  SurfaceMesh turned = wheel->mesh();
+  for (auto& triangle : turned.triangles) std::swap(triangle[0], triangle[1]);
+  EXPECT_THROW(tire::require_outward(turned, state.position, Vec3::Zero(), "spring_wheel.json"), Error);
+  for (const char* law : {"mindlin", "hertz_tanh"})
+    EXPECT_NO_THROW(terrain::dem::check_material(wheel->material(), law, 0)) << law;
 }
 
 TEST(Dummies, key_is_a_field_and_an_entry_of_the_schema) {

@@ -8,7 +8,8 @@
 
 #include "protocol/core/column.hpp"
 #include "protocol/core/fields.hpp"
-#include "rigs/rigs.hpp"
+#include "protocol/files/read_context.hpp"
+#include "rigs/rig_spec.hpp"
 
 namespace furrow::rigs {
 

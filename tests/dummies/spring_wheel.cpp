@@ -11,9 +11,10 @@
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/constants.hpp"
-#include "protocol/core/error.hpp"
 #include "protocol/core/outcome.hpp"
-#include "protocol/files/json_fields.hpp"
+#include "protocol/files/json_reader.hpp"
+#include "protocol/files/reader_fields.hpp"
+#include "tire/tire_file_reader.hpp"
 
 namespace furrow::tire {
 namespace {
@@ -45,6 +46,18 @@ TireShape wheel_shape(const SpringWheelOptions& o) {
   shape.radius = o.radius;
   shape.tread_width = o.width;
   return shape;
+}
+
+/// What grains and ground feel of the tread, for every contact law.
+ContactMaterial rubber() {
+  ContactMaterial m;
+  m.young_modulus = 1e7;
+  m.poisson_ratio = 0.45;
+  m.friction = 0.8;
+  m.restitution = 0.2;
+  m.normal_stiffness = 1e6;
+  m.normal_damping = 30.0;
+  return m;
 }
 
 class SpringWheel final : public Tire {
@@ -116,6 +129,7 @@ class SpringWheel final : public Tire {
     d.momentum = shape_.mass.mass * rim_.velocity;
     d.kinetic_energy =
         0.5 * (d.momentum.dot(rim_.velocity) + rim_.angular_velocity.dot(angular_momentum(rim_)));
+    d.strain_energy = 0.0;
     for (const double u : deflection_) d.strain_energy += 0.5 * options_.stiffness * u * u;
     d.dissipation = dissipation_;
     return d;
@@ -168,7 +182,8 @@ class SpringWheelSpec final : public TireSpec {
  public:
   SpringWheelSpec(const SpringWheelOptions& wheel, const TireOptions& options)
       : TireSpec(options), wheel_(wheel), shape_(wheel_shape(wheel)) {
-    shape_.material.friction = options.friction >= 0.0 ? options.friction : 0.8;
+    shape_.material = rubber();
+    if (options.friction >= 0.0) shape_.material.friction = options.friction;
   }
   TireDescription describe() const override {
     TireDescription d;
@@ -180,6 +195,7 @@ class SpringWheelSpec final : public TireSpec {
     d.coordinates = d.vertices = static_cast<int>(shape_.vertex.size());
     d.facets = wheel_.spokes;
     d.mass = shape_.mass;
+    d.takes = {"friction"};
     d.damping_time = wheel_.damping / wheel_.stiffness;
     d.step_share = 0.1;
     return d;
@@ -198,11 +214,12 @@ class SpringWheelSpec final : public TireSpec {
 
 std::unique_ptr<TireSpec> read_spring_wheel(const nlohmann::json& file, const TireOptions& options) {
   SpringWheelOptions wheel;
-  read_fields(file, wheel);
+  JsonReader reader(file, options.file.string());
+  take_common_keys(reader);
+  read_required(reader, wheel);
+  reader.finish();
   const auto require = [&](const char* key, double value, double least) {
-    if (!(value >= least))
-      throw input_error(options.file.string(), key,
-                        fmt::format("is {:g}, expected {:g} or more", value, least));
+    if (!(value >= least)) reader.fail(key, fmt::format("is {:g}, expected {:g} or more", value, least));
   };
   require("radius", wheel.radius, 0.01);
   require("width", wheel.width, 0.01);

@@ -13,11 +13,11 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "protocol/core/fields.hpp"
-#include "tire/tires.hpp"
+#include "tire/tire_spec.hpp"
 
 namespace furrow::tire {
 
-/// The keys of a tire file with "model": "spring_wheel".
+/// The keys of a tire file with "model": "spring_wheel", besides those that all models share.
 struct SpringWheelOptions {
   double radius = 0.4;     // undeformed, m
   double width = 0.2;      // m

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <set>
 
 #include <nlohmann/json.hpp>
@@ -11,6 +12,7 @@
 #include "nodes/scenario/schema.hpp"
 #include "protocol/files/json_fields.hpp"
 #include "rigs/rigs.hpp"
+#include "tests/nodes/key_lists.hpp"
 #include "tests/nodes/scenario_fixture.hpp"
 #include "tire/tires.hpp"
 
@@ -77,7 +79,6 @@ void expect_section(const std::string& section, const std::set<std::string>& lis
 }
 
 TEST(ScenarioFields, are_the_keys_of_the_schema_with_its_defaults_and_units) {
-  expect_section<rigs::RigOptions, rigs::DrawbarRigOptions>("rig", {"wheels"});
   expect_section<rigs::DrawbarWheel>("rig.wheels.0");
   expect_section<tire::TireOptions>("tire");
   expect_section<tire::TireOptions>("tires.0");
@@ -85,6 +86,13 @@ TEST(ScenarioFields, are_the_keys_of_the_schema_with_its_defaults_and_units) {
   expect_section<scenario::OutputOptions>("output");
   expect_section<scenario::CheckpointOptions>("checkpoint");
   expect_section<scenario::ExpectedResult>("expected");
+}
+
+/// Two kinds may share a key: the schema has one default for both.
+TEST(ScenarioFields, keys_of_every_kind_of_rig_are_those_of_the_schema) {
+  std::vector<KeyList> lists{key_list<rigs::RigOptions>()};
+  for (const rigs::RigKind& kind : rigs::rig_kinds()) lists.push_back(kind.keys);
+  testing::expect_keys_of_schema("rig", lists);
 }
 
 TEST(ScenarioFields, a_value_in_place_of_the_default_arrives_in_its_field) {
@@ -102,6 +110,35 @@ TEST(ScenarioFields, the_schema_lists_the_kinds_of_rigs_that_there_are) {
   for (const rigs::RigKind& kind : rigs::rig_kinds()) names.push_back(std::string(kind.name));
   const scenario::Schema schema = scenario::Schema::load();
   EXPECT_EQ(schema.find("rig.type")->at("enum"), names);
+}
+
+/// A key that a later version adds changes no digest of scenarios that do not state it, and no run that lacks it.
+TEST(ScenarioFields, a_key_that_is_the_default_counts_like_one_that_is_missing) {
+  const testing::ScenarioFile file(testing::kSmallest);
+  const scenario::Scenario s = file.load();
+  EXPECT_EQ(file.load({{"terrain.friction", "0.9"}, {"rig.slip", "0.3"}}).digest, s.digest);
+  EXPECT_NE(file.load({{"terrain.friction", "0.8"}}).digest, s.digest);
+  EXPECT_NE(file.load({{"terrain.engine", "rigid"}}).digest, s.digest);
+  json earlier = json::parse(s.completed);
+  earlier["rig"].erase("toe_ramp");
+  earlier["terrain"].erase("size_spread");
+  earlier["terrain"]["ground_stiffness"] = 1e9;  // earlier versions had keys of all engines
+  EXPECT_EQ(scenario::completed_now(earlier.dump()), json::parse(s.completed));
+  EXPECT_EQ(testing::ScenarioFile(earlier.dump()).load().digest, s.digest);
+}
+
+/// The soil of a run is found from any folder, and is the same soil.
+TEST(ScenarioFields, a_soil_file_of_ones_own_has_its_full_name_in_the_completed_scenario) {
+  const testing::ScenarioFile file(
+      R"({"tire": {"file": "hmmwv_layered.json"}, "terrain": {"material": "mysand.json"}})");
+  const std::filesystem::path soil = file.path().parent_path() / "mysand.json";
+  std::ofstream(soil) << R"({"format_version": 1, "terrain": {"friction": 0.4}})";
+  const scenario::Scenario s = file.load();
+  EXPECT_EQ(json::parse(s.completed)["terrain"]["material"], soil.string());
+  const testing::ScenarioFile elsewhere(s.completed);
+  EXPECT_EQ(elsewhere.load().completed, s.completed);
+  EXPECT_EQ(elsewhere.load().digest, s.digest);
+  EXPECT_NE(file.load({{"terrain.friction", "0.5"}}).digest, s.digest);
 }
 
 TEST(ScenarioFields, what_is_harmless_is_free_on_resume_and_leaves_the_digest) {

@@ -2,6 +2,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdlib>
 
 #include <gtest/gtest.h>
@@ -36,6 +37,10 @@ TEST(RankLine, survives_the_way_to_the_supervisor) {
   EXPECT_EQ(progress->progress.phase, "running");
   EXPECT_EQ(progress->progress.pull, 1432.5);
   EXPECT_EQ(progress->progress.eta, 83.0);
+  line.progress.pull = std::nan("");  // of a rig that has none
+  const auto without = launch::decode(launch::encode(line));
+  ASSERT_TRUE(without);
+  EXPECT_EQ(launch::progress_text(without->progress).find("pull"), std::string::npos);
 }
 
 TEST(RankLine, fits_into_one_write_to_a_pipe) {

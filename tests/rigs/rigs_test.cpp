@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "protocol/core/error.hpp"
+#include "protocol/files/json_text.hpp"
 #include "rigs/drawbar_spec.hpp"
 
 using namespace furrow;
@@ -62,7 +63,9 @@ TEST(Rigs, a_section_without_a_type_is_a_drawbar_rig) {
 }
 
 TEST(Rigs, an_unknown_type_lists_the_valid_ones) {
-  EXPECT_EQ(complaint({{"type", "sled"}}), "test.json: key 'rig.type': is 'sled', expected drawbar");
+  std::vector<std::string> names;
+  for (const rigs::RigKind& kind : rigs::rig_kinds()) names.emplace_back(kind.name);
+  EXPECT_EQ(complaint({{"type", "sled"}}), "test.json: key 'rig.type': is 'sled', expected " + one_of(names));
 }
 
 TEST(Rigs, full_slip_at_an_imposed_speed_is_refused_with_its_key) {

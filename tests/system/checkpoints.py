@@ -85,7 +85,8 @@ class Resume(CheckpointTest):
     def test_changed_physics_is_refused_by_its_key(self):
         run = self.copy_of_whole()
         for setting, key, was in (("rig.slip=0.5", "rig.slip", "0.3"), ("terrain.cohesion=1e3", "terrain.cohesion", "80e3"),
-                                  ("run.step=1e-4", "run.step", "0.0002"), ("run.seed=2", "run.seed", "1")):
+                                  ("run.step=1e-4", "run.step", "0.0002"), ("run.seed=2", "run.seed", "1"),
+                                  ("terrain.engine=rigid", "terrain.engine", "'dem'")):
             done = self.resume("--set", setting, code=2)
             self.assertIn(f"key '{key}': is ", done.stderr)
             self.assertIn(f"but the run was computed with {was}", done.stderr)

@@ -135,7 +135,7 @@ class Commands(SystemTest):
             if node.get("type") == "number" or node.get("type") == ["number", "null"]:
                 self.assertIn("unit", node, key)
             if "default" not in node:
-                self.assertIn(key.split(".")[0], ("$schema", "description", "expected", "tire", "tires"), key)
+                self.assertIn(key.split(".")[0], ("$schema", "completed_by", "description", "expected", "tire", "tires"), key)
 
     def test_skeleton_of_the_contract_is_accepted(self):
         scenario = {

@@ -52,6 +52,23 @@ class Run(SystemTest):
         self.assertAlmostEqual(on_tire, rows[-1]["tire_energy_J"], delta=0.01 * abs(summary["interface_work_J"]))
         self.assertEqual(summary["spindle_work_J"], rows[-1]["spindle_work_J"])
 
+    def test_a_wheel_that_stands_on_a_soil_of_ones_own_and_goes_on(self):
+        (self.folder / "mysand.json").write_text(json.dumps({"format_version": 1, "terrain": {"friction": 0.5}}))
+        scenario = changed(rig={"mode": "fixed_speed", "speed": 0}, terrain={"material": "mysand.json"}, output={"frame_interval": 0})
+        done = furrow("run", write_scenario(self.folder, scenario), "--no-plots", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        run = self.folder / done.stdout.strip()
+        summary = json.loads((run / "summary.json").read_text())
+        reasons = " ".join(summary["drawbar_pull_N"]["unsteady_because"])
+        self.assertIn("neither rolls nor slips", reasons)
+        self.assertNotIn("% of load × speed", reasons)
+        self.assertEqual(summary["columns"]["drawbar_pull_N"], summary["drawbar_pull_N"]["mean"])
+        self.assertEqual(summary["wheels"][0]["columns"], summary["columns"])
+        self.assertEqual(summary["columns"]["spindle_work_J"], summary["spindle_work_J"])
+        again = furrow("resume", run, "--until", "0.06", "--no-plots", cwd=self.folder.parent)
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assertAlmostEqual(json.loads((run / "summary.json").read_text())["simulated_s"], 0.06)
+
     def test_threads_do_not_change_the_result_and_the_seed_does(self):
         path = write_scenario(self.folder)
         hashes = []

@@ -64,6 +64,8 @@ class Bed(WithCache):
         self.assertEqual(bed["grains"], 200)
         self.assertEqual(bed["bed"], str(self.work / "mine.csv"))
         self.assertIsNone(bed["bed_generator"])
+        self.assertIsNone(bed["terrain"]["settling_friction"])
+        self.assertEqual(bed["terrain"]["precision"], "mixed")
         self.assertIsNotNone(bed["cache_file"])
         self.assertTrue(self.run_json("bed", path)[0]["from_cache"])
 

@@ -207,6 +207,33 @@ TEST_F(DemTerrain, digest_does_not_know_of_keys_that_are_the_default) {
   EXPECT_NE(with.value(), plain.value());
 }
 
+/// Grains would fall through such a surface without a force.
+TEST_F(DemTerrain, refuses_a_material_that_its_law_cannot_use_by_name) {
+  const auto complaint = [&](const char* law, const ContactMaterial& material) {
+    options_.law = law;
+    const auto terrain = make_dem_terrain(options_);
+    terrain->prepare({});
+    const Plate plate(0.1, -0.05, 0.1, 4, terrain->top_height(0.1, 0.2, -0.05, 0.05) + 1e-4);
+    try {
+      terrain->attach(plate.mesh, material, plate.state);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::bad_input);
+      return std::string(error.what());
+    }
+    return std::string("attached");
+  };
+  ContactMaterial soft = kRubber;
+  soft.young_modulus = 0.0;
+  EXPECT_EQ(complaint("mindlin", soft),
+            "surface 0: key 'contact.young_modulus': is 0, expected above 0 Pa for law 'mindlin'");
+  EXPECT_EQ(complaint("hertz_tanh", soft), "attached");
+  ContactMaterial other = kRubber;
+  other.normal_stiffness = 0.0;
+  EXPECT_EQ(complaint("hertz_tanh", other),
+            "surface 0: key 'contact.normal_stiffness': is 0, expected above 0 N/m^1.5 for law 'hertz_tanh'");
+  EXPECT_EQ(complaint("mindlin", other), "attached");
+}
+
 TEST_F(DemTerrain, plate_books_force_momentum_and_energy) {
   options_.activity = false;
   for (const char* law : {"mindlin", "hertz_tanh"}) {

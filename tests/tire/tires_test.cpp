@@ -3,11 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "protocol/core/error.hpp"
+#include "protocol/files/json_fields.hpp"
+#include "protocol/files/json_text.hpp"
+#include "tire/outward.hpp"
 #include "tire/press.hpp"
 
 namespace furrow::tire {
@@ -48,11 +52,16 @@ class TiresTest : public testing::Test {
 };
 
 TEST_F(TiresTest, the_schema_of_tire_files_lists_the_models_that_there_are) {
-  json names = json::array();
+  json names = json::array(), listed = json::array();
   for (const TireModel& model : tire_models()) names.push_back(std::string(model.name));
   const json schema = file_text("tire.schema.json");
-  EXPECT_EQ(schema["properties"]["model"]["enum"], names);
-  EXPECT_EQ(schema["properties"]["model"]["default"], names.front());
+  for (const json& one : schema["oneOf"]) {
+    const json& model = schema.at(json::json_pointer(one["$ref"].get<std::string>().substr(1)));
+    listed.push_back(model["properties"]["model"]["const"]);
+    EXPECT_EQ(model["additionalProperties"], false) << listed.back();
+  }
+  EXPECT_EQ(listed, names);
+  EXPECT_EQ(schema["definitions"][names.front()]["properties"]["model"]["default"], names.front());
 }
 
 TEST_F(TiresTest, a_file_without_a_model_is_a_shell) {
@@ -65,10 +74,13 @@ TEST_F(TiresTest, a_file_without_a_model_is_a_shell) {
 TEST_F(TiresTest, an_unknown_model_lists_the_valid_ones) {
   json file = file_text("hmmwv_layered.json");
   file["model"] = "brush";
-  EXPECT_EQ(complaint(file), "key 'model': is 'brush', expected one of: shell");
+  std::vector<std::string> names;
+  for (const TireModel& model : tire_models()) names.emplace_back(model.name);
+  const std::string valid = one_of(names);
+  EXPECT_EQ(complaint(file), "key 'model': is 'brush', expected " + valid);
   file["model"] = "ring";
   EXPECT_EQ(complaint(file),
-            "key 'model': is 'ring', which is not available in this version, expected one of: shell");
+            "key 'model': is 'ring', which is not available in this version, expected " + valid);
   file["model"] = 3;
   EXPECT_EQ(complaint(file).substr(0, 11), "key 'model'");
 }
@@ -117,6 +129,45 @@ TEST_F(TiresTest, description_is_that_of_the_made_tire) {
       EXPECT_LE(reach, d.width + 2e-3);
       EXPECT_GE(reach, 0.9 * d.width);
     }
+}
+
+TEST_F(TiresTest, every_model_says_all_of_its_diagnostics_and_has_its_outside_outside) {
+  for (const bool rigid : {false, true}) {
+    TireOptions options = written(file_text("hmmwv_layered.json"));
+    options.rigid = rigid;
+    const auto tire = make_tire(options);
+    tire->place(RimState());
+    EXPECT_EQ(first_missing(tire->diagnostics()), nullptr);
+    SurfaceState state;
+    tire->surface(state);
+    EXPECT_NO_THROW(require_outward(tire->mesh(), state.position, Vec3::Zero(), "tire.json"));
+    SurfaceMesh inside_out = tire->mesh();
+    for (auto& triangle : inside_out.triangles) std::swap(triangle[0], triangle[1]);
+    EXPECT_THROW(require_outward(inside_out, state.position, Vec3::Zero(), "tire.json"), Error);
+    SurfaceMesh one_turned = tire->mesh();
+    std::swap(one_turned.triangles[7][0], one_turned.triangles[7][1]);
+    try {
+      require_outward(one_turned, state.position, Vec3::Zero(), "tire.json");
+      ADD_FAILURE() << "a triangle that runs against its neighbours was not noticed";
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("tire.json: the contact surface has two triangles"),
+                std::string::npos)
+          << error.what();
+    }
+  }
+  EXPECT_STREQ(first_missing(TireDiagnostics()), "kinetic_energy");
+}
+
+TEST_F(TiresTest, keys_of_the_scenario_that_a_model_does_not_take_are_told) {
+  TireOptions options = written(file_text("hmmwv_layered.json"));
+  options.pressure.knots = {{0.0, 2e5}};
+  options.structural_damping = 1e-3;
+  options.friction = 0.5;
+  options.substeps = 2;
+  EXPECT_EQ(idle_keys(*read_tire(options)), std::vector<std::string>());
+  const std::vector<std::string> takes = read_tire(options)->describe().takes,
+                                 known = field_names<TireOptions>(role::key);
+  for (const std::string& key : takes) EXPECT_NE(std::find(known.begin(), known.end(), key), known.end()) << key;
 }
 
 TEST_F(TiresTest, step_advice_is_a_share_of_the_damping_time_and_larger_with_contact_tangents) {

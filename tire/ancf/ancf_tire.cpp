@@ -177,6 +177,8 @@ TireDiagnostics AncfTire::diagnostics() const {
   Field p(layout.size());
   integrator_.mass().apply(v, 1.0, p);
   TireDiagnostics d;
+  d.kinetic_energy = 0.0;
+  d.momentum = Vec3::Zero();
   for (int j = 0; j < layout.rows; ++j)
     for (int c = 0; c < 6; ++c) {
       double sum = 0.0, energy = 0.0;

@@ -83,6 +83,7 @@ TireDescription ShellSpec::describe() const {
   d.memory = kBytesPerCoordinate * d.coordinates;
   d.saved_bytes = kBytesPerSavedCoordinate * d.coordinates;
   d.takes_tangents = true;
+  d.takes = {"pressure", "friction", "elements_circumference", "elements_width", "structural_damping"};
   d.damping_time = file_.structural_damping;
   d.step_share = options().contact_tangent ? kTangentShare : kLateShare;
   d.model = {{"layers", static_cast<double>(most_layers(file_))}};

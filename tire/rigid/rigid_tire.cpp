@@ -56,6 +56,7 @@ TireDiagnostics RigidTire::diagnostics() const {
   d.momentum = shape_.mass.mass * rim_.velocity;
   d.kinetic_energy = 0.5 * shape_.mass.mass * rim_.velocity.squaredNorm() +
                      0.5 * rim_.angular_velocity.dot(angular_momentum(rim_));
+  d.strain_energy = d.dissipation = 0.0;
   return d;
 }
 

@@ -1,0 +1,114 @@
+#include "nodes/scenario/model_keys.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "protocol/core/error.hpp"
+#include "protocol/files/json_text.hpp"
+#include "rigs/rigs.hpp"
+#include "terrain/terrains.hpp"
+
+namespace furrow::scenario {
+namespace {
+
+using nlohmann::json;
+
+// Of the section `terrain` in every scenario that a version before engines had keys of their own has completed; keys of
+// grains and of rigid ground, which nobody states together by hand.
+constexpr std::array<const char*, 6> kOfEarlierVersions{
+    "activity", "allow_unstable_step", "layers", "normal_stiffness", "ground_stiffness", "ground_damping"};
+
+bool is_completed(const json& document) {
+  if (document.contains("completed_by")) return true;
+  const json terrain = document.value("terrain", json::object());
+  return std::all_of(kOfEarlierVersions.begin(), kOfEarlierVersions.end(),
+                     [&](const char* key) { return terrain.contains(key); });
+}
+
+std::string chosen_model(const json& document, const ModelSection& of) {
+  return document[of.name].value(of.chooser, of.standard);
+}
+
+/// Keys of the section that other models take and its own does not.
+std::vector<std::string> foreign_keys(const json& document, const ModelSection& of) {
+  std::vector<std::string> keys;
+  if (!document.contains(of.name) || !document[of.name].is_object()) return keys;
+  const std::string model = chosen_model(document, of);
+  for (const auto& [key, value] : document[of.name].items()) {
+    const std::vector<std::string> owners = of.owners(key);
+    if (!owners.empty() && std::find(owners.begin(), owners.end(), model) == owners.end())
+      keys.push_back(key);
+  }
+  return keys;
+}
+
+void remove_foreign_keys(json& document, const ModelSection& of) {
+  for (const std::string& key : foreign_keys(document, of)) document[of.name].erase(key);
+}
+
+std::string belongs_to_others(const json& document, const ModelSection& of,
+                              const std::vector<std::string>& keys, const std::filesystem::path& file) {
+  std::string text;
+  for (const std::string& key : keys) {
+    const Error one =
+        input_error(file.string(), fmt::format("{}.{}", of.name, key),
+                    fmt::format("is a key of {0} {1}, but {2}.{0} is '{3}', expected keys of that {0} alone",
+                                of.chooser, one_of(of.owners(key)), of.name, chosen_model(document, of)));
+    text += (text.empty() ? "" : "\n") + std::string(one.what());
+  }
+  return text;
+}
+
+}  // namespace
+
+std::span<const ModelSection> model_sections() {
+  static const auto sections = std::to_array<ModelSection>({
+      {"terrain", "engine", terrain::CommonOptions().engine, terrain::engines_of_key},
+      {"rig", "type", rigs::RigOptions().type, rigs::kinds_of_key},
+  });
+  return sections;
+}
+
+bool chooses_model(const std::string& key) {
+  const auto sections = model_sections();
+  return std::any_of(sections.begin(), sections.end(), [&](const ModelSection& of) {
+    return key == fmt::format("{}.{}", of.name, of.chooser);
+  });
+}
+
+std::vector<std::string> set_aside_keys(json& document, const Schema& schema,
+                                        const std::filesystem::path& file,
+                                        const std::vector<std::pair<std::string, std::string>>& settings,
+                                        std::span<const ModelSection> sections) {
+  const bool completed = is_completed(document);
+  std::vector<std::string> warnings;
+  for (const ModelSection& of : sections) {
+    const std::string chooser = fmt::format("{}.{}", of.name, of.chooser);
+    const bool chosen = std::any_of(settings.begin(), settings.end(),
+                                    [&](const auto& setting) { return setting.first == chooser; });
+    std::vector<std::string> stated;
+    for (const std::string& key : foreign_keys(document, of)) {
+      const json* node = schema.find(fmt::format("{}.{}", of.name, key));
+      if (!node || document[of.name][key] != node->value("default", json())) stated.push_back(key);
+    }
+    if (!stated.empty() && !chosen && !completed)
+      throw Error(ExitCode::bad_input, belongs_to_others(document, of, stated, file));
+    remove_foreign_keys(document, of);
+    if (!stated.empty())
+      warnings.emplace_back(
+          input_error(file.string(), chooser,
+                      fmt::format("is '{}'; keys of other {}s are set aside: {}", chosen_model(document, of),
+                                  of.chooser, fmt::join(stated, ", ")))
+              .what());
+  }
+  return warnings;
+}
+
+void remove_foreign_keys(json& document, std::span<const ModelSection> sections) {
+  for (const ModelSection& of : sections) remove_foreign_keys(document, of);
+}
+
+}  // namespace furrow::scenario

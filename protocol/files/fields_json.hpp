@@ -1,0 +1,33 @@
+// Writes structs with a list of fields (protocol/core/fields.hpp) as JSON: one key per field.
+#pragma once
+
+#include <string>
+#include <type_traits>
+
+#include <nlohmann/json.hpp>
+
+#include "protocol/core/fields.hpp"
+
+namespace furrow {
+
+/// Every field that has all `roles`, by name. What stands for null in scenarios is null: a text that is empty, and a
+/// number below zero whose default is below zero.
+template <HasFields T>
+nlohmann::ordered_json fields_json(const T& values, unsigned roles) {
+  nlohmann::ordered_json object = nlohmann::ordered_json::object(), standard = object;
+  const auto write_to = [&](nlohmann::ordered_json& target) {
+    return [&](const Field& field, const auto& value) {
+      if (field.is(roles)) target[field.name] = value;
+    };
+  };
+  visit_fields(write_to(object), values);
+  const T defaults{};
+  visit_fields(write_to(standard), defaults);
+  for (auto& [name, value] : object.items()) {
+    const bool unset = value.is_number() && value < 0 && standard[name] < 0;
+    if (unset || value == "") value = nullptr;
+  }
+  return object;
+}
+
+}  // namespace furrow

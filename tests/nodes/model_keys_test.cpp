@@ -1,0 +1,190 @@
+// The sections `terrain` and `rig`: their keys in the schema and in the models' lists of fields, and whose key is whose.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+#include "nodes/scenario/explain.hpp"
+#include "nodes/scenario/model_keys.hpp"
+#include "nodes/scenario/schema.hpp"
+#include "protocol/files/json_text.hpp"
+#include "rigs/rigs.hpp"
+#include "terrain/dem/dem_options.hpp"
+#include "terrain/terrains.hpp"
+#include "tests/nodes/key_lists.hpp"
+#include "tests/nodes/scenario_fixture.hpp"
+
+namespace furrow {
+namespace {
+
+using nlohmann::json;
+using testing::ScenarioFile;
+
+/// A scenario whose section `terrain` is this text.
+ScenarioFile with_terrain(const std::string& section) {
+  return ScenarioFile(R"({"tire": {"file": "hmmwv_layered.json"}, "terrain": )" + section + "}");
+}
+
+TEST(TerrainKeys, schema_and_fields_have_the_same_keys_defaults_and_units) {
+  std::vector<KeyList> lists{key_list<terrain::CommonOptions>()};
+  for (const terrain::TerrainEntry& entry : terrain::terrains()) lists.push_back(entry.keys);
+  testing::expect_keys_of_schema("terrain", lists);
+}
+
+/// "'dem' or 'rigid'".
+std::string all_engines() {
+  std::vector<std::string> names;
+  for (const terrain::TerrainEntry& entry : terrain::terrains()) names.emplace_back(entry.name);
+  return one_of(names);
+}
+
+TEST(TerrainKeys, schema_and_table_name_the_same_engines) {
+  std::set<std::string> names;
+  for (const terrain::TerrainEntry& entry : terrain::terrains()) {
+    names.insert(entry.name);
+    EXPECT_EQ(entry.read(json::object(), {})->describe().engine, entry.name);
+  }
+  EXPECT_EQ(scenario::Schema::load().find("terrain.engine")->at("enum").get<std::set<std::string>>(), names);
+}
+
+TEST(TerrainKeys, an_unknown_engine_is_refused_with_those_that_there_are) {
+  EXPECT_EQ(with_terrain(R"({"engine": "clay"})").complaint(),
+            ": key 'terrain.engine': is 'clay', expected " + all_engines());
+  EXPECT_EQ(with_terrain(R"({"engine": "liggghts"})").complaint(),
+            ": key 'terrain.engine': 'liggghts' is not available in this version, expected " + all_engines());
+  try {
+    terrain::find_terrain("clay", {"mine.json", "terrain"});
+    ADD_FAILURE() << "was found";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.what(), "mine.json: key 'terrain.engine': is 'clay', expected " + all_engines());
+  }
+}
+
+TEST(TerrainKeys, a_key_of_another_engine_is_an_error_in_a_scenario_written_for_its_own) {
+  EXPECT_EQ(
+      with_terrain(R"({"engine": "rigid", "radius": 0.01, "friction": 0.5})").complaint(),
+      ": key 'terrain.radius': is a key of engine 'dem', but terrain.engine is 'rigid', expected keys of "
+      "that engine alone");
+  EXPECT_EQ(with_terrain(R"({"ground_damping": 1e4})").complaint().substr(0, 59),
+            ": key 'terrain.ground_damping': is a key of engine 'rigid',");
+  EXPECT_TRUE(with_terrain(R"({"ground_damping": 2.5e4})").load().warnings.empty()) << "the default";
+}
+
+TEST(TerrainKeys, an_engine_chosen_on_the_command_line_sets_keys_of_others_aside_with_one_warning) {
+  const scenario::Scenario s = with_terrain(R"({"radius": 0.01, "length": 4, "layers": 15, "friction": 0.5})")
+                                   .load({{"terrain.engine", "rigid"}});
+  EXPECT_EQ(s.terrain->describe().engine, "rigid");
+  ASSERT_EQ(s.warnings.size(), 1U);
+  EXPECT_TRUE(s.warnings[0].ends_with(
+      "key 'terrain.engine': is 'rigid'; keys of other engines are set aside: length, radius"))
+      << s.warnings[0];
+  const json section = json::parse(s.completed)["terrain"];
+  EXPECT_EQ(section["friction"], 0.5);
+  EXPECT_FALSE(section.contains("radius"));
+  EXPECT_TRUE(section.contains("ground_stiffness"));
+}
+
+/// The section `terrain` as the first version completed it: keys of all engines, and fewer than there are now.
+constexpr const char* kOfTheFirstVersion = R"({
+    "engine": "rigid", "ranks": 1, "substeps": 1, "law": "mindlin", "radius": 0.006, "density": 2500.0,
+    "young_modulus": 2.49e7, "poisson_ratio": 0.3, "restitution": 0.2, "friction": 0.9, "rolling_friction": 0.0,
+    "cohesion": 0.0, "normal_stiffness": 1e6, "normal_damping": 60.0, "friction_velocity_scale": 5.0,
+    "friction_impulse_limit": true, "layers": 15, "length": 10.0, "width": 0.6, "activity": true, "bed": null,
+    "cache": true, "ground_stiffness": 4e8, "ground_damping": 2.5e4, "allow_unstable_step": false})";
+
+TEST(TerrainKeys, completed_scenarios_of_earlier_versions_are_read) {
+  json document = json::parse(testing::kSmallest);
+  document["terrain"] = json::parse(kOfTheFirstVersion);
+  EXPECT_TRUE(ScenarioFile(document.dump()).load().warnings.empty());
+  document["terrain"]["length"] = 4.0;
+  const scenario::Scenario s = ScenarioFile(document.dump()).load();
+  ASSERT_EQ(s.warnings.size(), 1U);
+  EXPECT_NE(s.warnings[0].find("set aside: length"), std::string::npos) << s.warnings[0];
+  EXPECT_EQ(ScenarioFile(s.completed).load().digest, s.digest);
+  scenario::remove_foreign_keys(document);
+  for (const auto& [key, value] : document["terrain"].items())
+    EXPECT_EQ(value, json::parse(s.completed)["terrain"][key]) << key;
+}
+
+/// A key may move from one engine to another; runs that have it go on.
+TEST(TerrainKeys, completed_scenarios_of_runs_say_so_and_may_hold_keys_of_other_engines) {
+  json document = json::parse(ScenarioFile(testing::kSmallest).load({{"terrain.engine", "rigid"}}).completed);
+  EXPECT_TRUE(document["completed_by"].get<std::string>().starts_with("furrow "));
+  document["terrain"]["length"] = 4.0;
+  EXPECT_EQ(ScenarioFile(document.dump()).load().warnings.size(), 1U);
+  document.erase("completed_by");
+  EXPECT_NE(ScenarioFile(document.dump()).complaint().find("key 'terrain.length'"), std::string::npos);
+}
+
+/// As if the drawbar rig took all but `slip`, which is a trolley's, and both took `speed`.
+std::vector<std::string> two_kinds(const std::string& key) {
+  if (key == "slip") return {"trolley"};
+  if (key == "speed") return {"drawbar", "trolley"};
+  return rigs::kinds_of_key(key);
+}
+
+TEST(RigKeys, a_key_of_another_type_is_refused_or_set_aside_as_those_of_engines_are) {
+  const scenario::ModelSection rig{"rig", "type", "drawbar", two_kinds};
+  const scenario::Schema schema = scenario::Schema::load();
+  const auto set_aside = [&](json& document,
+                             const std::vector<std::pair<std::string, std::string>>& settings) {
+    return scenario::set_aside_keys(document, schema, "mine.json", settings, {&rig, 1});
+  };
+  const json given = {{"rig", {{"slip", 0.2}, {"speed", 3.0}}}, {"terrain", json::object()}};
+  json document = given;
+  try {
+    set_aside(document, {});
+    ADD_FAILURE() << "was not refused";
+  } catch (const Error& error) {
+    EXPECT_STREQ(
+        error.what(),
+        "mine.json: key 'rig.slip': is a key of type 'trolley', but rig.type is 'drawbar', expected keys of "
+        "that type alone");
+  }
+  document = given;
+  EXPECT_EQ(set_aside(document, {{"rig.type", "drawbar"}}),
+            std::vector<std::string>{
+                "mine.json: key 'rig.type': is 'drawbar'; keys of other types are set aside: slip"});
+  EXPECT_EQ(document["rig"], json({{"speed", 3.0}}));
+  document["rig"]["type"] = "trolley";
+  EXPECT_TRUE(set_aside(document, {}).empty());
+  EXPECT_TRUE(document["rig"].contains("speed")) << "both take it";
+}
+
+TEST(RigKeys, explain_says_whose_key_it_is) {
+  EXPECT_NE(scenario::explain("rig.slip").find("type     drawbar\n"), std::string::npos)
+      << scenario::explain("rig.slip");
+  EXPECT_EQ(scenario::explain("rig.substeps").find("type     "), std::string::npos);
+}
+
+TEST(ModelKeys, a_scenario_that_is_refused_is_not_told_what_was_set_aside) {
+  const std::string told = with_terrain(R"({"radius": 0.01, "length": 4})")
+                               .complaint({{"terrain.engine", "rigid"}, {"run.end", "1e-9"}});
+  EXPECT_NE(told.find("run.end"), std::string::npos) << told;
+  EXPECT_EQ(told.find("set aside"), std::string::npos) << told;
+}
+
+TEST(TerrainKeys, tools_that_need_grains_say_why_and_which_engine_has_them) {
+  const ScenarioFile file(testing::kSmallest);
+  EXPECT_EQ(file.load({{"run.seed", "7"}}).grains("why").seed, 7U);
+  try {
+    (void)file.load({{"terrain.engine", "rigid"}}).grains("only grains keep a rut");
+    ADD_FAILURE() << "rigid ground has grains";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what())
+                  .find("key 'terrain.engine': is 'rigid', expected 'dem': only grains keep a rut"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(TerrainKeys, explain_says_which_engines_take_a_key) {
+  EXPECT_NE(scenario::explain("terrain.radius").find("engine   dem\n"), std::string::npos);
+  EXPECT_NE(scenario::explain("terrain.friction").find("engine   dem, rigid\n"), std::string::npos);
+  EXPECT_EQ(scenario::explain("terrain.substeps").find("engine   "), std::string::npos);
+}
+
+}  // namespace
+}  // namespace furrow

@@ -1,0 +1,77 @@
+#!/usr/bin/python3
+"""scripts/check_includes.py and scripts/check_docs.py on small trees: what they must notice."""
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
+
+
+class Check(unittest.TestCase):
+    script = ""
+
+    def told(self, **files):
+        """What the script prints of a tree with these files, by names in which '__' is '/' and '_dot_' is '.'."""
+        with tempfile.TemporaryDirectory() as name:
+            root = pathlib.Path(name)
+            for file, text in files.items():
+                path = root / file.replace("__", "/").replace("_dot_", ".")
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_text(text)
+            done = subprocess.run([sys.executable, "-B", SCRIPTS / self.script, "--root", root], text=True,
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+            self.assertEqual(done.returncode, 1 if done.stdout else 0, done.stdout)
+            return done.stdout
+
+
+class Includes(Check):
+    script = "check_includes.py"
+    def test_every_way_to_write_an_include_is_seen(self):
+        for line in ('#include "nodes/scenario/b.hpp"', "#include <nodes/scenario/b.hpp>",
+                     '  #  include "nodes/scenario/b.hpp"', '#include "../nodes/scenario/b.hpp"'):
+            told = self.told(tire__a_dot_hpp="\n" + line, nodes__scenario__b_dot_hpp="")
+            self.assertIn("tire/a.hpp:2: tire includes nodes/scenario/b.hpp of nodes/scenario, which is not below", told)
+        self.assertIn("expected the path from the root", self.told(tire__a_dot_hpp='#include "../protocol/core/a.hpp"',
+                                                                   protocol__core__a_dot_hpp=""))
+        self.assertEqual(self.told(tire__a_dot_hpp='#include "protocol/core/a.hpp"', protocol__core__a_dot_hpp=""), "")
+
+    def test_tests_and_mpi_stay_outside(self):
+        self.assertIn("tire includes tests/x.hpp", self.told(tire__a_dot_hpp='#include "tests/x.hpp"', tests__x_dot_hpp=""))
+        self.assertIn("only protocol/ knows MPI", self.told(rigs__a_dot_cpp="#include <mpi.h>"))
+        self.assertEqual(self.told(protocol__a_dot_cpp="#include <mpi.h>"), "")
+
+    def test_new_folders_must_be_named(self):
+        self.assertIn("weather/: holds sources", self.told(weather__rain_dot_cpp=""))
+        self.assertIn("nodes/plots/a.cpp: is in no room", self.told(nodes__plots__a_dot_cpp=""))
+        self.assertEqual(self.told(nodes__main_dot_cpp="", tests__a_dot_cpp=""), "")
+
+    def test_dummies_obey_the_rules_of_the_room_that_they_would_stand_in(self):
+        told = self.told(tests__dummies__spring_wheel_dot_hpp='#include "tire/tires.hpp"', tire__tires_dot_hpp="")
+        self.assertIn("circle of includes", told)
+        told = self.told(tests__dummies__held_hub_dot_hpp='#include "nodes/scenario/b.hpp"', nodes__scenario__b_dot_hpp="")
+        self.assertIn("rigs includes nodes/scenario/b.hpp", told)
+
+
+class Docs(Check):
+    script = "check_docs.py"
+
+    def test_paths_that_lead_nowhere(self):
+        self.assertIn("names line 999 of 'tire/x.cpp'", self.told(A_dot_md="`tire/x.cpp:999`", tire__x_dot_cpp="1\n2\n"))
+        self.assertEqual(self.told(A_dot_md="`tire/x.cpp:2`, `x.cpp`", tire__x_dot_cpp="1\n2\n"), "")
+        self.assertIn("names 'y.hpp'", self.told(A_dot_md="`y.hpp`", tire__x_dot_cpp=""))
+
+    def test_a_sixth_file_within_a_step_of_a_recipe(self):
+        names = [f"tire/{letter}.cpp" for letter in "abcdef"]
+        files = {name.replace("/", "__").replace(".", "_dot_"): "" for name in names}
+        steps = "".join(f"{k}. `{name}`: this\n" for k, name in enumerate(names[:5], 1))
+        recipe = "## Add a thing\n\n" + steps
+        self.assertEqual(self.told(CONTRIBUTING_dot_md=recipe, **files), "")
+        self.assertEqual(self.told(CONTRIBUTING_dot_md=recipe + "   (see `tire/f.cpp`)\n", **files), "")
+        self.assertIn("names file 6 of 'Add a thing'",
+                      self.told(CONTRIBUTING_dot_md=recipe + "   and `tire/f.cpp`\n", **files))
+
+
+if __name__ == "__main__":
+    unittest.main()

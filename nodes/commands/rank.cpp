@@ -61,7 +61,11 @@ class RankReporter {
       display_.say("furrow: " + text);
   }
   void error(const Error& error) {
-    if (supervised_) return send({launch::RankLine::Kind::error, rank_, error.what(), error.code(), {}});
+    if (supervised_) {
+      send({launch::RankLine::Kind::error, rank_, error.what(), error.code(), {}});
+      std::this_thread::sleep_for(kTimeForNews);  // mpirun may drop the last words of a rank that ends at once
+      return;
+    }
     display_.clear();
     if (error.code() == ExitCode::stopped)
       display_.say(std::string("furrow: ") + error.what());

@@ -117,6 +117,7 @@ class RigNode : public Node {
   void fail(ExitCode code, const std::string& text) noexcept override {
     try {
       if (!results_) return;
+      check_folder();  // by now it may be another run's
       std::vector<output::WheelEnd> wheels;
       if (time_ > time_start_) wheels = wheel_ends();
       results_->fail({{}, wheels, terrain_, time_, wall_clock() - wall_start_}, {code, text});

@@ -98,14 +98,16 @@ bool first_on_machine() {
   return launched_rank() == 0;
 }
 
-/// True when another node failed of the very same, and tells it.
-bool told_by_another(Transport& transport, const Error& error) {
-  if (transport.self() == Address{Role::rig, 0}) return false;
+/// True when a node before this one failed of the very same, and tells it. A supervisor hears all and tells one.
+bool told_by_another(Transport& transport, const Error& error, bool supervised) {
+  const Address self = transport.self();
+  if (supervised || self == Address{Role::rig, 0}) return false;
   std::this_thread::sleep_for(kTimeForNews);
   try {
     transport.check_peers();
   } catch (const PeerFailure& peer) {
-    return std::string(peer.what()) == error.what();
+    const bool before = std::pair(peer.who().role, peer.who().index) < std::pair(self.role, self.index);
+    return before && std::string(peer.what()) == error.what();
   } catch (const Error&) {
   }
   return false;
@@ -175,7 +177,7 @@ ExitCode run_this_node(Transport& transport, const scenario::Scenario& scenario,
     return failure.code();  // whoever failed has told the user
   } catch (const Error& error) {
     if (made && error.code() == ExitCode::bad_input) made->discard();
-    if (!told_by_another(transport, error)) reporter.error(error);
+    if (!told_by_another(transport, error, reporter.supervised())) reporter.error(error);
     if (error.code() == ExitCode::rank_lost) abandon_mpi(static_cast<int>(error.code()));
     return error.code();
   } catch (const std::bad_alloc&) {

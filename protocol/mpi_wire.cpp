@@ -41,6 +41,9 @@ void sleep_for(double seconds) {
   nanosleep(&length, nullptr);
 }
 
+/// A message may be seen some time after its ring: a sleep is no longer than what was waited before.
+double rung_sleep(double waited) { return std::clamp(waited, kShortWaitSleep, kRungSleep); }
+
 /// The n-th of a wait that has lasted `waited` s.
 double short_sleep(int n, double waited) {
   const double longest = std::clamp(kShareOfWait * waited, kShortWaitSleep, kMaxSleep);
@@ -130,7 +133,7 @@ std::optional<ControlBytes> MpiWire::take_control() {
 void MpiWire::idle(int polls, double waited) {
   FURROW_ASSERT(polls >= 0 && waited >= 0.0, polls, waited);
   if (polls < kTests) return;
-  doorbells_.sleep(rung_, every_message_rings() ? kRungSleep : short_sleep(polls - kTests, waited));
+  doorbells_.sleep(rung_, every_message_rings() ? rung_sleep(waited) : short_sleep(polls - kTests, waited));
 }
 
 /// What this rank sends may need it to come back to MPI, unless the receivers fetch it.

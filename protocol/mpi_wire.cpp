@@ -13,7 +13,6 @@ namespace furrow {
 namespace {
 
 constexpr int kTests = 4;                   // polls before the first sleep
-constexpr double kRungSleep = 50e-3;        // s; longest sleep where every message rings
 constexpr double kFirstSleep = 20e-6;       // s
 constexpr double kSleepGrowth = 1.5;        // from one sleep to the next
 constexpr double kShortWaitSleep = 200e-6;  // s; longest sleep while the wait is short
@@ -40,9 +39,6 @@ void sleep_for(double seconds) {
   const timespec length{0, static_cast<long>(seconds * 1e9)};
   nanosleep(&length, nullptr);
 }
-
-/// A message may be seen some time after its ring: a sleep is no longer than what was waited before.
-double rung_sleep(double waited) { return std::clamp(waited, kShortWaitSleep, kRungSleep); }
 
 /// The n-th of a wait that has lasted `waited` s.
 double short_sleep(int n, double waited) {
@@ -133,12 +129,8 @@ std::optional<ControlBytes> MpiWire::take_control() {
 void MpiWire::idle(int polls, double waited) {
   FURROW_ASSERT(polls >= 0 && waited >= 0.0, polls, waited);
   if (polls < kTests) return;
-  doorbells_.sleep(rung_, every_message_rings() ? rung_sleep(waited) : short_sleep(polls - kTests, waited));
-}
-
-/// What this rank sends may need it to come back to MPI, unless the receivers fetch it.
-bool MpiWire::every_message_rings() const {
-  return doorbells_.everyone() && (session_.receivers_pull() || (sends_.empty() && control_sends_.empty()));
+  // Short all the same: a message is often seen only some time after its ring.
+  doorbells_.sleep(rung_, short_sleep(polls - kTests, waited));
 }
 
 void MpiWire::expect_losses(double patience, int exit_code) noexcept {

@@ -18,8 +18,6 @@ class MpiDoorbells {
   MpiDoorbells(const MpiDoorbells&) = delete;
   MpiDoorbells& operator=(const MpiDoorbells&) = delete;
 
-  /// Whether every rank has one that this rank can ring, and can ring this one's.
-  bool everyone() const { return everyone_; }
   /// Does nothing for a rank on another machine.
   void ring(int rank) noexcept;
   std::uint32_t own_count() const noexcept { return own_->count(); }
@@ -29,7 +27,6 @@ class MpiDoorbells {
   Doorbell alone_;  // where there is no window
   Doorbell* own_ = &alone_;
   std::vector<Doorbell*> of_rank_;  // null: on another machine
-  bool everyone_ = false;
 };
 
 }  // namespace furrow

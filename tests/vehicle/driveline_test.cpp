@@ -5,6 +5,7 @@
 
 #include "protocol/core/error.hpp"
 #include "tests/protocol/fields_of.hpp"
+#include "tests/vehicle/rate_controls.hpp"
 #include "vehicle/driveline/engine.hpp"
 #include "vehicle/driveline/friction_coupling.hpp"
 #include "vehicle/driveline/gearbox.hpp"
@@ -13,8 +14,8 @@
 #include "vehicle/driveline/torque_converter.hpp"
 
 using namespace furrow;
-using furrow::testing::member_count, furrow::testing::names_of;
-using vehicle::Gearbox, vehicle::kGround, vehicle::RateControl, vehicle::RateMode, vehicle::Table;
+using furrow::testing::held, furrow::testing::member_count, furrow::testing::names_of, furrow::testing::torque;
+using vehicle::Gearbox, vehicle::kGround, vehicle::Table;
 
 namespace {
 
@@ -38,20 +39,6 @@ vehicle::EngineOptions engine_options() {
 vehicle::ConverterOptions converter_options() {
   return {Table("K", {{0, 15}, {0.25, 15}, {0.5, 15}, {0.75, 16}, {0.9, 18}, {1, 35}}),
           Table("T", {{0, 2}, {0.25, 1.8}, {0.5, 1.5}, {0.75, 1.15}, {1, 1}})};
-}
-
-RateControl torque(double value) {
-  RateControl control;
-  control.mode = RateMode::torque;
-  control.torque = value;
-  return control;
-}
-
-RateControl held(double speed) {
-  RateControl control;
-  control.mode = RateMode::hold;
-  control.target = speed;
-  return control;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "protocol/core/constants.hpp"
 #include "tests/vehicle/planar.hpp"
+#include "tests/vehicle/rate_controls.hpp"
 #include "vehicle/driveline/friction_coupling.hpp"
 #include "vehicle/driveline/gears.hpp"
 
@@ -11,13 +12,6 @@ using namespace furrow::testing;
 using vehicle::FrictionCoupling, vehicle::kGround, vehicle::RateControl, vehicle::RateMode;
 
 namespace {
-
-RateControl torque(double value) {
-  RateControl control;
-  control.mode = RateMode::torque;
-  control.torque = value;
-  return control;
-}
 
 // A wheel hinged about y with a weight on an arm, held by a brake.
 struct HeldArm {

@@ -5,22 +5,12 @@
 #include "protocol/core/error.hpp"
 #include "tests/protocol/fields_of.hpp"
 #include "tests/vehicle/planar.hpp"
+#include "tests/vehicle/rate_controls.hpp"
 #include "vehicle/driveline/gears.hpp"
 
 using namespace furrow;
 using namespace furrow::testing;
 using vehicle::kGround, vehicle::RateControl, vehicle::RateMode;
-
-namespace {
-
-RateControl torque(double value) {
-  RateControl control;
-  control.mode = RateMode::torque;
-  control.torque = value;
-  return control;
-}
-
-}  // namespace
 
 TEST(Shaft, constant_torque_gives_speed_angle_and_work) {
   vehicle::System system;

@@ -75,11 +75,7 @@ TEST(Brake, stops_a_flywheel_in_the_time_and_with_the_heat_of_the_closed_form_an
     vehicle::System system;
     const int shaft = system.add_shaft("flywheel", J, kGround, Vec3::UnitY(), speed);
     const int fixed = system.add_shaft("frame", 1.0, kGround, Vec3::UnitY());
-    system.add_rate_row({"frame held", {{fixed, 1.0}}, {}}, [] {
-      RateControl hold;
-      hold.mode = RateMode::hold;
-      return hold;
-    }());
+    system.add_rate_row({"frame held", {{fixed, 1.0}}, {}}, held(0.0));
     const FrictionCoupling brake = FrictionCoupling::clutch(system, "brake", shaft, fixed, 2.0 * T);
     system.assemble(0.0);
     brake.engage(system, 0.5);
@@ -134,11 +130,7 @@ TEST(Clutch, locking_differential_carries_its_capacity_across_and_no_more) {
   (void)drive;
   vehicle::add_differential(system, "differential", box, left, right);
   const FrictionCoupling lock = FrictionCoupling::clutch(system, "lock", left, right, 100.0);
-  const int road = system.add_rate_row({"road", {{left, 1.0}}, {}}, [] {
-    RateControl hold;
-    hold.mode = RateMode::hold;
-    return hold;
-  }());
+  const int road = system.add_rate_row({"road", {{left, 1.0}}, {}}, held(0.0));
   system.assemble(0.0);
   lock.engage(system, 1.0);
   for (int i = 0; i < 200; ++i) ASSERT_TRUE(system.step(1e-3).ok);

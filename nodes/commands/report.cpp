@@ -1,12 +1,15 @@
 // The plots of a run, made by scripts/report.py with Debian's own Python, whatever python stands first on PATH, and
 // isolated (-I) from what the user's environment and folders have for Python.
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <csignal>
 
 #include <array>
 #include <cerrno>
+#include <chrono>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -17,19 +20,27 @@
 #include "nodes/launch/signals.hpp"
 #include "nodes/scenario/rank_table.hpp"
 #include "protocol/files/data_files.hpp"
+#include "protocol/memory_limit.hpp"
 
 namespace furrow::commands {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 constexpr const char* kPython = "/usr/bin/python3";
+constexpr double kAddressSpace =
+    512e6;  // bytes; a plot takes 300 MB, and numpy's BLAS waits forever for less
+constexpr std::chrono::seconds kPatience{60};  // for plots that nobody asked for
 
 struct Finished {
-  int status = 0;      // of waitpid
-  std::string output;  // standard output
+  int status = 0;         // of waitpid
+  std::string output;     // standard output
+  bool too_late = false;  // it was ended at the deadline
 };
 
-/// Runs a program to its end; a stop signal ends it.
-Finished run_program(std::vector<std::string> command, bool quiet) {
+/// Runs a program to its end; a stop signal or the deadline ends it.
+Finished run_program(std::vector<std::string> command, bool quiet,
+                     std::optional<Clock::time_point> deadline) {
   launch::Pipe pipe;
   const int nothing = open("/dev/null", O_WRONLY | O_CLOEXEC);
   const pid_t child = launch::start_child({.command = std::move(command),
@@ -40,12 +51,20 @@ Finished run_program(std::vector<std::string> command, bool quiet) {
   pipe.close_write();
   Finished finished;
   std::array<char, 4096> bytes;
-  for (ssize_t count; (count = read(pipe.read, bytes.data(), bytes.size())) != 0;) {
+  for (;;) {
+    pollfd readable{.fd = pipe.read, .events = POLLIN, .revents = 0};
+    const int ready = poll(&readable, 1, deadline ? 500 : -1);  // ms
+    if (launch::stop_signalled()) kill(child, SIGTERM);
+    if (deadline && !finished.too_late && Clock::now() > *deadline) {
+      finished.too_late = true;
+      kill(child, SIGKILL);
+    }
+    if (ready <= 0) continue;
+    const ssize_t count = read(pipe.read, bytes.data(), bytes.size());
     if (count > 0)
       finished.output.append(bytes.data(), static_cast<std::size_t>(count));
-    else if (errno != EINTR)
+    else if (count == 0 || errno != EINTR)
       break;
-    if (launch::stop_signalled()) kill(child, SIGTERM);
   }
   pipe.close_read();
   while (waitpid(child, &finished.status, 0) < 0 && errno == EINTR)
@@ -64,8 +83,17 @@ std::vector<std::filesystem::path> make_report(const std::filesystem::path& run,
     throw io_error(
         script.string(),
         "is missing, expected the plotting script (FURROW_HOME names the folder that holds scripts/)");
-  const Finished finished = run_program({kPython, "-I", script.string(), "--", run.string()}, quiet);
+  if (const MemoryLimit limit = address_space_limit(); limit.bytes < kAddressSpace)
+    throw limit_error(fmt::format("{}: plots need {:.0f} MB of memory, limit {:.0f} MB ({})", run.string(),
+                                  kAddressSpace / 1e6, limit.bytes / 1e6, limit.name));
+  const auto deadline = quiet ? std::optional(Clock::now() + kPatience) : std::nullopt;
+  const Finished finished =
+      run_program({kPython, "-I", script.string(), "--", run.string()}, quiet, deadline);
   const auto list = nlohmann::json::parse(finished.output, nullptr, false);
+  if (finished.too_late)
+    throw io_error(run.string(),
+                   fmt::format("the plots took more than {} s; 'furrow report {}' waits for them",
+                               kPatience.count(), scenario::shell_path(run.string())));
   if (!WIFEXITED(finished.status) || WEXITSTATUS(finished.status) != 0 || !list.is_array())
     throw io_error(run.string(), launch::stop_signalled() ? "the plots were interrupted"
                                  : quiet ? fmt::format("made no plots; 'furrow report {}' says why",

@@ -162,6 +162,12 @@ class Limits(EnvironmentTest):
         self.assertRegex(self.one_error(done, 6), r"out of memory: needs about \d+\.\d GB, limit 0.3 GB \(ulimit -v\)")
         self.assertEqual(survivors(self.folder), [])
 
+    def test_plots_that_would_wait_forever_for_memory_are_not_begun(self):
+        done = limited("-v 450000", "run", self.path, "--until", "0.01", "--out", "out", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stderr, r"no plots: .*plots need 512 MB of memory, limit 461 MB \(ulimit -v\)")
+        self.one_error(limited("-v 450000", "report", "out", cwd=self.folder), 6)
+
 
 class LongWork(EnvironmentTest):
     def check(self, *arguments, phase, longest=4.0, code=75):

@@ -52,6 +52,9 @@ MpiDoorbells::MpiDoorbells(MPI_Comm comm) {
           static_cast<Doorbell*>(place_in(bell));
     }
   }
+  int all = made && machine.size() == ranks;
+  MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_MIN, comm);
+  everyone_ = all != 0;
 }
 
 void MpiDoorbells::ring(int rank) noexcept {

@@ -18,6 +18,8 @@ class MpiDoorbells {
   MpiDoorbells(const MpiDoorbells&) = delete;
   MpiDoorbells& operator=(const MpiDoorbells&) = delete;
 
+  /// Whether every rank has one that this rank can ring, and can ring this one's.
+  bool everyone() const { return everyone_; }
   /// Does nothing for a rank on another machine.
   void ring(int rank) noexcept;
   std::uint32_t own_count() const noexcept { return own_->count(); }
@@ -27,6 +29,7 @@ class MpiDoorbells {
   Doorbell alone_;  // where there is no window
   Doorbell* own_ = &alone_;
   std::vector<Doorbell*> of_rank_;  // null: on another machine
+  bool everyone_ = false;
 };
 
 }  // namespace furrow

@@ -12,7 +12,9 @@
 namespace furrow {
 namespace {
 
+constexpr int kLooks = 2;                   // for messages, each time that anybody looks for them
 constexpr int kTests = 4;                   // polls before the first sleep
+constexpr double kRungSleep = 50e-3;        // s; longest sleep where every message rings
 constexpr double kFirstSleep = 20e-6;       // s
 constexpr double kSleepGrowth = 1.5;        // from one sleep to the next
 constexpr double kShortWaitSleep = 200e-6;  // s; longest sleep while the wait is short
@@ -39,6 +41,9 @@ void sleep_for(double seconds) {
   const timespec length{0, static_cast<long>(seconds * 1e9)};
   nanosleep(&length, nullptr);
 }
+
+/// No longer than what was waited before: should a message come without a ring, it is no later than twice its time.
+double rung_sleep(double waited) { return std::clamp(waited, kShortWaitSleep, kRungSleep); }
 
 /// The n-th of a wait that has lasted `waited` s.
 double short_sleep(int n, double waited) {
@@ -97,10 +102,14 @@ void MpiWire::complete(std::deque<PendingSend>& sends) {
 
 void MpiWire::progress() {
   rung_ = doorbells_.own_count();
-  int from = 0, tag = 0;
-  Bytes payload;
-  while (receive_any(data_, from, tag, payload)) arrived_[{from, tag}].push_back(std::move(payload));
-  while (receive_any(control_, from, tag, payload)) control_arrived_.push_back({from, std::move(payload)});
+  // Open MPI's probe first looks at what it has taken in, and only then takes in what has come: a message is found by
+  // the second look. Without that, whoever was rung would sleep on beside a message that is there.
+  for (int look = 0; look < kLooks; ++look) {
+    int from = 0, tag = 0;
+    Bytes payload;
+    while (receive_any(data_, from, tag, payload)) arrived_[{from, tag}].push_back(std::move(payload));
+    while (receive_any(control_, from, tag, payload)) control_arrived_.push_back({from, std::move(payload)});
+  }
   complete(sends_);
   complete(control_sends_);
 }
@@ -129,8 +138,12 @@ std::optional<ControlBytes> MpiWire::take_control() {
 void MpiWire::idle(int polls, double waited) {
   FURROW_ASSERT(polls >= 0 && waited >= 0.0, polls, waited);
   if (polls < kTests) return;
-  // Short all the same: a message is often seen only some time after its ring.
-  doorbells_.sleep(rung_, short_sleep(polls - kTests, waited));
+  doorbells_.sleep(rung_, every_message_rings() ? rung_sleep(waited) : short_sleep(polls - kTests, waited));
+}
+
+/// What this rank sends may need it to come back to MPI, unless the receivers fetch it.
+bool MpiWire::every_message_rings() const {
+  return doorbells_.everyone() && (session_.receivers_pull() || (sends_.empty() && control_sends_.empty()));
 }
 
 void MpiWire::expect_losses(double patience, int exit_code) noexcept {

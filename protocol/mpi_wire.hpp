@@ -49,6 +49,7 @@ class MpiWire final : public Wire {
   void post(std::deque<PendingSend>& sends, const Communicator& comm, int to, int tag, Bytes payload);
   static void complete(std::deque<PendingSend>& sends);
   void drain(double longest);
+  bool every_message_rings() const;
 
   MpiSession& session_;
   Communicator data_, control_, role_;

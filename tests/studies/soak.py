@@ -1,29 +1,74 @@
 #!/usr/bin/python3
-"""A long run of a small rig: a million communication steps by default, with checkpoints. Watches memory and open files of
-every rank, and the diagnostics at the end; prints JSON, and exits with 1 when something grew."""
+"""Long and large runs: watches memory, open files and the time per step of every rank, from beginning to end.
+
+usage: soak.py CASE [--scale S] [--every SECONDS] [--json FILE] [--keep DIR]
+
+steps   5,000,000 communication steps of a small rig, with sleep and 100 checkpoints
+grains  a wheel on 2,000,000 grains, a tiled bed, for the whole of its 1.5 s
+wheels  64 wheels on the cores that there are
+frames  100,000 frames in one folder
+runs    a study of 1,000 runs
+
+`--scale 0.01` makes a case that much shorter. Prints JSON, and writes it with its commit, processor and command to FILE;
+exits with 1 when memory or open files grew, or a step came to take more than twice as long.
+"""
 import argparse
-import csv
 import json
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
 import time
 
+import provenance
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-PROGRAM = os.environ.get("FURROW", str(ROOT / "build" / "furrow"))
+PROGRAM = provenance.program()
 STEP = 1e-4  # s
+GROWN_MB, GROWN_SHARE = 1.0, 0.02  # of memory between the second and the last quarter of the samples
+SLOWER = 2.0
+RIG = {"slip": 0.3, "ramp": 0.05, "carrier_mass": 450}
+WHEEL = {"file": "hmmwv_layered.json", "rigid": True}
+SMALL = {"radius": 0.03, "cohesion": 80e3, "layers": 4, "length": 1.4, "width": 0.4}
 
 
-def scenario(steps):
+def small(steps, **sections):
     end = steps * STEP
-    return {"rig": {"mode": "fixed_speed", "speed": 0.3 / end, "slip": 0.3, "ramp": 0.05, "carrier_mass": 450},
-            "tire": {"file": "hmmwv_layered.json", "rigid": True},
-            "terrain": {"radius": 0.03, "cohesion": 80e3, "layers": 4, "length": 1.4, "width": 0.4},
+    return {"rig": {"mode": "fixed_speed", "speed": 0.3 / end, **RIG}, "tire": WHEEL, "terrain": SMALL,
             "run": {"step": STEP, "end": end, "average_from": 0.5 * end},
             "output": {"series_interval": max(end / 1000, 1e-3), "frame_interval": end / 20},
-            "checkpoint": {"interval": end / 100, "wall_interval": 0}}
+            "checkpoint": {"interval": end / 100, "wall_interval": 0}, **sections}
+
+
+def case_steps(scale):
+    return small(round(5_000_000 * scale))
+
+
+def case_grains(scale):
+    """2,000,000 grains of 10 mm: 40 m of bed, 3 m wide; the wheel runs as in drawbar_pull_small."""
+    scenario = json.loads((ROOT / "rigs" / "drawbar_pull_small.json").read_text())
+    scenario.pop("expected")
+    scenario["tire"]["rigid"] = True
+    scenario["terrain"].update(length=47.0, width=3.0)
+    scenario["run"].update(end=1.5 * scale, average_from=0.7 * scale)
+    scenario["checkpoint"] = {"interval": 0.1 * scale, "wall_interval": 0, "keep": 2}
+    scenario["output"]["frame_interval"] = 0.25 * scale
+    return scenario
+
+
+def case_wheels(scale):
+    """Eight columns of eight, each standing on its own place."""
+    places = [{"start": 0.7 + 1.1 * i, "lateral": -1.75 + 0.5 * j} for i in range(8) for j in range(8)]
+    return small(round(1000 * scale), rig={**RIG, "slip": 0.0, "mode": "fixed_angular_speed", "angular_speed": 0.0,
+                                           "wheels": places},
+                 terrain={**SMALL, "length": 9.4, "width": 4.1})
+
+
+def case_frames(scale):
+    steps = round(100_000 * scale)
+    return small(steps, output={"series_interval": 1e-3, "frame_interval": STEP})
 
 
 def ranks(mark):
@@ -48,45 +93,122 @@ def sample(pid):
     return resident, len(os.listdir(f"/proc/{pid}/fd"))
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--steps", type=int, default=1_000_000)
-    parser.add_argument("--every", type=float, default=2.0, help="wall seconds between samples")
-    arguments = parser.parse_args()
-    with tempfile.TemporaryDirectory(prefix="furrow_soak_") as folder:
-        path = pathlib.Path(folder) / "soak.json"
-        path.write_text(json.dumps(scenario(arguments.steps)))
-        out = pathlib.Path(folder) / "out"
-        run = subprocess.Popen([PROGRAM, "run", str(path), "--out", str(out), "--no-plots"], stderr=subprocess.PIPE, text=True)
-        samples = {}
-        while run.poll() is None:
-            time.sleep(arguments.every)
-            for rank, pid in ranks(folder).items():
-                try:
-                    samples.setdefault(rank, []).append(sample(pid))
-                except (OSError, IndexError):
-                    pass
-        if run.returncode != 0:
-            sys.exit(run.stderr.read())
-        summary = json.loads((out / "summary.json").read_text())
-        with open(out / "timeseries.csv", newline="") as file:
-            rows = list(csv.DictReader(file))
-    report = {"steps": arguments.steps, "wall_s": summary["wall_s"], "checkpoints": 100, "ranks": []}
+def newest_step(out):
+    """Of the checkpoints; 0 before the first."""
+    folder = out / "checkpoints"
+    return max((int(name) for name in os.listdir(folder) if name.isdigit()), default=0) if folder.is_dir() else 0
+
+
+def watch(command, mark, out, every):
+    """Runs the command. @returns (samples by process, [(wall time, step)], wall time)"""
+    samples, steps, begin = {}, [], time.monotonic()
+    run = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    while True:
+        try:
+            _, errors = run.communicate(timeout=every)
+            break
+        except subprocess.TimeoutExpired:
+            pass
+        for name, pid in {"furrow": run.pid, **{f"rank {rank}": pid for rank, pid in ranks(mark).items()}}.items():
+            try:
+                samples.setdefault(name, []).append(sample(pid))
+            except (OSError, IndexError):
+                pass
+        step = newest_step(out)
+        if step and (not steps or step != steps[-1][1]):
+            steps.append((time.monotonic() - begin, step))
+    if run.returncode != 0:
+        sys.exit(f"{command[1]} ended with {run.returncode}: {errors[-2000:]}")
+    return samples, steps, time.monotonic() - begin
+
+
+def early_and_late(series):
+    """Of the second and the last quarter: mean memory, most open files."""
+    later = series[len(series) // 4:]
+    parts = later[: max(1, len(later) // 3)], later[-max(1, len(later) // 3):]
+    return [(sum(s[0] for s in part) / len(part), max(s[1] for s in part)) for part in parts]
+
+
+def judge(report, samples, steps):
     grew = False
-    for rank, series in sorted(samples.items()):
-        half = series[len(series) // 4:]
-        first, last = half[: max(1, len(half) // 4)], half[-max(1, len(half) // 4):]
-        mean = [sum(s[0] for s in part) / len(part) for part in (first, last)]
-        files = [max(s[1] for s in part) for part in (first, last)]
-        grew |= mean[1] > 1.02 * mean[0] + 1.0 or files[1] > files[0]
-        report["ranks"].append({"node": summary["ranks"][rank]["node"], "samples": len(series), "memory_MB_early": round(mean[0], 2),
-                                "memory_MB_late": round(mean[1], 2), "open_files_early": files[0], "open_files_late": files[1]})
-    for key in ("momentum_residual", "transfer_force_residual", "transfer_moment_residual", "vertical_balance_residual"):
-        report[key] = summary[key]
-    report["energy_error_J_half_and_end"] = [float(rows[len(rows) // 2]["energy_error_J"]), float(rows[-1]["energy_error_J"])]
+    for name, series in sorted(samples.items()):
+        (memory, files), (memory_late, files_late) = early_and_late(series)
+        grew |= memory_late > (1 + GROWN_SHARE) * memory + GROWN_MB or files_late > files
+        report["processes"].append({"process": name, "samples": len(series), "most_memory_MB": round(max(s[0] for s in series), 1),
+                                    "memory_MB_early": round(memory, 2), "memory_MB_late": round(memory_late, 2),
+                                    "open_files_early": files, "open_files_late": files_late})
+    if len(steps) >= 8:
+        quarter = len(steps) // 4
+        rate = [1e3 * (b[0] - a[0]) / (b[1] - a[1]) for a, b in ((steps[0], steps[quarter]), (steps[-1 - quarter], steps[-1]))]
+        report["ms_per_step_early"], report["ms_per_step_late"] = (round(value, 4) for value in rate)
+        grew |= rate[1] > SLOWER * rate[0]
     report["grew"] = grew
+
+
+def run_case(scenario, folder, every):
+    path, out = folder / "soak.json", folder / "out"
+    path.write_text(json.dumps({"format_version": 1, **scenario}))
+    check = subprocess.run([PROGRAM, "validate", str(path)], capture_output=True, text=True)
+    samples, steps, wall = watch([PROGRAM, "run", str(path), "--out", str(out), "--no-plots"], str(folder), out, every)
+    summary = json.loads((out / "summary.json").read_text())
+    report = {"steps": round(summary["simulated_s"] / scenario["run"]["step"]), "wall_s": round(wall, 1),
+              "settle_wall_s": round(summary["settle_wall_s"], 1), "run_wall_s": round(summary["wall_s"], 1),
+              "grains": summary["grains"], "active_share_mean": summary["active_share_mean"],
+              "compiler": summary["compiler"], "processor": summary["cpu"], "cores": os.cpu_count(),
+              "files": sum(len(files) for _, _, files in os.walk(out)),
+              "bytes": sum(os.path.getsize(os.path.join(top, name)) for top, _, files in os.walk(out) for name in files),
+              "said_before": [line for line in check.stdout.splitlines() if "core" in line or "memory" in line], "processes": []}
+    judge(report, samples, steps)
+    return report
+
+
+def run_study(scale, folder, every):
+    """Runs of at most a second each."""
+    count = round(1000 * scale)
+    scenario = small(200, output={"series_interval": 1e-3, "frame_interval": 0}, checkpoint={"at_end": False})
+    (folder / "small.json").write_text(json.dumps({"format_version": 1, **scenario}))
+    slips = [round(0.6 * k / count, 6) for k in range(count)]
+    study = folder / "study.json"
+    study.write_text(json.dumps({"scenario": "small.json", "grid": {"rig.slip": slips}}))
+    out = folder / "out"
+    samples, _, wall = watch([PROGRAM, "sweep", str(study), "--out", str(out)], str(folder / "nobody"), out, every)
+    begin = time.monotonic()
+    again = subprocess.run([PROGRAM, "sweep", str(study), "--out", str(out)], capture_output=True, text=True)
+    report = {"runs": len((out / "sweep.csv").read_text().splitlines()) - 1, "wall_s": round(wall, 1),
+              "again_wall_s": round(time.monotonic() - begin, 1), "again_exit_code": again.returncode, "processes": []}
+    judge(report, samples, [])
+    return report
+
+
+CASES = {"steps": case_steps, "grains": case_grains, "wheels": case_wheels, "frames": case_frames, "runs": None}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("case", choices=CASES)
+    parser.add_argument("--scale", type=float, default=1.0)
+    parser.add_argument("--every", type=float, default=2.0, help="wall seconds between samples")
+    parser.add_argument("--json", type=pathlib.Path, help="file that holds the reports of all cases; this one's is replaced")
+    parser.add_argument("--keep", type=pathlib.Path, help="work here and leave the results")
+    arguments = parser.parse_args()
+    folder = (arguments.keep or pathlib.Path(tempfile.mkdtemp(prefix="furrow_soak_"))).resolve()
+    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        if arguments.case == "runs":
+            report = run_study(arguments.scale, folder, arguments.every)
+        else:
+            report = run_case(CASES[arguments.case](arguments.scale), folder, arguments.every)
+    finally:
+        if not arguments.keep:
+            shutil.rmtree(folder, ignore_errors=True)
+    report["scale"] = arguments.scale
+    report.update(commit=provenance.commit(), build=provenance.build_of(PROGRAM), command=provenance.command())
     print(json.dumps(report, indent=1))
-    return 1 if grew else 0
+    if arguments.json:
+        reports = json.loads(arguments.json.read_text()) if arguments.json.exists() else {}
+        reports[arguments.case] = report
+        arguments.json.write_text(json.dumps(reports, indent=1) + "\n")
+    return 1 if report["grew"] else 0
 
 
 if __name__ == "__main__":

@@ -5,10 +5,10 @@
 //
 // Touch-down. A damper c between the rail and a wheel of weight W lets it down at v = W/c, slower as the ground takes
 // over: m z̈ = W − F(z) − c ż. Wheels that are alike in shape behave alike at equal Froude number v/√(g R) [Freitag
-// 1966], so v = 0.18 √(g R) for a time of 1.6 √(R/g): what was tried on the wheel of the reference rig (0.39 m/s and
+// 1965], so v = 0.18 √(g R) for a time of 1.6 √(R/g): what was tried on the wheel of the reference rig (0.39 m/s and
 // 0.35 s at R = 0.467 m, 4.6 kN, 12 kN s/m), about half of the critical damping of its bounce.
 //
-// [Freitag 1966] A dimensional analysis of the performance of pneumatic tires on soft soils. US Army Engineer Waterways
+// [Freitag 1965] A dimensional analysis of the performance of pneumatic tires on soft soils. US Army Engineer Waterways
 //   Experiment Station, Technical Report 3-688.
 #pragma once
 

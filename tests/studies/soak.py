@@ -4,7 +4,7 @@
 usage: soak.py CASE [--scale S] [--every SECONDS] [--json FILE] [--keep DIR]
 
 steps   5,000,000 communication steps of a small rig, with sleep and 100 checkpoints
-grains  a wheel on 2,000,000 grains, a tiled bed, for the whole of its 1.5 s
+grains  a wheel on 2,000,000 grains for the whole of its 1.5 s
 wheels  64 wheels on the cores that there are
 frames  100,000 frames in one folder
 runs    a study of 1,000 runs

@@ -18,10 +18,10 @@ ExitCode sweep_command(const SweepArguments& arguments) {
       arguments.out.empty() ? std::filesystem::path("results") / study.name : arguments.out;
   const bool to_plot = study.passes > 0 || !study.plot.is_null();
   study::Sweep sweep(std::move(study), {folder, arguments.jobs});
-  const launch::RunDirectory directory = launch::RunDirectory::of_study(folder);
+  launch::RunDirectory directory = launch::RunDirectory::of_study(folder);
   launch::remove_unfinished(folder);
   launch::catch_stop_signals();
-  const ExitCode code = sweep.run();
+  const ExitCode code = sweep.run(directory.lock());
   if (code != ExitCode::stopped) {
     if (to_plot) make_report_or_warn(folder);
   } else {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 
 #include <fmt/format.h>
@@ -19,6 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr int kMaxNumbers = 100000;
 constexpr const char* kAside = ".furrow-before";
+constexpr const char* kNoParents = "FURROW_MAKES_NO_PARENTS";
 constexpr const char* kStudy = "sweep.json";  // what the list of a study holds
 
 Error no_list(const fs::path& folder, const std::string& key, const std::string& why) {
@@ -138,6 +140,8 @@ void RunDirectory::require_writable(const std::string& key) const {
     throw input_error(path_.string(), key, "cannot be written, expected a place that can be written");
 }
 
+void make_no_parents() { setenv(kNoParents, "1", 1); }
+
 /// @returns false when it exists by now
 bool RunDirectory::make() {
   std::vector<fs::path> missing;
@@ -147,6 +151,8 @@ bool RunDirectory::make() {
     std::error_code error;
     if (!fs::exists(at, error)) missing.push_back(at);
   }
+  if (missing.size() > 1 && std::getenv(kNoParents))
+    throw io_error(missing.front().string(), "was moved or removed while its study was under way");
   for (const fs::path& folder : missing) {
     if (mkdir(folder.c_str(), 0777) == 0) {
       if (made_.empty()) made_ = folder;

@@ -67,6 +67,10 @@ class RunDirectory {
   std::filesystem::path made_;  // the topmost folder that did not exist before; empty: none
 };
 
+/// In a child that will be `furrow run`: it makes no folder but the run's own, whose place stands as long as nobody
+/// removes the study's folder.
+void make_no_parents();
+
 /// @throws Error(bad_input) unless `folder` holds a run
 void require_run_directory(const std::filesystem::path& folder);
 

@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <fstream>
 #include <new>
@@ -18,8 +19,8 @@
 #include "nodes/checkpoint/checkpoint.hpp"
 #include "nodes/checkpoint/run_summary.hpp"
 #include "nodes/launch/child_process.hpp"
-#include "nodes/launch/folder_lock.hpp"
 #include "nodes/launch/progress.hpp"
+#include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/run_list.hpp"
 #include "nodes/launch/signals.hpp"
 #include "nodes/scenario/load_scenario.hpp"
@@ -230,6 +231,7 @@ void Sweep::start(Run& run, std::size_t share) {
   const auto prepare = [cores = shares_[share]] {
     sched_setaffinity(0, sizeof cores, &cores);
     launch::forget_launcher();
+    launch::make_no_parents();
   };
   run.process = launch::start_child({.command = list,
                                      .out = log,
@@ -293,6 +295,21 @@ void Sweep::stop_all() {
     if (run.process > 0) kill(run.process, SIGTERM);
 }
 
+/// What was moved or removed must not be made anew. Its runs notice by themselves, too.
+void Sweep::require_folder(const launch::FolderLock& lock) {
+  if (lock.stands()) return;
+  for (Run& run : runs_) {
+    if (run.process <= 0) continue;
+    kill(run.process, SIGTERM);
+    while (waitpid(run.process, nullptr, 0) < 0 && errno == EINTR) continue;
+    run.process = -1;
+  }
+  throw io_error(
+      options_.folder.string(),
+      "was moved, removed or emptied while the study was under way; it ends here and writes nothing "
+      "elsewhere");
+}
+
 /// Ctrl-Z reaches this process alone: the runs have groups of their own.
 void Sweep::pause_all() {
   if (!launch::pause_asked()) return;
@@ -303,7 +320,7 @@ void Sweep::pause_all() {
     if (run.process > 0) kill(run.process, SIGCONT);
 }
 
-ExitCode Sweep::run() {
+ExitCode Sweep::run(const launch::FolderLock& lock) {
   launch::add_to_run_list(options_.folder, {"sweep.json", "sweep.csv"});
   launch::catch_pause();
   write_whole_file(options_.folder / "sweep.json", Json{{"format_version", 1},
@@ -321,10 +338,12 @@ ExitCode Sweep::run() {
       if (taken[share]) continue;
       Run* run = next();
       if (!run) break;
+      require_folder(lock);
       start(*run, share);
       taken[share] = true;
     }
     running = false;
+    require_folder(lock);
     for (Run& run : runs_) {
       if (run.process <= 0) continue;
       poll(run);

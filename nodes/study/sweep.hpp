@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "nodes/launch/folder_lock.hpp"
 #include "nodes/study/study.hpp"
 #include "protocol/core/error.hpp"
 
@@ -30,8 +31,10 @@ class Sweep {
   /// @throws Error(bad_input) when a run's scenario is wrong; nothing was written then
   Sweep(Study study, const SweepOptions& options);
 
+  /// @param lock of the study's folder
   /// @returns done, stopped, or how the first run that failed ended
-  ExitCode run();
+  /// @throws Error(io) when the folder was moved or removed meanwhile; its runs have ended then
+  ExitCode run(const launch::FolderLock& lock);
 
  private:
   enum class State { waiting, running, done, failed, stopped };
@@ -58,6 +61,7 @@ class Sweep {
   void start(Run& run, std::size_t share);
   void poll(Run& run);
   void stop_all();
+  void require_folder(const launch::FolderLock& lock);
   void pause_all();
   void fail(Run& run, const Error& error);
   void tell(const Run& run, const std::string& what) const;

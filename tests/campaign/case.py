@@ -13,7 +13,7 @@ import processes
 import scenarios
 from compare_runs import differences
 
-PATIENCE = 90.0  # s that one command may take on a busy machine before it counts as hanging
+PATIENCE = 180.0  # s that one command may take before it counts as hanging; a launcher that hangs is noticed after 120 s
 DOCUMENTED = {0, 2, 3, 4, 5, 6, 75}
 BUSY_PATIENCE = 30.0  # s that a folder may stay taken by processes that are ending
 # What a message must hold: an error, a stop, or the failure of a run of a study, with words that follow.

@@ -47,6 +47,20 @@ class Sweep(SystemTest):
         self.assertEqual(done.stderr.count("is done already"), 2)
         self.assertEqual([row["state"] for row in self.table()], ["done"] * 3)
 
+    def test_a_removed_folder_ends_it_and_is_not_made_anew(self):
+        study = self.study(grid={"rig.slip": [0.1, 0.2, 0.3, 0.4]})
+        out = self.folder / "results" / "study"
+        for jobs in ("1", "2"):
+            process = start("sweep", study, "--jobs", jobs, cwd=self.folder)
+            wait_for(lambda: list(out.glob("runs/*/.furrow-run")), 60, "a run of the study")
+            shutil.rmtree(out, ignore_errors=True)
+            _, err = process.communicate(timeout=60)
+            self.assertEqual(process.returncode, 5, err)
+            self.assertEqual(err.count("furrow: error: "), 1, err)
+            self.assertFalse(out.exists(), [str(path) for path in out.rglob("*")])
+            self.assertEqual(survivors(self.folder), [])
+        self.assertEqual(furrow("sweep", study, "--jobs", "2", cwd=self.folder).returncode, 0)
+
     def test_a_failed_run_stops_no_other(self):
         # grains as soft as these leave the bin while they settle
         study = self.study(list=[{"rig.slip": 0.1}, {"terrain.young_modulus": 1e3, "rig.carrier_mass": 20000, "run.end": 0.2},

@@ -23,6 +23,8 @@
 namespace furrow::commands {
 namespace {
 
+constexpr const char* kDone = "summary.json";  // stands in the folder if and only if the run is done
+
 std::vector<std::string> rank_arguments(const RunArguments& arguments,
                                         const std::filesystem::path& directory) {
   std::vector<std::string> list{arguments.resume ? "resume" : "run"};
@@ -90,15 +92,15 @@ ExitCode supervise_run(const scenario::Scenario& scenario, launch::RunDirectory&
                        const RunArguments& arguments) {
   launch::LaunchResult result;
   const std::filesystem::path failed = directory.path() / "summary_failed.json";
-  const auto failed_before = written(failed);
+  const auto failed_before = written(failed), done_before = written(directory.path() / kDone);
   try {
     directory.add({"run.log", "summary_failed.json"});
     directory.lock().share();
     launch::ProgressDisplay display;
-    result = launch::supervise({rank_arguments(arguments, directory.path()), scenario::rank_table(scenario),
-                                directory.path() / "run.log", directory.lock().descriptor(),
-                                launch::start_patience()},
-                               display);
+    result = launch::supervise(
+        {rank_arguments(arguments, directory.path()), scenario::rank_table(scenario),
+         directory.path() / "run.log", directory.lock().descriptor(), launch::start_patience()},
+        display);
   } catch (const Error&) {
     directory.discard();
     throw;
@@ -107,6 +109,10 @@ ExitCode supervise_run(const scenario::Scenario& scenario, launch::RunDirectory&
     print_error(result.error.empty() ? directory.path().string() + ": was moved or removed as the run ended"
                                      : result.error);
     return result.code == ExitCode::done ? ExitCode::io : result.code;
+  }
+  if (result.code != ExitCode::done && written(directory.path() / kDone) > done_before) {
+    print_warning("the run had come to its end when this happened: " + result.error);
+    result.code = ExitCode::done;
   }
   const bool nothing_done = result.code == ExitCode::limit && result.started == 0;
   if (result.code == ExitCode::bad_input || nothing_done) directory.discard();

@@ -117,6 +117,7 @@ class RunLoop {
     own.state_hash = state_hash(*node_);
     fault_point("results");
     node_->finish(transport_, own, stopped);
+    fault_point("done");
     return stopped ? ExitCode::stopped : ExitCode::done;
   }
 

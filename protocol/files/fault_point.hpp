@@ -5,7 +5,7 @@
 namespace furrow {
 
 /// Names so far: "step", "frame", "checkpoint.write", "checkpoint.written", "checkpoint.manifest", "checkpoint.rename",
-/// "checkpoint.done", "results".
+/// "checkpoint.done", "results", "done".
 void fault_point(const char* name);
 
 }  // namespace furrow

@@ -200,9 +200,20 @@ def removed(case):
     """The folder is gone: that is told, nothing is continued, and the run starts anew."""
     started, alive = begin(case)
     had_begun = alive and case.out.exists()
+    before = os.open(case.out, os.O_DIRECTORY) if had_begun else None
     shutil.rmtree(case.out, ignore_errors=True)
     gone = time.monotonic()
     code = case.finish(started)
+    if before is not None:
+        # Where the removal met a file that was just written the folder stays: whoever removes it does so again.
+        stays = case.out.exists() and os.path.samestat(os.stat(case.out), os.fstat(before))
+        os.close(before)
+        if stays and code != 0:
+            case.notes["removal_met_writing"] = True
+            processes.wait_until_gone(str(case.work), 10)
+            shutil.rmtree(case.out)
+        elif code != 0 and case.out.exists():
+            raise Deviation("the folder was made anew after it was removed")
     if code == 0 and had_begun:
         if time.monotonic() - gone > 1.0:
             raise Deviation("ended with 0 though its folder was removed a while ago")

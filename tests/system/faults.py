@@ -46,6 +46,13 @@ class Killed(CheckpointTest):
         self.assertEqual(summary(self.run_folder)["segments"][1]["from_step"], step)
 
 
+    def test_a_rank_after_all_results(self):
+        done = self.run_with_fault("done", RANKS["rig"], 1, "kill", code=0)
+        self.assertIn("furrow: warning: the run had come to its end when this happened: rank 0 (rig) was lost", done.stderr)
+        self.assertFalse((self.run_folder / "summary_failed.json").exists())
+        self.same_as_whole()
+
+
 for row in KILLS:
     setattr(Killed, f"test_{row[0].replace('.', '_')}_{row[1]}", lambda self, row=row: self.check(*row))
 

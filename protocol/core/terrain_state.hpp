@@ -103,12 +103,12 @@ void visit_fields(Visit&& visit, FieldsOf<TerrainMomenta> auto& s) {
 
 /// What a terrain measures of itself; cumulative since the run began unless stated.
 struct TerrainState {
-  double kinetic_energy = 0.0;    // J, now
-  double potential_energy = 0.0;  // of gravity, J, now
-  double elastic_energy = 0.0;    // of normal springs, J, now
-  double dissipation = 0.0;       // −∫ contact forces · relative velocity dt − Δ elastic energy, J
-  double energy_removed = 0.0;    // by the activity switch, J
-  Vec3 momentum = Vec3::Zero();   // kg m/s, now
+  double kinetic_energy = 0.0;           // J, now
+  double potential_energy = 0.0;         // of gravity, J, now
+  double elastic_energy = 0.0;           // of normal springs, J, now
+  double dissipation = 0.0;              // energies.losses(), J
+  double energy_removed = 0.0;           // by the activity switch, J
+  Vec3 momentum = Vec3::Zero();          // kg m/s, now
   Vec3 momentum_removed = Vec3::Zero();  // by the activity switch, kg m/s
   Vec3 wall_impulse = Vec3::Zero();      // by walls and floor on the grains, N s
   Vec3 surface_impulse = Vec3::Zero();   // by tires on the grains, N s

@@ -146,7 +146,8 @@ TEST_F(DemTerrain, damaged_cache_is_made_anew) {
   {
     std::fstream file(cached(), std::ios::in | std::ios::out | std::ios::binary);
     file.seekp(static_cast<std::streamoff>(fs::file_size(cached()) / 2));
-    file.write("damage", 6);
+    const std::string damage(4096, 'd');  // longer than any gap between arrays
+    file.write(damage.data(), static_cast<std::streamsize>(damage.size()));
   }
   EXPECT_THROW(terrain::dem::read_bed(cached()), Error);
   bool settled_again = false;

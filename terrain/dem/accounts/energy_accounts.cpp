@@ -17,7 +17,9 @@ void EnergyAccounts::begin(std::vector<Stored> stored, double rotation) {
 
 void EnergyAccounts::take(const Losses& power) {
   if (state_.samples > 0) {
-    add(state_.lost, state_.power, state_.since);
+    const double between = 0.5 * (state_.since - state_.own);
+    add(state_.lost, state_.power, state_.own + between);
+    add(state_.lost, power, between);
     const double change = (total(power) - total(state_.power)) * state_.since;
     state_.error2 += 0.5 * change * change;
   }
@@ -28,6 +30,7 @@ void EnergyAccounts::take(const Losses& power) {
 
 void EnergyAccounts::advance(double dt, bool whole, double rotation) {
   FURROW_ASSERT(dt > 0.0, dt);
+  if (state_.since == 0.0) state_.own = dt;
   state_.since += dt;
   state_.time += dt;
   state_.rotation = rotation;

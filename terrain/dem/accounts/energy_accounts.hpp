@@ -1,8 +1,9 @@
 // Energy of the grains by mechanism. What springs, damping and sliding take is too dear to be summed in every step:
 // contact_losses.hpp costs as much as the law itself. So every kLossSampleSteps-th step is a *sample*: in it the power of
 // each mechanism is summed over all contacts that are evaluated, with the forces and velocities of that step, and it
-// stands for all steps until the next sample. Were every step a sample, the sums would be exact. Strips that sleep lose
-// nothing. kLossSampleSteps is a prime: samples do not fall into step with substeps or treads.
+// stands for its own step and for the nearer half of those on either side. Were every step a sample, the sums would be
+// exact. Strips that sleep lose nothing. kLossSampleSteps is a prime: samples do not fall into step with substeps or
+// treads.
 //
 // The error of that: were powers of successive samples independent, the variance of one were ½⟨(P_k − P_{k−1})²⟩, so
 //   error² = Σ ½ (P_k − P_{k−1})² Δt_k²,
@@ -31,6 +32,7 @@ class EnergyAccounts {
     Losses lost;            // until the last sample, J
     Losses power;           // at the last sample, W
     double since = 0.0;     // the last sample, s
+    double own = 0.0;       // of that: the step, or part of one, in which it was taken, s
     double time = 0.0;      // since the accounts began, s
     double error2 = 0.0;    // J²
     double rotation = 0.0;  // ½ Σ I ω² now, J
@@ -91,6 +93,7 @@ void visit_fields(Visit&& visit, FieldsOf<EnergyAccounts::State> auto& s) {
   visit(Field{"lost", "J"}, s.lost);
   visit(Field{"power", "W"}, s.power);
   visit(Field{"since", "s"}, s.since);
+  visit(Field{"own", "s"}, s.own);
   visit(Field{"time", "s"}, s.time);
   visit(Field{"error2", "J²"}, s.error2);
   visit(Field{"rotation", "J"}, s.rotation);

@@ -119,8 +119,8 @@ struct TerrainState {
   std::int64_t substeps_added = 0;  // beyond terrain.substeps, where contacts were too hard for them
   double refined_time = 0.0;        // in which substeps were taken in parts, s
   std::int32_t most_parts = 1;      // of one substep
-  TerrainEnergies energies;
-  TerrainMomenta momenta;
+  TerrainEnergies energies{};
+  TerrainMomenta momenta{};
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<TerrainState> auto& s) {

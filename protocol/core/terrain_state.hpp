@@ -33,24 +33,94 @@ void visit_fields(Visit&& visit, FieldsOf<ContactSums> auto& s) {
   visit(Field{"contacts"}, s.contacts);
 }
 
-/// What the terrain measures of itself; cumulative since the run began unless stated.
+/// Energy of a terrain by where it is and by which mechanism it left, each integrated on its own: none is the
+/// difference of others. In J, cumulative since the run began unless "now" is said. What they leave over,
+///   residual = Δ stored() + losses() − surface_work − wall_work,
+/// is the error of the step (terrain/README.md, Accounts).
+struct TerrainEnergies {
+  double kinetic = 0.0;             // ½ m v², now
+  double rotational = 0.0;          // ½ I ω², now
+  double potential = 0.0;           // of gravity, now
+  double elastic_normal = 0.0;      // normal springs, now
+  double elastic_tangential = 0.0;  // tangential and rolling springs, now
+  double cohesion = 0.0;  // stored in adhesive contacts, now; below 0, it must be paid back to part them
+  double sliding_loss = 0.0;
+  double normal_damping_loss = 0.0;
+  double tangential_damping_loss = 0.0;
+  double rolling_loss = 0.0;
+  double opening_loss = 0.0;  // spring energy given up as contacts are loaded, unloaded and ended
+  double sleep_loss = 0.0;    // by resting parts that are not stepped
+  double surface_work = 0.0;  // by tires on the terrain
+  double wall_work = 0.0;     // by walls and floor on the terrain
+  double sample_error = 0.0;  // estimated standard error of losses() by sampling; 0: nothing is sampled
+
+  double losses() const {
+    return sliding_loss + normal_damping_loss + tangential_damping_loss + rolling_loss + opening_loss +
+           sleep_loss;
+  }
+  /// What is stored now.
+  double stored() const {
+    return kinetic + rotational + potential + elastic_normal + elastic_tangential + cohesion;
+  }
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<TerrainEnergies> auto& s) {
+  visit(Field{"kinetic", "J"}, s.kinetic);
+  visit(Field{"rotational", "J"}, s.rotational);
+  visit(Field{"potential", "J"}, s.potential);
+  visit(Field{"elastic_normal", "J"}, s.elastic_normal);
+  visit(Field{"elastic_tangential", "J"}, s.elastic_tangential);
+  visit(Field{"cohesion", "J"}, s.cohesion);
+  visit(Field{"sliding_loss", "J"}, s.sliding_loss);
+  visit(Field{"normal_damping_loss", "J"}, s.normal_damping_loss);
+  visit(Field{"tangential_damping_loss", "J"}, s.tangential_damping_loss);
+  visit(Field{"rolling_loss", "J"}, s.rolling_loss);
+  visit(Field{"opening_loss", "J"}, s.opening_loss);
+  visit(Field{"sleep_loss", "J"}, s.sleep_loss);
+  visit(Field{"surface_work", "J"}, s.surface_work);
+  visit(Field{"wall_work", "J"}, s.wall_work);
+  visit(Field{"sample_error", "J"}, s.sample_error);
+}
+
+/// Momentum of a terrain and the impulses it was given since the run began, each from its own forces. What they leave
+/// over, Δ grains − gravity_impulse − wall_impulse − surface_impulse − sleep_impulse, is round-off while nothing
+/// sleeps.
+struct TerrainMomenta {
+  Vec3 grains = Vec3::Zero();           // kg m/s, now
+  Vec3 gravity_impulse = Vec3::Zero();  // N s
+  Vec3 wall_impulse = Vec3::Zero();     // by walls and floor on the terrain, N s
+  Vec3 surface_impulse = Vec3::Zero();  // by tires on the terrain, N s
+  Vec3 sleep_impulse = Vec3::Zero();    // by what holds resting parts that are not stepped, N s
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<TerrainMomenta> auto& s) {
+  visit(Field{"grains", "kg m/s"}, s.grains);
+  visit(Field{"gravity_impulse", "N s"}, s.gravity_impulse);
+  visit(Field{"wall_impulse", "N s"}, s.wall_impulse);
+  visit(Field{"surface_impulse", "N s"}, s.surface_impulse);
+  visit(Field{"sleep_impulse", "N s"}, s.sleep_impulse);
+}
+
+/// What a terrain measures of itself; cumulative since the run began unless stated.
 struct TerrainState {
-  double kinetic_energy = 0.0;       // J, now
-  double potential_energy = 0.0;     // of gravity, J, now
-  double elastic_energy = 0.0;       // of normal springs, J, now
-  double dissipation = 0.0;          // −∫ contact forces · relative velocity dt − Δ elastic energy, J
-  double energy_removed = 0.0;       // by the activity switch, J
-  Vec3 momentum = Vec3::Zero();      // kg m/s, now
+  double kinetic_energy = 0.0;           // J, now
+  double potential_energy = 0.0;         // of gravity, J, now
+  double elastic_energy = 0.0;           // of normal springs, J, now
+  double dissipation = 0.0;              // energies.losses(), J
+  double energy_removed = 0.0;           // by the activity switch, J
+  Vec3 momentum = Vec3::Zero();          // kg m/s, now
   Vec3 momentum_removed = Vec3::Zero();  // by the activity switch, kg m/s
-  Vec3 wall_impulse = Vec3::Zero();  // by walls and floor on the grains, N s
-  Vec3 surface_impulse = Vec3::Zero();  // by tires on the grains, N s
-  double floor_force = 0.0;             // vertical, N, last substep
-  std::int64_t contacts = 0;            // now
-  std::int64_t active = 0;              // grains awake
+  Vec3 wall_impulse = Vec3::Zero();      // by walls and floor on the grains, N s
+  Vec3 surface_impulse = Vec3::Zero();   // by tires on the grains, N s
+  double floor_force = 0.0;              // vertical, N, last substep
+  std::int64_t contacts = 0;             // now
+  std::int64_t active = 0;               // grains awake
   std::int64_t list_rebuilds = 0;
   std::int64_t substeps_added = 0;  // beyond terrain.substeps, where contacts were too hard for them
   double refined_time = 0.0;        // in which substeps were taken in parts, s
   std::int32_t most_parts = 1;      // of one substep
+  TerrainEnergies energies{};
+  TerrainMomenta momenta{};
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<TerrainState> auto& s) {
@@ -70,6 +140,8 @@ void visit_fields(Visit&& visit, FieldsOf<TerrainState> auto& s) {
   visit(Field{"substeps_added"}, s.substeps_added);
   visit(Field{"refined_time", "s"}, s.refined_time);
   visit(Field{"most_parts"}, s.most_parts);
+  visit(Field{"energies", ""}, s.energies);
+  visit(Field{"momenta", ""}, s.momenta);
 }
 
 /// Terrain surface on a regular grid: mean of the highest grain tops per cell; NaN where no grain is.

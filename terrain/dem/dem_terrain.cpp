@@ -85,6 +85,7 @@ class DemTerrain : public Terrain {
     solver_.set_threads(std::max(1, options_.threads));
     set_step(dt_);
     solver_.reset_accounts();
+    surface_work_ = 0.0;
     if (progress && !prepared.settled.settled) progress("bed not settled", 1.0);
     return wall_clock() - begin;
   }
@@ -132,6 +133,7 @@ class DemTerrain : public Terrain {
     }
     surfaces.move_to(1.0);
     surfaces.finish(duration, forces, contact);
+    for (const ContactSums& sums : contact) surface_work_ -= sums.work;
     if (const double met = solver_.accounts().max_overlap; met > dem::stated_overlap(options_))
       stable_overlap_ = std::max(stable_overlap_, met);
     return {};
@@ -144,7 +146,6 @@ class DemTerrain : public Terrain {
     s.kinetic_energy = a.kinetic;
     s.potential_energy = mass * solver_.params().gravity.norm() * a.height;
     s.elastic_energy = a.elastic;
-    s.dissipation = -a.contact_work - (a.elastic - a.elastic_start) + a.slept;
     s.energy_removed = a.slept;
     s.momentum = mass * a.velocity;
     s.momentum_removed = a.momentum_removed;
@@ -157,6 +158,11 @@ class DemTerrain : public Terrain {
     s.substeps_added = refinement_.state().added;
     s.refined_time = refinement_.state().time;
     s.most_parts = 1 << refinement_.state().finest;
+    s.energies = solver_.reported_energies();
+    s.energies.surface_work = surface_work_;  // walls stand still: they do none
+    s.dissipation = s.energies.losses();
+    s.momenta = {s.momentum, solver_.gravity_impulse(), s.wall_impulse, s.surface_impulse,
+                 -s.momentum_removed};
     return s;
   }
 
@@ -184,6 +190,7 @@ class DemTerrain : public Terrain {
     archive.put("time", time_);
     archive.put("step", dt_);
     archive.put("stable_overlap", stable_overlap_);
+    archive.put("surface_work", surface_work_);
     // Left out while there is nothing to say: a run that never needs it has the state that it always had.
     if (refinement_.used()) save_fields(archive, kRefinement, refinement_.state());
     solver_.save(archive);
@@ -195,6 +202,7 @@ class DemTerrain : public Terrain {
     solver_.restore(archive);
     set_step(archive.get_double("step"));
     stable_overlap_ = archive.get_double("stable_overlap");
+    surface_work_ = archive.has("surface_work") ? archive.get_double("surface_work") : 0.0;
     dem::StepRefinement::State refined;
     if (archive.has(std::string(kRefinement) + "/level")) restore_fields(archive, kRefinement, refined);
     refinement_.restore(refined);
@@ -277,6 +285,7 @@ class DemTerrain : public Terrain {
   double dt_, part_;             // the step, and the part of it that contacts are evaluated for, s
   double time_ = 0.0;            // advanced, s
   double stable_overlap_ = 0.0;  // largest overlap that the step was checked against, m
+  double surface_work_ = 0.0;    // by tires on the grains, J
 };
 
 }  // namespace

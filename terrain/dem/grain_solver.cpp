@@ -8,6 +8,7 @@
 
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
+#include "terrain/dem/accounts/stored_energy.hpp"
 
 namespace furrow::terrain::dem {
 namespace {
@@ -47,7 +48,8 @@ GrainSolver::GrainSolver(const SolverParams& params)
     : params_(params),
       up_(against(params.gravity)),
       strips_(strip_options(params)),
-      surfaces_(params.grain, params.largest_radius(), params.rolling) {
+      surfaces_(params.grain, params.largest_radius(), params.rolling),
+      energies_(params.sample_every) {
   FURROW_ASSERT(params.grain.radius > 0.0, params.grain.radius);
   FURROW_ASSERT(params.grain.mass > 0.0 && params.grain.inertia > 0.0, params.grain.mass,
                 params.grain.inertia);
@@ -116,12 +118,14 @@ void GrainSolver::reset_accounts() {
   accounts_.contacts = old.contacts;
   accounts_.contact_force = old.contact_force;
   accounts_.net_force = old.net_force;
+  double rotation = 0.0;
   for (int g = 0; g < grains_.count; ++g) {
     const Quad &v = grains_.velocity[g], &w = grains_.spin[g];
     const double size = grains_.position[g].w / params_.grain.radius, mass = cube(size);
     accounts_.kinetic +=
         mass * (0.5 * params_.grain.mass * (v.x * v.x + v.y * v.y + v.z * v.z) +
                 0.5 * params_.grain.inertia * size * size * (w.x * w.x + w.y * w.y + w.z * w.z));
+    rotation += mass * 0.5 * params_.grain.inertia * size * size * (w.x * w.x + w.y * w.y + w.z * w.z);
     const Quad& x = grains_.position[g];
     accounts_.height += mass * up_.dot(Vec3(x.x, x.y, x.z));
     accounts_.velocity += mass * Vec3(v.x, v.y, v.z);
@@ -129,6 +133,28 @@ void GrainSolver::reset_accounts() {
   for (int k = 0; k < strips_.count(); ++k)
     if (!strips_[k].asleep) accounts_.active += strips_[k].grains();
   strips_.set_resorted(0);
+  relative_mass_ = relative_mass();
+  energies_.begin(stored_energy(grains_, strips_, coefficients_, params_.grain.radius), rotation);
+}
+
+TerrainEnergies GrainSolver::reported_energies() const {
+  const Losses lost = energies_.lost();
+  const EnergyAccounts::State& sampled = energies_.state();
+  TerrainEnergies e;
+  e.kinetic = accounts_.kinetic - sampled.rotation;
+  e.rotational = sampled.rotation;
+  e.potential = params_.grain.mass * params_.gravity.norm() * accounts_.height;
+  e.elastic_normal = accounts_.elastic - sampled.stored.cohesion;
+  e.elastic_tangential = sampled.stored.tangential;
+  e.cohesion = sampled.stored.cohesion;
+  e.sliding_loss = lost.sliding;
+  e.normal_damping_loss = lost.normal_damping;
+  e.tangential_damping_loss = lost.tangential_damping;
+  e.rolling_loss = lost.rolling;
+  e.opening_loss = lost.opening;
+  e.sleep_loss = accounts_.slept;
+  e.sample_error = energies_.error();
+  return e;
 }
 
 void GrainSolver::LoadBuffer::assign(const Loads& from, int count) {
@@ -165,7 +191,7 @@ void GrainSolver::gather(Scratch<Real>& s, int strip, int offset) {
 }
 
 template <class Real, class Law, bool kRolling, bool kSizes>
-void GrainSolver::contacts_of_strip(Scratch<Real>& s, int k, int offset, double dt, bool measure) {
+void GrainSolver::contacts_of_strip(Scratch<Real>& s, int k, int offset, double dt, Wanted wanted) {
   FURROW_ASSERT(in_range(k, strips_.count()) && offset >= 0, k, strips_.count(), offset);
   Strip& strip = strips_[k];
   strip.contact = {};
@@ -182,25 +208,33 @@ void GrainSolver::contacts_of_strip(Scratch<Real>& s, int k, int offset, double 
     x = s.shifted.data();
   }
   const double diameter = 2.0 * params_.grain.radius;
-  find_touching<kSizes>(strip, x, diameter, params_.bin.periodic_y ? params_.bin.width : 0.0, s.touching);
+  const double reference = params_.grain.radius;
+  find_touching<kSizes>(
+      strip, x, diameter, params_.bin.periodic_y ? params_.bin.width : 0.0, s.touching, [&](int p) {
+        if (!wanted.losses) return;
+        const double r_i = kSizes ? x[strip.grain_i(p)].w : reference,
+                     r_j = kSizes ? x[strip.grain_j(p)].w : reference;
+        strip.contact.sample.power.opening +=
+            held_by_pair(pair_coefficients(coefficients_.pair, reference, r_i, r_j), strip, p) / dt;
+      });
   PairLaw<Real> law;
   law.coefficients = rounded<Real>(coefficients_.pair);
   law.diameter = static_cast<Real>(diameter);
   law.per_radius = static_cast<Real>(1.0 / params_.grain.radius);
   law.step = static_cast<Real>(dt);
-  law.measure = measure;
+  law.wanted = wanted;
   const Loads loads{s.loads.force.data() + offset, s.loads.torque.data() + offset};
   const Motion motion{flat(s.motion.v.data()) + kQuad * offset,
                       s.motion.w.empty() ? nullptr : flat(s.motion.w.data()) + kQuad * offset};
   PairForces<Law, kRolling, kSizes, Real>(law, s.touching, motion, strip.history<Real>(), loads)
       .run(strip.contact);
   wall_forces<Law, kRolling, kSizes>(grains_, strip, params_.bin, params_.grain.radius, coefficients_, dt,
-                                     measure, loads);
-  if (surfaces_.any()) surfaces_.evaluate<Law>(grains_, strip, k, dt, loads);
+                                     wanted, loads);
+  if (surfaces_.any()) surfaces_.evaluate<Law>(grains_, strip, k, dt, wanted.losses, loads);
 }
 
 template <class Real, class Law, bool kRolling, bool kSizes>
-void GrainSolver::run_chunk(Chunk& chunk, const StepPart& part, bool measure) {
+void GrainSolver::run_chunk(Chunk& chunk, const StepPart& part, Wanted wanted) {
   FURROW_ASSERT(chunk.from < chunk.to && chunk.to <= strips_.count(), chunk.from, chunk.to, strips_.count());
   Scratch<Real>& s = scratch<Real>();
   const int first = strips_[chunk.from].first, last = strips_[chunk.to - 1].last;
@@ -220,7 +254,7 @@ void GrainSolver::run_chunk(Chunk& chunk, const StepPart& part, bool measure) {
     if (evaluated) {
       if (const int next = strips_.next(k); next >= 0)
         gather<Real, kSizes>(s, next, strip.last - first), gathered = true;
-      contacts_of_strip<Real, Law, kRolling, kSizes>(s, k, offset, part.since, measure);
+      contacts_of_strip<Real, Law, kRolling, kSizes>(s, k, offset, part.since, wanted);
     } else {
       strip.contact.power = strip.motion.step_work = 0.0;
     }
@@ -228,34 +262,34 @@ void GrainSolver::run_chunk(Chunk& chunk, const StepPart& part, bool measure) {
     if (k == chunk.from) {
       chunk.own.assign(all.from(offset), strip.grains());
     } else {
-      finish_strip(k, all.from(offset), part, measure);
+      finish_strip(k, all.from(offset), part, wanted);
     }
   }
   if (gathered && activity_.complete(beyond)) chunk.ahead.assign(all.from(last - first), ahead);
 }
 
-void GrainSolver::finish_chunk(Chunk& chunk, const Chunk* before, const StepPart& part, bool measure) {
+void GrainSolver::finish_chunk(Chunk& chunk, const Chunk* before, const StepPart& part, Wanted wanted) {
   if (!activity_.complete(chunk.from)) return;
   if (before)
     for (std::size_t g = 0; g < chunk.own.force.size(); ++g) {
       add(chunk.own.force[g], load(before->ahead.force[g]));
       add(chunk.own.torque[g], load(before->ahead.torque[g]));
     }
-  finish_strip(chunk.from, {chunk.own.force.data(), chunk.own.torque.data()}, part, measure);
+  finish_strip(chunk.from, {chunk.own.force.data(), chunk.own.torque.data()}, part, wanted);
 }
 
-void GrainSolver::finish_strip(int k, const Loads& loads, const StepPart& part, bool measure) {
+void GrainSolver::finish_strip(int k, const Loads& loads, const StepPart& part, Wanted wanted) {
   FURROW_ASSERT(in_range(k, strips_.count()), k, strips_.count());
   FURROW_ASSERT(loads.force != nullptr || strips_[k].grains() == 0, k, strips_[k].grains());
   Strip& strip = strips_[k];
   if (strip.asleep) {
     load_sleeper(strip, loads);
   } else if (params_.sizes()) {
-    params_.activity ? integrate<true, true>(strip, loads, part, measure)
-                     : integrate<false, true>(strip, loads, part, measure);
+    params_.activity ? integrate<true, true>(strip, loads, part, wanted)
+                     : integrate<false, true>(strip, loads, part, wanted);
   } else {
-    params_.activity ? integrate<true, false>(strip, loads, part, measure)
-                     : integrate<false, false>(strip, loads, part, measure);
+    params_.activity ? integrate<true, false>(strip, loads, part, wanted)
+                     : integrate<false, false>(strip, loads, part, wanted);
   }
 }
 
@@ -275,7 +309,7 @@ void GrainSolver::load_sleeper(Strip& strip, const Loads& loads) const {
 }
 
 template <bool kMaySleep, bool kSizes>
-void GrainSolver::integrate(Strip& strip, const Loads& loads, const StepPart& part, bool measure) {
+void GrainSolver::integrate(Strip& strip, const Loads& loads, const StepPart& part, Wanted wanted) {
   const double dt = part.dt, kick = part.kick();
   const double mass = params_.grain.mass, inertia = params_.grain.inertia;
   const double radius = params_.grain.radius;
@@ -316,11 +350,12 @@ void GrainSolver::integrate(Strip& strip, const Loads& loads, const StepPart& pa
       pushed += weighed(a, m);
       most_pushed = larger(most_pushed, weighed(a * a, m * m));
     }
-    if (measure) net[0] += mass * m * std::sqrt(sum_of(a * a));
+    if (wanted.forces) net[0] += mass * m * std::sqrt(sum_of(a * a));
   }
   MotionTotals& sums = strip.motion;
   sums.speed2 = sum_of(moving);
   sums.kinetic = 0.5 * (mass * sums.speed2 + inertia * sum_of(spinning));
+  sums.spin2 = sum_of(spinning);
   sums.step_work = sum_of(work);
   store(sums.velocity, momentum);
   sums.height = up_.dot(Vec3(moment[0], moment[1], moment[2]));
@@ -388,9 +423,10 @@ double GrainSolver::top() const {
   return top + params_.largest_radius();
 }
 
-void GrainSolver::reduce(double dt, bool measure) {
+void GrainSolver::reduce(const StepPart& part, Wanted wanted) {
+  const double dt = part.kick();
   Accounts& a = accounts_;
-  double power = 0.0, work = 0.0, contact_force = 0.0, net_force = 0.0;
+  double power = 0.0, work = 0.0, contact_force = 0.0, net_force = 0.0, spin2 = 0.0;
   Quad wall, held;
   a.elastic = a.floor_force = a.kinetic = a.height = 0.0;
   a.velocity.setZero();
@@ -406,6 +442,7 @@ void GrainSolver::reduce(double dt, bool measure) {
     a.elastic += c.elastic;
     a.floor_force += c.floor_force;
     a.kinetic += m.kinetic;
+    spin2 += m.spin2;
     a.height += m.height;
     a.velocity += Vec3(m.velocity.x, m.velocity.y, m.velocity.z);
     a.contacts += c.contacts;
@@ -420,30 +457,34 @@ void GrainSolver::reduce(double dt, bool measure) {
   a.contact_work += dt * (power + 0.5 * dt * work);
   a.wall_impulse += dt * Vec3(wall.x, wall.y, wall.z);
   a.momentum_removed += dt * Vec3(held.x, held.y, held.z);
-  if (measure) {
+  if (wanted.losses)
+    energies_.sample(strips_.count(),
+                     [&](int k) { return activity_.evaluated(k) ? &strips_[k].contact.sample : nullptr; });
+  energies_.advance(dt, part.last, 0.5 * params_.grain.inertia * spin2);
+  if (wanted.forces) {
     a.contact_force = contact_force;
     a.net_force = net_force;
   }
 }
 
 template <class Real, class Law, bool kRolling, bool kSizes>
-void GrainSolver::evaluate(const StepPart& part, bool measure) {
+void GrainSolver::evaluate(const StepPart& part, Wanted wanted) {
   const int count = static_cast<int>(chunks_.size());
 #pragma omp parallel for num_threads(params_.threads) schedule(dynamic, 1)
-  for (int c = 0; c < count; ++c) run_chunk<Real, Law, kRolling, kSizes>(chunks_[c], part, measure);
+  for (int c = 0; c < count; ++c) run_chunk<Real, Law, kRolling, kSizes>(chunks_[c], part, wanted);
 }
 
 template <class Real>
-void GrainSolver::evaluate(const StepPart& part, bool measure) {
+void GrainSolver::evaluate(const StepPart& part, Wanted wanted) {
   if (params_.law == LawKind::hertz_tanh) {
-    params_.rolling ? evaluate<Real, HertzTanhLaw, true, false>(part, measure)
-                    : evaluate<Real, HertzTanhLaw, false, false>(part, measure);
+    params_.rolling ? evaluate<Real, HertzTanhLaw, true, false>(part, wanted)
+                    : evaluate<Real, HertzTanhLaw, false, false>(part, wanted);
   } else if (params_.sizes()) {
-    params_.rolling ? evaluate<Real, MindlinLaw, true, true>(part, measure)
-                    : evaluate<Real, MindlinLaw, false, true>(part, measure);
+    params_.rolling ? evaluate<Real, MindlinLaw, true, true>(part, wanted)
+                    : evaluate<Real, MindlinLaw, false, true>(part, wanted);
   } else {
-    params_.rolling ? evaluate<Real, MindlinLaw, true, false>(part, measure)
-                    : evaluate<Real, MindlinLaw, false, false>(part, measure);
+    params_.rolling ? evaluate<Real, MindlinLaw, true, false>(part, wanted)
+                    : evaluate<Real, MindlinLaw, false, false>(part, wanted);
   }
 }
 
@@ -454,14 +495,14 @@ int GrainSolver::step_part(const StepPart& part, bool measure) {
                 grains_.position.size());
   const auto threads = static_cast<std::size_t>(std::max(1, params_.threads));
   const bool sample = sample_now();
-  measure = measure || sample;
+  const Wanted wanted{.forces = measure || sample, .losses = energies_.due()};
   activity_.plan(strips_);
   if (params_.precision == Precision::mixed) {
     if (single_.size() < threads) single_.resize(threads);
-    evaluate<float>(part, measure);
+    evaluate<float>(part, wanted);
   } else {
     if (full_.size() < threads) full_.resize(threads);
-    evaluate<double>(part, measure);
+    evaluate<double>(part, wanted);
   }
   if (surfaces_.any()) accounts_.surface_impulse += surfaces_.add_substep_forces(part.kick(), part.dt);
 
@@ -471,9 +512,9 @@ int GrainSolver::step_part(const StepPart& part, bool measure) {
     const Chunk* const before = c > 0                    ? &chunks_[c - 1]
                                 : params_.bin.periodic_x ? &chunks_[count - 1]
                                                          : nullptr;
-    finish_chunk(chunks_[c], before, part, measure);
+    finish_chunk(chunks_[c], before, part, wanted);
   }
-  reduce(part.kick(), measure);
+  reduce(part, wanted);
   if (sample) take_samples();
   if (params_.activity && part.last) --until_sample_;
   bound_overlaps(part.dt);

@@ -20,6 +20,7 @@
 #include "protocol/core/fields.hpp"
 #include "protocol/core/surface.hpp"
 #include "protocol/core/terrain_state.hpp"
+#include "terrain/dem/accounts/energy_accounts.hpp"
 #include "terrain/dem/activity.hpp"
 #include "terrain/dem/contact_mixing.hpp"
 #include "terrain/dem/pair_forces.hpp"
@@ -43,7 +44,8 @@ struct SolverParams {
   double skin = 0.0;                  // neighbours are listed within the sum of their radii + skin, m
   int threads = 1;
   Precision precision = Precision::mixed;
-  bool activity = false;  // let resting grains sleep
+  bool activity = false;                // let resting grains sleep
+  int sample_every = kLossSampleSteps;  // steps from one sample of the losses to the next
 
   /// Grains of several sizes: law mindlin only.
   bool sizes() const { return largest > smallest; }
@@ -130,6 +132,14 @@ class GrainSolver {
   SurfaceContacts& surfaces() { return surfaces_; }
   const SurfaceContacts& surfaces() const { return surfaces_; }
   const Accounts& accounts() const { return accounts_; }
+  /// Begin with reset_accounts() too.
+  const EnergyAccounts& energies() const { return energies_; }
+  /// The accounts of the grains as a terrain reports them, but for the work of surfaces.
+  TerrainEnergies reported_energies() const;
+  /// Weight of all grains × the time since reset_accounts(), N s.
+  Vec3 gravity_impulse() const {
+    return params_.grain.mass * relative_mass_ * energies_.state().time * params_.gravity;
+  }
   /// Decides about sleep and waking; sampled every kSampleSteps steps while grains may sleep, N.
   double mean_contact_force() const { return mean_contact_force_; }
   void reset_accounts();
@@ -188,18 +198,18 @@ class GrainSolver {
   template <class Real, bool kSizes>
   void gather(Scratch<Real>& scratch, int strip, int offset);
   template <class Real, class Law, bool kRolling, bool kSizes>
-  void contacts_of_strip(Scratch<Real>& scratch, int strip, int offset, double dt, bool measure);
+  void contacts_of_strip(Scratch<Real>& scratch, int strip, int offset, double dt, Wanted wanted);
   template <class Real, class Law, bool kRolling, bool kSizes>
-  void run_chunk(Chunk& chunk, const StepPart& part, bool measure);
-  void finish_chunk(Chunk& chunk, const Chunk* before, const StepPart& part, bool measure);
+  void run_chunk(Chunk& chunk, const StepPart& part, Wanted wanted);
+  void finish_chunk(Chunk& chunk, const Chunk* before, const StepPart& part, Wanted wanted);
   template <class Real, class Law, bool kRolling, bool kSizes>
-  void evaluate(const StepPart& part, bool measure);
+  void evaluate(const StepPart& part, Wanted wanted);
   template <class Real>
-  void evaluate(const StepPart& part, bool measure);
+  void evaluate(const StepPart& part, Wanted wanted);
   /// Moves the grains of strip k, or sees whether they are pushed awake.
-  void finish_strip(int k, const Loads& loads, const StepPart& part, bool measure);
+  void finish_strip(int k, const Loads& loads, const StepPart& part, Wanted wanted);
   template <bool kMaySleep, bool kSizes>
-  void integrate(Strip& strip, const Loads& loads, const StepPart& part, bool measure);
+  void integrate(Strip& strip, const Loads& loads, const StepPart& part, Wanted wanted);
   void load_sleeper(Strip& strip, const Loads& loads) const;  // of a sleeping strip
   void change_activity(bool counts);
   void bound_overlaps(double dt);
@@ -209,7 +219,7 @@ class GrainSolver {
   /// Takes samples of the contact forces of the strips that this step evaluated. Those of sleeping strips stay: nothing
   /// moves there.
   void take_samples();
-  void reduce(double dt, bool measure);
+  void reduce(const StepPart& part, Wanted wanted);
 
   SolverParams params_;
   Vec3 up_;
@@ -228,6 +238,8 @@ class GrainSolver {
   std::int64_t until_sample_ = 0;     // steps
   double mean_contact_force_ = 0.0;   // of the bed, by the samples, N
   Accounts accounts_;
+  EnergyAccounts energies_;
+  double relative_mass_ = 0.0;
   std::vector<double> overlap_bound_;  // per strip, m; empty: not known
   std::vector<Chunk> chunks_;
   std::vector<Scratch<float>> single_;  // per thread

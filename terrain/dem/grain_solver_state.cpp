@@ -53,6 +53,7 @@ void GrainSolver::save(Archive& archive) const {
   put_quads(archive, "spin", grains_.spin.data(), n);
   archive.put("id", grains_.id);
   save_fields(archive, "accounts", accounts_);
+  energies_.save(archive);
   archive.put("mean_contact_force", mean_contact_force_);
   std::vector<double> samples;
   for (const ForceSample& s : samples_) samples.insert(samples.end(), {s.force, double(s.contacts)});
@@ -107,6 +108,8 @@ void GrainSolver::restore(const Archive& archive) {
   get_quads(archive, "spin", grains_.spin.data(), n);
   grains_.id = archive.get<std::int32_t>("id", n);
   restore_fields(archive, "accounts", accounts_);
+  energies_.restore(archive, strips_.count());
+  relative_mass_ = relative_mass();
   mean_contact_force_ = archive.get_double("mean_contact_force");
   overlap_bound_.clear();
   // Cached beds of older programs hold no samples: the first step takes them.

@@ -56,10 +56,10 @@ struct Motion {
 template <class Real>
 struct PairLaw {
   Coefficients<Real> coefficients;
-  Real diameter = 0;     // m; grains of several sizes have their own
-  Real per_radius = 0;   // 1 / radius that the coefficients are for, 1/m
-  Real step = 0;         // s
-  bool measure = false;  // sum |F| too
+  Real diameter = 0;    // m; grains of several sizes have their own
+  Real per_radius = 0;  // 1 / radius that the coefficients are for, 1/m
+  Real step = 0;        // s
+  Wanted wanted;
 };
 
 /// Relative motion of pairs: dv = v_i − v_j, turn = ω_i + ω_j and, where wanted, roll = ω_i − ω_j and delta = r_i −
@@ -234,9 +234,11 @@ class PairForces {
       const int count = std::min(Tile::kPairs, pairs_.count - first);
       geometry(first, count);
       motion(first, count);
+      if (law_.wanted.losses) sample(first, count);
       law(first, count);
       scatter(first, count);
     }
+    if (law_.wanted.losses) add(sums.sample, sampled_);
     sums.power += sum_of(power_);
     sums.elastic += sum_of(elastic_);
     sums.contact_force += sum_of(force_sum_);
@@ -301,26 +303,68 @@ class PairForces {
     }
   }
 
-  void law(int first, int count) {
-    const L zero{}, half = constant<L>(0.5);
+  static L lane_numbers() {
     L order{};
     for (int k = 0; k < kAtOnce; ++k) order[k] = static_cast<Real>(k);
+    return order;
+  }
+
+  /// Of the pairs that stand at `at` of the tile.
+  ContactMotion<L> contact_motion(int at) const {
+    ContactMotion<L> m;
+    m.normal = get(t_.nx, t_.ny, t_.nz, at);
+    m.overlap = get(t_.overlap, at);
+    m.root_overlap = get(t_.root_overlap, at);
+    m.velocity = get(t_.vx, t_.vy, t_.vz, at);
+    m.spin = get(t_.spin, at);
+    if constexpr (kCouple) m.roll = get(t_.rx, t_.ry, t_.rz, at);
+    return m;
+  }
+  ContactHistory<L> contact_history(const std::uint32_t* p) const {
+    ContactHistory<L> history{};
+    if constexpr (Law::kHistory) {
+      L unused;
+      detail::read_history(histories_.tangential.data(), p, history.tangential, history.root_overlap);
+      if constexpr (kRolling) detail::read_history(histories_.rolling.data(), p, history.rolling, unused);
+    }
+    return history;
+  }
+
+  /// Adds the losses of the tile, before the law renews its histories. Out of line, so that the code of the law, and
+  /// with it every bit of the motion, is the same whether samples are taken or not.
+  [[gnu::noinline]] void sample(int first, int count) {
+    const L zero{}, order = lane_numbers();
+    ContactSampleOf<L> sum;
+    for (int at = 0; at < count; at += kAtOnce) {
+      const ContactSampleOf<L> one =
+          contact_sample<Law, kRolling>(coefficients(first + at, at), law_.step, contact_motion(at),
+                                        contact_history(&pairs_.pair[first + at]));
+      const auto real = order < constant<L>(count - at);
+      const auto increase = [&](L& to, L by) { to += real ? by : zero; };
+      increase(sum.power.sliding, one.power.sliding);
+      increase(sum.power.normal_damping, one.power.normal_damping);
+      increase(sum.power.tangential_damping, one.power.tangential_damping);
+      increase(sum.power.rolling, one.power.rolling);
+      increase(sum.power.opening, one.power.opening);
+      increase(sum.stored.cohesion, one.stored.cohesion);
+      increase(sum.stored.tangential, one.stored.tangential);
+    }
+    sampled_.power.sliding += sum_of(folded(sum.power.sliding));
+    sampled_.power.normal_damping += sum_of(folded(sum.power.normal_damping));
+    sampled_.power.tangential_damping += sum_of(folded(sum.power.tangential_damping));
+    sampled_.power.rolling += sum_of(folded(sum.power.rolling));
+    sampled_.power.opening += sum_of(folded(sum.power.opening));
+    sampled_.stored.cohesion += sum_of(folded(sum.stored.cohesion));
+    sampled_.stored.tangential += sum_of(folded(sum.stored.tangential));
+  }
+
+  void law(int first, int count) {
+    const L zero{}, half = constant<L>(0.5), order = lane_numbers();
     L power{}, elastic{}, force_sum{}, largest{};
     for (int at = 0; at < count; at += kAtOnce) {
       const std::uint32_t* p = &pairs_.pair[first + at];
-      ContactMotion<L> m;
-      m.normal = get(t_.nx, t_.ny, t_.nz, at);
-      m.overlap = get(t_.overlap, at);
-      m.root_overlap = get(t_.root_overlap, at);
-      m.velocity = get(t_.vx, t_.vy, t_.vz, at);
-      m.spin = get(t_.spin, at);
-      if constexpr (kCouple) m.roll = get(t_.rx, t_.ry, t_.rz, at);
-      ContactHistory<L> history;
-      if constexpr (Law::kHistory) {
-        L unused;
-        detail::read_history(histories_.tangential.data(), p, history.tangential, history.root_overlap);
-        if constexpr (kRolling) detail::read_history(histories_.rolling.data(), p, history.rolling, unused);
-      }
+      const ContactMotion<L> m = contact_motion(at);
+      ContactHistory<L> history = contact_history(p);
       const ContactForce<L> f =
           Law::template force<kRolling>(coefficients(first + at, at), law_.step, m, history);
       if constexpr (Law::kHistory) {
@@ -343,7 +387,7 @@ class PairForces {
       power += real ? work : zero;
       elastic += real ? f.energy : zero;
       largest = larger(largest, m.overlap);
-      if (law_.measure) force_sum += real ? root(dot(force, force)) : zero;
+      if (law_.wanted.forces) force_sum += real ? root(dot(force, force)) : zero;
     }
     power_ += folded(power);
     elastic_ += folded(elastic);
@@ -369,6 +413,7 @@ class PairForces {
   Tile t_;
   Double4 power_{}, elastic_{}, force_sum_{};  // W, J, N
   L overlap_{};                                // largest, m
+  ContactSample sampled_;
 };
 
 }  // namespace furrow::terrain::dem

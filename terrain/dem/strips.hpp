@@ -17,6 +17,7 @@
 
 #include "protocol/core/assert.hpp"
 #include "protocol/core/fields.hpp"
+#include "terrain/dem/accounts/contact_losses.hpp"
 #include "terrain/dem/bin.hpp"
 #include "terrain/dem/grains.hpp"
 
@@ -59,12 +60,20 @@ struct ContactTotals {
   Quad wall_force;             // on the grains, N
   double floor_force = 0.0;    // N
   std::int64_t contacts = 0;
+  ContactSample sample;  // when losses are sampled
+};
+
+/// What a step sums besides what every step does.
+struct Wanted {
+  bool forces = false;  // Σ |F| and Σ |net force|
+  bool losses = false;  // by mechanism
 };
 
 /// Sums and extremes over a strip's grains after the last step; a speed or force is that of its largest components.
 struct MotionTotals {
   double net_force = 0.0;  // Σ |contact forces + weight| of grains, N, when measured
   double kinetic = 0.0;    // J
+  double spin2 = 0.0;      // Σ I ω² / I₀, rad²/s²
   double height = 0.0;     // Σ z, m
   Quad velocity;           // Σ v, m/s
   double step_work = 0.0;  // Σ F·a + T·α: half of it times dt² belongs to the power at mid-step, N²/kg

@@ -144,9 +144,25 @@ void SurfaceContacts::reorder(const Resorted& range, const Strips& strips) {
   }
 }
 
+ContactCoefficients SurfaceContacts::coefficients(const Surface& surface, double radius) const {
+  if (radius == grain_.radius) return surface.coefficients;
+  return scaled(surface.coefficients, surface_scale(radius / grain_.radius, surface.mass_share));
+}
+
+double SurfaceContacts::abandoned(const Grains& grains, const SurfaceStrip& mine) const {
+  double held = 0.0;
+  for (std::size_t k = 0; k < mine.history.size(); ++k) {
+    const SurfaceHistory& h = mine.history[k];
+    if (!mine.taken[k])
+      held += held_by_springs(coefficients(surfaces_[h.surface], grains.position[h.grain].w),
+                              triple(h.tangential), h.tangential.w, triple(h.rolling));
+  }
+  return held;
+}
+
 template <class Law>
 void SurfaceContacts::touch(const Grains& grains, Strip& strip, SurfaceStrip& mine, int k, int g, double dt,
-                            const Loads& load) {
+                            bool losses, const Loads& load) {
   FURROW_ASSERT(in_range(k, count()) && in_range(g, grains.count), k, count(), g, grains.count);
   FURROW_ASSERT(load.force != nullptr && load.torque != nullptr, g);
   const Surface& surface = surfaces_[k];
@@ -155,8 +171,7 @@ void SurfaceContacts::touch(const Grains& grains, Strip& strip, SurfaceStrip& mi
   const Vec3 centre(x.x, x.y, x.z);
   const int count = surface.collider->hits(centre, x.w, hits);
   if (count == 0) return;
-  ContactCoefficients c = surface.coefficients;
-  if (x.w != grain_.radius) c = scaled(c, surface_scale(x.w / grain_.radius, surface.mass_share));
+  const ContactCoefficients c = coefficients(surface, x.w);
   const auto before = [](const SurfaceHistory& h, const std::pair<int, int>& key) {
     return std::pair<int, int>(h.grain, h.surface) < key;
   };
@@ -176,8 +191,15 @@ void SurfaceContacts::touch(const Grains& grains, Strip& strip, SurfaceStrip& mi
     motion.spin = 0.5 * (dot(w, motion.normal) + spin_about(*surface.collider, hit.triangle, hit.normal));
     motion.roll = w;
     ContactHistory<double> history{{0, 0, 0}, 0.0, {0, 0, 0}};
-    if (const SurfaceHistory* past = nearest(old, from - old.begin(), to - old.begin(), hit.normal))
+    if (const SurfaceHistory* past = nearest(old, from - old.begin(), to - old.begin(), hit.normal)) {
       history = {triple(past->tangential), past->tangential.w, triple(past->rolling)};
+      if (losses) mine.taken[past - old.data()] = 1;
+    }
+    if (losses)
+      add(strip.contact.sample,
+          rolling_ ? sample_of<Law, true>(c, dt, motion, history)
+                   : sample_of<Law, false>(c, dt, motion, history),
+          hit.share);
     const ContactForce<double> f = rolling_ ? Law::template force<true>(c, dt, motion, history)
                                             : Law::template force<false>(c, dt, motion, history);
     const auto& t = history.tangential;
@@ -199,23 +221,26 @@ void SurfaceContacts::touch(const Grains& grains, Strip& strip, SurfaceStrip& mi
 }
 
 template <class Law>
-void SurfaceContacts::evaluate(const Grains& grains, Strip& strip, int s, double dt, const Loads& loads) {
+void SurfaceContacts::evaluate(const Grains& grains, Strip& strip, int s, double dt, bool losses,
+                               const Loads& loads) {
   FURROW_ASSERT(in_range(s, strips_.size()), s, strips_.size());
   SurfaceStrip& mine = strips_[s];
   mine.next.clear();
   mine.touches.clear();
+  if (losses) mine.taken.assign(mine.history.size(), 0);
   const bool any_near = std::any_of(surfaces_.begin(), surfaces_.end(),
                                     [&](const Surface& surface) { return near(surface, strip); });
   if (any_near)
     for (int g = strip.first; g < strip.last; ++g)
       for (int k = 0; k < count(); ++k)
         if (inside(surfaces_[k].near, grains.position[g]))
-          touch<Law>(grains, strip, mine, k, g, dt, loads.from(g - strip.first));
+          touch<Law>(grains, strip, mine, k, g, dt, losses, loads.from(g - strip.first));
+  if (losses) strip.contact.sample.power.opening += abandoned(grains, mine) / dt;
   mine.history.swap(mine.next);
 }
 
-template void SurfaceContacts::evaluate<MindlinLaw>(const Grains&, Strip&, int, double, const Loads&);
-template void SurfaceContacts::evaluate<HertzTanhLaw>(const Grains&, Strip&, int, double, const Loads&);
+template void SurfaceContacts::evaluate<MindlinLaw>(const Grains&, Strip&, int, double, bool, const Loads&);
+template void SurfaceContacts::evaluate<HertzTanhLaw>(const Grains&, Strip&, int, double, bool, const Loads&);
 
 Vec3 SurfaceContacts::add_substep_forces(double kick, double dt) {
   FURROW_ASSERT(kick > 0.0 && dt > 0.0, kick, dt);
@@ -284,8 +309,9 @@ void SurfaceContacts::restore(const Archive& archive, const Strips& strips) {
   for (const SurfaceHistory& one : history) {
     while (s < strips.count() && one.grain >= strips[s].last) ++s;
     if (s == strips.count() || one.grain < strips[s].first || one.surface < 0 || one.surface >= count)
-      throw Error(ExitCode::io, "saved state 'surfaces/history' names a grain or a surface that there is not, or not in "
-                                "their order: it is damaged");
+      throw Error(ExitCode::io,
+                  "saved state 'surfaces/history' names a grain or a surface that there is not, or not in "
+                  "their order: it is damaged");
     strips_[s].history.push_back(one);
   }
 }

@@ -44,6 +44,7 @@ struct SurfaceTouch {
 struct SurfaceStrip {
   std::vector<SurfaceHistory> history, next;
   std::vector<SurfaceTouch> touches;
+  std::vector<std::uint8_t> taken;  // where losses are wanted: histories that a point has taken over
 };
 
 class SurfaceContacts {
@@ -104,10 +105,10 @@ class SurfaceContacts {
   /// Renames grains after a range of strips was sorted.
   void reorder(const Resorted& range, const Strips& strips);
 
-  /// Evaluates the contacts of strip s and adds to the loads (of its grains, in order) and to its sums. Called by one
-  /// thread per strip.
+  /// Evaluates the contacts of strip s and adds to the loads (of its grains, in order) and to its sums, to those of its
+  /// losses if they are wanted. Called by one thread per strip.
   template <class Law>
-  void evaluate(const Grains& grains, Strip& strip, int s, double dt, const Loads& loads);
+  void evaluate(const Grains& grains, Strip& strip, int s, double dt, bool losses, const Loads& loads);
 
   /// Adds this substep's forces to the vertices, in the order of strips and grains. Returns the impulse that the
   /// grains received, N s. @param kick for which the forces act, s  @param dt by which the substep advances, s
@@ -151,8 +152,11 @@ class SurfaceContacts {
     return surface.near.lo.x() < strip.x_max + slack && surface.near.hi.x() > strip.x_min - slack;
   }
   template <class Law>
-  void touch(const Grains& grains, Strip& strip, SurfaceStrip& mine, int k, int g, double dt,
+  void touch(const Grains& grains, Strip& strip, SurfaceStrip& mine, int k, int g, double dt, bool losses,
              const Loads& load);
+  ContactCoefficients coefficients(const Surface& surface, double radius) const;
+  /// What is left in histories that nobody took over, J.
+  double abandoned(const Grains& grains, const SurfaceStrip& mine) const;
 
   GrainProperties grain_;
   double largest_;  // m

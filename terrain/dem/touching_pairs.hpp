@@ -78,14 +78,19 @@ inline void pack(Double4 low, Double4 high, unsigned mask, double* out) {
   for (int k = 0; k < 4; ++k) *out = high[k], out += mask >> (k + 4) & 1;
 }
 
+struct TellNobody {
+  void operator()(int) const {}
+};
+
 }  // namespace detail
 
 /// Fills `out` with the touching pairs of `strip` and notes which they are; what pairs that parted left in their
-/// history is cleared. `x` points to the position of the strip's first grain; those of the next strip follow.
+/// history is cleared, after `parts` was called with the number of each. `x` points to the position of the strip's first grain; those of the next strip follow.
 /// diameter: of all grains, m, unless kSizes; width: of a bin with periodic sides, else 0, m.
 /// @pre the strip's lists are as Strips::size_lists makes them
-template <bool kSizes, class Real>
-void find_touching(Strip& strip, const Quad* x, double diameter, double width, TouchingPairs<Real>& out) {
+template <bool kSizes, class Real, class Parts = detail::TellNobody>
+void find_touching(Strip& strip, const Quad* x, double diameter, double width, TouchingPairs<Real>& out,
+                   const Parts& parts = {}) {
   FURROW_ASSERT(x != nullptr || strip.pairs == 0, strip.pairs);
   FURROW_ASSERT(kSizes || diameter > 0.0, diameter);
   FURROW_ASSERT(width >= 0.0, width);
@@ -107,6 +112,7 @@ void find_touching(Strip& strip, const Quad* x, double diameter, double width, T
   const auto parted = [&](int p, unsigned ended) {
     for (int k = 0; k < kFloatLanes; ++k)
       if (ended >> k & 1) {
+        parts(p + k);
         if (!history.tangential.empty()) history.tangential[p + k] = {};
         if (!history.rolling.empty()) history.rolling[p + k] = {};
       }

@@ -18,9 +18,19 @@ struct SolverCoefficients {
 /// radius: that the coefficients are for; without kSizes that of all grains, m. @pre radius > 0, dt > 0
 template <class Law, bool kRolling, bool kSizes>
 void wall_forces(const Grains& grains, Strip& strip, const Bin& bin, double radius,
-                 const SolverCoefficients& all, double dt, bool measure, const Loads& loads) {
+                 const SolverCoefficients& all, double dt, Wanted wanted, const Loads& loads) {
   FURROW_ASSERT(radius > 0.0 && dt > 0.0, radius, dt);
   ContactTotals& sums = strip.contact;
+  const auto coefficients = [&](const WallContact& contact) {
+    ContactCoefficients c = contact.wall == kFloor ? all.floor : all.side;
+    if constexpr (kSizes)
+      c = scaled(c, surface_scale(grains.position[strip.first + contact.grain].w / radius, 0.0));
+    return c;
+  };
+  const auto held = [&](const WallContact& contact, const ContactCoefficients& c) {
+    const Quad &t = contact.tangential, &r = contact.rolling;
+    return held_by_springs(c, {t.x, t.y, t.z}, t.w, {r.x, r.y, r.z});
+  };
   for (WallContact& contact : strip.walls) {
     FURROW_ASSERT(in_range(contact.grain, strip.grains()), contact.grain, strip.grains());
     FURROW_ASSERT(in_range(contact.wall, kWalls), contact.wall);
@@ -29,6 +39,7 @@ void wall_forces(const Grains& grains, Strip& strip, const Bin& bin, double radi
     ContactMotion<double> motion;
     motion.overlap = (kSizes ? grains.position[g].w : radius) - distance;
     if (!(motion.overlap > 0.0)) {
+      if (wanted.losses) sums.sample.power.opening += held(contact, coefficients(contact)) / dt;
       contact.tangential = contact.rolling = {};
       continue;
     }
@@ -42,8 +53,8 @@ void wall_forces(const Grains& grains, Strip& strip, const Bin& bin, double radi
     motion.spin = 0.5 * dot(motion.roll, motion.normal);
     Quad &t = contact.tangential, &r = contact.rolling;
     ContactHistory<double> history{{t.x, t.y, t.z}, t.w, {r.x, r.y, r.z}};
-    ContactCoefficients c = contact.wall == kFloor ? all.floor : all.side;
-    if constexpr (kSizes) c = scaled(c, surface_scale(grains.position[g].w / radius, 0.0));
+    const ContactCoefficients c = coefficients(contact);
+    if (wanted.losses) add(sums.sample, sample_of<Law, kRolling>(c, dt, motion, history));
     const ContactForce<double> f = Law::template force<kRolling>(c, dt, motion, history);
     if constexpr (Law::kHistory) {
       t = {history.tangential.x, history.tangential.y, history.tangential.z, history.root_overlap};
@@ -60,7 +71,7 @@ void wall_forces(const Grains& grains, Strip& strip, const Bin& bin, double radi
     sums.max_overlap = std::max(sums.max_overlap, motion.overlap);
     add(sums.wall_force, push);
     if (contact.wall == kFloor) sums.floor_force += force.z;
-    if (measure) sums.contact_force += std::sqrt(dot(force, force));
+    if (wanted.forces) sums.contact_force += std::sqrt(dot(force, force));
     ++sums.contacts;
   }
 }

@@ -7,6 +7,7 @@
 
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
+#include "terrain/rigid/ground_accounts.hpp"
 #include "terrain/rigid/ground_friction.hpp"
 #include "terrain/rigid/ground_pressure.hpp"
 #include "terrain/surface/surface_check.hpp"
@@ -36,8 +37,8 @@ struct GroundSurface {
       corner;  // of each vertex: one of its triangles, and which corner it is there
   NodalForceSum sum;
   std::int64_t contact_count = 0;
-  double elastic_energy = 0.0;  // J
-  double floor_force = 0.0;     // N
+  double pressed = 0.0, sheared = 0.0;  // elastic energy of the layer, J
+  double floor_force = 0.0;             // N
 };
 
 Vec3 weighted(const std::array<double, 3>& weight, const std::vector<Vec3>& values,
@@ -80,16 +81,19 @@ class RigidGround final : public Terrain {
   friend void visit_fields(Visit&& visit, FieldsOf<RigidGround> auto& s) {
     visit(Field{"surface_impulse", "N s"}, s.surface_impulse_);
     visit(Field{"surface_work", "J"}, s.surface_work_);
+    visit(Field{"losses", "J"}, s.losses_);
   }
 
   void add_surface(const SurfaceMesh& mesh, const ContactMaterial& material, std::vector<Vec3> last);
-  void press(GroundSurface& surface, double dt) const;
+  void press(GroundSurface& surface, double dt);
+  void rub(GroundSurface& surface, const GroundLaw& law, double dt);
   void measure(GroundSurface& surface) const;
 
   GroundOptions options_;
   std::vector<GroundSurface> surfaces_;
   Vec3 surface_impulse_ = Vec3::Zero();  // by surfaces on the ground, N s
   double surface_work_ = 0.0;            // by the ground on surfaces, J
+  GroundLosses losses_;
 };
 
 HeightField RigidGround::height_field() const {
@@ -137,7 +141,7 @@ void RigidGround::attach(const SurfaceMesh& mesh, const ContactMaterial& materia
 }
 
 /// Contact forces with the surface at `position`, moving with `velocity` for dt.
-void RigidGround::press(GroundSurface& surface, double dt) const {
+void RigidGround::press(GroundSurface& surface, double dt) {
   const GroundLaw law{.stiffness = options_.ground_stiffness,
                       .damping = options_.ground_damping,
                       .shear_stiffness = options_.ground_shear_stiffness,
@@ -154,9 +158,10 @@ void RigidGround::press(GroundSurface& surface, double dt) const {
     if (x[v[0]].z() >= 0.0 && x[v[1]].z() >= 0.0 && x[v[2]].z() >= 0.0) continue;
     const int count = ground_points({x[v[0]], x[v[1]], x[v[2]]}, points);
     for (int i = 0; i < count; ++i) {
+      const Vec3 velocity = weighted(points[i].weight, surface.velocity, v);
       const double force =
-          add_ground_force(law, t, points[i], weighted(points[i].weight, x, v),
-                           weighted(points[i].weight, surface.velocity, v), surface.contacts);
+          add_ground_force(law, t, points[i], weighted(points[i].weight, x, v), velocity, surface.contacts);
+      add_normal_loss(law, points[i], force, velocity.z(), dt, losses_);
       for (int k = 0; k < 3 && force > 0.0; ++k) {
         surface.load[v[k]] += points[i].weight[k] * force;
         surface.area[v[k]] += points[i].weight[k] * points[i].area;
@@ -166,18 +171,28 @@ void RigidGround::press(GroundSurface& surface, double dt) const {
   surface.contact_count = static_cast<std::int64_t>(surface.contacts.size());
   surface.floor_force = 0.0;
   for (const auto& one : surface.contacts) surface.floor_force += one.normal.z();
+  rub(surface, law, dt);
+}
+
+/// Friction of the vertices that bear load, after press().
+void RigidGround::rub(GroundSurface& surface, const GroundLaw& law, double dt) {
   for (std::size_t vertex = 0; vertex < surface.shear.size(); ++vertex) {
     const double before = surface.area_before[vertex], now = surface.area[vertex];
+    const GroundShear left{surface.shear[vertex], before};
     if (now > before) surface.shear[vertex] *= before / now;  // what touches anew is not yet sheared
+    const GroundShear begin{surface.shear[vertex], now};
     double grip = 0.0;
     const Vec3 force = slide(law, surface.load[vertex], surface.area[vertex], surface.velocity[vertex], dt,
                              surface.shear[vertex], &grip);
+    if (before > 0.0 || now > 0.0)
+      add_shear_losses(law, left, begin, {surface.shear[vertex], now}, force, surface.velocity[vertex], dt,
+                       losses_);
     if (force.isZero(0.0) && !(options_.contact_tangents && grip > 0.0)) continue;
     SurfaceContactForce contact;
     const auto [triangle, corner] = surface.corner[vertex];
     contact.triangle = triangle;
     contact.weight[corner] = 1.0;
-    contact.point = x[vertex];
+    contact.point = surface.position[vertex];
     contact.tangential = force;
     const double held = grip * surface.area[vertex];
     contact.tangent = {Vec3::UnitZ(), 0.0, law.shear_stiffness * held, 0.0, law.damping * held};
@@ -188,17 +203,16 @@ void RigidGround::press(GroundSurface& surface, double dt) const {
 /// Elastic energy ½ κ ∫ g² dA with the surface where the interval ended, and ½ κ_t Σ A ξ² of its shear.
 void RigidGround::measure(GroundSurface& surface) const {
   std::array<GroundPoint, kMaxGroundPoints> points;
-  surface.elastic_energy = 0.0;
+  surface.pressed = surface.sheared = 0.0;
   for (std::size_t v = 0; v < surface.shear.size(); ++v)
-    surface.elastic_energy +=
+    surface.sheared +=
         0.5 * options_.ground_shear_stiffness * surface.area[v] * surface.shear[v].squaredNorm();
   const auto& x = surface.last;
   for (const auto& v : surface.mesh.triangles) {
     if (x[v[0]].z() >= 0.0 && x[v[1]].z() >= 0.0 && x[v[2]].z() >= 0.0) continue;
     const int count = ground_points({x[v[0]], x[v[1]], x[v[2]]}, points);
     for (int i = 0; i < count; ++i)
-      surface.elastic_energy +=
-          0.5 * options_.ground_stiffness * points[i].depth * points[i].depth * points[i].area;
+      surface.pressed += 0.5 * options_.ground_stiffness * points[i].depth * points[i].depth * points[i].area;
   }
 }
 
@@ -243,13 +257,23 @@ Outcome RigidGround::advance(std::span<const SurfaceState> targets, double durat
 TerrainState RigidGround::state() const {
   TerrainState state;
   for (const GroundSurface& surface : surfaces_) {
-    state.elastic_energy += surface.elastic_energy;
+    state.energies.elastic_normal += surface.pressed;
+    state.energies.elastic_tangential += surface.sheared;
     state.floor_force += surface.floor_force;
     state.contacts += surface.contact_count;
   }
-  state.dissipation = -surface_work_ - state.elastic_energy;
+  TerrainEnergies& e = state.energies;
+  state.elastic_energy = e.elastic_normal + e.elastic_tangential;
+  e.sliding_loss = losses_.sliding;
+  e.normal_damping_loss = losses_.normal_damping;
+  e.tangential_damping_loss = losses_.tangential_damping;
+  e.opening_loss = losses_.opening;
+  e.surface_work = -surface_work_;
+  state.dissipation = e.losses();
   state.surface_impulse = surface_impulse_;
   state.wall_impulse = -surface_impulse_;  // the world holds the ground
+  state.momenta.surface_impulse = state.surface_impulse;
+  state.momenta.wall_impulse = state.wall_impulse;
   return state;
 }
 

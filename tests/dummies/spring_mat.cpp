@@ -72,7 +72,12 @@ class SpringMat final : public Terrain {
       for (std::size_t v = 0; v < guest.area.size(); ++v)
         state.elastic_energy +=
             0.5 * options_.mat_stiffness * guest.area[v] * std::pow(std::min(guest.position[v].z(), 0.0), 2);
-    state.dissipation = -work_ - state.elastic_energy;
+    state.dissipation = damped_;
+    state.energies.elastic_normal = state.elastic_energy;
+    state.energies.normal_damping_loss = damped_;
+    state.energies.surface_work = -work_;
+    state.momenta.surface_impulse = impulse_;
+    state.momenta.wall_impulse = -impulse_;
     state.surface_impulse = impulse_;
     state.wall_impulse = -impulse_;  // the world holds the mat
     state.contacts = contacts_;
@@ -88,6 +93,7 @@ class SpringMat final : public Terrain {
     }
     save_value(archive, "spring_mat/guests", static_cast<std::int64_t>(guests_.size()));
     save_value(archive, "spring_mat/work", work_);
+    save_value(archive, "spring_mat/damped", damped_);
     save_value(archive, "spring_mat/impulse", impulse_);
   }
   void restore(const Archive& archive) override {
@@ -99,6 +105,7 @@ class SpringMat final : public Terrain {
       restore_value(archive, name(k) + "area", guests_[k].area);
     }
     restore_value(archive, "spring_mat/work", work_);
+    restore_value(archive, "spring_mat/damped", damped_);
     restore_value(archive, "spring_mat/impulse", impulse_);
   }
 
@@ -107,14 +114,17 @@ class SpringMat final : public Terrain {
 
   /// Moves vertex v to where its target will be, with (1) on the way.
   void press(Guest& guest, std::size_t v, const SurfaceState& target, double duration, int substeps,
-             NodalForces& forces, ContactSums& contact) const {
+             NodalForces& forces, ContactSums& contact) {
     const Vec3 start = guest.position[v], end = target.position[v] + duration * target.velocity[v];
     const Vec3 velocity = (end - start) / duration;
     double mean = 0.0;  // N
     for (int s = 0; s < substeps; ++s) {
       const double z = start.z() + (end.z() - start.z()) * (s + 0.5) / substeps;
-      const double pressure = -options_.mat_stiffness * z - options_.mat_damping * velocity.z();
-      if (z < 0.0 && pressure > 0.0) mean += guest.area[v] * pressure / substeps;
+      if (!(z < 0.0)) continue;
+      const double spring = -options_.mat_stiffness * z;
+      const double pressure = std::max(spring - options_.mat_damping * velocity.z(), 0.0);
+      damped_ -= guest.area[v] * (pressure - spring) * velocity.z() * duration / substeps;
+      if (pressure > 0.0) mean += guest.area[v] * pressure / substeps;
     }
     guest.position[v] = end;
     if (mean == 0.0) return;
@@ -132,6 +142,7 @@ class SpringMat final : public Terrain {
   std::vector<Guest> guests_;
   Vec3 impulse_ = Vec3::Zero();  // by tires on the mat, N s
   double work_ = 0.0;            // of the mat on tires, J
+  double damped_ = 0.0;          // J
   std::int64_t contacts_ = 0;
 };
 

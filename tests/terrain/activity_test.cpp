@@ -121,6 +121,9 @@ TEST(Activity, momentum_of_sliding_grains_is_booked_when_they_fall_asleep) {
   EXPECT_EQ(s.accounts().velocity.norm(), 0.0);
   EXPECT_NEAR(s.accounts().momentum_removed.x(), 3 * mass * speed, 1e-12 * mass * speed);
   EXPECT_EQ(s.accounts().momentum_removed.y(), 0.0);
+  const TerrainEnergies energies = s.reported_energies();
+  EXPECT_NEAR(energies.sleep_loss / (1.5 * mass * speed * speed), 1.0, 1e-6);
+  EXPECT_EQ(energies.kinetic + energies.rotational, 0.0);
 }
 
 /// Σ impulses on a bed less what its momentum gained and what sleep took, over the impulse of its weight.

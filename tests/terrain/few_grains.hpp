@@ -16,6 +16,7 @@ struct FewGrains {
   double slope = 0.0;    // rad, of a floor that falls along +x: gravity is turned from −z towards +x
   Precision precision = Precision::full;
   bool activity = false;
+  int sample_every = kLossSampleSteps;
   double smallest = 0.0, largest = 0.0;  // m; 0: all have options.radius
 
   FewGrains() {
@@ -36,6 +37,7 @@ struct FewGrains {
     params.gravity = gravity * Vec3(std::sin(slope), 0.0, -std::cos(slope));
     params.precision = precision;
     params.activity = activity;
+    params.sample_every = sample_every;
     params.smallest = smallest, params.largest = largest;
     params.skin = 0.3 * options.radius;
     GrainSolver solver(params);

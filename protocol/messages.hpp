@@ -21,7 +21,7 @@
 
 namespace furrow {
 
-inline constexpr std::int32_t kProtocolVersion = 6;
+inline constexpr std::int32_t kProtocolVersion = 7;
 
 enum class Role : std::int32_t { rig = 0, tire = 1, terrain = 2 };
 /// "rig", "tire", "terrain".
@@ -174,8 +174,10 @@ struct SpindleReport {
   TireDiagnostics diagnostics;           // of the model
   Vec3 impulse_received = Vec3::Zero();  // cumulative, N s
   double impulse_received_abs = 0.0;     // cumulative Σ|impulse per interval|, N s
+  Vec3 spindle_impulse = Vec3::Zero();   // by the tire on the rim, complete, cumulative, N s
+  Vec3 gravity_impulse = Vec3::Zero();   // cumulative, N s
   double terrain_work = 0.0;             // cumulative Σ f̄·Δx_tire at the vertices, J
-  double rim_work = 0.0;        // cumulative work done by the rim on the tire, ∫ −(F·v + M·ω), J
+  double rim_work = 0.0;  // cumulative work done by the rim on the tire, −(F·way + M·turn), J
   std::int64_t newton_iterations = 0;  // cumulative
   std::int64_t factorizations = 0;     // cumulative
   double residual = 0.0;               // last converged free residual / reference
@@ -194,6 +196,8 @@ void visit_fields(Visit&& visit, FieldsOf<SpindleReport> auto& s) {
   visit_fields(visit, s.diagnostics);  // under their own names
   visit(Field{"impulse_received", "N s"}, s.impulse_received);
   visit(Field{"impulse_received_abs", "N s"}, s.impulse_received_abs);
+  visit(Field{"spindle_impulse", "N s"}, s.spindle_impulse);
+  visit(Field{"gravity_impulse", "N s"}, s.gravity_impulse);
   visit(Field{"terrain_work", "J"}, s.terrain_work);
   visit(Field{"rim_work", "J"}, s.rim_work);
   visit(Field{"newton_iterations"}, s.newton_iterations);

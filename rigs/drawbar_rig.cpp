@@ -10,6 +10,7 @@
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
+#include "protocol/core/mean_turn.hpp"
 #include "vehicle/multibody/system.hpp"
 
 namespace furrow::rigs {
@@ -97,6 +98,7 @@ class DrawbarRig final : public Rig {
   RimState rim(int wheel) const override;
   Outcome advance(std::span<const Wrench> wrenches, double duration, int substeps) override;
   WheelReport report(int wheel) const override;
+  RigAccounts accounts() const override;
   std::vector<Subject> subjects() const override { return {{"wheel0", columns_of<DrawbarRow>()}}; }
   void measure(int /*subject*/, std::span<double> values) const override { get_values(row_, values); }
   void derive(int subject, const LineView& line, std::span<double> values) const override;
@@ -113,7 +115,11 @@ class DrawbarRig final : public Rig {
   vehicle::BodyState moving(double axle_height) const;
   double forward_momentum() const { return forward_.dot(system_->momentum()); }
   double spin_angle() const { return options_.travel_sign * system_->coordinate(spindle_).value; }
+  double toe_angle() const { return steered() ? system_->coordinate(toe_lock_).value : 0.0; }
   void measure_end();
+  struct Stand;
+  Stand stand() const;
+  void book(const Stand& before, double turned, const Wrench& wrench, double step);
 
   DrawbarRigOptions options_;
   Vec3 forward_, left_;
@@ -126,10 +132,18 @@ class DrawbarRig final : public Rig {
   double placed_height_ = 0.0;                              // axle height in which the joints were defined, m
   int chassis_ = 0, set_toe_ = 0, carrier_ = 0, rim_ = 0;   // bodies
   int rail_ = 0, toe_lock_ = 0, slider_ = 0, spindle_ = 0;  // joints
-  int drive_ = 0, spindle_motor_ = 0;                       // motors
+  int drive_ = 0, spindle_motor_ = 0, steering_ = 0;        // motors
   int damper_ = 0;                                          // force element
   WheelReport report_;
   DrawbarRow row_;
+  RigAccounts accounts_ = RigAccounts::none();
+};
+
+/// Where what forces act on stands at the beginning of a step.
+struct DrawbarRig::Stand {
+  Vec3 chassis = Vec3::Zero(), rim = Vec3::Zero();  // m
+  Quat chassis_turn = Quat::Identity(), rim_turn = Quat::Identity();
+  double toe = 0.0;  // rad
 };
 
 void DrawbarRig::check_wheel(int wheel) const {
@@ -217,14 +231,17 @@ void DrawbarRig::build(double axle_height) {
         system_->add_motor("spindle motor", spindle_, from_rest(options_.travel_sign * spin_speed_));
   }
   if (steered())
-    system_->add_motor("steering", toe_lock_,
-                       [angle = options_.toe_angle, from = options_.toe_time, duration = options_.toe_ramp](
-                           double t) { return vehicle::step_motion(t - from, angle, duration); });
+    steering_ = system_->add_motor(
+        "steering", toe_lock_,
+        [angle = options_.toe_angle, from = options_.toe_time, duration = options_.toe_ramp](double t) {
+          return vehicle::step_motion(t - from, angle, duration);
+        });
   const double c = options_.touchdown_damping, until = options_.touchdown_time;
   damper_ =
       system_->add_joint_element("touch-down damper", slider_, [c, until](double, double rate, double t) {
         return t < until ? vehicle::ElementForce{-c * rate, c} : vehicle::ElementForce{};
       });
+  system_->track_energy(damper_);
 }
 
 void DrawbarRig::place(std::span<const double> axle_height) {
@@ -236,6 +253,7 @@ void DrawbarRig::place(std::span<const double> axle_height) {
   system_->assemble(0.0);
   report_ = {};
   row_ = {};
+  accounts_ = RigAccounts::none();
   report_.speed = vehicle::ramped_motion(-options_.move_from, travel_speed_, options_.ramp).rate;
   report_.spin = vehicle::ramped_motion(-options_.move_from, spin_speed_, options_.ramp).rate;
   report_.slip = report_.spin == 0.0 ? 0.0 : 1.0 - report_.speed / (report_.spin * radius_);
@@ -264,6 +282,7 @@ Outcome DrawbarRig::advance(std::span<const Wrench> wrenches, double duration, i
   const double position = forward_.dot(system_->body(rim_).state.position);
   double drive = 0.0, torque = 0.0, damper = 0.0, turn = 0.0, angle = spin_angle();
   for (int i = 0; i < substeps; ++i) {
+    const Stand from = stand();
     Outcome outcome = system_->step(step);
     if (!outcome.ok) return outcome;
     drive += system_->motor_force(drive_);
@@ -271,7 +290,9 @@ Outcome DrawbarRig::advance(std::span<const Wrench> wrenches, double duration, i
     damper += system_->element_force(damper_);
     const double before = angle;
     angle = spin_angle();
-    turn += std::remainder(angle - before, 2.0 * std::numbers::pi);
+    const double turned = std::remainder(angle - before, 2.0 * std::numbers::pi);
+    turn += turned;
+    book(from, turned, wrench, step);
   }
   report_.speed = (forward_.dot(system_->body(rim_).state.position) - position) / duration;
   report_.spin = turn / duration;
@@ -296,6 +317,46 @@ Outcome DrawbarRig::advance(std::span<const Wrench> wrenches, double duration, i
   row_.damper_dissipation =
       std::fma(duration, std::abs(row_.damper_force * report_.vertical_speed), row_.damper_dissipation);
   return {};
+}
+
+DrawbarRig::Stand DrawbarRig::stand() const {
+  const vehicle::BodyState &chassis = system_->body(chassis_).state, &rim = system_->body(rim_).state;
+  return {chassis.position, rim.position, chassis.orientation, rim.orientation, toe_angle()};
+}
+
+/// Works and impulses of a step: mean force times way. A joint's reaction acts on body B in the axes of its frame on A,
+/// the rail's A being the ground; the damper's loss is the system's own account.
+void DrawbarRig::book(const Stand& from, double turned, const Wrench& wrench, double step) {
+  FURROW_ASSERT(step > 0.0 && std::isfinite(turned), step, turned);
+  const Stand to = stand();
+  const Mat3& axes = system_->joint(rail_).frame_a.axes;
+  const vehicle::Reaction& reaction = system_->reaction(rail_);
+  const Vec3 rail = axes * reaction.force, rail_moment = axes * reaction.moment,
+             drive = system_->motor_force(drive_) * forward_;
+  const double torque = free_rolling() ? 0.0 : options_.travel_sign * system_->motor_force(spindle_motor_);
+  RigAccounts& a = accounts_;
+  a.drive_work += torque * turned;
+  a.pull_work += drive.dot(to.chassis - from.chassis);
+  a.guide_work +=
+      rail.dot(to.chassis - from.chassis) + rail_moment.dot(mean_turn(from.chassis_turn, to.chassis_turn));
+  if (steered()) a.guide_work += system_->motor_force(steering_) * (to.toe - from.toe);
+  a.tire_work +=
+      wrench.force.dot(to.rim - from.rim) + wrench.moment.dot(mean_turn(from.rim_turn, to.rim_turn));
+  double mass = 0.0;
+  for (int i = 0; i < system_->body_count(); ++i) mass += system_->body(i).mass;
+  a.gravity_impulse += step * mass * options_.gravity;
+  a.guide_impulse += step * (rail + drive);
+  a.tire_impulse += step * wrench.force;
+}
+
+RigAccounts DrawbarRig::accounts() const {
+  check_built();
+  RigAccounts now = accounts_;
+  now.kinetic_energy = system_->kinetic_energy();
+  now.potential_energy = system_->gravity_energy();
+  now.damper_loss = system_->element_energy(damper_).dissipated;
+  now.momentum = system_->momentum();
+  return now;
 }
 
 void DrawbarRig::measure_end() {
@@ -332,6 +393,7 @@ void DrawbarRig::save(Archive& archive) const {
   system_->save(archive);
   save_fields(archive, "report", report_);
   save_fields(archive, "drawbar", row_);
+  save_fields(archive, "accounts", accounts_);
   archive.put("mass", system_->body(rim_).mass);
   archive.put("radius", radius_);
   archive.put("placed_height", placed_height_);
@@ -345,6 +407,7 @@ void DrawbarRig::restore(const Archive& archive) {
   system_->restore(archive);
   restore_fields(archive, "report", report_);
   restore_fields(archive, "drawbar", row_);
+  restore_fields(archive, "accounts", accounts_);
   measure_end();
 }
 

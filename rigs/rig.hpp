@@ -12,6 +12,7 @@
 #include "protocol/core/fields.hpp"
 #include "protocol/core/outcome.hpp"
 #include "protocol/core/surface.hpp"
+#include "rigs/rig_accounts.hpp"
 
 namespace furrow::rigs {
 
@@ -90,6 +91,9 @@ class Rig {
   virtual Outcome advance(std::span<const Wrench> wrenches, double duration, int substeps) = 0;
 
   virtual WheelReport report(int wheel) const = 0;
+
+  /// @post every member is set and finite
+  virtual RigAccounts accounts() const = 0;
 
   /// Where wheel k travels now: unit, W. It is the direction of its slip, pull and position.
   virtual Vec3 heading(int wheel) const = 0;

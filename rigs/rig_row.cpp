@@ -67,6 +67,11 @@ class RigRow final : public Rig {
     });
     return outcome;
   }
+  RigAccounts accounts() const override {
+    RigAccounts sum = RigAccounts::none();
+    for (const auto& rig : rigs_) sum = sum + rig->accounts();
+    return sum;
+  }
   WheelReport report(int wheel) const override { return rig_of(wheel).report(wheels_[wheel].second); }
 
   void save(Archive& archive) const override {

@@ -19,7 +19,7 @@ matplotlib.use("Agg")
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-from plot import charts, ground, press, scene, soil, sweep  # noqa: E402
+from plot import accounts, charts, ground, press, scene, soil, sweep  # noqa: E402
 from plot.digits import with_error  # noqa: E402
 from plot.run_data import Damaged, Missing, Run, printable  # noqa: E402
 
@@ -28,7 +28,8 @@ PLOTS = {
     "forces": charts.forces,
     "rut": ground.rut,
     "ranks": charts.ranks,
-    "energy": charts.energy,
+    "energy": accounts.energy,
+    "momentum": accounts.momentum,
     "scene": scene.scene,
 }
 SWEEP_PLOTS = {"curve": sweep.curve, "passes": sweep.passes, "rut_along": sweep.rut_along}
@@ -55,6 +56,9 @@ def may_write(folder, name):
 
 def words(run):
     """What a reader must know of the result besides the plots."""
+    for what, found in (run.summary.get("accounts") or {}).items():
+        if isinstance(found, dict) and found.get("closes") is False:
+            print(f"report: the account of {printable(what)} DOES NOT CLOSE: see accounts of summary.json", file=sys.stderr)
     pull = run.summary.get("drawbar_pull_N") or {}
     if pull.get("mean") is None:
         return

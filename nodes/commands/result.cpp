@@ -64,6 +64,35 @@ std::string ranks_line(const json& summary) {
   return parts.empty() ? "" : fmt::format(": {}", fmt::join(parts, ", "));
 }
 
+/// Whether the run's accounts close, and what fails if they do not.
+std::string accounts_line(const json& summary) {
+  const json accounts = summary.value("accounts", json::object());
+  const json energy = accounts.value("energy", json::object()),
+             momentum = accounts.value("momentum", json::object());
+  if (!std::isfinite(number(energy, "turnover"))) return "";
+  std::string text = fmt::format(
+      "furrow: accounts: energy residual {:.2g} % of {} J turned over, momentum residual {:.2g} of the "
+      "largest "
+      "impulse, {} N s\n",
+      100.0 * number(energy, "residual_share"), digits(number(energy, "turnover")),
+      number(momentum, "residual_share"), digits(number(momentum, "largest")));
+  if (!energy.value("closes", false)) {
+    const json parts = energy.value("residual_of", json::object());
+    text += fmt::format(
+        "furrow: WARNING: the account of energy does not close: {:.3g} J are left over, expected at most "
+        "{:.3g} J "
+        "(terrain {:.3g}, tires {:.3g}, rig {:.3g} J); halve run.step and compare, or report it "
+        "(nodes/output/README.md, \"Accounts\")\n",
+        number(energy, "residual"), number(energy, "bound"), number(parts, "terrain"), number(parts, "tires"),
+        number(parts, "rig"));
+  }
+  if (!momentum.value("closes", false))
+    text +=
+        "furrow: WARNING: the account of momentum does not close: see accounts.momentum of summary.json, and "
+        "report it (nodes/output/README.md, \"Accounts\")\n";
+  return text;
+}
+
 }  // namespace
 
 std::string result_text(const std::filesystem::path& run, const scenario::Scenario& scenario) {
@@ -89,6 +118,7 @@ std::string result_text(const std::filesystem::path& run, const scenario::Scenar
         "1/{:.0f} "
         "of the step\n",
         added, 100.0 * number(summary, "substeps_refined_share"), number(summary, "substeps_most_parts"));
+  text += accounts_line(summary);
   text += fmt::format("furrow: {:.1f} s for {:g} simulated s, {:.1f} s to prepare the bed{}\n",
                       number(summary, "wall_s"), number(summary, "simulated_s"),
                       number(summary, "settle_wall_s"), ranks_line(summary));

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "nodes/checkpoint/checkpoint.hpp"
+#include "nodes/output/accounts.hpp"
 #include "nodes/output/series_builder.hpp"
 #include "nodes/output/table.hpp"
 #include "nodes/scenario/scenario.hpp"
@@ -29,6 +30,7 @@ struct RunEnd {
   std::span<const FinalReport> reports;  // rig, tires, terrain; empty: the run has failed
   std::span<const WheelEnd> wheels;      // empty: it failed before its first step
   const TerrainState& terrain;           // the last one
+  const Accounts& accounts;
   double time = 0.0;                     // simulated, s
   double wall = 0.0;                     // of this segment, s
 };
@@ -44,7 +46,7 @@ struct SummaryInput {
   const scenario::Scenario& scenario;
   std::span<const NodeCard> cards;  // rig, tires, terrain
   const TerrainSetup& setup;
-  std::span<const Table> tables;  // those of the wheels come first
+  std::span<const Table> tables;  // those of the wheels come first, that of the accounts last
   const RunEnd& end;
   std::vector<checkpoint::Segment> segments;
   const Failure* failure = nullptr;
@@ -63,7 +65,7 @@ class Results {
   /// Adds all that the ranks write to the existing run directory's list; opens the files of all tables there; writes
   /// scenario.json. Where a run goes on, what was
   /// written after its checkpoint is removed, and the index made anew.
-  /// @param tables without lines; those of the wheels come first
+  /// @param tables without lines; those of the wheels come first, that of the accounts last
   /// @param resume null: the run begins
   /// @throws Error(io)
   Results(const scenario::Scenario& scenario, std::vector<NodeCard> cards, const TerrainSetup& setup,

@@ -128,7 +128,7 @@ void SeriesBuilder::measure_instants(const StepReports& r) {
   row.terrain_kinetic_energy = r.terrain.kinetic_energy;
   row.terrain_potential_energy = r.terrain.potential_energy;
   row.terrain_elastic_energy = r.terrain.elastic_energy;
-  row.tire_energy = r.tire.diagnostics.kinetic_energy + r.tire.diagnostics.strain_energy;
+  row.tire_energy = r.tire.diagnostics.kinetic_energy + r.tire.diagnostics.strain_energy();
   // Vertical motion and height of the carried mass; its imposed horizontal motion exchanges no net energy at
   // constant speed and is in the raw pull's work while it changes.
   const double mass = r.wheel.carried_mass, w = r.wheel.vertical_speed, u = r.wheel.speed;

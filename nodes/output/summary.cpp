@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "nodes/checkpoint/segment.hpp"
+#include "nodes/output/accounts_json.hpp"
+#include "nodes/output/json_number.hpp"
 #include "nodes/output/results.hpp"
 #include "nodes/output/statistics.hpp"
 #include "nodes/scenario/wheel_geometry.hpp"
@@ -27,7 +29,7 @@ constexpr char kPull[] = "drawbar_pull_N";  // the rig's, if it has one
 // many are always allowed, but this share of the window never lost.
 constexpr std::size_t kLinesLeftOut = 50, kPartLeftOut = 4;
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json number(double value) { return json_number(value); }
 
 /// What the summary of one wheel is computed from.
 struct WheelInput {
@@ -84,12 +86,6 @@ struct Window {
     double sum = 0.0;
     for (const double value : values) sum += value;
     return values.empty() ? NAN : sum / static_cast<double>(values.size());
-  }
-  /// 0 when the rig has no such column.
-  double rate_of(std::string_view column) const {
-    if (rows.empty()) return NAN;
-    const std::vector<double> all = table->column(column);
-    return all.empty() ? 0.0 : (all.back() - all[first - 1]) / duration();
   }
 };
 
@@ -164,30 +160,6 @@ Json pull_statistics(const WheelInput& in, const Window& w, double load) {
           {"bounce_period_s", number(bounce)},
           {"from_s", number(w.rows.empty() ? NAN : w.before.time)},
           {"to_s", number(w.rows.empty() ? NAN : w.rows.back().time)}};
-}
-
-/// T ω − P v = dissipation in soil and tire + rate of stored energy + what the lag of the interfaces loses.
-Json power_balance(const Window& w) {
-  const double spindle = w.rate([](const WheelRow& r) { return r.spindle_work; });
-  const double pull = w.rate_of("pull_work_J");
-  const double soil = w.rate([](const WheelRow& r) { return r.soil_dissipation; });
-  const double tire = w.rate([](const WheelRow& r) { return r.tire_dissipation; });
-  const double damper = w.rate_of("damper_dissipation_J");
-  const double stored = w.rate([](const WheelRow& r) {
-    return r.terrain_kinetic_energy + r.terrain_potential_energy + r.terrain_elastic_energy + r.tire_energy +
-           r.carried_energy;
-  });
-  const double interface = -w.rate([](const WheelRow& r) { return r.energy_error + r.rim_energy_error; });
-  const double residual = spindle - pull - soil - tire - damper - stored - interface;
-  return {{"spindle_power_W", number(spindle)},
-          {"pull_power_W", number(pull)},
-          {"soil_dissipation_W", number(soil)},
-          {"tire_dissipation_W", number(tire)},
-          {"damper_dissipation_W", number(damper)},
-          {"stored_rate_W", number(stored)},
-          {"interface_loss_W", number(interface)},
-          {"residual_W", number(residual)},
-          {"residual_share", number(residual / (spindle - pull))}};
 }
 
 /// Means in the tire's axes on the ground, with the standard errors of forces and moments.
@@ -282,13 +254,12 @@ Json rank_table(const SummaryInput& in) {
   return ranks;
 }
 
-void add_accounts(const WheelInput& in, const Window& w, Json& json) {
+/// What was sent against what arrived, of the same forces: checks of the transport, not of the physics.
+void add_plumbing(const WheelInput& in, Json& json) {
   const SeriesBuilder& series = in.end.series;
   const SpindleReport& tire = in.end.tire;
   const WheelRow end = series.now();
   const double sent = series.impulse_sent_abs();
-  if (in.run.end.wheels.size() == 1)
-    json["power_balance"] = power_balance(w);  // the soil's share is all wheels'
   json["interface_energy_error_J"] = number(end.energy_error);
   json["interface_energy_error_abs_J"] = number(end.energy_error_abs);
   json["rim_energy_error_J"] = number(end.rim_energy_error);
@@ -334,7 +305,7 @@ Json wheel_summary(const WheelInput& in) {
   json["surface_height_m"] = number(in.run.setup.mean_height.at(in.wheel));
   const Window window = averaging_window(in);
   add_mobility(in, window, json);
-  add_accounts(in, window, json);
+  add_plumbing(in, json);
   const WheelRow end = in.end.series.now();
   const double steps = std::max(1.0, std::round(end.time / in.run.scenario.run.step));
   json["tire_coordinates"] = in.card().size;
@@ -399,9 +370,12 @@ std::string summary_text(const SummaryInput& in) {
     wheels.push_back(
         wheel_summary({in, static_cast<int>(k), in.tables[k], wheel_rows(in.tables[k]), in.end.wheels[k]}));
   if (wheels.size() == 1) json.update(wheels.front());
+  if (!in.end.wheels.empty())
+    json["accounts"] = accounts_json(in.end.accounts, in.tables.back(), in.scenario.run.average_from);
   add_cost(in, wheel_rows(in.tables.front()), json);
   json["wheels"] = wheels;
   for (const Table& table : in.tables.subspan(std::min(in.scenario.tires.size(), in.tables.size()))) {
+    if (table.subject == kAccountsTable) continue;
     const std::vector<double> times = table.column("time_s");
     std::size_t first = 1;
     while (first < times.size() && times[first] < in.scenario.run.average_from) ++first;

@@ -3,8 +3,11 @@
 #include <cmath>
 #include <optional>
 
+#include <fmt/format.h>
+
 #include "nodes/checkpoint/wall_schedule.hpp"
 #include "nodes/launch/run_list.hpp"
+#include "nodes/output/accounts.hpp"
 #include "nodes/output/profile.hpp"
 #include "nodes/output/results.hpp"
 #include "nodes/output/subject_series.hpp"
@@ -55,6 +58,7 @@ class RigNode : public Node {
     if (!context.directory.empty()) {
       std::vector<output::Table> tables;
       for (const output::SubjectSeries& series : series_) tables.push_back(series.empty_table());
+      tables.push_back(output::Accounts::empty_table());
       results_ = std::make_unique<output::Results>(scenario_, cards_, setup_, context.directory,
                                                    std::move(tables), context.resume);
     }
@@ -83,6 +87,7 @@ class RigNode : public Node {
     const auto terrain = receive_step<TerrainReport>(transport, kTerrain, header.step);
     terrain_ = terrain.state;
     time_ = header.time;
+    keep_accounts(header, terrain);
     if (header.step > 0) measure(header, terrain);
     const bool line = header.step > 0 && series_steps_ > 0 && header.step % series_steps_ == 0;
     if (line) record();
@@ -111,7 +116,7 @@ class RigNode : public Node {
     if (context_.profile) launch::add_to_run_list(context_.directory, {"profile.json"});
     if (context_.profile) output::write_profile(context_.directory / "profile.json", reports);
     const std::vector<output::WheelEnd> wheels = wheel_ends();
-    results_->finish({reports, wheels, terrain_, time_, wall_clock() - wall_start_}, stopped);
+    results_->finish({reports, wheels, terrain_, *accounts_, time_, wall_clock() - wall_start_}, stopped);
   }
 
   void fail(ExitCode code, const std::string& text) noexcept override {
@@ -120,7 +125,7 @@ class RigNode : public Node {
       check_folder();  // by now it may be another run's
       std::vector<output::WheelEnd> wheels;
       if (time_ > time_start_) wheels = wheel_ends();
-      results_->fail({{}, wheels, terrain_, time_, wall_clock() - wall_start_}, {code, text});
+      results_->fail({{}, wheels, terrain_, *accounts_, time_, wall_clock() - wall_start_}, {code, text});
     } catch (...) {
       // The failure itself is told; what else went wrong with the disk is not worth hiding it.
     }
@@ -129,11 +134,13 @@ class RigNode : public Node {
   void save(Archive& archive) const override {
     rig_->save(archive);
     for (const output::SubjectSeries& series : series_) series.save(archive);
+    accounts_->save(archive);
   }
 
   void restore(const Archive& archive) override {
     rig_->restore(archive);
     for (output::SubjectSeries& series : series_) series.restore(archive);
+    accounts_->restore(archive);
   }
 
  private:
@@ -173,6 +180,20 @@ class RigNode : public Node {
         wheel.emplace(cards_[1 + k].tire_radius, setup_.mean_height[k], scenario_.run.step);
       series_.emplace_back(subjects[k], std::move(wheel));
     }
+    std::vector<MassProperties> added;
+    for (int k = 0; k < rig_->wheel_count(); ++k) added.push_back(cards_[1 + k].tire_mass);
+    accounts_.emplace(std::move(added), scenario_.run.step);
+  }
+
+  /// @throws Error(physics) naming what a rig does not say of itself
+  void keep_accounts(const StepHeader& header, const TerrainReport& terrain) {
+    const rigs::RigAccounts rig = rig_->accounts();
+    if (const char* missing = first_missing(rig))
+      throw physics_error(
+          fmt::format("rig: its {} is not finite, or the rig '{}' does not say it", missing, rig_->kind()));
+    std::vector<RimState> rims;
+    for (int k = 0; k < rig_->wheel_count(); ++k) rims.push_back(rig_->rim(k));
+    accounts_->add({header.time, tires_, rims, terrain, rig, rig_->report(0).gravity});
   }
 
   void measure(const StepHeader& header, const TerrainReport& terrain) {
@@ -191,6 +212,7 @@ class RigNode : public Node {
       if (k == 0) last_.assign(line.begin(), line.end());
       if (results_) results_->add(k, line);
     }
+    if (results_) results_->add(static_cast<int>(series_.size()), accounts_->line());
   }
 
   void show_progress(const StepHeader& header) {
@@ -218,6 +240,7 @@ class RigNode : public Node {
   std::vector<Wrench> wrenches_;
   std::vector<SpindleReport> tires_;           // the last ones
   std::vector<output::SubjectSeries> series_;  // as rig_->subjects()
+  std::optional<output::Accounts> accounts_;   // once the tables are made
   std::unique_ptr<output::Results> results_;
   std::vector<double> last_;  // line of wheel 0
   std::int64_t series_steps_ = 0;

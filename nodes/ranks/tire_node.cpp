@@ -17,6 +17,7 @@
 #include "nodes/scenario/wheel_geometry.hpp"
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
+#include "protocol/core/mean_turn.hpp"
 #include "tire/outward.hpp"
 #include "tire/reach.hpp"
 
@@ -146,9 +147,10 @@ class TireNode : public Node {
     report_.spindle = tire_->spindle_wrench();
     report_.wrench =
         carried_wrench(report_.spindle, tire_->mass_properties(), from, to, duration, tire_->gravity());
-    const Vec3 turned = 0.5 * duration * (from.angular_velocity + to.angular_velocity);
-    report_.rim_work -=
-        report_.spindle.force.dot(to.position - from.position) + report_.spindle.moment.dot(turned);
+    report_.rim_work -= report_.spindle.force.dot(to.position - from.position) +
+                        report_.spindle.moment.dot(mean_turn(from.orientation, to.orientation));
+    report_.spindle_impulse += duration * report_.spindle.force;
+    report_.gravity_impulse += duration * tire_->mass_properties().mass * tire_->gravity();
 
     before_.swap(motion_.surface.position);
     tire_->surface(motion_.surface);

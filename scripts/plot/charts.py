@@ -1,10 +1,10 @@
-"""Time series, rank shares and the power balance."""
+"""Time series and rank shares."""
 import matplotlib.pyplot as plt
 import numpy as np
 
 from .digits import digits, with_error
 from .run_data import Missing
-from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, mark_window, panels
+from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, mark_window, panels
 
 SMOOTHING = 0.05  # s, width of the running mean drawn over noisy forces
 
@@ -165,61 +165,4 @@ def ranks(run):
     axis.set_title(f"{run.title}\nWho computes and who waits"
                    + (f" · {per_second:.1f} s of wall time per simulated second" if per_second else ""))
     axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), ncol=2)
-    return figure
-
-
-def cumulative_work(run, axis):
-    """Stacked cumulative work: where the spindle's work went."""
-    time = run.column("time_s")
-    stored = ["terrain_kinetic_energy_J", "terrain_potential_energy_J", "terrain_elastic_energy_J", "tire_energy_J",
-              "carried_energy_J"]
-    axis.plot(time, run.column("spindle_work_J"), color="black", lw=2.0, label="put in by the spindle")
-    parts = [(run.series[name], colour, label) for name, colour, label in (
-        ("pull_work_J", BLUE, "work of the drawbar pull"), ("soil_dissipation_J", ORANGE, "dissipated in the soil"),
-        ("tire_dissipation_J", GREEN, "dissipated in the tire"),
-        ("damper_dissipation_J", SKY, "dissipated in the touch-down damper")) if name in run.series]
-    if all(name in run.series for name in stored):
-        total = sum(run.series[name] for name in stored)
-        parts.append((total - total[0], PURPLE, "stored since the first line"))
-    for values, colour, label in parts:
-        axis.plot(time, values, color=colour, label=label)
-    if parts:
-        axis.plot(time, sum(values for values, _, _ in parts), color=RED, ls="--", lw=1.3, label="sum of all but the first")
-    mark_window(axis, run)
-    axis.set_xlim(0.0, time[-1])
-    axis.set_xlabel("time, s")
-    axis.set_ylabel("work since the start, J")
-    axis.set_title("Where the spindle's work goes")
-    axis.legend(loc="upper left", fontsize=8)
-
-
-def energy(run):
-    figure, (left, right) = plt.subplots(1, 2, figsize=(13, 5.2))
-    figure.suptitle(run.title, fontsize=11.5, x=0.01, ha="left", fontweight="bold")
-    cumulative_work(run, left)
-    balance = run.summary.get("power_balance") or {}
-    entries = [("spindle_power_W", "spindle T·ω", "black"), ("pull_power_W", "pull × speed", BLUE),
-               ("soil_dissipation_W", "soil dissipation", ORANGE), ("tire_dissipation_W", "tire dissipation", GREEN),
-               ("damper_dissipation_W", "damper", SKY), ("stored_rate_W", "stored", PURPLE),
-               ("interface_loss_W", "lag of the interfaces", GREY), ("residual_W", "residual", RED)]
-    entries = [(balance[key], label, colour) for key, label, colour in entries if balance.get(key) is not None]
-    if not entries:
-        right.axis("off")
-        right.text(0.5, 0.5, "no power balance in summary.json", ha="center", va="center", color=GREY)
-        return figure
-    values, labels, colours = zip(*entries)
-    position = np.arange(len(values))
-    right.barh(position, values, color=colours)
-    span = max(max(values), 0.0) - min(min(values), 0.0) or 1.0
-    for i, value in enumerate(values):
-        right.text(max(value, 0.0) + 0.01 * span, i, f"{value:.1f} W", va="center", fontsize=9)
-    right.set_yticks(position, labels)
-    right.invert_yaxis()
-    right.grid(axis="y", visible=False)
-    right.set_xlim(min(min(values), 0.0) - 0.02 * span, max(max(values), 0.0) + 0.18 * span)
-    right.axvline(0.0, color="black", lw=0.8)
-    right.set_xlabel("mean power in the averaging window, W")
-    share = balance.get("residual_share")
-    right.set_title("Power: spindle = all others"
-                    + (f"; residual {100 * share:.2f} % of what is lost" if share is not None else ""))
     return figure

@@ -92,7 +92,7 @@ def table(file, name, columns):
 # Keys of summary.json that plots read.
 NUMBERS = ("slip", "vertical_load_N", "travel_sign", "drawbar_coefficient", "tread_width_m", "rut_depth_m", "rut_width_m",
            "surface_height_m", "sinkage_m", "grains", "bed_clearance_m")
-OBJECTS = ("drawbar_pull_N", "power_balance")
+OBJECTS = ("drawbar_pull_N", "accounts")
 
 
 class HeightField:
@@ -135,15 +135,17 @@ class Run:
         pull = summary.get("drawbar_pull_N") or {}
         check_types(pull, name + ": key 'drawbar_pull_N'", numbers=("mean", "sem", "from_s", "to_s"), flags=("steady",),
                     lists=("unsteady_because",))
-        check_types(summary.get("power_balance") or {}, name + ": key 'power_balance'",
-                    numbers=[key for key in summary.get("power_balance") or {}])
+        check_types(summary.get("accounts") or {}, name + ": key 'accounts'", objects=("energy", "momentum"))
         return summary
 
     def _read_series(self):
         """Columns of the table of wheel 0."""
-        path = next((self.directory / name for name in ("timeseries.csv", "timeseries_wheel0.csv")
-                     if (self.directory / name).exists()), None)
-        if path is None:
+        return self.table("timeseries.csv") or self.table("timeseries_wheel0.csv")
+
+    def table(self, name):
+        """Columns of a table by their names; none when there is no such file."""
+        path = self.directory / name
+        if not path.exists():
             return {}
         lines = path.read_text(encoding="utf-8").splitlines()
         names = lines[0].split(",") if lines else []

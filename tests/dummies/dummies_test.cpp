@@ -145,7 +145,7 @@ TEST(Dummies, work_of_the_hub_is_stored_or_dissipated) {
   }
   const tire::TireDiagnostics tire = bench.tire->diagnostics();
   const TerrainState mat = bench.terrain->state();
-  const double gravity = 30.0 * 9.81 * 4e-3, stored = tire.strain_energy + mat.elastic_energy;
+  const double gravity = 30.0 * 9.81 * 4e-3, stored = tire.strain_energy() + mat.elastic_energy;
   EXPECT_GT(stored, 0.1);
   EXPECT_NEAR(hub + gravity, stored + tire.dissipation, 0.05 * stored);  // forces come a step late
 }

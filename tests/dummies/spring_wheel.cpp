@@ -11,6 +11,7 @@
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/constants.hpp"
+#include "protocol/core/mean_turn.hpp"
 #include "protocol/core/outcome.hpp"
 #include "protocol/files/json_reader.hpp"
 #include "protocol/files/reader_fields.hpp"
@@ -81,7 +82,7 @@ class SpringWheel final : public Tire {
   void place(const RimState& rim) override {
     rim_ = rim;
     spindle_ = {};
-    dissipation_ = 0.0;
+    dissipation_ = numerical_loss_ = 0.0;
     deflection_.assign(shape_.vertex.size(), 0.0);
     rate_.assign(shape_.vertex.size(), 0.0);
   }
@@ -111,6 +112,7 @@ class SpringWheel final : public Tire {
       spindle_.force += forces.force[i];
       spindle_.moment += (turn * shape_.vertex[v] - deflection_[v] * outwards).cross(forces.force[i]);
     }
+    book_rim_loss(start, end, rim.duration());
     const double step = rim.duration() / substeps;
     for (int s = 0; s < substeps; ++s)
       for (std::size_t v = 0; v < deflection_.size(); ++v) spring(v, inwards[v], step);
@@ -129,9 +131,12 @@ class SpringWheel final : public Tire {
     d.momentum = shape_.mass.mass * rim_.velocity;
     d.kinetic_energy =
         0.5 * (d.momentum.dot(rim_.velocity) + rim_.angular_velocity.dot(angular_momentum(rim_)));
-    d.strain_energy = 0.0;
-    for (const double u : deflection_) d.strain_energy += 0.5 * options_.stiffness * u * u;
+    d.elastic_energy = d.pressure_energy = d.solver_loss = 0.0;
+    for (const double u : deflection_) d.elastic_energy += 0.5 * options_.stiffness * u * u;
+    d.potential_energy = -shape_.mass.mass * kGravity.dot(rim_.position);
     d.dissipation = dissipation_;
+    d.numerical_loss = numerical_loss_;
+    d.solver_impulse = Vec3::Zero();
     return d;
   }
 
@@ -143,6 +148,7 @@ class SpringWheel final : public Tire {
     save_value(archive, "spring_wheel/deflection", deflection_);
     save_value(archive, "spring_wheel/rate", rate_);
     save_value(archive, "spring_wheel/dissipation", dissipation_);
+    save_value(archive, "spring_wheel/numerical_loss", numerical_loss_);
   }
   void restore(const Archive& archive) override {
     restore_fields(archive, "spring_wheel/rim", rim_);
@@ -150,6 +156,7 @@ class SpringWheel final : public Tire {
     restore_value(archive, "spring_wheel/deflection", deflection_, shape_.vertex.size());
     restore_value(archive, "spring_wheel/rate", rate_, shape_.vertex.size());
     restore_value(archive, "spring_wheel/dissipation", dissipation_);
+    restore_value(archive, "spring_wheel/numerical_loss", numerical_loss_);
   }
 
  private:
@@ -167,15 +174,28 @@ class SpringWheel final : public Tire {
     const double c = options_.damping, before = deflection_[v];
     deflection_[v] = (c * before + step * inwards) / (c + step * options_.stiffness);
     rate_[v] = (deflection_[v] - before) / step;
-    dissipation_ += step * c * rate_[v] * rate_[v];
+    const double change = deflection_[v] - before;
+    dissipation_ += c * rate_[v] * change;
+    numerical_loss_ += 0.5 * options_.stiffness * change * change;
+  }
+
+  /// What backward differences of the rim's motion lose.
+  void book_rim_loss(const RimState& from, const RimState& to, double duration) {
+    const Vec3 before = angular_momentum(from), after = angular_momentum(to);
+    const Vec3 way = (to.position - from.position) / duration - 0.5 * (from.velocity + to.velocity),
+               turn = mean_turn(from.orientation, to.orientation) / duration -
+                      0.5 * (from.angular_velocity + to.angular_velocity);
+    numerical_loss_ += shape_.mass.mass * (to.velocity - from.velocity).dot(way) +
+                       (after - before).dot(turn) +
+                       0.5 * (from.angular_velocity.dot(after) - to.angular_velocity.dot(before));
   }
 
   SpringWheelOptions options_;
   TireShape shape_;
-  RimState rim_;                           // now
-  Wrench spindle_;                         // of the last advance
-  std::vector<double> deflection_, rate_;  // u, m; u̇, m/s
-  double dissipation_ = 0.0;               // J
+  RimState rim_;                                     // now
+  Wrench spindle_;                                   // of the last advance
+  std::vector<double> deflection_, rate_;            // u, m; u̇, m/s
+  double dissipation_ = 0.0, numerical_loss_ = 0.0;  // J
 };
 
 class SpringWheelSpec final : public TireSpec {

@@ -34,7 +34,10 @@ SUMMARY = {
     "drawbar_pull_N": {"mean": 100.0, "sem": 5.0, "from_s": 0.02, "to_s": 0.05, "steady": False, "unsteady_because": ["short"]},
     "net_terrain_force_N": [100.0, 0.0, 4600.0], "surface_height_m": 0.1, "rut_depth_m": 0.01, "rut_width_m": 0.2, "tread_width_m": 0.2,
     "sinkage_m": 0.01, "grains": 100, "drawbar_coefficient": 0.02,
-    "power_balance": {"spindle_power_W": 100.0, "pull_power_W": 50.0, "residual_W": 1.0, "residual_share": 0.01},
+    "accounts": {"energy": {"work": {"drive_work": 100.0, "pull_work": -50.0}, "stored": {"tire_elastic": 5.0},
+                            "lost": {"sliding_loss": 44.0}, "residual": 1.0, "residual_share": 0.01, "turnover": 99.0, "closes": True},
+                 "momentum": {"grains": [0.0, 0.0, 1.0], "gravity": [0.0, 0.0, -5.0], "walls": [0.0, 0.0, 6.0],
+                              "residual": [0.0, 0.0, 0.0], "residual_share": 0.0, "largest": 6.0, "closes": True}},
     "ranks": [{"node": "rig", "busy_share": 0.1, "busy_s": 1.0, "wait_s": 2.0, "wall_s": 3.0}], "wheels": [{"slip": 0.3}],
 }
 SCENARIO = {"rig": {"travel_sign": 1, "wheels": [{"lateral": 0.0}]}, "tire": {"file": "x.json"}, "terrain": {}, "run": {}}

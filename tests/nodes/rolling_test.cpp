@@ -117,7 +117,7 @@ TEST(Rolling, ten_revolutions_gain_no_energy) {
       rolling.step();
       angle += kStep * rolling.rig->report(0).spin;
       const tire::TireDiagnostics d = rolling.tire.diagnostics();
-      const double energy = d.kinetic_energy + d.strain_energy;
+      const double energy = d.kinetic_energy + d.strain_energy();
       sum += energy, most = std::max(most, energy), ++count;
       if (angle < 2.0 * std::numbers::pi) continue;
       mean.push_back(sum / count), highest.push_back(most);

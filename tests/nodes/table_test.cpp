@@ -56,6 +56,7 @@ class SpringRig final : public rigs::Rig {
   RimState rim(int) const override { return {}; }
   Outcome advance(std::span<const Wrench>, double, int) override { return {}; }
   rigs::WheelReport report(int) const override { return {}; }
+  rigs::RigAccounts accounts() const override { return rigs::RigAccounts::none(); }
   Vec3 heading(int) const override { return sign * Vec3::UnitX(); }
   std::vector<rigs::Subject> subjects() const override {
     return {{"wheel0", columns_of<SpringRow>()}, {"vehicle", columns_of<SpringRow>()}};
@@ -337,7 +338,7 @@ TEST(Subjects, columns_and_tables_of_the_rig_are_written_resumed_and_cut) {
       if (n == 2) resume.manifest.series = results.mark_series();
       if (n == 3) series.save(saved);  // in the middle of a line
     }
-    results.finish({reports, {}, TerrainState(), 0.0, 0.0}, true);
+    results.finish({reports, {}, TerrainState(), output::Accounts({}, 1.0), 0.0, 0.0}, true);
   }
   EXPECT_TRUE(text_of(wheel_file).starts_with("time_s,slip,spring_force_N,spring_work_J,sinkage_m,"));
   EXPECT_TRUE(
@@ -366,7 +367,7 @@ TEST(Subjects, columns_and_tables_of_the_rig_are_written_resumed_and_cut) {
   EXPECT_EQ(std::ranges::count(text_of(vehicle_file), '\n'), 2) << "header and one line are left";
   series.add(rig, 4);
   series.take(rig, results);
-  results.finish({reports, {}, TerrainState(), 0.0, 0.0}, true);
+  results.finish({reports, {}, TerrainState(), output::Accounts({}, 1.0), 0.0, 0.0}, true);
   EXPECT_EQ(text_of(wheel_file), wheel_whole);
   EXPECT_EQ(text_of(vehicle_file), vehicle_whole);
   EXPECT_EQ(Hdf5Reader(folder.path() / "results.h5").get<double>("series/vehicle/heave_m").size(), 2U);

@@ -144,7 +144,7 @@ class Reports(SystemTest):
                                  ({"slip": [1]}, "key 'slip': is [1], expected a number"),
                                  ({"scenario": {}}, "key 'scenario': is {}, expected a text"),
                                  ({"net_terrain_force_N": 3}, "key 'net_terrain_force_N': is 3, expected a list"),
-                                 ({"power_balance": {"residual_W": "x"}}, "key 'residual_W': is \"x\", expected a number")):
+                                 ({"accounts": {"energy": 3}}, "key 'energy': is 3, expected an object")):
             with self.subTest(values):
                 self.summary(values)
                 lines = [line for line in self.told(expected).splitlines() if line.startswith("furrow: error: ")]

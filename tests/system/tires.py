@@ -118,7 +118,7 @@ class Pressure(TireTest):
         settings["tire.pressure"] = 8e4
         constant, _ = self.ends_well(settings)
         self.assertAlmostEqual(low["tire_deflection_m"] / constant["tire_deflection_m"], 1, delta=0.1)
-        self.assertLess(abs(low["power_balance"]["residual_share"]), 0.05)
+        self.assertLess(abs(low["accounts"]["energy"]["residual_share"]), 0.05)
 
     def test_a_run_with_a_schedule_goes_on_bit_for_bit(self):
         settings = {**ROLLING, "tire.pressure": [[0.0, 2e5], [0.01, 2e5], [0.05, 8e4]], "run.end": 0.06, "run.average_from": 0.02,
@@ -169,7 +169,7 @@ class OtherTires(TireTest):
         deflection = rolled["tire_deflection_m"] + press["inflation_growth_m"]
         self.assertAlmostEqual(deflection / press["deflection_m"], 1, delta=0.35)
         self.assertLess(rolled["momentum_residual"], 1e-12)
-        self.assertLess(abs(rolled["power_balance"]["residual_share"]), 0.05)
+        self.assertLess(abs(rolled["accounts"]["energy"]["residual_share"]), 0.05)
 
     def test_toroidal(self):
         self.check("toroidal.json", 450, (200e3, 2000e3))

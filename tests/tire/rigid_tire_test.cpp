@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "protocol/core/mean_turn.hpp"
+
 namespace furrow::tire {
 namespace {
 
@@ -84,6 +86,71 @@ TEST(RigidTire, contact_forces_reach_the_spindle_with_their_arm) {
   EXPECT_LT((tire.spindle_wrench().moment - moment).norm(), 1e-10);
 }
 
+/// Work of rim and forces less what the tire holds and lost, over 200 intervals of a rim that is moved at will.
+double energy_left_over(RigidTire& tire, double h, double& turnover) {
+  const auto rim_at = [](double t) {
+    RimState rim;
+    rim.position = Vec3(2.0 * t + 0.1 * std::sin(9.0 * t), 0.05 * std::cos(7.0 * t), 0.5 - 0.3 * t * t);
+    rim.velocity = Vec3(2.0 + 0.9 * std::cos(9.0 * t), -0.35 * std::sin(7.0 * t), -0.6 * t);
+    rim.angular_velocity = Vec3(0.3 * std::sin(t), 5.0 + 20.0 * t, 0.2);
+    rim.orientation = Quat(Eigen::AngleAxisd(5.0 * t + 10.0 * t * t, Vec3::UnitY()));
+    return rim;
+  };
+  tire.place(rim_at(0.0));
+  RimTrajectory t(rim_at(0.0));
+  const TireDiagnostics start = tire.diagnostics();
+  NodalForces f;
+  f.vertex = {5, 40, tire.mesh().vertex_count - 1};
+  SurfaceState before, after;
+  double work = 0.0;
+  for (int n = 0; n < 200; ++n) {
+    f.force = {Vec3(10, 20, 300), Vec3(-5, n, 100), Vec3(0, -30, 7)};
+    tire.surface(before);
+    t.extend(rim_at(n * h), h);
+    EXPECT_TRUE(tire.advance(t, f, 1).ok);
+    tire.surface(after);
+    for (std::size_t k = 0; k < f.vertex.size(); ++k)
+      work += f.force[k].dot(after.position[f.vertex[k]] - before.position[f.vertex[k]]);
+    const Wrench w = tire.spindle_wrench();
+    work -= w.force.dot(t.end().position - t.start().position) +
+            w.moment.dot(mean_turn(t.start().orientation, t.end().orientation));
+  }
+  const TireDiagnostics end = tire.diagnostics();
+  turnover = std::abs(work) + std::abs(end.kinetic_energy - start.kinetic_energy);
+  EXPECT_GT(end.numerical_loss, 0.0);
+  return work - (end.stored() - start.stored()) - (end.losses() - start.losses());
+}
+
+TEST(RigidTire, energy_closes_to_round_off_whatever_the_rim_does) {
+  RigidTire tire = make();
+  double turnover = 0.0;
+  const double left = energy_left_over(tire, 1e-3, turnover);
+  EXPECT_GT(turnover, 1.0);
+  EXPECT_LT(std::abs(left), 1e-10 * turnover);
+}
+
+/// The rim's motion reaches the tire extrapolated: with a constant acceleration a every interval's way is a H² longer
+/// than the mean of its velocities says, and m a · a H² is lost.
+TEST(RigidTire, numerical_loss_of_a_constant_acceleration_is_m_a2_h2_in_every_interval) {
+  RigidTire tire = make(Vec3::Zero());
+  const double h = 1e-3, a = 7.0;
+  RimState rim;
+  tire.place(rim);
+  RimTrajectory t(rim);
+  double before = 0.0;
+  for (int n = 0; n < 50; ++n) {
+    rim.position.x() = 0.5 * a * n * n * h * h;
+    rim.velocity.x() = a * n * h;
+    t.extend(rim, h);
+    EXPECT_TRUE(tire.advance(t, {}, 1).ok);
+    const double lost = tire.diagnostics().numerical_loss - before;
+    before += lost;
+    if (n > 1) {
+      EXPECT_NEAR(lost / (tire.mass_properties().mass * a * a * h * h), 1.0, 1e-9) << n;
+    }
+  }
+}
+
 TEST(RigidTire, restored_state_is_the_saved_one) {
   RigidTire tire = make(), other = make();
   RimState rim;
@@ -104,6 +171,7 @@ TEST(RigidTire, restored_state_is_the_saved_one) {
     EXPECT_EQ(s.velocity[k], r.velocity[k]);
   }
   EXPECT_EQ(tire.spindle_wrench().moment, other.spindle_wrench().moment);
+  EXPECT_EQ(tire.diagnostics().numerical_loss, other.diagnostics().numerical_loss);
 }
 
 }  // namespace

@@ -157,9 +157,10 @@ void AncfTire::acted(NodalForces& forces) const {
 Outcome AncfTire::step(const RimTrajectory& rim, double from, double to, int substeps, int halvings) {
   FURROW_ASSERT(from < to && to <= substeps && halvings >= 0, from, to, substeps, halvings);
   const double share = (to - from) / substeps;
-  const RimState end = to == substeps ? rim.end() : rim.at(to / substeps).state;
+  const RimState start = from == 0.0 ? rim.start() : rim.at(from / substeps).state,
+                 end = to == substeps ? rim.end() : rim.at(to / substeps).state;
   Wrench part;
-  Outcome outcome = integrator_.step(share * rim.duration(), end, force_, about_, part);
+  Outcome outcome = integrator_.step(share * rim.duration(), start, end, force_, about_, part);
   if (outcome.ok) {
     spindle_.force += share * part.force;
     spindle_.moment += share * part.moment;
@@ -173,9 +174,7 @@ Outcome AncfTire::step(const RimTrajectory& rim, double from, double to, int sub
 
 TireDiagnostics AncfTire::diagnostics() const {
   const ShellLayout& layout = integrator_.layout();
-  const Field &q = integrator_.q(), &v = integrator_.v();
-  Field p(layout.size());
-  integrator_.mass().apply(v, 1.0, p);
+  const Field &q = integrator_.q(), &v = integrator_.v(), &p = integrator_.momenta();
   TireDiagnostics d;
   d.kinetic_energy = 0.0;
   d.momentum = Vec3::Zero();
@@ -191,9 +190,13 @@ TireDiagnostics AncfTire::diagnostics() const {
       if (c < 3) d.momentum[c] += sum;
     }
   const double volume = integrator_.shell().volume(q, rim_.position);
-  d.strain_energy = integrator_.elastic_energy() -
-                    integrator_.shell().pressure() * (volume - undeformed_volume_) + pressure_work_;
+  d.elastic_energy = integrator_.elastic_energy();
+  d.pressure_energy = pressure_work_ - integrator_.shell().pressure() * (volume - undeformed_volume_);
+  d.potential_energy = integrator_.potential_energy();
   d.dissipation = integrator_.dissipation();
+  d.numerical_loss = integrator_.numerical_loss();
+  d.solver_loss = integrator_.solver_loss();
+  d.solver_impulse = integrator_.solver_impulse();
   return d;
 }
 

@@ -6,6 +6,7 @@
 
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
+#include "protocol/core/mean_turn.hpp"
 #include "tire/ancf/stopwatch.hpp"
 
 namespace furrow::tire {
@@ -32,7 +33,8 @@ ShellIntegrator::ShellIntegrator(const TireFile& file, const ShellMesh& mesh,
       shell_(file, mesh),
       mass_(mesh, element_masses(file, mesh)),
       factor_(layout_, shell_, mass_, params) {
-  for (Field* f : {&q_, &v_, &v_before_, &q_new_, &v_new_, &q_force_, &change_, &r_, &d_})
+  for (Field* f :
+       {&q_, &v_, &v_before_, &p_, &q_new_, &v_new_, &p_new_, &moved_, &q_force_, &change_, &r_, &d_})
     f->assign(layout_.size(), 0.0);
   s_.assign(kPairs, r_);
   y_.assign(kPairs, r_);
@@ -48,7 +50,9 @@ void ShellIntegrator::start(const Field& q, const Field& v) {
   shell_.strains(q_, strains);
   elastic_ = shell_.account(q_, strains).elastic;
   shell_.begin(q_, shell_step_);
-  dissipation_ = residual_ = 0.0;
+  dissipation_ = numerical_loss_ = solver_loss_ = residual_ = 0.0;
+  solver_impulse_.setZero();
+  mass_.apply(v_, 1.0, p_);
   iterations_ = 0;
   factor_.start();
   shell_.forces(q_, q_, strains, 0.0, r_);  // elastic − pressure
@@ -182,8 +186,8 @@ bool ShellIntegrator::iterate(double h, const Field& force, const Mat3& turn, bo
   return false;
 }
 
-Outcome ShellIntegrator::step(double h, const RimState& end, const Field& force, const Vec3& about,
-                              Wrench& on_rim) {
+Outcome ShellIntegrator::step(double h, const RimState& start, const RimState& end, const Field& force,
+                              const Vec3& about, Wrench& on_rim) {
   FURROW_ASSERT(h > 0.0, h);
   FURROW_ASSERT(force.size() == layout_.size(), force.size(), layout_.size());
   FURROW_ASSERT(q_.size() == layout_.size() && v_.size() == layout_.size(), q_.size(), v_.size(),
@@ -213,7 +217,7 @@ Outcome ShellIntegrator::step(double h, const RimState& end, const Field& force,
     if (converged) {
       iterations_ += count;
       residual_ = norm / reference_;
-      finish(h, about, on_rim);
+      finish(h, start, end, about, on_rim);
       return {};
     }
   }
@@ -227,7 +231,8 @@ Outcome ShellIntegrator::step(double h, const RimState& end, const Field& force,
 
 /// Spindle wrench from (2): −Σ Q − pressure resultant, moments at q_f, and the term Δx × ½ (p + p')/h. What
 /// is left of the free residual is counted with the beads, so that momentum balances to round-off.
-void ShellIntegrator::finish(double h, const Vec3& about, Wrench& on_rim) {
+void ShellIntegrator::finish(double h, const RimState& start, const RimState& end, const Vec3& about,
+                             Wrench& on_rim) {
   const Stopwatch watch(times_.other);
   on_rim = {};
   for (int j = 0; j < layout_.rows; ++j)
@@ -248,13 +253,58 @@ void ShellIntegrator::finish(double h, const Vec3& about, Wrench& on_rim) {
       for (const int s : {0, 3})
         on_rim.moment -=
             (layout_.get(q_new_, i, j, s) - layout_.get(q_, i, j, s)).cross(layout_.get(d_, i, j, s));
+  book_losses(h, start, end);
   contact_.accept(layout_, q_force_, v_new_, h);
+  p_.swap(p_new_);
   v_before_.swap(v_);
   v_.swap(v_new_);
   q_.swap(q_new_);
   const ShellCarcass::Energies energies = shell_.accept(shell_step_);
   elastic_ += energies.elastic + energies.stored;
   dissipation_ += params_.damping / h * energies.change + energies.relaxed;
+  numerical_loss_ += 0.5 * energies.change;
+}
+
+/// Of the product of (2) with Δq = q' − q, where Δq of the beads is their rim's way X and turn θ (mean_turn.hpp):
+///   Δvᵀ M Δq/h = Δ(kinetic energy) + Δvᵀ M (Δq/h − v̄),  v̄ = ½ (v + v'),
+/// ½ Δvᵀ M Δv on free nodes. The spindle's moment holds the term Σ Δq × M v̄/h besides the beads' reactions, and the
+/// residual r of the free nodes as if it acted on the rim. So the work of the rim, −F·X − M·θ, is less by
+///   numerical: Δvᵀ M (Δq/h − v̄) + θ·Σ Δq × M v̄/h      (zero for a steady spin)
+///   solver:    Σ r·X + θ·Σ (q_f − x) × r − r·Δq        over free nodes.
+void ShellIntegrator::book_losses(double h, const RimState& start, const RimState& end) {
+  using Map = Eigen::Map<const Eigen::VectorXd>;
+  const auto all = [](const Field& f) { return Map(f.data(), static_cast<Eigen::Index>(f.size())); };
+  const auto line = [&](const Field& f, int j, int c) {
+    return Map(f.data() + layout_.offset(j, c), layout_.columns);
+  };
+  const auto cross = [&](const Field& a, const Field& b, int j, int s) {
+    const Map x = line(a, j, s), y = line(a, j, s + 1), z = line(a, j, s + 2);
+    const Map u = line(b, j, s), v = line(b, j, s + 1), w = line(b, j, s + 2);
+    return Vec3(y.dot(w) - z.dot(v), z.dot(u) - x.dot(w), x.dot(v) - y.dot(u));
+  };
+  mass_.apply(v_new_, 1.0, p_new_);  // its padding is zero, and that of r_
+  for (std::size_t k = 0; k < q_.size(); ++k) moved_[k] = q_new_[k] - q_[k];
+  const auto one = Eigen::VectorXd::Ones(layout_.columns);
+  Vec3 spin = Vec3::Zero(), force = Vec3::Zero(), moment = Vec3::Zero();
+  for (int j = 0; j < layout_.rows; ++j)
+    for (const int s : {0, 3}) {
+      spin += cross(moved_, d_, j, s);
+      if (j == 0 || j + 1 == layout_.rows) continue;
+      moment += cross(q_force_, r_, j, s);
+      if (s == 0) force += Vec3(line(r_, j, 0).dot(one), line(r_, j, 1).dot(one), line(r_, j, 2).dot(one));
+    }
+  const Vec3 way = end.position - start.position, centre = 0.5 * (start.position + end.position),
+             turn = mean_turn(start.orientation, end.orientation);
+  const auto pushed = all(p_new_) - all(p_);
+  numerical_loss_ += pushed.dot(all(moved_)) / h - pushed.dot(all(change_)) + turn.dot(spin);
+  solver_loss_ += force.dot(way) + (moment - centre.cross(force)).dot(turn) - dot(r_, moved_, layout_);
+  solver_impulse_ += h * force;
+}
+
+double ShellIntegrator::potential_energy() const {
+  using Map = Eigen::Map<const Eigen::VectorXd>;
+  const auto size = static_cast<Eigen::Index>(q_.size());
+  return -Map(gravity_.data(), size).dot(Map(q_.data(), size));
 }
 
 ShellIntegrator::Times ShellIntegrator::times() const {
@@ -282,6 +332,7 @@ void ShellIntegrator::restore(const Archive& archive) {
   q_ = archive.get<double>("q", layout_.size());
   v_ = archive.get<double>("v", layout_.size());
   v_before_ = archive.get<double>("v_before", layout_.size());
+  mass_.apply(v_, 1.0, p_);
   shell_.begin(q_, shell_step_);
   shell_step_.stress = archive.get<double>("stress", shell_.strains_size());
   for (std::size_t i = 0; i < shell_step_.branch_strain.size(); ++i) {

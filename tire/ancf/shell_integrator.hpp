@@ -8,7 +8,8 @@
 // exactly for a rigid motion between
 //    the step's ends, and the work of the internal forces is Δ(elastic energy) + ½ ΔEᵀ D̂ ΔE + (τ/h) ΔEᵀ D̂ ΔE.
 //    With the ½ Δvᵀ M Δv that (1) removes, energy cannot grow; the numerical damping acts like h of
-//    additional τ, 1 % of the material's.
+//    additional τ, 1 % of the material's. Both are booked as they are lost (numerical_loss), and so is the work of what
+//    is left of (2) when the iteration ends (solver_loss).
 //  - Velocities are those of the backward Euler rule: what is stiff through τ K does not ring, as it does with
 //    trapezoidal or HHT velocities, where a contact force that comes one interval late and depends on
 //    velocity would feed it.
@@ -52,10 +53,11 @@ class ShellIntegrator {
   /// Gauge pressure from the next step on, Pa.
   void set_pressure(double pressure);
 
-  /// One step of size h to the rim state `end`. `force`: contact forces, padding zero. `about`: moments are
-  /// taken about this point. The wrench is what the tire exerts on the rim, the step's mean, without forces
-  /// on the bead discs. @pre started; h > 0; force has the layout's size
-  Outcome step(double h, const RimState& end, const Field& force, const Vec3& about, Wrench& on_rim);
+  /// One step of size h from the rim state `start`, where the last one ended, to `end`. `force`: contact forces, padding
+  /// zero. `about`: moments are taken about this point. The wrench is what the tire exerts on the rim, the step's mean,
+  /// without forces on the bead discs. @pre started; h > 0; force has the layout's size
+  Outcome step(double h, const RimState& start, const RimState& end, const Field& force, const Vec3& about,
+               Wrench& on_rim);
 
   /// Forces with tangents, in addition to those that step() is given; to be set before each interval.
   ShellContact& contact() { return contact_; }
@@ -63,14 +65,20 @@ class ShellIntegrator {
 
   const Field& q() const { return q_; }
   const Field& v() const { return v_; }
+  const Field& momenta() const { return p_; }  // M v, padding zero
   const ShellLayout& layout() const { return layout_; }
   const ShellCarcass& shell() const { return shell_; }
   const ShellMass& mass() const { return mass_; }
   const ShellIntegratorParams& params() const { return params_; }
   int unknowns() const { return factor_.unknowns(); }
 
-  double elastic_energy() const { return elastic_; }   // with what relaxing branches store, J
-  double dissipation() const { return dissipation_; }  // J, cumulative
+  double elastic_energy() const { return elastic_; }         // with what relaxing branches store, J
+  double dissipation() const { return dissipation_; }        // J, cumulative
+  double numerical_loss() const { return numerical_loss_; }  // J, cumulative
+  double solver_loss() const { return solver_loss_; }        // J, cumulative
+  /// Part of the spindle's, N s, cumulative.
+  const Vec3& solver_impulse() const { return solver_impulse_; }
+  double potential_energy() const;  // of gravity, 0 at the world's origin, J
   std::int64_t iterations() const { return iterations_; }
   std::int64_t factorizations() const { return factor_.renewals(); }  // whole or in part
   double factor_work() const { return factor_.work(); }               // the same, in whole factorizations
@@ -92,6 +100,9 @@ class ShellIntegrator {
     visit(furrow::Field{"unit_force", "N/Pa"}, s.unit_force_);
     visit(furrow::Field{"elastic", "J"}, s.elastic_);
     visit(furrow::Field{"dissipation", "J"}, s.dissipation_);
+    visit(furrow::Field{"numerical_loss", "J"}, s.numerical_loss_);
+    visit(furrow::Field{"solver_loss", "J"}, s.solver_loss_);
+    visit(furrow::Field{"solver_impulse", "N s"}, s.solver_impulse_);
     visit(furrow::Field{"residual"}, s.residual_);
     visit(furrow::Field{"iterations"}, s.iterations_);
   }
@@ -103,7 +114,8 @@ class ShellIntegrator {
   void set_reference(double pressure_force);
   void direction(const Mat3& turn, int pairs);
   bool iterate(double h, const Field& force, const Mat3& turn, bool careful, int& count, double& norm);
-  void finish(double h, const Vec3& about, Wrench& on_rim);
+  void finish(double h, const RimState& start, const RimState& end, const Vec3& about, Wrench& on_rim);
+  void book_losses(double h, const RimState& start, const RimState& end);
 
   ShellIntegratorParams params_;
   ShellMesh mesh_;
@@ -114,16 +126,19 @@ class ShellIntegrator {
 
   Field q_, v_;              // state: coordinates (m, –) and velocities
   Field v_before_;           // velocities one step earlier, for the prediction
+  Field p_;                  // M v
   double reference_ = 0.0;   // norm of the pressure forces, N
   double unit_force_ = 0.0;  // of the pressure forces of 1 Pa, N/Pa
   double elastic_ = 0.0, dissipation_ = 0.0, residual_ = 0.0;
+  double numerical_loss_ = 0.0, solver_loss_ = 0.0;  // J
+  Vec3 solver_impulse_ = Vec3::Zero();               // N s
   std::int64_t iterations_ = 0;
 
   ShellContact contact_;
-  ShellCarcass::Step shell_step_;                   // from q_
-  Field gravity_;                                   // M g
-  Field q_new_, v_new_, q_force_, change_, r_, d_;  // work
-  std::vector<Field> s_, y_;                        // BFGS pairs
+  ShellCarcass::Step shell_step_;                                   // from q_
+  Field gravity_;                                                   // M g
+  Field q_new_, v_new_, p_new_, moved_, q_force_, change_, r_, d_;  // work
+  std::vector<Field> s_, y_;                                        // BFGS pairs
   std::vector<double> rho_;
   Times times_;  // without those of the factor
 };

@@ -2,18 +2,23 @@
 // inertia J:
 //   F_spindle = Σ f + m g − Δ(m v)/H
 //   M_spindle = Σ (x − c) × f − Δ(J ω)/H,  x − c the mean of the interval's ends
+// With the way X and the turn θ of the rim (mean_turn.hpp), −F·X − M·θ + Σ f·Δx − Δ(energy) is what the interval's rule
+// loses: the rim's velocities need not be its way over H.
+//   m Δv·(X/H − v̄) + ΔL·(θ/H − ω̄) + ½ (ω·L' − ω'·L),  L = J ω; v̄, ω̄ the means of the interval's ends.
 #include "tire/rigid/rigid_tire.hpp"
 
 #include <algorithm>
 
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
+#include "protocol/core/mean_turn.hpp"
 
 namespace furrow::tire {
 
 void RigidTire::place(const RimState& rim) {
   rim_ = rim;
   spindle_ = {};
+  numerical_loss_ = 0.0;
 }
 
 void RigidTire::surface(SurfaceState& out) const {
@@ -47,8 +52,18 @@ Outcome RigidTire::advance(const RimTrajectory& rim, const NodalForces& forces, 
     spindle_.force += forces.force[k];
     spindle_.moment += (mean * shape_.vertex[forces.vertex[k]]).cross(forces.force[k]);
   }
+  book_loss(start, end, duration);
   rim_ = end;
   return {};
+}
+
+void RigidTire::book_loss(const RimState& from, const RimState& to, double duration) {
+  const Vec3 before = angular_momentum(from), after = angular_momentum(to);
+  const Vec3 way = (to.position - from.position) / duration - 0.5 * (from.velocity + to.velocity),
+             turn = mean_turn(from.orientation, to.orientation) / duration -
+                    0.5 * (from.angular_velocity + to.angular_velocity);
+  numerical_loss_ += shape_.mass.mass * (to.velocity - from.velocity).dot(way) + (after - before).dot(turn) +
+                     0.5 * (from.angular_velocity.dot(after) - to.angular_velocity.dot(before));
 }
 
 TireDiagnostics RigidTire::diagnostics() const {
@@ -56,7 +71,10 @@ TireDiagnostics RigidTire::diagnostics() const {
   d.momentum = shape_.mass.mass * rim_.velocity;
   d.kinetic_energy = 0.5 * shape_.mass.mass * rim_.velocity.squaredNorm() +
                      0.5 * rim_.angular_velocity.dot(angular_momentum(rim_));
-  d.strain_energy = d.dissipation = 0.0;
+  d.potential_energy = -shape_.mass.mass * gravity_.dot(rim_.position);
+  d.elastic_energy = d.pressure_energy = d.dissipation = d.solver_loss = 0.0;
+  d.numerical_loss = numerical_loss_;
+  d.solver_impulse = Vec3::Zero();
   return d;
 }
 
@@ -69,11 +87,13 @@ void RigidTire::add_state(Hash& hash) const {
 void RigidTire::save(Archive& archive) const {
   save_fields(archive, "rigid/rim", rim_);
   save_fields(archive, "rigid/spindle", spindle_);
+  archive.put("rigid/numerical_loss", numerical_loss_);
 }
 
 void RigidTire::restore(const Archive& archive) {
   restore_fields(archive, "rigid/rim", rim_);
   restore_fields(archive, "rigid/spindle", spindle_);
+  numerical_loss_ = archive.get_double("rigid/numerical_loss");
 }
 
 }  // namespace furrow::tire

@@ -34,11 +34,13 @@ class RigidTire final : public Tire {
 
  private:
   Vec3 angular_momentum(const RimState& rim) const;  // about the rim centre, W
+  void book_loss(const RimState& from, const RimState& to, double duration);
 
   TireShape shape_;
-  Vec3 gravity_;    // m/s²
-  RimState rim_;    // now
-  Wrench spindle_;  // of the last advance
+  Vec3 gravity_;                 // m/s²
+  RimState rim_;                 // now
+  Wrench spindle_;               // of the last advance
+  double numerical_loss_ = 0.0;  // J
 };
 
 }  // namespace furrow::tire

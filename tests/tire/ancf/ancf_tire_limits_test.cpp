@@ -56,8 +56,8 @@ TEST(AncfTirePressure, energy_balances_while_the_pressure_changes) {
   const tire::TireDiagnostics end = tire.diagnostics();
   const double given_back = elastic - tire.integrator().elastic_energy();  // to the air
   EXPECT_GT(given_back, 1.0);                                              // J
-  EXPECT_NEAR(end.strain_energy + end.kinetic_energy + end.dissipation,
-              start.strain_energy + start.kinetic_energy + start.dissipation, 0.02 * given_back);
+  EXPECT_NEAR(end.strain_energy() + end.kinetic_energy + end.dissipation,
+              start.strain_energy() + start.kinetic_energy + start.dissipation, 0.02 * given_back);
 }
 
 TEST(AncfTirePressure, a_flat_tire_can_be_loaded) {

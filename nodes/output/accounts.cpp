@@ -1,0 +1,243 @@
+#include "nodes/output/accounts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "protocol/core/archive_fields.hpp"
+#include "protocol/core/assert.hpp"
+
+namespace furrow::output {
+namespace {
+
+// Of the energy turned over, what the residual may be, beside the error of sampled losses; and the latter in standard
+// errors. Of the largest impulse, what the residual of momentum may be, beside the impulse on sleeping grains, which is an
+// estimate: README.md, Accounts.
+constexpr double kEnergyShare = 0.03, kSampleErrors = 3.0;
+constexpr double kMomentumShare = 1e-6;
+
+struct AccountsRow {
+  double time = 0.0;  // s
+  EnergyAccount energy;
+  double residual = 0.0, turnover = 0.0;  // J
+  Vec3 momentum_residual = Vec3::Zero();  // N s
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<AccountsRow> auto& r) {
+  using column::cumulative;
+  visit(column::instant("time_s", "s"), r.time);
+  visit_fields(visit, r.energy.work);
+  visit_fields(visit, r.energy.stored);
+  visit_fields(visit, r.energy.lost);
+  visit(cumulative("terrain_residual_J", "J"), r.energy.terrain_residual);
+  visit(cumulative("tire_residual_J", "J"), r.energy.tire_residual);
+  visit(cumulative("rig_residual_J", "J"), r.energy.rig_residual);
+  visit(cumulative("residual_J", "J"), r.residual);
+  visit(cumulative("turnover_J", "J"), r.turnover);
+  visit(cumulative("momentum_residual_x_Ns", "N s"), r.momentum_residual.x());
+  visit(cumulative("momentum_residual_y_Ns", "N s"), r.momentum_residual.y());
+  visit(cumulative("momentum_residual_z_Ns", "N s"), r.momentum_residual.z());
+}
+
+/// Σ entries, Σ|entries|.
+template <HasFields S>
+std::pair<double, double> sums(const S& entries) {
+  std::pair<double, double> sum{0.0, 0.0};
+  visit_fields(
+      [&](const Column&, const double& value) {
+        sum.first += value;
+        sum.second += std::abs(value);
+      },
+      entries);
+  return sum;
+}
+
+void add_terrain(const TerrainEnergies& start, const TerrainEnergies& now, EnergyAccount& a) {
+  a.work.walls = now.wall_work - start.wall_work;
+  StoredAccount& s = a.stored;
+  s.terrain_kinetic = now.kinetic - start.kinetic;
+  s.terrain_rotational = now.rotational - start.rotational;
+  s.terrain_potential = now.potential - start.potential;
+  s.terrain_elastic_normal = now.elastic_normal - start.elastic_normal;
+  s.terrain_elastic_tangential = now.elastic_tangential - start.elastic_tangential;
+  s.terrain_cohesion = now.cohesion - start.cohesion;
+  LostAccount& l = a.lost;
+  l.sliding = now.sliding_loss - start.sliding_loss;
+  l.normal_damping = now.normal_damping_loss - start.normal_damping_loss;
+  l.tangential_damping = now.tangential_damping_loss - start.tangential_damping_loss;
+  l.rolling = now.rolling_loss - start.rolling_loss;
+  l.opening = now.opening_loss - start.opening_loss;
+  l.sleep = now.sleep_loss - start.sleep_loss;
+  l.surface_lag -= now.surface_work - start.surface_work;
+  a.terrain_residual = now.surface_work - start.surface_work + a.work.walls -
+                       (now.stored() - start.stored()) - (now.losses() - start.losses());
+  a.sample_error = now.sample_error;
+}
+
+void add_tire(const TireAccount& start, const TireAccount& now, EnergyAccount& a) {
+  const TireDiagnostics &from = start.model, &to = now.model;
+  a.stored.tire_kinetic += to.kinetic_energy - from.kinetic_energy;
+  a.stored.tire_elastic += to.elastic_energy - from.elastic_energy;
+  a.stored.tire_pressure += to.pressure_energy - from.pressure_energy;
+  a.stored.tire_potential += to.potential_energy - from.potential_energy;
+  a.lost.tire_viscous += to.dissipation - from.dissipation;
+  a.lost.tire_numerical += to.numerical_loss - from.numerical_loss;
+  a.lost.tire_solver += to.solver_loss - from.solver_loss;
+  a.lost.surface_lag -= now.terrain_work - start.terrain_work;
+  const double added = now.added_energy - start.added_energy;
+  a.lost.rim_lag += added - (now.rim_work - start.rim_work);
+  a.stored.rig_kinetic_and_potential -= added;
+  a.tire_residual += tire_residual(start, now);
+}
+
+void add_rig(const rigs::RigAccounts& start, const rigs::RigAccounts& now, EnergyAccount& a) {
+  a.work.drive = now.drive_work - start.drive_work;
+  a.work.pull = now.pull_work - start.pull_work;
+  a.work.guide = now.guide_work - start.guide_work;
+  a.lost.damper = now.damper_loss - start.damper_loss;
+  const double received = now.tire_work - start.tire_work, stored = now.stored() - start.stored();
+  a.lost.rim_lag -= received;
+  a.stored.rig_kinetic_and_potential += stored;
+  a.rig_residual = a.work.drive + a.work.pull + a.work.guide + received - stored - a.lost.damper;
+}
+
+}  // namespace
+
+double tire_residual(const TireAccount& start, const TireAccount& now) {
+  return now.rim_work - start.rim_work + now.terrain_work - start.terrain_work -
+         (now.model.stored() - start.model.stored()) - (now.model.losses() - start.model.losses());
+}
+
+double EnergyAccount::residual() const { return sums(work).first - sums(stored).first - sums(lost).first; }
+
+double EnergyAccount::turnover() const {
+  return 0.5 * (sums(work).second + sums(stored).second + sums(lost).second);
+}
+
+double EnergyAccount::bound() const { return kEnergyShare * turnover() + kSampleErrors * sample_error; }
+
+bool EnergyAccount::closes() const {
+  return std::isfinite(residual()) && std::abs(residual()) <= bound();  // false for what is not a number
+}
+
+EnergyAccount energy_account(const Books& start, const Books& now) {
+  FURROW_ASSERT(start.tires.size() == now.tires.size(), start.tires.size(), now.tires.size());
+  EnergyAccount account;
+  add_terrain(start.terrain, now.terrain, account);
+  for (std::size_t k = 0; k < now.tires.size(); ++k) add_tire(start.tires[k], now.tires[k], account);
+  add_rig(start.rig, now.rig, account);
+  return account;
+}
+
+MomentumAccount momentum_account(const Books& start, const Books& now) {
+  FURROW_ASSERT(start.tires.size() == now.tires.size(), start.tires.size(), now.tires.size());
+  MomentumAccount a;
+  const TerrainMomenta &g0 = start.grains, &g1 = now.grains;
+  a.grains = g1.grains - g0.grains;
+  a.terrain_gravity = g1.gravity_impulse - g0.gravity_impulse;
+  a.walls = g1.wall_impulse - g0.wall_impulse;
+  a.sleep = g1.sleep_impulse - g0.sleep_impulse;
+  a.carrier = now.rig.momentum - start.rig.momentum;
+  a.carrier_gravity = now.rig.gravity_impulse - start.rig.gravity_impulse;
+  a.guide = now.rig.guide_impulse - start.rig.guide_impulse;
+  for (std::size_t k = 0; k < now.tires.size(); ++k) {
+    const TireAccount &t0 = start.tires[k], &t1 = now.tires[k];
+    a.tires += t1.model.momentum - t0.model.momentum;
+    a.tire_gravity += t1.gravity_impulse - t0.gravity_impulse;
+    a.carrier -= t1.added_momentum - t0.added_momentum;
+    a.carrier_gravity -= t1.added_gravity_impulse - t0.added_gravity_impulse;
+    a.surface_under_way += t1.sent_by_terrain - t0.sent_by_terrain;
+    a.spindle_under_way += t1.sent_to_rig - t0.sent_to_rig;
+    a.spindle_of_tires += t1.spindle_impulse - t0.spindle_impulse;
+  }
+  a.under_way = a.surface_under_way + a.spindle_under_way;
+  a.surface_of_grains = a.terrain_gravity + a.walls + a.sleep - a.grains;
+  a.surface_of_tires = a.tires - a.tire_gravity + a.spindle_of_tires;
+  a.spindle_of_carrier = a.carrier - a.carrier_gravity - a.guide;
+  return a;
+}
+
+Vec3 MomentumAccount::residual() const {
+  return terrain_gravity + tire_gravity + carrier_gravity + walls + guide + sleep - grains - tires - carrier -
+         under_way;
+}
+
+double MomentumAccount::largest() const {
+  double largest = 0.0;
+  for (const Vec3& one : {grains, tires, carrier, terrain_gravity, tire_gravity, carrier_gravity, walls,
+                          guide, sleep, surface_of_tires, spindle_of_tires})
+    largest = std::max(largest, one.norm());
+  return largest;
+}
+
+bool MomentumAccount::closes() const {
+  const double round_off = kMomentumShare * largest(), most = round_off + sleep.norm();
+  return residual().norm() <= most && surface_difference().norm() <= most &&
+         spindle_difference().norm() <= round_off;
+}
+
+TireAccount Accounts::account_of(const Reports& r, std::size_t k) const {
+  FURROW_ASSERT(k < r.tires.size() && k < r.rims.size() && k < r.terrain.contact.size(), k, r.tires.size());
+  const SpindleReport& tire = r.tires[k];
+  const RimState& rim = r.rims[k];
+  const MassProperties& added = added_[k];
+  const Mat3 turn = rim.orientation.toRotationMatrix();
+  const Vec3 spin = turn * (added.inertia * (turn.transpose() * rim.angular_velocity));
+  const bool first = now_.tires.empty();
+  TireAccount a;
+  a.model = tire.diagnostics;
+  a.terrain_work = tire.terrain_work;
+  a.rim_work = tire.rim_work;
+  a.gravity_impulse = tire.gravity_impulse;
+  a.terrain_impulse = tire.impulse_received;
+  a.spindle_impulse = tire.spindle_impulse;
+  a.sent_by_terrain = step_ * r.terrain.contact[k].force - tire.impulse_ahead;
+  a.added_energy = 0.5 * added.mass * rim.velocity.squaredNorm() + 0.5 * rim.angular_velocity.dot(spin) -
+                   added.mass * r.gravity.dot(rim.position);
+  a.added_momentum = added.mass * rim.velocity;
+  a.added_gravity_impulse = added.mass * r.time * r.gravity;
+  a.rim_velocity = rim.velocity;
+  // The wrench on its way makes the added mass follow the tire's own motion, which goes on with the rim's velocity of
+  // one step before.
+  const Vec3 before = first ? rim.velocity : now_.tires[k].rim_velocity;
+  a.sent_to_rig = step_ * tire.wrench.force + added.mass * (rim.velocity - before);
+  return a;
+}
+
+void Accounts::add(const Reports& r) {
+  FURROW_ASSERT(r.tires.size() == added_.size(), r.tires.size(), added_.size());
+  Books next;
+  next.time = r.time;
+  next.terrain = r.terrain.state.energies;
+  next.grains = r.terrain.state.momenta;
+  next.rig = r.rig;
+  for (std::size_t k = 0; k < r.tires.size(); ++k) next.tires.push_back(account_of(r, k));
+  const bool first = now_.tires.empty();
+  now_ = std::move(next);
+  if (first) start_ = now_;
+}
+
+Table Accounts::empty_table() { return {kAccountsTable, columns_of<AccountsRow>(), {}}; }
+
+std::span<const double> Accounts::line() {
+  AccountsRow row;
+  row.time = now_.time;
+  row.energy = energy();
+  row.residual = row.energy.residual();
+  row.turnover = row.energy.turnover();
+  row.momentum_residual = momentum().residual();
+  line_.resize(columns_of<AccountsRow>().size());
+  get_values(row, line_);
+  return line_;
+}
+
+void Accounts::save(Archive& archive) const {
+  save_fields(archive, "accounts/start", start_);
+  save_fields(archive, "accounts/now", now_);
+}
+
+void Accounts::restore(const Archive& archive) {
+  restore_fields(archive, "accounts/start", start_);
+  restore_fields(archive, "accounts/now", now_);
+}
+
+}  // namespace furrow::output

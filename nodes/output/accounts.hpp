@@ -1,0 +1,206 @@
+// Momentum and energy of a whole run: what every part of it holds, what it was given and what it lost, each from its own
+// state, impulses and mechanisms. No entry is the difference of others, so that what they leave over can tell that one of
+// them is wrong. Signs, mechanisms and bounds: nodes/output/README.md, Accounts.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "nodes/output/table.hpp"
+#include "protocol/core/archive.hpp"
+#include "protocol/core/column.hpp"
+#include "protocol/messages.hpp"
+#include "rigs/rig_accounts.hpp"
+
+namespace furrow::output {
+
+inline constexpr char kAccountsTable[] = "accounts";  // subject of the table that these accounts fill
+
+/// What one tire says at a synchronization, and what the rig's rank knows of its rim. Cumulative unless "now" is said.
+struct TireAccount {
+  TireDiagnostics model;
+  double terrain_work = 0.0, rim_work = 0.0;  // on the tire, J
+  Vec3 gravity_impulse = Vec3::Zero();        // N s
+  Vec3 terrain_impulse = Vec3::Zero();        // on the tire as it received it, N s
+  Vec3 spindle_impulse = Vec3::Zero();        // on the rim by the tire, N s
+  Vec3 sent_by_terrain = Vec3::Zero();  // what the terrain has given and the tire has not felt yet, now, N s
+  Vec3 sent_to_rig = Vec3::Zero();      // what the tire has given and the rig has not felt yet, now, N s
+  double added_energy = 0.0;  // of the tire's rigid-body mass on the rig: kinetic and of gravity, now, J
+  Vec3 added_momentum = Vec3::Zero();         // of the same, now, kg m/s
+  Vec3 added_gravity_impulse = Vec3::Zero();  // of the same, N s
+  Vec3 rim_velocity = Vec3::Zero();           // now, m/s
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<TireAccount> auto& s) {
+  visit(Field{"model", ""}, s.model);
+  visit(Field{"terrain_work", "J"}, s.terrain_work);
+  visit(Field{"rim_work", "J"}, s.rim_work);
+  visit(Field{"gravity_impulse", "N s"}, s.gravity_impulse);
+  visit(Field{"terrain_impulse", "N s"}, s.terrain_impulse);
+  visit(Field{"spindle_impulse", "N s"}, s.spindle_impulse);
+  visit(Field{"sent_by_terrain", "N s"}, s.sent_by_terrain);
+  visit(Field{"sent_to_rig", "N s"}, s.sent_to_rig);
+  visit(Field{"added_energy", "J"}, s.added_energy);
+  visit(Field{"added_momentum", "kg m/s"}, s.added_momentum);
+  visit(Field{"added_gravity_impulse", "N s"}, s.added_gravity_impulse);
+  visit(Field{"rim_velocity", "m/s"}, s.rim_velocity);
+}
+
+/// What all parts say at one synchronization.
+struct Books {
+  double time = 0.0;  // s
+  TerrainEnergies terrain;
+  TerrainMomenta grains;
+  rigs::RigAccounts rig;
+  std::vector<TireAccount> tires;
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<Books> auto& s) {
+  visit(Field{"time", "s"}, s.time);
+  visit(Field{"terrain", ""}, s.terrain);
+  visit(Field{"grains", ""}, s.grains);
+  visit(Field{"rig", ""}, s.rig);
+  visit(Field{"tires", ""}, s.tires);
+}
+
+/// Work done from outside, J.
+struct WorkAccount {
+  double drive = 0.0;  // by what turns the wheels
+  double pull = 0.0;   // by what moves the rig along: negative while the tires pull
+  double guide = 0.0;  // by rails and steering
+  double walls = 0.0;  // by walls and floor on the terrain
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<WorkAccount> auto& s) {
+  using column::cumulative;
+  visit(cumulative("drive_work_J", "J"), s.drive);
+  visit(cumulative("pull_work_J", "J"), s.pull);
+  visit(cumulative("guide_work_J", "J"), s.guide);
+  visit(cumulative("wall_work_J", "J"), s.walls);
+}
+
+/// What is stored, beyond what was stored at the start, J.
+struct StoredAccount {
+  double terrain_kinetic = 0.0, terrain_rotational = 0.0, terrain_potential = 0.0,
+         terrain_elastic_normal = 0.0, terrain_elastic_tangential = 0.0, terrain_cohesion = 0.0;
+  double tire_kinetic = 0.0, tire_elastic = 0.0, tire_pressure = 0.0, tire_potential = 0.0;
+  double rig_kinetic_and_potential = 0.0;  // without the tires' added masses
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<StoredAccount> auto& s) {
+  using column::instant;
+  visit(instant("terrain_kinetic_J", "J"), s.terrain_kinetic);
+  visit(instant("terrain_rotational_J", "J"), s.terrain_rotational);
+  visit(instant("terrain_potential_J", "J"), s.terrain_potential);
+  visit(instant("terrain_elastic_normal_J", "J"), s.terrain_elastic_normal);
+  visit(instant("terrain_elastic_tangential_J", "J"), s.terrain_elastic_tangential);
+  visit(instant("terrain_cohesion_J", "J"), s.terrain_cohesion);
+  visit(instant("tire_kinetic_J", "J"), s.tire_kinetic);
+  visit(instant("tire_elastic_J", "J"), s.tire_elastic);
+  visit(instant("tire_pressure_J", "J"), s.tire_pressure);
+  visit(instant("tire_potential_J", "J"), s.tire_potential);
+  visit(instant("rig_kinetic_and_potential_J", "J"), s.rig_kinetic_and_potential);
+}
+
+/// What was lost, by mechanism, J.
+struct LostAccount {
+  double sliding = 0.0, normal_damping = 0.0, tangential_damping = 0.0, rolling = 0.0, opening = 0.0,
+         sleep = 0.0;  // in the terrain
+  double tire_viscous = 0.0, tire_numerical = 0.0, tire_solver = 0.0;
+  double damper = 0.0;       // of the rig
+  double surface_lag = 0.0;  // at the contact surface, where forces come one step late
+  double rim_lag = 0.0;      // at the rim likewise
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<LostAccount> auto& s) {
+  using column::cumulative;
+  visit(cumulative("sliding_loss_J", "J"), s.sliding);
+  visit(cumulative("normal_damping_loss_J", "J"), s.normal_damping);
+  visit(cumulative("tangential_damping_loss_J", "J"), s.tangential_damping);
+  visit(cumulative("rolling_loss_J", "J"), s.rolling);
+  visit(cumulative("opening_loss_J", "J"), s.opening);
+  visit(cumulative("sleep_loss_J", "J"), s.sleep);
+  visit(cumulative("tire_viscous_loss_J", "J"), s.tire_viscous);
+  visit(cumulative("tire_numerical_loss_J", "J"), s.tire_numerical);
+  visit(cumulative("tire_solver_loss_J", "J"), s.tire_solver);
+  visit(cumulative("damper_loss_J", "J"), s.damper);
+  visit(cumulative("surface_lag_loss_J", "J"), s.surface_lag);
+  visit(cumulative("rim_lag_loss_J", "J"), s.rim_lag);
+}
+
+/// Energy since the start of the run; a line of the table of accounts holds it with the residual of momentum.
+struct EnergyAccount {
+  WorkAccount work;
+  StoredAccount stored;
+  LostAccount lost;
+  double terrain_residual = 0.0, tire_residual = 0.0, rig_residual = 0.0;  // of each by itself, J
+  double sample_error = 0.0;                                               // of the terrain's losses, J
+
+  double residual() const;  // work − stored − lost, J
+  double turnover() const;  // ½ Σ|entries|: what came in and went somewhere, J
+  double bound() const;     // what |residual| may be, J
+  bool closes() const;
+};
+
+/// Momentum since the start of the run, N s: changes of what grains, tires and rig hold, and the impulses on them. The
+/// rig is without the tires' added masses.
+struct MomentumAccount {
+  Vec3 grains = Vec3::Zero(), tires = Vec3::Zero(), carrier = Vec3::Zero();  // changes
+  Vec3 under_way = Vec3::Zero();  // impulses that one part has given and the other has not felt yet
+  Vec3 terrain_gravity = Vec3::Zero(), tire_gravity = Vec3::Zero(), carrier_gravity = Vec3::Zero();
+  Vec3 walls = Vec3::Zero(), guide = Vec3::Zero(), sleep = Vec3::Zero();
+  // The impulse on the tires through their surfaces, and on the carrier through the spindles, as each side says it.
+  Vec3 surface_of_grains = Vec3::Zero(), surface_of_tires = Vec3::Zero(), surface_under_way = Vec3::Zero();
+  Vec3 spindle_of_tires = Vec3::Zero(), spindle_of_carrier = Vec3::Zero(), spindle_under_way = Vec3::Zero();
+
+  Vec3 residual() const;
+  Vec3 surface_difference() const { return surface_of_grains - surface_of_tires - surface_under_way; }
+  Vec3 spindle_difference() const { return spindle_of_tires - spindle_of_carrier - spindle_under_way; }
+  double largest() const;  // impulse or change of these
+  bool closes() const;
+};
+
+EnergyAccount energy_account(const Books& start, const Books& now);
+MomentumAccount momentum_account(const Books& start, const Books& now);
+/// What one tire's works, changes and losses leave over, J.
+double tire_residual(const TireAccount& start, const TireAccount& now);
+
+class Accounts {
+ public:
+  struct Reports {
+    double time = 0.0;  // t_n, s
+    std::span<const SpindleReport> tires;
+    std::span<const RimState> rims;
+    const TerrainReport& terrain;
+    const rigs::RigAccounts& rig;
+    Vec3 gravity = Vec3::Zero();  // on the rig, m/s²
+  };
+
+  /// @param added masses that the rig carries for its tires @param step H, s
+  Accounts(std::vector<MassProperties> added, double step) : added_(std::move(added)), step_(step) {}
+
+  /// At every synchronization from the one at the start on. @pre one report and one rim for each tire
+  void add(const Reports& reports);
+
+  const Books& start() const { return start_; }
+  const Books& now() const { return now_; }
+  EnergyAccount energy() const { return energy_account(start_, now_); }
+  MomentumAccount momentum() const { return momentum_account(start_, now_); }
+
+  static Table empty_table();
+  /// The line of that table as of the last add(): valid until the next.
+  std::span<const double> line();
+
+  void save(Archive& archive) const;
+  void restore(const Archive& archive);
+
+ private:
+  TireAccount account_of(const Reports& reports, std::size_t tire) const;
+
+  std::vector<MassProperties> added_;
+  double step_ = 0.0;
+  Books start_, now_;
+  std::vector<double> line_;
+};
+
+}  // namespace furrow::output

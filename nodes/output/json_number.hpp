@@ -1,0 +1,15 @@
+// Numbers in JSON files of results.
+#pragma once
+
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+namespace furrow::output {
+
+/// null for what could not be measured.
+inline nlohmann::ordered_json json_number(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+}  // namespace furrow::output

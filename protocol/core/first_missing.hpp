@@ -1,0 +1,27 @@
+// What was left out of a struct whose members start as "not a number".
+#pragma once
+
+#include <cmath>
+
+#include "protocol/core/fields.hpp"
+
+namespace furrow {
+
+/// Name of the first member that is not a finite number; null: all are.
+template <HasFields S>
+const char* first_missing(const S& values) {
+  const char* name = nullptr;
+  visit_fields(
+      [&](const Field& field, const auto& value) {
+        double sum = 0.0;
+        if constexpr (requires { value.sum(); })
+          sum = value.sum();
+        else
+          sum = value;
+        if (!name && !std::isfinite(sum)) name = field.name;
+      },
+      values);
+  return name;
+}
+
+}  // namespace furrow

@@ -1,0 +1,80 @@
+// What every rig says of its own energy and momentum, whatever its kind.
+#pragma once
+
+#include <limits>
+
+#include "protocol/core/fields.hpp"
+#include "protocol/core/first_missing.hpp"
+#include "protocol/core/vec.hpp"
+
+namespace furrow::rigs {
+
+/// Account of all bodies of a rig, the tires' added masses among them, each entry from its own formula; cumulative since
+/// the rig was placed unless "now" is said. A rig must set every member: what it forgets is not a number, and the rig's
+/// rank refuses that by name. What they leave over,
+///   energy:    drive_work + pull_work + guide_work + tire_work − Δ(kinetic + potential) − damper_loss,
+///   momentum:  Δmomentum − gravity_impulse − guide_impulse − tire_impulse,
+/// is the error of the rig's step, and round-off.
+struct RigAccounts {
+  static constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+  double kinetic_energy = kMissing;                 // J, now
+  double potential_energy = kMissing;               // of gravity, J, now
+  double drive_work = kMissing;                     // by what turns the wheels, J
+  double pull_work = kMissing;                      // by what moves the rig along against the tires' pull, J
+  double guide_work = kMissing;                     // by rails, steering and whatever else is imposed, J
+  double tire_work = kMissing;                      // by the tires' wrenches as the rig received them, J
+  double damper_loss = kMissing;                    // J
+  Vec3 momentum = Vec3::Constant(kMissing);         // kg m/s, now
+  Vec3 gravity_impulse = Vec3::Constant(kMissing);  // N s
+  Vec3 guide_impulse = Vec3::Constant(kMissing);    // by the ground through rails and drives, N s
+  Vec3 tire_impulse = Vec3::Constant(kMissing);     // by the tires as the rig received it, N s
+
+  double stored() const { return kinetic_energy + potential_energy; }
+  /// All members 0, to count from.
+  static RigAccounts none();
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<RigAccounts> auto& s) {
+  visit(Field{"kinetic_energy", "J"}, s.kinetic_energy);
+  visit(Field{"potential_energy", "J"}, s.potential_energy);
+  visit(Field{"drive_work", "J"}, s.drive_work);
+  visit(Field{"pull_work", "J"}, s.pull_work);
+  visit(Field{"guide_work", "J"}, s.guide_work);
+  visit(Field{"tire_work", "J"}, s.tire_work);
+  visit(Field{"damper_loss", "J"}, s.damper_loss);
+  visit(Field{"momentum", "kg m/s"}, s.momentum);
+  visit(Field{"gravity_impulse", "N s"}, s.gravity_impulse);
+  visit(Field{"guide_impulse", "N s"}, s.guide_impulse);
+  visit(Field{"tire_impulse", "N s"}, s.tire_impulse);
+}
+
+inline RigAccounts RigAccounts::none() {
+  RigAccounts zero;
+  visit_fields(
+      [](const Field&, auto& value) {
+        if constexpr (requires { value.setZero(); })
+          value.setZero();
+        else
+          value = 0.0;
+      },
+      zero);
+  return zero;
+}
+
+inline RigAccounts operator+(const RigAccounts& a, const RigAccounts& b) {
+  RigAccounts sum = RigAccounts::none();
+  sum.kinetic_energy = a.kinetic_energy + b.kinetic_energy;
+  sum.potential_energy = a.potential_energy + b.potential_energy;
+  sum.drive_work = a.drive_work + b.drive_work;
+  sum.pull_work = a.pull_work + b.pull_work;
+  sum.guide_work = a.guide_work + b.guide_work;
+  sum.tire_work = a.tire_work + b.tire_work;
+  sum.damper_loss = a.damper_loss + b.damper_loss;
+  sum.momentum = a.momentum + b.momentum;
+  sum.gravity_impulse = a.gravity_impulse + b.gravity_impulse;
+  sum.guide_impulse = a.guide_impulse + b.guide_impulse;
+  sum.tire_impulse = a.tire_impulse + b.tire_impulse;
+  return sum;
+}
+
+}  // namespace furrow::rigs

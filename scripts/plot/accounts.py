@@ -1,0 +1,130 @@
+"""The accounts of a run: where its energy and its momentum went, and what they leave over."""
+import matplotlib.pyplot as plt
+import numpy as np
+
+from .digits import digits
+from .run_data import Damaged, Missing, check_types
+from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, mark_window
+
+# Entries of accounts.energy, in J.
+WORK = {"drive_work": "drive of the wheels", "pull_work": "what moves the rig along", "guide_work": "rails and steering",
+        "wall_work": "walls"}
+STORED = {"terrain_kinetic": "grains: motion", "terrain_rotational": "grains: rotation", "terrain_potential": "grains: height",
+          "terrain_elastic_normal": "grains: normal springs", "terrain_elastic_tangential": "grains: tangential springs",
+          "terrain_cohesion": "grains: cohesion", "tire_kinetic": "tires: motion", "tire_elastic": "tires: strain",
+          "tire_pressure": "tires: air", "tire_potential": "tires: height", "rig_kinetic_and_potential": "rig: motion and height"}
+LOST = {"sliding_loss": "sliding", "normal_damping_loss": "normal damping", "tangential_damping_loss": "tangential damping",
+        "rolling_loss": "rolling", "opening_loss": "contacts that open", "sleep_loss": "sleep", "tire_viscous_loss": "tires: viscous",
+        "tire_numerical_loss": "tires: numerical", "tire_solver_loss": "tires: solver", "damper_loss": "touch-down damper",
+        "surface_lag_loss": "lag at the surface", "rim_lag_loss": "lag at the rim"}
+GROUPS = (("work", WORK, BLUE), ("stored", STORED, PURPLE), ("lost", LOST, ORANGE))
+LEAST_SHARE = 1e-3  # of what is turned over: smaller entries have no bar
+
+MOMENTUM = {"grains": "grains", "tires": "tires", "carrier": "carrier and rim", "under_way": "under way", "gravity": "gravity",
+            "walls": "walls", "guide": "rails and drives", "sleep": "sleep", "residual": "residual"}
+CHANGES = ("grains", "tires", "carrier", "under_way")
+
+
+def account(run, name):
+    """accounts.energy or accounts.momentum of the summary."""
+    accounts = run.summary.get("accounts")
+    if not accounts:
+        raise Missing("summary.json has no accounts")
+    where = "summary.json: key 'accounts'"
+    check_types(accounts, where, objects=("energy", "momentum"))
+    found = accounts.get(name)
+    if not found:
+        raise Missing(f"summary.json has no account of {name}")
+    check_types(found, f"{where}: key '{name}'", numbers=("residual_share", "turnover", "largest", "bound"), flags=("closes",))
+    return found
+
+
+def entries(found):
+    """(label, value, colour) of what is large enough for a bar; the residual always."""
+    where = "summary.json: key 'accounts': key 'energy'"
+    check_types(found, where, numbers=("residual",), objects=("work", "stored", "lost"))
+    least = LEAST_SHARE * abs(found.get("turnover") or 0.0)
+    rows = []
+    for group, labels, colour in GROUPS:
+        values = found.get(group) or {}
+        check_types(values, f"{where}: key '{group}'", numbers=list(values))
+        rows += [(f"{label} ({'in' if group == 'work' else group})", float(values[key]), colour) for key, label in labels.items()
+                 if values.get(key) is not None and abs(values[key]) > least]
+    return rows + [("residual", float(found.get("residual") or 0.0), RED)]
+
+
+def over_time(run, axis):
+    """Work, stored and lost energy since the start, and what they leave over."""
+    series = run.table("timeseries_accounts.csv")
+    if not series or "time_s" not in series:
+        axis.axis("off")
+        axis.text(0.5, 0.5, "no timeseries_accounts.csv", ha="center", va="center", color=GREY)
+        return
+    time = series["time_s"]
+    for group, labels, colour in GROUPS:
+        parts = [series[f"{key}_J"] for key in labels if f"{key}_J" in series]
+        if parts:
+            axis.plot(time, sum(parts), color=colour, label={"work": "put in: work from outside", "stored": "stored since the start",
+                                                             "lost": "lost, by all mechanisms"}[group])
+    if "residual_J" in series:
+        axis.plot(time, series["residual_J"], color=RED, lw=1.3, label="residual: none of them")
+    mark_window(axis, run)
+    axis.set_xlim(0.0, max(time[-1], 1e-12))
+    axis.set_xlabel("time, s")
+    axis.set_ylabel("since the start, J")
+    axis.set_title("Work put in = stored + lost + residual")
+    axis.legend(loc="upper left", fontsize=8)
+
+
+def verdict(found, what):
+    share = found.get("residual_share")
+    text = "" if share is None else f"residual {100 * share:.2g} % of {what}"
+    return text + ("" if found.get("closes", True) else ": DOES NOT CLOSE")
+
+
+def bars(axis, rows, unit):
+    values = np.array([value for _, value, _ in rows])
+    axis.barh(np.arange(len(rows)), values, color=[colour for _, _, colour in rows])
+    low, high = min(values.min(), 0.0), max(values.max(), 0.0)
+    span = high - low or 1.0
+    for i, value in enumerate(values):
+        axis.text(max(value, 0.0) + 0.01 * span, i, f"{digits(value)} {unit}", va="center", fontsize=8)
+    axis.set_yticks(np.arange(len(rows)), [label for label, _, _ in rows], fontsize=8)
+    axis.invert_yaxis()
+    axis.grid(axis="y", visible=False)
+    axis.set_xlim(low - 0.02 * span, high + 0.2 * span)
+    axis.axvline(0.0, color="black", lw=0.8)
+
+
+def energy(run):
+    found = account(run, "energy")
+    rows = entries(found)
+    figure, (left, right) = plt.subplots(1, 2, figsize=(13, 5.6))
+    figure.suptitle(run.title, fontsize=11.5, x=0.01, ha="left", fontweight="bold")
+    over_time(run, left)
+    bars(right, rows, "J")
+    right.set_xlabel("over the whole run, J")
+    right.set_title("Energy by mechanism, each booked by itself\n" + verdict(found, "what is turned over"))
+    return figure
+
+
+def momentum(run):
+    found = account(run, "momentum")
+    figure, axes = plt.subplots(1, 3, figsize=(13, 4.2))
+    figure.suptitle(f"{run.title}\nMomentum: changes of what holds it (purple) = impulses on it (blue) − residual; "
+                    + verdict(found, "the largest impulse"), fontsize=11, x=0.01, ha="left", fontweight="bold")
+    for i, (axis, name) in enumerate(zip(axes, ("x, forward", "y, left", "z, up"))):
+        rows = []
+        for key, label in MOMENTUM.items():
+            vector = found.get(key)
+            if vector is None:
+                continue
+            if not (isinstance(vector, list) and len(vector) == 3 and all(isinstance(v, (int, float)) for v in vector)):
+                raise Damaged(f"summary.json: key 'accounts': key 'momentum': key '{key}': expected 3 numbers")
+            rows.append((label, float(vector[i]), RED if key == "residual" else PURPLE if key in CHANGES else BLUE))
+        if not rows:
+            raise Missing("the account of momentum is empty")
+        bars(axis, rows, "N s")
+        axis.set_xlabel("N s")
+        axis.set_title(name)
+    return figure

@@ -26,8 +26,8 @@ struct SteadyWindow {
 /// or of a wheel on soil with p ∝ z [Bekker 1956], gives 1.5; soil that unloads is stiffer. 0 where z is not positive.
 double bounce_period(double settlement, double gravity);
 
-/// Fewer independent samples make no steady mean. With 10 the standard error of a stationary series is a seventh too
-/// small on average and the drift test finds a drift in 3.4 % of them instead of 2.5 %; with 6 it is a quarter too
+/// Fewer independent samples make no steady mean. With 10 the standard error of a stationary series is a sixth too
+/// small on average and the drift test finds a drift in 3.3 % of them instead of 2.5 %; with 6 it is a quarter too
 /// small, for some half as large as it should be, and drifts are found in twice as many series as stated
 /// (tests/studies/steadiness.csv).
 inline constexpr double kLeastSamples = 10.0;

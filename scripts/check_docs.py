@@ -4,13 +4,15 @@
 Tables, code blocks and lines without a space to break at may be longer. A link's #part must be a heading of the page
 that it names. A path in backticks counts if it begins with a folder of the top level; `*` and `{a,b}` are expanded,
 `<name>` stands for any name, and `path:12` must have such a line. A source or script without its folder must exist
-somewhere. Every term of the glossary names at least one file, and every recipe of CONTRIBUTING.md at most five; what a
-step names in parentheses is to be read, not touched, and does not count.
+somewhere. The figures of the headline run stand in README.md as its scenario states them. Every term of the glossary
+names at least one file, and every recipe of CONTRIBUTING.md at most five; what a step names in parentheses is to be
+read, not touched, and does not count.
 
 usage: scripts/check_docs.py [--root FOLDER] [PAGE ...]
 Prints every mistake as PAGE:LINE and exits with 1 if there is one. Without arguments it reads all pages.
 """
 import argparse
+import json
 import pathlib
 import re
 import sys
@@ -22,6 +24,8 @@ MOST_FILES = 5  # of a recipe
 TOP = {"nodes", "protocol", "tire", "terrain", "vehicle", "rigs", "tests", "scripts"}
 PATH = re.compile(r"([\w.<>*{},-]+(?:/[\w.<>*{},-]+)+/?)(?::(\d+))?$")
 BARE = re.compile(r"[\w-]+\.(cpp|hpp|py|sh)$")
+HEADLINE = "rigs/drawbar_pull_small.json"
+STATED = (("drawbar_pull", 1.0, "N"), ("sinkage", 1e3, "mm"), ("rut_depth", 1e3, "mm"))  # keys of its `expected`
 
 
 def pages(root):
@@ -137,6 +141,16 @@ def recipe_problems(page):
             yield number, f"names file {len(files)} of '{title}', expected at most {MOST_FILES}"
 
 
+def headline_problems(root):
+    """What the scenario of the headline run expects, and README.md does not say."""
+    expected = json.loads((root / HEADLINE).read_text())["expected"]
+    text = " ".join((root / "README.md").read_text().split())
+    for key, scale, unit in STATED:
+        figure = f"{scale * expected[key]:.4g} ± {scale * expected[key + '_spread']:.4g} {unit}"
+        if figure not in text:
+            yield f"does not say '{figure}', which {HEADLINE} expects as {key}"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parent.parent)
@@ -148,6 +162,8 @@ def main():
     found = [f"{page.relative_to(root)}:{number}: {text}" for page in chosen for number, text in problems(root, page, bare)]
     if (root / "CONTRIBUTING.md").exists():
         found += [f"CONTRIBUTING.md:{number}: {text}" for number, text in recipe_problems(root / "CONTRIBUTING.md")]
+    if (root / HEADLINE).exists():
+        found += [f"README.md: {text}" for text in headline_problems(root)]
     print("\n".join(found), end="\n" if found else "")
     return 1 if found else 0
 

@@ -33,6 +33,7 @@ PLOTS = {
     "scene": scene.scene,
 }
 SWEEP_PLOTS = {"curve": sweep.curve, "passes": sweep.passes, "rut_along": sweep.rut_along}
+BEDS_PLOTS = {"beds": sweep.beds}
 SOIL_PLOTS = {"plate": soil.plate, "shear": soil.shear, "cone": soil.cone, "repose": soil.repose}
 PRESS_PLOTS = {"load_deflection": press.load_deflection, "footprint": press.footprint}
 
@@ -67,7 +68,7 @@ def words(run):
         return
     if run.window is None:
         raise Damaged("summary.json: key 'drawbar_pull_N': lacks from_s and to_s, the window of the mean")
-    print(f"report: drawbar pull {with_error(pull['mean'], pull.get('sem'))} N (standard error) "
+    print(f"report: drawbar pull {with_error(pull['mean'], pull.get('sem'))} N (standard error of this run) "
           f"from {run.window[0]:.3g} to {run.window[1]:.3g} s", file=sys.stderr)
     if not pull.get("steady", False):
         reasons = "; ".join(map(printable, pull.get("unsteady_because") or
@@ -79,7 +80,7 @@ def main():
     parser = argparse.ArgumentParser(description="Plots of a run as PNG files.")
     parser.add_argument("directory", type=pathlib.Path)
     parser.add_argument("--out", type=pathlib.Path, help="folder for the plots (default: the run directory)")
-    parser.add_argument("--only", action="append", choices=PLOTS | SOIL_PLOTS | PRESS_PLOTS | SWEEP_PLOTS, help="this plot only; may be repeated")
+    parser.add_argument("--only", action="append", choices=PLOTS | SOIL_PLOTS | PRESS_PLOTS | SWEEP_PLOTS | BEDS_PLOTS, help="this plot only; may be repeated")
     arguments = parser.parse_args()
     out = arguments.out or arguments.directory
     try:
@@ -96,7 +97,8 @@ def main():
         print(f"furrow: error: {arguments.directory}: a file in it is damaged: {printable(repr(error))}", file=sys.stderr)
         return 5
     written = []
-    plots = SOIL_PLOTS if of_soil else SWEEP_PLOTS if of_sweep else PRESS_PLOTS if of_press else PLOTS
+    of_beds = of_sweep and run.values.get("beds")
+    plots = SOIL_PLOTS if of_soil else BEDS_PLOTS if of_beds else SWEEP_PLOTS if of_sweep else PRESS_PLOTS if of_press else PLOTS
     for name in arguments.only or plots:
         try:
             figure = plots[name](run)

@@ -31,6 +31,27 @@ std::vector<double> transverse_profile(const HeightField& before, const HeightFi
   return profile;
 }
 
+/// Mean of before − after across the cells within `half_width` of the wheel's plane, per row of cells along the travel;
+/// rows without grains are left out.
+std::vector<double> profile_along(const HeightField& before, const HeightField& after, double x_min,
+                                  double x_max, double lateral, double half_width) {
+  std::vector<double> along;
+  for (int ix = 0; ix < after.nx; ++ix) {
+    const double x = after.x0 + ix * after.cell;
+    if (x < x_min || x > x_max) continue;
+    double sum = 0.0;
+    int count = 0;
+    for (int iy = 0; iy < after.ny; ++iy) {
+      const double depth = before.height[ix * after.ny + iy] - after.height[ix * after.ny + iy];
+      if (std::abs(after.y0 + iy * after.cell - lateral) > half_width || !std::isfinite(depth)) continue;
+      sum += depth;
+      ++count;
+    }
+    if (count > 0) along.push_back(sum / count);
+  }
+  return along;
+}
+
 /// Where the profile falls below `level` for two cells or more, going from cell `from` in steps of `step`; linear
 /// between cells. Cells without grains are passed over; the bin's edge ends the search.
 double crossing(const std::vector<double>& y, const std::vector<double>& profile, int from, int step,
@@ -76,7 +97,9 @@ Rut measure_rut(const HeightField& before, const HeightField& after, const RutOp
   if (!rut.missing.empty()) return rut;
   const double a = o.axle - o.direction * kNearest * o.radius,
                b = o.axle - o.direction * kFarthest * o.radius;
+  const double middle_half = 0.25 * o.tread_width;
   rut.profile = transverse_profile(before, after, std::min(a, b), std::max(a, b));
+  rut.along = profile_along(before, after, std::min(a, b), std::max(a, b), o.lateral, middle_half);
   for (int iy = 0; iy < after.ny; ++iy) rut.y.push_back(after.y0 + iy * after.cell);
 
   double sum = 0.0;
@@ -84,7 +107,7 @@ Rut measure_rut(const HeightField& before, const HeightField& after, const RutOp
   for (int iy = 0; iy < after.ny; ++iy) {
     const double off = std::abs(rut.y[iy] - o.lateral);
     if (off < std::abs(rut.y[middle] - o.lateral)) middle = iy;
-    if (off > 0.25 * o.tread_width || !std::isfinite(rut.profile[iy])) continue;
+    if (off > middle_half || !std::isfinite(rut.profile[iy])) continue;
     sum += rut.profile[iy];
     ++count;
   }

@@ -27,6 +27,7 @@ struct Rut {
       0.0;  // distance of the points where the mean transverse profile falls below half the depth for two
             // cells or more, m; NaN when the depth is not positive
   std::vector<double> y, profile;  // mean transverse profile of (before − after) in that window, m
+  std::vector<double> along;  // depth of each row of cells across, in order along x, m; none of empty rows
 };
 
 /// The stretch is that of the reference wheel, 0.30 to 0.55 m at R = 0.4673 m: it begins behind the contact of a wheel

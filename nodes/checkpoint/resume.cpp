@@ -148,6 +148,10 @@ ResumePlan plan_resume(const fs::path& run,
   launch::require_run_directory(run);
   std::error_code error;
   const fs::path file = run / "scenario.json";
+  if (fs::exists(run / "sweep.json", error))
+    throw input_error(run.string(), "",
+                      "holds several runs, expected the folder of one of them; the command that began them "
+                      "continues them all");
   if (!fs::exists(file, error))
     throw input_error(
         run.string(), "",

@@ -5,6 +5,8 @@
 #include <functional>
 #include <iostream>
 #include <new>
+#include <optional>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -33,6 +35,7 @@ struct Typed {
   std::string scenario, out, threads, key, directory, soil, until;
   std::vector<std::string> settings;
   bool overwrite = false, profile = false, json = false, no_plots = false;
+  std::optional<int> seeds, jobs;
   double memory = 0.0;  // that the scenario needs, bytes; 0: not known yet
 };
 
@@ -181,8 +184,13 @@ ExitCode report_command(const Typed& typed) {
 }
 
 ExitCode run_command(const Typed& typed, int argc, char** argv) {
-  const RunArguments arguments{typed.scenario, settings_of(typed), typed.out, typed.overwrite,
-                               typed.profile,  !typed.no_plots,    false};
+  const RunArguments arguments{typed.scenario,  settings_of(typed),      typed.out,
+                               typed.overwrite, typed.profile,           !typed.no_plots,
+                               false,           typed.seeds.value_or(0), typed.jobs.value_or(1)};
+  if (typed.seeds) return run_on_beds(arguments);
+  if (typed.jobs)
+    throw input_error("command line", "--jobs",
+                      "is given without --seeds, expected both: one bed is one job");
   return launched_by_mpi() ? run_as_rank(arguments, argc, argv) : run_supervised(arguments);
 }
 
@@ -323,6 +331,12 @@ void CommandLine::add_runs() {
   run.add_flag("--profile", typed_.profile,
                "also write profile.json: where the time of each step goes (Chrome trace)");
   run.add_flag("--no-plots", typed_.no_plots, "make no plots; 'furrow report' makes them later");
+  run.add_option(
+      "--seeds", typed_.seeds,
+      "beds: run as many, with run.seed, run.seed + 1, …, and write their means and 95 % intervals; "
+      "the same command continues them");
+  run.add_option("--jobs", typed_.jobs,
+                 "with --seeds: beds at once, each with its share of the cores (default: 1)");
 
   CLI::App& resume = add("resume",
                          "continue a run from its last checkpoint; the result is bit-identical to an "
@@ -403,7 +417,10 @@ void print_warning(const std::string& text) { print_lines("warning", text); }
 
 bool runs_as_rank(int argc, char** argv) {
   const std::string command = argc > 1 ? argv[1] : "";
-  return (command == "run" || command == "resume") && launched_by_mpi();
+  const bool starts_runs = std::any_of(argv, argv + argc, [](const char* text) {
+    return std::string_view(text) == "--seeds" || std::string_view(text).starts_with("--seeds=");
+  });
+  return (command == "resume" || (command == "run" && !starts_runs)) && launched_by_mpi();
 }
 
 ExitCode run_command_line(int argc, char** argv) { return CommandLine(argc, argv).execute(); }

@@ -22,6 +22,8 @@ struct RunArguments {
   bool profile = false;
   bool plots = true;    // at the end
   bool resume = false;  // goes on with the run in `out`; `scenario` is not used
+  int seeds = 0;        // beds; 0: the scenario's own alone
+  int jobs = 1;         // beds at once
 };
 
 /// Everything that `furrow` does. @throws Error
@@ -29,6 +31,10 @@ ExitCode run_command_line(int argc, char** argv);
 
 /// `furrow run` outside MPI (commands_run.cpp) and as one of its ranks (commands_rank.cpp).
 ExitCode run_supervised(const RunArguments& arguments);
+/// @throws Error with what can be said against starting the ranks of a run on this machine
+void require_launch(const scenario::Scenario& scenario);
+/// `furrow run --seeds N` (seeds.cpp). @throws Error
+ExitCode run_on_beds(const RunArguments& arguments);
 /// `furrow resume` outside MPI.
 ExitCode resume_supervised(const RunArguments& arguments);
 ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv);
@@ -86,6 +92,11 @@ ExitCode bed_command(const scenario::Scenario& scenario);
 
 /// What the end of a run tells people, from summary.json (commands_result.cpp).
 std::string result_text(const std::filesystem::path& run, const scenario::Scenario& scenario);
+
+/// Whether a result is what the scenario is known to give; empty where it says nothing. Means over `beds` are expected
+/// closer to it than those of one bed, by √beds.
+std::string expected_text(const scenario::ExpectedResult& expected, int beds, double pull, double sinkage,
+                          double rut_depth);
 
 /// "furrow: error: …", one line for every line of `text`.
 void print_error(const std::string& text);

@@ -8,7 +8,9 @@
 #include "nodes/checkpoint/run_summary.hpp"
 #include "nodes/commands/commands.hpp"
 #include "nodes/scenario/scenario.hpp"
+#include "protocol/core/assert.hpp"
 #include "protocol/files/digits.hpp"
+#include "terrain/dem/dem_options.hpp"
 
 namespace furrow::commands {
 namespace {
@@ -36,6 +38,10 @@ std::string pull_line(const json& summary, const scenario::Scenario& scenario) {
       fmt::format("furrow: drawbar pull {} N, {:.1f} % of the load of {} N, mean over {:.3g} to {:.3g} s\n",
                   with_error(mean, number(pull, "sem")), 100.0 * mean / load, digits(load),
                   number(pull, "from_s"), number(pull, "to_s"));
+  if (const terrain::dem::DemOptions* grains = scenario.terrain->grains())
+    text += fmt::format("furrow: ± is one standard error within this bed; {}\n",
+                        grains->bed.empty() ? "the spread from bed to bed is not in it: furrow run --seeds 5"
+                                            : "how much other beds differ is not in it");
   if (pull.value("steady", false)) {
     text += "furrow: the pull is steady\n";
   } else {
@@ -47,13 +53,8 @@ std::string pull_line(const json& summary, const scenario::Scenario& scenario) {
         "furrow: another stretch of the run may give another mean; average over more of it with a later "
         "run.end and a longer terrain.length (rigs/README.md, \"Steady or not\")\n";
   }
-  if (scenario.expected.given) {
-    const double off = std::abs(mean - scenario.expected.drawbar_pull);
-    text += fmt::format("furrow: expected {} N: {}\n",
-                        with_error(scenario.expected.drawbar_pull, scenario.expected.drawbar_pull_spread),
-                        off <= scenario.expected.drawbar_pull_spread ? "within" : "NOT within");
-  }
-  return text;
+  return text + expected_text(scenario.expected, 1, mean, number(summary, "sinkage_m"),
+                              number(summary, "rut_depth_m"));
 }
 
 std::string ranks_line(const json& summary) {
@@ -95,6 +96,30 @@ std::string accounts_line(const json& summary) {
 
 }  // namespace
 
+std::string expected_text(const scenario::ExpectedResult& expected, int beds, double pull, double sinkage,
+                          double rut_depth) {
+  FURROW_ASSERT(beds > 0, beds);
+  if (!expected.given) return "";
+  struct Figure {
+    const char* name;
+    double value, spread, found, scale;
+    const char* unit;
+  };
+  std::vector<std::string> parts, outside;
+  for (const Figure& f :
+       {Figure{"pull", expected.drawbar_pull, expected.drawbar_pull_spread, pull, 1.0, "N"},
+        Figure{"sinkage", expected.sinkage, expected.sinkage_spread, sinkage, 1e3, "mm"},
+        Figure{"rut", expected.rut_depth, expected.rut_depth_spread, rut_depth, 1e3, "mm"}}) {
+    if (f.spread <= 0.0) continue;  // not stated
+    const double spread = f.spread / std::sqrt(beds);
+    parts.push_back(fmt::format("{} {} {}", f.name, with_error(f.scale * f.value, f.scale * spread), f.unit));
+    if (!(std::abs(f.found - f.value) <= spread)) outside.emplace_back(f.name);
+  }
+  if (parts.empty()) return "";
+  return fmt::format("furrow: expected {}: {}\n", fmt::join(parts, ", "),
+                     outside.empty() ? "within" : fmt::format("NOT within: {}", fmt::join(outside, ", ")));
+}
+
 std::string result_text(const std::filesystem::path& run, const scenario::Scenario& scenario) {
   const json summary = summary_of(run);
   std::string text;
@@ -104,9 +129,13 @@ std::string result_text(const std::filesystem::path& run, const scenario::Scenar
     const auto millimetres = [&](const char* key) { return 1e3 * number(wheel, key); };
     if (wheels.size() > 1) text += fmt::format("furrow: wheel {}\n", k);
     if (wheel.contains("drawbar_pull_N")) text += pull_line(wheel, scenario);
-    text += fmt::format("furrow: sinkage {} mm", digits(millimetres("sinkage_m")));
+    const auto told = [&](const char* key, const char* sem) {
+      const double error = millimetres(sem);
+      return std::isfinite(error) ? with_error(millimetres(key), error) : digits(millimetres(key));
+    };
+    text += fmt::format("furrow: sinkage {} mm", told("sinkage_m", "sinkage_sem_m"));
     if (std::isfinite(millimetres("rut_width_m")))
-      text += fmt::format(", rut {} mm deep, {} mm wide", digits(millimetres("rut_depth_m")),
+      text += fmt::format(", rut {} mm deep, {} mm wide", told("rut_depth_m", "rut_depth_sem_m"),
                           digits(millimetres("rut_width_m")));
     else if (const json why = wheel.value("rut_missing_because", json()); why.is_string())
       text += ", no rut measured: " + why.get<std::string>();

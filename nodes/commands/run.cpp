@@ -137,15 +137,14 @@ ExitCode supervise_run(const scenario::Scenario& scenario, launch::RunDirectory&
   return result.code;
 }
 
-/// What can be said against starting the ranks on this machine.
+}  // namespace
+
 void require_launch(const scenario::Scenario& scenario) {
   scenario::require_memory(scenario);
   launch::start_patience();
   launch::find_mpirun();
   launch::require_files(scenario::rank_table(scenario).size());
 }
-
-}  // namespace
 
 ExitCode run_supervised(const RunArguments& arguments) {
   const scenario::Scenario scenario = scenario::load_scenario(arguments.scenario, arguments.settings);

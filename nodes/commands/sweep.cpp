@@ -5,6 +5,7 @@
 #include "nodes/commands/commands.hpp"
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
+#include "nodes/study/beds.hpp"
 #include "nodes/study/sweep.hpp"
 
 namespace furrow::commands {
@@ -19,6 +20,7 @@ ExitCode sweep_command(const SweepArguments& arguments) {
   const bool to_plot = study.passes > 0 || !study.plot.is_null();
   study::Sweep sweep(std::move(study), {folder, arguments.jobs});
   launch::RunDirectory directory = launch::RunDirectory::of_study(folder);
+  study::require_no_beds(folder);
   launch::remove_unfinished(folder);
   launch::catch_stop_signals();
   const ExitCode code = sweep.run(directory.lock());

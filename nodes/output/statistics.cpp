@@ -6,18 +6,13 @@
 #include <numbers>
 #include <numeric>
 
-#include <fmt/format.h>
-
 #include "protocol/core/assert.hpp"
+#include "protocol/core/student_t.hpp"
 
 namespace furrow::output {
 namespace {
 
-constexpr double kWindow = 5.0;        // lags summed, in integrated autocorrelation times
-constexpr double kSteadySem = 0.02;    // of the load: largest standard error of a steady pull
-constexpr double kBounces = 3.0;       // the window must hold
-constexpr double kSteadyTravel = 2.0;  // undeformed radii the window must hold
-constexpr double kHardening = 1.9;     // κ of bounce_period
+constexpr double kWindow = 5.0;  // lags summed, in integrated autocorrelation times
 
 double mean_of(std::span<const double> x) {
   FURROW_ASSERT(!x.empty(), x.size());
@@ -50,6 +45,32 @@ double slope(std::span<const double> x, double mean) {
   return xx > 0.0 ? xy / xx : 0.0;
 }
 
+/// C(j) of DriftTest.
+double cosine_sum(std::span<const double> x, double mean, int j) {
+  FURROW_ASSERT(!x.empty() && j > 0, x.size(), j);
+  const auto n = static_cast<double>(x.size());
+  double sum = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    sum += (x[i] - mean) * std::cos(std::numbers::pi * j * (static_cast<double>(i) + 0.5) / n);
+  return std::sqrt(2.0 / n) * sum;
+}
+
+DriftTest drift_test(std::span<const double> x, double mean) {
+  FURROW_ASSERT(x.size() > 1, x.size());
+  DriftTest test;
+  const std::size_t half = x.size() / 2;
+  test.change = mean_of(x.subspan(half)) - mean_of(x.first(half));
+  if (x.size() < 2 * (kDriftCosines + 1)) return test;
+  static const double limit = student_t(kDriftCosines, 0.5 * kDriftLevel);
+  double squares = 0.0;
+  for (int j = 2; j <= kDriftCosines + 1; ++j) squares += std::pow(cosine_sum(x, mean, j), 2);
+  // C(1) has the sign of a first half above the second.
+  const double first = -cosine_sum(x, mean, 1), others = std::sqrt(squares / kDriftCosines);
+  if (first != 0.0) test.t = first / others;
+  test.found = std::abs(test.t) > limit;
+  return test;
+}
+
 }  // namespace
 
 SeriesStatistics statistics(std::span<const double> x) {
@@ -65,36 +86,9 @@ SeriesStatistics statistics(std::span<const double> x) {
   s.n_eff = static_cast<double>(n);
   if (variance > 0.0) s.n_eff /= integrated_autocorrelation_time(x, s.mean, variance);
   s.sem = s.std / std::sqrt(s.n_eff);
-  s.drift = slope(x, s.mean);
-  const double apart = std::abs(mean_of(x.first(n / 2)) - mean_of(x.subspan(n / 2)));
-  s.halves_agree = apart <= 2.0 * std::sqrt(2.0) * s.sem;
+  s.slope = slope(x, s.mean);
+  s.drift = drift_test(x, s.mean);
   return s;
-}
-
-double bounce_period(double settlement, double gravity) {
-  FURROW_ASSERT(gravity > 0.0, gravity);
-  if (!(settlement > 0.0)) return 0.0;
-  return 2.0 * std::numbers::pi * std::sqrt(settlement / (kHardening * gravity));
-}
-
-std::vector<std::string> unsteady_because(const SeriesStatistics& pull, const SteadyWindow& window) {
-  FURROW_ASSERT(window.radius >= 0.0, window.radius);
-  std::vector<std::string> reasons;
-  const auto require = [&reasons](bool ok, std::string reason) {
-    if (!ok) reasons.push_back(std::move(reason));
-  };
-  require(pull.halves_agree, "the halves of the averaging window differ by more than 2√2 standard errors");
-  require(
-      pull.sem <= kSteadySem * window.load,
-      fmt::format("the standard error {:.3g} N is above {:.0f} % of the load", pull.sem, 100.0 * kSteadySem));
-  require(window.duration >= kBounces * window.bounce_period,
-          fmt::format("the window of {:.3g} s is shorter than {:.0f} bounce periods ({:.3g} s)",
-                      window.duration, kBounces, kBounces * window.bounce_period));
-  require(window.travel >= kSteadyTravel * window.radius,
-          fmt::format("the window holds {:.3g} m of rolling, less than {:.0f} tire radii", window.travel,
-                      kSteadyTravel));
-  require(window.whole_facets, "the window does not hold a whole number of tire facets");
-  return reasons;
 }
 
 }  // namespace furrow::output

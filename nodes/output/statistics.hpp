@@ -1,47 +1,45 @@
-// The mean of a correlated series and how well it is known.
+// The mean of a correlated series, how well it is known, and whether it drifts.
 #pragma once
 
 #include <span>
-#include <string>
-#include <vector>
 
 namespace furrow::output {
 
+/// Whether a series drifts over its window: its slowest change against those that are a little faster.
+///
+/// Of a stationary series whose correlation is short beside the window, the sums
+///   C(j) = √(2/n) Σ x(i) cos(π j (i + ½)/n),  j = 1, 2, …
+/// are independent and normal with one and the same variance, n · sem² [Müller 2007]. A drift is in C(1), half a wave
+/// over the window: it holds 99 % of what a straight line has (Σ over j of C(j)²) and 81 % of what a step in the middle
+/// has. So
+///   t = C(1) / √(mean of C(2)² … C(ν + 1)²)
+/// has Student's t distribution with ν degrees of freedom, and a drift does not hide itself, as it does from a test
+/// with the standard error of the whole window, which it makes larger.
+/// Sources: Müller (2007), J. Econometrics 141, 1331, doi:10.1016/j.jeconom.2007.02.002; Lazarus, Lewis, Stock & Watson
+/// (2018), J. Bus. Econ. Stat. 36, 541, doi:10.1080/07350015.2018.1506926, for the cosines and Student's t.
+struct DriftTest {
+  double change = 0.0;  // mean of the second half less mean of the first
+  double t = 0.0;
+  bool found = false;  // |t| is larger than in 97.5 % of stationary series
+};
+
+inline constexpr int kDriftCosines = 4;       // ν
+inline constexpr double kDriftLevel = 0.025;  // share of stationary series in which a drift is found
+
 struct SeriesStatistics {
   double mean = 0.0;
-  double std = 0.0;           // of the samples
-  double sem = 0.0;           // standard error of the mean, std / √n_eff
-  double n_eff = 0.0;         // number of independent samples, n / τ_int
-  double drift = 0.0;         // slope of the least-squares line, per sample interval
-  bool halves_agree = false;  // |mean of first half − of second| ≤ 2√2 · sem
+  double std = 0.0;    // of the samples
+  double sem = 0.0;    // standard error of the mean, std / √n_eff
+  double n_eff = 0.0;  // number of independent samples, n / τ_int
+  double slope = 0.0;  // of the least-squares line, per sample interval
+  DriftTest drift;
 };
 
 /// τ_int = [1 + 2 Σ ρ(k)] (1 + (2M + 1)/n), summed up to the first lag M ≥ 5 τ_int(M) (automatic windowing);
 /// the second factor undoes the bias from subtracting the sample's own mean.
 /// Sources: Sokal (1997), "Monte Carlo Methods in Statistical Mechanics", doi:10.1007/978-1-4899-0319-8_6, section 3;
 /// Wolff (2004), Comput. Phys. Commun. 156, 143, doi:10.1016/S0010-4655(03)00467-3.
-/// With fewer than 4 samples sem is infinite.
+/// With fewer than 4 samples sem is infinite; with fewer than 2 (ν + 1) no drift is found.
 SeriesStatistics statistics(std::span<const double> samples);
-
-/// What a steady mean is judged by, besides its statistics.
-struct SteadyWindow {
-  double load = 0.0;           // weight on the wheel, N
-  double bounce_period = 0.0;  // s; 0: not known
-  double duration = 0.0;       // s
-  double travel = 0.0;         // of the axle or of the tread, whichever is longer, m
-  double radius = 0.0;         // undeformed tire radius, m
-  bool whole_facets = false;  // the window holds a whole number of tire facets, within one line of the series
-};
-
-/// Period in which a loaded wheel bounces on its tire and soil, s: T = 2π √(m/k) = 2π √(z/(κ g)) with k = κ W/z. z is
-/// what tire and soil give under the load W, sinkage and deflection together, m. κ = 1.9 is how much stiffer they are
-/// about that state than W/z: rigs/drawbar_pull_small.json without its touch-down damper bounces with 0.25 s (minima of
-/// the axle's height at 0.166, 0.434 and 0.663 s) at z = 28 mm. A force that goes with depth^1.5, as of a Hertz contact
-/// or of a wheel on soil with p ∝ z [Bekker 1956], gives 1.5; soil that unloads is stiffer. 0 where z is not positive.
-double bounce_period(double settlement, double gravity);
-
-/// Why a mean over this window is not steady, in words; empty when it is: halves agree within 2√2 · sem, sem at most
-/// 2 % of the load, at least 3 bounce periods, 2 radii of travel, a whole number of facets.
-std::vector<std::string> unsteady_because(const SeriesStatistics& pull, const SteadyWindow& window);
 
 }  // namespace furrow::output

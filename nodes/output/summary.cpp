@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -8,8 +7,9 @@
 #include "nodes/checkpoint/segment.hpp"
 #include "nodes/output/accounts_json.hpp"
 #include "nodes/output/json_number.hpp"
+#include "nodes/output/averaging_window.hpp"
 #include "nodes/output/results.hpp"
-#include "nodes/output/statistics.hpp"
+#include "nodes/output/steadiness.hpp"
 #include "nodes/scenario/wheel_geometry.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/constants.hpp"
@@ -25,9 +25,6 @@ constexpr double kMaxLate =
     0.05;  // of load × speed: energy error of the interface of a run that can be trusted
 constexpr double kLeastRolled = 1e-3;  // of the radius: a wheel that went less stands
 constexpr char kPull[] = "drawbar_pull_N";  // the rig's, if it has one
-// At the window's beginning lines may be left out for a whole number of facets: those of one facet, of which this
-// many are always allowed, but this share of the window never lost.
-constexpr std::size_t kLinesLeftOut = 50, kPartLeftOut = 4;
 
 Json number(double value) { return json_number(value); }
 
@@ -41,84 +38,6 @@ struct WheelInput {
   const NodeCard& card() const { return run.cards[1 + wheel]; }
 };
 
-std::vector<WheelRow> wheel_rows(const Table& table) {
-  std::vector<WheelRow> rows(table.lines());
-  const std::vector<Column> columns = columns_of<WheelRow>();
-  std::vector<std::size_t> places;
-  for (const Column& column : columns) places.push_back(table.find(column.name).value());
-  std::vector<double> values(columns.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    for (std::size_t c = 0; c < columns.size(); ++c) values[c] = columns[c].sign * table.line(i)[places[c]];
-    set_values(rows[i], values);
-  }
-  return rows;
-}
-
-/// The averaging window: lines from `first` on, whose means describe the time from `before` to the last line. Columns
-/// that the rig adds are asked for by name, those of every wheel by their row.
-struct Window {
-  std::span<const WheelRow> rows;
-  WheelRow before;
-  bool whole_facets = false;
-  const Table* table = nullptr;
-  std::size_t first = 0;
-
-  double duration() const { return rows.empty() ? 0.0 : rows.back().time - before.time; }
-  template <class Get>
-  double mean(Get get) const {
-    double sum = 0.0;
-    for (const WheelRow& row : rows) sum += get(row);
-    return rows.empty() ? NAN : sum / static_cast<double>(rows.size());
-  }
-  template <class Get>
-  double rate(Get get) const {
-    return rows.empty() ? NAN : (get(rows.back()) - get(before)) / duration();
-  }
-  /// None when the rig has no such column.
-  std::vector<double> samples(std::string_view column) const {
-    if (rows.empty()) return {};
-    std::vector<double> all = table->column(column);
-    all.erase(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min(first, all.size())));
-    return all;
-  }
-  double mean_of(std::string_view column) const {
-    const std::vector<double> values = samples(column);
-    double sum = 0.0;
-    for (const double value : values) sum += value;
-    return values.empty() ? NAN : sum / static_cast<double>(values.size());
-  }
-};
-
-/// The window of the scenario, shortened at its beginning to a whole number of tire facets.
-Window averaging_window(const WheelInput& in) {
-  FURROW_ASSERT(in_range(in.wheel, in.run.scenario.tires.size()), in.wheel, in.run.scenario.tires.size());
-  const std::span<const WheelRow> rows = in.rows;
-  std::size_t first = 1;
-  while (first < rows.size() && rows[first].time < in.run.scenario.run.average_from) ++first;
-  if (first >= rows.size()) return {};
-  const int facets = in.run.scenario.tires[in.wheel]->describe().facets;
-  const double facet = 2.0 * std::numbers::pi / facets;
-  const double turn_last = std::abs(rows.back().spin) * (rows.back().time - rows[rows.size() - 2].time);
-  const std::size_t part = (rows.size() - first) / kPartLeftOut;
-  const std::size_t of_facet = facet < turn_last * static_cast<double>(part)
-                                   ? static_cast<std::size_t>(std::ceil(facet / turn_last))
-                                   : part;
-  const std::size_t left_out = std::max(kLinesLeftOut, of_facet);
-  double turned = 0.0, least = INFINITY;
-  std::size_t chosen = first;
-  bool whole = false;
-  for (std::size_t start = rows.size() - 1; start >= first; --start) {
-    const double turn = std::abs(rows[start].spin) * (rows[start].time - rows[start - 1].time);
-    turned += turn;
-    const double off = std::abs(std::remainder(turned, facet));
-    if (start >= first + left_out || turned < 0.5 * facet || off >= least) continue;
-    least = off;
-    chosen = start;
-    whole = off <= turn;
-  }
-  return {rows.subspan(chosen), rows[chosen - 1], whole, &in.table, chosen};
-}
-
 /// What tire and ground give under the load, m.
 double settlement(const WheelInput& in, const Window& w) {
   const auto given = [&](const WheelRow& r) {
@@ -127,16 +46,17 @@ double settlement(const WheelInput& in, const Window& w) {
   return w.mean(given);
 }
 
-Json pull_statistics(const WheelInput& in, const Window& w, double load) {
+Json pull_statistics(const WheelInput& in, const Window& w, const SeriesStatistics& sinkage) {
   const SeriesStatistics s = statistics(w.samples(kPull));
+  const double load = in.end.load;
   const double interval = w.rows.empty() ? NAN : w.duration() / static_cast<double>(w.rows.size());
   const double travel = w.rows.empty() ? 0.0 : std::abs(w.rows.back().position - w.before.position);
   const double turned =
       w.mean([](const WheelRow& r) { return std::abs(r.spin); }) * w.duration() * in.card().tire_radius;
   const double radius = in.card().tire_radius;
-  const double bounce = bounce_period(settlement(in, w), kStandardGravity);
-  auto reasons =
-      unsteady_because(s, {load, bounce, w.duration(), std::max(travel, turned), radius, w.whole_facets});
+  const double given = settlement(in, w), bounce = bounce_period(given, kStandardGravity);
+  auto reasons = unsteady_because(
+      s, sinkage, {load, given, bounce, w.duration(), std::max(travel, turned), radius, w.whole_facets});
   if (in.run.failure) reasons.emplace_back("the run failed before its end");
   const double late = w.rate([](const WheelRow& r) { return r.energy_error_abs; });
   const double rolled = std::max(travel, turned), rolling = load * rolled / w.duration();
@@ -154,7 +74,9 @@ Json pull_statistics(const WheelInput& in, const Window& w, double load) {
           {"std", number(s.std)},
           {"sem", number(s.sem)},
           {"n_eff", number(s.n_eff)},
-          {"drift_N_per_s", number(s.drift / interval)},
+          {"drift_N_per_s", number(s.slope / interval)},
+          {"drift_t", number(s.drift.t)},
+          {"halves_differ_N", number(s.drift.change)},
           {"steady", reasons.empty()},
           {"unsteady_because", reasons},
           {"bounce_period_s", number(bounce)},
@@ -198,14 +120,18 @@ void add_rut(const WheelInput& in, Json& json) {
     options.tread_width = in.card().tire_width;
     rut = terrain::measure_rut(terrain.height_before, terrain.height_after, options);
   }
+  const SeriesStatistics along = statistics(rut.along);
   json["rut_depth_m"] = number(rut.measured ? rut.depth : NAN);
+  json["rut_depth_sem_m"] = number(rut.measured ? along.sem : NAN);
+  json["rut_depth_n_eff"] = number(rut.measured ? along.n_eff : NAN);
   json["rut_width_m"] = number(rut.measured ? rut.width : NAN);
   json["rut_missing_because"] = rut.missing.empty() ? Json(nullptr) : Json(rut.missing);
 }
 
 void add_mobility(const WheelInput& in, const Window& w, Json& json) {
   const double load = in.end.load, radius = in.card().tire_radius;
-  if (in.table.find(kPull)) json[kPull] = pull_statistics(in, w, load);
+  const SeriesStatistics sinkage = statistics(w.samples_by([](const WheelRow& r) { return r.sinkage; }));
+  if (in.table.find(kPull)) json[kPull] = pull_statistics(in, w, sinkage);
   const auto mean = [&](auto get) { return w.mean(get); };
   const double pull = w.mean_of(kPull);
   const double speed = mean([](const WheelRow& r) { return r.speed; });
@@ -216,6 +142,10 @@ void add_mobility(const WheelInput& in, const Window& w, Json& json) {
   const double axle = mean([](const WheelRow& r) { return r.axle_height; });
   json["drawbar_coefficient"] = number(pull / load);
   json["sinkage_m"] = number(mean([](const WheelRow& r) { return r.sinkage; }));
+  json["sinkage_sem_m"] = number(sinkage.sem);
+  json["sinkage_n_eff"] = number(sinkage.n_eff);
+  json["sinkage_drift_m_per_s"] = number(sinkage.slope * static_cast<double>(w.rows.size()) / w.duration());
+  json["sinkage_drift_t"] = number(sinkage.drift.t);
   json["sinkage_kinematic_m"] = number(mean([](const WheelRow& r) { return r.sinkage_kinematic; }));
   add_rut(in, json);
   json["tire_deflection_m"] = number(radius - (axle - lowest));
@@ -303,7 +233,8 @@ Json wheel_summary(const WheelInput& in) {
   json["tire_radius_m"] = in.card().tire_radius;
   json["tread_width_m"] = in.card().tire_width;
   json["surface_height_m"] = number(in.run.setup.mean_height.at(in.wheel));
-  const Window window = averaging_window(in);
+  const Window window = averaging_window(in.table, in.rows, in.run.scenario.run.average_from,
+                                         in.run.scenario.tires[in.wheel]->describe().facets);
   add_mobility(in, window, json);
   add_plumbing(in, json);
   const WheelRow end = in.end.series.now();

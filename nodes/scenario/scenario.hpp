@@ -67,17 +67,26 @@ void visit_fields(Visit&& visit, FieldsOf<CheckpointOptions> auto& s) {
   visit(Field{"at_end", "", role::key | role::harmless}, s.at_end);
 }
 
-/// `expected.*`, optional: what the shipped scenarios print beside their result.
+/// `expected.*`, optional: what the shipped scenarios print beside their result. A spread is of runs on one bed; the mean
+/// over n beds is expected within spread/√n. A spread of 0: nothing is expected of this figure.
 struct ExpectedResult {
   bool given = false;
   double drawbar_pull = 0.0;         // N
   double drawbar_pull_spread = 0.0;  // ± N
+  double sinkage = 0.0;              // m
+  double sinkage_spread = 0.0;       // ± m
+  double rut_depth = 0.0;            // m
+  double rut_depth_spread = 0.0;     // ± m
 };
 
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<ExpectedResult> auto& s) {
   visit(Field{"drawbar_pull", "N", role::key | role::harmless}, s.drawbar_pull);
   visit(Field{"drawbar_pull_spread", "N", role::key | role::harmless}, s.drawbar_pull_spread);
+  visit(Field{"sinkage", "m", role::key | role::harmless}, s.sinkage);
+  visit(Field{"sinkage_spread", "m", role::key | role::harmless}, s.sinkage_spread);
+  visit(Field{"rut_depth", "m", role::key | role::harmless}, s.rut_depth);
+  visit(Field{"rut_depth_spread", "m", role::key | role::harmless}, s.rut_depth_spread);
 }
 
 /// What a run will take, about, bytes.

@@ -69,19 +69,14 @@ double rest(Reader& reader) {
   return rest;
 }
 
-const std::vector<std::string> kUsualResults{"drawbar_pull_N.mean",
-                                             "drawbar_pull_N.sem",
-                                             "drawbar_pull_N.steady",
-                                             "drawbar_coefficient",
-                                             "sinkage_m",
-                                             "rut_depth_m",
-                                             "tractive_effort_N",
-                                             "terrain_resistance_N",
-                                             "drive_torque_Nm",
-                                             "tractive_efficiency",
-                                             "vertical_load_N",
-                                             "bed_clearance_m",
-                                             "wall_s"};
+// Whatever else a table holds, it says which means are steady.
+const std::vector<std::string> kSteadiness{"drawbar_pull_N.steady", "drawbar_pull_N.n_eff"};
+
+const std::vector<std::string> kUsualResults{
+    "drawbar_pull_N.mean", "drawbar_pull_N.sem", "drawbar_pull_N.steady", "drawbar_pull_N.n_eff",
+    "drawbar_coefficient", "sinkage_m",          "sinkage_sem_m",         "rut_depth_m",
+    "rut_depth_sem_m",     "tractive_effort_N",  "terrain_resistance_N",  "drive_torque_Nm",
+    "tractive_efficiency", "vertical_load_N",    "bed_clearance_m",       "wall_s"};
 
 /// Lines and means are over keys that the runs differ in, the ordinate is a result, the abscissa either.
 Json checked_plot(Reader& reader, const Study& study) {
@@ -110,6 +105,25 @@ Json checked_plot(Reader& reader, const Study& study) {
 }
 
 }  // namespace
+
+Study study_of_beds(const std::filesystem::path& scenario, const std::string& name,
+                    const std::vector<std::pair<std::string, std::string>>& settings, std::uint64_t seed,
+                    int beds) {
+  Study study;
+  study.file = study.scenario = scenario;
+  study.name = name;
+  study.common = Json::object();
+  for (const auto& [key, text] : settings) {
+    study.common.erase(key);  // what is said later wins
+    study.common[key] = text;
+  }
+  for (int k = 0; k < beds; ++k) {
+    study.runs.push_back(Json::object({{"run.seed", seed + static_cast<std::uint64_t>(k)}}));
+    study.names.push_back(fmt::format("seed{}", k + 1));
+  }
+  study.results = kUsualResults;
+  return study;
+}
 
 Study load_study(const std::filesystem::path& file) {
   const Json document = load_document(file);
@@ -143,8 +157,10 @@ Study load_study(const std::filesystem::path& file) {
     const Json& results = reader.array("results");
     if (!std::all_of(results.begin(), results.end(), [](const Json& r) { return r.is_string(); }))
       reader.fail("results", "expected a list of keys of summary.json");
-    study.results = results.get<std::vector<std::string>>();
-    study.results_chosen = true;
+    study.results = study.chosen_results = results.get<std::vector<std::string>>();
+    for (const std::string& name : kSteadiness)
+      if (std::find(study.results.begin(), study.results.end(), name) == study.results.end())
+        study.results.push_back(name);
   }
   if (given("plot")) study.plot = checked_plot(reader, study);
   return study;

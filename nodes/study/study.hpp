@@ -10,6 +10,7 @@
 //             "mean_over": "run.seed"}}                  points are means over these runs, bars their 95 % intervals
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -25,8 +26,9 @@ struct Study {
   std::filesystem::path scenario;            // resolved
   nlohmann::ordered_json common;             // keys and values for all runs
   std::vector<nlohmann::ordered_json> runs;  // keys and values of each
-  std::vector<std::string> results;
-  bool results_chosen = false;  // by the user
+  std::vector<std::string> names;            // folders of the runs; empty: by their digests
+  std::vector<std::string> results;          // of summary.json; whether a mean is steady is always among them
+  std::vector<std::string> chosen_results;   // those that the user asked for
   nlohmann::ordered_json plot;  // null: none
   int passes = 0;     // of each run, every one on the bed that the one before it left; 0: beds of their own
   double rest = 0.2;  // s, simulated, that the bed lies between passes
@@ -34,6 +36,13 @@ struct Study {
 
 /// @throws Error(bad_input) naming file and key
 Study load_study(const std::filesystem::path& file);
+
+/// A scenario on several beds, made with the seeds `seed`, `seed` + 1, …: runs in the folders seed1, seed2, ….
+/// @param settings of the command line, for all runs
+/// @pre beds > 0
+Study study_of_beds(const std::filesystem::path& scenario, const std::string& name,
+                    const std::vector<std::pair<std::string, std::string>>& settings, std::uint64_t seed,
+                    int beds);
 
 /// As `--set key=value` takes them.
 std::vector<std::pair<std::string, std::string>> settings_of(const nlohmann::ordered_json& values);

@@ -94,11 +94,14 @@ std::string state_name(int state) {
 
 Sweep::Sweep(Study study, const SweepOptions& options)
     : study_(std::move(study)), options_(options), shares_(core_shares(options.jobs)) {
-  for (const Json& keys : study_.runs)
+  FURROW_ASSERT(study_.names.empty() || (study_.names.size() == study_.runs.size() && study_.passes == 0),
+                study_.names.size(), study_.runs.size(), study_.passes);
+  for (std::size_t k = 0; k < study_.runs.size(); ++k)
     for (int pass = study_.passes > 0 ? 1 : 0; pass <= study_.passes; ++pass) {
       runs_.emplace_back();
-      runs_.back().keys = keys;
+      runs_.back().keys = study_.runs[k];
       runs_.back().pass = pass;
+      if (!study_.names.empty()) runs_.back().name = study_.names[k];
       if (pass <= 1) load(runs_.back());
     }
 }
@@ -114,6 +117,7 @@ void Sweep::load(Run& run) {
       throw input_error(study_.scenario.string(), "checkpoint.at_end",
                         "is false, expected true: the next pass begins on the checkpoint at the end");
     run.digest = scenario.digest;
+    if (study_.names.empty()) run.name = "runs/" + run.digest;
   } catch (const Error& error) {
     throw Error(error.code(), fmt::format("{}\n{}: in the run with {}", error.what(), study_.file.string(),
                                           run.keys.empty() ? "these settings" : text_of(run.keys)));
@@ -121,8 +125,8 @@ void Sweep::load(Run& run) {
   run.loaded = true;
 }
 
-fs::path Sweep::folder_of(const Run& run) const { return options_.folder / "runs" / run.digest; }
-fs::path Sweep::log_of(const Run& run) const { return options_.folder / "runs" / (run.digest + ".log"); }
+fs::path Sweep::folder_of(const Run& run) const { return options_.folder / run.name; }
+fs::path Sweep::log_of(const Run& run) const { return options_.folder / (run.name + ".log"); }
 
 bool Sweep::finished(const Run& run) const {
   const Json summary = read_summary(folder_of(run));
@@ -223,7 +227,8 @@ void Sweep::start(Run& run, std::size_t share) {
   FURROW_ASSERT(in_range(share, shares_.size()), share, shares_.size());
   FURROW_ASSERT(run.state == State::waiting && run.loaded, static_cast<int>(run.state), run.loaded);
   std::error_code error;
-  launch::add_to_run_list(options_.folder, {"runs/", "runs/" + run.digest + ".log"});
+  launch::add_to_run_list(options_.folder,
+                          {study_.names.empty() ? "runs/" : run.name + "/", run.name + ".log"});
   fs::create_directory(folder_of(run).parent_path(), error);
   launch::wait_until_free(folder_of(run));  // ranks outlive a supervisor that was killed by a second or two
   const std::vector<std::string> list = command(run);
@@ -261,12 +266,13 @@ void Sweep::poll(Run& run) {
       const Json value = value_at(summary, path);
       return value.is_number() ? value.get<double>() : std::nan("");
     };
-    for (const std::string& name : study_.results)
-      if (study_.results_chosen && value_at(summary, name).is_null())
-        tell(run, "has no result '" + name + "'");
+    for (const std::string& name : study_.chosen_results)
+      if (value_at(summary, name).is_null()) tell(run, "has no result '" + name + "'");
     const double pull = number("drawbar_pull_N.mean");  // not every rig has one
+    const bool unsteady = value_at(summary, "drawbar_pull_N.steady") == false;
     tell(run, std::isfinite(pull)
-                  ? fmt::format("is done: pull {} N", with_error(pull, number("drawbar_pull_N.sem")))
+                  ? fmt::format("is done: pull {} N{}", with_error(pull, number("drawbar_pull_N.sem")),
+                                unsteady ? ", NOT STEADY" : "")
                   : "is done");
     if (const double deep = number("sinkage_m") / number("surface_height_m"); run.pass > 0 && deep > kDeepRut)
       tell(run,
@@ -323,14 +329,10 @@ void Sweep::pause_all() {
 ExitCode Sweep::run(const launch::FolderLock& lock) {
   launch::add_to_run_list(options_.folder, {"sweep.json", "sweep.csv"});
   launch::catch_pause();
-  write_whole_file(options_.folder / "sweep.json", Json{{"format_version", 1},
-                                                        {"study", study_.name},
-                                                        {"passes", study_.passes},
-                                                        {"rest_s", study_.rest},
-                                                        {"results", study_.results},
-                                                        {"plot", study_.plot}}
-                                                           .dump(2) +
-                                                       "\n");
+  Json told{{"format_version", 1},   {"study", study_.name},      {"passes", study_.passes},
+            {"rest_s", study_.rest}, {"results", study_.results}, {"plot", study_.plot}};
+  if (!study_.names.empty()) told["beds"] = {{"scenario_digest", runs_.front().digest}};
+  write_whole_file(options_.folder / "sweep.json", told.dump(2) + "\n");
   write_table();
   std::vector<bool> taken(shares_.size(), false);
   for (bool running = true; running;) {
@@ -370,7 +372,7 @@ void Sweep::write_table() const {
   for (std::size_t i = 0; i < runs_.size(); ++i) {
     const Run& run = runs_[i];
     text += fmt::format(
-        "{},{},{},{}", i + 1, run.loaded ? "runs/" + run.digest : "", state_name(static_cast<int>(run.state)),
+        "{},{},{},{}", i + 1, run.loaded ? run.name : "", state_name(static_cast<int>(run.state)),
         run.state == State::done || run.state == State::failed ? std::to_string(run.exit_code) : "");
     if (run.pass > 0) text += fmt::format(",{}", run.pass);
     for (const std::string& key : keys) text += "," + (run.keys.contains(key) ? cell(run.keys[key]) : "");
@@ -381,6 +383,14 @@ void Sweep::write_table() const {
     text += "," + cell(run.problem) + "\n";
   }
   write_whole_file(options_.folder / "sweep.csv", text);
+}
+
+std::vector<Sweep::Outcome> Sweep::outcomes() const {
+  std::vector<Outcome> all;
+  for (const Run& run : runs_)
+    all.push_back(
+        {folder_of(run), run.state == State::done, static_cast<ExitCode>(run.exit_code), run.problem});
+  return all;
 }
 
 ExitCode Sweep::outcome() const {

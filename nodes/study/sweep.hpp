@@ -4,7 +4,8 @@
 //   <folder>/sweep.csv     one line per run: its keys, how it went, its results; of one that failed the means of what
 //                          there is
 //   <folder>/sweep.json    the study, for the plots
-//   <folder>/runs/<digest> the folder of each run, named after its scenario's digest; <digest>.log: what it said
+//   <folder>/runs/<digest> the folder of each run, named after its scenario's digest; <digest>.log: what it said. Runs
+//                          that the study names stand in <folder>/<name> instead
 //   <folder>/beds/         of passes: the bed that each begins on
 #pragma once
 
@@ -36,6 +37,15 @@ class Sweep {
   /// @throws Error(io) when the folder was moved or removed meanwhile; its runs have ended then
   ExitCode run(const launch::FolderLock& lock);
 
+  /// How a run ended, in the order of the study.
+  struct Outcome {
+    std::filesystem::path folder;
+    bool done = false;
+    ExitCode code = ExitCode::done;
+    std::string problem;
+  };
+  std::vector<Outcome> outcomes() const;
+
  private:
   enum class State { waiting, running, done, failed, stopped };
   struct Run {
@@ -46,6 +56,7 @@ class Sweep {
     State state = State::waiting;
     bool loaded = false;
     std::string digest, problem;
+    std::string name;  // of its folder in the study's
     int exit_code = 0;
     pid_t process = -1;
     std::size_t share = 0;  // of the cores

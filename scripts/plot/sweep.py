@@ -5,6 +5,7 @@ import math
 import matplotlib.pyplot as plt
 import numpy as np
 
+from .digits import with_error
 from .run_data import Missing, check_types, read_dataset, read_object
 from .student import half_interval
 from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY
@@ -18,7 +19,7 @@ class Sweep:
     def __init__(self, directory):
         self.directory = directory
         self.values = read_object(directory / "sweep.json")
-        check_types(self.values, "sweep.json", texts=("study",), objects=("plot",), lists=("results",))
+        check_types(self.values, "sweep.json", texts=("study",), objects=("plot", "beds"), lists=("results",))
         with open(directory / "sweep.csv", newline="", encoding="utf-8") as file:
             rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
         self.rows = [row for row in rows if row["state"] == "done"]
@@ -56,14 +57,30 @@ def varied(sweep):
     return [name for name in names[first + 1:] if name not in results and name not in ("problem", over)]
 
 
+def unsteady(row):
+    """Whether the table says that the run's pull is not steady."""
+    return (row.get("drawbar_pull_N.steady") or "").lower() == "false"
+
+
 def points(rows, x, y, error, over):
-    """Rows x, y, half bar, sorted by x: each run, or the mean over the runs with the same x with its 95 % interval."""
+    """Rows x, y, half bar, sorted by x: each run, or the mean over the runs with the same x with its 95 % interval; and 1
+    where a run of the point is not steady."""
     if not over:
-        return np.array(sorted((number(row.get(x)), number(row.get(y)), number(row.get(error))) for row in rows)).T
+        return np.array(sorted((number(row.get(x)), number(row.get(y)), number(row.get(error)), unsteady(row)) for row in rows)).T
     same = {}
     for row in rows:
-        same.setdefault(number(row.get(x)), []).append(number(row.get(y)))
-    return np.array([(at, *mean_and_interval(values)) for at, values in sorted(same.items())]).T
+        same.setdefault(number(row.get(x)), []).append(row)
+    return np.array([(at, *mean_and_interval([number(row.get(y)) for row in group]), any(map(unsteady, group)))
+                     for at, group in sorted(same.items())]).T
+
+
+def open_points(axis, x, y, which, colour):
+    """Draws those points open, and says what that means."""
+    which = np.asarray(which, bool)
+    if not which.any():
+        return
+    axis.plot(np.asarray(x)[which], np.asarray(y)[which], ls="none", marker="o", mfc="white", mec=colour, zorder=5)
+    axis.annotate("open: not steady", (0.99, 0.02), xycoords="axes fraction", ha="right", va="bottom", fontsize=8.5, color=RED)
 
 
 def bars(error):
@@ -100,9 +117,10 @@ def curve(sweep):
         groups.setdefault(row.get(plot.get("lines", ""), ""), []).append(row)
     figure, axis = plt.subplots(figsize=(8.4, 5.0))
     for i, (label, rows) in enumerate(groups.items()):
-        x, y, error = points(rows, plot["x"], plot["y"], plot.get("error", ""), plot.get("mean_over"))
+        x, y, error, which = points(rows, plot["x"], plot["y"], plot.get("error", ""), plot.get("mean_over"))
         axis.errorbar(x, y, yerr=bars(error), marker="o", capsize=3,
                       color=COLOURS[i % len(COLOURS)], label=f"{plot['lines']} = {label}" if label else None)
+        open_points(axis, x, y, which, COLOURS[i % len(COLOURS)])
     axis.axhline(0.0, color=GREY, lw=0.8)
     mark_failed(axis, sweep)
     axis.set_xlabel(plot["x"])
@@ -131,8 +149,9 @@ def passes(sweep):
     figure, (left, middle, right) = plt.subplots(1, 3, figsize=(14.0, 4.6))
     for i, (label, rows) in enumerate(groups.items()):
         colour = COLOURS[i % len(COLOURS)]
-        of_pass, pull, error = points(rows, "pass", "drawbar_pull_N.mean", "drawbar_pull_N.sem", over)
+        of_pass, pull, error, which = points(rows, "pass", "drawbar_pull_N.mean", "drawbar_pull_N.sem", over)
         left.errorbar(of_pass, pull, yerr=bars(error), marker="o", capsize=4, color=colour, label=label)
+        open_points(left, of_pass, pull, which, colour)
         by_pass = [[sweep.summary(row) for row in rows if number(row["pass"]) == n] for n in of_pass]
         sinkage, bar = np.array([mean_and_interval([1e3 * number(s["sinkage_m"]) for s in run]) for run in by_pass]).T
         clearance = [np.mean([1e3 * number(s["bed_clearance_m"]) for s in run]) for run in by_pass]
@@ -203,4 +222,38 @@ def rut_along(sweep):
     axis.set_ylabel("surface against undisturbed, mm")
     axis.set_title(f"{sweep.title()} · middle half of the tread", loc="left", fontweight="bold")
     axis.legend(fontsize=8)
+    return figure
+
+
+# Figures of beds: key of a bed's summary and of its standard error, what it is, unit, scale.
+OF_BEDS = (("drawbar_pull_N.mean", "drawbar_pull_N.sem", "drawbar pull", "N", 1.0),
+           ("sinkage_m", "sinkage_sem_m", "sinkage", "mm", 1e3),
+           ("rut_depth_m", "rut_depth_sem_m", "depth of the rut", "mm", 1e3))
+
+
+def beds(sweep):
+    """Pull, sinkage and rut of every bed with its own standard error, and the mean over beds with its 95 % interval."""
+    if not sweep.rows:
+        raise Missing("no bed is done")
+    at = np.array([number(row["folder"].removeprefix("seed")) for row in sweep.rows])
+    which = np.array([unsteady(row) for row in sweep.rows])
+    figure, axes = plt.subplots(1, 3, figsize=(13.0, 4.4))
+    for axis, (key, sem, what, unit, scale) in zip(axes, OF_BEDS):
+        values, errors = (scale * np.array([number(row.get(name)) for row in sweep.rows]) for name in (key, sem))
+        if not np.isfinite(values).any():
+            axis.set_title(f"{what}: not measured")
+            continue
+        axis.errorbar(at, values, yerr=bars(errors), ls="none", marker="o", capsize=3, color=BLUE, label="a bed, its own standard error")
+        open_points(axis, at, values, which, BLUE)
+        mean, half = mean_and_interval(values[np.isfinite(values)])
+        axis.axhline(mean, color=ORANGE, label=f"mean over beds {with_error(mean, half)} {unit} (95 %)")
+        if math.isfinite(half):
+            axis.axhspan(mean - half, mean + half, color=ORANGE, alpha=0.2, lw=0)
+        axis.set_xticks(at)
+        axis.set_xlabel("bed")
+        axis.set_ylabel(f"{what}, {unit}")
+        axis.legend(fontsize=8, loc="upper left")
+        axis.margins(y=0.35)
+    lost = f" · {len(sweep.failed)} failed" if sweep.failed else ""
+    figure.suptitle(f"{sweep.title()} on {len(at)} beds{lost}", x=0.01, ha="left", fontweight="bold")
     return figure

@@ -21,9 +21,6 @@ struct Measured {
   double half_interval() const;
 };
 
-/// 97.5 % point of Student's t distribution for `freedom` degrees of freedom. @pre freedom > 0
-double student_t(double freedom);
-
 /// Mean of independent samples and its standard error. @pre at least one sample
 Measured mean_of(std::span<const double> samples);
 

@@ -21,6 +21,7 @@ import numpy as np
 MAY_DIFFER = [
     ("run.log", "what was said, and when"),
     ("runs/*.log", "likewise, of a run of a study"),
+    ("seed*.log", "likewise, of a bed"),
     ("profile.json", "wall times, of the part of a run that was asked for them"),
     (".furrow-run", "the list of files made so far; a study and a run that was stopped make them in another order"),
 ]

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "nodes/output/statistics.hpp"
 #include "terrain/rut.hpp"
 
 namespace furrow {
@@ -78,6 +79,19 @@ TEST(Rut, one_raised_row_of_cells_inside_the_rut_is_not_its_edge) {
   for (int ix = 0; ix < after.nx; ++ix) after.height[ix * after.ny + after.ny / 2 + 3] = 0.1;
   const terrain::Rut rut = terrain::measure_rut(before, after, forward());
   EXPECT_NEAR(rut.width, kTread, 0.02);
+}
+
+/// The error of its depth is that of these rows: one bed's own waves along the track.
+TEST(Rut, depth_is_the_mean_of_the_rows_along_the_track) {
+  const HeightField before = flat(2.65, 0.02);
+  const terrain::Rut rut = terrain::measure_rut(before, pressed(before, 0.5, 2.0, 0.01), forward());
+  ASSERT_EQ(rut.along.size(), 13u);  // 0.25 m
+  double sum = 0.0;
+  for (const double depth : rut.along) sum += depth;
+  EXPECT_NEAR(sum / 13.0, rut.depth, 1e-15);
+  const output::SeriesStatistics s = output::statistics(rut.along);
+  EXPECT_NEAR(s.sem, 0.01 / std::sqrt(3.0) / std::sqrt(6.0 * 13.0), 4e-4);  // six cells across, white noise
+  EXPECT_LT(std::abs(rut.depth - kDepth), 3.0 * s.sem);
 }
 
 TEST(Rut, cells_without_grains_are_passed_over) {

@@ -7,19 +7,15 @@
 #include <vector>
 
 #include "nodes/output/statistics.hpp"
+#include "tests/nodes/synthetic_series.hpp"
 
 namespace furrow {
 namespace {
 
 std::vector<double> autoregressive(double phi, double mean, std::size_t count, std::uint64_t seed) {
   std::mt19937_64 engine(seed);
-  std::normal_distribution<double> noise;
-  double x = noise(engine) / std::sqrt(1.0 - phi * phi);
-  std::vector<double> samples(count);
-  for (double& sample : samples) {
-    x = phi * x + noise(engine);
-    sample = mean + x;
-  }
+  std::vector<double> samples = testing::autoregressive(phi, count, engine);
+  for (double& sample : samples) sample += mean;
   return samples;
 }
 
@@ -58,54 +54,37 @@ TEST(Statistics, standard_error_matches_means_of_batches_of_ten_autocorrelation_
   EXPECT_NEAR(output::statistics(samples).sem / by_batches, 1.0, 0.2);
 }
 
-TEST(Statistics, drift_is_the_slope_of_a_straight_line) {
+TEST(Statistics, a_straight_line_has_its_slope_and_is_a_drift) {
   std::vector<double> line;
   for (int i = 0; i < 100; ++i) line.push_back(2.0 + 0.25 * i);
   const auto s = output::statistics(line);
-  EXPECT_NEAR(s.drift, 0.25, 1e-12);
+  EXPECT_NEAR(s.slope, 0.25, 1e-12);
+  EXPECT_NEAR(s.drift.change, 12.5, 1e-12);
+  EXPECT_TRUE(s.drift.found);
+  EXPECT_GT(s.drift.t, 0.0);
   EXPECT_NEAR(s.mean, 2.0 + 0.25 * 49.5, 1e-12);
+}
+
+TEST(Statistics, a_step_and_a_decay_are_drifts_whatever_they_do_to_the_standard_error) {
+  std::mt19937_64 engine(8);
+  std::vector<double> step = testing::autoregressive(0.9, 800, engine), decay = step;
+  for (std::size_t i = 0; i < step.size(); ++i) {
+    step[i] += i < 400 ? 0.0 : 12.0;
+    decay[i] += 20.0 * std::exp(-static_cast<double>(i) / 300.0);
+  }
+  EXPECT_GT(output::statistics(step).drift.t, 0.0);
+  EXPECT_TRUE(output::statistics(step).drift.found);
+  EXPECT_LT(output::statistics(decay).drift.t, 0.0);
+  EXPECT_TRUE(output::statistics(decay).drift.found);
 }
 
 TEST(Statistics, a_constant_has_no_error_and_no_samples_have_no_mean) {
   const auto constant = output::statistics(std::vector<double>(50, 7.0));
   EXPECT_EQ(constant.mean, 7.0);
   EXPECT_EQ(constant.sem, 0.0);
-  EXPECT_TRUE(constant.halves_agree);
+  EXPECT_FALSE(constant.drift.found);
   EXPECT_TRUE(std::isnan(output::statistics({}).mean));
   EXPECT_TRUE(std::isinf(output::statistics(std::vector<double>(3, 1.0)).sem));
-}
-
-TEST(Steadiness, every_broken_condition_is_said_in_words) {
-  output::SeriesStatistics pull;
-  pull.sem = 50.0;
-  pull.halves_agree = true;
-  const output::SteadyWindow good{4609.0, 0.25, 0.9, 1.9, 0.4673, true};
-  EXPECT_TRUE(output::unsteady_because(pull, good).empty());
-
-  output::SteadyWindow bad = good;
-  bad.duration = 0.7;
-  EXPECT_EQ(output::unsteady_because(pull, bad).size(), 1u);
-  bad.travel = 0.9;
-  EXPECT_EQ(output::unsteady_because(pull, bad).size(), 2u);
-  bad.whole_facets = false;
-  EXPECT_EQ(output::unsteady_because(pull, bad).size(), 3u);
-  pull.sem = 93.0;  // 2 % of the load is 92.18 N
-  EXPECT_EQ(output::unsteady_because(pull, bad).size(), 4u);
-  pull.halves_agree = false;
-  EXPECT_EQ(output::unsteady_because(pull, bad).size(), 5u);
-}
-
-/// k = κ W/z and T = 2π √(m/k): the wheel of a laboratory bounces faster than that of a truck.
-TEST(Steadiness, the_bounce_period_follows_from_what_tire_and_soil_give_under_the_load) {
-  const double deep = output::bounce_period(0.028, 9.81), shallow = output::bounce_period(0.007, 9.81);
-  EXPECT_NEAR(deep / shallow, 2.0, 1e-12);
-  EXPECT_NEAR(deep, 0.25, 0.03);
-  EXPECT_EQ(output::bounce_period(-0.01, 9.81), 0.0);
-  EXPECT_EQ(output::bounce_period(std::nan(""), 9.81), 0.0);
-  output::SeriesStatistics pull;
-  pull.halves_agree = true;
-  const output::SteadyWindow small{24.5, shallow, 0.5, 0.2, 0.058, true};
-  EXPECT_TRUE(output::unsteady_because(pull, small).empty());
 }
 
 }  // namespace

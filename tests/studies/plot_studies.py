@@ -19,13 +19,22 @@ def table(name):
     return provenance.read_table(HERE / f"{name}.csv")
 
 
+def mark_unsteady(axes, points):
+    """Draws (x, y, row of the table) that are not steady as open points."""
+    for x, y, row in points:
+        if row.get("drawbar_pull_N.steady", "").lower() == "false":
+            axes.plot([x], [y], marker="o", mfc="white", mec="black", ls="none", zorder=5)
+            axes.set_title(axes.get_title().removesuffix(" (open: not steady)") + " (open: not steady)")
+
+
 def step_size():
     """Mean drawbar pull over the step, one line per contact law, bars of two standard errors."""
-    lines = {}
+    lines, all_points = {}, []
     for row in table("step_size"):
         law, share = re.fullmatch(r"(.*)_step_1(?:_(\d+))?", row["case"]).groups()
         lines.setdefault(law, []).append((60.0 / int(share or 1), float(row["drawbar_pull_N.mean"]),
                                           2.0 * float(row["drawbar_pull_N.sem"])))
+        all_points.append((*lines[law][-1][:2], row))
     names = {"mindlin": "Hertz–Mindlin with history", "hertz_tanh_limited": "tanh friction, impulse limit on",
              "hertz_tanh_unlimited": "tanh friction as in the report"}
     figure, axes = plt.subplots(figsize=(6.4, 4.0))
@@ -36,13 +45,14 @@ def step_size():
     axes.set_xticks([15, 30, 60], ["15", "30", "60"])
     axes.minorticks_off()
     axes.axhline(0.0, color="0.8", zorder=0)
+    mark_unsteady(axes, all_points)
     axes.legend()
     save(figure, "step_size")
 
 
 def tire_step():
     """Drawbar pull, and energy lost or gained at the interface, over the communication step, one line per damping time."""
-    lines = {}
+    lines, all_points = {}, []
     for row in table("tire_step"):
         found = re.fullmatch(r"tau_([\d.]+)ms_step_([\de-]+)_seed_(\d+)", row["case"])
         if found:
@@ -50,6 +60,7 @@ def tire_step():
             lines.setdefault((float(tau), seed), []).append(
                 (1e6 * float(step), float(row["drawbar_pull_N.mean"]), 2.0 * float(row["drawbar_pull_N.sem"]),
                  100.0 * float(row["interface_energy_error_abs_J"]) / float(row["spindle_work_J"])))
+            all_points.append((*lines[float(tau), seed][-1][:2], row))
     figure, (pull, error) = plt.subplots(1, 2, figsize=(9.6, 4.0))
     markers = {2.5: "v", 5.0: "o", 10.0: "s", 20.0: "D"}
     for (tau, seed), points in sorted(lines.items()):
@@ -63,6 +74,7 @@ def tire_step():
         axes.set(xscale="log")
         axes.set_xticks([40, 100, 200, 400], ["40", "100", "200", "400"])
         axes.minorticks_off()
+    mark_unsteady(pull, all_points)
     pull.legend()
     figure.tight_layout()
     save(figure, "tire_step")
@@ -70,12 +82,13 @@ def tire_step():
 
 def rigid_ground():
     """Drawbar pull over load against slip on hard ground."""
-    lines = {}
+    lines, all_points = {}, []
     for row in table("rigid_ground"):
         found = re.fullmatch(r"(flexible|rigid)_c(\d+)_slip_([\d.]+)", row["case"])
         if found:
             tire, c, slip = found.groups()
             lines.setdefault((tire, c), []).append((float(slip), float(row["drawbar_coefficient"])))
+            all_points.append((*lines[tire, c][-1], row))
     figure, axes = plt.subplots(figsize=(6.4, 4.0))
     for (tire, c), points in lines.items():
         axes.plot(*zip(*sorted(points)), marker="o" if tire == "flexible" else "s",
@@ -83,6 +96,7 @@ def rigid_ground():
     axes.axhline(0.9, color="0.8", zorder=0)
     axes.annotate("friction 0.9", (0.5, 0.9), (0, 4), textcoords="offset points", ha="right", va="bottom", color="0.5")
     axes.set(xlabel="slip", ylabel="drawbar pull / load", title="Hard ground, 4.6 kN, 200 kPa")
+    mark_unsteady(axes, all_points)
     axes.legend()
     save(figure, "rigid_ground")
 

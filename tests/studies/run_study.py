@@ -12,6 +12,9 @@ import time
 import provenance
 from provenance import RECORD, ROOT, read_json
 
+STEADINESS = ("drawbar_pull_N.steady", "drawbar_pull_N.n_eff")  # columns of every table
+
+
 def settings(*groups):
     """--set flags for the given {key: value} groups; later groups win."""
     merged = {}
@@ -67,11 +70,12 @@ def value_of(summary, path):
 
 def collect(study, done, table):
     """Writes the table of the cases {name: folder} that are done."""
+    columns = [*study["columns"], *(name for name in STEADINESS if name not in study["columns"])]
     rows = []
     for name, out in done.items():
         summary = read_json(out / "summary.json")
-        rows.append({"case": name, **{path: value_of(summary, path) for path in study["columns"]}})
-    provenance.write_table(table, ["case", *study["columns"]], rows, provenance.origin_of_runs(done.values()))
+        rows.append({"case": name, **{path: value_of(summary, path) for path in columns}})
+    provenance.write_table(table, ["case", *columns], rows, provenance.origin_of_runs(done.values()))
 
 
 def main():

@@ -26,7 +26,7 @@ else:
     out.mkdir(parents=True, exist_ok=True)
     with open(out / "runs", "a") as file:
         file.write("{build}\\n")
-    summary = {{"scenario_digest": digest, "pull": {build}, "compiler": "g++ 12.2.0", "cpu": "a processor, 2.5 GHz"}}
+    summary = {{"scenario_digest": digest, "pull": {build}, "drawbar_pull_N": {{"steady": False, "n_eff": 8.5}}, "compiler": "g++ 12.2.0", "cpu": "a processor, 2.5 GHz"}}
     (out / "summary.json").write_text(json.dumps(summary))
 """
 
@@ -91,6 +91,11 @@ class RunStudy(unittest.TestCase):
         self.assertIn("second: left out of the table", self.run_study("--only", "first"))
         self.assertEqual(self.pulls(), {"first": "2"})
         self.assertEqual(self.runs(), {"first": 2, "second": 1})
+
+    def test_tables_say_which_means_are_steady_whatever_columns_a_study_has(self):
+        self.run_study()
+        for row in provenance.read_table(self.folder / "small.csv"):
+            self.assertEqual((row["drawbar_pull_N.steady"], row["drawbar_pull_N.n_eff"]), ("False", "8.5"))
 
     def test_tables_name_commit_compiler_processor_and_command(self):
         self.run_study()

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """scripts/check_includes.py and scripts/check_docs.py on small trees: what they must notice."""
+import json
 import pathlib
 import subprocess
 import sys
@@ -61,6 +62,15 @@ class Docs(Check):
         self.assertIn("names line 999 of 'tire/x.cpp'", self.told(A_dot_md="`tire/x.cpp:999`", tire__x_dot_cpp="1\n2\n"))
         self.assertEqual(self.told(A_dot_md="`tire/x.cpp:2`, `x.cpp`", tire__x_dot_cpp="1\n2\n"), "")
         self.assertIn("names 'y.hpp'", self.told(A_dot_md="`y.hpp`", tire__x_dot_cpp=""))
+
+    def test_figures_of_the_headline_run_are_those_of_its_scenario(self):
+        expected = {"drawbar_pull": 1400, "drawbar_pull_spread": 150, "sinkage": 0.021, "sinkage_spread": 0.003,
+                    "rut_depth": 0.018, "rut_depth_spread": 0.006}
+        said = "It pulls 1400 ± 150 N, sinks by 21 ±\n3 mm and leaves a rut of 18 ± 6 mm.\n"
+        files = {"rigs__drawbar_pull_small_dot_json": json.dumps({"expected": expected})}
+        self.assertEqual(self.told(README_dot_md=said, **files), "")
+        self.assertIn("README.md: does not say '1400 ± 150 N', which rigs/drawbar_pull_small.json expects as drawbar_pull",
+                      self.told(README_dot_md=said.replace("1400", "1500"), **files))
 
     def test_a_sixth_file_within_a_step_of_a_recipe(self):
         names = [f"tire/{letter}.cpp" for letter in "abcdef"]

@@ -1,0 +1,131 @@
+// `furrow run --seeds N`: a scenario on several beds, one after another or several at once, and the means over them.
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "nodes/checkpoint/run_summary.hpp"
+#include "nodes/commands/commands.hpp"
+#include "nodes/launch/run_directory.hpp"
+#include "nodes/launch/signals.hpp"
+#include "nodes/scenario/load_scenario.hpp"
+#include "nodes/scenario/rank_table.hpp"
+#include "nodes/study/beds.hpp"
+#include "protocol/files/digits.hpp"
+
+namespace furrow::commands {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using checkpoint::value_at;
+
+constexpr int kMostBeds = 1000;
+
+void require_options(const RunArguments& arguments) {
+  const auto require = [](bool ok, const std::string& option, const std::string& what) {
+    if (!ok) throw input_error("command line", option, what);
+  };
+  require(arguments.seeds >= 2 && arguments.seeds <= kMostBeds, "--seeds",
+          fmt::format("is {}, expected 2 to {} beds", arguments.seeds, kMostBeds));
+  require(arguments.jobs >= 1 && arguments.jobs <= 1024, "--jobs",
+          fmt::format("is {}, expected 1 to 1024", arguments.jobs));
+  require(!arguments.profile, "--profile", "is given with --seeds, expected it for a run on one bed");
+}
+
+double number(const Json& summary, const std::string& path) {
+  const Json value = value_at(summary, path);
+  return value.is_number() ? value.get<double>() : NAN;
+}
+
+/// "sinkage 21.0 ± 0.6 mm", empty where it was not measured.
+std::string figure_text(const Json& wheel, const char* words, const char* figure, double scale,
+                        const char* unit) {
+  const double mean = number(wheel, std::string(figure) + ".mean");
+  if (!std::isfinite(mean)) return "";
+  const double half = number(wheel, std::string(figure) + ".half_width_95");
+  return fmt::format("{} {} {}", words, with_error(scale * mean, scale * half), unit);
+}
+
+std::string wheel_text(const Json& wheel, int beds, const scenario::Scenario& scenario) {
+  std::vector<std::string> parts;
+  for (const std::string& part : {figure_text(wheel, "drawbar pull", "drawbar_pull_N", 1.0, "N"),
+                                  figure_text(wheel, "sinkage", "sinkage_m", 1e3, "mm"),
+                                  figure_text(wheel, "rut", "rut_depth_m", 1e3, "mm")})
+    if (!part.empty()) parts.push_back(part);
+  std::string text =
+      fmt::format("furrow: {} beds: {} (mean over beds and 95 % interval)\n", beds, fmt::join(parts, ", "));
+  if (const double sd = number(wheel, "drawbar_pull_N.sd"); std::isfinite(sd))
+    text += fmt::format("furrow: from bed to bed the pull varies by {} N (standard deviation)\n", digits(sd));
+  text += expected_text(scenario.expected, beds, number(wheel, "drawbar_pull_N.mean"),
+                        number(wheel, "sinkage_m.mean"), number(wheel, "rut_depth_m.mean"));
+  return text;
+}
+
+std::string joined(const Json& names) {
+  return fmt::format("{}", fmt::join(names.get<std::vector<std::string>>(), ", "));
+}
+
+std::string beds_text(const Json& summary, const scenario::Scenario& scenario) {
+  std::string text;
+  const Json failed = value_at(summary, "failed.beds"), unsteady = value_at(summary, "not_steady");
+  const Json wheels = value_at(summary, "wheels");
+  const auto beds = static_cast<int>(number(summary, "seeds")) - static_cast<int>(failed.size());
+  if (beds < 2) return text;
+  for (std::size_t k = 0; k < wheels.size(); ++k) {
+    if (wheels.size() > 1) text += fmt::format("furrow: wheel {}\n", k);
+    text += wheel_text(wheels[k], beds, scenario);
+  }
+  if (!unsteady.empty())
+    text += fmt::format(
+        "furrow: NOT STEADY on {}; the means are over these beds too (see not_steady and runs in {})\n",
+        joined(unsteady), failed.empty() ? "summary.json" : "summary_failed.json");
+  if (!failed.empty())
+    text += fmt::format("furrow: {} failed; the means are over the other {} beds\n", joined(failed), beds);
+  return text;
+}
+
+ExitCode run_beds_in(const std::filesystem::path& folder, const scenario::Scenario& scenario,
+                     const RunArguments& arguments) {
+  study::Sweep sweep(study::study_of_beds(arguments.scenario, scenario.name, arguments.settings,
+                                          scenario.run.seed, arguments.seeds),
+                     {folder, arguments.jobs});
+  study::begin_beds(folder, scenario.digest, arguments.overwrite);
+  launch::remove_unfinished(folder);
+  launch::catch_stop_signals();
+  std::fprintf(stderr, "furrow: %s on %d beds, results in %s\n", scenario.name.c_str(), arguments.seeds,
+               folder.c_str());
+  const ExitCode code = sweep.run();
+  if (code == ExitCode::stopped) {
+    std::fprintf(stderr, "furrow: stopped by a signal; to continue, run the same command with --out %s\n",
+                 scenario::shell_quoted(folder.string()).c_str());
+    return code;
+  }
+  const Json summary = study::summary_of_beds(scenario, sweep.outcomes());
+  study::write_summary_of_beds(folder, summary);
+  std::fputs(beds_text(summary, scenario).c_str(), stderr);
+  if (arguments.plots) make_report_or_warn(folder);
+  if (code != ExitCode::done)
+    print_error((folder / "summary_failed.json").string() +
+                ": not every bed came to its end: " + value_at(summary, "failed.error").get<std::string>());
+  return code;
+}
+
+}  // namespace
+
+ExitCode run_on_beds(const RunArguments& arguments) {
+  require_options(arguments);
+  const scenario::Scenario scenario = scenario::load_scenario(arguments.scenario, arguments.settings);
+  for (const std::string& warning : scenario.warnings) print_warning(warning);
+  study::require_beds(scenario, arguments.seeds);
+  require_launch(scenario);
+  const launch::RunDirectory directory = arguments.out.empty()
+                                             ? launch::RunDirectory(scenario.name, {}, false)
+                                             : launch::RunDirectory::of_study(arguments.out);
+  const ExitCode code = run_beds_in(directory.path(), scenario, arguments);
+  std::cout << directory.path().string() << "\n";
+  return code;
+}
+
+}  // namespace furrow::commands

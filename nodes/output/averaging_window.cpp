@@ -1,0 +1,77 @@
+#include "nodes/output/averaging_window.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+#include "protocol/core/assert.hpp"
+
+namespace furrow::output {
+namespace {
+
+// At the window's beginning lines may be left out for a whole number of facets: those of one facet, of which this
+// many are always allowed, but this share of the window never lost.
+constexpr std::size_t kLinesLeftOut = 50, kPartLeftOut = 4;
+
+}  // namespace
+
+std::vector<WheelRow> wheel_rows(const Table& table) {
+  std::vector<WheelRow> rows(table.lines());
+  const std::vector<Column> columns = columns_of<WheelRow>();
+  std::vector<std::size_t> places;
+  for (const Column& column : columns) places.push_back(table.find(column.name).value());
+  std::vector<double> values(columns.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (std::size_t c = 0; c < columns.size(); ++c) values[c] = columns[c].sign * table.line(i)[places[c]];
+    set_values(rows[i], values);
+  }
+  return rows;
+}
+
+std::vector<double> Window::samples(std::string_view column) const {
+  if (rows.empty()) return {};
+  std::vector<double> all = table->column(column);
+  all.erase(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min(first, all.size())));
+  return all;
+}
+
+double Window::mean_of(std::string_view column) const {
+  const std::vector<double> values = samples(column);
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return values.empty() ? NAN : sum / static_cast<double>(values.size());
+}
+
+double Window::rate_of(std::string_view column) const {
+  if (rows.empty()) return NAN;
+  const std::vector<double> all = table->column(column);
+  return all.empty() ? 0.0 : (all.back() - all[first - 1]) / duration();
+}
+
+Window averaging_window(const Table& table, std::span<const WheelRow> rows, double from, int facets) {
+  FURROW_ASSERT(facets >= 0 && table.lines() == rows.size(), facets, table.lines(), rows.size());
+  std::size_t first = 1;
+  while (first < rows.size() && rows[first].time < from) ++first;
+  if (first >= rows.size()) return {};
+  const double facet = 2.0 * std::numbers::pi / facets;
+  const double turn_last = std::abs(rows.back().spin) * (rows.back().time - rows[rows.size() - 2].time);
+  const std::size_t part = (rows.size() - first) / kPartLeftOut;
+  const std::size_t of_facet = facet < turn_last * static_cast<double>(part)
+                                   ? static_cast<std::size_t>(std::ceil(facet / turn_last))
+                                   : part;
+  const std::size_t left_out = std::max(kLinesLeftOut, of_facet);
+  double turned = 0.0, least = INFINITY;
+  std::size_t chosen = first;
+  bool whole = false;
+  for (std::size_t start = rows.size() - 1; start >= first; --start) {
+    const double turn = std::abs(rows[start].spin) * (rows[start].time - rows[start - 1].time);
+    turned += turn;
+    const double off = std::abs(std::remainder(turned, facet));
+    if (start >= first + left_out || turned < 0.5 * facet || off >= least) continue;
+    least = off;
+    chosen = start;
+    whole = off <= turn;
+  }
+  return {rows.subspan(chosen), rows[chosen - 1], whole, &table, chosen};
+}
+
+}  // namespace furrow::output

@@ -1,0 +1,56 @@
+// The stretch of a run over which its summary averages.
+#pragma once
+
+#include <cmath>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "nodes/output/table.hpp"
+#include "nodes/output/wheel_row.hpp"
+
+namespace furrow::output {
+
+/// What every wheel's table says, line by line.
+std::vector<WheelRow> wheel_rows(const Table& table);
+
+/// The averaging window: lines from `first` on, whose means describe the time from `before` to the last line. Columns
+/// that the rig adds are asked for by name, those of every wheel by their row.
+struct Window {
+  std::span<const WheelRow> rows;
+  WheelRow before;
+  bool whole_facets = false;
+  const Table* table = nullptr;
+  std::size_t first = 0;
+
+  double duration() const { return rows.empty() ? 0.0 : rows.back().time - before.time; }
+  template <class Get>
+  double mean(Get get) const {
+    double sum = 0.0;
+    for (const WheelRow& row : rows) sum += get(row);
+    return rows.empty() ? NAN : sum / static_cast<double>(rows.size());
+  }
+  template <class Get>
+  double rate(Get get) const {
+    return rows.empty() ? NAN : (get(rows.back()) - get(before)) / duration();
+  }
+  template <class Get>
+  std::vector<double> samples_by(Get get) const {
+    std::vector<double> values;
+    for (const WheelRow& row : rows) values.push_back(get(row));
+    return values;
+  }
+  /// None when the rig has no such column.
+  std::vector<double> samples(std::string_view column) const;
+  /// NaN when the rig has no such column.
+  double mean_of(std::string_view column) const;
+  /// 0 when the rig has no such column.
+  double rate_of(std::string_view column) const;
+};
+
+/// The window from the time `from` to the end of the table, shortened at its beginning to a whole number of facets of
+/// the tire, as far as 50 lines or a quarter of it allow; empty where it holds no line.
+/// @param rows  of the table; they and the table outlive the window
+Window averaging_window(const Table& table, std::span<const WheelRow> rows, double from, int facets);
+
+}  // namespace furrow::output

@@ -1,0 +1,49 @@
+// One scenario on several beds, which differ in the seed of their grains: `furrow run --seeds N`. A run on one bed
+// does not know how much the next bed differs; means over beds do.
+//
+//   <folder>/seed1, seed2, …  the folder of each run, with run.seed, run.seed + 1, …; seed1.log: what it said
+//   <folder>/sweep.csv, sweep.json  as of a study (sweep.hpp)
+//   <folder>/summary.json     the means over beds; summary_failed.json in its place if a run failed
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "nodes/scenario/scenario.hpp"
+#include "nodes/study/sweep.hpp"
+
+namespace furrow::study {
+
+/// @throws Error(bad_input) where a seed makes no difference: no grains, or a bed of the user's own; or where `beds` of
+/// them leave the range of seeds
+void require_beds(const scenario::Scenario& scenario, int beds);
+
+/// Prepares the folder for the beds of this scenario. Those that are there already stay, unless `overwrite`: then all
+/// that furrow wrote into the folder and those of its beds is removed.
+/// @param digest of the scenario on the first bed
+/// @throws Error(bad_input) when it holds another study, or without `overwrite` beds of another scenario
+void begin_beds(const std::filesystem::path& folder, const std::string& digest, bool overwrite);
+
+/// @throws Error(bad_input) when the folder holds beds, which a study would mix with its runs
+void require_no_beds(const std::filesystem::path& folder);
+
+/// Mean of independent values with half of its 95 % interval, Student's t · sd/√n; NaN where one value is too few.
+struct OverBeds {
+  int n = 0;
+  double mean = 0.0, sd = 0.0, half_width = 0.0;
+};
+OverBeds over_beds(std::span<const double> values);
+
+/// What the beds say together, from their summaries: of each wheel and figure `mean`, `sd`, `half_width_95` over the
+/// beds that are done, which beds are not steady, and which failed. Where there is one wheel its figures stand beside
+/// those of the run as well.
+nlohmann::ordered_json summary_of_beds(const scenario::Scenario& scenario,
+                                       std::span<const Sweep::Outcome> beds);
+
+/// Writes it: summary.json, or summary_failed.json where a bed failed. @throws Error(io)
+void write_summary_of_beds(const std::filesystem::path& folder, const nlohmann::ordered_json& summary);
+
+}  // namespace furrow::study

@@ -11,6 +11,8 @@ import sys
 import tempfile
 import time
 
+import provenance
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("FURROW", str(ROOT / "build" / "furrow"))
 STEP = 1e-4  # s
@@ -71,7 +73,8 @@ def main():
         summary = json.loads((out / "summary.json").read_text())
         with open(out / "timeseries.csv", newline="") as file:
             rows = list(csv.DictReader(file))
-    report = {"steps": arguments.steps, "wall_s": summary["wall_s"], "checkpoints": 100, "ranks": []}
+    made = {"commit": provenance.commit(), "compiler": summary["compiler"], "processor": summary["cpu"], "command": provenance.command()}
+    report = {"made": made, "steps": arguments.steps, "wall_s": summary["wall_s"], "checkpoints": 100, "ranks": []}
     grew = False
     for rank, series in sorted(samples.items()):
         half = series[len(series) // 4:]

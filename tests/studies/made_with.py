@@ -22,6 +22,7 @@ def main():
     cut = words.index("--")
     given = dict(word.split("=", 1) for word in words[:cut])
     tables = {variable: value for variable, value in given.items() if value.endswith(".csv")}
+    made = provenance.made_here(words[cut + 1])  # before a table is written, which makes the checkout dirty
     with tempfile.TemporaryDirectory() as name:
         bare = {variable: pathlib.Path(name) / f"{variable}.csv" for variable in tables}
         subprocess.run(words[cut + 1:], check=True, env={**os.environ, **given, **{variable: str(file) for variable, file in bare.items()}})
@@ -29,7 +30,7 @@ def main():
             if not bare[variable].exists():
                 sys.exit(f"{words[cut + 1]}: wrote no file for {variable}")
             with open(table, "w", newline="", encoding="utf-8") as file:
-                provenance.write_header(file, provenance.made_here(words[cut + 1]))
+                provenance.write_header(file, made)
                 file.write(bare[variable].read_text(encoding="utf-8"))
 
 

@@ -8,10 +8,15 @@ somewhere. The figures of the headline run stand in README.md as its scenario st
 names at least one file, and every recipe of CONTRIBUTING.md at most five; what a step names in parentheses is to be
 read, not touched, and does not count.
 
+The tables likewise: every CSV file under tests/, every JSON file of results under tests/studies, tests/benchmarks and
+tests/peers, and what a soil file says was measured, names commit, compiler, processor and command of its making
+(tests/studies/provenance.py), and some page names the file.
+
 usage: scripts/check_docs.py [--root FOLDER] [PAGE ...]
 Prints every mistake as PAGE:LINE and exits with 1 if there is one. Without arguments it reads all pages.
 """
 import argparse
+import fnmatch
 import json
 import pathlib
 import re
@@ -21,6 +26,7 @@ WIDTH = 120
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 CODE = re.compile(r"`([^`]+)`")
 MOST_FILES = 5  # of a recipe
+ORIGIN = ("commit", "compiler", "processor", "command")  # of a table
 TOP = {"nodes", "protocol", "tire", "terrain", "vehicle", "rigs", "tests", "scripts"}
 PATH = re.compile(r"([\w.<>*{},-]+(?:/[\w.<>*{},-]+)+/?)(?::(\d+))?$")
 BARE = re.compile(r"[\w-]+\.(cpp|hpp|py|sh)$")
@@ -151,6 +157,42 @@ def headline_problems(root):
             yield f"does not say '{figure}', which {HEADLINE} expects as {key}"
 
 
+def origin_of_table(text):
+    """{key: value} of the comment lines at the head of a CSV file."""
+    head = [line[1:].strip() for line in text.splitlines() if line.startswith("#")]
+    return dict(line.split(": ", 1) for line in head if ": " in line)
+
+
+def is_study(content):
+    """Of a JSON file: that it says what to run, and holds no results."""
+    return isinstance(content, dict) and isinstance(content.get("scenario"), str) and bool({"cases", "list", "grid"} & content.keys())
+
+
+def tables(root):
+    """(file, origin) of every table that is kept."""
+    for file in sorted((root / "tests").rglob("*.csv")):
+        yield file, origin_of_table(file.read_text())
+    for folder in ("studies", "benchmarks", "peers"):
+        for file in sorted((root / "tests" / folder).rglob("*.json")):
+            content = json.loads(file.read_text())
+            if not is_study(content):
+                yield file, content.get("made", {}) if isinstance(content, dict) else {}
+    for file in sorted((root / "terrain" / "data").glob("*.json")):
+        if measured := json.loads(file.read_text()).get("measured"):
+            yield file, measured.get("made", {})
+
+
+def table_problems(root):
+    text = "".join(page.read_text() for page in pages(root))
+    patterns = re.findall(r"[\w-]+\*\.(?:csv|json)", text)
+    for file, origin in tables(root):
+        missing = [key for key in ORIGIN if not str(origin.get(key, "")).strip()]
+        if missing:
+            yield file, f"does not say with what it was made: expected {', '.join(missing)}"
+        if file.name not in text and not any(fnmatch.fnmatch(file.name, pattern) for pattern in patterns):
+            yield file, "is named on no page"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parent.parent)
@@ -164,6 +206,8 @@ def main():
         found += [f"CONTRIBUTING.md:{number}: {text}" for number, text in recipe_problems(root / "CONTRIBUTING.md")]
     if (root / HEADLINE).exists():
         found += [f"README.md: {text}" for text in headline_problems(root)]
+    if not options.pages:
+        found += [f"{file.relative_to(root)}:1: {text}" for file, text in table_problems(root)]
     print("\n".join(found), end="\n" if found else "")
     return 1 if found else 0
 

@@ -17,9 +17,13 @@ import pathlib
 import re
 import statistics
 import subprocess
+import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests" / "studies"))
+import provenance  # noqa: E402
+
 RADIUS, DENSITY, STEP = 0.006, 2500.0, 4e-5  # m, kg/m³, s
 WARM = 500  # steps before the clock starts
 
@@ -99,7 +103,7 @@ def run_peer(program, tangential, data, ranks, steps, folder):
 
 
 def run_furrow(law, cohesion, precision, bed, threads, steps, *more):
-    command = [os.environ.get("FURROW", ROOT / "build/furrow"), "bench", "grains", "--bed", bed, "--law", law, "--cohesion", str(cohesion), "--precision",
+    command = [provenance.program(), "bench", "grains", "--bed", bed, "--law", law, "--cohesion", str(cohesion), "--precision",
                precision, "--threads", str(threads), "--steps", str(steps), "--warm", str(WARM), *more]
     return json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
 
@@ -136,7 +140,8 @@ def main():
                 print(f"round {k + 1}: {case}: {results[case][-1]['grain_steps_per_s']:.3g} grain-steps/s", flush=True)
     median = {case: statistics.median(r["grain_steps_per_s"] for r in runs) for case, runs in results.items()}
     with open(arguments.out, "w", newline="") as file:
-        out = csv.writer(file)
+        provenance.write_header(file, provenance.made_here())
+        out = csv.writer(file, lineterminator="\n")
         out.writerow(["engine", "threads", "grains", "steps", "rounds", "grain_steps_per_s", "lowest", "highest", "coordination",
                       "list_rebuilds", "bytes_per_grain", "over_LIGGGHTS_no_history", "over_LAMMPS_history"])
         for case, runs in results.items():

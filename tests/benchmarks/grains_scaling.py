@@ -10,7 +10,6 @@ number of threads: the median over rounds.
 import argparse
 import csv
 import json
-import os
 import pathlib
 import statistics
 import subprocess
@@ -18,6 +17,9 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests" / "studies"))
+import provenance  # noqa: E402
+
 METRES = (1, 3, 10, 26, 52)
 WARM = 100  # steps before the clock starts
 
@@ -30,7 +32,7 @@ def write_bed(rows, metres, file):
 
 
 def bench(bed, law, threads, steps):
-    command = [os.environ.get("FURROW", str(ROOT / "build" / "furrow")), "bench", "grains", "--bed", str(bed), "--law", law]
+    command = [provenance.program(), "bench", "grains", "--bed", str(bed), "--law", law]
     command += ["--threads", str(threads), "--steps", str(steps), "--warm", str(WARM)]
     return json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout)
 
@@ -66,10 +68,7 @@ def main():
                              "bytes_per_grain": f"{found[0]['bytes_per_grain']:.4g}"})
                 print(rows[-1], file=sys.stderr, flush=True)
     rows.sort(key=lambda r: (r["law"], r["threads"], r["grains"]))
-    with open(arguments.out, "w", newline="") as file:
-        writer = csv.DictWriter(file, rows[0])
-        writer.writeheader()
-        writer.writerows(rows)
+    provenance.write_table(arguments.out, list(rows[0]), rows, provenance.made_here())
 
 
 if __name__ == "__main__":

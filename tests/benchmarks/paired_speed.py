@@ -40,16 +40,6 @@ def milliseconds(source, words, core):
     return result.get("ms_per_step") or result["median_ms"]
 
 
-def commit(source):
-    return subprocess.run(["git", "-C", source, "describe", "--always", "--dirty", "--abbrev=8", "--exclude=*"],
-                          capture_output=True, text=True, check=True).stdout.strip()
-
-
-def processor():
-    lines = Path("/proc/cpuinfo").read_text().splitlines()
-    return next((line.split(": ", 1)[1] for line in lines if line.startswith("model name")), "unknown")
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("a", type=lambda text: Path(text).resolve(), metavar="SOURCE_A")
@@ -78,8 +68,10 @@ def main():
                   f"{statistics.median(b for _, b in pairs):.4g} ms per step; B/A {math.exp(mean):.4f}, 95 % "
                   f"{math.exp(mean - 1.96 * error):.4f} to {math.exp(mean + 1.96 * error):.4f}, {len(logs)} pairs")
     if arguments.csv:
-        made = {"commit": " and ".join(commit(source) for source in (arguments.a, arguments.b)),
-                "processor": processor(), "command": provenance.command()}
+        sources = (arguments.a, arguments.b)
+        made = {"commit": " and ".join(provenance.commit(source) for source in sources),
+                "compiler": " and ".join(sorted({provenance.compiler_of(source / "build" / "furrow") for source in sources})),
+                "processor": provenance.processor(), "command": provenance.command()}
         columns = ["bench", "pair", "a_ms", "b_ms"]
         provenance.write_table(arguments.csv, columns, [dict(zip(columns, row)) for row in rows], made)
 

@@ -21,7 +21,7 @@ import time
 
 import numpy
 
-from common import (ALL_SWITCHES, BASE, FREE, LID, MASS, RADIUS, random_spheres, run_furrow, run_liggghts)
+from common import (ALL_SWITCHES, BASE, FREE, LID, MASS, RADIUS, random_spheres, record_program, run_furrow, run_liggghts)
 from packing import measure
 
 STEP = 4e-5  # s
@@ -228,6 +228,7 @@ def main():
     a = parser.parse_args()
     a.out = a.out.resolve()
     a.out.mkdir(parents=True, exist_ok=True)
+    record_program(a.out)
     a.engines = [a.engine] if a.engine else ["furrow", "liggghts"]
     rows = Rows(a.out / f"{a.test}.jsonl")
     {"bed": bed, "plate": plate, "shear": shear}[a.test](a, rows)

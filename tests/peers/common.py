@@ -13,7 +13,9 @@ import numpy
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "tests" / "studies")]
+import provenance  # noqa: E402
+
 RADIUS, DENSITY = 0.006, 2500.0  # m, kg/m³
 GRAVITY = 9.81  # m/s²
 MATERIAL = {"radius": RADIUS, "density": DENSITY, "young_modulus": 2.49e7, "poisson_ratio": 0.3, "restitution": 0.2,
@@ -35,6 +37,22 @@ def program(name):
     """A program of the build, or None."""
     path = pathlib.Path(os.environ.get("FURROW_BUILD", ROOT / "build")) / name
     return path if path.exists() else None
+
+
+def record_program(out):
+    """Notes in OUT which program makes what lies there; results of another one are not mixed in."""
+    record, build = out / "made.json", provenance.build_of(program("peer_grains"))
+    if record.exists() and json.loads(record.read_text())["build"] != build:
+        sys.exit(f"{out}: holds results of another build of peer_grains, expected none or this one's")
+    made = {key: value for key, value in provenance.made_here(program("peer_grains")).items() if key != "command"}
+    record.write_text(json.dumps({"build": build, **made}) + "\n")
+
+
+def origin(out):
+    """What a table says that is made of OUT."""
+    record = out / "made.json"
+    made = json.loads(record.read_text()) if record.exists() else {}
+    return {key: made.get(key, provenance.UNKNOWN) for key in ("commit", "compiler", "processor")} | {"command": provenance.command()}
 
 
 def liggghts():

@@ -8,7 +8,6 @@ positions. Shear: the line τ = c + σ tan φ through all tests, intervals from 
 import json
 import math
 import pathlib
-import shutil
 import sys
 
 import matplotlib
@@ -17,7 +16,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy
 
-from common import RADIUS, read_series
+from common import RADIUS, origin, provenance, read_series
 from plot import style  # found by what common adds to the path
 from plot.student import half_interval, student
 
@@ -115,6 +114,7 @@ def law_and_step(folder, to):
     """Shear stress under 100 kPa with cohesion 80 kPa, by tangential law and step: law_and_step.csv."""
     rows = [r for r in rows_of(folder, "shear") if r["cohesion_Pa"] == 80e3 and r["pressure_Pa"] == 100e3]
     with open(to / "law_and_step.csv", "w") as out:
+        provenance.write_header(out, origin(folder))
         out.write("engine,step_us,seeds," + ",".join(f"tau_{v:g}_m_per_s_kPa,ci95" for v in SPEEDS) + ",lid_sinks_mm,ci95\n")
         for engine, step in sorted({(r["engine"], r["step_s"]) for r in rows}):
             mine = [r for r in rows if (r["engine"], r["step_s"]) == (engine, step)]
@@ -196,8 +196,10 @@ def main():
         sys.exit(f"table.py: {folder}: no such folder, expected what bulk.py left")
     to = pathlib.Path(sys.argv[2]) if len(sys.argv) > 2 else pathlib.Path(__file__).resolve().parent
     table = [row for part in (bed_rows, plate_rows, shear_rows) for row in part(folder) if row]
-    (to / "bulk.json").write_text(json.dumps([{k: row[k] for k in COLUMNS} for row in table], indent=0, ensure_ascii=False) + "\n")
+    rows = [{k: row[k] for k in COLUMNS} for row in table]
+    (to / "bulk.json").write_text(json.dumps({"made": origin(folder), "rows": rows}, indent=0, ensure_ascii=False) + "\n")
     with open(to / "bulk.csv", "w") as out:
+        provenance.write_header(out, origin(folder))
         out.write(",".join(COLUMNS) + "\n")
         for row in table:
             out.write(",".join("" if row[k] is None else f'"{row[k]}"' if isinstance(row[k], str) else f"{row[k]:.4g}" for k in COLUMNS) + "\n")
@@ -212,7 +214,8 @@ def main():
     law_and_step(folder, to)
     if (folder / "trajectories.csv").exists():
         plot_trajectories(folder, to)
-        shutil.copyfile(folder / "trajectories.json", to / "trajectories.json")
+        facts = json.loads((folder / "trajectories.json").read_text())
+        (to / "trajectories.json").write_text(json.dumps({"made": origin(folder), **facts}, indent=1) + "\n")
     if rows_of(folder, "plate"):
         plot_plate(folder, to)
     if rows_of(folder, "shear"):

@@ -17,7 +17,7 @@ import pathlib
 
 import numpy
 
-from common import (ALL_SWITCHES, FREE, RADIUS, SWITCHES, folder_name, program, random_spheres, run_furrow, run_liggghts)
+from common import (ALL_SWITCHES, FREE, RADIUS, SWITCHES, folder_name, program, random_spheres, record_program, run_furrow, run_liggghts)
 
 SIDE = 20 * RADIUS  # m, periodic
 FILL = 0.28  # share of the space that the spheres take at the start
@@ -40,6 +40,8 @@ def main():
     parser.add_argument("--frames", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
     a = parser.parse_args()
+    a.out.mkdir(parents=True, exist_ok=True)
+    record_program(a.out)
     height = a.grains * 4.0 / 3.0 * numpy.pi * RADIUS**3 / (FILL * SIDE * SIDE)
     x = random_spheres(a.grains, SIDE, SIDE, 1.5 * RADIUS, 1.5 * RADIUS + height, a.seed)
     kinds = [FREE] * a.grains

@@ -2,13 +2,12 @@
 """Static footprints and load–deflection curves of the layered and the lumped tire from folders of `furrow press`:
 footprints.csv (one line a case), footprints_curves.csv, footprints_pressure.csv (pressure maps) and footprints.png beside it.
 
-    for each tire, mesh and obstacle:
-    build/furrow press rigs/rigid_ground.json --set tire.file=hmmwv_lumped.json --set tire.elements_circumference=90 \\
-        --set tire.elements_width=24 --on plate --out results/press/lumped_90x24_plate
-    /usr/bin/python3 tests/studies/footprints.py
+usage: footprints.py [--run]     --run presses first what this build of the program has not pressed yet (see CASES)
 """
+import argparse
 import json
 import pathlib
+import subprocess
 import sys
 
 import matplotlib
@@ -28,7 +27,31 @@ KEYS = ("obstacle", "inflation_growth_m", "runout_m", "load_N", "deflection_m", 
         "loading_unloading_difference", "max_residual", "creep_steps", "failed_factorizations", "statically_stable", "wall_s")
 FOOT = ("deflection_m", "force_N", "length_m", "width_m", "area_m2", "mean_pressure_Pa", "max_pressure_Pa")
 
+PLATE, FINE = ("--deflection", "0.015", "--points", "5"), ("--deflection", "0.0135", "--points", "9")
+CLEAT = ("--cleat-height", "0.02", "--cleat-width", "0.02", "--deflection", "0.016", "--points", "8")
+LOW = ("--set", "tire.pressure=20e3")
+CASES = {  # folder, whose name is TIRE_MESH_OBSTACLE: more words for `furrow press`
+    **{f"lumped_{mesh}_plate": PLATE for mesh in ("45x12", "60x12", "90x24", "180x48")},
+    **{f"layered_{mesh}_plate": FINE for mesh in ("60x12", "90x24")},
+    "layered_180x48_plate": ("--deflection", "0.0135", "--points", "6"),
+    "lumped_90x24_cleat": CLEAT,
+    "layered_90x24_cleat": CLEAT,
+    "layered-20kPa-4mm_90x24_plate": (*LOW, "--deflection", "0.004", "--points", "4", "--load", "300"),
+    "layered-20kPa_90x24_plate": (*LOW, "--deflection", "0.0135", "--points", "6", "--load", "500"),
+}
 MAPS = ("lumped_90x24_plate", "lumped_180x48_plate", "layered_90x24_plate", "layered_180x48_plate")
+
+
+def press(name, words):
+    """Presses a tire unless this build of the program has done so."""
+    folder, (tire, mesh, obstacle) = RESULTS / name, name.split("_")
+    if provenance.read_json(folder / provenance.RECORD).get("build") == provenance.build_of(provenance.program()):
+        return
+    around, across = mesh.split("x")
+    subprocess.run([provenance.program(), "press", str(ROOT / "rigs" / "rigid_ground.json"),
+                    "--set", f"tire.file=hmmwv_{tire.split('-')[0]}.json", "--set", f"tire.elements_circumference={around}",
+                    "--set", f"tire.elements_width={across}", "--on", obstacle, "--out", str(folder), "--overwrite", *words], check=True)
+    provenance.record_run(folder)
 
 
 def table(file):
@@ -96,6 +119,11 @@ def write(name, made, columns, rows):
 
 
 def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--run", action="store_true")
+    if parser.parse_args().run:
+        for name, words in CASES.items():
+            press(name, words)
     cases = {folder.name: json.loads((folder / "summary.json").read_text())
              for folder in sorted(RESULTS.iterdir()) if (folder / "summary.json").exists()}
     plates = [name for name in cases if name.endswith("plate")]

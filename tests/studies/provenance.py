@@ -1,10 +1,14 @@
-"""Where the numbers of a table come from: a study's CSV file begins with comment lines that name the program, its compiler, the
-processor and the command. Readers of these tables skip them: read_table().
+"""Where the numbers of a table come from: a committed CSV file begins with comment lines that name the program, its compiler,
+the processor and the command that makes the table anew. Readers of these tables skip them: read_table().
 
     # commit: 1a2b3c4d
     # compiler: g++ 12.2.0
     # processor: AMD EPYC 7763 64-Core Processor
     # command: run_study.py behaviour.json
+    # made before: ffb94a1, what sleeps follows the load          (only where the program of today would give other bits)
+    # note: what else has to be known
+
+A committed JSON file of results has an object `made` with the same keys. scripts/check_docs.py checks both.
 """
 import csv
 import hashlib
@@ -15,7 +19,8 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-NOT_RECORDED = "not recorded"
+KEYS = ("commit", "compiler", "processor", "command")
+UNKNOWN = "unknown (before provenance was written)"
 RECORD = "case.json"  # beside the summary of a run: build and commit of the program that made it
 
 
@@ -29,15 +34,40 @@ def build_of(file):
     return hashlib.sha256(pathlib.Path(file).read_bytes()).hexdigest()[:16]
 
 
-def commit():
+def commit(folder=ROOT):
     """The commit of the sources, with -dirty where files differ from it."""
-    done = subprocess.run(["git", "describe", "--always", "--dirty", "--abbrev=8", "--exclude=*"], cwd=ROOT, capture_output=True, text=True)
-    return done.stdout.strip() if done.returncode == 0 else NOT_RECORDED
+    done = subprocess.run(["git", "describe", "--always", "--dirty", "--abbrev=8", "--exclude=*"], cwd=folder, capture_output=True,
+                          text=True)
+    if done.returncode != 0:
+        sys.exit(f"{folder}: is no checkout of git, expected one: a table names the commit of its program")
+    return done.stdout.strip()
+
+
+def compiler_of(file):
+    """The compiler of a program, from the cache of the CMake build folder that it lies in."""
+    for folder in pathlib.Path(file).resolve().parents:
+        cache = folder / "CMakeCache.txt"
+        if cache.exists():
+            found = next(line.split("=", 1)[1] for line in cache.read_text().splitlines() if line.startswith("CMAKE_CXX_COMPILER:"))
+            version = subprocess.run([found, "-dumpfullversion", "-dumpversion"], capture_output=True, text=True, check=True)
+            return f"{pathlib.Path(found).name} {version.stdout.strip()}".replace("c++ ", "g++ ")
+    sys.exit(f"{file}: lies in no build folder of CMake, expected one: a table names the compiler of its program")
+
+
+def processor():
+    lines = pathlib.Path("/proc/cpuinfo").read_text().splitlines()
+    return next((line.split(": ", 1)[1] for line in lines if line.startswith("model name")), "unknown")
 
 
 def command():
     """Of the running script."""
     return " ".join([pathlib.Path(sys.argv[0]).name, *sys.argv[1:]])
+
+
+def made_here(of=None):
+    """What the leading lines say of a table that the running script makes now with one program."""
+    of = of or program()
+    return {"commit": commit(), "compiler": compiler_of(of), "processor": processor(), "command": command()}
 
 
 def read_json(path):
@@ -46,28 +76,48 @@ def read_json(path):
 
 def record_run(folder):
     """Notes in the folder of a run which program has made it, just now."""
-    (folder / RECORD).write_text(json.dumps({"build": build_of(program()), "commit": commit()}) + "\n", encoding="utf-8")
+    record = {"build": build_of(program()), "commit": commit()}
+    if "compiler" not in read_json(folder / "summary.json"):  # of `furrow press`
+        record |= {"compiler": compiler_of(program()), "cpu": processor()}
+    (folder / RECORD).write_text(json.dumps(record) + "\n", encoding="utf-8")
 
 
 def origin_of_runs(folders):
-    """What the leading lines say of a table that the running script makes of these runs."""
-    summaries = [read_json(folder / "summary.json") for folder in folders]
+    """What the leading lines say of a table that the running script makes of these runs. Runs of different programs are
+    refused: they belong in tables of their own."""
+    folders = list(folders)
+    records = [read_json(folder / RECORD) for folder in folders]
+    summaries = [{**record, **read_json(folder / "summary.json")} for folder, record in zip(folders, records)]
 
-    def of_all(values):
-        return ", ".join(sorted({str(value or NOT_RECORDED) for value in values})) or NOT_RECORDED
+    def one(what, values):
+        groups = {}
+        for folder, value in zip(folders, values):
+            groups.setdefault(value, []).append(folder.name)
+        if None in groups:
+            sys.exit(f"{groups[None][0]}: names no {what}, expected the {RECORD} and summary.json of a run by the scripts here")
+        if len(groups) > 1:
+            told = "; ".join(f"{value}: {', '.join(names)}" for value, names in groups.items())
+            sys.exit(f"a table holds runs of one {what}, these are of {len(groups)}: {told}")
+        return next(iter(groups))
 
-    return {"commit": of_all(read_json(folder / RECORD).get("commit") for folder in folders),
-            "compiler": of_all(summary.get("compiler") for summary in summaries),
-            "processor": of_all(summary.get("cpu") for summary in summaries),
+    one("build of the program", [record.get("build") for record in records])
+    return {"commit": ", ".join(sorted({record["commit"] for record in records})),  # one build, whatever else was committed
+            "compiler": one("compiler", [summary.get("compiler") for summary in summaries]),
+            "processor": one("processor", [summary.get("cpu") for summary in summaries]),
             "command": command()}
 
 
+def write_header(file, made):
+    """`file` is open as text that leaves line ends alone."""
+    for key, value in made.items():
+        file.write(f"# {key}: {value}\n")
+
+
 def write_table(path, columns, rows, made):
-    """Writes `rows`, dictionaries, below comment lines, as of origin_of_runs()."""
+    """Writes `rows`, dictionaries, below comment lines, as of origin_of_runs() or made_here()."""
     with open(path, "w", newline="", encoding="utf-8") as file:
-        for key, value in made.items():
-            file.write(f"# {key}: {value}\r\n")
-        writer = csv.DictWriter(file, columns)
+        write_header(file, made)
+        writer = csv.DictWriter(file, columns, lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
 

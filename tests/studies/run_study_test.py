@@ -115,6 +115,29 @@ class Tables(unittest.TestCase):
             for row in rows:
                 self.assertNotIn(None, row, path.name)
 
+    def test_runs_of_different_programs_are_refused(self):
+        with tempfile.TemporaryDirectory() as name:
+            runs = [pathlib.Path(name) / run for run in ("first", "second")]
+            for run in runs:
+                run.mkdir()
+                (run / "summary.json").write_text(json.dumps({"compiler": "g++ 12.2.0", "cpu": "a processor"}))
+                (run / provenance.RECORD).write_text(json.dumps({"build": "b", "commit": "1a2b3c4d"}))
+            self.assertEqual(provenance.origin_of_runs(runs)["commit"], "1a2b3c4d")
+            for file, key, value in ((provenance.RECORD, "build", "another"), ("summary.json", "cpu", "another"),
+                                     ("summary.json", "compiler", None), (provenance.RECORD, "build", None)):
+                before = (runs[1] / file).read_text()
+                (runs[1] / file).write_text(json.dumps({k: v for k, v in {**json.loads(before), key: value}.items() if v}))
+                with self.assertRaises(SystemExit) as refused:
+                    provenance.origin_of_runs(runs)
+                self.assertIn("second", str(refused.exception))
+                (runs[1] / file).write_text(before)
+
+    def test_what_is_pooled_is_what_the_tables_hold(self):
+        with tempfile.TemporaryDirectory() as name:
+            again = pathlib.Path(name) / "pooled.csv"
+            subprocess.run([sys.executable, HERE / "pooled.py", "--out", again], check=True, stdout=subprocess.DEVNULL)
+            self.assertEqual(provenance.read_table(again), provenance.read_table(HERE / "pooled.csv"))
+
 
 if __name__ == "__main__":
     unittest.main(verbosity=2)

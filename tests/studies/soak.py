@@ -174,7 +174,8 @@ def run_study(scale, folder, every):
     samples, _, wall = watch([PROGRAM, "sweep", str(study), "--out", str(out)], str(folder / "nobody"), out, every)
     begin = time.monotonic()
     again = subprocess.run([PROGRAM, "sweep", str(study), "--out", str(out)], capture_output=True, text=True)
-    report = {"runs": len((out / "sweep.csv").read_text().splitlines()) - 1, "wall_s": round(wall, 1),
+    summary = json.loads(next(out.glob("runs/*/summary.json")).read_text())
+    report = {"compiler": summary["compiler"], "processor": summary["cpu"], "runs": len((out / "sweep.csv").read_text().splitlines()) - 1, "wall_s": round(wall, 1),
               "again_wall_s": round(time.monotonic() - begin, 1), "again_exit_code": again.returncode, "processes": []}
     judge(report, samples, [])
     return report
@@ -202,11 +203,13 @@ def main():
         if not arguments.keep:
             shutil.rmtree(folder, ignore_errors=True)
     report["scale"] = arguments.scale
-    report.update(commit=provenance.commit(), build=provenance.build_of(PROGRAM), command=provenance.command())
+    report["made"] = {"commit": provenance.commit(), "compiler": report.pop("compiler"), "processor": report.pop("processor"),
+                      "command": provenance.command()}
     print(json.dumps(report, indent=1))
     if arguments.json:
         reports = json.loads(arguments.json.read_text()) if arguments.json.exists() else {}
         reports[arguments.case] = report
+        reports["made"] = {**report["made"], "command": "soak.py CASE --json FILE"}
         arguments.json.write_text(json.dumps(reports, indent=1) + "\n")
     return 1 if report["grew"] else 0
 

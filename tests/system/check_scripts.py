@@ -82,6 +82,22 @@ class Docs(Check):
         self.assertIn("names file 6 of 'Add a thing'",
                       self.told(CONTRIBUTING_dot_md=recipe + "   and `tire/f.cpp`\n", **files))
 
+    def test_tables_that_do_not_say_with_what_they_were_made(self):
+        head = "# commit: 1a2b3c4d\n# compiler: g++ 12.2.0\n# processor: a processor\n# command: run_study.py a.json\n"
+        made = '{"commit": "1a2b3c4d", "compiler": "g++ 12.2.0", "processor": "a processor", "command": "soak.py"}'
+        page = {"A_dot_md": "a.csv b.json soil.json"}
+        table, results, soil = "tests__x__a_dot_csv", "tests__studies__b_dot_json", "terrain__data__soil_dot_json"
+        self.assertEqual(self.told(**page, **{table: head + "x\n1\n", results: f'{{"made": {made}, "x": 1}}',
+                                              soil: f'{{"measured": {{"made": {made}}}}}'}), "")
+        self.assertIn("tests/x/a.csv:1: does not say with what it was made: expected processor",
+                      self.told(**page, **{table: head.replace("# processor: a processor\n", "") + "x\n1\n"}))
+        self.assertIn("tests/x/a.csv:1: does not say with what it was made: expected command",
+                      self.told(**page, **{table: head.replace(": run_study.py a.json", ":") + "x\n1\n"}))
+        self.assertIn("tests/studies/b.json:1: does not say", self.told(**page, **{results: '{"x": 1}'}))
+        self.assertIn("terrain/data/soil.json:1: does not say", self.told(**page, **{soil: '{"measured": {"n": 1}}'}))
+        self.assertEqual(self.told(**{results: '{"scenario": "a.json", "cases": {}}'}), "")
+        self.assertIn("tests/x/a.csv:1: is named on no page", self.told(**{table: head + "x\n1\n"}))
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -126,9 +126,11 @@ pull=$(grep -hA1 '"drawbar_pull_N"' "$system$checkout"/results/drawbar_pull_smal
 pull_mean=$(sed -n 's/.*"mean": *\([-0-9.e+]*\).*/\1/p' <<<"$pull")
 
 within() { awk -v s="$1" -v budget="$2" 'BEGIN {exit !(s <= budget)}' && echo true || echo false; }
+compiler=$(sed -n 's/.*"compiler": *"\([^"]*\)".*/\1/p' "$system$checkout"/results/drawbar_pull_small*/summary.json | head -n 1)
+processor=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)
 cat <<JSON
 {
-  "commit": "$commit",
+  "made": {"commit": "$commit", "compiler": "$compiler", "processor": "$processor", "command": "tests/system/fresh_debian.sh"},
   "cores": $(nproc),
   "packages": {"before": $packages_before, "added": $((packages - packages_before))},
   "installed_MB": {"before": $mb_before, "added": $((mb - mb_before))},

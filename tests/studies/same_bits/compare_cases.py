@@ -17,6 +17,9 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+import provenance  # noqa: E402
+
 # ---- what may be named differently; the right side is the common name -----------------------------------------------
 FILE_ALIASES = [  # of a path relative to the run's folder; all are applied, in order
     (r"(?:^|.*/)wheel_?(\d+)/(timeseries|summary)\.(csv|json)$", r"\2_wheel\1.\3"),  # a folder per wheel
@@ -314,7 +317,11 @@ def main():
         print(f"{row.name:24s} | {c['columns']:7d} | {c['frames']:6d} | {c['values']:6d} | {c['arrays']:6d} | "
               f"{c['state']:5d} | {verdict}")
     if arguments.csv:
+        both = [json.loads((x / "times.json").read_text()).get("made", {}) for x in (a, b)]
+        made = {key: " and ".join(one.get(key, provenance.UNKNOWN) for one in both) for key in ("commit", "compiler", "processor")}
+        made["command"] = provenance.command()
         with open(arguments.csv, "w", newline="") as out:
+            provenance.write_header(out, made)
             table = csv.writer(out, lineterminator="\n")
             table.writerow(["case", *rows[0].counts, "differences", "first_difference"])
             for row in rows:

@@ -15,6 +15,9 @@ import sys
 import time
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+import provenance  # noqa: E402
+
 MARK = "times.json"
 
 
@@ -147,6 +150,8 @@ def main():
     out.mkdir(parents=True, exist_ok=True)
     times = json.loads((out / MARK).read_text()) if (out / MARK).exists() else {"cases": {}}
     times["program"] = str(maker.program)
+    times["made"] = {"commit": provenance.commit(maker.source), "compiler": provenance.compiler_of(maker.program),
+                     "processor": provenance.processor()}
     (out / MARK).write_text(json.dumps(times, indent=2) + "\n")
 
     failed = []

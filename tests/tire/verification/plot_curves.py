@@ -29,7 +29,7 @@ def curves():
     """case → curve → list of (load, deflection, reference or None)."""
     cases = {}
     with open(HERE / "curves.csv") as file:
-        for row in csv.DictReader(file):
+        for row in csv.DictReader(line for line in file if not line.startswith("#")):
             points = cases.setdefault(row["case"], {}).setdefault(row["curve"], [])
             points.append((float(row["load"]), float(row["deflection"]),
                            float(row["reference"]) if row["reference"] else None))

@@ -5,7 +5,6 @@
 
 #include "protocol/core/constants.hpp"
 #include "protocol/core/error.hpp"
-#include "tests/vehicle/hmmwv.hpp"
 #include "tests/vehicle/planar.hpp"
 
 using namespace furrow;
@@ -110,20 +109,4 @@ TEST(Rack, steers_an_upright_by_the_law_of_cosines_and_carries_its_torque) {
   }
   const double slope = (angle_at(0.06 + 1e-6) - angle_at(0.06 - 1e-6)) / 2e-6;
   EXPECT_NEAR(system.motor_force(motor), -torque * slope, 1e-6);
-}
-
-// 19 bodies with 100 rows and no redundancy leave 14 freedoms: 6 of the chassis, 4 wheels that bounce and 4 that spin.
-TEST(Suspension, hmmwv_with_pitman_arm_has_19_bodies_100_rows_and_14_freedoms_and_does_not_drift) {
-  Hmmwv hmmwv;
-  vehicle::System& system = hmmwv.system;
-  EXPECT_EQ(system.body_count(), 19);
-  EXPECT_EQ(system.constraint_count(), 100);
-  EXPECT_EQ(system.redundant_count(), 0);
-  EXPECT_EQ(6 * system.body_count() - system.constraint_count(), 14);
-  double worst = 0.0;
-  for (int i = 0; i < 2000; ++i) {
-    ASSERT_TRUE(system.step(1e-3).ok);
-    worst = std::max(worst, system.max_violation());
-  }
-  EXPECT_LT(worst, 1e-11);
 }

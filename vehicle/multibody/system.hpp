@@ -129,11 +129,29 @@ class System {
     FURROW_ASSERT(in_range(index, rates_.shafts().size()), index, rates_.shafts().size());
     return rates_.shafts()[index];
   }
+  int shaft_count() const { return static_cast<int>(rates_.shafts().size()); }
+  int rate_row_count() const { return rates_.row_count(); }
   const RateRow& rate_row(int row) const { return rates_.row(row); }
   const RateControl& rate_control(int row) const { return rates_.control(row); }
   const RateState& rate_state(int row) const { return rates_.state(row); }
   /// u of a row now, rad/s.
   double rate_speed(int row) const;
+
+  // What statics.hpp needs.
+  const Vec3& gravity() const { return gravity_; }
+  Pose pose(int body) const;
+  const Row& constraint_row(int row) const {
+    FURROW_ASSERT(in_range(row, constraint_rows_.size()), row, constraint_rows_.size());
+    return constraint_rows_[row];
+  }
+  /// Value and rate that a constraint row must have at a time, s.
+  Motion target(int row, double time) const;
+  std::string row_name(int row) const;
+  int element_count() const { return static_cast<int>(elements_.size()); }
+  const ForceElement& element(int index) const {
+    FURROW_ASSERT(in_range(index, elements_.size()), index, elements_.size());
+    return elements_[index];
+  }
 
   /// Value and rate of a joint's free coordinate now (angles in (−π, π]).
   Motion coordinate(int joint) const;
@@ -162,8 +180,6 @@ class System {
     double last_force = 0.0;
   };
 
-  Pose pose(int body) const;
-  Motion target(int row, double time) const;
   double rate(int row) const;  // G v of a row with the present velocities
   void prepare();              // symbolic analysis and storage, when the topology changed
   void update_jacobians();     // of all rows, at the present poses
@@ -196,7 +212,6 @@ class System {
   void save_drives(Archive& archive) const;  // writes nothing where there is none of them
   void restore_drives(const Archive& archive);
   Outcome check_finite() const;
-  std::string row_name(int row) const;
   Outcome failure(const std::string& what, int row, double residual) const;
 
   Vec3 gravity_;

@@ -1,0 +1,297 @@
+// Vehicle files: what is shipped follows the schema, the schema has the keys of the specs, and every mistake names file,
+// key and what was expected.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "protocol/core/error.hpp"
+#include "tests/protocol/fields_of.hpp"
+#include "tests/vehicle/schema_check.hpp"
+#include "tests/vehicle/shipped.hpp"
+#include "vehicle/spec/read_vehicle.hpp"
+
+using namespace furrow;
+using namespace furrow::testing;
+using nlohmann::json;
+
+namespace {
+
+const std::vector<std::string> kShipped{"hmmwv.json", "hmmwv_tr.json", "buggy.json", "rover.json"};
+
+std::string complaint(const json& document) {
+  try {
+    vehicle::read_vehicle(document, "car.json");
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::bad_input);
+    const std::string what = error.what();
+    EXPECT_TRUE(what.starts_with("car.json: ")) << what;
+    return what.substr(10);
+  }
+  return "no error";
+}
+
+/// The complaint about a shipped file with one value changed; null takes the key away.
+std::string changed(const std::string& file, const std::string& pointer, const json& value) {
+  json document = shipped_text(file);
+  const json::json_pointer at(pointer);
+  if (!value.is_null()) {
+    document[at] = value;
+    return complaint(document);
+  }
+  document.at(at.parent_pointer()).erase(at.back());
+  return complaint(document);
+}
+
+template <class T>
+void expect_keys(const json& definition, const std::string& name, std::set<std::string> besides = {}) {
+  std::set<std::string> in_schema, in_spec = std::move(besides), required, must;
+  for (const auto& [key, value] : definition["properties"].items()) {
+    in_schema.insert(key);
+    EXPECT_TRUE(value.contains("description") || value.contains("$ref")) << name << "." << key;
+  }
+  for (const json& key : definition["required"])
+    if (key != "type") required.insert(key.get<std::string>());
+  const T defaults{};
+  visit_fields(
+      [&](const Field& field, const auto& value) {
+        in_spec.insert(field.name);
+        if constexpr (requires { value.has_value(); }) return;
+        if (!field.is(vehicle::kMayMiss)) must.insert(field.name);
+        using Value = std::decay_t<decltype(value)>;
+        if constexpr (std::is_arithmetic_v<Value>) {
+          if (!field.is(vehicle::kMayMiss)) return;
+          const json& node = definition["properties"][field.name];
+          EXPECT_EQ(node["default"].get<Value>(), value) << name << "." << field.name;
+        }
+      },
+      defaults);
+  EXPECT_EQ(in_schema, in_spec) << name;
+  EXPECT_EQ(required, must) << name;
+}
+
+}  // namespace
+
+TEST(VehicleFile, shipped_vehicles_follow_the_schema_and_are_read) {
+  const json schema = shipped_text("vehicle.schema.json");
+  for (const std::string& name : kShipped) {
+    EXPECT_EQ(SchemaCheck(schema).complaint(shipped_text(name)), "") << name;
+    EXPECT_NO_THROW(shipped(name)) << name;
+    EXPECT_FALSE(shipped(name).name.empty());
+  }
+}
+
+TEST(VehicleFile, the_schema_has_the_keys_of_the_specs_and_their_defaults) {
+  using namespace vehicle;
+  const json all = shipped_text("vehicle.schema.json")["definitions"];
+  expect_keys<BodySpec>(all["body"], "body");
+  expect_keys<SpindleSpec>(all["spindle"], "spindle");
+  expect_keys<ArmSpec>(all["arm"], "arm");
+  expect_keys<TieRodSpec>(all["tie_rod"], "tie_rod");
+  expect_keys<StopSpec>(all["stop"], "stop");
+  expect_keys<SpringSpec>(all["spring"], "spring");
+  expect_keys<OuterShockSpec>(all["outer_shock"], "outer_shock");
+  expect_keys<ShockSpec>(all["shock"], "shock");
+  expect_keys<DoubleWishboneSpec>(all["double_wishbone"], "double_wishbone", {"type"});
+  expect_keys<TrailingArmSpec>(all["trailing_arm"], "trailing_arm", {"type"});
+  expect_keys<LinkSpec>(all["link"], "link");
+  expect_keys<RigidAxleSpec>(all["rigid_axle"], "rigid_axle", {"type"});
+  expect_keys<FixedSpec>(all["fixed"], "fixed", {"type"});
+  expect_keys<WheelSpec>(all["wheel"], "wheel");
+  expect_keys<BrakeSpec>(all["brake"], "brake");
+  expect_keys<PitmanArmSpec>(all["pitman_arm"], "pitman_arm", {"type"});
+  expect_keys<RackSpec>(all["rack"], "rack", {"type"});
+  expect_keys<ShaftSpec>(all["shaft"], "shaft");
+  expect_keys<EngineSpec>(all["engine"], "engine");
+  expect_keys<ConverterSpec>(all["converter"], "converter");
+  expect_keys<ClutchSpec>(all["clutch"], "clutch");
+  expect_keys<GearboxSpec>(all["gearbox"], "gearbox");
+  expect_keys<GearSpec>(all["gear"], "gear");
+  expect_keys<DifferentialSpec>(all["differential"], "differential");
+  expect_keys<WheelShaftSpec>(all["wheel_shaft"], "wheel_shaft");
+  expect_keys<MotorSpec>(all["motor"], "motor");
+  expect_keys<DrivelineSpec>(all["driveline"], "driveline");
+  EXPECT_EQ(names_of<SpringSpec>().size(), member_count<SpringSpec>());
+  EXPECT_EQ(names_of<DrivelineSpec>().size(), member_count<DrivelineSpec>());
+}
+
+TEST(VehicleFile, the_right_side_is_the_mirror_image_unless_the_file_says_otherwise) {
+  const vehicle::VehicleSpec car = shipped("hmmwv.json");
+  const auto& left = std::get<vehicle::DoubleWishboneSpec>(car.axles[0].corners[0].suspension);
+  const auto& right = std::get<vehicle::DoubleWishboneSpec>(car.axles[0].corners[1].suspension);
+  EXPECT_EQ(left.upper_arm.upright, Vec3(1.688965 - 0.053, 0.716, 0.215));
+  EXPECT_EQ(right.upper_arm.upright, Vec3(1.688965 - 0.053, -0.716, 0.215));
+  json text = shipped_text("hmmwv.json");
+  text["axles"][1]["right"]["wheel"] = text["axles"][1]["wheel"];
+  text["axles"][1]["right"]["wheel"]["tire"] = "other.json";
+  text["axles"][1]["right"]["brake"] = nullptr;
+  const vehicle::VehicleSpec odd = vehicle::read_vehicle(text, "car.json");
+  EXPECT_EQ(odd.axles[1].corners[0].wheel.tire, "hmmwv_layered.json");
+  EXPECT_EQ(odd.axles[1].corners[1].wheel.tire, "other.json");
+  EXPECT_FALSE(odd.axles[1].corners[1].brake.has_value());
+  // Products of inertia change their sign where y is one of the two axes.
+  vehicle::BodySpec body;
+  body.inertia << 3, 0.1, 0.2, 0.1, 3, 0.3, 0.2, 0.3, 3;
+  const Mat3 image = vehicle::mirrored(body).inertia;
+  EXPECT_EQ(image(0, 1), -0.1);
+  EXPECT_EQ(image(2, 1), -0.3);
+  EXPECT_EQ(image(0, 2), 0.2);
+}
+
+TEST(VehicleFile, mistakes_in_bodies_and_suspensions_name_their_key) {
+  const auto h = [](const char* pointer, const json& value) { return changed("hmmwv.json", pointer, value); };
+  const std::string s = "/axles/0/suspension";
+  EXPECT_EQ(h("/chassis/mass", -5), "key 'chassis.mass': is -5, expected a number above zero");
+  EXPECT_EQ(h("/chassis/inertia", {1, 2}),
+            "key 'chassis.inertia': has 2 values, expected 3 (xx, yy, zz) or 6 (xx, yy, zz, xy, xz, yz)");
+  EXPECT_EQ(h("/chassis/inertia", {1, 2, 4}),
+            "key 'chassis.inertia': has the principal moments 1, 2, 4, expected none larger than the sum of "
+            "the other two");
+  EXPECT_EQ(h("/chassis/inertia", {1, 1, 1, 2, 0, 0}),
+            "key 'chassis.inertia': has the principal moment -1, expected positive ones");
+  EXPECT_EQ(h("/chasis", json::object()), "key 'chasis': is unknown, expected 'chassis'?");
+  EXPECT_EQ(h("/format_version", 2),
+            "key 'format_version': is 2: the file is newer than this program, expected at most 1");
+  EXPECT_EQ(h("/axles", json::array()), "key 'axles': has 0 entries, expected 1 to 16 axles");
+  EXPECT_EQ(h("/axles/1/name", "front"), "key 'axles[1].name': 'front' is taken, expected another name");
+  EXPECT_EQ(h("/axles/0/wheel", nullptr), "key 'axles[0].wheel': is missing, expected an object { }");
+  EXPECT_EQ(h("/axles/0/wheel/tire", nullptr), "key 'axles[0].wheel.tire': is missing, expected a text");
+  EXPECT_EQ(h("/axles/0/brake/torque", 0), "key 'axles[0].brake.torque': is 0, expected a number above zero");
+  EXPECT_EQ(h((s + "/type").c_str(), "mcpherson"),
+            "key 'axles[0].suspension.type': is 'mcpherson', expected 'double_wishbone', 'trailing_arm', "
+            "'rigid_axle' or 'fixed'");
+  EXPECT_EQ(h((s + "/spindle/center").c_str(), {0, -0.9, 0}),
+            "key 'axles[0].suspension.spindle.center': lies at y = -0.9, expected a point on the left");
+  EXPECT_EQ(h((s + "/upright/center_of_mass").c_str(), {0, 0.7}),
+            "key 'axles[0].suspension.upright.center_of_mass': has 2 values, expected 3");
+  EXPECT_EQ(h((s + "/lower_arm/chassis_back").c_str(), {0.223, 0.307, 0}),
+            "key 'axles[0].suspension.lower_arm.chassis_back': is the point of "
+            "axles[0].suspension.lower_arm.chassis_front, expected another one");
+  EXPECT_EQ(h((s + "/lower_arm/upright").c_str(), {0, 0.307, 0}),
+            "key 'axles[0].suspension.lower_arm.upright': lies on the hinge, expected a point beside it");
+  EXPECT_EQ(h((s + "/tie_rod/outer").c_str(), {-0.250, 0.448, 0.054}),
+            "key 'axles[0].suspension.tie_rod.outer': is the point of axles[0].suspension.tie_rod.inner, "
+            "expected another one");
+  EXPECT_EQ(
+      h((s + "/spring/on").c_str(), "chassis"),
+      "key 'axles[0].suspension.spring.on': is 'chassis', the body of its other end, expected 'lower_arm', "
+      "'upper_arm' or 'upright'");
+  EXPECT_EQ(
+      h((s + "/spring/end").c_str(), {0.104, 0.510, 0.197}),
+      "key 'axles[0].suspension.spring.end': is the point of axles[0].suspension.spring.chassis, expected "
+      "another one");
+  EXPECT_EQ(h((s + "/spring/free_length").c_str(), 0),
+            "key 'axles[0].suspension.spring.free_length': is 0, expected a number above zero");
+  EXPECT_EQ(
+      h((s + "/spring/force").c_str(), nullptr),
+      "key 'axles[0].suspension.spring.force': is missing, expected a table of forces, or the key rate");
+  EXPECT_EQ(h((s + "/spring/rate").c_str(), 1e5),
+            "key 'axles[0].suspension.spring.force': is given beside rate, expected one of the two");
+  EXPECT_EQ(
+      h((s + "/spring/force/2/0").c_str(), 0.01),
+      "key 'axles[0].suspension.spring.force[2]': begins with 0.01 after 0.02, expected a table that rises");
+  EXPECT_EQ(
+      h((s + "/spring/force/2/1").c_str(), 100),
+      "key 'axles[0].suspension.spring.force[2]': ends with 100 after 3629.923, expected forces that rise");
+  EXPECT_EQ(h((s + "/spring/force").c_str(), json::array({json::array({0, 0})})),
+            "key 'axles[0].suspension.spring.force': has 1 points, expected at least two pairs [x, y]");
+  EXPECT_EQ(h((s + "/spring/stop/longest").c_str(), 0.1),
+            "key 'axles[0].suspension.spring.stop.longest': is 0.1, expected more than shortest, 0.15");
+  EXPECT_EQ(h((s + "/shock/rebound").c_str(), -1),
+            "key 'axles[0].suspension.shock.rebound': is -1, expected a number of zero or above");
+  EXPECT_EQ(h((s + "/shock/outer/blend_length").c_str(), 0.2),
+            "key 'axles[0].suspension.shock.outer.blend_length': is 0.2, expected at most longest - "
+            "shortest, 0.095");
+}
+
+TEST(VehicleFile, mistakes_in_steering_links_and_hosts_name_their_key) {
+  EXPECT_EQ(changed("hmmwv.json", "/axles/0/steering/type", "wire"),
+            "key 'axles[0].steering.type': is 'wire', expected 'pitman_arm' or 'rack'");
+  EXPECT_EQ(changed("hmmwv.json", "/axles/0/steering/left_angle_deg", 0),
+            "key 'axles[0].steering.left_angle_deg': is 0, expected -90 to 90, not 0: the arm at full lock "
+            "to the left");
+  EXPECT_EQ(changed("buggy.json", "/axles/0/steering/left_travel", 0),
+            "key 'axles[0].steering.left_travel': is 0, expected the travel at full lock to the left in m");
+  EXPECT_EQ(changed("buggy.json", "/axles/1/steering", shipped_text("buggy.json")["axles"][0]["steering"]),
+            "key 'axles[1].steering': is given for a suspension without tie rods, expected the type "
+            "double_wishbone");
+  EXPECT_EQ(
+      changed("buggy.json", "/axles/1/suspension/links/1/mirrored", true),
+      "key 'axles[1].suspension.links': has 5 rods (a mirrored one counts twice), expected 4: the axle rises "
+      "and rolls");
+  EXPECT_EQ(
+      changed("rover.json", "/axles/0/suspension/pivot_outer", {-0.10, 0.10, 0.03}),
+      "key 'axles[0].suspension.pivot_outer': is the point of axles[0].suspension.pivot_inner, expected "
+      "another one");
+  EXPECT_EQ(changed("rover.json", "/axles/2/suspension/on", "last"),
+            "key 'axles[2].suspension.on': is 'last', expected the name of an axle with trailing arms");
+}
+
+TEST(VehicleFile, mistakes_in_the_driveline_name_their_key) {
+  const auto h = [](const char* pointer, const json& value) { return changed("hmmwv.json", pointer, value); };
+  EXPECT_EQ(h("/driveline/gears/1/ratio", 0),
+            "key 'driveline.gears[1].ratio': is 0, expected another number: output over input");
+  EXPECT_EQ(h("/driveline/gearbox/ratios/1", 0),
+            "key 'driveline.gearbox.ratios[1]': is 0, expected a number above zero");
+  EXPECT_EQ(h("/driveline/gearbox/reverse", 0.1),
+            "key 'driveline.gearbox.reverse': is 0.1, expected a number below zero");
+  EXPECT_EQ(h("/driveline/gearbox/up_rpm", 1000),
+            "key 'driveline.gearbox.up_rpm': is 1000, expected more than down_rpm, 1200");
+  EXPECT_EQ(h("/driveline/engine/torque", nullptr),
+            "key 'driveline.engine.torque': is missing, expected a list");
+  EXPECT_EQ(h("/driveline/engine/torque/3/0", 850),
+            "key 'driveline.engine.torque[3]': begins with 850 after 900, expected a table that rises");
+  EXPECT_EQ(
+      h("/driveline/engine/losses/3/1", 50),
+      "key 'driveline.engine.losses[3]': drives the engine with 50 N m, expected a torque against its speed");
+  EXPECT_EQ(h("/driveline/engine", nullptr),
+            "key 'driveline.engine': is missing, expected an engine for the clutch");
+  EXPECT_EQ(h("/driveline/converter/torque_ratio/3/1", 2),
+            "key 'driveline.converter.torque_ratio[3]': gives 1.5 times the power that it takes, expected at "
+            "most 1");
+  EXPECT_EQ(h("/driveline/converter/capacity/5/0", 0.95),
+            "key 'driveline.converter.capacity': does not run from speed ratio 0 to 1, expected both ends");
+  EXPECT_EQ(h("/driveline/differentials/1/outputs", json::array({"front left"})),
+            "key 'driveline.differentials[1].outputs': has 1 shafts, expected two");
+  EXPECT_EQ(h("/driveline/differentials/1/share", 1.5),
+            "key 'driveline.differentials[1].share': is 1.5, expected a number between 0 and 1");
+  EXPECT_EQ(h("/driveline/shafts/2/inertia", 0),
+            "key 'driveline.shafts[2].inertia': is 0, expected a number above zero");
+  EXPECT_EQ(h("/driveline/shafts/2/name", "crank"),
+            "key 'driveline.shafts[2].name': 'crank' is given twice, expected another name");
+  EXPECT_EQ(h("/driveline/shafts/2/carrier", "rear"),
+            "key 'driveline.shafts[2].carrier': is 'rear', expected 'chassis' or the name of a rigid axle");
+  EXPECT_EQ(h("/driveline/wheels/3/axle", "middle"),
+            "key 'driveline.wheels[3].axle': is 'middle', expected one of the axles 'front' or 'rear'");
+  EXPECT_EQ(h("/driveline/wheels/3/side", "left"),
+            "key 'driveline.wheels[3]': drives the wheel 'rear left' again, expected one shaft per wheel");
+  EXPECT_EQ(changed("buggy.json", "/driveline/wheels/1/shaft", "left"),
+            "key 'driveline.wheels[1].shaft': 'left' drives two wheels, expected a shaft for each");
+  EXPECT_EQ(changed("buggy.json", "/driveline/gears/0/in", "crankshaft"),
+            "key 'driveline.gears[0].in': is 'crankshaft', expected one of the shafts 'crank', 'clutch', "
+            "'propeller', "
+            "'pinion', 'box', 'left' or 'right'");
+  EXPECT_EQ(changed("buggy.json", "/driveline/gears/0/ratio", 2),
+            "key 'driveline.gears[0].ratio': is 2 between shafts in 'chassis' and 'rear', expected 1: gears "
+            "turn in one "
+            "housing");
+  EXPECT_EQ(changed("buggy.json", "/driveline/clutch/closed_rpm", 1000),
+            "key 'driveline.clutch.closed_rpm': is 1000, expected more than open_rpm, 1500");
+  EXPECT_EQ(changed("rover.json", "/driveline/motors/1/stall_torque", -1),
+            "key 'driveline.motors[1].stall_torque': is -1, expected a number above zero");
+  EXPECT_EQ(changed("rover.json", "/driveline/motors/1/axle", "front"),
+            "key 'driveline.motors[1].axle': 'front' is driven already, expected one drive per wheel");
+  EXPECT_EQ(changed("rover.json", "/driveline/motors", nullptr),
+            "key 'driveline.skid_steer': is given without motors, expected a motor at each wheel");
+}
+
+TEST(VehicleFile, loops_of_gears_and_trains_that_reach_no_wheel_are_refused) {
+  json text = shipped_text("hmmwv.json");
+  text["driveline"]["shafts"].push_back({{"name", "pump"}, {"inertia", 0.1}, {"axis", {1, 0, 0}}});
+  EXPECT_EQ(complaint(text),
+            "key 'driveline.shafts[12].name': 'pump' reaches no wheel, expected a train of gears to one");
+  text = shipped_text("hmmwv.json");
+  text["driveline"]["gears"].push_back(
+      {{"name", "bypass"}, {"in", "front box"}, {"out", "front drive"}, {"ratio", 5}});
+  EXPECT_EQ(complaint(text),
+            "key 'driveline.gears[3]': 'bypass' closes a loop of gears, expected a train without loops");
+}

@@ -1,0 +1,84 @@
+// Kinematics of the suspensions: the chassis is held, wheels are lifted and steered, and what the wheels do is told in the
+// chassis' frame. Derivatives d/dz are exact, from the constraints' Jacobian.
+//
+//   roll centre      height above the ground of the point about which the body rolls, y_c dy_c/dz for opposite travel
+//   brake slope      dx_c/dz of the contact point with the wheel locked to its carrier, positive where braking force keeps
+//                    the suspension from moving as the load does: in front against compression, behind against rebound
+//   anti-dive        its share of what holds the body level: brake slope × share of the braking × wheelbase / height of
+//                    the centre of mass
+//   motion ratio     −d(length)/dz of spring or shock absorber
+//   wheel rate       d/dz of the spring's force at the wheel
+//   Ackermann        (δ_i − δ_o)/(δ_i − δ_a), with cot δ_a = cot δ_i + track/wheelbase: 1 where both wheels roll about one
+//                    point on the line of the axles that are not steered
+#pragma once
+
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "protocol/core/fields.hpp"
+#include "vehicle/parts/vehicle.hpp"
+
+namespace furrow::vehicle {
+
+/// One wheel in one posture; not a number where a quantity does not exist.
+struct KinematicsRow {
+  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  std::string motion;     // parallel, opposite or steering
+  std::string wheel;      // "front left"
+  double steering = 0.0;  // −1 to 1, left positive
+  double travel = kNone;  // of the wheel's centre, upward, m
+  double camber = kNone, toe = kNone, steer = kNone, caster = kNone, kingpin = kNone;  // rad
+  double scrub = kNone;        // contact point outside of the steering axis at the ground, m
+  double trail = kNone;        // contact point behind it, m
+  double half_track = kNone;   // |y| of the contact point, m
+  double wheel_x = kNone;      // of the wheel's centre, m
+  double roll_center = kNone;  // above the ground, m
+  double brake_slope = kNone, anti_dive = kNone;
+  double spring_length = kNone, shock_length = kNone;  // m
+  double spring_ratio = kNone, shock_ratio = kNone;
+  double wheel_rate = kNone;  // N/m
+  double ackermann = kNone;
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<KinematicsRow> auto& s) {
+  visit(Field{"motion", ""}, s.motion);
+  visit(Field{"wheel", ""}, s.wheel);
+  visit(Field{"steering"}, s.steering);
+  visit(Field{"travel", "m"}, s.travel);
+  visit(Field{"camber", "rad"}, s.camber);
+  visit(Field{"toe", "rad"}, s.toe);
+  visit(Field{"steer", "rad"}, s.steer);
+  visit(Field{"caster", "rad"}, s.caster);
+  visit(Field{"kingpin", "rad"}, s.kingpin);
+  visit(Field{"scrub", "m"}, s.scrub);
+  visit(Field{"trail", "m"}, s.trail);
+  visit(Field{"half_track", "m"}, s.half_track);
+  visit(Field{"wheel_x", "m"}, s.wheel_x);
+  visit(Field{"roll_center", "m"}, s.roll_center);
+  visit(Field{"brake_slope"}, s.brake_slope);
+  visit(Field{"anti_dive"}, s.anti_dive);
+  visit(Field{"spring_length", "m"}, s.spring_length);
+  visit(Field{"shock_length", "m"}, s.shock_length);
+  visit(Field{"spring_ratio"}, s.spring_ratio);
+  visit(Field{"shock_ratio"}, s.shock_ratio);
+  visit(Field{"wheel_rate", "N/m"}, s.wheel_rate);
+  visit(Field{"ackermann"}, s.ackermann);
+}
+
+struct KinematicsOptions {
+  double travel = 0.1;  // up and down from the drawn position, m
+  int points = 21;      // of each motion
+};
+
+/// All three motions of all axles that have them, wheel after wheel.
+/// @param radii of the tires under load, m, one for each wheel
+/// @throws Error(physics) naming the wheel where a suspension cannot follow
+std::vector<KinematicsRow> kinematics(const VehicleSpec& spec, std::span<const double> radii,
+                                      const KinematicsOptions& options = {});
+
+/// Names with units, then one line for each row; empty where a quantity does not exist.
+std::string kinematics_csv(std::span<const KinematicsRow> rows);
+
+}  // namespace furrow::vehicle

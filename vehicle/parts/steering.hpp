@@ -1,0 +1,59 @@
+// The steering of an axle: what the tie rods' inner ends are on, and how it follows the steering wheel. The input s runs
+// from −1 (fully to the right) to 1 (fully to the left) and follows its target s* as
+//   T² s″ + 2 T s′ + s = s*,
+// which is solved exactly, so that s and s′ are continuous whatever the step.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "protocol/core/fields.hpp"
+#include "vehicle/multibody/system.hpp"
+#include "vehicle/spec/vehicle_spec.hpp"
+
+namespace furrow::vehicle {
+
+struct SteeringState {
+  double since = 0.0;                            // s; below, at that time
+  double value = 0.0, rate = 0.0, target = 0.0;  // s, s′ (1/s), s*
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<SteeringState> auto& s) {
+  visit(Field{"since", "s"}, s.since);
+  visit(Field{"value"}, s.value);
+  visit(Field{"rate", "1/s"}, s.rate);
+  visit(Field{"target"}, s.target);
+}
+
+class Steering {
+ public:
+  /// Bodies, joints and the motor that moves them.
+  Steering(System& system, const std::string& axle, const SteeringSpec& spec, int chassis);
+
+  int rods() const { return rods_; }    // body that the tie rods' inner ends are on
+  int motor() const { return motor_; }  // of arm or rack
+  /// The input and its rate at a time, s.
+  Motion input(double time) const;
+  /// From `time` on. @pre −1 ≤ target ≤ 1
+  void set_target(double time, double target);
+  /// At rest at a value: for postures.
+  void put(double value);
+
+  void save(Archive& archive) const;
+  void restore(const Archive& archive);
+
+ private:
+  struct Follower {
+    double response_time = 0.0;  // T, s
+    SteeringState state;
+    Motion at(double time) const;
+  };
+  void add_pitman_arm(System& system, const std::string& axle, const PitmanArmSpec& spec, int chassis);
+  void add_rack(System& system, const std::string& axle, const RackSpec& spec, int chassis);
+  void add_motor(System& system, const std::string& axle, int joint, double full_left, double response_time);
+
+  std::shared_ptr<Follower> follower_ = std::make_shared<Follower>();  // shared with the motor
+  int rods_ = 0, motor_ = 0;
+};
+
+}  // namespace furrow::vehicle

@@ -1,0 +1,83 @@
+// A vehicle: a multibody system built from its spec, with names for what others hold on to. Tires and soil are not
+// part of it; each tire gives a wrench on its rim and receives the rim's motion.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "protocol/core/surface.hpp"
+#include "vehicle/parts/drive_train.hpp"
+#include "vehicle/parts/steering.hpp"
+#include "vehicle/parts/suspension.hpp"
+
+namespace furrow::vehicle {
+
+/// What a driver does.
+struct VehicleInputs {
+  double throttle = 0.0;  // 0 to 1; of wheel motors −1 to 1
+  double brake = 0.0;     // 0 to 1
+  double steering = 0.0;  // −1 to 1, left positive
+  Selector selector = Selector::drive;
+  bool lock = false;  // of all differentials that can be
+};
+
+class Vehicle {
+ public:
+  /// Drawn: in the vehicle's frame, at rest, the engine idling.
+  /// @throws Error(physics) naming a joint that cannot be met or is redundant
+  explicit Vehicle(const VehicleSpec& spec, const Vec3& gravity = standard_gravity());
+  Vehicle(const Vehicle&) = delete;  // the system's laws know its parts
+  Vehicle& operator=(const Vehicle&) = delete;
+
+  const VehicleSpec& spec() const { return spec_; }
+  System& system() { return system_; }
+  const System& system() const { return system_; }
+  int chassis() const { return chassis_; }
+  /// Two for each axle of the spec, in its order: left, right.
+  int wheel_count() const { return static_cast<int>(wheels_.size()); }
+  const Wheel& wheel(int k) const {
+    FURROW_ASSERT(in_range(k, wheels_.size()), k, wheels_.size());
+    return wheels_[k];
+  }
+  /// Of each axle; none where it is not steered.
+  std::optional<Steering>& steering(int axle) { return steerings_[axle]; }
+  DriveTrain& drive() { return *drive_; }
+  const DriveTrain& drive() const { return *drive_; }
+  /// Of each wheel; none where it has none.
+  const std::optional<FrictionCoupling>& brake(int wheel) const { return brakes_[wheel]; }
+
+  double mass() const;  // with the tires added, kg
+  /// Origin of the vehicle's frame now, m, W.
+  Vec3 origin() const;
+  /// Freedoms: of bodies and shafts less those that joints, motors and gears hold.
+  int freedoms() const;
+
+  /// Adds a tire's rigid-body mass properties to the rim of wheel k.
+  void add_tire_mass(int wheel, const MassProperties& tire);
+  RimState rim(int wheel) const;
+  /// On the rim by the tire, about the rim's centre, W; held until changed.
+  void set_wrench(int wheel, const Wrench& wrench);
+  /// Held until changed. @pre within their ranges
+  void set_inputs(const VehicleInputs& inputs);
+  /// Moves everything by a displacement, m.
+  void move(const Vec3& by);
+  Outcome step(double h);
+
+  void save(Archive& archive) const;
+  void restore(const Archive& archive);
+
+ private:
+  void add_axles();
+
+  VehicleSpec spec_;
+  System system_;
+  int chassis_ = 0;
+  std::vector<Wheel> wheels_;
+  std::vector<std::optional<Steering>> steerings_;
+  std::vector<std::optional<FrictionCoupling>> brakes_;
+  std::unique_ptr<DriveTrain> drive_;
+};
+
+}  // namespace furrow::vehicle

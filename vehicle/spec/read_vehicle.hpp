@@ -1,0 +1,19 @@
+// Reads vehicle files (data/vehicle.schema.json describes them). The left side is given, the right side is its mirror
+// image unless the axle's key `right` says otherwise. Tire files are named, not read.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "vehicle/spec/vehicle_spec.hpp"
+
+namespace furrow::vehicle {
+
+/// @throws Error(bad_input) naming file, key and what was expected
+VehicleSpec read_vehicle(const std::filesystem::path& file);
+/// @param file for messages
+VehicleSpec read_vehicle(const nlohmann::json& document, const std::string& file);
+
+}  // namespace furrow::vehicle

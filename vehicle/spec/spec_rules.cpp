@@ -1,0 +1,182 @@
+#include "vehicle/spec/spec_rules.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "protocol/files/json_text.hpp"
+
+namespace furrow::vehicle {
+namespace {
+
+constexpr double kSamePoint = 1e-6;  // m
+
+void positive(const JsonReader& reader, const char* key, double value) {
+  if (!(value > 0.0)) reader.fail(key, "is " + number_text(value) + ", expected a number above zero");
+}
+void not_negative(const JsonReader& reader, const char* key, double value) {
+  if (!(value >= 0.0)) reader.fail(key, "is " + number_text(value) + ", expected a number of zero or above");
+}
+void apart(const JsonReader& reader, const char* key, const Vec3& point, const char* other_key,
+           const Vec3& other) {
+  if (!((point - other).norm() > kSamePoint))
+    reader.fail(key, fmt::format("is the point of {}, expected another one", reader.full(other_key)));
+}
+
+// A body has moments of inertia of which none is larger than the sum of the other two; equal for flat bodies.
+void check_inertia(const JsonReader& reader, const Mat3& inertia) {
+  const Vec3 J = Eigen::SelfAdjointEigenSolver<Mat3>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
+  if (!(J.x() > 0.0))
+    reader.fail("inertia", fmt::format("has the principal moment {:.6g}, expected positive ones", J.x()));
+  if (J.z() > (J.x() + J.y()) * (1.0 + 1e-9))
+    reader.fail("inertia", fmt::format("has the principal moments {:.6g}, {:.6g}, {:.6g}, expected none "
+                                       "larger than the sum of the other two",
+                                       J.x(), J.y(), J.z()));
+}
+
+void check_length(const JsonReader& reader, double shortest, double longest) {
+  positive(reader, "shortest", shortest);
+  if (!(longest > shortest))
+    reader.fail("longest", fmt::format("is {}, expected more than shortest, {}", number_text(longest),
+                                       number_text(shortest)));
+}
+
+/// Forces that rise with what they are given against.
+void check_rising(const JsonReader& reader, const char* key, const Points& points) {
+  for (std::size_t i = 1; i < points.size(); ++i)
+    if (!(points[i].second > points[i - 1].second))
+      reader.fail(fmt::format("{}[{}]", key, i),
+                  fmt::format("ends with {} after {}, expected forces that rise",
+                              number_text(points[i].second), number_text(points[i - 1].second)));
+}
+
+/// The part that a spring or shock absorber ends on.
+void check_part(const JsonReader& reader, const char* strut, const std::optional<std::string>& on,
+                const std::vector<std::string>& parts) {
+  if (!on || std::find(parts.begin(), parts.end(), *on) != parts.end()) return;
+  const std::string key = std::string(strut) + ".on", expected = ", expected " + one_of(parts);
+  reader.fail(key, *on == "chassis" ? "is 'chassis', the body of its other end" + expected
+                                    : "is '" + *on + "'" + expected);
+}
+template <class T>
+void check_struts(const T& s, const JsonReader& reader, const std::vector<std::string>& parts) {
+  if (s.spring) check_part(reader, "spring", s.spring->on, parts);
+  if (s.shock) check_part(reader, "shock", s.shock->on, parts);
+}
+
+}  // namespace
+
+void check_spec(const BodySpec& s, const JsonReader& reader) {
+  positive(reader, "mass", s.mass);
+  check_inertia(reader, s.inertia);
+}
+
+void check_spec(const SpindleSpec& s, const JsonReader& reader) {
+  positive(reader, "mass", s.mass);
+  check_inertia(reader, s.inertia);
+  for (const auto& [key, angle] : {std::pair{"camber_deg", s.camber_deg}, std::pair{"toe_deg", s.toe_deg}})
+    if (!(std::abs(angle) < 45.0)) reader.fail(key, "is " + number_text(angle) + ", expected -45 to 45");
+}
+
+void check_spec(const WheelSpec& s, const JsonReader& reader) {
+  positive(reader, "mass", s.mass);
+  check_inertia(reader, s.inertia);
+}
+
+void check_spec(const BrakeSpec& s, const JsonReader& reader) { positive(reader, "torque", s.torque); }
+
+void check_spec(const ArmSpec& s, const JsonReader& reader) {
+  positive(reader, "mass", s.mass);
+  check_inertia(reader, s.inertia);
+  apart(reader, "chassis_back", s.chassis_back, "chassis_front", s.chassis_front);
+  const Vec3 hinge = (s.chassis_front - s.chassis_back).normalized();
+  if (!(hinge.cross(s.upright - s.chassis_back).norm() > kSamePoint))
+    reader.fail("upright", "lies on the hinge, expected a point beside it");
+}
+
+void check_spec(const TieRodSpec& s, const JsonReader& reader) {
+  apart(reader, "outer", s.outer, "inner", s.inner);
+}
+void check_spec(const LinkSpec& s, const JsonReader& reader) {
+  apart(reader, "axle", s.axle, "chassis", s.chassis);
+}
+
+void check_spec(const StopSpec& s, const JsonReader& reader) {
+  check_length(reader, s.shortest, s.longest);
+  if (s.force.front() != std::pair{0.0, 0.0})
+    reader.fail("force[0]", "is not [0, 0], expected a stop that begins there");
+  check_rising(reader, "force", s.force);
+}
+
+void check_spec(const SpringSpec& s, const JsonReader& reader) {
+  apart(reader, "end", s.end, "chassis", s.chassis);
+  positive(reader, "free_length", s.free_length);
+  if (s.rate && !s.force.empty()) reader.fail("force", "is given beside rate, expected one of the two");
+  if (!s.rate && s.force.empty())
+    reader.fail("force", "is missing, expected a table of forces, or the key rate");
+  if (s.rate) positive(reader, "rate", *s.rate);
+  if (s.force.empty()) return;
+  if (s.force.front() != std::pair{0.0, 0.0})
+    reader.fail("force[0]", "is not [0, 0], expected the deflection and the force of the free spring");
+  check_rising(reader, "force", s.force);
+}
+
+void check_spec(const OuterShockSpec& s, const JsonReader& reader) {
+  check_length(reader, s.shortest, s.longest);
+  positive(reader, "blend_length", s.blend_length);
+  if (s.blend_length > s.longest - s.shortest)
+    reader.fail("blend_length", fmt::format("is {}, expected at most longest - shortest, {:.6g}",
+                                            number_text(s.blend_length), s.longest - s.shortest));
+  not_negative(reader, "compression", s.compression);
+  not_negative(reader, "rebound", s.rebound);
+}
+
+void check_spec(const ShockSpec& s, const JsonReader& reader) {
+  apart(reader, "end", s.end, "chassis", s.chassis);
+  not_negative(reader, "compression", s.compression);
+  not_negative(reader, "rebound", s.rebound);
+}
+
+void check_spec(const DoubleWishboneSpec& s, const JsonReader& reader) {
+  check_struts(s, reader, {"lower_arm", "upper_arm", "upright"});
+  if (!((s.upper_arm.upright - s.lower_arm.upright).norm() > kSamePoint))
+    reader.fail("upper_arm.upright", "is the point of lower_arm.upright, expected another one");
+}
+
+void check_spec(const TrailingArmSpec& s, const JsonReader& reader) {
+  check_struts(s, reader, {"arm"});
+  apart(reader, "pivot_outer", s.pivot_outer, "pivot_inner", s.pivot_inner);
+  const Vec3 hinge = (s.pivot_outer - s.pivot_inner).normalized();
+  if (!(hinge.cross(s.spindle.center - s.pivot_inner).norm() > kSamePoint))
+    reader.fail("spindle.center", "lies on the arm's hinge, expected a point beside it");
+}
+
+void check_spec(const RigidAxleSpec& s, const JsonReader& reader) {
+  check_struts(s, reader, {"housing"});
+  int rods = 0;
+  for (const LinkSpec& link : s.links) rods += link.mirrored ? 2 : 1;
+  if (rods != 4)
+    reader.fail(
+        "links",
+        fmt::format("has {} rods (a mirrored one counts twice), expected 4: the axle rises and rolls", rods));
+}
+
+void check_spec(const PitmanArmSpec& s, const JsonReader& reader) {
+  apart(reader, "arm_end", s.arm_end, "pivot", s.pivot);
+  apart(reader, "idler_end", s.idler_end, "idler", s.idler);
+  apart(reader, "idler_end", s.idler_end, "arm_end", s.arm_end);
+  if (!(std::abs(s.left_angle_deg) > 0.0 && std::abs(s.left_angle_deg) < 90.0))
+    reader.fail("left_angle_deg", "is " + number_text(s.left_angle_deg) +
+                                      ", expected -90 to 90, not 0: the arm at full lock to the left");
+  positive(reader, "response_time", s.response_time);
+}
+
+void check_spec(const RackSpec& s, const JsonReader& reader) {
+  if (s.left_travel == 0.0)
+    reader.fail("left_travel", "is 0, expected the travel at full lock to the left in m");
+  positive(reader, "response_time", s.response_time);
+}
+
+}  // namespace furrow::vehicle

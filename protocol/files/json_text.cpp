@@ -17,6 +17,8 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kMaxKey = 256;  // bytes of a key
+// Of an object: to find one among ordered keys takes time in proportion to their number.
+constexpr std::size_t kMaxKeys = 10000;
 
 /// Offset of the bracket that opens level kMaxDepth + 1, or npos. Brackets within texts do not count.
 std::size_t find_too_deep(const std::string& text) {
@@ -75,6 +77,9 @@ class Builder final : public nlohmann::json_sax<Json> {
                         fmt::format("has a control character or is longer than {} bytes, expected the name of a key",
                                     kMaxKey));
     level.key = name;
+    if (level.value->size() == kMaxKeys)
+      throw input_error(name_, path(),
+                        fmt::format("is one too many, expected at most {} keys in an object", kMaxKeys));
     if (level.value->contains(name)) throw input_error(name_, path(), "is given twice, expected once");
     return true;
   }
@@ -174,10 +179,7 @@ template nlohmann::ordered_json load_json(const std::filesystem::path&, const st
 nlohmann::ordered_json read_json_if_whole(const std::filesystem::path& file) {
   using Json = nlohmann::ordered_json;
   try {
-    const std::string text = read_whole_file(file, kMaxText);
-    if (find_too_deep(text) != std::string::npos) return {};
-    Json document = Json::parse(text, nullptr, false);
-    return document.is_discarded() ? Json() : document;
+    return parse_json<Json>(read_whole_file(file, kMaxText), file.string());
   } catch (const Error&) {
     return {};
   }

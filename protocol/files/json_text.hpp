@@ -1,5 +1,6 @@
 // Reads JSON that people wrote: says where a mistake stands, and takes neither duplicate keys, nor numbers that no
-// double can hold, nor nesting that would exhaust the stack of whoever walks through it.
+// double can hold, nor nesting that would exhaust the stack of whoever walks through it, nor objects of so many keys that
+// nobody wrote them.
 #pragma once
 
 #include <filesystem>
@@ -14,8 +15,8 @@ inline constexpr std::size_t kMaxDepth = 64;
 
 /// @tparam Json nlohmann::json, or nlohmann::ordered_json where the order of keys matters
 /// @param name of the file, for messages
-/// @throws Error(bad_input): syntax and nesting with line and column; duplicate keys, keys that nobody could type and
-/// overflowing numbers by their key
+/// @throws Error(bad_input): syntax and nesting with line and column; duplicate keys, keys that nobody could type or that
+/// are too many, and overflowing numbers by their key
 template <class Json = nlohmann::json>
 Json parse_json(const std::string& text, const std::string& name);
 
@@ -25,8 +26,8 @@ Json parse_json(const std::string& text, const std::string& name);
 template <class Json = nlohmann::json>
 Json load_json(const std::filesystem::path& file, const std::string& expected);
 
-/// What a file of the program's own holds; null when it is missing, cut short, no JSON, or such as parse_json refuses
-/// for its nesting or read_text_file for its size.
+/// What a file of the program's own holds; null when it is missing, cut short, such as parse_json refuses, or larger
+/// than a text may be.
 nlohmann::ordered_json read_json_if_whole(const std::filesystem::path& file);
 
 /// A value given on the command line: JSON if it is JSON, else a string. @throws Error(bad_input) as parse_json

@@ -56,12 +56,11 @@ WheelEstimate rigid_wheel(const SoilStrength& soil, const RigidWheel& wheel, dou
                 soil.cohesion, soil.phi);
   WheelEstimate e;
   double low = 0.0, high = kMaxEntry;
-  if (integrate(soil, wheel, slip, high).lift < wheel.load) return e;
+  if (!(integrate(soil, wheel, slip, high).lift >= wheel.load)) return e;  // nor one whose numbers overflow
   for (int k = 0; k < 60; ++k) {
     const double middle = 0.5 * (low + high);
     (integrate(soil, wheel, slip, middle).lift < wheel.load ? low : high) = middle;
   }
-  e.found = true;
   e.entry_angle = 0.5 * (low + high);
   const Integrals sum = integrate(soil, wheel, slip, e.entry_angle);
   e.sinkage = wheel.radius * (1.0 - std::cos(e.entry_angle));
@@ -70,6 +69,7 @@ WheelEstimate rigid_wheel(const SoilStrength& soil, const RigidWheel& wheel, dou
   e.pull = sum.thrust - sum.resistance;
   e.torque = sum.torque;
   e.pressure = sum.pressure;
+  e.found = std::isfinite(e.pull) && std::isfinite(e.torque) && std::isfinite(e.pressure);
   return e;
 }
 

@@ -43,17 +43,18 @@ SoilStrength strength_of(JsonReader& soil, double width) {
 }
 
 /// Error of the pull from the parameters' standard errors, as if they were independent, N; NaN where none is known.
-double pull_error(const json& soil, const SoilStrength& s, const RigidWheel& wheel, double slip) {
-  const json errors = soil.value("standard_error", json::object());
+double pull_error(JsonReader& soil, const SoilStrength& s, const RigidWheel& wheel, double slip) {
+  const json stated = soil.object_or_empty("standard_error");
+  JsonReader errors(stated, soil.file(), soil.full("standard_error"));
   const double pull = soil::rigid_wheel(s, wheel, slip).pull;
   double sum = 0.0;
   bool known = false;
   const auto vary = [&](const char* key, double SoilStrength::*member, double unit) {
-    const json error = errors.value(key, json(nullptr));
-    if (!error.is_number()) return;
+    if (!errors.given(key)) return;
     known = true;
     SoilStrength other = s;
-    other.*member += unit * error.get<double>();
+    other.*member += unit * errors.not_negative(key);
+    if (!std::isfinite(other.*member)) return void(sum = NAN);
     const auto estimate = soil::rigid_wheel(other, wheel, slip);
     if (estimate.found) sum += std::pow(estimate.pull - pull, 2);
   };
@@ -76,12 +77,21 @@ void require_grains(const json& scenario, const std::filesystem::path& file) {
                     "is '" + name + "', expected " + engines_with_grains() + ": theory needs a soil");
 }
 
+/// The summary of a run with the values of wheel 0, for which the estimate is.
+json summary_of_wheel(const std::filesystem::path& file) {
+  json summary = load_json(file, "the summary of a finished run");
+  JsonReader reader(summary, file.string());
+  if (!reader.has("wheels")) return summary;
+  const json wheels = reader.array("wheels");
+  if (wheels.empty()) return summary;
+  summary.update(JsonReader(wheels.front(), file.string(), "wheels.0").object());
+  return summary;
+}
+
 }  // namespace
 
 std::string write_soil_estimate(const std::filesystem::path& run, const std::filesystem::path& soil_file) {
-  json summary = load_json(run / "summary.json", "the summary of a finished run");
-  if (const json wheels = summary.value("wheels", json::array()); !wheels.empty())
-    summary.update(wheels.front());  // the estimate is for wheel 0
+  const json summary = summary_of_wheel(run / "summary.json");
   JsonReader of_run(summary, (run / "summary.json").string());
   of_run.check_version(kFormatVersion);
   const std::filesystem::path scenario_file = run / "scenario.json";
@@ -105,7 +115,7 @@ std::string write_soil_estimate(const std::filesystem::path& run, const std::fil
   j["format_version"] = kFormatVersion;
   j["what"] = "rigid wheel by Bekker, Wong & Reece, Janosi & Hanamoto";
   j["soil_file"] = std::filesystem::absolute(file).lexically_normal().string();
-  const bool quick = soil.value("quick", false);
+  const bool quick = of_soil.flag_or("quick", false);
   j["quick"] = quick;
   j["soil"] = {{"k_c", s.k_c},
                {"k_phi", s.k_phi},
@@ -118,7 +128,7 @@ std::string write_soil_estimate(const std::filesystem::path& run, const std::fil
   j["found"] = e.found;
   std::string text = "soil theory: this soil does not carry a rigid wheel of that load";
   if (e.found) {
-    const double error = pull_error(soil, s, wheel, slip);
+    const double error = pull_error(of_soil, s, wheel, slip);
     j["drawbar_pull_N"] = e.pull;
     j["drawbar_pull_standard_error_N"] = std::isfinite(error) ? json(error) : json(nullptr);
     j["sinkage_m"] = e.sinkage;

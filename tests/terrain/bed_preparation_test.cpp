@@ -8,6 +8,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "protocol/files/archive_file.hpp"
 #include "protocol/files/hdf5_handle.hpp"
 #include "terrain/dem/beds/bed_cache.hpp"
 #include "terrain/dem/beds/bed_compaction.hpp"
@@ -385,6 +386,41 @@ TEST_F(Beds, beds_newer_than_this_program_or_older_than_format_4_are_refused_by_
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
     }
+  }
+}
+
+TEST_F(Beds, whatever_a_bed_lacks_is_told_with_its_file) {
+  const Archive whole = prepare_bed(options_, {}).bed;
+  options_.bed = (folder_ / "forged.h5").string();
+  int refused = 0;
+  for (const auto& [name, unused] : whole.arrays()) {
+    Archive bed;
+    for (const auto& [other, array] : whole.arrays())
+      if (other != name) bed.put_array(other, array);
+    write_bed(options_.bed, bed);
+    try {
+      const PreparedBed prepared = prepare_bed(options_, {});
+      GrainSolver solver(solver_params(options_));
+      restore_bed(solver, prepared);
+    } catch (const Error& error) {
+      ++refused;
+      EXPECT_TRUE(std::string(error.what()).starts_with(options_.bed)) << name << ": " << error.what();
+    }
+  }
+  EXPECT_GT(refused, 40);
+}
+
+TEST_F(Beds, a_bed_of_format_4_with_counts_that_are_none_is_refused) {
+  constexpr ArchiveKind kFormat4{"bed", "a bed of furrow", 4, 4, ""};
+  const Archive whole = read_archive(fs::path(TEST_DATA) / "bed_format_4.h5", kFormat4);
+  options_.bed = (folder_ / "forged.h5").string();
+  for (const double value : {1e300, -1e300, std::nan(""), 1e19}) {
+    Archive bed = whole;
+    auto accounts = bed.get<double>("accounts");
+    accounts[15] = value;
+    bed.put("accounts", accounts);
+    write_archive(options_.bed, bed, kFormat4);
+    EXPECT_THROW(read_bed(options_.bed), Error) << value;
   }
 }
 

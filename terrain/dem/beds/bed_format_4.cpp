@@ -1,6 +1,10 @@
 #include "terrain/dem/beds/bed_format_4.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <concepts>
 #include <cstdint>
+#include <limits>
 #include <set>
 #include <string>
 #include <vector>
@@ -11,11 +15,21 @@
 namespace furrow::terrain::dem {
 namespace {
 
+constexpr double kMostWhole = 9007199254740992.0;  // 2^53
+
 /// Takes numbers one after another.
 class Numbers {
  public:
   explicit Numbers(const std::vector<double>& all) : next_(all.data()) {}
-  void operator()(auto& value) { value = static_cast<std::remove_reference_t<decltype(value)>>(*next_++); }
+  void operator()(double& value) { value = *next_++; }
+  /// @throws Error(io) for what is no whole number of that type
+  void operator()(std::integral auto& value) {
+    using Value = std::remove_reference_t<decltype(value)>;
+    const double number = *next_++;
+    if (!(std::abs(number) <= std::min(kMostWhole, static_cast<double>(std::numeric_limits<Value>::max()))))
+      throw Error(ExitCode::io, "saved state holds a count that is none: it is damaged");
+    value = static_cast<Value>(number);
+  }
   void operator()(Vec3& value) {
     for (double& x : value) (*this)(x);
   }

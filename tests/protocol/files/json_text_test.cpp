@@ -84,6 +84,21 @@ TEST(JsonText, keys_that_nobody_could_type_are_refused) {
   EXPECT_NE(complaint("{\"" + std::string(257, 'k') + "\": 1}").find("longer than 256 bytes"), std::string::npos);
 }
 
+/// To find a key among ordered ones takes as long as there are keys: a million of them would take an hour.
+TEST(JsonText, objects_of_more_keys_than_anybody_writes_are_refused) {
+  const auto object = [](int keys) {
+    std::string text;
+    for (int k = 0; k < keys; ++k) text += (k == 0 ? "{\"k" : ", \"k") + std::to_string(k) + "\": 1";
+    return text + "}";
+  };
+  EXPECT_EQ(complaint(object(10000)), "");
+  EXPECT_EQ(complaint(object(1000000)),
+            "f: key 'k10000': is one too many, expected at most 10000 keys in an object");
+  const testing::TemporaryFolder folder;
+  std::ofstream(folder.path() / "f") << object(1000000);
+  EXPECT_TRUE(read_json_if_whole(folder.path() / "f").is_null());
+}
+
 TEST(JsonText, values_in_messages_are_short_and_of_one_line) {
   EXPECT_EQ(value_text(nlohmann::json("a\nb\x1b")), "'a\\nb\\x1b'");
   EXPECT_LE(value_text(nlohmann::json(std::string(100000, 'x'))).size(), 60U);

@@ -1,0 +1,162 @@
+#include "vehicle/analysis/trim.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "protocol/core/assert.hpp"
+#include "protocol/core/error.hpp"
+#include "vehicle/analysis/held_vehicle.hpp"
+#include "vehicle/analysis/wheel_angles.hpp"
+
+namespace furrow::vehicle {
+namespace {
+
+constexpr double kFirstDeflection = 0.01;  // of the tires where the search begins, m
+
+struct Contact {
+  double deflection = 0.0, load = 0.0;  // m, N
+  Vec3 moment = Vec3::Zero();           // about the wheel's centre, N m
+};
+
+// V = ∫ F dδ: upward force F/cos γ, moment F z_c a_z (a × e_z) / cos³γ.
+Contact contact(const Vehicle& vehicle, int k, const TireCurve& tire, double ground) {
+  const Vec3 a = spin_axis(vehicle, k);
+  const double cosine = std::sqrt(1.0 - a.z() * a.z());
+  const double z = vehicle.system().body(vehicle.wheel(k).spindle).state.position.z() - ground;
+  Contact c;
+  c.deflection = tire.radius - z / cosine;
+  const double force = tire.force(c.deflection);
+  c.load = force / cosine;
+  c.moment = force * z * a.z() / (cosine * cosine * cosine) * a.cross(Vec3::UnitZ());
+  return c;
+}
+
+void hold_plane_motion(const Vehicle& vehicle, Statics& statics) {
+  const System& system = vehicle.system();
+  const int chassis = vehicle.chassis();
+  statics.hold({"chassis x", offset_row(system, kGround, chassis, Vec3::UnitX())});
+  statics.hold({"chassis y", offset_row(system, kGround, chassis, Vec3::UnitY())});
+  Row yaw;
+  yaw.kind = RowKind::dot;
+  yaw.b = chassis;
+  yaw.axis_a = Vec3::UnitY();
+  yaw.axis_b = Vec3::UnitX();
+  statics.hold({"chassis yaw", yaw});
+  hold_spins(vehicle, statics);
+}
+
+void lower_to(Vehicle& vehicle, std::span<const TireCurve> tires, double ground) {
+  double above = 0.0;
+  for (int k = 0; k < vehicle.wheel_count(); ++k)
+    above += (vehicle.rim(k).position.z() - tires[k].radius) / vehicle.wheel_count();
+  vehicle.move(Vec3(0, 0, ground - kFirstDeflection - above));
+}
+
+StrutTrim strut(const System& system, int element) {
+  const ForceElement& e = system.element(element);
+  StrutTrim s;
+  s.length = row_value(system, e.row);
+  s.force = e.law(s.length, 0.0, system.time()).force;
+  s.to_shortest = s.to_longest = std::numeric_limits<double>::infinity();
+  return s;
+}
+
+template <class Marks>
+void set_marks(StrutTrim& s, const std::optional<Marks>& marks) {
+  if (!marks) return;
+  s.to_shortest = s.length - marks->shortest;
+  s.to_longest = marks->longest - s.length;
+}
+
+WheelTrim wheel_trim(const Vehicle& vehicle, int k, const TireCurve& tire, double ground) {
+  const Wheel& wheel = vehicle.wheel(k);
+  const System& system = vehicle.system();
+  const Body& chassis = system.body(vehicle.chassis());
+  const Contact touching = contact(vehicle, k, tire, ground);
+  const Vec3 center = system.body(wheel.spindle).state.position, axis = spin_axis(vehicle, k);
+  WheelTrim t;
+  t.name = wheel.name;
+  t.load = touching.load;
+  t.deflection = touching.deflection;
+  t.height = center.z() - ground;
+  t.center = chassis.R.transpose() * (center - vehicle.origin());
+  t.travel = t.center.z() - spindle_of(wheel.corner->suspension).center.z();
+  t.camber = camber_angle(axis, outward(wheel.side));
+  t.toe = toe_angle(axis, outward(wheel.side));
+  std::visit(
+      [&](const auto& s) {
+        if constexpr (requires { s.spring; }) {
+          if (wheel.spring) set_marks(t.spring.emplace(strut(system, *wheel.spring)), s.spring->stop);
+          if (wheel.shock) set_marks(t.shock.emplace(strut(system, *wheel.shock)), s.shock->outer);
+        }
+      },
+      wheel.corner->suspension);
+  return t;
+}
+
+/// Kinetic energy of a body in a mode, split into heave, pitch, roll and the rest.
+struct Shares {
+  double heave = 0.0, pitch = 0.0, roll = 0.0, all = 0.0;
+};
+Shares shares(const Body& body, const Eigen::VectorXd& shape, int index) {
+  const Vec3 v = shape.segment<3>(6 * index), w = body.R.transpose() * shape.segment<3>(6 * index + 3);
+  Shares s;
+  s.heave = body.mass * v.z() * v.z();
+  s.roll = body.inertia(0, 0) * w.x() * w.x();
+  s.pitch = body.inertia(1, 1) * w.y() * w.y();
+  s.all = body.mass * v.squaredNorm() + w.dot(body.inertia * w);
+  return s;
+}
+
+std::string mode_name(const Vehicle& vehicle, const Mode& mode) {
+  const System& system = vehicle.system();
+  const Shares body = shares(system.body(vehicle.chassis()), mode.shape, vehicle.chassis());
+  if (body.all > 0.5) {
+    if (body.roll >= body.heave && body.roll >= body.pitch) return "roll";
+    return body.heave >= body.pitch ? "heave" : "pitch";
+  }
+  int most = 0;
+  double largest = -1.0;
+  const auto up = [&](int k) { return mode.shape[6 * vehicle.wheel(k).spindle + 2]; };
+  for (int k = 0; k < vehicle.wheel_count(); k += 2)
+    if (const double energy = up(k) * up(k) + up(k + 1) * up(k + 1); energy > largest)
+      largest = energy, most = k;
+  return (up(most) * up(most + 1) >= 0.0 ? "hop " : "tramp ") + vehicle.spec().axles[most / 2].name;
+}
+
+}  // namespace
+
+Trim trim(Vehicle& vehicle, std::span<const TireCurve> tires, double ground) {
+  FURROW_ASSERT(tires.size() == static_cast<std::size_t>(vehicle.wheel_count()), tires.size(),
+                vehicle.wheel_count());
+  lower_to(vehicle, tires, ground);
+  Statics statics(vehicle.system());
+  hold_plane_motion(vehicle, statics);
+  statics.set_forces([&](const System&, Eigen::VectorXd& forces) {
+    for (int k = 0; k < vehicle.wheel_count(); ++k) {
+      const Contact touching = contact(vehicle, k, tires[k], ground);
+      forces[6 * vehicle.wheel(k).spindle + 2] += touching.load;
+      forces.segment<3>(6 * vehicle.wheel(k).spindle + 3) += touching.moment;
+    }
+  });
+  const double weight = vehicle.mass() * vehicle.system().gravity().norm();
+  if (const Outcome outcome = statics.settle(weight); !outcome.ok)
+    throw physics_error(outcome, "vehicle '" + vehicle.spec().name + "'");
+  Trim t;
+  for (int k = 0; k < vehicle.wheel_count(); ++k) {
+    t.wheels.push_back(wheel_trim(vehicle, k, tires[k], ground));
+    if (k % 2 == 0) t.axle_loads.push_back(0.0);
+    t.axle_loads.back() += t.wheels.back().load;
+  }
+  const Mat3& R = vehicle.system().body(vehicle.chassis()).R;
+  t.height = vehicle.origin().z() - ground;
+  t.pitch = std::atan2(-R(2, 0), R(0, 0));
+  t.roll = std::atan2(R(2, 1), R(2, 2));
+  for (const Mode& mode : statics.modes())
+    t.modes.push_back({mode_name(vehicle, mode), mode.frequency, mode.damping});
+  vehicle.system().assemble(vehicle.system().time());
+  return t;
+}
+
+}  // namespace furrow::vehicle

@@ -1,0 +1,97 @@
+// The static trim of a vehicle on level ground: where it comes to rest on its tires, and how it vibrates about it.
+//
+// A tire is known by its press curve F(δ), the vertical force at a deflection δ = R − z_c/cos γ of a wheel with its centre
+// at the height z_c and its axle at the angle γ to the ground. It stores ∫ F dδ, so that it pushes the wheel with F/cos γ
+// upward at the lowest point of its middle circle. Wheels do not turn, the steering is held straight, and the chassis is
+// held in x, y and about z.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "vehicle/parts/vehicle.hpp"
+
+namespace furrow::vehicle {
+
+struct TireCurve {
+  double radius = 0.0;                             // R, m
+  std::function<double(double deflection)> force;  // F(δ), N; 0 for δ ≤ 0, rising beyond
+};
+
+/// A spring or shock absorber at rest.
+struct StrutTrim {
+  double length = 0.0;  // m
+  double force = 0.0;   // pushes its ends apart, N
+  double to_shortest = 0.0,
+         to_longest = 0.0;  // m to its stops or marks, negative beyond; infinite where it has none
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<StrutTrim> auto& s) {
+  visit(Field{"length", "m"}, s.length);
+  visit(Field{"force", "N"}, s.force);
+  visit(Field{"to_shortest", "m"}, s.to_shortest);
+  visit(Field{"to_longest", "m"}, s.to_longest);
+}
+
+struct WheelTrim {
+  std::string name;
+  double load = 0.0;               // of the ground on the tire, N
+  double deflection = 0.0;         // of the tire, m
+  double height = 0.0;             // of the wheel's centre above the ground, m
+  Vec3 center = Vec3::Zero();      // of the wheel in the vehicle's frame, m
+  double travel = 0.0;             // of it against the drawn position, upward, m
+  double camber = 0.0, toe = 0.0;  // rad
+  std::optional<StrutTrim> spring, shock;
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<WheelTrim> auto& s) {
+  visit(Field{"name", ""}, s.name);
+  visit(Field{"load", "N"}, s.load);
+  visit(Field{"deflection", "m"}, s.deflection);
+  visit(Field{"height", "m"}, s.height);
+  visit(Field{"center", "m"}, s.center);
+  visit(Field{"travel", "m"}, s.travel);
+  visit(Field{"camber", "rad"}, s.camber);
+  visit(Field{"toe", "rad"}, s.toe);
+  visit(Field{"spring", ""}, s.spring);
+  visit(Field{"shock", ""}, s.shock);
+}
+
+/// One vibration. The body's are heave, pitch and roll by what moves most, a wheels' "hop front" (both up) or
+/// "tramp front" (one up, one down).
+struct TrimMode {
+  std::string name;
+  double frequency = 0.0;  // undamped, Hz
+  double damping = 0.0;    // share of critical, with the mean of the shocks' coefficients for small speeds
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<TrimMode> auto& s) {
+  visit(Field{"name", ""}, s.name);
+  visit(Field{"frequency", "Hz"}, s.frequency);
+  visit(Field{"damping"}, s.damping);
+}
+
+struct Trim {
+  std::vector<WheelTrim> wheels;   // those of the vehicle
+  std::vector<double> axle_loads;  // N
+  double height = 0.0;             // of the vehicle's origin above the ground, m
+  double pitch = 0.0, roll = 0.0;  // of the chassis, rad; positive: nose down, right side down
+  std::vector<TrimMode> modes;     // lowest frequency first
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<Trim> auto& s) {
+  visit(Field{"wheels", ""}, s.wheels);
+  visit(Field{"axle_loads", "N"}, s.axle_loads);
+  visit(Field{"height", "m"}, s.height);
+  visit(Field{"pitch", "rad"}, s.pitch);
+  visit(Field{"roll", "rad"}, s.roll);
+  visit(Field{"modes", ""}, s.modes);
+}
+
+/// Puts the vehicle at rest on the plane z = `ground` and tells how it stands there.
+/// @pre one tire for each wheel; their masses were added. @throws Error(physics) when there is no equilibrium
+Trim trim(Vehicle& vehicle, std::span<const TireCurve> tires, double ground = 0.0);
+
+}  // namespace furrow::vehicle

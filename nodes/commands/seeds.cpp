@@ -86,8 +86,9 @@ std::string beds_text(const Json& summary, const scenario::Scenario& scenario) {
   return text;
 }
 
-ExitCode run_beds_in(const std::filesystem::path& folder, const scenario::Scenario& scenario,
+ExitCode run_beds_in(launch::RunDirectory& directory, const scenario::Scenario& scenario,
                      const RunArguments& arguments) {
+  const std::filesystem::path& folder = directory.path();
   study::Sweep sweep(study::study_of_beds(arguments.scenario, scenario.name, arguments.settings,
                                           scenario.run.seed, arguments.seeds),
                      {folder, arguments.jobs});
@@ -96,7 +97,7 @@ ExitCode run_beds_in(const std::filesystem::path& folder, const scenario::Scenar
   launch::catch_stop_signals();
   std::fprintf(stderr, "furrow: %s on %d beds, results in %s\n", scenario.name.c_str(), arguments.seeds,
                folder.c_str());
-  const ExitCode code = sweep.run();
+  const ExitCode code = sweep.run(directory.lock());
   if (code == ExitCode::stopped) {
     std::fprintf(stderr, "furrow: stopped by a signal; to continue, run the same command with --out %s\n",
                  scenario::shell_quoted(folder.string()).c_str());
@@ -120,10 +121,9 @@ ExitCode run_on_beds(const RunArguments& arguments) {
   for (const std::string& warning : scenario.warnings) print_warning(warning);
   study::require_beds(scenario, arguments.seeds);
   require_launch(scenario);
-  const launch::RunDirectory directory = arguments.out.empty()
-                                             ? launch::RunDirectory(scenario.name, {}, false)
-                                             : launch::RunDirectory::of_study(arguments.out);
-  const ExitCode code = run_beds_in(directory.path(), scenario, arguments);
+  launch::RunDirectory directory = arguments.out.empty() ? launch::RunDirectory(scenario.name, {}, false)
+                                                         : launch::RunDirectory::of_study(arguments.out);
+  const ExitCode code = run_beds_in(directory, scenario, arguments);
   std::cout << directory.path().string() << "\n";
   return code;
 }

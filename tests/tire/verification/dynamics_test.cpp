@@ -225,7 +225,7 @@ double swung_tire(double h) {
   const int count = static_cast<int>(std::lround(0.06 / h));
   double torque = 0.0;
   for (int n = 1; n <= count; ++n) {
-    const Outcome status = run.step(h, rim(n * h), none, Vec3(0, 0, 1), on_rim);
+    const Outcome status = run.step(h, rim((n - 1) * h), rim(n * h), none, Vec3(0, 0, 1), on_rim);
     EXPECT_TRUE(status.ok) << status.message("tire");
     torque += h * on_rim.moment.x();
   }

@@ -472,7 +472,8 @@ TEST_F(Beds, a_bed_of_format_4_serves_a_run_and_is_kept_as_it_was) {
   GrainSolver solver(solver_params(options_));
   solver.restore(prepared.bed);
   write_bed(folder_ / "again.h5", bed_archive(solver, options_, prepared.settled));
-  EXPECT_EQ(read_bed(folder_ / "again.h5").arrays(), prepared.bed.arrays());
+  const Archive again = read_bed(folder_ / "again.h5");  // has the accounts of a run besides
+  for (const auto& [name, values] : prepared.bed.arrays()) EXPECT_EQ(again.arrays().at(name), values) << name;
   solver.set_coefficients(run_coefficients(options_, options_.step));
   for (int n = 0; n < 100; ++n) EXPECT_EQ(solver.step(options_.step), -1);
   EXPECT_LT(std::sqrt(2.0 * solver.accounts().kinetic / (solver.params().grain.mass * 38)), kRestSpeed);

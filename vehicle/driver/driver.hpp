@@ -1,0 +1,100 @@
+// A driver: from what a vehicle does now to throttle, brake, steering and gear.
+#pragma once
+
+#include <cmath>
+
+#include "protocol/core/archive.hpp"
+#include "protocol/core/fields.hpp"
+#include "protocol/core/vec.hpp"
+
+namespace furrow::vehicle {
+
+/// What a driver sees.
+struct DriverView {
+  double time = 0.0;             // s
+  Vec3 position = Vec3::Zero();  // middle of the rear axle, W, m
+  Vec3 velocity = Vec3::Zero();  // of this point, W, m/s
+  double yaw = 0.0;              // of the vehicle's x axis about z, from the x axis of W, rad
+  double yaw_rate = 0.0;         // rad/s
+  /// Along the vehicle's x axis in the horizontal plane, m/s; negative backwards.
+  double speed() const { return velocity.x() * std::cos(yaw) + velocity.y() * std::sin(yaw); }
+};
+
+/// Gears as drivers count them: 1 is the lowest forward gear.
+namespace gear_request {
+inline constexpr int automatic = -2;  // as the gearbox decides
+inline constexpr int reverse = -1;
+inline constexpr int neutral = 0;
+}  // namespace gear_request
+
+/// What a driver does.
+struct DriverInputs {
+  double throttle = 0.0;               // 0 to 1
+  double brake = 0.0;                  // 0 to 1
+  double steering = 0.0;               // −1 to 1, positive to the left
+  int gear = gear_request::automatic;  // or reverse, neutral, 1, 2, …
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<DriverInputs> auto& s) {
+  visit(Field{"throttle", "-", role::column}, s.throttle);
+  visit(Field{"brake", "-", role::column}, s.brake);
+  visit(Field{"steering", "-", role::column}, s.steering);
+  visit(Field{"gear_request", "-", role::column}, s.gear);
+}
+
+/// What a driver knows of its vehicle.
+struct DriverCar {
+  double wheelbase = 0.0;  // from the rear axle to the one that steers, m
+  double steering_lock =
+      0.0;             // mean angle of the road wheels at steering 1: that of the steering wheel there, over
+                       // the steering ratio, rad
+  double width = 0.0;  // m
+  double mass = 0.0;   // of all that moves with it, kg
+  double drive_force = 0.0;  // largest at the wheels: the smaller of engine's and grip's, N
+  double brake_force = 0.0;  // largest at the wheels, N
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<DriverCar> auto& s) {
+  visit(Field{"wheelbase", "m"}, s.wheelbase);
+  visit(Field{"steering_lock", "rad"}, s.steering_lock);
+  visit(Field{"width", "m"}, s.width);
+  visit(Field{"mass", "kg"}, s.mass);
+  visit(Field{"drive_force", "N"}, s.drive_force);
+  visit(Field{"brake_force", "N"}, s.brake_force);
+}
+
+/// For the table of results. What a driver has no loop for is zero.
+struct DriverRecord {
+  DriverInputs inputs;
+  double target_speed = 0.0;   // m/s
+  double path_distance = 0.0;  // travelled along the path, m
+  double cross_track = 0.0;    // from the path, positive left of it, m
+  double heading_error = 0.0;  // the vehicle's yaw minus the path's, −π to π, rad
+  bool path_ended = false;     // its last point was passed
+  double path_end_time = 0.0;  // when that was first seen, s
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<DriverRecord> auto& s) {
+  visit(Field{"inputs", ""}, s.inputs);
+  visit(Field{"target_speed", "m/s", role::column}, s.target_speed);
+  visit(Field{"path_distance", "m", role::column}, s.path_distance);
+  visit(Field{"cross_track", "m", role::column}, s.cross_track);
+  visit(Field{"heading_error", "rad", role::column}, s.heading_error);
+  visit(Field{"path_ended", ""}, s.path_ended);
+  visit(Field{"path_end_time", "s"}, s.path_end_time);
+}
+
+class Driver {
+ public:
+  virtual ~Driver() = default;
+  /// Once per exchange, for the interval that begins now. Asked again at the same time it answers the same.
+  /// @pre time does not go back
+  virtual DriverInputs drive(const DriverView& view) = 0;
+  /// Of the last call.
+  virtual const DriverRecord& record() const = 0;
+  /// All that the next call depends on: a driver restored goes on bit for bit.
+  virtual void save(Archive& archive) const = 0;
+  virtual void restore(const Archive& archive) = 0;
+};
+
+}  // namespace furrow::vehicle

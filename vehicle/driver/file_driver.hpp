@@ -1,0 +1,18 @@
+// The driver of a driver file. It has three parts, each of which follows tables of time or closes a loop:
+//
+//   pedals    tables, or a speed held by a PI law (speed_control.hpp)
+//   steering  a table, or a path followed by looking ahead (path_follower.hpp)
+//   gear      a table, or left to the gearbox
+#pragma once
+
+#include <memory>
+
+#include "vehicle/driver/driver.hpp"
+#include "vehicle/driver/driver_spec.hpp"
+
+namespace furrow::vehicle {
+
+/// @pre all that the car has is above zero
+std::unique_ptr<Driver> make_driver(const DriverSpec& spec, const DriverCar& car);
+
+}  // namespace furrow::vehicle

@@ -1,0 +1,62 @@
+// A path in the horizontal plane: cubic curves from knot to knot that have the knots' directions, so that the
+// direction is continuous. With the chord d between two knots and the angle θ between their directions, the curve's
+// tangents there are 2d/(1 + cos θ/2) long: the curve then meets the middle of a piece of a circle as well, and departs
+// from the circle by less than 1e-3 θ⁶ of its radius. Behind its last knot the path goes on straight.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "protocol/core/fields.hpp"
+
+namespace furrow::vehicle {
+
+using Vec2 = Eigen::Vector2d;  // W, horizontal
+
+struct PathPoint {
+  Vec2 position = Vec2::Zero();    // m
+  Vec2 direction = Vec2::UnitX();  // of length 1
+};
+
+/// A place on a path: places further on compare greater, first by their piece.
+struct PathPlace {
+  int piece = 0;          // counted from 0
+  double fraction = 0.0;  // of the piece, 0 to 1
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<PathPlace> auto& s) {
+  visit(Field{"piece"}, s.piece);
+  visit(Field{"fraction"}, s.fraction);
+}
+
+class Path {
+ public:
+  /// @pre at least two knots, neighbours at different places
+  explicit Path(const std::vector<PathPoint>& knots);
+
+  PathPoint at(const PathPlace& place) const;
+  double distance(const PathPlace& place) const;  // from the first knot along the path, m
+  PathPlace end() const { return {static_cast<int>(pieces_.size()) - 1, 1.0}; }
+  bool is_end(const PathPlace& place) const { return place.piece == end().piece && place.fraction == 1.0; }
+
+  /// The first place at or behind `from` from which the path leads away from `point`. It never goes back, and a path
+  /// that crosses itself does not confuse it.
+  PathPlace follow(const PathPlace& from, const Vec2& point) const;
+  /// The first position at or behind `from` that is at least `distance` from `point`.
+  /// @pre behind the end of the path, the point is less than `distance` beside it
+  Vec2 look_ahead(const PathPlace& from, const Vec2& point, double distance) const;
+
+ private:
+  struct Piece {
+    Vec2 p0, p1;         // its ends, m
+    Vec2 m0, m1;         // tangents there, by the fraction, m
+    double start = 0.0;  // length of the path before it, m
+    Vec2 position(double u) const;
+    Vec2 tangent(double u) const;
+    double length(double u) const;  // from its start, m
+  };
+  std::vector<Piece> pieces_;
+};
+
+}  // namespace furrow::vehicle

@@ -1,0 +1,60 @@
+// Steers along a path by one of two laws, for a vehicle of wheelbase L whose front wheels stand at the angle δ:
+//
+//   pure_pursuit  [Coulter 1992]: the rear axle's circle, tangential to the vehicle, goes through the point ahead on
+//                 the path at the distance D = max(D₀, t v, √2 |e|) from the rear axle. y is this point's distance to
+//                 the left of the vehicle's axis.
+//                   κ = 2 y/D²,  tan δ = L κ
+//   stanley       [Hoffmann et al. 2007], with front axle, heading error ψ and distance e left of the path; k_s is
+//                 their softening for low speeds. Their damping terms are left out.
+//                   δ = −ψ − arctan(k e/(k_s + |v|))
+//
+// Cross-track error e is that of the axle that the law looks at. D grows with |e| so that a vehicle far off the path
+// comes back at 45°. The steering follows the law's with a bounded rate.
+//
+// R. C. Coulter, Implementation of the Pure Pursuit Path Tracking Algorithm, CMU-RI-TR-92-01, Carnegie Mellon
+// University 1992.
+// G. M. Hoffmann, C. J. Tomlin, M. Montemerlo, S. Thrun, Autonomous Automobile Trajectory Tracking for Off-Road
+// Driving, American Control Conference 2007, 2296–2301, doi:10.1109/ACC.2007.4282788.
+#pragma once
+
+#include "protocol/core/fields.hpp"
+#include "vehicle/driver/driver.hpp"
+#include "vehicle/driver/driver_spec.hpp"
+#include "vehicle/driver/path.hpp"
+
+namespace furrow::vehicle {
+
+struct PathState {
+  bool begun = false;     // it was asked before
+  double time = 0.0;      // of the last call, s
+  double steering = 0.0;  // then
+  PathPlace place;        // that the axle has reached; never goes back
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<PathState> auto& s) {
+  visit(Field{"begun", ""}, s.begun);
+  visit(Field{"time", "s"}, s.time);
+  visit(Field{"steering"}, s.steering);
+  visit(Field{"place", ""}, s.place);
+}
+
+class PathFollower {
+ public:
+  PathFollower(const PathSpec& spec, const DriverCar& car);
+
+  const Path& path() const { return path_; }
+  /// Sets the steering and what the record says of the path. @pre view.time ≥ state.time
+  void steer(const DriverView& view, PathState& state, DriverRecord& record) const;
+
+ private:
+  double wheel_angle(const PurePursuit& law, const DriverView& view, const PathPlace& place,
+                     const DriverRecord& record) const;  // δ, rad
+  double wheel_angle(const Stanley& law, const DriverView& view, const PathPlace& place,
+                     const DriverRecord& record) const;
+
+  Path path_;
+  SteeringSpec spec_;
+  DriverCar car_;
+};
+
+}  // namespace furrow::vehicle

@@ -1,0 +1,255 @@
+#include "vehicle/driver/read_driver.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <type_traits>
+
+#include <fmt/format.h>
+
+#include "protocol/files/data_files.hpp"
+#include "protocol/files/json_text.hpp"
+#include "protocol/files/nearest_words.hpp"
+#include "vehicle/driver/driver.hpp"
+#include "vehicle/driver/lane_change.hpp"
+#include "vehicle/driver/read_points.hpp"
+
+namespace furrow::vehicle {
+namespace {
+
+constexpr int kFormatVersion = 1;
+constexpr double kMostLength = 1e6;      // of paths, m
+constexpr double kMostAngle = 36000.0;   // of a circle, degrees
+constexpr double kLeastSpacing = 1e-3;   // of waypoints, m
+constexpr double kSharpestTurn = 120.0;  // at a waypoint, degrees
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+constexpr PointRule kThrottle{"time_s", "throttle", 0.0, 1.0, "a number from 0 to 1"};
+constexpr PointRule kBrake{"time_s", "brake", 0.0, 1.0, "a number from 0 to 1"};
+constexpr PointRule kSteering{"time_s", "steering", -1.0, 1.0, "a number from -1 to 1"};
+constexpr PointRule kGear{"time_s",
+                          "gear",
+                          gear_request::reverse,
+                          20.0,
+                          "'auto', -1 (reverse), 0 (neutral) or a gear from 1 to 20",
+                          "auto",
+                          gear_request::automatic,
+                          true};
+constexpr PointRule kSpeed{"time_s", "speed_m_s", 0.0, 100.0, "a speed from 0 to 100"};
+constexpr PointRule kWaypoint{"x_m", "y_m", -kMostLength, kMostLength, "at most 1e6"};
+
+void expect(bool ok, const JsonReader& reader, const std::string& key, double value,
+            const std::string& expected) {
+  if (!ok) reader.fail(key, "is " + number_text(value) + ", expected " + expected);
+}
+
+void in_range_of(const JsonReader& reader, const std::string& key, double value, double least, double most) {
+  expect(value >= least && value <= most, reader, key, value,
+         std::isinf(most) ? fmt::format("a number of {} or above", number_text(least))
+                          : fmt::format("a number from {} to {}", number_text(least), number_text(most)));
+}
+
+void above_zero(const JsonReader& reader, const std::string& key, double value, double most = kMostLength) {
+  expect(value > 0.0 && value <= most, reader, key, value,
+         "a number above zero and at most " + number_text(most));
+}
+
+void known_text(const JsonReader& reader, const std::string& key, const std::string& text,
+                const std::vector<std::string>& known) {
+  if (std::find(known.begin(), known.end(), text) == known.end())
+    reader.fail(key, "'" + text + "' " + unknown_text(nearest_words(text, known), known));
+}
+
+/// Takes the numbers and texts of T; those that are missing and may be keep their values. Other fields are marked as
+/// read and left to the caller.
+template <HasFields T>
+void take_keys(JsonReader& reader, T& target) {
+  visit_fields(
+      [&](const Field& field, auto& value) {
+        using Value = std::remove_cvref_t<decltype(value)>;
+        reader.skip(field.name);
+        if (!reader.given(field.name) && !field.is(kRequired)) return;
+        if constexpr (std::is_same_v<Value, double>)
+          value = reader.number(field.name);
+        else if constexpr (std::is_same_v<Value, std::string>)
+          value = reader.text(field.name);
+      },
+      target);
+}
+
+// Keys of each section: what they may be, and what is read by other means.
+
+void finish(StraightPath& shape, JsonReader& reader) { above_zero(reader, "length", shape.length); }
+
+void finish(CirclePath& shape, JsonReader& reader) {
+  above_zero(reader, "radius", shape.radius);
+  above_zero(reader, "angle_deg", shape.angle_deg, kMostAngle);
+  in_range_of(reader, "lead_in", shape.lead_in, 0.0, kMostLength);
+  known_text(reader, "turn", shape.turn, {"left", "right"});
+}
+
+void finish(LaneChangePath& shape, JsonReader& reader) {
+  known_text(reader, "track", shape.track, lane_change_names());
+  in_range_of(reader, "lead_in", shape.lead_in, 0.0, kMostLength);
+  in_range_of(reader, "lead_out", shape.lead_out, 0.0, kMostLength);
+}
+
+void finish(WaypointPath& shape, JsonReader& reader) {
+  const DriverPoints points = read_points(reader, "points", kWaypoint);
+  if (points.size() < 2) reader.fail("points", "has one point, expected two or more");
+  const auto chord = [&](std::size_t i) {
+    return std::array{points[i + 1].first - points[i].first, points[i + 1].second - points[i].second};
+  };
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const auto [x, y] = chord(i);
+    if (std::hypot(x, y) < kLeastSpacing)
+      reader.fail(
+          "points",
+          fmt::format("has points {} and {} at one place, expected 1 mm between them or more", i + 1, i + 2));
+    if (i == 0) continue;
+    const auto [a, b] = chord(i - 1);
+    const double turn = std::abs(std::atan2(a * y - b * x, a * x + b * y)) * 180.0 / std::numbers::pi;
+    if (turn > kSharpestTurn)
+      reader.fail("points", fmt::format("turns by {:.0f}° at point {}, expected at most {:.0f}°", turn, i + 1,
+                                        kSharpestTurn));
+  }
+  shape.points = points;
+}
+
+void finish(PurePursuit& law, JsonReader& reader) {
+  in_range_of(reader, "lookahead_time", law.lookahead_time, 0.0, 100.0);
+  if (reader.given("lookahead_distance")) above_zero(reader, "lookahead_distance", law.lookahead_distance);
+}
+
+void finish(Stanley& law, JsonReader& reader) {
+  above_zero(reader, "gain", law.gain, 1e3);
+  above_zero(reader, "soft_speed", law.soft_speed, 100.0);
+}
+
+/// One of several structs: the one whose kName is the text under `key`, the first of them when there is none and it may
+/// be missing.
+template <class... Choices>
+std::variant<Choices...> read_choice(JsonReader& reader, const std::string& key, bool required,
+                                     std::type_identity<std::variant<Choices...>>) {
+  const std::vector<std::string> names = {Choices::kName...};
+  const std::string name = required || reader.given(key) ? reader.text(key) : names.front();
+  reader.skip(key);
+  known_text(reader, key, name, names);
+  std::variant<Choices...> chosen;
+  const auto read_if = [&]<class T>(T choice) {
+    if (name != T::kName) return;
+    take_keys(reader, choice);
+    finish(choice, reader);
+    chosen = std::move(choice);
+  };
+  (read_if(Choices{}), ...);
+  return chosen;
+}
+
+SteeringSpec read_steering(JsonReader reader) {
+  SteeringSpec spec;
+  take_keys(reader, spec);
+  above_zero(reader, "rate", spec.rate, 1e6);
+  spec.law = read_choice(reader, "law", false, std::type_identity<SteeringLaw>());
+  reader.finish();
+  return spec;
+}
+
+PathSpec read_path(JsonReader reader) {
+  PathSpec spec;
+  take_keys(reader, spec);
+  in_range_of(reader, "x", spec.x, -kMostLength, kMostLength);
+  in_range_of(reader, "y", spec.y, -kMostLength, kMostLength);
+  in_range_of(reader, "heading_deg", spec.heading_deg, -360.0, 360.0);
+  spec.shape = read_choice(reader, "kind", true, std::type_identity<PathShape>());
+  if (reader.given("steering")) spec.steering = read_steering(reader.child("steering"));
+  reader.finish();
+  return spec;
+}
+
+SpeedSpec read_speed(JsonReader reader) {
+  SpeedSpec spec;
+  take_keys(reader, spec);
+  // Below zero they come from the vehicle; a file cannot say that but by leaving them out.
+  if (reader.given("proportional")) in_range_of(reader, "proportional", spec.proportional, 0.0, kInfinity);
+  if (reader.given("integral")) in_range_of(reader, "integral", spec.integral, 0.0, kInfinity);
+  in_range_of(reader, "hysteresis", spec.hysteresis, 0.0, 1.0);
+  in_range_of(reader, "stop_speed", spec.stop_speed, 0.0, 10.0);
+  spec.target = read_points(reader, "target", kSpeed);
+  reader.finish();
+  return spec;
+}
+
+constexpr std::array<std::pair<const PointRule*, DriverPoints InputSpec::*>, 4> kInputs = {{
+    {&kThrottle, &InputSpec::throttle},
+    {&kBrake, &InputSpec::brake},
+    {&kSteering, &InputSpec::steering},
+    {&kGear, &InputSpec::gear},
+}};
+
+InputSpec read_inputs(const std::filesystem::path& file) {
+  const CsvFile csv(file, "a CSV file of a driver's inputs",
+                    {"time_s", "throttle", "brake", "steering", "gear"});
+  InputSpec spec;
+  for (const auto& [rule, points] : kInputs)
+    if (csv.has(rule->second)) spec.*points = read_points(csv, *rule);
+  return spec;
+}
+
+InputSpec read_inputs(JsonReader reader) {
+  InputSpec spec;
+  for (const auto& [rule, points] : kInputs) {
+    reader.skip(rule->second);
+    if (reader.given(rule->second)) spec.*points = read_points(reader, rule->second, *rule);
+  }
+  reader.finish();
+  return spec;
+}
+
+/// What follows a loop follows no table.
+void check_parts(const DriverSpec& spec, const JsonReader& reader) {
+  const auto refuse = [&](bool both, const std::string& input, const std::string& loop) {
+    if (both)
+      reader.fail("inputs", fmt::format("gives {} beside '{}', expected one of the two", input, loop));
+  };
+  refuse(spec.speed && !spec.inputs.throttle.empty(), "throttle", "speed");
+  refuse(spec.speed && !spec.inputs.brake.empty(), "brake", "speed");
+  refuse(spec.path && !spec.inputs.steering.empty(), "steering", "path");
+  const InputSpec& i = spec.inputs;
+  if (!spec.speed && !spec.path && i.throttle.empty() && i.brake.empty() && i.steering.empty() &&
+      i.gear.empty())
+    reader.fail("", "tells the driver nothing, expected 'inputs', 'speed' or 'path'");
+}
+
+}  // namespace
+
+DriverSpec read_driver(const std::filesystem::path& file) {
+  if (file.extension() == ".csv") {
+    DriverSpec spec;
+    spec.inputs = read_inputs(file);
+    return spec;
+  }
+  return read_driver(load_json(file, "a driver in JSON or CSV"), file.string());
+}
+
+DriverSpec read_driver(const nlohmann::json& document, const std::string& file) {
+  JsonReader reader(document, file);
+  reader.check_version(kFormatVersion, true);
+  for (const char* key : {"$schema", "name", "inputs", "speed", "path"}) reader.skip(key);
+  reader.finish();
+  DriverSpec spec;
+  if (reader.given("inputs")) {
+    if (document["inputs"].is_string())
+      spec.inputs = read_inputs(find_file(reader.text("inputs"), "inputs", file));
+    else
+      spec.inputs = read_inputs(reader.child("inputs"));
+  }
+  if (reader.given("speed")) spec.speed = read_speed(reader.child("speed"));
+  if (reader.given("path")) spec.path = read_path(reader.child("path"));
+  check_parts(spec, reader);
+  return spec;
+}
+
+}  // namespace furrow::vehicle

@@ -23,7 +23,7 @@ class Accounts(SystemTest):
         self.assertTrue(energy["closes"], energy)
         self.assertTrue(momentum["closes"], momentum)
         self.assertLess(abs(energy["residual_share"]), 0.03, energy)
-                total = sum(energy["work"].values()) - sum(energy["stored"].values()) - sum(energy["lost"].values())
+        total = sum(energy["work"].values()) - sum(energy["stored"].values()) - sum(energy["lost"].values())
         self.assertAlmostEqual(total, energy["residual"], delta=1e-9 * energy["turnover"])
         self.assertAlmostEqual(sum(energy["residual_of"].values()), energy["residual"], delta=1e-9 * energy["turnover"])
         for i in range(3):

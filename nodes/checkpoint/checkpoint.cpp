@@ -22,6 +22,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr int kFormatVersion = 2;  // 1 held the states of nodes as lists of numbers without names
+constexpr std::int64_t kMostThreads = 1 << 20;
 constexpr char kManifest[] = "manifest.json";
 constexpr char kKind[] = "checkpoint";
 
@@ -57,26 +58,46 @@ Json to_json(const CheckpointManifest& m) {
   return json;
 }
 
-CheckpointManifest from_json(const Json& json) {
+/// A whole number of a size that a run may come to. @throws Error(io)
+std::int64_t whole(const std::string& file, const Json& object, const std::string& key,
+                   std::int64_t least = 0, std::int64_t most = kMostSteps) {
+  const Json& value = object.at(key);
+  if (value.is_number_integer() && value >= least && value <= most) return value.get<std::int64_t>();
+  throw io_error(file, fmt::format("is damaged: '{}' is {}, expected a whole number from {} to {}", key,
+                                   value_text(value), least, most));
+}
+
+FrameClock frames_from(const std::string& file, const Json& json, std::int64_t step) {
+  return {whole(file, json, "every"), whole(file, json, "first_step", 0, step),
+          whole(file, json, "first_index")};
+}
+
+void check_segments(const std::string& file, const Json& segments) {
+  for (const Json& segment : segments) {
+    for (const char* key : {"from_step", "to_step"}) whole(file, segment, key);
+    whole(file, segment, "threads", 1, kMostThreads);
+  }
+}
+
+CheckpointManifest from_json(const std::string& file, const Json& json) {
   CheckpointManifest m;
   m.version = json.at("version");
   m.build = json.at("build");
   m.cpu = json.at("cpu");
   m.name = json.at("name");
   m.scenario_digest = json.at("scenario_digest");
-  m.step = json.at("step");
+  m.step = whole(file, json, "step");
   m.time = json.at("time_s");
-  m.bytes = json.at("bytes");
+  m.bytes = whole(file, json, "bytes");
   m.write_s = json.at("write_s");
   for (const Json& part : json.at("parts"))
     m.parts.push_back(
         {m.step, part.at("file").get<std::string>(), part.at("checksum").get<std::string>(), ""});
   for (const Json& mark : json.at("series"))
-    m.series.push_back({mark.at("bytes").get<std::int64_t>(), mark.at("lines").get<std::int64_t>(),
+    m.series.push_back({whole(file, mark, "bytes"), whole(file, mark, "lines"),
                         mark.at("checksum").get<std::string>(), mark.at("subject").get<std::string>()});
-  const Json& frames = json.at("frames");
-  m.frames = {frames.at("every").get<std::int64_t>(), frames.at("first_step").get<std::int64_t>(),
-              frames.at("first_index").get<std::int64_t>()};
+  m.frames = frames_from(file, json.at("frames"), m.step);
+  check_segments(file, json.at("segments"));
   m.segments = segments_from_json(json.at("segments"));
   m.file_hashes = json.at("file_hashes").get<std::vector<std::string>>();
   m.scenario = json.at("scenario").dump();
@@ -106,7 +127,7 @@ CheckpointManifest read_manifest(const fs::path& file) {
     json.erase("checksum");
     if (text_hash(json.dump()) != checksum)
       throw io_error(file.string(), "the checksum does not fit the contents: the file is damaged");
-    return from_json(json);
+    return from_json(file.string(), json);
   } catch (const Json::exception& problem) {
     throw io_error(file.string(), std::string("is damaged: ") + problem.what());
   }
@@ -221,7 +242,10 @@ void remove_checkpoints_after(const fs::path& run, std::int64_t step) noexcept {
   }
 }
 
-std::string build_id() { return file_hash("/proc/self/exe"); }
+std::string build_id() {
+  static const std::string id = file_hash("/proc/self/exe");
+  return id;
+}
 
 std::string cpu_model() {
   std::ifstream info("/proc/cpuinfo");

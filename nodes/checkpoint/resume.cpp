@@ -92,10 +92,15 @@ void count_in_steps_of(double step, double before, const fs::path& run, Checkpoi
         run.string(), "run.step",
         fmt::format("is {} s but the run was computed with {} s, expected a half, a third, … of it",
                     number_text(step), number_text(before)));
-  manifest.step *= ratio;
-  manifest.frames.every *= ratio;
-  manifest.frames.first_step *= ratio;
-  for (Segment& segment : manifest.segments) segment.from_step *= ratio, segment.to_step *= ratio;
+  const auto count = [&](std::int64_t& steps) {
+    if (steps > kMostSteps / ratio)
+      throw input_error(run.string(), "run.step",
+                        fmt::format("is {} s, too many steps to be counted, expected more",
+                                    number_text(step)));
+    steps *= ratio;
+  };
+  count(manifest.step), count(manifest.frames.every), count(manifest.frames.first_step);
+  for (Segment& segment : manifest.segments) count(segment.from_step), count(segment.to_step);
 }
 
 /// Every substeps key may only grow. @throws Error(bad_input)
@@ -126,6 +131,27 @@ std::string failure_ahead(const fs::path& run, const nlohmann::ordered_json& fai
   return fmt::format("{}: failed at t = {} s and will fail again, as nothing is changed: {}", run.string(),
                      time.is_number() ? number_text(time.get<double>()) : "?",
                      text.is_string() ? text.get<std::string>() : "");
+}
+
+/// Compares the scenario of the plan's checkpoint to that which goes on, and takes what is changed into the plan.
+/// @param failed summary_failed.json @throws Error(bad_input), Error(io) for a scenario that no version completed
+void take_changes(const fs::path& run, const nlohmann::ordered_json& failed, ResumePlan& plan) try {
+  ResumePoint& point = plan.point;
+  const json before = scenario::completed_now(point.manifest.scenario);  // perhaps of an earlier version
+  const json now = json::parse(plan.scenario.completed);
+  const bool physics = value_at(failed, "failed.exit_code") == static_cast<int>(ExitCode::physics);
+  const json changed = changes(run, before, now, physics);
+  if (!changed.empty()) point.changed = changed.dump();
+  check_finer(run, before, changed);
+  if (only_finer(changed)) point.finer_than = point.manifest.scenario_digest;
+  if (physics && value_at(failed, "scenario_digest") == plan.scenario.digest)
+    plan.warnings.push_back(failure_ahead(run, failed));
+  if (changed.contains("run.step"))
+    count_in_steps_of(plan.scenario.run.step, before.at("run").at("step").get<double>(), run,
+                      point.manifest);
+} catch (const json::exception& problem) {
+  throw io_error(plan.point.folder.string(),
+                 std::string("the scenario of the checkpoint is damaged: ") + problem.what());
 }
 
 /// Step at which the finished run ended; negative while there is no summary.
@@ -159,27 +185,16 @@ ResumePlan plan_resume(const fs::path& run,
   ResumePlan plan;
   plan.scenario = scenario::load_scenario(file, settings);
   const std::int64_t steps = plan.scenario.run.steps(), ended = finished_at(run);
-  const json now = json::parse(plan.scenario.completed);
   if (ended == steps) {
-    changes(run, json::parse(scenario::load_scenario(file, {}).completed), now, false);
+    changes(run, json::parse(scenario::load_scenario(file, {}).completed),
+            json::parse(plan.scenario.completed), false);
     plan.finished = true;
     return plan;
   }
   plan.point = newest_whole(run, plan.warnings);
   const CheckpointManifest& manifest = plan.point.manifest;
   plan.scenario.name = manifest.name;
-  const json before = scenario::completed_now(manifest.scenario);  // the run may have begun with an earlier version
-  const nlohmann::ordered_json failed = read_failed_summary(run);
-  const bool physics = value_at(failed, "failed.exit_code") == static_cast<int>(ExitCode::physics);
-  const json changed = changes(run, before, now, physics);
-  if (!changed.empty()) plan.point.changed = changed.dump();
-  check_finer(run, before, changed);
-  if (only_finer(changed)) plan.point.finer_than = manifest.scenario_digest;
-  if (physics && value_at(failed, "scenario_digest") == plan.scenario.digest)
-    plan.warnings.push_back(failure_ahead(run, failed));
-  if (changed.contains("run.step"))
-    count_in_steps_of(plan.scenario.run.step, before.at("run").at("step").get<double>(), run,
-                      plan.point.manifest);
+  take_changes(run, read_failed_summary(run), plan);
   check_files(plan.scenario, manifest);
   const std::int64_t reached = std::max(ended, manifest.step);
   if (steps < reached)

@@ -10,6 +10,8 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
+constexpr std::size_t kMaxDigits = 9;  // of a place in a list
+
 Json read_one(const std::filesystem::path& file) {
   Json summary = read_json_if_whole(file);
   if (!summary.is_object()) return {};
@@ -34,8 +36,9 @@ Json value_at(const Json& summary, const std::string& path) {
   for (std::size_t from = 0; from <= path.size();) {
     const std::size_t to = std::min(path.find('.', from), path.size());
     const std::string part = path.substr(from, to - from);
-    if (at->is_array() && !part.empty() && part.find_first_not_of("0123456789") == std::string::npos &&
-        std::stoul(part) < at->size())
+    const bool index = !part.empty() && part.size() <= kMaxDigits &&
+                       part.find_first_not_of("0123456789") == std::string::npos;
+    if (at->is_array() && index && std::stoul(part) < at->size())
       at = &(*at)[std::stoul(part)];
     else if (at->is_object() && at->contains(part))
       at = &(*at)[part];

@@ -9,6 +9,9 @@
 
 namespace furrow::checkpoint {
 
+/// Steps, bytes and lines that a run may come to: two such numbers can be added.
+inline constexpr std::int64_t kMostSteps = std::int64_t{1} << 62;
+
 /// A stretch of a run that was computed without interruption. Steps are those of the last stretch's run.step.
 struct Segment {
   std::int64_t from_step = 0, to_step = 0;

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <numeric>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -73,11 +74,14 @@ TableWriter::TableWriter(const std::filesystem::path& file, const checkpoint::Se
     : file_(file), subject_(table.subject), stream_(std::fopen(file.c_str(), "rb+")) {
   if (!stream_)
     throw io_error(file_.string(), std::string("cannot be opened to go on with it: ") + std::strerror(errno));
-  std::string text(static_cast<std::size_t>(mark.bytes), '\0');
+  std::error_code error;
+  const std::uintmax_t there = std::filesystem::file_size(file, error);
+  const bool all = !error && std::cmp_less_equal(mark.bytes, there);
+  std::string text(all ? static_cast<std::size_t>(mark.bytes) : 0, '\0');
   text.resize(std::fread(text.data(), 1, text.size(), stream_.get()));
   hash_.add(text);
   const std::size_t end = text.find('\n');
-  if (hash_.hex() != mark.checksum || end == std::string::npos)
+  if (!all || hash_.hex() != mark.checksum || end == std::string::npos)
     throw io_error(file_.string(), "does not hold the lines that the checkpoint knows: it was changed since");
   take_order(std::string_view(text).substr(0, end), table);
   const char* at = text.c_str() + end + 1;

@@ -1,20 +1,27 @@
 // Checkpoints on disk: whole or refused; series and frames go on where they were.
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <fstream>
 #include <iterator>
 
+#include <nlohmann/json.hpp>
+
 #include "nodes/checkpoint/checkpoint.hpp"
+#include "nodes/checkpoint/resume.hpp"
+#include "nodes/checkpoint/run_summary.hpp"
 #include "nodes/checkpoint/wall_schedule.hpp"
 #include "nodes/output/frames.hpp"
 #include "nodes/scenario/load_scenario.hpp"
 #include "protocol/files/archive_file.hpp"
+#include "protocol/files/text_file.hpp"
 #include "temporary_folder.hpp"
 
 namespace furrow {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
 using testing::TemporaryFolder;
 
 std::string text_of(const fs::path& file) {
@@ -121,6 +128,53 @@ TEST(Checkpoint, one_of_an_older_format_is_refused_by_its_version) {
       (checkpoint / "manifest.json").string() +
           ": was written by an older version of furrow, format 1; this program reads format 2: continue the "
           "run with that version, or start it again with furrow run");
+}
+
+/// Puts a value into the manifest of the run's only checkpoint, and the checksum that fits. @returns its folder
+fs::path forge(const fs::path& run, const std::string& pointer, const Json& value) {
+  const fs::path checkpoint = checkpoint::list_checkpoints(run).at(0), file = checkpoint / "manifest.json";
+  Json manifest = Json::parse(text_of(file));
+  manifest[Json::json_pointer(pointer)] = value;
+  manifest.erase("checksum");
+  manifest["checksum"] = text_hash(manifest.dump());
+  std::ofstream(file, std::ios::binary) << manifest.dump();
+  return checkpoint;
+}
+
+TEST(Checkpoint, numbers_that_no_run_comes_to_are_refused_although_the_checksum_fits) {
+  const testing::TemporaryFolder folder;
+  write_example(folder.path(), 120);
+  const fs::path file = checkpoint::list_checkpoints(folder.path()).at(0) / "manifest.json";
+  const std::string whole = text_of(file);
+  for (const std::string pointer :
+       {"/step", "/bytes", "/series/0/bytes", "/series/0/lines", "/frames/every", "/frames/first_step",
+        "/frames/first_index", "/segments/0/from_step", "/segments/0/to_step", "/segments/0/threads"})
+    for (const Json& value : {Json(-1), Json(1e300), Json(0.5), Json(INT64_MAX), Json(UINT64_MAX)}) {
+      const std::string words = "'" + pointer.substr(pointer.rfind('/') + 1) + "' is";
+      EXPECT_NE(error_of(forge(folder.path(), pointer, value)).find(words), std::string::npos)
+          << pointer << " " << value;
+      std::ofstream(file, std::ios::binary) << whole;
+    }
+  EXPECT_NE(error_of(forge(folder.path(), "/frames/first_step", 121)), "") << "after the checkpoint itself";
+}
+
+TEST(Checkpoint, a_scenario_that_no_version_completed_is_refused) {
+  for (const char* text : {"3", "\"x\"", "[1]", R"({"terrain": {"engine": 3}})", R"({"rig": 3})",
+                           R"({"tire": {"substeps": "two"}})", R"({"run": {"step": "x"}})"}) {
+    const testing::TemporaryFolder folder;
+    std::ofstream(folder.path() / "scenario.json")
+        << R"({"tire": {"file": "toroidal.json"}, "terrain": {"engine": "rigid"}})";
+    write_example(folder.path(), 10);
+    forge(folder.path(), "/scenario", Json::parse(text));
+    EXPECT_THROW(checkpoint::plan_resume(folder.path(), {{"run.step", "1e-6"}}), Error) << text;
+  }
+}
+
+TEST(RunSummary, a_place_that_no_list_has_is_no_entry) {
+  const Json summary{{"wheels", {1, 2}}};
+  EXPECT_EQ(checkpoint::value_at(summary, "wheels.1"), 2);
+  for (const char* path : {"wheels.2", "wheels.-1", "wheels.", "wheels.99999999999999999999999999"})
+    EXPECT_TRUE(checkpoint::value_at(summary, path).is_null()) << path;
 }
 
 TEST(Checkpoint, what_was_never_completed_is_no_checkpoint) {

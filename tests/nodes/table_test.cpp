@@ -10,6 +10,7 @@
 #include <set>
 #include <sstream>
 
+#include "nodes/checkpoint/segment.hpp"
 #include "nodes/output/results.hpp"
 #include "nodes/output/subject_series.hpp"
 #include "protocol/core/error.hpp"
@@ -241,6 +242,20 @@ TEST(Table, goes_on_at_its_mark_bit_for_bit) {
   const auto before = open_files();
   EXPECT_THROW(output::TableWriter(file, other, table), Error);
   EXPECT_EQ(open_files(), before);
+}
+
+TEST(Table, a_mark_beyond_the_end_of_its_file_takes_no_more_memory_than_the_file) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "timeseries.csv";
+  output::Table table = wheel_table();
+  checkpoint::SeriesMark mark = output::TableWriter(file, table).mark();
+  mark.bytes = checkpoint::kMostSteps;
+  try {
+    output::TableWriter(file, mark, table);
+    FAIL() << "the end of the file was taken for the mark";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::io);
+  }
 }
 
 TEST(Table, goes_on_with_a_file_whose_columns_stand_in_another_order) {

@@ -163,7 +163,7 @@ class Limits(EnvironmentTest):
         self.assertEqual(survivors(self.folder), [])
 
     def test_plots_that_would_wait_forever_for_memory_are_not_begun(self):
-        done = limited("-v 450000", "run", self.path, "--until", "0.01", "--out", "out", cwd=self.folder)
+        done = limited("-v 450000", "run", self.path, *SHORT[:-1], "--out", "out", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertRegex(done.stderr, r"no plots: .*plots need 512 MB of memory, limit 461 MB \(ulimit -v\)")
         self.one_error(limited("-v 450000", "report", "out", cwd=self.folder), 6)

@@ -114,7 +114,7 @@ class Run(SystemTest):
             self.assertAlmostEqual(weight, 9.81 * (mass + 15 + 4.8), delta=0.5)
             self.assertAlmostEqual(entry["net_terrain_force_N"][2], weight, delta=0.005 * weight, msg=f"wheel {wheel}")
         tables = sorted(path.name for path in (self.folder / "out").glob("*.csv"))
-        self.assertEqual(tables, [f"timeseries_wheel{wheel}.csv" for wheel in range(4)])
+        self.assertEqual(tables, ["timeseries_accounts.csv", *(f"timeseries_wheel{wheel}.csv" for wheel in range(4))])
         self.assertEqual(sorted(path.name for path in (self.folder / "out").glob("summary*")), ["summary.json"])
 
     def test_profile_is_a_chrome_trace_of_all_ranks(self):

@@ -13,7 +13,8 @@ import processes
 import scenarios
 from compare_runs import differences
 
-PATIENCE = 180.0  # s that one command may take before it counts as hanging; a launcher that hangs is noticed after 120 s
+PATIENCE = 180.0  # s that one command may take before it counts as hanging
+START_TIMEOUT = "60"  # s after which a launcher that hangs is noticed; a sweep may meet two of them in turn
 DOCUMENTED = {0, 2, 3, 4, 5, 6, 75}
 BUSY_PATIENCE = 30.0  # s that a folder may stay taken by processes that are ending
 # What a message must hold: an error, a stop, or the failure of a run of a study, with words that follow.
@@ -57,7 +58,7 @@ class Case:
         with open(log, "wb") as sink:
             process = subprocess.Popen([*prefix, self.program, *words], cwd=self.inputs, stdin=subprocess.DEVNULL,
                                        stdout=subprocess.DEVNULL, stderr=sink, preexec_fn=prepare, start_new_session=True,
-                                       env={**os.environ, "XDG_CACHE_HOME": str(self.cache), **(env or {})})
+                                       env={**os.environ, "XDG_CACHE_HOME": str(self.cache), "FURROW_START_TIMEOUT": START_TIMEOUT, **(env or {})})
         return Started(process, log, words)
 
     def finish(self, started, expected=DOCUMENTED):

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "nodes/output/json_number.hpp"
+#include "protocol/files/json_number.hpp"
 
 namespace furrow::output {
 namespace {

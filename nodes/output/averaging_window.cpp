@@ -41,12 +41,6 @@ double Window::mean_of(std::string_view column) const {
   return values.empty() ? NAN : sum / static_cast<double>(values.size());
 }
 
-double Window::rate_of(std::string_view column) const {
-  if (rows.empty()) return NAN;
-  const std::vector<double> all = table->column(column);
-  return all.empty() ? 0.0 : (all.back() - all[first - 1]) / duration();
-}
-
 Window averaging_window(const Table& table, std::span<const WheelRow> rows, double from, int facets) {
   FURROW_ASSERT(facets >= 0 && table.lines() == rows.size(), facets, table.lines(), rows.size());
   std::size_t first = 1;

@@ -44,8 +44,6 @@ struct Window {
   std::vector<double> samples(std::string_view column) const;
   /// NaN when the rig has no such column.
   double mean_of(std::string_view column) const;
-  /// 0 when the rig has no such column.
-  double rate_of(std::string_view column) const;
 };
 
 /// The window from the time `from` to the end of the table, shortened at its beginning to a whole number of facets of

@@ -6,7 +6,6 @@
 
 #include "nodes/checkpoint/segment.hpp"
 #include "nodes/output/accounts_json.hpp"
-#include "nodes/output/json_number.hpp"
 #include "nodes/output/averaging_window.hpp"
 #include "nodes/output/results.hpp"
 #include "nodes/output/steadiness.hpp"
@@ -14,6 +13,7 @@
 #include "protocol/core/assert.hpp"
 #include "protocol/core/constants.hpp"
 #include "protocol/core/hash.hpp"
+#include "protocol/files/json_number.hpp"
 #include "terrain/rut.hpp"
 
 namespace furrow::output {
@@ -23,10 +23,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kMaxLate =
     0.05;  // of load × speed: energy error of the interface of a run that can be trusted
-constexpr double kLeastRolled = 1e-3;  // of the radius: a wheel that went less stands
+constexpr double kLeastRolled = 1e-3;       // of the radius: a wheel that went less stands
 constexpr char kPull[] = "drawbar_pull_N";  // the rig's, if it has one
-
-Json number(double value) { return json_number(value); }
 
 /// What the summary of one wheel is computed from.
 struct WheelInput {
@@ -70,18 +68,18 @@ Json pull_statistics(const WheelInput& in, const Window& w, const SeriesStatisti
         "contact forces that come one step late feed the tire: {:.3g} W at its interface, {:.0f} % of "
         "load × speed; take a smaller run.step or tire.contact_tangent",
         late, 100.0 * late / rolling));
-  return {{"mean", number(s.mean)},
-          {"std", number(s.std)},
-          {"sem", number(s.sem)},
-          {"n_eff", number(s.n_eff)},
-          {"drift_N_per_s", number(s.slope / interval)},
-          {"drift_t", number(s.drift.t)},
-          {"halves_differ_N", number(s.drift.change)},
+  return {{"mean", json_number(s.mean)},
+          {"std", json_number(s.std)},
+          {"sem", json_number(s.sem)},
+          {"n_eff", json_number(s.n_eff)},
+          {"drift_N_per_s", json_number(s.slope / interval)},
+          {"drift_t", json_number(s.drift.t)},
+          {"halves_differ_N", json_number(s.drift.change)},
           {"steady", reasons.empty()},
           {"unsteady_because", reasons},
-          {"bounce_period_s", number(bounce)},
-          {"from_s", number(w.rows.empty() ? NAN : w.before.time)},
-          {"to_s", number(w.rows.empty() ? NAN : w.rows.back().time)}};
+          {"bounce_period_s", json_number(bounce)},
+          {"from_s", json_number(w.rows.empty() ? NAN : w.before.time)},
+          {"to_s", json_number(w.rows.empty() ? NAN : w.rows.back().time)}};
 }
 
 /// Means in the tire's axes on the ground, with the standard errors of forces and moments.
@@ -94,15 +92,15 @@ Json tire_axes_means(const Window& w) {
       std::vector<double> samples;
       for (const WheelRow& row : w.rows) samples.push_back((row.*vector)[i]);
       const SeriesStatistics s = statistics(samples);
-      means.push_back(number(s.mean));
-      errors.push_back(number(s.sem));
+      means.push_back(json_number(s.mean));
+      errors.push_back(json_number(s.sem));
     }
     json[name] = means;
     json[std::string(name).insert(std::string(name).find('_'), "_sem")] = errors;
   }
-  json["slip_angle_rad"] = number(w.mean([](const WheelRow& r) { return r.slip_angle; }));
-  json["camber_angle_rad"] = number(w.mean([](const WheelRow& r) { return r.camber_angle; }));
-  json["loaded_radius_m"] = number(w.mean([](const WheelRow& r) { return r.loaded_radius; }));
+  json["slip_angle_rad"] = json_number(w.mean([](const WheelRow& r) { return r.slip_angle; }));
+  json["camber_angle_rad"] = json_number(w.mean([](const WheelRow& r) { return r.camber_angle; }));
+  json["loaded_radius_m"] = json_number(w.mean([](const WheelRow& r) { return r.loaded_radius; }));
   return json;
 }
 
@@ -121,10 +119,10 @@ void add_rut(const WheelInput& in, Json& json) {
     rut = terrain::measure_rut(terrain.height_before, terrain.height_after, options);
   }
   const SeriesStatistics along = statistics(rut.along);
-  json["rut_depth_m"] = number(rut.measured ? rut.depth : NAN);
-  json["rut_depth_sem_m"] = number(rut.measured ? along.sem : NAN);
-  json["rut_depth_n_eff"] = number(rut.measured ? along.n_eff : NAN);
-  json["rut_width_m"] = number(rut.measured ? rut.width : NAN);
+  json["rut_depth_m"] = json_number(rut.measured ? rut.depth : NAN);
+  json["rut_depth_sem_m"] = json_number(rut.measured ? along.sem : NAN);
+  json["rut_depth_n_eff"] = json_number(rut.measured ? along.n_eff : NAN);
+  json["rut_width_m"] = json_number(rut.measured ? rut.width : NAN);
   json["rut_missing_because"] = rut.missing.empty() ? Json(nullptr) : Json(rut.missing);
 }
 
@@ -140,31 +138,32 @@ void add_mobility(const WheelInput& in, const Window& w, Json& json) {
   const double force_z = mean([](const WheelRow& r) { return r.force.z(); });
   const double lowest = mean([](const WheelRow& r) { return r.lowest_point; });
   const double axle = mean([](const WheelRow& r) { return r.axle_height; });
-  json["drawbar_coefficient"] = number(pull / load);
-  json["sinkage_m"] = number(mean([](const WheelRow& r) { return r.sinkage; }));
-  json["sinkage_sem_m"] = number(sinkage.sem);
-  json["sinkage_n_eff"] = number(sinkage.n_eff);
-  json["sinkage_drift_m_per_s"] = number(sinkage.slope * static_cast<double>(w.rows.size()) / w.duration());
-  json["sinkage_drift_t"] = number(sinkage.drift.t);
-  json["sinkage_kinematic_m"] = number(mean([](const WheelRow& r) { return r.sinkage_kinematic; }));
+  json["drawbar_coefficient"] = json_number(pull / load);
+  json["sinkage_m"] = json_number(mean([](const WheelRow& r) { return r.sinkage; }));
+  json["sinkage_sem_m"] = json_number(sinkage.sem);
+  json["sinkage_n_eff"] = json_number(sinkage.n_eff);
+  json["sinkage_drift_m_per_s"] =
+      json_number(sinkage.slope * static_cast<double>(w.rows.size()) / w.duration());
+  json["sinkage_drift_t"] = json_number(sinkage.drift.t);
+  json["sinkage_kinematic_m"] = json_number(mean([](const WheelRow& r) { return r.sinkage_kinematic; }));
   add_rut(in, json);
-  json["tire_deflection_m"] = number(radius - (axle - lowest));
-  json["effective_rolling_radius_m"] = number(
+  json["tire_deflection_m"] = json_number(radius - (axle - lowest));
+  json["effective_rolling_radius_m"] = json_number(
       spin != 0.0 ? mean([](const WheelRow& r) { return r.effective_rolling_radius * r.spin; }) / spin : NAN);
-  json["bed_clearance_m"] = number(lowest - in.run.setup.floor_height);
-  json["vertical_load_N"] = number(load);
-  json["net_terrain_force_N"] = {number(mean([](const WheelRow& r) { return r.force.x(); })),
-                                 number(mean([](const WheelRow& r) { return r.force.y(); })),
-                                 number(force_z)};
+  json["bed_clearance_m"] = json_number(lowest - in.run.setup.floor_height);
+  json["vertical_load_N"] = json_number(load);
+  json["net_terrain_force_N"] = {json_number(mean([](const WheelRow& r) { return r.force.x(); })),
+                                 json_number(mean([](const WheelRow& r) { return r.force.y(); })),
+                                 json_number(force_z)};
   const double momentum_rate = w.rate([](const WheelRow& r) { return r.vertical_momentum; });
-  json["vertical_balance_residual"] = number((force_z - load - momentum_rate) / load);
-  json["terrain_resistance_N"] = number(-mean([](const WheelRow& r) { return r.normal_force_travel; }));
-  json["tractive_effort_N"] = number(mean([](const WheelRow& r) { return r.tractive_effort; }));
-  json["drive_torque_Nm"] = number(torque);
-  json["lateral_force_N"] = number(mean([](const WheelRow& r) { return r.lateral_force; }));
-  json["aligning_moment_Nm"] = number(mean([](const WheelRow& r) { return r.aligning_moment; }));
-  json["tractive_efficiency"] = number(pull * speed / (torque * spin));
-  json["motion_resistance_coefficient"] = number((torque / radius - pull) / load);
+  json["vertical_balance_residual"] = json_number((force_z - load - momentum_rate) / load);
+  json["terrain_resistance_N"] = json_number(-mean([](const WheelRow& r) { return r.normal_force_travel; }));
+  json["tractive_effort_N"] = json_number(mean([](const WheelRow& r) { return r.tractive_effort; }));
+  json["drive_torque_Nm"] = json_number(torque);
+  json["lateral_force_N"] = json_number(mean([](const WheelRow& r) { return r.lateral_force; }));
+  json["aligning_moment_Nm"] = json_number(mean([](const WheelRow& r) { return r.aligning_moment; }));
+  json["tractive_efficiency"] = json_number(pull * speed / (torque * spin));
+  json["motion_resistance_coefficient"] = json_number((torque / radius - pull) / load);
   json["iso_w"] = tire_axes_means(w);
 }
 
@@ -179,7 +178,7 @@ Json rank_table(const SummaryInput& in) {
                      {"cpu_s", r.cpu_s},
                      {"compute_s", r.compute_s},
                      {"wait_s", r.wait_s},
-                     {"busy_share", number(r.compute_s / (r.compute_s + r.wait_s))}});
+                     {"busy_share", json_number(r.compute_s / (r.compute_s + r.wait_s))}});
   }
   return ranks;
 }
@@ -190,20 +189,20 @@ void add_plumbing(const WheelInput& in, Json& json) {
   const SpindleReport& tire = in.end.tire;
   const WheelRow end = series.now();
   const double sent = series.impulse_sent_abs();
-  json["interface_energy_error_J"] = number(end.energy_error);
-  json["interface_energy_error_abs_J"] = number(end.energy_error_abs);
-  json["rim_energy_error_J"] = number(end.rim_energy_error);
-  json["interface_work_J"] = number(tire.terrain_work);  // Σ f·Δx, on the tire by the terrain
-  json["spindle_work_J"] = number(end.spindle_work);
-  json["momentum_residual"] = number(
+  json["interface_energy_error_J"] = json_number(end.energy_error);
+  json["interface_energy_error_abs_J"] = json_number(end.energy_error_abs);
+  json["rim_energy_error_J"] = json_number(end.rim_energy_error);
+  json["interface_work_J"] = json_number(tire.terrain_work);  // Σ f·Δx, on the tire by the terrain
+  json["spindle_work_J"] = json_number(end.spindle_work);
+  json["momentum_residual"] = json_number(
       sent > 0.0 ? (series.impulse_sent_arrived() - (end.impulse_received - tire.impulse_ahead)).norm() / sent
                  : 0.0);
   if (tire.contact_tangent) {
-    json["contact_ledger_Ns"] = number(tire.ledger);
-    json["contact_ledger_largest_Ns"] = number(tire.ledger_largest);
+    json["contact_ledger_Ns"] = json_number(tire.ledger);
+    json["contact_ledger_largest_Ns"] = json_number(tire.ledger_largest);
   }
-  json["transfer_force_residual"] = number(end.transfer_force_residual);
-  json["transfer_moment_residual"] = number(end.transfer_moment_residual);
+  json["transfer_force_residual"] = json_number(end.transfer_force_residual);
+  json["transfer_moment_residual"] = json_number(end.transfer_moment_residual);
 }
 
 /// What a table says from line `first` on, by the names of its columns: the means of the lines, and where a column counts
@@ -217,8 +216,9 @@ Json column_figures(const Table& table, std::size_t first) {
     double sum = 0.0;
     for (std::size_t i = first; i < values.size(); ++i) sum += values[i];
     const bool any = first < values.size();
-    json[column.name] =
-        number(!any ? NAN : since_start ? values.back() : sum / static_cast<double>(values.size() - first));
+    json[column.name] = json_number(!any          ? NAN
+                                    : since_start ? values.back()
+                                                  : sum / static_cast<double>(values.size() - first));
   }
   return json;
 }
@@ -232,7 +232,7 @@ Json wheel_summary(const WheelInput& in) {
   json["lateral_m"] = wheel.lateral;
   json["tire_radius_m"] = in.card().tire_radius;
   json["tread_width_m"] = in.card().tire_width;
-  json["surface_height_m"] = number(in.run.setup.mean_height.at(in.wheel));
+  json["surface_height_m"] = json_number(in.run.setup.mean_height.at(in.wheel));
   const Window window = averaging_window(in.table, in.rows, in.run.scenario.run.average_from,
                                          in.run.scenario.tires[in.wheel]->describe().facets);
   add_mobility(in, window, json);
@@ -240,7 +240,7 @@ Json wheel_summary(const WheelInput& in) {
   const WheelRow end = in.end.series.now();
   const double steps = std::max(1.0, std::round(end.time / in.run.scenario.run.step));
   json["tire_coordinates"] = in.card().size;
-  json["newton_iterations_mean"] = number(end.newton_iterations / steps);
+  json["newton_iterations_mean"] = json_number(end.newton_iterations / steps);
   json["factorizations"] = end.factorizations;
   json["columns"] = column_figures(in.table, window.rows.empty() ? in.rows.size() : window.first);
   return json;
@@ -254,7 +254,7 @@ void add_cost(const SummaryInput& in, std::span<const WheelRow> rows, Json& json
   for (const checkpoint::Segment& segment : in.segments) wall += segment.wall_s;
   json["wall_s"] = wall;
   json["settle_wall_s"] = in.setup.settle_wall_s;
-  json["wall_s_per_simulated_s"] = number(wall / time);
+  json["wall_s_per_simulated_s"] = json_number(wall / time);
   if (!in.end.reports.empty()) json["ranks"] = rank_table(in);
   json["segments"] = checkpoint::segments_json(in.segments);
   json["grains"] = in.setup.grains;
@@ -264,10 +264,10 @@ void add_cost(const SummaryInput& in, std::span<const WheelRow> rows, Json& json
     active += row.active_share;
   }
   const auto lines = static_cast<double>(rows.size());
-  json["contacts_mean"] = number(contacts / lines);
-  json["active_share_mean"] = number(active / lines);
+  json["contacts_mean"] = json_number(contacts / lines);
+  json["active_share_mean"] = json_number(active / lines);
   json["substeps_added"] = in.end.terrain.substeps_added;
-  json["substeps_refined_share"] = number(in.end.terrain.refined_time / time);
+  json["substeps_refined_share"] = json_number(in.end.terrain.refined_time / time);
   json["substeps_most_parts"] = in.end.terrain.most_parts;
   json["compiler"] = "g++ " __VERSION__;
   json["cpu"] = checkpoint::cpu_model();

@@ -11,6 +11,7 @@
 #include "nodes/launch/run_list.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/student_t.hpp"
+#include "protocol/files/json_number.hpp"
 #include "protocol/files/json_text.hpp"
 #include "protocol/files/text_file.hpp"
 #include "terrain/dem/dem_options.hpp"
@@ -40,12 +41,10 @@ constexpr std::array<Figure, 10> kFigures{{{"drawbar_pull_N", "drawbar_pull_N.me
                                            {"drive_torque_Nm", "drive_torque_Nm"},
                                            {"tractive_efficiency", "tractive_efficiency"}}};
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 std::string name_of(const Sweep::Outcome& bed) { return bed.folder.filename().string(); }
 
 Json beds_json(const OverBeds& o) {
-  return {{"n", o.n}, {"mean", number(o.mean)}, {"half_width_95", number(o.half_width)}};
+  return {{"n", o.n}, {"mean", json_number(o.mean)}, {"half_width_95", json_number(o.half_width)}};
 }
 
 /// Of one wheel; figures that no bed has are left out.
@@ -61,9 +60,9 @@ Json figures(std::span<const Json> wheels) {
     }
     if (!known) continue;
     const OverBeds over = over_beds(values);
-    json[figure.name] = {{"mean", number(over.mean)},
-                         {"sd", number(over.sd)},
-                         {"half_width_95", number(over.half_width)},
+    json[figure.name] = {{"mean", json_number(over.mean)},
+                         {"sd", json_number(over.sd)},
+                         {"half_width_95", json_number(over.half_width)},
                          {"beds", beds_json(over)}};
   }
   return json;

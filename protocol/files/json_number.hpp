@@ -5,11 +5,11 @@
 
 #include <nlohmann/json.hpp>
 
-namespace furrow::output {
+namespace furrow {
 
 /// null for what could not be measured.
 inline nlohmann::ordered_json json_number(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
-}  // namespace furrow::output
+}  // namespace furrow

@@ -27,7 +27,7 @@ endif()
 
 # libFuzzer's targets need libraries that tell it where it has been, and coverage can be told afterwards (tests/fuzz).
 if(FURROW_FUZZ)
-  target_compile_options(furrow_options INTERFACE -g -O1 -fno-omit-frame-pointer -fsanitize=fuzzer-no-link,address,undefined
+  target_compile_options(furrow_options INTERFACE -gline-tables-only -O1 -fno-omit-frame-pointer -fsanitize=fuzzer-no-link,address,undefined
     -fno-sanitize-recover=undefined -fprofile-instr-generate -fcoverage-mapping)
   target_link_options(furrow_options INTERFACE -fsanitize=address,undefined -fprofile-instr-generate)
 endif()

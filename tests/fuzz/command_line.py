@@ -2,7 +2,7 @@
 """The whole command line with random arguments: an exit code that the program documents, and either a result or an error
 message; never a crash, never silence.
 
-usage: command_line.py [--cases N] [--seed S] [--state FILE] [--only CASE]
+usage: command_line.py [--cases N] [--seed S] [--state FILE] [--only CASE] [--patience S]
 
 Case k of a seed is always the same. With --state a series goes on where it left off, and what was found stays in that file.
 The program is $FURROW. No ranks are started: the launcher is one that does not exist.
@@ -23,7 +23,7 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("FURROW", str(ROOT / "build" / "furrow"))
 CODES = {0, 2, 3, 4, 5, 6, 75}
-PATIENCE = 10.0  # s until a case is asked to stop, and as long again until it is a finding
+PATIENCE = 10.0  # s until a case is asked to stop, and as long again until it is a finding; more on a busy machine
 
 SMALL = {
     "rig": {"slip": 0.3, "ramp": 0.01},
@@ -129,7 +129,7 @@ def finding(arguments, code, out, err):
     return None
 
 
-def run_case(arguments, folder):
+def run_case(arguments, folder, patience):
     """(exit code, stdout, stderr, whether it had to be asked to stop)"""
     environment = {**os.environ, "FURROW_MPIRUN": "/no/mpirun", "FURROW_HOME": str(ROOT), "XDG_CACHE_HOME": str(folder / "cache"),
                    "OMP_NUM_THREADS": "2"}
@@ -138,12 +138,12 @@ def run_case(arguments, folder):
                           env=environment, start_new_session=True) as process:
         asked = False
         try:
-            out, err = process.communicate(timeout=PATIENCE)
+            out, err = process.communicate(timeout=patience)
         except subprocess.TimeoutExpired:
             asked = True
             process.terminate()
             try:
-                out, err = process.communicate(timeout=PATIENCE)
+                out, err = process.communicate(timeout=patience)
             except subprocess.TimeoutExpired:
                 os.killpg(process.pid, signal.SIGKILL)
                 out, err = process.communicate()
@@ -158,6 +158,7 @@ def main():
     parser.add_argument("--state", type=pathlib.Path, help="JSON file of what is done; made, or gone on from")
     parser.add_argument("--seconds", type=float, default=float("inf"), help="stop after this time")
     parser.add_argument("--only", type=int, help="this case, with its output")
+    parser.add_argument("--patience", type=float, default=PATIENCE, help="s until a case is asked to stop")
     options = parser.parse_args()
     schema = json.loads((ROOT / "rigs" / "scenario.schema.json").read_text())
     keys = sorted(set(leaves(schema, schema)))
@@ -175,7 +176,7 @@ def main():
         with tempfile.TemporaryDirectory(prefix="furrow fuzz ") as name:
             folder = pathlib.Path(name)
             make_files(folder)
-            code, out, err, asked = run_case(arguments, folder)
+            code, out, err, asked = run_case(arguments, folder, options.patience)
         wrong = finding(arguments, code, out, err)
         codes[str(code)] += 1
         state["done"] = k + 1

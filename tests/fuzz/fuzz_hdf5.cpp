@@ -1,5 +1,6 @@
-// HDF5 files as a stranger could make them, with every feature of the library that matters to a reader, and then with
-// bytes changed; for the reader of datasets, of archives and of positions.
+// HDF5 files as a stranger could make them, with every feature of the library that matters to a reader, some of them cut
+// short; for the reader of datasets, of archives and of positions. Half of the files are frames of grains whose
+// numbers, types and shapes differ a little from what they should be, as a bed that a user brings.
 #include <fuzzer/FuzzedDataProvider.h>
 
 #include <hdf5.h>
@@ -8,6 +9,7 @@
 #include "protocol/files/archive_file.hpp"
 #include "protocol/files/hdf5_file.hpp"
 #include "protocol/files/hdf5_handle.hpp"
+#include "terrain/dem/beds/bed_positions_h5.hpp"
 #include "tests/fuzz/input_file.hpp"
 
 namespace {
@@ -118,6 +120,38 @@ void fill(FuzzedDataProvider& in, hid_t file) {
     }
 }
 
+/// A dataset with columns, of floating-point numbers.
+void add_table(FuzzedDataProvider& in, hid_t file, const char* name, hsize_t rows, hsize_t columns) {
+  const hsize_t shape[] = {rows, columns};
+  const int axes = columns == 1 && in.ConsumeIntegralInRange(0, 9) > 0 ? 1 : 2;
+  const Handle space(H5Screate_simple(axes, shape, nullptr), H5Sclose);
+  const Handle made(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  if (rows > 0 && in.ConsumeBool()) {
+    const hsize_t chunk[] = {in.ConsumeIntegralInRange<hsize_t>(1, rows), columns};
+    H5Pset_chunk(made, axes, chunk);
+    if (in.ConsumeBool()) H5Pset_deflate(made, 1);
+  }
+  const hid_t type = in.ConsumeIntegralInRange(0, 9) == 0 ? type_of(in)
+                     : in.ConsumeBool()                   ? H5T_IEEE_F64LE
+                                                          : H5T_IEEE_F32LE;
+  const Handle set(H5Dcreate2(file, name, type, space, H5P_DEFAULT, made, H5P_DEFAULT), H5Dclose);
+  if (!set.ok() || (H5Tget_class(type) != H5T_FLOAT && H5Tget_class(type) != H5T_INTEGER)) return;
+  std::vector<double> values(rows * columns);
+  for (double& value : values) value = in.ConsumeFloatingPointInRange(-1.0, 1.0);
+  if (!values.empty() && in.ConsumeIntegralInRange(0, 4) == 0)
+    values[in.ConsumeIntegralInRange<std::size_t>(0, values.size() - 1)] = in.ConsumeFloatingPoint<double>();
+  H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+}
+
+void fill_frame(FuzzedDataProvider& in, hid_t file) {
+  const auto grains = in.ConsumeIntegralInRange<hsize_t>(0, 12);
+  add_table(in, file, "position", grains, in.ConsumeIntegralInRange(0, 9) == 0 ? 4 : 3);
+  if (in.ConsumeBool())
+    add_table(in, file, "radius", in.ConsumeIntegralInRange(0, 4) == 0 ? grains + 1 : grains, 1);
+  if (in.ConsumeIntegralInRange(0, 4) == 0) add_table(in, file, "triangle", 1, 3);
+  if (in.ConsumeBool()) add_attribute(in, file);
+}
+
 template <class F>
 void attempt(F&& read) {
   try {
@@ -134,8 +168,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   {
     const Handle out(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
-    fill(in, out);
+    if (in.ConsumeBool())
+      fill_frame(in, out);
+    else
+      fill(in, out);
   }
+  if (in.ConsumeIntegralInRange(0, 9) == 0)
+    std::filesystem::resize_file(
+        file, in.ConsumeIntegralInRange<std::uintmax_t>(0, std::filesystem::file_size(file)));
   attempt([&] {
     const Hdf5Reader reader(file);
     for (const char* name : {"x", "position", "radius", "group/x"}) {
@@ -151,6 +191,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
   });
   constexpr ArchiveKind kBed{"bed", "a bed of furrow", 5, 4, "", true};
+  attempt([&] { terrain::dem::read_positions_h5(file); });
   attempt([&] { read_archive(file); });
   attempt([&] { read_archive(file, kBed); });
   may_be_archive(file, kBed);

@@ -3,6 +3,7 @@
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_text.hpp"
 #include "tests/fuzz/input_file.hpp"
+#include "tests/fuzz/json_mutator.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace furrow;
@@ -16,7 +17,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     schema.normalize(document);
     schema.unusual(document);
     if (!schema.problems(document).empty()) __builtin_trap();  // defaults must not make mistakes
-  } catch (const Error&) {
+  } catch (const Error& error) {
+    if (std::string(error.what()).empty()) __builtin_trap();
   }
   return 0;
 }

@@ -1,5 +1,6 @@
-// Saved states with numbers changed, arrays cut, renamed and exchanged, and a checksum that fits: what a bed file or the
-// part of a checkpoint may hold that somebody forged. Read back from disk, restored and stepped.
+// Saved states with numbers changed, arrays cut, renamed and exchanged, and a checksum that fits: what a bed file, of
+// this format or an earlier one, or the part of a checkpoint may hold that somebody forged. Read back from disk, restored
+// and stepped.
 #include <fuzzer/FuzzedDataProvider.h>
 
 #include <cmath>
@@ -7,6 +8,7 @@
 
 #include "protocol/core/error.hpp"
 #include "protocol/files/archive_file.hpp"
+#include "rigs/drawbar_rig.hpp"
 #include "terrain/dem/beds/bed_cache.hpp"
 #include "terrain/dem/beds/bed_preparation.hpp"
 #include "terrain/dem/dem_terrain.hpp"
@@ -27,8 +29,10 @@ terrain::dem::DemOptions options() {
 }
 
 struct Seeds {
-  Archive bed, terrain, shell, rigid;
+  Archive bed, old_bed, terrain, shell, rigid, rig;
 };
+
+constexpr ArchiveKind kOldBed{"bed", "a bed of furrow", 4, 4, ""};
 
 tire::TireOptions tire_options(bool rigid) {
   tire::TireOptions o;
@@ -63,10 +67,25 @@ void advance(terrain::Terrain& terrain) {
   terrain.advance(target, 1e-4, 1, forces, sums);
 }
 
+std::unique_ptr<rigs::Rig> made_rig() {
+  rigs::DrawbarRigOptions o;
+  o.carrier_mass = 450.0, o.rim_mass = 15.0, o.rim_spin_inertia = 0.4, o.rim_diametral_inertia = 0.3;
+  o.touchdown_damping = 1e4, o.touchdown_time = 0.1;
+  auto rig = rigs::make_drawbar_rig(o);
+  rig->add_tire_mass(0, {20.0, Mat3::Identity()}, 0.46);
+  return rig;
+}
+
+Outcome advance(rigs::Rig& rig) {
+  const std::vector<Wrench> wrenches(1, Wrench{Vec3(100.0, 0.0, 4000.0), Vec3(0.0, -300.0, 0.0)});
+  return rig.advance(wrenches, 1e-4, 2);
+}
+
 const Seeds& seeds() {
   static const Seeds all = [] {
     Seeds s;
     s.bed = terrain::dem::prepare_bed(options(), {}).bed;
+    s.old_bed = read_archive(FURROW_SOURCE_FOLDER "/tests/terrain/data/bed_format_4.h5", kOldBed);
     const auto terrain = made_terrain();
     advance(*terrain);
     terrain->save(s.terrain);
@@ -77,6 +96,10 @@ const Seeds& seeds() {
       tire->place(rim);
       tire->save(rigid ? s.rigid : s.shell);
     }
+    const auto rig = made_rig();
+    rig->place(std::vector<double>{1.0});
+    advance(*rig);
+    rig->save(s.rig);
     return s;
   }();
   return all;
@@ -118,7 +141,8 @@ Archive changed(FuzzedDataProvider& in, Archive archive) {
                                          : value * in.ConsumeFloatingPointInRange(-4.0, 4.0);
               } else {
                 value = in.ConsumeBool() ? in.ConsumeIntegral<T>()
-                                         : static_cast<T>(value + in.ConsumeIntegralInRange(0, 8));
+                                         : static_cast<T>(static_cast<std::uint64_t>(value) +
+                                                          in.ConsumeIntegralInRange(0, 8) - 4);
               }
             },
             array);
@@ -128,10 +152,15 @@ Archive changed(FuzzedDataProvider& in, Archive archive) {
   return archive;
 }
 
-void read_bed(FuzzedDataProvider& in) {
+void read_bed(FuzzedDataProvider& in, bool old) {
   terrain::dem::DemOptions o = options();
   o.bed = (fuzz::folder() / "bed.h5").string();
-  terrain::dem::write_bed(o.bed, changed(in, seeds().bed));
+  if (old) {  // as the file was made: tests/terrain/bed_preparation_test.cpp
+    o.radius = 0.05, o.length = 1.0, o.width = 0.36, o.rolling_friction = 0.1, o.cohesion = 80e3;
+    write_archive(o.bed, changed(in, seeds().old_bed), kOldBed);
+  } else {
+    terrain::dem::write_bed(o.bed, changed(in, seeds().bed));
+  }
   const auto terrain = terrain::make_dem_terrain(o);
   terrain->prepare({});
   terrain::TerrainFrame frame;
@@ -156,21 +185,34 @@ void read_tire(FuzzedDataProvider& in) {
   tire->restore(read_archive(file));
 }
 
+void read_rig(FuzzedDataProvider& in) {
+  const auto file = fuzz::folder() / "rig.h5";
+  write_archive(file, changed(in, seeds().rig));
+  const auto rig = made_rig();
+  rig->restore(read_archive(file));
+  advance(*rig);
+  rig->report(0);
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   FuzzedDataProvider in(data, size);
   try {
-    switch (in.ConsumeIntegralInRange(0, 4)) {
+    switch (in.ConsumeIntegralInRange(0, 7)) {
       case 0:
         read_tire(in);
         break;
       case 1:
+        read_rig(in);
+        break;
       case 2:
+      case 3:
+      case 4:
         read_terrain(in);
         break;
       default:
-        read_bed(in);
+        read_bed(in, in.ConsumeIntegralInRange(0, 2) == 0);
     }
   } catch (const Error&) {
   }

@@ -1,0 +1,77 @@
+#!/usr/bin/python3
+"""Lines of the reader files that the corpora of the fuzzing targets reach, as a table.
+
+usage: coverage.py --out DIR [--build DIR] [--table FILE]
+
+DIR is what run_targets.py filled. Every target reads its corpus once more, from a build of the preset fuzz; the table says
+how many lines of each file are code, and how many of them were run by any target.
+"""
+import argparse
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+from run_targets import ROOT, TARGETS, environment
+
+READERS = """
+nodes/checkpoint/checkpoint.cpp nodes/checkpoint/resume.cpp nodes/checkpoint/run_summary.cpp nodes/checkpoint/segment.hpp
+nodes/launch/run_list.cpp nodes/output/table.cpp
+nodes/scenario/load_scenario.cpp nodes/scenario/model_keys.cpp nodes/scenario/scenario_checks.cpp nodes/scenario/schema.cpp
+nodes/scenario/soil_material.cpp nodes/study/study.cpp
+protocol/files/archive_file.cpp protocol/files/data_files.cpp protocol/files/hdf5_reader.cpp protocol/files/json_reader.cpp
+protocol/files/json_text.cpp protocol/files/printable.cpp protocol/files/text_file.cpp
+rigs/drawbar_spec.cpp rigs/rigs.cpp
+terrain/dem/beds/bed_cache.cpp terrain/dem/beds/bed_csv.cpp terrain/dem/beds/bed_format_4.cpp terrain/dem/beds/bed_positions_h5.cpp
+terrain/dem/dem_spec.cpp terrain/dem/grain_solver_state.cpp terrain/dem/solver_state_check.cpp terrain/soil/soil_estimate.cpp
+terrain/terrains.cpp
+tire/ancf/shell_spec.cpp tire/pressure_schedule.cpp tire/read_tire_file.cpp tire/tire_file.cpp tire/tire_file_chrono.cpp
+tire/tire_file_reader.cpp tire/tire_profile.cpp tire/tires.cpp
+""".split()
+
+
+def replay(target, options, folder):
+    profile = folder / f"{target}.profraw"
+    corpus = options.out / target / "corpus"
+    corpus.mkdir(parents=True, exist_ok=True)
+    with subprocess.Popen([str(options.build / f"fuzz_{target}"), "-runs=0", "-timeout=60", str(corpus)], cwd=folder, stdout=subprocess.DEVNULL,
+                          stderr=subprocess.DEVNULL, env={**environment(folder), "LLVM_PROFILE_FILE": str(profile)}) as process:
+        process.wait()
+    shutil.rmtree(f"/dev/shm/furrow_fuzz_{process.pid}", ignore_errors=True)
+    if process.returncode != 0 or not profile.exists():
+        raise SystemExit(f"coverage.py: fuzz_{target} ended with {process.returncode} on its corpus")
+    return profile
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--out", type=pathlib.Path, required=True)
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build-fuzz")
+    parser.add_argument("--table", type=pathlib.Path, default=ROOT / "tests/fuzz/coverage.csv")
+    options = parser.parse_args()
+    options.out, options.build = options.out.resolve(), options.build.resolve()
+    targets = [target for target in TARGETS if (options.build / f"fuzz_{target}").exists()]
+    if len(targets) < len(TARGETS):
+        print(f"coverage.py: not built: {', '.join(sorted(set(TARGETS) - set(targets)))}", file=sys.stderr)
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        profiles = [replay(target, options, folder) for target in targets]
+        merged = folder / "all.profdata"
+        subprocess.run(["llvm-profdata", "merge", *map(str, profiles), "-o", str(merged)], check=True)
+        programs = [str(options.build / f"fuzz_{target}") for target in targets]
+        objects = [argument for program in programs[1:] for argument in ("-object", program)]
+        shown = subprocess.run(["llvm-cov", "export", "-summary-only", f"-instr-profile={merged}", programs[0], *objects,
+                                *(str(ROOT / reader) for reader in READERS)], check=True, capture_output=True, text=True).stdout
+    lines = ["file,lines,covered,percent"]
+    for file in sorted(json.loads(shown)["data"][0]["files"], key=lambda file: file["filename"]):
+        of = file["summary"]["lines"]
+        lines.append(f"{os.path.relpath(file['filename'], ROOT)},{of['count']},{of['covered']},{of['percent']:.0f}")
+    options.table.write_text("\n".join(lines) + "\n")
+    print(options.table.read_text(), end="")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Charts of the studies' CSV files, beside them: step_size.png, tire_step.png, rigid_ground.png."""
+"""Charts of the studies' CSV files, beside them: step_size.png, tire_step.png, rigid_ground.png, budget.png."""
 import pathlib
 import re
 import sys
@@ -101,11 +101,33 @@ def rigid_ground():
     save(figure, "rigid_ground")
 
 
+def budget():
+    """What every variant of the small rig changes in pull and sinkage, of those of its reference, with 95 % intervals over beds."""
+    rows = table("budget")
+    mean = {row["variant"]: row for row in rows}
+    rows = [row for row in rows if row["variant"] != row["reference"]][::-1]
+    figure, panels = plt.subplots(1, 2, sharey=True, figsize=(9.6, 1.2 + 0.24 * len(rows)))
+    for axes, name, title in zip(panels, ("pull_N", "sinkage_mm"), ("pull", "sinkage")):
+        for place, row in enumerate(rows):
+            scale = 100.0 / float(mean[row["reference"]][name])
+            change, half = (scale * float(row[f"{name}_{what}"] or "nan") for what in ("change", "change_half_95"))
+            seen = abs(change) > half
+            axes.errorbar([change], [place], xerr=[half], marker="o", capsize=3, color="C1" if seen else "C0",
+                          mfc="white" if int(row["not_steady"]) else None)
+        axes.axvline(0.0, color="0.6", zorder=0)
+        axes.set(xlabel=f"change of {title} in %")
+    panels[0].set_yticks(range(len(rows)), [row["variant"] for row in rows])
+    figure.suptitle("Five beds each, 95 %; orange: interval without 0; open: a bed was not steady", fontsize="medium")
+    figure.tight_layout()
+    save(figure, "budget")
+
+
 def save(figure, name):
     figure.savefig(HERE / f"{name}.png", dpi=110)
 
 
 if __name__ == "__main__":
-    for name, draw in (("step_size", step_size), ("tire_step", tire_step), ("rigid_ground", rigid_ground)):
+    for name, draw in (("step_size", step_size), ("tire_step", tire_step), ("rigid_ground", rigid_ground),
+                       ("budget", budget)):
         if (HERE / f"{name}.csv").exists():
             draw()

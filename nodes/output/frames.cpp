@@ -15,13 +15,11 @@
 namespace furrow::output {
 namespace {
 
-std::filesystem::path frame_file(const std::filesystem::path& run, const std::string& what,
-                                 std::int64_t index) {
-  FURROW_ASSERT(index >= 0, what, index);
+std::filesystem::path new_frame(const std::filesystem::path& run, const FrameName& name) {
   const auto folder = run / "frames";
   std::error_code ignored;  // if the folder cannot be made, creating the file says so
   std::filesystem::create_directory(folder, ignored);  // never the run's: it was moved or removed
-  return folder / fmt::format("{}_{:06d}.h5", what, index);
+  return folder / frame_file(name);
 }
 
 constexpr const char* kForms[] = {"tire%1d_%06d.h5", "terrain_%06d.h5"};  // what frame_file makes
@@ -35,6 +33,11 @@ std::vector<float> flatten(const std::vector<Vec3>& vectors) {
 }
 
 }  // namespace
+
+std::string frame_file(const FrameName& name) {
+  FURROW_ASSERT(name.index >= 0, name.kind, name.index);
+  return fmt::format("{}_{:06d}.h5", name.kind, name.index);
+}
 
 std::vector<std::string> frame_forms() {
   std::vector<std::string> forms{"frames/"};
@@ -58,7 +61,7 @@ void write_tire_frame(const std::filesystem::path& run, int tire, std::int64_t i
   for (const auto& triangle : mesh.triangles)
     triangles.insert(triangles.end(), triangle.begin(), triangle.end());
 
-  Hdf5Writer file(frame_file(run, fmt::format("tire{}", tire), index));
+  Hdf5Writer file(new_frame(run, {fmt::format("tire{}", tire), index}));
   file.attribute("time_s", time);
   file.put("position", flatten(surface.position), {count, 3});
   fault_point("frame");
@@ -74,7 +77,7 @@ void write_terrain_frame(const std::filesystem::path& run, std::int64_t index, d
   FURROW_ASSERT(frame.speed.size() == frame.radius.size(), frame.speed.size(), frame.radius.size());
   const std::size_t count = frame.radius.size();
   if (count == 0) return;
-  Hdf5Writer file(frame_file(run, "terrain", index));
+  Hdf5Writer file(new_frame(run, {"terrain", index}));
   file.attribute("time_s", time);
   file.put("position", frame.position, {count, 3});
   fault_point("frame");
@@ -102,7 +105,8 @@ void remove_frames_from(const std::filesystem::path& run, std::int64_t index) {
   for (const auto& entry : std::filesystem::directory_iterator(run / "frames", error)) {
     const std::string name = entry.path().filename().string();
     const auto frame = frame_name(name);
-    if ((frame && frame->index >= index) || frame_name(name_in_the_making(name))) doomed.push_back(entry.path());
+    if ((frame && frame->index >= index) || frame_name(name_in_the_making(name)))
+      doomed.push_back(entry.path());
   }
   for (const auto& file : doomed) std::filesystem::remove(file, error);
 }

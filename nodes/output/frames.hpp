@@ -33,6 +33,8 @@ struct FrameName {
   std::string kind;  // "tire0", "terrain"
   std::int64_t index = 0;
 };
+/// Name of its file in <run>/frames.
+std::string frame_file(const FrameName& name);
 /// What the name of a file in <run>/frames says; none for a file that is no frame.
 std::optional<FrameName> frame_name(const std::string& file);
 

@@ -2,8 +2,9 @@
 // per tire and one for the grains; every grid points into that frame's HDF5 file.
 #include "nodes/output/xdmf.hpp"
 
+#include <algorithm>
 #include <map>
-#include <set>
+#include <optional>
 #include <vector>
 
 #include <fmt/format.h>
@@ -12,7 +13,7 @@
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/hdf5_file.hpp"
-#include "protocol/files/text_file.hpp"
+#include "protocol/files/new_file.hpp"
 
 namespace furrow::output {
 namespace {
@@ -29,18 +30,43 @@ hsize_t rows(const Hdf5Reader& file, const std::string& name) {
   return shape.size() == 2 ? shape.front() : 0;
 }
 
-/// False for a file that cannot be read: it is left out.
-bool read_frame(const std::filesystem::path& path, Frame& frame) {
+/// None for a file that cannot be read.
+std::optional<Frame> read_frame(const std::filesystem::path& run, const FrameName& name) {
   try {
-    const Hdf5Reader file(path);
+    Frame frame;
+    frame.file = fmt::format("frames/{}", frame_file(name));
+    const Hdf5Reader file(run / frame.file);
     frame.time = file.number("time_s");
     frame.points = rows(file, "position");
     if (file.has("triangle")) frame.triangles = rows(file, "triangle");
-    frame.file = "frames/" + path.filename().string();
-    return frame.points > 0;
+    return frame.points > 0 ? std::optional(frame) : std::nullopt;
   } catch (const Error&) {
-    return false;
+    return std::nullopt;
   }
+}
+
+/// {kind: numbers of its frames that the names of files tell, rising}; kinds of which none can be read are left out.
+std::map<std::string, std::vector<std::int64_t>> kinds_in(const std::filesystem::path& run) {
+  std::map<std::string, std::vector<std::int64_t>> kinds;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(run / "frames", error))
+    if (const auto name = frame_name(entry.path().filename().string()))
+      kinds[name->kind].push_back(name->index);
+  for (auto& [kind, numbers] : kinds) std::ranges::sort(numbers);
+  std::erase_if(kinds, [&](const auto& kind) {
+    return std::ranges::none_of(kind.second, [&](std::int64_t index) {
+      return read_frame(run, {kind.first, index}).has_value();
+    });
+  });
+  return kinds;
+}
+
+/// Those that all kinds have, rising.
+std::vector<std::int64_t> common_numbers(const std::map<std::string, std::vector<std::int64_t>>& kinds) {
+  std::vector<std::int64_t> common = kinds.begin()->second;
+  for (const auto& [kind, numbers] : kinds)
+    std::erase_if(common, [&](std::int64_t index) { return !std::ranges::binary_search(numbers, index); });
+  return common;
 }
 
 std::string data_item(const Frame& f, const char* name, hsize_t count, int width, const char* type) {
@@ -74,33 +100,33 @@ std::string grid(const Frame& f, const std::string& name) {
 }  // namespace
 
 void write_xdmf_index(const std::filesystem::path& run) {
-  std::map<std::int64_t, std::map<std::string, Frame>> series;  // by index, then by kind
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(run / "frames", error)) {
-    Frame frame;
-    if (const auto name = frame_name(entry.path().filename().string());
-        name && read_frame(entry.path(), frame))
-      series[name->index][name->kind] = frame;
-  }
-  if (series.empty()) {
+  const auto kinds = kinds_in(run);
+  if (kinds.empty()) {
+    std::error_code error;
     std::filesystem::remove(run / "results.xdmf", error);  // of frames that are gone
     return;
   }
-  std::set<std::string> kinds;
-  for (const auto& [index, frames] : series)
-    for (const auto& [kind, frame] : frames) kinds.insert(kind);
-  std::string text =
+  // Piece by piece: there may be a hundred thousand frames.
+  NewFile file(run / "results.xdmf");
+  file.write(
       "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\"><Domain>\n"
-      "<Grid Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
-  for (const auto& [index, frames] : series) {
-    if (frames.size() < kinds.size()) continue;
-    text += fmt::format(
+      "<Grid Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
+  for (const std::int64_t index : common_numbers(kinds)) {
+    std::string grids;
+    std::optional<Frame> frame;
+    for (const auto& [kind, numbers] : kinds) {
+      frame = read_frame(run, {kind, index});
+      if (!frame) break;
+      grids += grid(*frame, kind);
+    }
+    if (!frame) continue;
+    file.write(fmt::format(
         "<Grid Name=\"{:06d}\" GridType=\"Collection\" CollectionType=\"Spatial\"><Time Value=\"{:.9g}\"/>\n",
-        index, frames.begin()->second.time);
-    for (const auto& [kind, frame] : frames) text += grid(frame, kind);
-    text += "</Grid>\n";
+        index, frame->time));
+    file.write(grids + "</Grid>\n");
   }
-  write_whole_file(run / "results.xdmf", text + "</Grid></Domain></Xdmf>\n");
+  file.write("</Grid></Domain></Xdmf>\n");
+  file.publish();
 }
 
 }  // namespace furrow::output

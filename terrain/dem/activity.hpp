@@ -1,16 +1,23 @@
-// Which strips are stepped: far from the tire a bed at rest costs nothing.
+// Which parcels are stepped: far from the tire a bed at rest costs nothing.
 //
-// A strip sleeps when for `kCalmSteps` steps its grains were slow, the net force on each stayed below a share of the
-// mean contact force of the bed, and no tire was near. A step that is taken in parts (step_refinement.hpp) counts once,
-// and was calm if all its parts were. Spin does not count: a grain that only spins in its place loads
-// nobody. Its grains then stand still: they are not moved, contacts among them keep their forces and histories. The
-// strips beside it that are awake still feel it, with all contacts across, and it feels them: as long as a neighbour
-// is awake the net force on every sleeping grain is evaluated in every step, and since the grain stands still that
-// holds all that changed since it fell asleep. Above a limit the whole strip wakes, before its grains have moved at
-// all; a front of waking runs one strip per step, faster than any wave in the bed. A tire that comes near and a
-// moving grain that comes in wake it too. The mean contact force is sampled every `kSampleSteps` steps; a strip that
-// sleeps counts as when it was last evaluated at such a step. Decisions use sums of fixed order: they do not depend on
-// threads.
+// A parcel (parcel.hpp; a narrow strip is one) sleeps when for `kCalmSteps` steps its grains were slow, the net force on
+// each stayed below a share of the mean contact force of the bed, and no tire was near. A step that is taken in parts
+// (step_refinement.hpp) counts once, and was calm if all its parts were. Spin does not count: a grain that only spins in
+// its place loads nobody. Its grains then stand still: they are not moved, contacts among them keep their forces and
+// histories. The parcels around it that are awake still feel it, with all contacts across, and it feels them: as long as
+// a neighbour is awake the net force on every sleeping grain is evaluated in every step, and since the grain stands
+// still that holds all that changed since it fell asleep. Above a limit the whole parcel wakes, before its grains have
+// moved at all; a front of waking runs one parcel per step, faster than any wave in the bed. A tire that comes near and
+// a moving grain that comes in wake it too. The mean contact force is sampled every `kSampleSteps` steps; what sleeps
+// counts as when it was last evaluated at such a step, or as it fell asleep. Decisions use sums of fixed order: they do
+// not depend on threads.
+//
+// Pairs that touch belong to parcels beside each other, so that loads on a parcel come from its own list and those of
+// the parcels before it: the one across, and three in the strip before. What a step does with a parcel is one of
+//   loads     it is awake, or feels one that is: all lists with its grains are evaluated, its loads are complete
+//   list      it lists grains of such a parcel
+//   motion    grains of it are listed by one of those: where they are and how they move is needed
+// each of which implies the next.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +30,7 @@
 namespace furrow::terrain::dem {
 
 // Speeds in units of √(g r), net forces in units of the mean contact force.
-inline constexpr double kSleepMeanSpeed = 5e-3;  // root mean square over the strip
+inline constexpr double kSleepMeanSpeed = 5e-3;  // root mean square over the parcel
 inline constexpr double kSleepSpeed = 0.1;       // every grain
 inline constexpr double kSleepForce = 0.05;
 inline constexpr double kWakeForce = 0.1;
@@ -36,7 +43,7 @@ class Activity {
     double mean_speed = 0.0;   // of grains that may sleep, m/s
     double speed = 0.0;        // of each, m/s
     double sleep_force = 0.0;  // net force on each, N
-    double wake_force = 0.0;   // net force on one grain that wakes its strip, N
+    double wake_force = 0.0;   // net force on one grain that wakes its parcel, N
   };
 
   /// Of grains when they fell asleep.
@@ -45,58 +52,108 @@ class Activity {
     Vec3 velocity = Vec3::Zero();  // Σ m v / m₀, m/s
   };
 
+  /// What a step does with a parcel, or with some of a strip.
+  enum Need : std::uint8_t { kMotion = 1, kList = 2, kLoads = 4 };
+
   void limit(const Limits& limits) {
     FURROW_ASSERT(limits.mean_speed >= 0.0 && limits.speed >= 0.0, limits.mean_speed, limits.speed);
     FURROW_ASSERT(!(limits.sleep_force > limits.wake_force), limits.sleep_force, limits.wake_force);
     limits_ = limits;
   }
 
-  /// Decides from who is awake which strips are evaluated in the coming step.
+  /// Decides from who is awake what the coming step does with which parcels.
   void plan(const Strips& strips);
-  /// The list of strip k is evaluated: some grain named in it needs its net force.
-  bool evaluated(int k) const {
-    FURROW_ASSERT(in_range(k, need_.size()), k, need_.size());
-    return need_[k] & kList;
+  /// Some list of strip k is evaluated.
+  bool evaluated(int k) const { return any(k, kList); }
+  /// The loads on the grains of some parcel of strip k will be complete.
+  bool complete(int k) const { return any(k, kLoads); }
+  bool any(int k, Need what) const {
+    FURROW_ASSERT(in_range(k, of_strip_.size()), k, of_strip_.size());
+    return of_strip_[k] & what;
   }
-  /// The loads on the grains of strip k will be complete: it is awake, or sleeps beside one that is.
-  bool complete(int k) const {
-    FURROW_ASSERT(in_range(k, need_.size()), k, need_.size());
-    return need_[k] & kLoads;
+  bool needs(int k, int parcel, Need what) const {
+    FURROW_ASSERT(in_range(k, of_strip_.size()) && in_range(parcel, across_), k, parcel, across_);
+    return need_[k * across_ + parcel] & what;
+  }
+  /// Calls f(from, to) for each row of neighbouring parcels [from, to) of strip k that need it, as long as `together(p)`
+  /// holds for all of them; the others are rows of one.
+  template <class Together, class F>
+  void each_row(int k, Need what, const Together& together, const F& f) const {
+    for (int p = 0; p < across_; ++p) {
+      if (!needs(k, p, what)) continue;
+      const int from = p;
+      while (together(p) && p + 1 < across_ && needs(k, p + 1, what) && together(p + 1)) ++p;
+      f(from, p + 1);
+    }
+  }
+  template <class F>
+  void each_row(int k, Need what, const F& f) const {
+    each_row(
+        k, what, [](int) { return true; }, f);
   }
 
-  /// Calm strips where `busy(k)` is false fall asleep, strips pushed too hard or busy wake.
+  /// It falls asleep after the coming step, if that is calm.
+  static bool about_to_sleep(const Parcel& parcel) { return !parcel.asleep && parcel.calm + 1 >= kCalmSteps; }
+
+  /// Calm parcels without a tire near fall asleep, those pushed too hard or near a tire wake.
   /// Sets what stops moving to rest and returns the motion that this took away.
-  /// @param counts the step is over, rather than a part of it: it counts for strips that were calm
-  template <class Busy>
-  Stopped update(Strips& strips, Grains& grains, bool counts, const Busy& busy) const {
+  /// @param counts the step is over, rather than a part of it: it counts for parcels that were calm
+  /// @param near(strip) a tire is near some of it  @param near_parcel(strip, p) it is near parcel p of a strip that it
+  /// is near
+  template <class Near, class NearParcel>
+  Stopped update(Strips& strips, Grains& grains, bool counts, const Near& near,
+                 const NearParcel& near_parcel) const {
     Stopped stopped;
     for (int k = 0; k < strips.count(); ++k) {
       Strip& strip = strips[k];
-      if (strip.asleep ? woken(strip) : !calm(strip)) {
-        strip.asleep = false, strip.calm = 0;
-      } else if (strip.asleep || (strip.calm += counts ? 1 : 0) >= kCalmSteps) {
-        if (busy(strip)) {
-          strip.asleep = false, strip.calm = 0;
-        } else if (!strip.asleep) {
-          stopped.kinetic += strip.motion.kinetic;
-          stopped.velocity += Vec3(strip.motion.velocity.x, strip.motion.velocity.y, strip.motion.velocity.z);
-          put_to_sleep(strip, grains);
+      if (strip.asleep && !woken(strip.motion) && !near(strip)) continue;
+      bool changed = false;
+      for (int p = 0; p < strips.across(); ++p) {
+        Parcel& parcel = strip.parcels[p];
+        const auto busy = [&] { return near(strip) && near_parcel(strip, p); };
+        if (parcel.asleep ? woken(parcel.motion) : !calm(parcel)) {
+          changed |= wake(parcel);
+        } else if (parcel.asleep || (parcel.calm += counts ? 1 : 0) >= kCalmSteps) {
+          if (busy()) {
+            changed |= wake(parcel);
+          } else if (!parcel.asleep) {
+            changed = true;
+            stopped.kinetic += parcel.motion.kinetic;
+            const Quad& v = parcel.motion.velocity;
+            stopped.velocity += Vec3(v.x, v.y, v.z);
+            put_to_sleep(strip, parcel, grains);
+          }
         }
       }
+      if (changed) strips.sum_parcels(k);
     }
     return stopped;
   }
-  /// Wakes the strips of a sorted range into which a moving grain came.
+  /// Returns whether it slept.
+  static bool wake(Parcel& parcel) {
+    const bool slept = parcel.asleep;
+    parcel.asleep = parcel.stale = false, parcel.calm = 0;
+    return slept;
+  }
+  /// Wakes the parcels of a sorted range into which a moving grain came.
   static void wake_moving(const Resorted& range, Strips& strips, const Grains& grains);
 
  private:
-  static constexpr std::uint8_t kList = 1, kLoads = 2;
-  bool calm(const Strip& strip) const;
-  bool woken(const Strip& strip) const { return strip.motion.max_net_force > limits_.wake_force; }
-  static void put_to_sleep(Strip& strip, Grains& grains);
+  bool calm(const Parcel& parcel) const;
+  bool woken(const MotionTotals& motion) const { return motion.max_net_force > limits_.wake_force; }
+  static void put_to_sleep(const Strip& strip, Parcel& parcel, Grains& grains);
+  /// Marks for each parcel that has the bit `from` those that `beside` names by strip and parcel with the bit `to`.
+  template <std::size_t kCount>
+  void spread(const Strips& strips, Need from, Need to, const int (&beside)[kCount][2]);
+  void mark(int k, int parcel, Need what) {
+    need_[k * across_ + parcel] |= what;
+    of_strip_[k] |= what;
+  }
 
   Limits limits_;
-  std::vector<std::uint8_t> need_;  // per strip
+  int across_ = 1;
+  std::vector<std::uint8_t> need_;      // per parcel, those of a strip one after another
+  std::vector<std::uint8_t> of_strip_;  // what any of its parcels needs
 };
 
 }  // namespace furrow::terrain::dem

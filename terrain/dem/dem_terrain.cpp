@@ -18,6 +18,7 @@
 #include "terrain/dem/grain_sizes.hpp"
 #include "terrain/dem/material_check.hpp"
 #include "terrain/dem/solver_setup.hpp"
+#include "terrain/dem/solver_state_check.hpp"
 #include "terrain/dem/step_refinement.hpp"
 #include "terrain/surface/surface_check.hpp"
 
@@ -199,6 +200,7 @@ class DemTerrain : public Terrain {
   void restore(const Archive& archive) override {
     const Archive::Scope scope(archive, "terrain/");
     time_ = archive.get_double("time");
+    dem::require_same_parcels(archive, solver_.strips());
     solver_.restore(archive);
     set_step(archive.get_double("step"));
     stable_overlap_ = archive.get_double("stable_overlap");

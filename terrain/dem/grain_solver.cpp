@@ -24,6 +24,7 @@ Strips::Options strip_options(const SolverParams& p) {
   o.history = p.law == LawKind::mindlin;
   o.rolling = p.rolling;
   o.single = p.precision == Precision::mixed;
+  o.cut = p.activity;
   o.bin = p.bin;
   return o;
 }
@@ -97,7 +98,12 @@ int GrainSolver::index_of(int id) const {
 void GrainSolver::wake(int grain) {
   FURROW_ASSERT(in_range(grain, grains_.count), grain, grains_.count);
   for (int k = 0; k < strips_.count(); ++k)
-    if (grain >= strips_[k].first && grain < strips_[k].last) strips_[k].asleep = false, strips_[k].calm = 0;
+    for (Parcel& parcel : strips_[k].parcels) {
+      const int at = grain - strips_[k].first;
+      if (at < parcel.part.first || at >= parcel.part.last) continue;
+      Activity::wake(parcel);
+      strips_.sum_parcels(k);
+    }
 }
 
 double GrainSolver::relative_mass() const {
@@ -130,8 +136,7 @@ void GrainSolver::reset_accounts() {
     accounts_.height += mass * up_.dot(Vec3(x.x, x.y, x.z));
     accounts_.velocity += mass * Vec3(v.x, v.y, v.z);
   }
-  for (int k = 0; k < strips_.count(); ++k)
-    if (!strips_[k].asleep) accounts_.active += strips_[k].grains();
+  for (int k = 0; k < strips_.count(); ++k) accounts_.active += grains_awake(strips_[k]);
   strips_.set_resorted(0);
   relative_mass_ = relative_mass();
   energies_.begin(stored_energy(grains_, strips_, coefficients_, params_.grain.radius), rotation);
@@ -157,11 +162,13 @@ TerrainEnergies GrainSolver::reported_energies() const {
   return e;
 }
 
-void GrainSolver::LoadBuffer::assign(const Loads& from, int count) {
-  FURROW_ASSERT(count >= 0, count);
-  FURROW_ASSERT(from.force != nullptr || count == 0, count);
-  force.assign(from.force, from.force + count);
-  torque.assign(from.torque, from.torque + count);
+/// @pre room for `last`
+void GrainSolver::LoadBuffer::copy(const Loads& from, int first, int last) {
+  FURROW_ASSERT(0 <= first && first <= last && static_cast<std::size_t>(last) <= force.size(), first, last,
+                force.size());
+  FURROW_ASSERT(from.force != nullptr || first == last, first, last);
+  std::copy(from.force + first, from.force + last, force.begin() + first);
+  std::copy(from.torque + first, from.torque + last, torque.begin() + first);
 }
 
 template <>
@@ -173,48 +180,58 @@ GrainSolver::Scratch<double>& GrainSolver::scratch() {
   return full_[omp_get_thread_num()];
 }
 
-/// Brings the motion of a strip's grains to `offset` of the scratch memory and clears their loads.
+/// Brings the motion of the grains of a strip that the step needs to `offset` of the scratch memory and clears their
+/// loads.
 template <class Real, bool kSizes>
 void GrainSolver::gather(Scratch<Real>& s, int strip, int offset) {
   FURROW_ASSERT(in_range(strip, strips_.count()) && offset >= 0, strip, strips_.count(), offset);
   FURROW_ASSERT(s.loads.force.size() >= static_cast<std::size_t>(offset + strips_[strip].grains()),
                 s.loads.force.size(), offset);
-  const int first = strips_[strip].first, n = strips_[strip].grains();
-  s.motion.template set<kSizes>(offset, &grains_.position[first], &grains_.velocity[first],
-                                &grains_.spin[first], n);
-  double* const force = flat(s.loads.force.data() + offset);
-  double* const torque = flat(s.loads.torque.data() + offset);
-  for (int g = 0; g < kQuad * n; g += kQuad) {  // a call of memset would cost more than it saves
-    store_lanes(force + g, Double4{});
-    store_lanes(torque + g, Double4{});
+  activity_.each_row(strip, Activity::kMotion, [&](int from, int to) {
+    const StripPart part = joined(strips_[strip].parcels, from, to);
+    const int first = strips_[strip].first + part.first, n = part.grains(), at = offset + part.first;
+    if (n == 0) return;
+    s.motion.template set<kSizes>(at, &grains_.position[first], &grains_.velocity[first],
+                                  &grains_.spin[first], n);
+    double* const force = flat(s.loads.force.data() + at);
+    double* const torque = flat(s.loads.torque.data() + at);
+    for (int g = 0; g < kQuad * n; g += kQuad) {  // a call of memset would cost more than it saves
+      store_lanes(force + g, Double4{});
+      store_lanes(torque + g, Double4{});
+    }
+  });
+}
+
+template <class Real>
+const Quad* GrainSolver::positions(Scratch<Real>& s, int k) {
+  const Strip& strip = strips_[k];
+  const Quad* const x = grains_.position.data() + strip.first;
+  const int after = strips_.next(k);
+  if (after < 0 || after >= k) return x;
+  const Strip& other = strips_[after];
+  grow(s.shifted, strip.grains() + other.grains());
+  std::copy_n(x, strip.grains(), s.shifted.begin());
+  for (int g = 0; g < other.grains(); ++g) {
+    Quad p = grains_.position[other.first + g];
+    p.x += params_.bin.length;
+    s.shifted[strip.grains() + g] = p;
   }
+  return s.shifted.data();
 }
 
 template <class Real, class Law, bool kRolling, bool kSizes>
-void GrainSolver::contacts_of_strip(Scratch<Real>& s, int k, int offset, double dt, Wanted wanted) {
-  FURROW_ASSERT(in_range(k, strips_.count()) && offset >= 0, k, strips_.count(), offset);
+void GrainSolver::contacts_of_part(Scratch<Real>& s, int k, const StripPart& part, const Quad* x, int offset,
+                                   double dt, Wanted wanted, ContactTotals& sums) {
   Strip& strip = strips_[k];
-  strip.contact = {};
-  const Quad* x = grains_.position.data() + strip.first;
-  if (const int after = strips_.next(k); after >= 0 && after < k) {
-    const Strip& other = strips_[after];
-    grow(s.shifted, strip.grains() + other.grains());
-    std::copy_n(x, strip.grains(), s.shifted.begin());
-    for (int g = 0; g < other.grains(); ++g) {
-      Quad p = grains_.position[other.first + g];
-      p.x += params_.bin.length;
-      s.shifted[strip.grains() + g] = p;
-    }
-    x = s.shifted.data();
-  }
   const double diameter = 2.0 * params_.grain.radius;
   const double reference = params_.grain.radius;
   find_touching<kSizes>(
-      strip, x, diameter, params_.bin.periodic_y ? params_.bin.width : 0.0, s.touching, [&](int p) {
+      strip, part.pair_first, part.pair_last, x, diameter, params_.bin.periodic_y ? params_.bin.width : 0.0,
+      s.touching, [&](int p) {
         if (!wanted.losses) return;
         const double r_i = kSizes ? x[strip.grain_i(p)].w : reference,
                      r_j = kSizes ? x[strip.grain_j(p)].w : reference;
-        strip.contact.sample.power.opening +=
+        sums.sample.power.opening +=
             held_by_pair(pair_coefficients(coefficients_.pair, reference, r_i, r_j), strip, p) / dt;
       });
   PairLaw<Real> law;
@@ -226,11 +243,52 @@ void GrainSolver::contacts_of_strip(Scratch<Real>& s, int k, int offset, double 
   const Loads loads{s.loads.force.data() + offset, s.loads.torque.data() + offset};
   const Motion motion{flat(s.motion.v.data()) + kQuad * offset,
                       s.motion.w.empty() ? nullptr : flat(s.motion.w.data()) + kQuad * offset};
-  PairForces<Law, kRolling, kSizes, Real>(law, s.touching, motion, strip.history<Real>(), loads)
-      .run(strip.contact);
-  wall_forces<Law, kRolling, kSizes>(grains_, strip, params_.bin, params_.grain.radius, coefficients_, dt,
-                                     wanted, loads);
-  if (surfaces_.any()) surfaces_.evaluate<Law>(grains_, strip, k, dt, wanted.losses, loads);
+  PairForces<Law, kRolling, kSizes, Real>(law, s.touching, motion, strip.history<Real>(), loads).run(sums);
+  wall_forces<Law, kRolling, kSizes>(grains_, strip, part.wall_first, part.wall_last, params_.bin,
+                                     params_.grain.radius, coefficients_, dt, wanted, loads, sums);
+}
+
+template <class Real, class Law, bool kRolling, bool kSizes>
+void GrainSolver::contacts_of_strip(Scratch<Real>& s, int k, int offset, double dt, Wanted wanted) {
+  FURROW_ASSERT(in_range(k, strips_.count()) && offset >= 0, k, strips_.count(), offset);
+  Strip& strip = strips_[k];
+  std::vector<Parcel>& parcels = strip.parcels;
+  const Quad* const x = positions(s, k);
+  const Loads loads{s.loads.force.data() + offset, s.loads.torque.data() + offset};
+  const auto of_part = [&](const StripPart& part, Wanted what, ContactTotals& sums) {
+    contacts_of_part<Real, Law, kRolling, kSizes>(s, k, part, x, offset, dt, what, sums);
+    if (surfaces_.any())
+      surfaces_.evaluate<Law>(grains_, strip, k, part.first, part.last, dt, wanted.losses, loads, sums);
+  };
+  const auto alone = [&](int p) {
+    return parcels[p].asleep || (params_.activity && Activity::about_to_sleep(parcels[p]));
+  };
+  if (surfaces_.any()) surfaces_.begin(k, wanted.losses);
+  ContactTotals awake;
+  activity_.each_row(
+      k, Activity::kList, [&](int p) { return !alone(p); },
+      [&](int from, int to) {
+        if (!alone(from)) return of_part(joined(parcels, from, to), wanted, awake);
+        // What falls asleep in a step that measures nothing would leave no sums of its own.
+        const bool all = parcels.size() > 1 && !parcels[from].asleep;
+        const Wanted what{.forces = wanted.forces || all, .losses = wanted.losses || all};
+        parcels[from].contact = {};
+        of_part(parcels[from].part, what, parcels[from].contact);
+        if (what.forces) parcels[from].measured_force = parcels[from].contact.contact_force;
+        if (what.losses) parcels[from].stored = parcels[from].contact.sample.stored;
+      });
+  strip.contact = awake;
+  for (std::size_t p = 0; p < parcels.size(); ++p) {
+    if (!alone(static_cast<int>(p))) continue;
+    ContactTotals now = parcels[p].contact;
+    if (!activity_.needs(k, static_cast<int>(p), Activity::kList)) {
+      now.power = 0.0;
+      now.contact_force = parcels[p].measured_force;
+      now.sample = {{}, parcels[p].stored};
+    }
+    parcels.size() == 1 ? void(strip.contact = now) : add(strip.contact, now);
+  }
+  if (surfaces_.any()) surfaces_.end(grains_, k, dt, wanted.losses, strip.contact);
 }
 
 template <class Real, class Law, bool kRolling, bool kSizes>
@@ -244,12 +302,21 @@ void GrainSolver::run_chunk(Chunk& chunk, const StepPart& part, Wanted wanted) {
   grow(s.loads.force, last - first + ahead);
   grow(s.loads.torque, last - first + ahead);
   const Loads all{s.loads.force.data(), s.loads.torque.data()};
+  // Of the parcels of strip k whose loads are complete.
+  const auto set_aside = [&](LoadBuffer& buffer, int k, int offset) {
+    grow(buffer.force, strips_[k].grains());
+    grow(buffer.torque, strips_[k].grains());
+    activity_.each_row(k, Activity::kLoads, [&](int from, int to) {
+      const StripPart row = joined(strips_[k].parcels, from, to);
+      buffer.copy(all.from(offset), row.first, row.last);
+    });
+  };
   bool gathered = false;  // of strip k, by the one before
   for (int k = chunk.from; k < chunk.to; ++k) {
     Strip& strip = strips_[k];
     const int offset = strip.first - first;
     const bool evaluated = activity_.evaluated(k);
-    if (!gathered && (evaluated || activity_.complete(k))) gather<Real, kSizes>(s, k, offset);
+    if (!gathered) gather<Real, kSizes>(s, k, offset);
     gathered = false;
     if (evaluated) {
       if (const int next = strips_.next(k); next >= 0)
@@ -260,21 +327,24 @@ void GrainSolver::run_chunk(Chunk& chunk, const StepPart& part, Wanted wanted) {
     }
     if (!activity_.complete(k)) continue;
     if (k == chunk.from) {
-      chunk.own.assign(all.from(offset), strip.grains());
+      set_aside(chunk.own, k, offset);
     } else {
       finish_strip(k, all.from(offset), part, wanted);
     }
   }
-  if (gathered && activity_.complete(beyond)) chunk.ahead.assign(all.from(last - first), ahead);
+  if (gathered && activity_.complete(beyond)) set_aside(chunk.ahead, beyond, last - first);
 }
 
 void GrainSolver::finish_chunk(Chunk& chunk, const Chunk* before, const StepPart& part, Wanted wanted) {
   if (!activity_.complete(chunk.from)) return;
   if (before)
-    for (std::size_t g = 0; g < chunk.own.force.size(); ++g) {
-      add(chunk.own.force[g], load(before->ahead.force[g]));
-      add(chunk.own.torque[g], load(before->ahead.torque[g]));
-    }
+    activity_.each_row(chunk.from, Activity::kLoads, [&](int from, int to) {
+      const StripPart row = joined(strips_[chunk.from].parcels, from, to);
+      for (int g = row.first; g < row.last; ++g) {
+        add(chunk.own.force[g], load(before->ahead.force[g]));
+        add(chunk.own.torque[g], load(before->ahead.torque[g]));
+      }
+    });
   finish_strip(chunk.from, {chunk.own.force.data(), chunk.own.torque.data()}, part, wanted);
 }
 
@@ -282,34 +352,51 @@ void GrainSolver::finish_strip(int k, const Loads& loads, const StepPart& part, 
   FURROW_ASSERT(in_range(k, strips_.count()), k, strips_.count());
   FURROW_ASSERT(loads.force != nullptr || strips_[k].grains() == 0, k, strips_[k].grains());
   Strip& strip = strips_[k];
-  if (strip.asleep) {
-    load_sleeper(strip, loads);
-  } else if (params_.sizes()) {
-    params_.activity ? integrate<true, true>(strip, loads, part, wanted)
-                     : integrate<false, true>(strip, loads, part, wanted);
+  activity_.each_row(k, Activity::kLoads, [&](int from, int to) {
+    for (int p = from; p < to; ++p) {
+      Parcel& parcel = strip.parcels[p];
+      parcel.stale = false;
+      if (parcel.asleep) {
+        load_sleeper(strip, parcel, loads.from(parcel.part.first));
+      } else {
+        move_parcel(strip, parcel, loads.from(parcel.part.first), part, wanted);
+      }
+    }
+  });
+  strip.stale = false;
+  strips_.sum_parcels(k);
+  if (!strip.asleep) strip.travel += part.dt * strip.motion.max_speed;
+}
+
+void GrainSolver::move_parcel(const Strip& strip, Parcel& parcel, const Loads& loads, const StepPart& part,
+                              Wanted wanted) {
+  if (params_.sizes()) {
+    params_.activity ? integrate<true, true>(strip, parcel, loads, part, wanted)
+                     : integrate<false, true>(strip, parcel, loads, part, wanted);
   } else {
-    params_.activity ? integrate<true, false>(strip, loads, part, wanted)
-                     : integrate<false, false>(strip, loads, part, wanted);
+    params_.activity ? integrate<true, false>(strip, parcel, loads, part, wanted)
+                     : integrate<false, false>(strip, parcel, loads, part, wanted);
   }
 }
 
-void GrainSolver::load_sleeper(Strip& strip, const Loads& loads) const {
+void GrainSolver::load_sleeper(const Strip& strip, Parcel& parcel, const Loads& loads) const {
   const Double4 weight = lanes_of(params_.gravity * params_.grain.mass);
   const double* const force = flat(loads.force);
-  const double* const position = flat(grains_.position.data() + strip.first);
+  const double* const position = flat(grains_.position.data() + strip.first + parcel.part.first);
   const double per_radius = 1.0 / params_.grain.radius;
   Double4 largest{}, held{};
-  for (int g = 0; g < kQuad * strip.grains(); g += kQuad) {
+  for (int g = 0; g < kQuad * parcel.part.grains(); g += kQuad) {
     const Double4 f = load_lanes<Double4>(force + g) + cube(position[g + 3] * per_radius) * weight;
     largest = larger(largest, f * f);
     held += f;
   }
-  store(strip.motion.held, held);
-  strip.motion.max_net_force = std::sqrt(sum_of(largest));
+  store(parcel.motion.held, held);
+  parcel.motion.max_net_force = std::sqrt(sum_of(largest));
 }
 
 template <bool kMaySleep, bool kSizes>
-void GrainSolver::integrate(Strip& strip, const Loads& loads, const StepPart& part, Wanted wanted) {
+void GrainSolver::integrate(const Strip& strip, Parcel& parcel, const Loads& loads, const StepPart& part,
+                            Wanted wanted) {
   const double dt = part.dt, kick = part.kick();
   const double mass = params_.grain.mass, inertia = params_.grain.inertia;
   const double radius = params_.grain.radius;
@@ -317,11 +404,11 @@ void GrainSolver::integrate(Strip& strip, const Loads& loads, const StepPart& pa
   double m = 1.0, i = 1.0;  // of a grain, in those of the reference radius
   const double keep = 1.0 / (1.0 + kick * drag_);
   const Double4 gravity = lanes_of(params_.gravity);
-  const int n = strip.grains();
+  const int n = parcel.part.grains(), first = strip.first + parcel.part.first;
   const double *const force = flat(loads.force), *const torque = flat(loads.torque);
-  double* const velocity = flat(grains_.velocity.data() + strip.first);
-  double* const spin = flat(grains_.spin.data() + strip.first);
-  double* const position = flat(grains_.position.data() + strip.first);
+  double* const velocity = flat(grains_.velocity.data() + first);
+  double* const spin = flat(grains_.spin.data() + first);
+  double* const position = flat(grains_.position.data() + first);
   Double4 moving{}, spinning{}, work{}, momentum{}, moment{}, fastest{}, net{};
   Double4 pushed{}, most_pushed{};  // Σ m a / m₀, largest squares of the acceleration
   for (int g = 0; g < kQuad * n; g += kQuad) {
@@ -352,19 +439,27 @@ void GrainSolver::integrate(Strip& strip, const Loads& loads, const StepPart& pa
     }
     if (wanted.forces) net[0] += mass * m * std::sqrt(sum_of(a * a));
   }
-  MotionTotals& sums = strip.motion;
+  MotionTotals& sums = parcel.motion;
   sums.speed2 = sum_of(moving);
   sums.kinetic = 0.5 * (mass * sums.speed2 + inertia * sum_of(spinning));
   sums.spin2 = sum_of(spinning);
   sums.step_work = sum_of(work);
   store(sums.velocity, momentum);
   sums.height = up_.dot(Vec3(moment[0], moment[1], moment[2]));
+  store(sums.fastest2, fastest);
   // Not a number when one of the sums is not: the strip will be sorted, and the grain be found.
   sums.max_speed = std::sqrt(sum_of(fastest)) + 0.0 * (sums.kinetic + sum_of(moment));
   sums.max_net_force = mass * std::sqrt(sum_of(most_pushed));
   store(sums.held, mass * pushed);
   sums.net_force = net[0];
-  strip.travel += dt * sums.max_speed;
+}
+
+std::int32_t GrainSolver::grains_awake(const Strip& strip) const {
+  if (strip.asleep) return 0;
+  std::int32_t awake = strip.grains();
+  for (const Parcel& parcel : strip.parcels)
+    if (parcel.asleep) awake -= parcel.part.grains();
+  return awake;
 }
 
 void GrainSolver::take_samples() {
@@ -387,9 +482,17 @@ void GrainSolver::change_activity(bool counts) {
   activity_.limit({kSleepMeanSpeed * speed, kSleepSpeed * speed, kSleepForce * mean_contact_force_,
                    kWakeForce * mean_contact_force_});
   const double margin = 2.0 * strips_.options().reach;
-  const Activity::Stopped stopped = activity_.update(strips_, grains_, counts, [&](const Strip& strip) {
-    return surfaces_.any() && surfaces_.low_between(strip.x_min - margin, strip.x_max + margin);
-  });
+  const auto near = [&](const Strip& strip, const auto& also) {
+    return surfaces_.any_low_between(strip.x_min - margin, strip.x_max + margin, also);
+  };
+  const Activity::Stopped stopped = activity_.update(
+      strips_, grains_, counts,
+      [&](const Strip& strip) { return near(strip, [](double, double) { return true; }); },
+      [&](const Strip& strip, int p) {
+        return near(strip, [&](double y_min, double y_max) {
+          return strips_.parcel_between(p, y_min - margin, y_max + margin);
+        });
+      });
   accounts_.slept += stopped.kinetic;
   accounts_.momentum_removed += params_.grain.mass * stopped.velocity;
 }
@@ -447,10 +550,12 @@ void GrainSolver::reduce(const StepPart& part, Wanted wanted) {
     a.velocity += Vec3(m.velocity.x, m.velocity.y, m.velocity.z);
     a.contacts += c.contacts;
     a.max_overlap = std::max(a.max_overlap, c.max_overlap);
+    a.active += grains_awake(strips_[k]);
     if (strips_[k].asleep) {
       add(held, load(m.held));
-    } else {
-      a.active += strips_[k].grains();
+    } else if (strips_[k].parcels.size() > 1) {
+      for (const Parcel& parcel : strips_[k].parcels)
+        if (parcel.asleep) add(held, load(parcel.motion.held));
     }
   }
   // Forces of the step act on velocities that change during it: Σ F·v at mid-step = Σ F·v + ½ dt Σ (F·a + T·α).

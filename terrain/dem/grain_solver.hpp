@@ -8,6 +8,11 @@
 // spins thus come from memory once per step, forces never. Only the first strip of a chunk waits for what the chunk
 // before pushes on it: those are moved in a second short pass. No thread writes another's grain and every sum has an
 // order fixed by the lists: the bits do not depend on the number of threads.
+//
+// Where strips are cut into parcels (parcel.hpp) and some of them sleep, a strip's step is that of rows of parcels
+// (activity.hpp): those awake are evaluated together, each sleeping one alone, so that its sums are known while nobody
+// evaluates it. A grain's forces are added in the same order however the strip is divided: awake parcels move with the
+// same bits as a whole strip. Only the sums over a strip are rounded otherwise.
 #pragma once
 
 #include <cstdint>
@@ -143,7 +148,7 @@ class GrainSolver {
   /// Decides about sleep and waking; sampled every kSampleSteps steps while grains may sleep, N.
   double mean_contact_force() const { return mean_contact_force_; }
   void reset_accounts();
-  /// Wakes the strip of a grain whose motion was set from outside.
+  /// Wakes the parcel of a grain whose motion was set from outside.
   void wake(int grain);
   /// The direction against gravity, a unit vector, along which heights are measured; z without gravity.
   const Vec3& up() const { return up_; }
@@ -171,12 +176,13 @@ class GrainSolver {
   }
 
   void save(Archive& archive) const;
+  /// Wakes all grains where they may not sleep, or slept by other parcels than those of this solver.
   void restore(const Archive& archive);
 
  private:
   struct LoadBuffer {
     std::vector<Quad> force, torque;
-    void assign(const Loads& from, int count);
+    void copy(const Loads& from, int first, int last);
   };
   /// Strips [from, to) that one thread steps.
   struct Chunk {
@@ -197,6 +203,13 @@ class GrainSolver {
   Scratch<Real>& scratch();
   template <class Real, bool kSizes>
   void gather(Scratch<Real>& scratch, int strip, int offset);
+  /// Positions of a strip's grains and those of the next strip, as the lists number them.
+  template <class Real>
+  const Quad* positions(Scratch<Real>& scratch, int strip);
+  /// Contacts that a part of the strip lists; their sums are added to `sums`.
+  template <class Real, class Law, bool kRolling, bool kSizes>
+  void contacts_of_part(Scratch<Real>& scratch, int strip, const StripPart& part, const Quad* x, int offset,
+                        double dt, Wanted wanted, ContactTotals& sums);
   template <class Real, class Law, bool kRolling, bool kSizes>
   void contacts_of_strip(Scratch<Real>& scratch, int strip, int offset, double dt, Wanted wanted);
   template <class Real, class Law, bool kRolling, bool kSizes>
@@ -206,11 +219,14 @@ class GrainSolver {
   void evaluate(const StepPart& part, Wanted wanted);
   template <class Real>
   void evaluate(const StepPart& part, Wanted wanted);
-  /// Moves the grains of strip k, or sees whether they are pushed awake.
+  /// Moves the grains of the parcels of strip k whose loads are complete, or sees whether they are pushed awake.
   void finish_strip(int k, const Loads& loads, const StepPart& part, Wanted wanted);
+  void move_parcel(const Strip& strip, Parcel& parcel, const Loads& loads, const StepPart& part,
+                   Wanted wanted);
+  /// `loads` start at the parcel's first grain.
   template <bool kMaySleep, bool kSizes>
-  void integrate(Strip& strip, const Loads& loads, const StepPart& part, Wanted wanted);
-  void load_sleeper(Strip& strip, const Loads& loads) const;  // of a sleeping strip
+  void integrate(const Strip& strip, Parcel& parcel, const Loads& loads, const StepPart& part, Wanted wanted);
+  void load_sleeper(const Strip& strip, Parcel& parcel, const Loads& loads) const;
   void change_activity(bool counts);
   void bound_overlaps(double dt);
   /// After strips were sorted again: what was listed by one may be listed by another.
@@ -219,6 +235,7 @@ class GrainSolver {
   /// Takes samples of the contact forces of the strips that this step evaluated. Those of sleeping strips stay: nothing
   /// moves there.
   void take_samples();
+  std::int32_t grains_awake(const Strip& strip) const;
   void reduce(const StepPart& part, Wanted wanted);
 
   SolverParams params_;

@@ -2,6 +2,7 @@
 // lists as they stand, histories of touching pairs, and the accounts.
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
@@ -43,6 +44,30 @@ const double* get_rows(const double* from, const Strip& strip, std::vector<Histo
   return from;
 }
 
+/// Cuts a strip that was read into its parcels, without their parts. @param saved null: it is its only one
+void take_parcels(Strip& strip, int across, std::optional<ColumnReader<Parcel>>& saved) {
+  Parcel& only = strip.parcels.front();
+  only.asleep = strip.asleep;
+  only.contact = strip.contact;
+  only.motion = strip.motion;
+  strip.parcels.resize(across);
+  if (!saved) return;
+  strip.asleep = true;
+  for (Parcel& parcel : strip.parcels) {
+    parcel = {};
+    saved->take(parcel);
+    strip.asleep &= parcel.asleep;
+    strip.stale |= parcel.stale;
+    strip.motion.max_net_force = std::max(strip.motion.max_net_force, parcel.motion.max_net_force);
+  }
+}
+
+/// The next step evaluates it all.
+void wake_all(Strip& strip) {
+  strip.asleep = strip.stale = false;
+  for (Parcel& parcel : strip.parcels) Activity::wake(parcel);
+}
+
 }  // namespace
 
 void GrainSolver::save(Archive& archive) const {
@@ -59,6 +84,7 @@ void GrainSolver::save(Archive& archive) const {
   for (const ForceSample& s : samples_) samples.insert(samples.end(), {s.force, double(s.contacts)});
   archive.put("samples/strips", samples);
   archive.put("samples/until", until_sample_);
+  if (strips_.across() > 1) archive.put(kAcross, std::int64_t{strips_.across()});
   // A strip that sleeps beside sleepers is not evaluated: what last pressed on it may yet wake it, when the mean
   // contact force falls.
   std::vector<double> pressed(strips_.count(), 0.0);
@@ -74,10 +100,12 @@ void GrainSolver::save(Archive& archive) const {
   std::vector<std::uint8_t> touching;
   std::vector<double> tangential, rolling;
   ColumnWriter<Strip> strips;
+  ColumnWriter<Parcel> parcels;
   ColumnWriter<WallContact> wall_contacts;
   for (int k = 0; k < strips_.count(); ++k) {
     const Strip& strip = strips_[k];
     strips.add(strip);
+    for (const Parcel& parcel : strip.parcels) parcels.add(parcel);
     walls.push_back(static_cast<std::int32_t>(strip.walls.size()));
     cells.insert(cells.end(), strip.cell_start.begin(), strip.cell_start.end());
     for (int p = 0; p < strip.pairs; ++p) partners.push_back(std::uint64_t{strip.i[p]} << 32 | strip.j[p]);
@@ -89,6 +117,7 @@ void GrainSolver::save(Archive& archive) const {
     for (const WallContact& contact : strip.walls) wall_contacts.add(contact);
   }
   strips.put(archive, "strips");
+  if (strips_.across() > 1) parcels.put(archive, "parcels");
   archive.put("strips/walls", walls);
   archive.put("strips/cells", cells);
   archive.put("pairs/partners", partners);
@@ -125,6 +154,9 @@ void GrainSolver::restore(const Archive& archive) {
                         archive.get_int("strips/resorted"));
 
   const std::size_t count = strips_.count();
+  const bool same_parcels = saved_across(archive) == strips_.across();
+  std::optional<ColumnReader<Parcel>> parcels;
+  if (same_parcels && strips_.across() > 1) parcels.emplace(archive, "parcels", count * strips_.across());
   ColumnReader<Strip> strips(archive, "strips", count);
   const auto* const pressed =
       archive.has("strips/pressed") ? &archive.get<double>("strips/pressed", count) : nullptr;
@@ -144,6 +176,8 @@ void GrainSolver::restore(const Archive& archive) {
     strip = {};
     strips.take(strip);
     if (pressed) strip.motion.max_net_force = (*pressed)[k];
+    take_parcels(strip, strips_.across(), parcels);
+    if (!same_parcels || !params_.activity) wake_all(strip);
     strip.cell_start.assign(cells.begin() + k * per_strip, cells.begin() + (k + 1) * per_strip);
     strips_.size_lists(strip, strip.pairs);
     for (int p = 0; p < strip.pairs; ++p) {
@@ -157,6 +191,7 @@ void GrainSolver::restore(const Archive& archive) {
     rolling = get_rows(rolling, strip, strip.full.rolling);
     strip.walls.resize(walls[k]);
     for (WallContact& contact : strip.walls) wall_contacts.take(contact);
+    strips_.find_parts(strip);
     pair += strip.pairs;
     group += strip.touching.size();
   }

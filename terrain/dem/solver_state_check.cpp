@@ -97,6 +97,13 @@ class Check {
     }
   }
 
+  /// Parcels are found by searching: the lists of strips that are cut must be in order.
+  template <class Number>
+  void in_order(bool ok, const char* array, Number k) const {
+    require(ok || strips_.across() == 1, array,
+            [&] { return fmt::format("lists the grains of strip {} out of their order", k); });
+  }
+
   void pairs() {
     const auto& pairs = archive_.get<std::int32_t>("strips/pairs", count_);
     std::size_t all = 0, groups = 0;
@@ -112,12 +119,15 @@ class Check {
       const int next = strips_.next(static_cast<int>(k));
       const std::int64_t own = grains_of(k),
                          reach = own + (next < 0 ? 0 : grains_of(static_cast<std::size_t>(next)));
+      std::uint64_t before = 0;
       for (std::int32_t p = 0; p < pairs[k]; ++p) {
         const std::uint64_t i = partners[pair + static_cast<std::size_t>(p)] >> 32,
                             j = partners[pair + static_cast<std::size_t>(p)] & 0xFFFFFFFFU;
         require(i % kQuad == 0 && j % kQuad == 0 && i / kQuad < static_cast<std::uint64_t>(own) &&
                     j / kQuad < static_cast<std::uint64_t>(reach),
                 "pairs/partners", [&] { return fmt::format("names a grain that strip {} has not", k); });
+        in_order(p == 0 || i >= before, "pairs/partners", k);
+        before = i;
         touches += touching[group + static_cast<std::size_t>(p) / kFloatLanes] >> p % kFloatLanes & 1;
       }
       pair += static_cast<std::size_t>(pairs[k]), group += lanes(pairs[k]);
@@ -146,6 +156,7 @@ class Check {
       for (std::int32_t c = 0; c < walls[k]; ++c, ++contact) {
         require(grain[contact] >= 0 && grain[contact] < grains_of(k), "walls/grain",
                 [&] { return fmt::format("names a grain that strip {} has not", k); });
+        in_order(c == 0 || grain[contact] >= grain[contact - 1], "walls/grain", k);
         require(wall[contact] >= 0 && wall[contact] < kWalls, "walls/wall",
                 [&] { return fmt::format("names wall {}", wall[contact]); });
       }
@@ -161,5 +172,19 @@ class Check {
 }  // namespace
 
 void check_solver_state(const Archive& archive, const Strips& strips) { Check(archive, strips).run(); }
+
+std::int64_t saved_across(const Archive& archive) {
+  return archive.has(kAcross) ? archive.get_int(kAcross) : 1;
+}
+
+void require_same_parcels(const Archive& archive, const Strips& strips) {
+  const std::int64_t across = saved_across(archive);
+  if (across != strips.across())
+    throw Error(
+        ExitCode::io,
+        fmt::format("saved state '{}' is {}, expected {}: another version of the program cut the strips "
+                    "of the bed otherwise, and what sleeps with them",
+                    kAcross, across, strips.across()));
+}
 
 }  // namespace furrow::terrain::dem

@@ -48,7 +48,52 @@ Strips::Strips(const Options& options) : options_(options) {
   inverse_x_ = nx / bin.length;
   inverse_y_ = ny_ / bin.width;
   inverse_z_ = 1.0 / size;
+  across_ = options.cut ? parcels_across(ny_) : 1;
   strips_.resize(nx);
+  for (Strip& strip : strips_) strip.parcels.resize(across_);
+}
+
+bool Strips::parcel_between(int p, double y_min, double y_max) const {
+  FURROW_ASSERT(in_range(p, across_), p, across_);
+  const double side = -0.5 * options_.bin.width;
+  return (p == 0 || side + column_of(p) / inverse_y_ < y_max) &&
+         (p + 1 == across_ || side + column_of(p + 1) / inverse_y_ > y_min);
+}
+
+void Strips::sum_parcels(int k) {
+  FURROW_ASSERT(in_range(k, count()), k, count());
+  Strip& strip = strips_[k];
+  strip.motion = strip.parcels.front().motion;
+  strip.asleep = strip.parcels.front().asleep;
+  for (int p = 1; p < across_; ++p) {
+    add(strip.motion, strip.parcels[p].motion);
+    strip.asleep &= strip.parcels[p].asleep;
+  }
+}
+
+void Strips::find_parts(Strip& strip) const {
+  FURROW_ASSERT(static_cast<int>(strip.parcels.size()) == across_, strip.parcels.size(), across_);
+  FURROW_ASSERT(strip.cell_start.size() == static_cast<std::size_t>(ny_ * nz_ + 1), strip.cell_start.size(),
+                ny_, nz_);
+  StripPart at;
+  for (int p = 0; p < across_; ++p) {
+    at.last = strip.cell_start[column_of(p + 1) * nz_];
+    if (p + 1 == across_) {
+      at.pair_last = strip.pairs;
+      at.wall_last = static_cast<std::int32_t>(strip.walls.size());
+    } else {
+      const auto pairs_end = strip.i.begin() + strip.pairs;
+      at.pair_last = static_cast<std::int32_t>(std::lower_bound(strip.i.begin() + at.pair_first, pairs_end,
+                                                                static_cast<std::uint32_t>(kQuad * at.last)) -
+                                               strip.i.begin());
+      at.wall_last = static_cast<std::int32_t>(
+          std::lower_bound(strip.walls.begin() + at.wall_first, strip.walls.end(), at.last,
+                           [](const WallContact& contact, int grain) { return contact.grain < grain; }) -
+          strip.walls.begin());
+    }
+    strip.parcels[p].part = at;
+    at.first = at.last, at.pair_first = at.pair_last, at.wall_first = at.wall_last;
+  }
 }
 
 void Strips::restore_shape(int cells_z, std::int64_t resorted) {
@@ -63,7 +108,8 @@ std::size_t Strips::bytes() const {
   for (const auto* strips : {&strips_, &old_})
     for (const Strip& s : *strips)
       sum += sizeof s + of(s.cell_start) + of(s.i) + of(s.j) + of(s.touching) + of(s.walls) +
-             of(s.single.tangential) + of(s.single.rolling) + of(s.full.tangential) + of(s.full.rolling);
+             of(s.single.tangential) + of(s.single.rolling) + of(s.full.tangential) + of(s.full.rolling) +
+             of(s.parcels);
   return sum;
 }
 
@@ -342,6 +388,32 @@ void Strips::carry_walls(std::span<const Strip> old, int old_from, const Resorte
     }
 }
 
+/// The sums of a sleeping parcel are those of its last evaluation. Where a grain that had drifted before it fell asleep
+/// is sorted into another parcel, sums about it belong elsewhere and are taken again.
+void Strips::mark_stale(std::span<const Strip> old, int old_from, const Resorted& range) {
+  FURROW_ASSERT(static_cast<int>(old.size()) == range.to - old_from, old.size(), old_from, range.to);
+  if (across_ == 1) return;  // every sleeping strip that is sorted lies beside one that is awake
+  const auto changed = [&](int s, int p) {
+    const Strip &now = strips_[s], &then = old[s - old_from];
+    const StripPart &part = now.parcels[p].part, &was = then.parcels[p].part;
+    const auto order = range.order.begin() + (now.first - range.first);
+    return part.grains() != was.grains() ||
+           std::any_of(order + part.first, order + part.last, [&](std::int32_t g) {
+             return g < then.first + was.first || g >= then.first + was.last;
+           });
+  };
+  for (int s = range.from; s < range.to; ++s)
+    for (int p = 0; p < across_; ++p) {
+      if (!strips_[s].parcels[p].asleep || !changed(s, p)) continue;
+      for (int ds = -1; ds <= 1; ++ds)
+        for (int dp = -1; dp <= 1; ++dp) {
+          const int strip = beside(s, ds), parcel = parcel_beside(p, dp);
+          if (strip < 0 || parcel < 0 || !strips_[strip].parcels[parcel].asleep) continue;
+          strips_[strip].stale = strips_[strip].parcels[parcel].stale = true;
+        }
+    }
+}
+
 Resorted Strips::rebuild(Grains& grains, int from, int to, int threads) {
   FURROW_ASSERT(from >= 0 && from < to && to <= count(), from, to, count());
   FURROW_ASSERT(threads > 0, threads);
@@ -353,7 +425,8 @@ Resorted Strips::rebuild(Grains& grains, int from, int to, int threads) {
     strip.first = old.first, strip.last = old.last;
     strip.x_min = old.x_min, strip.x_max = old.x_max, strip.z_max = old.z_max;
     strip.travel = old.travel;
-    strip.asleep = old.asleep, strip.calm = old.calm;
+    strip.asleep = old.asleep, strip.stale = old.stale;
+    strip.parcels = old.parcels;
     strip.lost = old.lost;
     strip.contact = old.contact, strip.motion = old.motion;
     if (lists_from + k < from) strip.cell_start = old.cell_start, strip.walls = old.walls;
@@ -365,6 +438,7 @@ Resorted Strips::rebuild(Grains& grains, int from, int to, int threads) {
   for (int s = lists_from; s < to; ++s) {
     list_pairs(grains, s);
     if (s >= from) list_walls(grains, strips_[s]);
+    find_parts(strips_[s]);
   }
   const std::span<const Strip> old(old_.data(), lists);
   if (options_.single) {
@@ -373,6 +447,7 @@ Resorted Strips::rebuild(Grains& grains, int from, int to, int threads) {
     carry_history<double>(old, lists_from, range, threads);
   }
   carry_walls(old, lists_from, range);
+  mark_stale(old, lists_from, range);
   resorted_ += static_cast<std::int64_t>(range.order.size());
   return range;
 }
@@ -384,7 +459,11 @@ Resorted Strips::rebuild_all(Grains& grains, int threads) {
   for (int g = 0; g < grains.count; ++g) top = std::max(top, grains.position[g].z);
   nz_ = static_cast<int>(std::clamp(top * inverse_z_, 0.0, kMaxCellsZ - 1.0)) + 1;
   if (strips_.back().last != grains.count) {  // grains were placed anew: all in the first strip
-    for (Strip& strip : strips_) strip = {}, strip.first = strip.last = grains.count;
+    for (Strip& strip : strips_) {
+      strip = {};
+      strip.parcels.resize(across_);
+      strip.first = strip.last = grains.count;
+    }
     strips_.front().first = 0;
   }
   Resorted range = rebuild(grains, 0, count(), threads);

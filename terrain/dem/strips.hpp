@@ -9,6 +9,9 @@
 // again among themselves and the lists that name their grains are rebuilt. The rest of the bed keeps its lists.
 // Cells are a skin wider than the reach of a list, so that grains which drifted by half a skin still find each other
 // in neighbouring cells. Which strips are rebuilt, and the order of every list, does not depend on threads.
+//
+// Where grains may sleep, strips that are wide enough are cut across into parcels (parcel.hpp), alike in all strips. A
+// grain's partners stand in its own parcel or in the eight around it.
 #pragma once
 
 #include <cstdint>
@@ -17,9 +20,9 @@
 
 #include "protocol/core/assert.hpp"
 #include "protocol/core/fields.hpp"
-#include "terrain/dem/accounts/contact_losses.hpp"
 #include "terrain/dem/bin.hpp"
 #include "terrain/dem/grains.hpp"
+#include "terrain/dem/parcel.hpp"
 
 namespace furrow::terrain::dem {
 
@@ -51,38 +54,6 @@ struct PairHistory {
   std::vector<HistoryRow<Real>> rolling;     // N m; empty without rolling resistance
 };
 
-/// Sums over the contacts that a strip lists, in the last step that evaluated them.
-struct ContactTotals {
-  double power = 0.0;          // Σ F·v_rel at the step's start, W
-  double elastic = 0.0;        // J
-  double contact_force = 0.0;  // Σ |F|, N, when measured
-  double max_overlap = 0.0;    // m
-  Quad wall_force;             // on the grains, N
-  double floor_force = 0.0;    // N
-  std::int64_t contacts = 0;
-  ContactSample sample;  // when losses are sampled
-};
-
-/// What a step sums besides what every step does.
-struct Wanted {
-  bool forces = false;  // Σ |F| and Σ |net force|
-  bool losses = false;  // by mechanism
-};
-
-/// Sums and extremes over a strip's grains after the last step; a speed or force is that of its largest components.
-struct MotionTotals {
-  double net_force = 0.0;  // Σ |contact forces + weight| of grains, N, when measured
-  double kinetic = 0.0;    // J
-  double spin2 = 0.0;      // Σ I ω² / I₀, rad²/s²
-  double height = 0.0;     // Σ z, m
-  Quad velocity;           // Σ v, m/s
-  double step_work = 0.0;  // Σ F·a + T·α: half of it times dt² belongs to the power at mid-step, N²/kg
-  double max_speed = 0.0;  // m/s
-  double speed2 = 0.0;     // Σ v², m²/s²
-  double max_net_force = 0.0;  // N, only when grains may sleep
-  Quad held;                   // Σ contact forces + weight, N, only when grains may sleep
-};
-
 struct Strip {
   std::int32_t first = 0, last = 0;      // grains
   std::vector<std::int32_t> cell_start;  // of each cell (y, z fastest), counted from `first`
@@ -95,10 +66,11 @@ struct Strip {
   std::vector<WallContact> walls;
   double travel = 0.0;  // bound on the way of any of its grains since it was sorted, m
   double x_min = 0.0, x_max = 0.0, z_max = 0.0;  // of the centres when sorted, m
-  bool asleep = false;                           // its grains rest and are not stepped, activity.hpp
-  int calm = 0;                                  // steps for which they could have slept
+  bool asleep = false;                           // all its parcels are
+  bool stale = false;                            // one of its parcels is
   std::int32_t lost = -1;  // a grain outside the bin or not finite, counted from `first`
-  ContactTotals contact;
+  std::vector<Parcel> parcels = std::vector<Parcel>(1);
+  ContactTotals contact;  // of all parcels
   MotionTotals motion;
 
   int grains() const { return last - first; }
@@ -123,7 +95,8 @@ struct Strip {
     return const_cast<Strip*>(this)->history<Real>();
   }
 };
-/// What a saved state keeps of a strip besides its lists. Sums too: those of strips that sleep stay.
+/// What a saved state keeps of a strip besides its lists. Sums too: those of strips that sleep stay. Where strips are
+/// cut, Parcel's fields stand beside these.
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<Strip> auto& s) {
   visit(Field{"first"}, s.first);
@@ -134,7 +107,7 @@ void visit_fields(Visit&& visit, FieldsOf<Strip> auto& s) {
   visit(Field{"x_max", "m"}, s.x_max);
   visit(Field{"z_max", "m"}, s.z_max);
   visit(Field{"asleep", ""}, s.asleep);
-  visit(Field{"calm"}, s.calm);
+  visit(Field{"calm"}, s.parcels.front().calm);
   visit(Field{"elastic", "J"}, s.contact.elastic);
   visit(Field{"max_overlap", "m"}, s.contact.max_overlap);
   visit(Field{"wall_force", "N"}, s.contact.wall_force);
@@ -159,6 +132,7 @@ class Strips {
     bool history = true;   // keep tangential history
     bool rolling = false;  // keep rolling history
     bool single = true;    // histories in single precision
+    bool cut = false;      // wide strips into parcels
     Bin bin;
   };
 
@@ -180,6 +154,25 @@ class Strips {
     return k + 1 < count() ? k + 1 : options_.bin.periodic_x ? 0 : -1;
   }
 
+  /// The strip that lies d strips (−1, 0, 1) after k, −1: none.
+  int beside(int k, int d) const {
+    FURROW_ASSERT(in_range(k, count()), k, count());
+    const int n = count(), near = k + d;
+    return near >= 0 && near < n ? near : options_.bin.periodic_x ? (near + n) % n : -1;
+  }
+  /// The parcel that lies d parcels (−1, 0, 1) after p in any strip, −1: none.
+  int parcel_beside(int p, int d) const {
+    FURROW_ASSERT(in_range(p, across_), p, across_);
+    const int near = p + d;
+    return near >= 0 && near < across_ ? near : options_.bin.periodic_y ? (near + across_) % across_ : -1;
+  }
+  /// Into how many parcels each strip is cut.
+  int across() const { return across_; }
+  /// Whether any of a parcel's columns stand between these y, m. The outer ones reach beyond the sides.
+  bool parcel_between(int p, double y_min, double y_max) const;
+  /// After who sleeps has changed: `asleep` and the sums of motion of strip k.
+  void sum_parcels(int k);
+
   /// Sorts all grains and makes all lists. Returns the order. @pre threads > 0
   Resorted rebuild_all(Grains& grains, int threads);
   /// Rebuilds where a grain may have moved too far before the end of another step of `dt`.
@@ -200,6 +193,8 @@ class Strips {
 
   /// Gives a strip its arrays for `pairs` pairs.
   void size_lists(Strip& strip, int pairs) const;
+  /// After a strip was read from a saved state with its grains, cells, pairs and walls.
+  void find_parts(Strip& strip) const;
   /// After strips were read from a saved state: cells along z, and what follows from the grains.
   int cells_y() const { return ny_; }
   int cells_z() const { return nz_; }
@@ -213,10 +208,14 @@ class Strips {
   template <class Real>
   void carry_history(std::span<const Strip> old, int old_from, const Resorted& range, int threads);
   void carry_walls(std::span<const Strip> old, int old_from, const Resorted& range);
+  void mark_stale(std::span<const Strip> old, int old_from, const Resorted& range);
   int strip_at(double x) const;
+  /// The first of the columns of parcel p.
+  int column_of(int p) const { return p * ny_ / across_; }
 
   Options options_;
   int ny_ = 1, nz_ = 1;
+  int across_ = 1;
   double inverse_x_ = 0.0, inverse_y_ = 0.0, inverse_z_ = 0.0;  // cells per metre
   std::vector<Strip> strips_;
   std::int64_t resorted_ = 0;

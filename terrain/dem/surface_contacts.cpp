@@ -94,11 +94,11 @@ void SurfaceContacts::move_to(double share) {
     s.collider->move_to(share);
     s.near = s.collider->bounds();
     s.near.lo -= r, s.near.hi += r;
-    s.low_min = 1e300, s.low_max = -1e300;
+    s.low_min.setConstant(1e300), s.low_max.setConstant(-1e300);
     for (const Vec3& x : s.collider->positions())
       if (x.z() < top_) {
-        s.low_min = std::min(s.low_min, x.x());
-        s.low_max = std::max(s.low_max, x.x());
+        s.low_min = s.low_min.cwiseMin(x.head<2>());
+        s.low_max = s.low_max.cwiseMax(x.head<2>());
       }
   }
 }
@@ -108,11 +108,6 @@ double SurfaceContacts::speed_near(const Strip& strip) const {
   for (const Surface& s : surfaces_)
     if (near(s, strip)) fastest = std::max(fastest, s.fastest);
   return fastest;
-}
-
-bool SurfaceContacts::low_between(double x_min, double x_max) const {
-  return std::any_of(surfaces_.begin(), surfaces_.end(),
-                     [&](const Surface& s) { return s.low_min < x_max && s.low_max > x_min; });
 }
 
 void SurfaceContacts::restrict_to(const SurfaceBox& grains) {
@@ -161,8 +156,8 @@ double SurfaceContacts::abandoned(const Grains& grains, const SurfaceStrip& mine
 }
 
 template <class Law>
-void SurfaceContacts::touch(const Grains& grains, Strip& strip, SurfaceStrip& mine, int k, int g, double dt,
-                            bool losses, const Loads& load) {
+void SurfaceContacts::touch(const Grains& grains, SurfaceStrip& mine, int k, int g, double dt, bool losses,
+                            const Loads& load, ContactTotals& sums) {
   FURROW_ASSERT(in_range(k, count()) && in_range(g, grains.count), k, count(), g, grains.count);
   FURROW_ASSERT(load.force != nullptr && load.torque != nullptr, g);
   const Surface& surface = surfaces_[k];
@@ -196,7 +191,7 @@ void SurfaceContacts::touch(const Grains& grains, Strip& strip, SurfaceStrip& mi
       if (losses) mine.taken[past - old.data()] = 1;
     }
     if (losses)
-      add(strip.contact.sample,
+      add(sums.sample,
           rolling_ ? sample_of<Law, true>(c, dt, motion, history)
                    : sample_of<Law, false>(c, dt, motion, history),
           hit.share);
@@ -213,34 +208,47 @@ void SurfaceContacts::touch(const Grains& grains, Strip& strip, SurfaceStrip& mi
     add(*load.torque, cross(arm, push + drag) + hit.share * f.rolling);
     mine.touches.push_back({k, {hit.triangle, hit.weight, hit.point, -vec(push), -vec(drag), {}}});
     if (tangents_) mine.touches.back().force.tangent = contact_tangent<Law>(c, motion, f, hit.share);
-    strip.contact.power += hit.share * (power_of(f, motion) + dot(f.rolling, motion.roll));
-    strip.contact.elastic += hit.share * f.energy;
-    strip.contact.max_overlap = std::max(strip.contact.max_overlap, hit.overlap);
-    ++strip.contact.contacts;
+    sums.power += hit.share * (power_of(f, motion) + dot(f.rolling, motion.roll));
+    sums.elastic += hit.share * f.energy;
+    sums.max_overlap = std::max(sums.max_overlap, hit.overlap);
+    ++sums.contacts;
   }
 }
 
-template <class Law>
-void SurfaceContacts::evaluate(const Grains& grains, Strip& strip, int s, double dt, bool losses,
-                               const Loads& loads) {
+void SurfaceContacts::begin(int s, bool losses) {
   FURROW_ASSERT(in_range(s, strips_.size()), s, strips_.size());
   SurfaceStrip& mine = strips_[s];
   mine.next.clear();
   mine.touches.clear();
   if (losses) mine.taken.assign(mine.history.size(), 0);
+}
+
+template <class Law>
+void SurfaceContacts::evaluate(const Grains& grains, const Strip& strip, int s, int from, int to, double dt,
+                               bool losses, const Loads& loads, ContactTotals& sums) {
+  FURROW_ASSERT(in_range(s, strips_.size()), s, strips_.size());
+  FURROW_ASSERT(0 <= from && from <= to && to <= strip.grains(), from, to, strip.grains());
+  SurfaceStrip& mine = strips_[s];
   const bool any_near = std::any_of(surfaces_.begin(), surfaces_.end(),
                                     [&](const Surface& surface) { return near(surface, strip); });
-  if (any_near)
-    for (int g = strip.first; g < strip.last; ++g)
-      for (int k = 0; k < count(); ++k)
-        if (inside(surfaces_[k].near, grains.position[g]))
-          touch<Law>(grains, strip, mine, k, g, dt, losses, loads.from(g - strip.first));
-  if (losses) strip.contact.sample.power.opening += abandoned(grains, mine) / dt;
+  if (!any_near) return;
+  for (int g = strip.first + from; g < strip.first + to; ++g)
+    for (int k = 0; k < count(); ++k)
+      if (inside(surfaces_[k].near, grains.position[g]))
+        touch<Law>(grains, mine, k, g, dt, losses, loads.from(g - strip.first), sums);
+}
+
+void SurfaceContacts::end(const Grains& grains, int s, double dt, bool losses, ContactTotals& sums) {
+  FURROW_ASSERT(in_range(s, strips_.size()), s, strips_.size());
+  SurfaceStrip& mine = strips_[s];
+  if (losses) sums.sample.power.opening += abandoned(grains, mine) / dt;
   mine.history.swap(mine.next);
 }
 
-template void SurfaceContacts::evaluate<MindlinLaw>(const Grains&, Strip&, int, double, bool, const Loads&);
-template void SurfaceContacts::evaluate<HertzTanhLaw>(const Grains&, Strip&, int, double, bool, const Loads&);
+template void SurfaceContacts::evaluate<MindlinLaw>(const Grains&, const Strip&, int, int, int, double, bool,
+                                                    const Loads&, ContactTotals&);
+template void SurfaceContacts::evaluate<HertzTanhLaw>(const Grains&, const Strip&, int, int, int, double,
+                                                      bool, const Loads&, ContactTotals&);
 
 Vec3 SurfaceContacts::add_substep_forces(double kick, double dt) {
   FURROW_ASSERT(kick > 0.0 && dt > 0.0, kick, dt);

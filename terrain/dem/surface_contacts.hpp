@@ -6,6 +6,7 @@
 // a crease splits one point into two; it ends when the grain leaves the surface.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -95,8 +96,14 @@ class SurfaceContacts {
     return surfaces_[k].collider->velocity_at(hit);
   }
 
-  /// Whether a vertex low enough to reach grains stands between these x now, m.
-  bool low_between(double x_min, double x_max) const;
+  /// Calls f(y_min, y_max) for each surface with vertices low enough to reach grains that span some of these x now,
+  /// until one returns true; m.
+  template <class F>
+  bool any_low_between(double x_min, double x_max, const F& f) const {
+    return std::any_of(surfaces_.begin(), surfaces_.end(), [&](const Surface& s) {
+      return s.low_min.x() < x_max && s.low_max.x() > x_min && f(s.low_min.y(), s.low_max.y());
+    });
+  }
 
   void resize(int strips) {
     FURROW_ASSERT(strips >= 0, strips);
@@ -105,10 +112,15 @@ class SurfaceContacts {
   /// Renames grains after a range of strips was sorted.
   void reorder(const Resorted& range, const Strips& strips);
 
-  /// Evaluates the contacts of strip s and adds to the loads (of its grains, in order) and to its sums, to those of its
-  /// losses if they are wanted. Called by one thread per strip.
+  /// Before the parts of strip s are evaluated, in their order. Called by one thread per strip, like these:
+  void begin(int s, bool losses);
+  /// Evaluates the contacts of the grains [from, to) of strip s, counted from its first, and adds to the loads (of the
+  /// strip's grains, in order) and to `sums`, to those of its losses if they are wanted.
   template <class Law>
-  void evaluate(const Grains& grains, Strip& strip, int s, double dt, bool losses, const Loads& loads);
+  void evaluate(const Grains& grains, const Strip& strip, int s, int from, int to, double dt, bool losses,
+                const Loads& loads, ContactTotals& sums);
+  /// Adds to `sums` what contacts that ended held, if losses are wanted.
+  void end(const Grains& grains, int s, double dt, bool losses, ContactTotals& sums);
 
   /// Adds this substep's forces to the vertices, in the order of strips and grains. Returns the impulse that the
   /// grains received, N s. @param kick for which the forces act, s  @param dt by which the substep advances, s
@@ -136,11 +148,12 @@ class SurfaceContacts {
     std::unique_ptr<NodalForceSum> sum;
     ContactMaterial material;
     ContactCoefficients coefficients;
-    double mass_share = 0.0;                   // of surface_scale
-    std::vector<Vec3> start, end;              // m
-    SurfaceBox near;                           // bounds now, grown by the largest radius
-    double fastest = 0.0;                      // vertex in this interval, m/s
-    double low_min = -1e300, low_max = 1e300;  // x of the vertices that may reach grains, m
+    double mass_share = 0.0;       // of surface_scale
+    std::vector<Vec3> start, end;  // m
+    SurfaceBox near;               // bounds now, grown by the largest radius
+    double fastest = 0.0;          // vertex in this interval, m/s
+    // x, y of the vertices that may reach grains, m
+    Eigen::Vector2d low_min = Eigen::Vector2d::Constant(-1e300), low_max = Eigen::Vector2d::Constant(1e300);
     std::vector<SurfaceContactForce> forces;
   };
   static bool inside(const SurfaceBox& box, const Quad& p) {
@@ -152,8 +165,8 @@ class SurfaceContacts {
     return surface.near.lo.x() < strip.x_max + slack && surface.near.hi.x() > strip.x_min - slack;
   }
   template <class Law>
-  void touch(const Grains& grains, Strip& strip, SurfaceStrip& mine, int k, int g, double dt, bool losses,
-             const Loads& load);
+  void touch(const Grains& grains, SurfaceStrip& mine, int k, int g, double dt, bool losses,
+             const Loads& load, ContactTotals& sums);
   ContactCoefficients coefficients(const Surface& surface, double radius) const;
   /// What is left in histories that nobody took over, J.
   double abandoned(const Grains& grains, const SurfaceStrip& mine) const;

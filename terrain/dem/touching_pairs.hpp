@@ -16,7 +16,7 @@
 
 namespace furrow::terrain::dem {
 
-/// The touching pairs of one strip, one array per quantity, padded with copies of the last to whole lanes.
+/// Touching pairs of one strip, one array per quantity, padded with copies of the last to whole lanes.
 template <class Real>
 struct TouchingPairs {
   int count = 0;
@@ -84,27 +84,31 @@ struct TellNobody {
 
 }  // namespace detail
 
-/// Fills `out` with the touching pairs of `strip` and notes which they are; what pairs that parted left in their
-/// history is cleared, after `parts` was called with the number of each. `x` points to the position of the strip's first grain; those of the next strip follow.
+/// Fills `out` with the touching ones of the pairs [from, to) of `strip` and notes which they are; what pairs that
+/// parted left in their history is cleared, after `parts` was called with the number of each. `x` points to the position
+/// of the strip's first grain; those of the next strip follow.
 /// diameter: of all grains, m, unless kSizes; width: of a bin with periodic sides, else 0, m.
 /// @pre the strip's lists are as Strips::size_lists makes them
 template <bool kSizes, class Real, class Parts = detail::TellNobody>
-void find_touching(Strip& strip, const Quad* x, double diameter, double width, TouchingPairs<Real>& out,
-                   const Parts& parts = {}) {
-  FURROW_ASSERT(x != nullptr || strip.pairs == 0, strip.pairs);
+void find_touching(Strip& strip, int from, int to, const Quad* x, double diameter, double width,
+                   TouchingPairs<Real>& out, const Parts& parts = {}) {
+  FURROW_ASSERT(0 <= from && from <= to && to <= strip.pairs, from, to, strip.pairs);
+  FURROW_ASSERT(x != nullptr || from == to, from, to);
   FURROW_ASSERT(kSizes || diameter > 0.0, diameter);
   FURROW_ASSERT(width >= 0.0, width);
   FURROW_ASSERT(strip.i.size() == strip.j.size() && strip.i.size() % kFloatLanes == 0, strip.i.size(),
                 strip.j.size());
   FURROW_ASSERT(in_range(strip.pairs, strip.i.size() + 1), strip.pairs, strip.i.size());
   FURROW_ASSERT(strip.touching.size() * kFloatLanes == strip.i.size(), strip.touching.size(), strip.i.size());
-  out.reserve(strip.pairs);
+  out.reserve(to - from);
   const double diameter2 = diameter * diameter;
   const Double4 partner = {-1.0, -1.0, -1.0, kSizes ? 1.0 : -1.0};  // w: the sum of both radii
   const Int32x8 steps{0, 2, 4, 6, 8, 10, 12, 14};
   PairHistory<Real>& history = strip.history<Real>();
   const double* const at = flat(x);
-  const std::uint32_t *i = strip.i.data(), *j = strip.j.data();
+  const int whole =
+      from / kFloatLanes * kFloatLanes;  // lanes before `from` belong to another part of the strip
+  const std::uint32_t *i = strip.i.data() + whole, *j = strip.j.data() + whole;
   std::uint8_t* const touching = strip.touching.data();
   Real *const dx = out.dx.data(), *const dy = out.dy.data(), *const dz = out.dz.data(),
               *const gap = out.gap.data(), *const sum = out.sum.data();
@@ -117,9 +121,8 @@ void find_touching(Strip& strip, const Quad* x, double diameter, double width, T
         if (!history.rolling.empty()) history.rolling[p + k] = {};
       }
   };
-  const int pairs = strip.pairs;
   int count = 0;
-  for (int p = 0; p < pairs; p += kFloatLanes, i += kFloatLanes, j += kFloatLanes) {
+  for (int p = whole; p < to; p += kFloatLanes, i += kFloatLanes, j += kFloatLanes) {
     const auto d = [&](int k) {
       return load_lanes<Double4>(at + i[k]) + partner * load_lanes<Double4>(at + j[k]);
     };
@@ -135,11 +138,14 @@ void find_touching(Strip& strip, const Quad* x, double diameter, double width, T
     const Double4 gap_a = reach2(a[3]) - (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
     const Double4 gap_b = reach2(b[3]) - (b[0] * b[0] + b[1] * b[1] + b[2] * b[2]);
     unsigned now = positive(gap_a) | positive(gap_b) << 4;
-    if (p + kFloatLanes > pairs) now &= (1u << (pairs - p)) - 1u;
+    unsigned own = (1u << kFloatLanes) - 1u;
+    if (p < from) own &= ~0u << (from - p);
+    if (p + kFloatLanes > to) own &= (1u << (to - p)) - 1u;
+    now &= own;
     const unsigned before = touching[p / kFloatLanes];
-    if (const unsigned ended = before & ~now; ended != 0) [[unlikely]]
+    if (const unsigned ended = before & own & ~now; ended != 0) [[unlikely]]
       parted(p, ended);
-    touching[p / kFloatLanes] = static_cast<std::uint8_t>(now);
+    touching[p / kFloatLanes] = static_cast<std::uint8_t>((before & ~own) | now);
     detail::pack(a[0], b[0], now, dx + count);
     detail::pack(a[1], b[1], now, dy + count);
     detail::pack(a[2], b[2], now, dz + count);

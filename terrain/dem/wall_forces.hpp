@@ -14,13 +14,15 @@ struct SolverCoefficients {
   ContactCoefficients pair, floor, side;
 };
 
-/// Adds the wall forces on a strip's grains to `loads` (which starts at its first grain) and to its sums.
+/// Adds the forces of the strip's wall contacts [from, to) to `loads` (which starts at its first grain) and to `sums`.
 /// radius: that the coefficients are for; without kSizes that of all grains, m. @pre radius > 0, dt > 0
 template <class Law, bool kRolling, bool kSizes>
-void wall_forces(const Grains& grains, Strip& strip, const Bin& bin, double radius,
-                 const SolverCoefficients& all, double dt, Wanted wanted, const Loads& loads) {
+void wall_forces(const Grains& grains, Strip& strip, int from, int to, const Bin& bin, double radius,
+                 const SolverCoefficients& all, double dt, Wanted wanted, const Loads& loads,
+                 ContactTotals& sums) {
   FURROW_ASSERT(radius > 0.0 && dt > 0.0, radius, dt);
-  ContactTotals& sums = strip.contact;
+  FURROW_ASSERT(0 <= from && from <= to && static_cast<std::size_t>(to) <= strip.walls.size(), from, to,
+                strip.walls.size());
   const auto coefficients = [&](const WallContact& contact) {
     ContactCoefficients c = contact.wall == kFloor ? all.floor : all.side;
     if constexpr (kSizes)
@@ -31,7 +33,8 @@ void wall_forces(const Grains& grains, Strip& strip, const Bin& bin, double radi
     const Quad &t = contact.tangential, &r = contact.rolling;
     return held_by_springs(c, {t.x, t.y, t.z}, t.w, {r.x, r.y, r.z});
   };
-  for (WallContact& contact : strip.walls) {
+  for (int n = from; n < to; ++n) {
+    WallContact& contact = strip.walls[n];
     FURROW_ASSERT(in_range(contact.grain, strip.grains()), contact.grain, strip.grains());
     FURROW_ASSERT(in_range(contact.wall, kWalls), contact.wall);
     const int g = strip.first + contact.grain;

@@ -64,7 +64,7 @@ void name_strips(const Archive& bed, Archive& named) {
     Strip s;
     s.first = size[0], s.last = size[1], s.pairs = size[2];
     walls.push_back(size[3]);
-    next(s.travel), next(s.x_min), next(s.x_max), next(s.z_max), next(s.asleep), next(s.calm);
+    next(s.travel), next(s.x_min), next(s.x_max), next(s.z_max), next(s.asleep), next(s.parcels.front().calm);
     next(s.contact.elastic), next(s.contact.max_overlap);
     next(s.contact.wall_force.x), next(s.contact.wall_force.y), next(s.contact.wall_force.z);
     next(s.contact.floor_force), next(s.contact.contacts), next(s.motion.height);

@@ -1,0 +1,106 @@
+// A parcel: a piece of a strip across y, the smallest piece of a bed that sleeps and wakes.
+//
+// The grains of a strip are sorted by columns of cells along y, its pairs by their first grain, its wall contacts by
+// their grain. So a parcel, which is some columns, has its grains, pairs and wall contacts each in one range of the
+// strip's; so have neighbouring parcels together, and what is evaluated of a strip is a few such ranges.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "terrain/dem/accounts/contact_losses.hpp"
+#include "terrain/dem/quad.hpp"
+
+namespace furrow::terrain::dem {
+
+inline constexpr int kParcelColumns = 4;   // of cells across, the fewest of a parcel
+inline constexpr int kFewestParcels = 12;  // of a strip that is cut; it is whole where they would be fewer
+
+/// Into how many parcels a strip of that many columns is cut. A narrower bed is whole: what a wheel stirs is as wide
+/// as it is.
+constexpr int parcels_across(int columns) {
+  const int parcels = columns / kParcelColumns;
+  return parcels < kFewestParcels ? 1 : parcels;
+}
+
+/// Sums over contacts, in the last step that evaluated them.
+struct ContactTotals {
+  double power = 0.0;          // Σ F·v_rel at the step's start, W
+  double elastic = 0.0;        // J
+  double contact_force = 0.0;  // Σ |F|, N, when measured
+  double max_overlap = 0.0;    // m
+  Quad wall_force;             // on the grains, N
+  double floor_force = 0.0;    // N
+  std::int64_t contacts = 0;
+  ContactSample sample;  // when losses are sampled
+};
+
+/// What a step sums besides what every step does.
+struct Wanted {
+  bool forces = false;  // Σ |F| and Σ |net force|
+  bool losses = false;  // by mechanism
+};
+
+/// Sums and extremes over grains after the last step; a speed or force is that of its largest components.
+struct MotionTotals {
+  double net_force = 0.0;  // Σ |contact forces + weight| of grains, N, when measured
+  double kinetic = 0.0;    // J
+  double spin2 = 0.0;      // Σ I ω² / I₀, rad²/s²
+  double height = 0.0;     // Σ z, m
+  Quad velocity;           // Σ v, m/s
+  double step_work = 0.0;  // Σ F·a + T·α: half of it times dt² belongs to the power at mid-step, N²/kg
+  Quad fastest2;           // largest squares of each component of v, m²/s²
+  double max_speed = 0.0;  // the root of their sum, m/s
+  double speed2 = 0.0;     // Σ v², m²/s²
+  double max_net_force = 0.0;  // N, only when grains may sleep
+  Quad held;                   // Σ contact forces + weight, N, only when grains may sleep
+};
+
+void add(ContactTotals& to, const ContactTotals& more);
+void add(MotionTotals& to, const MotionTotals& more);
+
+/// Consecutive grains of a strip with what they list, each range counted from the strip's first.
+struct StripPart {
+  std::int32_t first = 0, last = 0;  // grains
+  std::int32_t pair_first = 0, pair_last = 0;
+  std::int32_t wall_first = 0, wall_last = 0;
+
+  int grains() const { return last - first; }
+};
+
+struct Parcel {
+  StripPart part;
+  bool asleep = false;  // its grains rest and are not stepped, activity.hpp
+  bool stale = false;   // it sleeps, but other grains belong to it than when its sums were taken
+  int calm = 0;         // steps for which it could have slept
+  // Only while it is asleep, or about to be: an awake one is evaluated together with those beside it.
+  ContactTotals contact;
+  double measured_force = 0.0;  // contact.contact_force when last measured, N
+  Stored stored;                // contact.sample.stored when last sampled
+  MotionTotals motion;
+};
+/// What a saved state keeps of a parcel where strips are cut; its part follows from the lists.
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<Parcel> auto& s) {
+  visit(Field{"asleep", ""}, s.asleep);
+  visit(Field{"stale", ""}, s.stale);
+  visit(Field{"calm"}, s.calm);
+  visit(Field{"elastic", "J"}, s.contact.elastic);
+  visit(Field{"max_overlap", "m"}, s.contact.max_overlap);
+  visit(Field{"wall_force", "N"}, s.contact.wall_force);
+  visit(Field{"floor_force", "N"}, s.contact.floor_force);
+  visit(Field{"contacts"}, s.contact.contacts);
+  visit(Field{"measured_force", "N"}, s.measured_force);
+  visit(Field{"stored", ""}, s.stored);
+  visit(Field{"height", "m"}, s.motion.height);
+  visit(Field{"held", "N"}, s.motion.held);
+  visit(Field{"pressed", "N"}, s.motion.max_net_force);
+}
+
+/// Parcels [from, to) as one part. @pre there is one
+inline StripPart joined(const std::vector<Parcel>& parcels, int from, int to) {
+  const StripPart &a = parcels[from].part, &b = parcels[to - 1].part;
+  return {a.first, b.last, a.pair_first, b.pair_last, a.wall_first, b.wall_last};
+}
+
+}  // namespace furrow::terrain::dem

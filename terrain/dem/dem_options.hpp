@@ -12,6 +12,7 @@ namespace furrow::terrain::dem {
 struct DemOptions : TerrainContext {
   std::string scenario = "scenario";  // what messages name: the scenario's file
   bool periodic_x = false;  // grains that leave at one end of the bin come back at the other; no end walls
+  bool piece = false;       // of a tiled bed: its layers go on across its periodic sides, with no gap
   std::string law = "mindlin";  // mindlin | hertz_tanh
   std::string material;         // soil file whose values the other keys hold already; empty: none
   // Bed.
@@ -25,6 +26,7 @@ struct DemOptions : TerrainContext {
   std::string sides = "walls";                // walls | periodic: of the bin, at y = ±width/2
   std::string bed;  // file: a settled bed (HDF5), or positions to settle (CSV x_m,y_m,z_m); empty: generate
   std::string bed_generator = "poisson";  // poisson | lattice: where the grains of a new bed start
+  double tile = 0.0;  // a new bed is put together of settled pieces about this long and wide, m; 0: of one
   double undisturbed_height =
       -1.0;  // of the surface that sinkage counts from, m; negative: the bed's own mean
   double settling_friction = -1.0;   // friction while a new bed falls and is pressed, -; negative: friction
@@ -72,6 +74,7 @@ void visit_fields(Visit&& visit, FieldsOf<DemOptions> auto& s) {
   visit(Field{"length", "m", kBed}, s.length);
   visit(Field{"width", "m", kBed}, s.width);
   visit(Field{"sides", "", kBed}, s.sides);
+  visit(Field{"tile", "m", kBed}, s.tile);
   visit(Field{"normal_stiffness", "N/m^1.5", kBed}, s.normal_stiffness);
   visit(Field{"normal_damping", "N s/m^1.5", kBed}, s.normal_damping);
   visit(Field{"friction_velocity_scale", "s/m", kBed}, s.friction_velocity_scale);

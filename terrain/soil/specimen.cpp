@@ -28,6 +28,7 @@ Specimen::Specimen(const dem::DemOptions& material, const Box& box, std::uint64_
   FURROW_ASSERT(material.radius > 0.0, material.radius);
   const double r = material.radius;
   options_.bed.clear();
+  options_.tile = 0.0;
   options_.cache = false;
   options_.activity = false;  // tools move slowly: what they shear must not fall asleep
   options_.seed = seed;

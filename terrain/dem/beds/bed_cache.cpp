@@ -57,6 +57,7 @@ std::string bed_digest(const DemOptions& o) {
   named.law = law_name(law_from(o.law));  // the law has a former name
   add_fields(hash, named, role::bed);
   add(o.periodic_x);
+  if (o.piece) hash.add("piece of a tiled bed");
   add(o.seed);
   add(settle_step(o));
   // Rougher while they fall: beds kept before that was honoured were made without.

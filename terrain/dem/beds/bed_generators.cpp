@@ -16,6 +16,7 @@
 #include "terrain/dem/beds/bed_csv.hpp"
 #include "terrain/dem/beds/bed_layers.hpp"
 #include "terrain/dem/beds/bed_positions_h5.hpp"
+#include "terrain/dem/beds/bed_tiling.hpp"
 #include "terrain/dem/close_pairs.hpp"
 #include "terrain/dem/grain_sizes.hpp"
 
@@ -36,16 +37,23 @@ struct Lattice {
   double dx = 0.0, dy = 0.0;  // m
 };
 
-/// Fills the bin evenly, leaving room for jitter at the walls and for the shift of every other layer.
-Lattice lattice_of(const Bin& bin, double radius) {
-  const auto along = [&](double size, int& n, double& spacing) {
-    const double room = size - 2.0 * (1.0 + kLatticeJitter) * radius, least = kLatticeSpacing * radius;
+/// Fills the bin evenly, leaving room for jitter at the walls and for the shift of every other layer; `around`: goes on
+/// across periodic sides of the bin.
+Lattice lattice_of(const Bin& bin, double radius, bool around) {
+  const auto along = [&](double size, bool periodic, int& n, double& spacing) {
+    const double least = kLatticeSpacing * radius;
+    if (around && periodic) {
+      n = std::max(1, static_cast<int>(size / least));
+      spacing = size / n;
+      return;
+    }
+    const double room = size - 2.0 * (1.0 + kLatticeJitter) * radius;
     n = std::max(1, static_cast<int>(std::floor(room / least + 0.5)));
     spacing = n > 1 ? room / (n - 0.5) : 0.0;
   };
   Lattice lattice;
-  along(bin.length, lattice.nx, lattice.dx);
-  along(bin.width, lattice.ny, lattice.dy);
+  along(bin.length, bin.periodic_x, lattice.nx, lattice.dx);
+  along(bin.width, bin.periodic_y, lattice.ny, lattice.dy);
   return lattice;
 }
 
@@ -55,7 +63,7 @@ std::vector<Quad> lattice_layers(const DemOptions& o, const ProgressCall& progre
   for (int layer = 0; layer < o.layers; ++layer) {
     tell("placing the grains", static_cast<double>(layer) / o.layers);
     const auto seed = o.seed * 1000003ULL + static_cast<std::uint64_t>(layer);
-    for (Quad p : lattice_layer(bin_of(o), largest_radius(o), seed, layer % 2 == 1)) {
+    for (Quad p : lattice_layer(bin_of(o), largest_radius(o), seed, layer % 2 == 1, o.piece)) {
       p.z = (layer + 0.5) * kSpacing * largest_radius(o);
       all.push_back(p);
     }
@@ -64,16 +72,16 @@ std::vector<Quad> lattice_layers(const DemOptions& o, const ProgressCall& progre
 }
 
 std::vector<Quad> poisson_layers(const DemOptions& o, const ProgressCall& progress) {
-  return bed_layers(bin_of(o), largest_radius(o), o.layers, o.seed, progress);
+  return bed_layers(bin_of(o), largest_radius(o), o.layers, o.seed, progress, o.piece);
 }
 
 double lattice_count(const DemOptions& o) {
-  const Lattice lattice = lattice_of(bin_of(o), largest_radius(o));
+  const Lattice lattice = lattice_of(bin_of(o), largest_radius(o), o.piece);
   return static_cast<double>(o.layers) * lattice.nx * lattice.ny;
 }
 
 double poisson_count(const DemOptions& o) {
-  return o.layers * expected_layer_count(bin_of(o), largest_radius(o));
+  return o.layers * expected_layer_count(bin_of(o), largest_radius(o), o.piece);
 }
 
 struct Generator {
@@ -177,19 +185,22 @@ void check_positions(const DemOptions& o, const std::filesystem::path& file, std
   for_close_pairs(grains, bin, reach, check_pair, progress);
 }
 
-std::vector<Quad> lattice_layer(const Bin& bin, double radius, std::uint64_t seed, bool shifted) {
-  const Lattice lattice = lattice_of(bin, radius);
+std::vector<Quad> lattice_layer(const Bin& bin, double radius, std::uint64_t seed, bool shifted,
+                                bool around) {
+  const Lattice lattice = lattice_of(bin, radius, around);
   std::mt19937_64 bits(seed);
   const auto jitter = [&] {
     return kLatticeJitter * radius * (2.0 * static_cast<double>(bits() >> 11) * 0x1p-53 - 1.0);
   };
-  const double edge = (1.0 + kLatticeJitter) * radius, shift = shifted ? 0.5 : 0.0;
+  const auto edge = [&](bool periodic) { return around && periodic ? 0.0 : (1.0 + kLatticeJitter) * radius; };
+  const double edge_x = edge(bin.periodic_x), edge_y = edge(bin.periodic_y), shift = shifted ? 0.5 : 0.0;
   std::vector<Quad> grains;
   for (int ix = 0; ix < lattice.nx; ++ix)
     for (int iy = 0; iy < lattice.ny; ++iy) {
-      const double x = edge + (ix + shift) * lattice.dx + jitter();
-      const double y = edge + (iy + shift) * lattice.dy + jitter();
+      const double x = edge_x + (ix + shift) * lattice.dx + jitter();
+      const double y = edge_y + (iy + shift) * lattice.dy + jitter();
       grains.push_back({x, y - 0.5 * bin.width, 0.0, 0.0});
+      if (around) bin.wrap(grains.back());
     }
   return grains;
 }
@@ -208,6 +219,7 @@ std::vector<Quad> starting_positions(const DemOptions& options, const ProgressCa
 double expected_grains(const DemOptions& options) {
   if (!options.bed.empty() && is_positions_file(options.bed))
     return static_cast<double>(positions_of(options).size());
+  if (is_tiled(options)) return expected_tiled_grains(options, generator_of(options).count(piece_of(options)));
   return generator_of(options).count(options);
 }
 

@@ -26,54 +26,85 @@ class Uniform {
   std::mt19937_64 bits_;
 };
 
-}  // namespace
+/// One side of the rectangle that samples are drawn in, cut into cells that hold at most one sample each.
+struct Side {
+  double length = 0.0;  // m
+  double cell = 0.0;    // m
+  std::int64_t cells = 0;
+  bool around = false;  // what leaves at one end comes back at the other
 
-std::vector<Quad> poisson_layer(const Bin& bin, double radius, std::uint64_t seed,
-                                const std::function<void()>& each) {
-  FURROW_ASSERT(radius > 0.0 && bin.length > 2.0 * radius && bin.width > 2.0 * radius, radius, bin.length,
-                bin.width);
-  const double spacing = kSpacing * radius;
-  const double length = bin.length - 2.0 * radius, width = bin.width - 2.0 * radius;
-  const double cell = spacing / std::numbers::sqrt2;  // at most one sample per cell
-  const auto nx = static_cast<std::int64_t>(length / cell) + 1,
-             ny = static_cast<std::int64_t>(width / cell) + 1;
-  std::vector<int> grid(static_cast<std::size_t>(nx * ny), -1);
-  std::vector<Quad> samples;
-  std::vector<int> active;
-  Uniform uniform(seed);
+  Side(double length_, double most, bool around_) : length(length_), cell(most), around(around_) {
+    cells = static_cast<std::int64_t>(length / cell) + 1;
+    if (around) cell = length / static_cast<double>(cells);
+  }
+  std::int64_t cell_of(double v) const {
+    return std::clamp<std::int64_t>(static_cast<std::int64_t>(v / cell), 0, cells - 1);
+  }
+  /// First and last cell that may hold a sample nearer than the spacing to one in cell `c`; beyond the ends for a side
+  /// that goes around.
+  std::pair<std::int64_t, std::int64_t> near(std::int64_t c) const {
+    const std::int64_t from = c - 2, to = c + 2;
+    return around ? std::pair(from, to) : std::pair(std::max<std::int64_t>(from, 0), std::min(to, cells - 1));
+  }
+  std::int64_t wrapped(std::int64_t c) const { return around ? (c + cells) % cells : c; }
+  double shortest(double d) const { return around ? d - length * std::round(d / length) : d; }
+  /// Brings a candidate into the rectangle, or says that it is not in it.
+  bool take(double& v) const {
+    if (around) v -= length * std::floor(v / length);
+    return v >= 0.0 && v <= length;
+  }
+};
 
-  const auto cell_of = [&](double v, std::int64_t n) {
-    return std::clamp<std::int64_t>(static_cast<std::int64_t>(v / cell), 0, n - 1);
-  };
-  const auto free = [&](double x, double y) {
-    const std::int64_t cx = cell_of(x, nx), cy = cell_of(y, ny);
-    for (std::int64_t ix = std::max<std::int64_t>(cx - 2, 0); ix <= std::min(cx + 2, nx - 1); ++ix)
-      for (std::int64_t iy = std::max<std::int64_t>(cy - 2, 0); iy <= std::min(cy + 2, ny - 1); ++iy)
-        if (const int s = grid[ix * ny + iy]; s >= 0) {
-          const double dx = samples[s].x - x, dy = samples[s].y - y;
-          if (dx * dx + dy * dy < spacing * spacing) return false;
+/// The samples of one layer and who stands where.
+class Samples {
+ public:
+  Samples(const Side& x, const Side& y, double spacing)
+      : x_(x), y_(y), spacing_(spacing), grid_(static_cast<std::size_t>(x.cells * y.cells), -1) {}
+
+  std::vector<Quad>& points() { return points_; }
+
+  bool free(double x, double y) const {
+    const auto [x_from, x_to] = x_.near(x_.cell_of(x));
+    const auto [y_from, y_to] = y_.near(y_.cell_of(y));
+    for (std::int64_t ix = x_from; ix <= x_to; ++ix)
+      for (std::int64_t iy = y_from; iy <= y_to; ++iy)
+        if (const int s = grid_[x_.wrapped(ix) * y_.cells + y_.wrapped(iy)]; s >= 0) {
+          const double dx = x_.shortest(points_[s].x - x), dy = y_.shortest(points_[s].y - y);
+          if (dx * dx + dy * dy < spacing_ * spacing_) return false;
         }
     return true;
-  };
-  const auto accept = [&](double x, double y) {
-    grid[cell_of(x, nx) * ny + cell_of(y, ny)] = static_cast<int>(samples.size());
-    active.push_back(static_cast<int>(samples.size()));
-    samples.push_back({x, y, 0.0, 0.0});
-  };
+  }
+  void accept(double x, double y) {
+    grid_[x_.cell_of(x) * y_.cells + y_.cell_of(y)] = static_cast<int>(points_.size());
+    points_.push_back({x, y, 0.0, 0.0});
+  }
 
-  const double first_x = length * uniform(), first_y = width * uniform();
-  accept(first_x, first_y);
+ private:
+  Side x_, y_;
+  double spacing_;
+  std::vector<int> grid_;
+  std::vector<Quad> points_;
+};
+
+/// Fills the rectangle [Bridson 2007].
+void sample(const Side& x_side, const Side& y_side, double spacing, std::uint64_t seed, Samples& samples,
+            const std::function<void()>& each) {
+  Uniform uniform(seed);
+  const double first_x = x_side.length * uniform(), first_y = y_side.length * uniform();
+  samples.accept(first_x, first_y);
+  std::vector<int> active{0};
   while (!active.empty()) {
     if (each) each();
     const auto pick = static_cast<std::size_t>(uniform() * static_cast<double>(active.size()));
-    const Quad from = samples[active[pick]];
+    const Quad from = samples.points()[active[pick]];
     bool found = false;
     for (int k = 0; k < kTries && !found; ++k) {
       const double angle = 2.0 * std::numbers::pi * uniform();
       const double distance = spacing * (1.0 + uniform());
-      const double x = from.x + distance * std::cos(angle), y = from.y + distance * std::sin(angle);
-      if (x < 0.0 || x > length || y < 0.0 || y > width || !free(x, y)) continue;
-      accept(x, y);
+      double x = from.x + distance * std::cos(angle), y = from.y + distance * std::sin(angle);
+      if (!x_side.take(x) || !y_side.take(y) || !samples.free(x, y)) continue;
+      active.push_back(static_cast<int>(samples.points().size()));
+      samples.accept(x, y);
       found = true;
     }
     if (!found) {
@@ -81,15 +112,31 @@ std::vector<Quad> poisson_layer(const Bin& bin, double radius, std::uint64_t see
       active.pop_back();
     }
   }
-  for (Quad& s : samples) {
-    s.x += radius;
-    s.y += radius - 0.5 * bin.width;
+}
+
+}  // namespace
+
+std::vector<Quad> poisson_layer(const Bin& bin, double radius, std::uint64_t seed,
+                                const std::function<void()>& each, bool around) {
+  FURROW_ASSERT(radius > 0.0 && bin.length > 2.0 * radius && bin.width > 2.0 * radius, radius, bin.length,
+                bin.width);
+  const double spacing = kSpacing * radius;
+  const double edge_x = around && bin.periodic_x ? 0.0 : radius, edge_y = around && bin.periodic_y ? 0.0 : radius;
+  const double cell = spacing / std::numbers::sqrt2;  // at most one sample per cell
+  const Side x(bin.length - 2.0 * edge_x, cell, around && bin.periodic_x),
+      y(bin.width - 2.0 * edge_y, cell, around && bin.periodic_y);
+  FURROW_ASSERT((!x.around || x.cells >= 5) && (!y.around || y.cells >= 5), x.cells, y.cells);
+  Samples samples(x, y, spacing);
+  sample(x, y, spacing, seed, samples, each);
+  for (Quad& s : samples.points()) {
+    s.x += edge_x;
+    s.y += edge_y - 0.5 * bin.width;
   }
-  return samples;
+  return std::move(samples.points());
 }
 
 std::vector<Quad> bed_layers(const Bin& bin, double radius, int layers, std::uint64_t seed,
-                             const ProgressCall& progress) {
+                             const ProgressCall& progress, bool around) {
   FURROW_ASSERT(layers >= 0, layers);
   std::vector<Quad> all;
   PacedCall tell(progress);
@@ -97,22 +144,25 @@ std::vector<Quad> bed_layers(const Bin& bin, double radius, int layers, std::uin
     const double share = static_cast<double>(layer) / layers;
     tell(kPlacing, share);
     std::size_t samples_made = 0;
-    std::vector<Quad> samples =
-        poisson_layer(bin, radius, seed * 1000003ULL + static_cast<std::uint64_t>(layer), [&] {
-          if (++samples_made % kCheckEvery == 0) tell(kPlacing, share);
-        });
+    const auto each = [&] {
+      if (++samples_made % kCheckEvery == 0) tell(kPlacing, share);
+    };
+    std::vector<Quad> samples = poisson_layer(
+        bin, radius, seed * 1000003ULL + static_cast<std::uint64_t>(layer), each, around);
     for (Quad& s : samples) s.z = (layer + 0.5) * kSpacing * radius;
     all.insert(all.end(), samples.begin(), samples.end());
   }
   return all;
 }
 
-double expected_layer_count(const Bin& bin, double radius) {
+double expected_layer_count(const Bin& bin, double radius, bool around) {
   FURROW_ASSERT(radius > 0.0, radius);
   const double disc = 0.25 * std::numbers::pi * kSpacing * kSpacing * radius * radius;
   // Discs reach half a spacing beyond the samples' domain; half of that rim is gained.
-  const double rim = (0.5 * kSpacing - 2.0) * radius;
-  return kDiskCoverage * (bin.length + rim) * (bin.width + rim) / disc;
+  const auto side = [&](double length, bool periodic) {
+    return around && periodic ? length : length + (0.5 * kSpacing - 2.0) * radius;
+  };
+  return kDiskCoverage * side(bin.length, bin.periodic_x) * side(bin.width, bin.periodic_y) / disc;
 }
 
 }  // namespace furrow::terrain::dem

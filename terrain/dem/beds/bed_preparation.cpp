@@ -10,6 +10,7 @@
 #include "terrain/dem/beds/bed_cache.hpp"
 #include "terrain/dem/beds/bed_compaction.hpp"
 #include "terrain/dem/beds/bed_generators.hpp"
+#include "terrain/dem/beds/bed_tiling.hpp"
 #include "terrain/dem/solver_setup.hpp"
 
 namespace furrow::terrain::dem {
@@ -72,7 +73,32 @@ DemOptions falling(DemOptions o) {
   return o;
 }
 
+/// Progress of a part of the work under a name of its own.
+ProgressCall named(const char* part, const ProgressCall& progress) {
+  if (!progress) return {};
+  return [part, &progress](const std::string& what, double share) { progress(part + what, share); };
+}
+
+/// Copies of a settled piece, joined and settled once more.
+Archive tiled_bed(const DemOptions& options, const ProgressCall& progress, SettleResult& result) {
+  const DemOptions of_piece = piece_of(options);
+  const PreparedBed piece = prepare_bed(of_piece, named("a piece of the bed: ", progress));
+  GrainSolver solver(settling_params(of_piece));
+  restore_bed(solver, piece);
+  const std::vector<Quad> positions = tiled_positions(positions_by_id(solver), options, progress);
+  // Only what is near a joint or a wall has much to move: the rest may sleep meanwhile.
+  SolverParams params = settling_params(options);
+  params.activity = params.law == LawKind::mindlin;
+  solver = GrainSolver(params);
+  solver.place(positions);
+  result = settle(solver, options, named("joints of the bed: ", progress), kMaxSettleTime, kJointDrag);
+  result.time += piece.settled.time;
+  result.steps += piece.settled.steps;
+  return bed_archive(solver, options, result);
+}
+
 Archive made_bed(const DemOptions& options, const ProgressCall& progress, SettleResult& result) {
+  if (is_tiled(options)) return tiled_bed(options, progress, result);
   const DemOptions first = falling(options);
   GrainSolver solver(settling_params(options));
   solver.place(starting_positions(options, progress));
@@ -132,6 +158,7 @@ void restore_bed(GrainSolver& solver, const PreparedBed& prepared) {
 }
 
 void check_bed_options(const DemOptions& o) {
+  check_tiling(o);
   if (!(o.compaction_pressure >= 0.0) || !(o.compaction_pressure <= 1e9))
     throw input_error(o.scenario, "terrain.compaction_pressure",
                       fmt::format("{} is out of range, expected 0 to 1e9 Pa", o.compaction_pressure));

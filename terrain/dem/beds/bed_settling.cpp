@@ -14,12 +14,16 @@ namespace {
 
 constexpr double kStepShareMindlin = 0.8;    // of the stable step
 constexpr double kStepShareHertzTanh = 0.7;  // grains that fall on each other overlap more without history
-constexpr double kFallDrag = 4.0;            // 1/s, while the layers fall
 constexpr double kLyingSpeed = 0.03;         // rms, m/s: a bed that is slower gets the drag of one that lies
 
 DemOptions with_impulse_limit(DemOptions options) {
   options.friction_impulse_limit = true;
   return options;
+}
+
+void wake_all(GrainSolver& solver) {
+  for (int k = 0; k < solver.strips().count(); ++k)
+    if (solver.strips()[k].grains() > 0) solver.wake(solver.strips()[k].first);
 }
 
 }  // namespace
@@ -37,15 +41,17 @@ SolverCoefficients settle_coefficients(const DemOptions& options) {
 }
 
 SettleResult settle(GrainSolver& solver, const DemOptions& options, const ProgressCall& progress,
-                    double most_time) {
-  FURROW_ASSERT(most_time > 0.0, most_time);
+                    double most_time, double drag) {
+  FURROW_ASSERT(most_time > 0.0 && drag >= 0.0, most_time, drag);
   SettleResult result;
   const double dt = settle_step(options);
   const GrainProperties& grain = solver.params().grain;
   const double mass = grain.mass * solver.relative_mass(), weight = -mass * solver.params().gravity.z();
   solver.set_coefficients(settle_coefficients(options));
-  solver.set_drag(kFallDrag);
+  solver.set_drag(drag);
   bool lying = false;
+  bool all_awake = !solver.params().activity;  // at the next check
+  static_assert(kSettleCheckEvery < kCalmSteps, "grains that were woken at a check are awake at the next one");
   double best = 1.0, share = 0.0;
   PacedCall tell(progress);
   const auto most = static_cast<std::int64_t>(most_time / dt);
@@ -64,10 +70,15 @@ SettleResult settle(GrainSolver& solver, const DemOptions& options, const Progre
     // Only a help to a bed of many contacts; one of few comes to rest without it.
     if (!lying && a.contacts > solver.grains().count && speed < kLyingSpeed) {
       lying = true;
-      solver.set_drag(kRestDrag);
+      solver.set_drag(std::max(kRestDrag, drag));
     }
-    result.settled = speed < kRestSpeed && a.kinetic < kRestEnergy * weight * grain.radius &&
-                     result.force_ratio < kSettledForceRatio && result.floor_error < kSettledFloorError;
+    const bool rests = speed < kRestSpeed && a.kinetic < kRestEnergy * weight * grain.radius &&
+                       result.force_ratio < kSettledForceRatio && result.floor_error < kSettledFloorError;
+    result.settled = rests && all_awake;
+    if (solver.params().activity) {
+      all_awake = rests;
+      if (rests) wake_all(solver);
+    }
     best = std::min(best, std::max(result.force_ratio, result.floor_error));
     const double decades = std::log10(1.0 / std::max(best, kSettledForceRatio)) / 3.0;
     share = std::clamp(std::max(decades, dt * result.steps / most_time), 0.0, 1.0);

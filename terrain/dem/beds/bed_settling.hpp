@@ -32,15 +32,18 @@ double settle_step(const DemOptions& options);
 SolverCoefficients settle_coefficients(const DemOptions& options);
 
 inline constexpr double kMaxSettleTime = 4.0;  // s
+inline constexpr double kFallDrag = 4.0;       // 1/s, while layers fall
+inline constexpr double kJointDrag = 60.0;     // 1/s, where the grains lie but for gaps of a grain or two
 inline constexpr double kRestDrag =
     20.0;  // 1/s, once the grains lie; those on top must still roll to their places
 inline constexpr double kRestSpeed = 0.002;   // rms, m/s: slower counts as at rest
 inline constexpr double kRestEnergy = 1e-3;   // kinetic, of m g r: less counts as at rest
 inline constexpr int kSettleCheckEvery = 40;  // steps
 
-/// Runs the solver until the bed is settled or `most` seconds have passed. May throw what `progress` throws.
+/// Runs the solver until the bed is settled, all grains awake, or `most` seconds have passed. May throw what `progress` throws.
+/// @param drag of the beginning; that of grains which lie is at least kRestDrag
 /// @throws Error(physics) when a grain is lost.
 SettleResult settle(GrainSolver& solver, const DemOptions& options, const ProgressCall& progress,
-                    double most = kMaxSettleTime);
+                    double most = kMaxSettleTime, double drag = kFallDrag);
 
 }  // namespace furrow::terrain::dem

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Plots of a run, of soil tests, of a pressed tire or of a study: PNG files in the run directory; their names, without the folder, as a JSON list on stdout.
+"""Plots of a run, of soil tests, of a pressed tire, of a vehicle's suspensions or of a study: PNG files in the run directory; their names, without the folder, as a JSON list on stdout.
 
 usage: report.py DIR [--out FOLDER] [--only NAME]...
 
@@ -19,7 +19,7 @@ matplotlib.use("Agg")
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-from plot import accounts, charts, ground, press, scene, soil, sweep  # noqa: E402
+from plot import accounts, charts, ground, kinematics, press, scene, soil, sweep  # noqa: E402
 from plot.digits import with_error  # noqa: E402
 from plot.run_data import Damaged, Missing, Run, printable  # noqa: E402
 
@@ -35,6 +35,7 @@ PLOTS = {
 SWEEP_PLOTS = {"curve": sweep.curve, "passes": sweep.passes, "rut_along": sweep.rut_along}
 BEDS_PLOTS = {"beds": sweep.beds}
 SOIL_PLOTS = {"plate": soil.plate, "shear": soil.shear, "cone": soil.cone, "repose": soil.repose}
+KINEMATICS_PLOTS = {"parallel": kinematics.parallel, "opposite": kinematics.opposite, "steering": kinematics.steering}
 PRESS_PLOTS = {"load_deflection": press.load_deflection, "footprint": press.footprint}
 
 
@@ -80,14 +81,16 @@ def main():
     parser = argparse.ArgumentParser(description="Plots of a run as PNG files.")
     parser.add_argument("directory", type=pathlib.Path)
     parser.add_argument("--out", type=pathlib.Path, help="folder for the plots (default: the run directory)")
-    parser.add_argument("--only", action="append", choices=PLOTS | SOIL_PLOTS | PRESS_PLOTS | SWEEP_PLOTS | BEDS_PLOTS, help="this plot only; may be repeated")
+    parser.add_argument("--only", action="append", choices=PLOTS | SOIL_PLOTS | PRESS_PLOTS | KINEMATICS_PLOTS | SWEEP_PLOTS | BEDS_PLOTS, help="this plot only; may be repeated")
     arguments = parser.parse_args()
     out = arguments.out or arguments.directory
     try:
         of_soil = (arguments.directory / "soil.json").is_file()
         of_sweep = (arguments.directory / "sweep.json").is_file()
         of_press = (arguments.directory / "press.csv").is_file()
-        of = soil.Soil if of_soil else sweep.Sweep if of_sweep else press.Press if of_press else Run
+        of_kinematics = (arguments.directory / "kinematics.csv").is_file()
+        of = (soil.Soil if of_soil else sweep.Sweep if of_sweep else press.Press if of_press
+              else kinematics.Kinematics if of_kinematics else Run)
         run = of(arguments.directory)
         out.mkdir(parents=True, exist_ok=True)
     except (OSError, ValueError) as error:
@@ -98,7 +101,8 @@ def main():
         return 5
     written = []
     of_beds = of_sweep and run.values.get("beds")
-    plots = SOIL_PLOTS if of_soil else BEDS_PLOTS if of_beds else SWEEP_PLOTS if of_sweep else PRESS_PLOTS if of_press else PLOTS
+    plots = (SOIL_PLOTS if of_soil else BEDS_PLOTS if of_beds else SWEEP_PLOTS if of_sweep else PRESS_PLOTS if of_press
+             else KINEMATICS_PLOTS if of_kinematics else PLOTS)
     for name in arguments.only or plots:
         try:
             figure = plots[name](run)
@@ -125,7 +129,7 @@ def main():
             return 5
         matplotlib.pyplot.close(figure)
         written.append(f"{name}.png")
-    if not (of_soil or of_sweep or of_press):
+    if not (of_soil or of_sweep or of_press or of_kinematics):
         try:
             words(run)
         except Damaged as error:

@@ -53,7 +53,7 @@ PressResults press_tire(const TireFile& file, const PressOptions& options, const
   results.pressure = file.pressure;
   results.mass = rigid_mass(mesh, element_masses(file, mesh));
   results.inflation_growth = solver.start_radius() - file.radius;
-  const int total = 2 * options.points;
+  const int total = (options.unload ? 2 : 1) * options.points;
   double share = 0.0;
   const auto press = [&](double deflection) {
     try {
@@ -68,7 +68,7 @@ PressResults press_tire(const TireFile& file, const PressOptions& options, const
   };
   const auto at = [&](int k) {
     share = static_cast<double>(k) / total;
-    const int step = k <= options.points ? k : total - k;
+    const int step = k <= options.points ? k : 2 * options.points - k;
     return press(options.deflection * step / options.points);
   };
   results.loading.push_back(at(0));

@@ -16,6 +16,7 @@ struct PressOptions {
   double deflection = 0.02;  // largest, m
   int points = 10;           // of the curve up to it
   double load = 4561.65;     // of the footprint, N: 465 kg
+  bool unload = true;        // the curve also back to zero
 };
 
 struct PressResults {

@@ -22,6 +22,7 @@
 #include "nodes/scenario/memory_check.hpp"
 #include "nodes/scenario/rank_table.hpp"
 #include "nodes/scenario/validate.hpp"
+#include "nodes/scenario/vehicle_tires.hpp"
 #include "protocol/files/nearest_words.hpp"
 #include "protocol/files/printable.hpp"
 #include "protocol/mpi_transport.hpp"
@@ -156,6 +157,12 @@ scenario::Scenario load(Typed& typed) {
 }
 
 ExitCode validate_command(Typed& typed) {
+  if (scenario::is_vehicle(typed.scenario)) {
+    if (!settings_of(typed).empty())
+      throw input_error("command line", typed.threads.empty() ? "--set" : "--threads",
+                        "is given with the file of a vehicle, expected a scenario");
+    return validate_vehicle(typed.scenario, typed.json);
+  }
   const scenario::Scenario scenario = load(typed);
   std::cout << (typed.json ? scenario::validation_report(scenario).dump(2) + "\n"
                            : scenario::validation_text(scenario));
@@ -272,6 +279,7 @@ class CommandLine {
     add_runs();
     add_questions();
     add_virtual_tests();
+    add_vehicles();
     add_studies();
     add_benches();
   }
@@ -307,6 +315,7 @@ class CommandLine {
   void add_runs();
   void add_questions();
   void add_virtual_tests();
+  void add_vehicles();
   void add_studies();
   void add_benches();
 
@@ -317,6 +326,7 @@ class CommandLine {
   Typed typed_;
   SoilArguments soil_;
   PressArguments press_;
+  KinematicsArguments kinematics_;
   SweepArguments sweep_;
   GrainBench grains_;
   TireBench tire_;
@@ -350,9 +360,12 @@ void CommandLine::add_runs() {
 }
 
 void CommandLine::add_questions() {
-  CLI::App& validate = add("validate", "check a scenario and estimate what a run of it will need",
+  CLI::App& validate = add("validate",
+                           "check a scenario and estimate what a run of it will need, or check a vehicle and "
+                           "tell how it stands",
                            [this] { return validate_command(typed_); });
   add_scenario(validate, typed_);
+  validate.get_option("SCENARIO")->description("scenario file, or vehicle file (JSON)");
   validate.add_flag("--json", typed_.json, "print JSON");
 
   add_scenario(add("ranks", "list which MPI rank does what, and how to start the ranks by hand",
@@ -383,6 +396,28 @@ void CommandLine::add_virtual_tests() {
                         [this] { return press_command(load(typed_), press_); });
   add_scenario(press, typed_);
   add_press_options(press, press_);
+}
+
+void CommandLine::add_vehicles() {
+  CLI::App& kc = add("kc",
+                     "move the suspensions of a vehicle: camber, toe, roll centre, rates and more against travel and "
+                     "steering; prints the folder",
+                     [this] {
+                       kinematics_.plots = !typed_.no_plots;
+                       return kinematics_command(kinematics_);
+                     });
+  kc.add_option("VEHICLE", kinematics_.vehicle, "vehicle file (JSON), as given or in vehicle/data/")->required();
+  CLI::Option* out = kc.add_option("--out", kinematics_.out,
+                                   "new folder for the results (default: results/<vehicle>-kc-NNN here)");
+  kc.add_flag("--overwrite", kinematics_.overwrite, "let --out replace the results of an earlier run");
+  kc.add_option("--travel", kinematics_.travel,
+                "travel of the wheels up and down, m (default: a fifth of the smallest tire's radius)");
+  kc.add_option("--points", kinematics_.points, "points of each motion")->capture_default_str();
+  kc.add_flag("--no-plots", typed_.no_plots, "make no plots; 'furrow report' makes them later");
+  CLI::Option* csv = kc.add_flag("--csv", kinematics_.csv, "print the table and make no folder")->excludes(out);
+  kc.add_flag("--json", kinematics_.json, "print table and figures as JSON and make no folder")
+      ->excludes(out)
+      ->excludes(csv);
 }
 
 void CommandLine::add_studies() {

@@ -87,6 +87,21 @@ struct PressArguments {
 /// `furrow press` (commands_press.cpp). @throws Error
 ExitCode press_command(const scenario::Scenario& scenario, const PressArguments& arguments);
 
+struct KinematicsArguments {
+  std::string vehicle;
+  std::filesystem::path out;  // empty: a fresh folder under results/
+  bool overwrite = false;
+  bool plots = true;
+  bool csv = false, json = false;  // printed, in place of a folder
+  double travel = 0.0;             // up and down, m; 0: a fifth of the smallest tire's radius
+  int points = 21;                 // of each motion
+};
+
+/// `furrow kc` (vehicle.cpp). @throws Error
+ExitCode kinematics_command(const KinematicsArguments& arguments);
+/// `furrow validate` of a vehicle's file (vehicle.cpp). @throws Error
+ExitCode validate_vehicle(const std::string& name, bool json);
+
 /// `furrow bed` (commands_bed.cpp). @throws Error
 ExitCode bed_command(const scenario::Scenario& scenario);
 

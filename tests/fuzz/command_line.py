@@ -31,16 +31,16 @@ SMALL = {
     "terrain": {"radius": 0.03, "cohesion": 80e3, "layers": 2, "length": 1.4, "width": 0.4},
     "run": {"step": 1e-4, "end": 0.02, "average_from": 0},
 }
-COMMANDS = ["run", "resume", "validate", "ranks", "explain", "bed", "soil", "press", "sweep", "report", "bench", "bench grains",
+COMMANDS = ["run", "resume", "validate", "ranks", "explain", "bed", "soil", "press", "kc", "sweep", "report", "bench", "bench grains",
             "bench tire", "help", "rnu", "", "--", "-", "RUN", "validate validate"]
 # Those that compute get rarely what they need to begin.
-WEIGHTS = [4, 4, 10, 4, 6, 1, 1, 1, 3, 4, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1]
+WEIGHTS = [4, 4, 10, 4, 6, 1, 1, 1, 2, 3, 4, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1]
 FLAGS = ["--set", "--threads", "--out", "--overwrite", "--profile", "--no-plots", "--json", "--until", "--seeds", "--speed", "--only",
-         "--quick", "--on", "--deflection", "--points", "--load", "--cleat-height", "--cleat-width", "--jobs", "--soil", "--bed",
+         "--quick", "--on", "--deflection", "--points", "--load", "--cleat-height", "--cleat-width", "--jobs", "--travel", "--csv", "--soil", "--bed",
          "--law", "--precision", "--cohesion", "--steps", "--warm", "--settle", "--save-bed", "--step", "--tire", "--pressure",
          "--tolerance", "--renewal", "--elements-width", "--help", "-h", "--version", "--fast", "-x", "--set=", "--out="]
 FILES = ["small.json", "study.json", "tire.json", "soil.json", "deep.json", "empty.json", "list.json", "binary.json", "folder", "run",
-         "bed.csv", "bed.h5", "nowhere.json", "first_look.json", "study_slip.json", "hmmwv_layered.json", "/dev/null", "/proc/self/mem", "/",
+         "bed.csv", "bed.h5", "nowhere.json", "first_look.json", "study_slip.json", "hmmwv_layered.json", "rover.json", "car.json", "/dev/null", "/proc/self/mem", "/",
          ".", "..", "", " ", "a" * 300, "a" * 5000, "folder/", "run/summary.json", "-", "--", "$(touch pwn)", "~"]
 ODD = ["0", "1", "-1", "1e400", "-1e400", "nan", "inf", "1e-320", "0x10", "1e9", "4e-5", "0.3", "true", "null", "[]", "{}", "[[0, 1]]",
        "[1, 2, 3]", "\"\"", "'x'", "x", "", " ", "[" * 70, "{\"a\": {\"a\": 1}}", "9" * 400, "1,5", "ü", "🚙", "plate", "cleat", "auto", "mindlin",
@@ -63,6 +63,7 @@ def make_files(folder):
     (folder / "study.json").write_text(json.dumps({"scenario": "small.json", "grid": {"rig.slip": [0.1, 0.2]}}))
     (folder / "tire.json").write_text((ROOT / "tire" / "data" / "toroidal.json").read_text())
     (folder / "soil.json").write_text((ROOT / "terrain" / "data" / "loose_sand.json").read_text())
+    (folder / "car.json").write_text((ROOT / "vehicle" / "data" / "rover.json").read_text().replace('"Rover"', "3"))
     (folder / "deep.json").write_text("[" * 100000)
     (folder / "empty.json").write_text("")
     (folder / "list.json").write_text("[1, 2]")

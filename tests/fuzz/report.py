@@ -47,6 +47,7 @@ SOIL = {"format_version": 1, "scenario": "small", "quick": True, "grains": {"rad
         "k_phi": 1.0, "cohesion_Pa": 1.0, "friction_angle_deg": 30.0, "janosi_K_m": 0.01, "standard_error": {"n": 0.1}}
 PRESS = {"scenario": "small", "tire": "x", "obstacle": "plate", "deflection_m": 0.01, "load_N": 1e3, "secant_stiffness_N_per_m": 1e5,
          "footprint": {"force_N": 1e3, "length_m": 0.1, "width_m": 0.1, "mean_pressure_Pa": 1e5}}
+KINEMATICS = {"vehicle": "car", "at_rest": {"wheels": [{"name": "front left", "travel_m": 0.01}]}}
 
 
 def places(value, path=()):
@@ -142,12 +143,21 @@ def make_press(chance, folder):
     (folder / "footprint.csv").write_text(csv(chance, ["x_m", "y_m", "pressure_Pa"]))
 
 
+def make_kinematics(chance, folder):
+    (folder / "summary.json").write_text(json.dumps(changed(chance, KINEMATICS)))
+    columns = ["steering", "travel_m", "camber_rad", "toe_rad", "steer_rad", "roll_center_m", "wheel_rate_N_per_m"]
+    lines = csv(chance, columns).splitlines()
+    names = ["motion,wheel"] + [f"{chance.choice(['parallel', 'opposite', 'steering'])},front {chance.choice(['left', 'right'])}"
+                                for _ in lines[1:]]
+    (folder / "kinematics.csv").write_text("".join(f"{name},{line}\n" for name, line in zip(names, lines)))
+
+
 def run_case(seed, k):
     """(exit code, stderr); raises whatever report does not catch."""
     chance = random.Random(f"{seed}:{k}")
     with tempfile.TemporaryDirectory(prefix="furrow report ") as name:
         folder = pathlib.Path(name)
-        chance.choices([make_run, make_soil, make_press], [8, 1, 1])[0](chance, folder)
+        chance.choices([make_run, make_soil, make_press, make_kinematics], [8, 1, 1, 1])[0](chance, folder)
         if chance.random() < 0.05:
             victim = chance.choice([path for path in folder.rglob("*") if path.is_file()])
             victim.write_bytes(victim.read_bytes()[:chance.randrange(2000)])

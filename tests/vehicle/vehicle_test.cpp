@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tests/vehicle/shipped.hpp"
+#include "tests/vehicle/verification/simple_ground.hpp"
 #include "vehicle/driveline/gearbox.hpp"
 
 using namespace furrow;
@@ -153,6 +154,24 @@ TEST(Vehicle, moments_of_the_whole_vehicle_about_the_ground_balance_at_every_ste
     EXPECT_GT(scale, 1e3);
     EXPECT_LT(worst, 1e-10 * scale) << name;  // N m
   }
+}
+
+// Without driveline nothing moves once it has swayed: round-off is then that of the loads, no longer that of speeds.
+TEST(Vehicle, braked_on_a_slope_it_comes_to_rest_and_goes_on) {
+  vehicle::VehicleSpec spec = shipped("hmmwv.json");
+  spec.driveline = {};
+  Vehicle car(spec, gravity_on_slope(0.2));
+  std::vector<GroundContact> contacts(car.wheel_count());
+  put_on_ground(car, contacts.front());
+  VehicleInputs inputs;
+  inputs.brake = 1.0;
+  car.set_inputs(inputs);
+  for (int i = 0; i < 7000; ++i) {
+    for (int k = 0; k < car.wheel_count(); ++k) car.set_wrench(k, contacts[k].stick(car.rim(k), 1e-3));
+    const Outcome outcome = car.step(1e-3);
+    ASSERT_TRUE(outcome.ok) << outcome.message("HMMWV") << " at step " << i;
+  }
+  EXPECT_LT(car.system().body(car.chassis()).state.velocity.norm(), 1e-7);
 }
 
 TEST(Vehicle, a_slipping_brake_takes_its_torque_from_the_spindle) {

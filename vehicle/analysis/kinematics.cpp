@@ -8,6 +8,7 @@
 
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
+#include "protocol/files/figures_json.hpp"
 #include "vehicle/analysis/held_vehicle.hpp"
 #include "vehicle/analysis/wheel_angles.hpp"
 
@@ -265,9 +266,7 @@ std::string kinematics_csv(std::span<const KinematicsRow> rows) {
   const KinematicsRow head;
   visit_fields(
       [&](const Field& field, const auto&) {
-        std::string unit = field.unit;
-        std::replace(unit.begin(), unit.end(), '/', '_');
-        text += separator + field.name + (unit.empty() || unit == "-" ? "" : "_" + unit);
+        text += separator + name_with_unit(field);
         separator = ",";
       },
       head);

@@ -8,14 +8,12 @@
 #include <vector>
 
 #include "protocol/core/fields.hpp"
+#include "vehicle/spec/spec_roles.hpp"
 
 namespace furrow::vehicle {
 
 /// Points of the plane (m, m), or of a function of time (s, value), which stays what it is at its ends beyond them.
 using DriverPoints = std::vector<std::pair<double, double>>;
-
-/// A key that may not be missing.
-inline constexpr unsigned kRequired = 1U << 16U;
 
 /// Functions of time; one that is empty was not given. Between points pedals and steering are straight lines, and the
 /// gear stays.
@@ -26,10 +24,10 @@ struct InputSpec {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<InputSpec> auto& s) {
-  visit(Field{"throttle", "-", role::key}, s.throttle);
-  visit(Field{"brake", "-", role::key}, s.brake);
-  visit(Field{"steering", "-", role::key}, s.steering);
-  visit(Field{"gear", "-", role::key}, s.gear);
+  visit(Field{"throttle", "-", role::key | kReadApart}, s.throttle);
+  visit(Field{"brake", "-", role::key | kReadApart}, s.brake);
+  visit(Field{"steering", "-", role::key | kReadApart}, s.steering);
+  visit(Field{"gear", "-", role::key | kReadApart}, s.gear);
 }
 
 /// speed_control.hpp
@@ -42,11 +40,11 @@ struct SpeedSpec {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<SpeedSpec> auto& s) {
-  visit(Field{"target", "m/s", role::key | kRequired}, s.target);
-  visit(Field{"proportional", "s/m", role::key}, s.proportional);
-  visit(Field{"integral", "1/m", role::key}, s.integral);
-  visit(Field{"hysteresis", "-", role::key}, s.hysteresis);
-  visit(Field{"stop_speed", "m/s", role::key}, s.stop_speed);
+  visit(Field{"target", "m/s", role::key | kReadApart}, s.target);
+  visit(Field{"proportional", "s/m", role::key | kMayMiss}, s.proportional);
+  visit(Field{"integral", "1/m", role::key | kMayMiss}, s.integral);
+  visit(Field{"hysteresis", "-", role::key | kMayMiss}, s.hysteresis);
+  visit(Field{"stop_speed", "m/s", role::key | kMayMiss}, s.stop_speed);
 }
 
 // Shapes of paths (path_shapes.hpp), each from its own origin along its own x axis.
@@ -57,7 +55,7 @@ struct StraightPath {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<StraightPath> auto& s) {
-  visit(Field{"length", "m", role::key | kRequired}, s.length);
+  visit(Field{"length", "m", role::key}, s.length);
 }
 
 struct CirclePath {
@@ -69,10 +67,10 @@ struct CirclePath {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<CirclePath> auto& s) {
-  visit(Field{"lead_in", "m", role::key}, s.lead_in);
-  visit(Field{"radius", "m", role::key | kRequired}, s.radius);
-  visit(Field{"angle_deg", "deg", role::key}, s.angle_deg);
-  visit(Field{"turn", "", role::key}, s.turn);
+  visit(Field{"lead_in", "m", role::key | kMayMiss}, s.lead_in);
+  visit(Field{"radius", "m", role::key}, s.radius);
+  visit(Field{"angle_deg", "deg", role::key | kMayMiss}, s.angle_deg);
+  visit(Field{"turn", "", role::key | kMayMiss}, s.turn);
 }
 
 struct LaneChangePath {
@@ -82,9 +80,9 @@ struct LaneChangePath {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<LaneChangePath> auto& s) {
-  visit(Field{"track", "", role::key}, s.track);
-  visit(Field{"lead_in", "m", role::key}, s.lead_in);
-  visit(Field{"lead_out", "m", role::key}, s.lead_out);
+  visit(Field{"track", "", role::key | kMayMiss}, s.track);
+  visit(Field{"lead_in", "m", role::key | kMayMiss}, s.lead_in);
+  visit(Field{"lead_out", "m", role::key | kMayMiss}, s.lead_out);
 }
 
 struct WaypointPath {
@@ -93,7 +91,7 @@ struct WaypointPath {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<WaypointPath> auto& s) {
-  visit(Field{"points", "m", role::key | kRequired}, s.points);
+  visit(Field{"points", "m", role::key | kReadApart}, s.points);
 }
 
 // Laws that steer (path_follower.hpp).
@@ -105,8 +103,8 @@ struct PurePursuit {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<PurePursuit> auto& s) {
-  visit(Field{"lookahead_time", "s", role::key}, s.lookahead_time);
-  visit(Field{"lookahead_distance", "m", role::key}, s.lookahead_distance);
+  visit(Field{"lookahead_time", "s", role::key | kMayMiss}, s.lookahead_time);
+  visit(Field{"lookahead_distance", "m", role::key | kMayMiss}, s.lookahead_distance);
 }
 
 struct Stanley {
@@ -116,19 +114,19 @@ struct Stanley {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<Stanley> auto& s) {
-  visit(Field{"gain", "1/s", role::key}, s.gain);
-  visit(Field{"soft_speed", "m/s", role::key}, s.soft_speed);
+  visit(Field{"gain", "1/s", role::key | kMayMiss}, s.gain);
+  visit(Field{"soft_speed", "m/s", role::key | kMayMiss}, s.soft_speed);
 }
 
 using SteeringLaw = std::variant<PurePursuit, Stanley>;
 
-struct SteeringSpec {
+struct PathSteeringSpec {
   SteeringLaw law;
   double rate = 1.0;  // largest, of steering, 1/s
 };
 template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<SteeringSpec> auto& s) {
-  visit(Field{"rate", "1/s", role::key}, s.rate);
+void visit_fields(Visit&& visit, FieldsOf<PathSteeringSpec> auto& s) {
+  visit(Field{"rate", "1/s", role::key | kMayMiss}, s.rate);
 }
 
 using PathShape = std::variant<StraightPath, CirclePath, LaneChangePath, WaypointPath>;
@@ -137,14 +135,14 @@ struct PathSpec {
   PathShape shape;
   double x = 0.0, y = 0.0;   // the path's origin, W, m
   double heading_deg = 0.0;  // of its x axis
-  SteeringSpec steering;
+  PathSteeringSpec steering;
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<PathSpec> auto& s) {
-  visit(Field{"x", "m", role::key}, s.x);
-  visit(Field{"y", "m", role::key}, s.y);
-  visit(Field{"heading_deg", "deg", role::key}, s.heading_deg);
-  visit(Field{"steering", "", role::key}, s.steering);
+  visit(Field{"x", "m", role::key | kMayMiss}, s.x);
+  visit(Field{"y", "m", role::key | kMayMiss}, s.y);
+  visit(Field{"heading_deg", "deg", role::key | kMayMiss}, s.heading_deg);
+  visit(Field{"steering", "", role::key | kReadApart}, s.steering);
 }
 
 struct DriverSpec {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <type_traits>
 
@@ -11,10 +10,11 @@
 
 #include "protocol/files/data_files.hpp"
 #include "protocol/files/json_text.hpp"
-#include "protocol/files/nearest_words.hpp"
 #include "vehicle/driver/driver.hpp"
 #include "vehicle/driver/lane_change.hpp"
 #include "vehicle/driver/read_points.hpp"
+#include "vehicle/spec/spec_reader.hpp"
+#include "vehicle/spec/value_rules.hpp"
 
 namespace furrow::vehicle {
 namespace {
@@ -24,7 +24,6 @@ constexpr double kMostLength = 1e6;      // of paths, m
 constexpr double kMostAngle = 36000.0;   // of a circle, degrees
 constexpr double kLeastSpacing = 1e-3;   // of waypoints, m
 constexpr double kSharpestTurn = 120.0;  // at a waypoint, degrees
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 constexpr PointRule kThrottle{"time_s", "throttle", 0.0, 1.0, "a number from 0 to 1"};
 constexpr PointRule kBrake{"time_s", "brake", 0.0, 1.0, "a number from 0 to 1"};
@@ -40,60 +39,23 @@ constexpr PointRule kGear{"time_s",
 constexpr PointRule kSpeed{"time_s", "speed_m_s", 0.0, 100.0, "a speed from 0 to 100"};
 constexpr PointRule kWaypoint{"x_m", "y_m", -kMostLength, kMostLength, "at most 1e6"};
 
-void expect(bool ok, const JsonReader& reader, const std::string& key, double value,
-            const std::string& expected) {
-  if (!ok) reader.fail(key, "is " + number_text(value) + ", expected " + expected);
+// Keys of each section: what they may be, and what is read apart.
+
+void finish(StraightPath& shape, JsonReader& reader) {
+  check_positive(reader, "length", shape.length, kMostLength);
 }
-
-void in_range_of(const JsonReader& reader, const std::string& key, double value, double least, double most) {
-  expect(value >= least && value <= most, reader, key, value,
-         std::isinf(most) ? fmt::format("a number of {} or above", number_text(least))
-                          : fmt::format("a number from {} to {}", number_text(least), number_text(most)));
-}
-
-void above_zero(const JsonReader& reader, const std::string& key, double value, double most = kMostLength) {
-  expect(value > 0.0 && value <= most, reader, key, value,
-         "a number above zero and at most " + number_text(most));
-}
-
-void known_text(const JsonReader& reader, const std::string& key, const std::string& text,
-                const std::vector<std::string>& known) {
-  if (std::find(known.begin(), known.end(), text) == known.end())
-    reader.fail(key, "'" + text + "' " + unknown_text(nearest_words(text, known), known));
-}
-
-/// Takes the numbers and texts of T; those that are missing and may be keep their values. Other fields are marked as
-/// read and left to the caller.
-template <HasFields T>
-void take_keys(JsonReader& reader, T& target) {
-  visit_fields(
-      [&](const Field& field, auto& value) {
-        using Value = std::remove_cvref_t<decltype(value)>;
-        reader.skip(field.name);
-        if (!reader.given(field.name) && !field.is(kRequired)) return;
-        if constexpr (std::is_same_v<Value, double>)
-          value = reader.number(field.name);
-        else if constexpr (std::is_same_v<Value, std::string>)
-          value = reader.text(field.name);
-      },
-      target);
-}
-
-// Keys of each section: what they may be, and what is read by other means.
-
-void finish(StraightPath& shape, JsonReader& reader) { above_zero(reader, "length", shape.length); }
 
 void finish(CirclePath& shape, JsonReader& reader) {
-  above_zero(reader, "radius", shape.radius);
-  above_zero(reader, "angle_deg", shape.angle_deg, kMostAngle);
-  in_range_of(reader, "lead_in", shape.lead_in, 0.0, kMostLength);
-  known_text(reader, "turn", shape.turn, {"left", "right"});
+  check_positive(reader, "radius", shape.radius, kMostLength);
+  check_positive(reader, "angle_deg", shape.angle_deg, kMostAngle);
+  check_within(reader, "lead_in", shape.lead_in, 0.0, kMostLength);
+  check_known(reader, "turn", shape.turn, {"left", "right"});
 }
 
 void finish(LaneChangePath& shape, JsonReader& reader) {
-  known_text(reader, "track", shape.track, lane_change_names());
-  in_range_of(reader, "lead_in", shape.lead_in, 0.0, kMostLength);
-  in_range_of(reader, "lead_out", shape.lead_out, 0.0, kMostLength);
+  check_known(reader, "track", shape.track, lane_change_names());
+  check_within(reader, "lead_in", shape.lead_in, 0.0, kMostLength);
+  check_within(reader, "lead_out", shape.lead_out, 0.0, kMostLength);
 }
 
 void finish(WaypointPath& shape, JsonReader& reader) {
@@ -119,13 +81,14 @@ void finish(WaypointPath& shape, JsonReader& reader) {
 }
 
 void finish(PurePursuit& law, JsonReader& reader) {
-  in_range_of(reader, "lookahead_time", law.lookahead_time, 0.0, 100.0);
-  if (reader.given("lookahead_distance")) above_zero(reader, "lookahead_distance", law.lookahead_distance);
+  check_within(reader, "lookahead_time", law.lookahead_time, 0.0, 100.0);
+  if (reader.given("lookahead_distance"))
+    check_positive(reader, "lookahead_distance", law.lookahead_distance, kMostLength);
 }
 
 void finish(Stanley& law, JsonReader& reader) {
-  above_zero(reader, "gain", law.gain, 1e3);
-  above_zero(reader, "soft_speed", law.soft_speed, 100.0);
+  check_positive(reader, "gain", law.gain, 1e3);
+  check_positive(reader, "soft_speed", law.soft_speed, 100.0);
 }
 
 /// One of several structs: the one whose kName is the text under `key`, the first of them when there is none and it may
@@ -136,11 +99,11 @@ std::variant<Choices...> read_choice(JsonReader& reader, const std::string& key,
   const std::vector<std::string> names = {Choices::kName...};
   const std::string name = required || reader.given(key) ? reader.text(key) : names.front();
   reader.skip(key);
-  known_text(reader, key, name, names);
+  check_known(reader, key, name, names);
   std::variant<Choices...> chosen;
   const auto read_if = [&]<class T>(T choice) {
     if (name != T::kName) return;
-    take_keys(reader, choice);
+    take_fields(reader, choice);
     finish(choice, reader);
     chosen = std::move(choice);
   };
@@ -148,10 +111,18 @@ std::variant<Choices...> read_choice(JsonReader& reader, const std::string& key,
   return chosen;
 }
 
-SteeringSpec read_steering(JsonReader reader) {
-  SteeringSpec spec;
-  take_keys(reader, spec);
-  above_zero(reader, "rate", spec.rate, 1e6);
+}  // namespace
+
+void check_spec(const PathSteeringSpec& s, const JsonReader& reader) {
+  check_positive(reader, "rate", s.rate, 1e6);
+}
+
+namespace {
+
+PathSteeringSpec read_steering(JsonReader reader) {
+  PathSteeringSpec spec;
+  take_fields(reader, spec);
+  check_spec(spec, reader);
   spec.law = read_choice(reader, "law", false, std::type_identity<SteeringLaw>());
   reader.finish();
   return spec;
@@ -159,10 +130,10 @@ SteeringSpec read_steering(JsonReader reader) {
 
 PathSpec read_path(JsonReader reader) {
   PathSpec spec;
-  take_keys(reader, spec);
-  in_range_of(reader, "x", spec.x, -kMostLength, kMostLength);
-  in_range_of(reader, "y", spec.y, -kMostLength, kMostLength);
-  in_range_of(reader, "heading_deg", spec.heading_deg, -360.0, 360.0);
+  take_fields(reader, spec);
+  check_within(reader, "x", spec.x, -kMostLength, kMostLength);
+  check_within(reader, "y", spec.y, -kMostLength, kMostLength);
+  check_within(reader, "heading_deg", spec.heading_deg, -360.0, 360.0);
   spec.shape = read_choice(reader, "kind", true, std::type_identity<PathShape>());
   if (reader.given("steering")) spec.steering = read_steering(reader.child("steering"));
   reader.finish();
@@ -171,12 +142,12 @@ PathSpec read_path(JsonReader reader) {
 
 SpeedSpec read_speed(JsonReader reader) {
   SpeedSpec spec;
-  take_keys(reader, spec);
+  take_fields(reader, spec);
   // Below zero they come from the vehicle; a file cannot say that but by leaving them out.
-  if (reader.given("proportional")) in_range_of(reader, "proportional", spec.proportional, 0.0, kInfinity);
-  if (reader.given("integral")) in_range_of(reader, "integral", spec.integral, 0.0, kInfinity);
-  in_range_of(reader, "hysteresis", spec.hysteresis, 0.0, 1.0);
-  in_range_of(reader, "stop_speed", spec.stop_speed, 0.0, 10.0);
+  if (reader.given("proportional")) check_not_negative(reader, "proportional", spec.proportional);
+  if (reader.given("integral")) check_not_negative(reader, "integral", spec.integral);
+  check_within(reader, "hysteresis", spec.hysteresis, 0.0, 1.0);
+  check_within(reader, "stop_speed", spec.stop_speed, 0.0, 10.0);
   spec.target = read_points(reader, "target", kSpeed);
   reader.finish();
   return spec;

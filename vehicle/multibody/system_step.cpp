@@ -217,6 +217,13 @@ Outcome System::solve_velocities(double end_time) {
   residual_.setZero();
   rates_.known_impulses(rate_part(impulses_));
   double before = 0.0, worst_rate = 0.0;
+  const auto speed_before = [&] {  // the largest that there is without the constraints
+    double speed = 0.0;
+    for (std::size_t i = 0; i < bodies_.size(); ++i)
+      speed = std::max({speed, base_[i].velocity.cwiseAbs().maxCoeff(),
+                        (bodies_[i].inertia_inverse_W * base_[i].angular_momentum).cwiseAbs().maxCoeff()});
+    return speed;
+  };
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     apply_impulses();
     set_angular_velocities();
@@ -240,8 +247,11 @@ Outcome System::solve_velocities(double end_time) {
     // No longer falling: round-off reached, or the rates contradict each other.
     if (!std::isfinite(worst) || (iteration > 1 && worst > 0.25 * before)) {
       if (worst <= kVelocityLimit * std::max(scale, 1e-6)) return {};
-      if (!std::isfinite(worst) || worst > 0.9 * before)
+      if (!std::isfinite(worst) || worst > 0.9 * before) {
+        // At rest nothing moves, and round-off is that of the speeds which loads give and constraints take away.
+        if (worst <= kVelocityLimit * speed_before()) return {};
         return failure("cannot satisfy the rates of its constraints", worst_row, worst);
+      }
     }
     before = worst;
     solver_.solve(residual_, correction_);

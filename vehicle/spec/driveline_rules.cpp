@@ -9,24 +9,17 @@
 
 #include "protocol/files/json_text.hpp"
 #include "vehicle/spec/spec_rules.hpp"
+#include "vehicle/spec/value_rules.hpp"
 
 namespace furrow::vehicle {
-namespace {
-
-void positive(const JsonReader& reader, const std::string& key, double value) {
-  if (!(value > 0.0)) reader.fail(key, "is " + number_text(value) + ", expected a number above zero");
-}
-
-}  // namespace
-
 void check_spec(const ShaftSpec& s, const JsonReader& reader) {
-  positive(reader, "inertia", s.inertia);
+  check_positive(reader, "inertia", s.inertia);
   if (!(s.axis.norm() > 0.0)) reader.fail("axis", "has no length, expected a direction");
 }
 
 void check_spec(const EngineSpec& s, const JsonReader& reader) {
-  if (!(s.idle_rpm >= 0.0)) reader.fail("idle_rpm", "is " + number_text(s.idle_rpm) + ", expected 0 or more");
-  positive(reader, "idle_band_rpm", s.idle_band_rpm);
+  check_not_negative(reader, "idle_rpm", s.idle_rpm);
+  check_positive(reader, "idle_band_rpm", s.idle_band_rpm);
   for (std::size_t i = 0; i < s.losses.size(); ++i)
     if (s.losses[i].first * s.losses[i].second > 0.0)
       reader.fail(fmt::format("losses[{}]", i),
@@ -40,7 +33,7 @@ void check_spec(const ConverterSpec& s, const JsonReader& reader) {
     if (points->front().first != 0.0 || points->back().first != 1.0)
       reader.fail(key, "does not run from speed ratio 0 to 1, expected both ends");
     for (std::size_t i = 0; i < points->size(); ++i)
-      positive(reader, fmt::format("{}[{}]", key, i), (*points)[i].second);
+      check_positive(reader, fmt::format("{}[{}]", key, i), (*points)[i].second);
   }
   for (std::size_t i = 0; i < s.torque_ratio.size(); ++i)
     if (const auto& [R, T] = s.torque_ratio[i]; R * T > 1.0)
@@ -50,7 +43,7 @@ void check_spec(const ConverterSpec& s, const JsonReader& reader) {
 }
 
 void check_spec(const ClutchSpec& s, const JsonReader& reader) {
-  positive(reader, "torque", s.torque);
+  check_positive(reader, "torque", s.torque);
   if (!(s.closed_rpm > s.open_rpm))
     reader.fail("closed_rpm", fmt::format("is {}, expected more than open_rpm, {}", number_text(s.closed_rpm),
                                           number_text(s.open_rpm)));
@@ -59,16 +52,15 @@ void check_spec(const ClutchSpec& s, const JsonReader& reader) {
 void check_spec(const GearboxSpec& s, const JsonReader& reader) {
   if (s.ratios.empty()) reader.fail("ratios", "is empty, expected the ratio of at least one gear");
   for (std::size_t i = 0; i < s.ratios.size(); ++i)
-    positive(reader, fmt::format("ratios[{}]", i), s.ratios[i]);
+    check_positive(reader, fmt::format("ratios[{}]", i), s.ratios[i]);
   if (s.reverse && !(*s.reverse < 0.0))
     reader.fail("reverse", "is " + number_text(*s.reverse) + ", expected a number below zero");
-  if (!(s.shift_time >= 0.0))
-    reader.fail("shift_time", "is " + number_text(s.shift_time) + ", expected 0 or more");
-  positive(reader, "down_rpm", s.down_rpm);
+  check_not_negative(reader, "shift_time", s.shift_time);
+  check_positive(reader, "down_rpm", s.down_rpm);
   if (!(s.up_rpm > s.down_rpm))
     reader.fail("up_rpm", fmt::format("is {}, expected more than down_rpm, {}", number_text(s.up_rpm),
                                       number_text(s.down_rpm)));
-  positive(reader, "latency", s.latency);
+  check_positive(reader, "latency", s.latency);
 }
 
 void check_spec(const GearSpec& s, const JsonReader& reader) {
@@ -83,14 +75,14 @@ void check_spec(const DifferentialSpec& s, const JsonReader& reader) {
     reader.fail("outputs", "names a shaft twice, expected two shafts besides the box");
   if (!(s.share > 0.0 && s.share < 1.0))
     reader.fail("share", "is " + number_text(s.share) + ", expected a number between 0 and 1");
-  if (s.lock_torque) positive(reader, "lock_torque", *s.lock_torque);
+  if (s.lock_torque) check_positive(reader, "lock_torque", *s.lock_torque);
 }
 
 void check_spec(const MotorSpec& s, const JsonReader& reader) {
-  positive(reader, "inertia", s.inertia);
+  check_positive(reader, "inertia", s.inertia);
   if (s.gear_ratio == 0.0) reader.fail("gear_ratio", "is 0, expected another number: motor over wheel");
-  positive(reader, "stall_torque", s.stall_torque);
-  positive(reader, "no_load_rpm", s.no_load_rpm);
+  check_positive(reader, "stall_torque", s.stall_torque);
+  check_positive(reader, "no_load_rpm", s.no_load_rpm);
 }
 
 void check_spec(const DrivelineSpec& s, const JsonReader& reader) {

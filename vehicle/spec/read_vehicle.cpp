@@ -6,6 +6,7 @@
 
 #include "protocol/files/json_text.hpp"
 #include "vehicle/spec/spec_reader.hpp"
+#include "vehicle/spec/spec_rules.hpp"
 
 namespace furrow::vehicle {
 namespace {

@@ -1,5 +1,6 @@
-// Reads the structs of a vehicle file by their lists of fields: one key per field, required unless it is optional or may
-// be missing, and checks each by the rules in spec_rules.hpp. Complaints are JsonReader's: file, key, what was expected.
+// Reads the structs of files of vehicles and drivers by their lists of fields: one key per field, required unless it is
+// optional or may be missing, and checks each by check_spec(), which whoever calls read_spec() declares for each struct.
+// Complaints are JsonReader's: file, key, what was expected.
 #pragma once
 
 #include <optional>
@@ -8,7 +9,7 @@
 #include <vector>
 
 #include "protocol/files/json_reader.hpp"
-#include "vehicle/spec/spec_rules.hpp"
+#include "vehicle/spec/suspension_spec.hpp"
 
 namespace furrow::vehicle {
 
@@ -43,16 +44,16 @@ void take(JsonReader& reader, const std::string& key, std::vector<T>& value) {
 
 }  // namespace detail
 
-/// Takes the keys of T; the reader may have others besides.
+/// Takes the keys of T, except those with the role kReadApart; the reader may have others besides.
 template <HasFields T>
 void take_fields(JsonReader& reader, T& target) {
   visit_fields(
       [&](const Field& field, auto& value) {
+        reader.skip(field.name);
+        if (field.is(kReadApart)) return;
         if constexpr (requires { value.has_value(); }) {
-          reader.skip(field.name);
           if (reader.given(field.name)) detail::take(reader, field.name, value.emplace());
         } else {
-          if (field.is(kMayMiss)) reader.skip(field.name);
           if (!field.is(kMayMiss) || reader.given(field.name)) detail::take(reader, field.name, value);
         }
       },

@@ -7,18 +7,13 @@
 #include <cmath>
 
 #include "protocol/files/json_text.hpp"
+#include "vehicle/spec/value_rules.hpp"
 
 namespace furrow::vehicle {
 namespace {
 
 constexpr double kSamePoint = 1e-6;  // m
 
-void positive(const JsonReader& reader, const char* key, double value) {
-  if (!(value > 0.0)) reader.fail(key, "is " + number_text(value) + ", expected a number above zero");
-}
-void not_negative(const JsonReader& reader, const char* key, double value) {
-  if (!(value >= 0.0)) reader.fail(key, "is " + number_text(value) + ", expected a number of zero or above");
-}
 void apart(const JsonReader& reader, const char* key, const Vec3& point, const char* other_key,
            const Vec3& other) {
   if (!((point - other).norm() > kSamePoint))
@@ -37,7 +32,7 @@ void check_inertia(const JsonReader& reader, const Mat3& inertia) {
 }
 
 void check_length(const JsonReader& reader, double shortest, double longest) {
-  positive(reader, "shortest", shortest);
+  check_positive(reader, "shortest", shortest);
   if (!(longest > shortest))
     reader.fail("longest", fmt::format("is {}, expected more than shortest, {}", number_text(longest),
                                        number_text(shortest)));
@@ -69,26 +64,26 @@ void check_struts(const T& s, const JsonReader& reader, const std::vector<std::s
 }  // namespace
 
 void check_spec(const BodySpec& s, const JsonReader& reader) {
-  positive(reader, "mass", s.mass);
+  check_positive(reader, "mass", s.mass);
   check_inertia(reader, s.inertia);
 }
 
 void check_spec(const SpindleSpec& s, const JsonReader& reader) {
-  positive(reader, "mass", s.mass);
+  check_positive(reader, "mass", s.mass);
   check_inertia(reader, s.inertia);
   for (const auto& [key, angle] : {std::pair{"camber_deg", s.camber_deg}, std::pair{"toe_deg", s.toe_deg}})
-    if (!(std::abs(angle) < 45.0)) reader.fail(key, "is " + number_text(angle) + ", expected -45 to 45");
+    check_within(reader, key, angle, -45.0, 45.0);
 }
 
 void check_spec(const WheelSpec& s, const JsonReader& reader) {
-  positive(reader, "mass", s.mass);
+  check_positive(reader, "mass", s.mass);
   check_inertia(reader, s.inertia);
 }
 
-void check_spec(const BrakeSpec& s, const JsonReader& reader) { positive(reader, "torque", s.torque); }
+void check_spec(const BrakeSpec& s, const JsonReader& reader) { check_positive(reader, "torque", s.torque); }
 
 void check_spec(const ArmSpec& s, const JsonReader& reader) {
-  positive(reader, "mass", s.mass);
+  check_positive(reader, "mass", s.mass);
   check_inertia(reader, s.inertia);
   apart(reader, "chassis_back", s.chassis_back, "chassis_front", s.chassis_front);
   const Vec3 hinge = (s.chassis_front - s.chassis_back).normalized();
@@ -112,11 +107,11 @@ void check_spec(const StopSpec& s, const JsonReader& reader) {
 
 void check_spec(const SpringSpec& s, const JsonReader& reader) {
   apart(reader, "end", s.end, "chassis", s.chassis);
-  positive(reader, "free_length", s.free_length);
+  check_positive(reader, "free_length", s.free_length);
   if (s.rate && !s.force.empty()) reader.fail("force", "is given beside rate, expected one of the two");
   if (!s.rate && s.force.empty())
     reader.fail("force", "is missing, expected a table of forces, or the key rate");
-  if (s.rate) positive(reader, "rate", *s.rate);
+  if (s.rate) check_positive(reader, "rate", *s.rate);
   if (s.force.empty()) return;
   if (s.force.front() != std::pair{0.0, 0.0})
     reader.fail("force[0]", "is not [0, 0], expected the deflection and the force of the free spring");
@@ -125,18 +120,18 @@ void check_spec(const SpringSpec& s, const JsonReader& reader) {
 
 void check_spec(const OuterShockSpec& s, const JsonReader& reader) {
   check_length(reader, s.shortest, s.longest);
-  positive(reader, "blend_length", s.blend_length);
+  check_positive(reader, "blend_length", s.blend_length);
   if (s.blend_length > s.longest - s.shortest)
     reader.fail("blend_length", fmt::format("is {}, expected at most longest - shortest, {:.6g}",
                                             number_text(s.blend_length), s.longest - s.shortest));
-  not_negative(reader, "compression", s.compression);
-  not_negative(reader, "rebound", s.rebound);
+  check_not_negative(reader, "compression", s.compression);
+  check_not_negative(reader, "rebound", s.rebound);
 }
 
 void check_spec(const ShockSpec& s, const JsonReader& reader) {
   apart(reader, "end", s.end, "chassis", s.chassis);
-  not_negative(reader, "compression", s.compression);
-  not_negative(reader, "rebound", s.rebound);
+  check_not_negative(reader, "compression", s.compression);
+  check_not_negative(reader, "rebound", s.rebound);
 }
 
 void check_spec(const DoubleWishboneSpec& s, const JsonReader& reader) {
@@ -170,13 +165,13 @@ void check_spec(const PitmanArmSpec& s, const JsonReader& reader) {
   if (!(std::abs(s.left_angle_deg) > 0.0 && std::abs(s.left_angle_deg) < 90.0))
     reader.fail("left_angle_deg", "is " + number_text(s.left_angle_deg) +
                                       ", expected -90 to 90, not 0: the arm at full lock to the left");
-  positive(reader, "response_time", s.response_time);
+  check_positive(reader, "response_time", s.response_time);
 }
 
 void check_spec(const RackSpec& s, const JsonReader& reader) {
   if (s.left_travel == 0.0)
     reader.fail("left_travel", "is 0, expected the travel at full lock to the left in m");
-  positive(reader, "response_time", s.response_time);
+  check_positive(reader, "response_time", s.response_time);
 }
 
 }  // namespace furrow::vehicle

@@ -1,5 +1,5 @@
-// What must hold within each struct of a vehicle file, besides the types of its values. A struct without a rule here is
-// free; what several of them must agree on is in read_vehicle.cpp and driveline_rules.cpp.
+// What must hold within each struct of a vehicle file, besides the types of its values. What several of them must agree on
+// is in read_vehicle.cpp and driveline_rules.cpp.
 #pragma once
 
 #include "protocol/files/json_reader.hpp"
@@ -7,8 +7,8 @@
 
 namespace furrow::vehicle {
 
-template <class T>
-void check_spec(const T&, const JsonReader&) {}
+inline void check_spec(const FixedSpec&, const JsonReader&) {}
+inline void check_spec(const WheelShaftSpec&, const JsonReader&) {}
 
 // Each @throws Error(bad_input) naming file, key and what was expected.
 void check_spec(const BodySpec&, const JsonReader&);

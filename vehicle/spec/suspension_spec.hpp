@@ -10,11 +10,9 @@
 
 #include "protocol/core/fields.hpp"
 #include "protocol/core/vec.hpp"
+#include "vehicle/spec/spec_roles.hpp"
 
 namespace furrow::vehicle {
-
-/// A key that may be left out.
-inline constexpr unsigned kMayMiss = 1U << 16U;
 
 /// Points of a function; x rises.
 using Points = std::vector<std::pair<double, double>>;

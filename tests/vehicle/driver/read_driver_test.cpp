@@ -140,7 +140,7 @@ TEST_F(DriverFile, that_is_wrong_is_refused_by_key) {
       {R"(, "speed": {})", "key 'speed.target': is missing"},
       {R"(, "speed": {"target": -1})", "key 'speed.target': speed_m_s is -1, expected a speed from 0 to 100"},
       {R"(, "speed": {"target": 5, "integral": -1})",
-       "key 'speed.integral': is -1, expected a number of 0 or above"},
+       "key 'speed.integral': is -1, expected a number of zero or above"},
       {R"(, "speed": {"target": 5, "hysteresis": 2})",
        "key 'speed.hysteresis': is 2, expected a number from 0 to 1"},
       {R"(, "speed": {"target": 5, "stop_speed": "slow"})",
@@ -217,7 +217,7 @@ TEST(DriverSchema, has_the_keys_that_the_program_reads) {
   EXPECT_EQ(keys_in(parts["circle"], {"kind"}), keys_of<CirclePath>());
   EXPECT_EQ(keys_in(parts["double_lane_change"], {"kind"}), keys_of<LaneChangePath>());
   EXPECT_EQ(keys_in(parts["waypoints"], {"kind"}), keys_of<WaypointPath>());
-  EXPECT_EQ(keys_in(parts["steering"], {"law"}), keys_of<SteeringSpec>());
+  EXPECT_EQ(keys_in(parts["steering"], {"law"}), keys_of<PathSteeringSpec>());
   EXPECT_EQ(keys_in(parts["pure_pursuit"], {"law"}), keys_of<PurePursuit>());
   EXPECT_EQ(keys_in(parts["stanley"], {"law"}), keys_of<Stanley>());
   EXPECT_EQ(parts["double_lane_change"]["properties"]["track"]["enum"], json(lane_change_names()));

@@ -1,0 +1,127 @@
+// `furrow kc` and `furrow validate` of a vehicle: what there is to know of it before it drives.
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+#include <fmt/format.h>
+
+#include "nodes/commands/commands.hpp"
+#include "nodes/launch/progress.hpp"
+#include "nodes/launch/run_directory.hpp"
+#include "nodes/launch/signals.hpp"
+#include "nodes/scenario/vehicle_tires.hpp"
+#include "protocol/files/figures_json.hpp"
+#include "protocol/files/json_text.hpp"
+#include "protocol/files/text_file.hpp"
+#include "vehicle/analysis/kinematics.hpp"
+#include "vehicle/spec/read_vehicle.hpp"
+
+namespace furrow::commands {
+namespace {
+
+constexpr int kFormatVersion = 1;
+constexpr double kTravelShare = 0.2;  // of the smallest tire's radius
+constexpr double kMostTravel = 1.0;   // m
+constexpr int kLeastPoints = 3, kMostPoints = 1001;
+
+void check(const KinematicsArguments& arguments) {
+  const auto require = [](bool ok, const char* key, const std::string& what) {
+    if (!ok) throw input_error("command line", key, what);
+  };
+  require(arguments.travel >= 0.0 && arguments.travel <= kMostTravel, "--travel",
+          fmt::format("is {}, expected above 0 up to {:g} m, or 0: a fifth of the smallest tire's radius",
+                      number_text(arguments.travel), kMostTravel));
+  require(arguments.points >= kLeastPoints && arguments.points <= kMostPoints, "--points",
+          fmt::format("is {}, expected {} to {}", arguments.points, kLeastPoints, kMostPoints));
+}
+
+/// The vehicle on its tires; presses them where the cache does not know them.
+vehicle::VehiclePage stand(const vehicle::VehicleSpec& spec) {
+  launch::catch_stop_signals();
+  launch::ProgressDisplay display;
+  const auto tires = scenario::tires_of(spec);
+  const auto standing = scenario::standing_tires(spec, tires, [&](const std::string& what, double share) {
+    if (launch::stop_signalled())
+      throw Error(ExitCode::stopped, "stopped by a signal while tires were pressed");
+    display.show({.phase = what + " the tires", .share = share});
+  });
+  return vehicle::vehicle_page(spec, standing);
+}
+
+std::vector<vehicle::KinematicsRow> sweep(const vehicle::VehicleSpec& spec, const vehicle::VehiclePage& page,
+                                          const vehicle::KinematicsOptions& options) {
+  try {
+    std::vector<vehicle::KinematicsRow> rows = vehicle::kinematics(spec, page.loaded_radii, options);
+    if (rows.empty())
+      throw input_error(spec.file, "axles",
+                        "has no wheel that travels, expected a suspension other than fixed");
+    return rows;
+  } catch (const Error& error) {
+    if (error.code() != ExitCode::physics) throw;
+    throw input_error("command line", "--travel",
+                      fmt::format("is {:.4g} m: {}, expected a travel that every axle of {} can follow",
+                                  options.travel, error.what(), spec.file));
+  }
+}
+
+nlohmann::ordered_json summary(const vehicle::VehicleSpec& spec, const vehicle::VehiclePage& page,
+                               const vehicle::KinematicsOptions& options) {
+  nlohmann::ordered_json json = {{"format_version", kFormatVersion},
+                                 {"version", FURROW_VERSION},
+                                 {"vehicle", spec.name},
+                                 {"file", spec.file},
+                                 {"travel_m", options.travel},
+                                 {"points", options.points}};
+  vehicle::KinematicsOptions drawn = options;
+  drawn.points = 1;
+  json["as_drawn"] = nlohmann::ordered_json::array();
+  for (const vehicle::KinematicsRow& row : sweep(spec, page, drawn))
+    if (row.motion == "parallel") json["as_drawn"].push_back(figures_json(row));
+  json["at_rest"] = vehicle::page_json(page);
+  return json;
+}
+
+}  // namespace
+
+ExitCode validate_vehicle(const std::string& name, bool json) {
+  const vehicle::VehicleSpec spec = vehicle::read_vehicle(scenario::find_vehicle(name));
+  const vehicle::VehiclePage page = stand(spec);
+  std::cout << (json ? vehicle::page_json(page).dump(2) + "\n" : vehicle::page_text(page));
+  return ExitCode::done;
+}
+
+ExitCode kinematics_command(const KinematicsArguments& arguments) {
+  check(arguments);
+  const std::filesystem::path file = scenario::find_vehicle(arguments.vehicle);
+  const vehicle::VehicleSpec spec = vehicle::read_vehicle(file);
+  const vehicle::VehiclePage page = stand(spec);
+  vehicle::KinematicsOptions options{arguments.travel, arguments.points};
+  if (options.travel == 0.0)
+    options.travel = kTravelShare * *std::min_element(page.loaded_radii.begin(), page.loaded_radii.end());
+  const std::vector<vehicle::KinematicsRow> rows = sweep(spec, page, options);
+  if (arguments.csv) {
+    std::cout << vehicle::kinematics_csv(rows);
+    return ExitCode::done;
+  }
+  nlohmann::ordered_json json = summary(spec, page, options);
+  if (arguments.json) {
+    json["rows"] = nlohmann::ordered_json::array();
+    for (const vehicle::KinematicsRow& row : rows) json["rows"].push_back(figures_json(row));
+    std::cout << json.dump(2) << "\n";
+    return ExitCode::done;
+  }
+  launch::RunDirectory directory(file.stem().string() + "-kc", arguments.out, arguments.overwrite);
+  try {
+    directory.add({"kinematics.csv", "summary.json"});
+    write_whole_file(directory.path() / "kinematics.csv", vehicle::kinematics_csv(rows));
+    write_whole_file(directory.path() / "summary.json", json.dump(2) + "\n");
+  } catch (...) {
+    directory.discard();
+    throw;
+  }
+  std::cout << directory.path().string() << std::endl;
+  if (arguments.plots) make_report_or_warn(directory.path());
+  return ExitCode::done;
+}
+
+}  // namespace furrow::commands

@@ -1,0 +1,53 @@
+// Results as JSON: names with units, null for what does not exist, structs within structs.
+#include "protocol/files/figures_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+using namespace furrow;
+
+namespace {
+
+struct Strut {
+  double length = 0.2, room = std::numeric_limits<double>::infinity();
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<Strut> auto& s) {
+  visit(Field{"length", "m"}, s.length);
+  visit(Field{"room", "m"}, s.room);
+}
+
+struct Wheel {
+  std::string name = "left";
+  int bodies = 3;
+  double rate = 4.5, share = std::numeric_limits<double>::quiet_NaN();
+  Vec3 place = Vec3(1, 2, 3);
+  std::optional<Strut> spring = Strut{}, shock;
+  std::vector<double> loads = {1.0, 2.0};
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<Wheel> auto& s) {
+  visit(Field{"name", ""}, s.name);
+  visit(Field{"bodies", ""}, s.bodies);
+  visit(Field{"rate", "N/m"}, s.rate);
+  visit(Field{"share"}, s.share);
+  visit(Field{"place", "m"}, s.place);
+  visit(Field{"spring", ""}, s.spring);
+  visit(Field{"shock", ""}, s.shock);
+  visit(Field{"loads", "N"}, s.loads);
+}
+
+}  // namespace
+
+TEST(FiguresJson, has_names_with_units_and_null_for_what_does_not_exist) {
+  EXPECT_EQ(figures_json(Wheel{}).dump(),
+            R"({"name":"left","bodies":3,"rate_N_per_m":4.5,"share":null,"place_m":[1.0,2.0,3.0],)"
+            R"("spring":{"length_m":0.2,"room_m":null},"shock":null,"loads_N":[1.0,2.0]})");
+}
+
+TEST(FiguresJson, units_can_be_written_in_a_name) {
+  EXPECT_EQ(name_with_unit({"inertia", "kg m²"}), "inertia_kg_m2");
+  EXPECT_EQ(name_with_unit({"slope", "-"}), "slope");
+  EXPECT_EQ(name_with_unit({"coefficient", "N s/m"}), "coefficient_N_s_per_m");
+}

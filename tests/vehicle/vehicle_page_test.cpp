@@ -1,0 +1,83 @@
+// What is told of a vehicle before it drives: counts, masses, how it stands; vibrations on tires that do not deflect.
+#include "vehicle/analysis/vehicle_page.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "protocol/core/constants.hpp"
+#include "protocol/core/error.hpp"
+#include "tests/vehicle/shipped.hpp"
+
+using namespace furrow;
+using namespace furrow::testing;
+using vehicle::StandingTire, vehicle::VehiclePage;
+
+namespace {
+
+std::vector<StandingTire> tires(int count, double mass, double radius, double stiffness) {
+  StandingTire tire;
+  tire.text = "a tire";
+  tire.mass.mass = mass;
+  tire.mass.inertia = 0.1 * mass * Mat3::Identity();
+  tire.radius = radius;
+  if (stiffness > 0.0) tire.points = {{0.0, 0.0}, {0.01, 0.01 * stiffness}, {0.03, 0.03 * stiffness}};
+  return std::vector(count, tire);
+}
+
+}  // namespace
+
+TEST(VehiclePage, of_the_hmmwv_has_its_counts_masses_and_stops) {
+  const VehiclePage page = vehicle::vehicle_page(shipped("hmmwv.json"), tires(4, 25.0, 0.4673, 3.3e5));
+  EXPECT_EQ(page.bodies, 19);
+  EXPECT_EQ(page.rows, 100);
+  EXPECT_EQ(page.freedoms, 14);
+  EXPECT_EQ(page.shafts, 12);
+  EXPECT_EQ(page.shaft_freedoms, 1);
+  EXPECT_NEAR(page.mass, 2422.739, 1e-3);
+  double sum = 0.0;
+  for (const double load : page.trim.axle_loads) sum += load;
+  EXPECT_NEAR(sum, (2422.739 + 100.0) * kStandardGravity, 0.02);
+  EXPECT_NEAR(page.loaded_radii[0], 0.4673 - page.trim.wheels[0].load / 3.3e5, 1e-6);
+  const nlohmann::ordered_json json = vehicle::page_json(page);
+  EXPECT_EQ(json["wheels"][0]["spring"]["to_shortest_m"], page.trim.wheels[0].spring->to_shortest);
+  EXPECT_EQ(json["modes"].size(), page.trim.modes.size());
+  const std::string text = vehicle::page_text(page);
+  for (const char* part : {"19, 100 rows, 14 degrees of freedom", "12, 1 more degree",
+                           "4 × a tire, 25.00 kg each", "front left, spring"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+}
+
+// A rigid tire's vibration is that of the ground that was put under it: four times the stiffness, twice as high.
+TEST(VehiclePage, on_tires_that_do_not_deflect_tells_only_vibrations_of_the_vehicle_s_own_springs) {
+  const VehiclePage page = vehicle::vehicle_page(shipped("buggy.json"), tires(4, 10.0, 0.3, 0.0));
+  std::vector<std::string> names;
+  for (const vehicle::TrimMode& mode : page.trim.modes) {
+    names.push_back(mode.name);
+    EXPECT_LT(mode.frequency, 5.0) << mode.name;
+  }
+  EXPECT_EQ(page.trim.modes.size(), 3U);  // heave, pitch and roll of the chassis
+  EXPECT_NEAR(page.loaded_radii[0], 0.3, 2e-3 * 0.3);
+  for (const std::string& name : names) EXPECT_EQ(name.find("hop"), std::string::npos) << name;
+}
+
+TEST(VehiclePage, of_a_vehicle_that_cannot_stand_is_an_error_of_its_file) {
+  const auto complaint = [](const vehicle::VehicleSpec& spec) -> std::string {
+    try {
+      vehicle::vehicle_page(spec, tires(4, 10.0, 0.3, 2e5));
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::bad_input);
+      return error.what();
+    }
+    return "it stands";
+  };
+  vehicle::VehicleSpec spec = shipped("buggy.json"), fallen = spec;
+  for (vehicle::CornerSpec& corner : spec.axles[0].corners)
+    std::get<vehicle::DoubleWishboneSpec>(corner.suspension).spring.reset();
+  EXPECT_TRUE(complaint(spec).starts_with(spec.file + ": vehicle 'Buggy'")) << complaint(spec);
+  // Without its springs the rigid axle finds an equilibrium with the chassis on the ground.
+  for (vehicle::CornerSpec& corner : fallen.axles[1].corners)
+    std::get<vehicle::RigidAxleSpec>(corner.suspension).spring.reset();
+  EXPECT_NE(complaint(fallen).find("key 'axles[1].suspension': lets the wheel 'rear left' stand 0.4"),
+            std::string::npos)
+      << complaint(fallen);
+}

@@ -1,0 +1,141 @@
+#include "tire/press_curve.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "protocol/core/assert.hpp"
+#include "protocol/core/error.hpp"
+#include "protocol/core/hash.hpp"
+#include "protocol/files/cache_folder.hpp"
+#include "protocol/files/json_text.hpp"
+#include "protocol/files/text_file.hpp"
+#include "tire/press.hpp"
+
+namespace furrow::tire {
+namespace {
+
+constexpr int kFormat = 1;             // raise when the bits of a curve or its digest may change
+constexpr double kFirstShare = 0.048;  // of the radius, which is pressed first
+constexpr double kMore = 1.6;          // times the deflection when the load was not reached
+constexpr int kMostTrials = 4;
+constexpr int kPoints = 4;                 // of the curve
+constexpr int kColumns = 48, kWidth = 12;  // elements of a coarse mesh
+
+std::filesystem::path cache_file(const TireOptions& o, double deflection) {
+  const std::filesystem::path folder = cache_folder("press");
+  if (folder.empty()) return {};
+  Hash hash;
+  const auto add = [&](const auto& value) { hash.add(&value, sizeof value); };
+  add(kFormat);
+  add(kPoints);
+  add(deflection);
+  add(o.elements_circumference);
+  add(o.elements_width);
+  add(o.structural_damping);
+  add(o.pressure.empty() ? -1.0 : o.pressure.at(0.0));
+  hash.add(read_text_file(o.file, "a tire file in JSON"));
+  return folder / (hash.hex() + ".json");
+}
+
+/// What the cache holds; none where it is missing or damaged.
+std::optional<PressCurve> read_curve(const std::filesystem::path& file) {
+  if (file.empty()) return std::nullopt;
+  const nlohmann::ordered_json json = read_json_if_whole(file);
+  const auto numbers = [&](const char* key) {
+    std::vector<double> values;
+    if (!json.is_object() || !json.contains(key) || !json[key].is_array()) return values;
+    for (const auto& value : json[key])
+      values.push_back(value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN());
+    return values;
+  };
+  const std::vector<double> radius = numbers("radius_m"), deflection = numbers("deflection_m"),
+                            force = numbers("force_N");
+  if (radius.size() != 1 || deflection.size() != kPoints + 1 || force.size() != deflection.size())
+    return std::nullopt;
+  PressCurve curve;
+  curve.radius = radius.front();
+  for (std::size_t k = 0; k < force.size(); ++k) {
+    curve.points.emplace_back(deflection[k], force[k]);
+    if (!std::isfinite(force[k]) || !std::isfinite(deflection[k])) return std::nullopt;
+    if (k > 0 && !(force[k] > force[k - 1] && deflection[k] > deflection[k - 1])) return std::nullopt;
+  }
+  return curve;
+}
+
+/// A cache that cannot be written costs time, nothing else.
+void write_curve(const std::filesystem::path& file, const PressCurve& curve) {
+  if (file.empty()) return;
+  nlohmann::ordered_json json;
+  json["radius_m"] = {curve.radius};
+  for (const auto& [deflection, force] : curve.points) {
+    json["deflection_m"].push_back(deflection);
+    json["force_N"].push_back(force);
+  }
+  std::error_code failed;
+  std::filesystem::create_directories(file.parent_path(), failed);
+  try {
+    write_whole_file(file, json.dump(2) + "\n");
+  } catch (const Error&) {
+    return;
+  }
+}
+
+PressCurve press(const StaticTest& test, const TireSpec& tire, double deflection,
+                 const ProgressCall& progress) {
+  const std::filesystem::path file = cache_file(tire.options(), deflection);
+  if (const std::optional<PressCurve> kept = read_curve(file)) return *kept;
+  PressOptions options;
+  options.deflection = deflection;
+  options.points = kPoints;
+  options.load = std::numeric_limits<double>::infinity();  // no footprint is looked for
+  options.unload = false;
+  const PressResults results = [&] {
+    try {
+      return test.press(options, progress);
+    } catch (const Error& error) {
+      throw Error(error.code(), tire.options().file.string() + ": " + error.what());
+    }
+  }();
+  PressCurve curve;
+  curve.radius = tire.describe().radius + results.inflation_growth;
+  for (const PressPoint& point : results.loading) {
+    const bool first = curve.points.empty();
+    if (!first && !(point.force > curve.points.back().second))
+      throw physics_error(fmt::format(
+          "{}: pressed by {:.4g} m this tire carries {:.4g} N, and {:.4g} N before",
+          tire.options().file.string(), point.deflection, point.force, curve.points.back().second));
+    curve.points.emplace_back(point.deflection, first ? 0.0 : point.force);
+  }
+  write_curve(file, curve);
+  return curve;
+}
+
+}  // namespace
+
+std::optional<PressCurve> press_curve(const TireSpec& tire, double load, const ProgressCall& progress) {
+  FURROW_ASSERT(load > 0.0, load);
+  const std::unique_ptr<StaticTest> test = tire.static_test();
+  if (!test) return std::nullopt;
+  double deflection = kFirstShare * tire.describe().radius;
+  for (int trial = 0;; ++trial) {
+    PressCurve curve = press(*test, tire, deflection, progress);
+    if (curve.points.back().second >= load) return curve;
+    if (trial == kMostTrials)
+      throw physics_error(fmt::format("{}: pressed by {:.4g} m this tire carries {:.4g} N, expected {:.4g} N",
+                                      tire.options().file.string(), deflection, curve.points.back().second,
+                                      load));
+    deflection *= kMore;
+  }
+}
+
+TireOptions coarse_for_pressing(TireOptions options) {
+  options.elements_circumference = kColumns;
+  options.elements_width = kWidth;
+  return options;
+}
+
+}  // namespace furrow::tire

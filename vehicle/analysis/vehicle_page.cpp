@@ -1,0 +1,208 @@
+#include "vehicle/analysis/vehicle_page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <nlohmann/json.hpp>
+
+#include "protocol/core/assert.hpp"
+#include "protocol/core/error.hpp"
+#include "protocol/files/digits.hpp"
+#include "protocol/files/figures_json.hpp"
+#include "vehicle/analysis/tire_curve.hpp"
+
+namespace furrow::vehicle {
+namespace {
+
+constexpr double kStiffShare =
+    1e-3;                        // of its radius that the ground gives under a tire that does not deflect
+constexpr double kHarder = 4.0;  // times as hard ground, for the vibrations
+constexpr double kSameFrequency = 0.01;
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+/// What is wrong with a vehicle that cannot be built or stand is wrong with its file.
+template <class Call>
+auto of_file(const VehicleSpec& spec, const Call& call) {
+  try {
+    return call();
+  } catch (const Error& error) {
+    if (error.code() != ExitCode::physics) throw;
+    throw input_error(spec.file, "", error.what());
+  }
+}
+
+std::vector<TireCurve> curves(std::span<const StandingTire> tires, double weight, double harder) {
+  std::vector<TireCurve> made;
+  for (const StandingTire& tire : tires)
+    made.push_back(tire.points.empty()
+                       ? stiff_curve(tire.radius, harder * weight / static_cast<double>(tires.size()) /
+                                                      (kStiffShare * tire.radius))
+                       : tire_curve(tire.text, tire.radius, tire.points));
+  return made;
+}
+
+Trim stand(const VehicleSpec& spec, std::span<const StandingTire> tires, double harder) {
+  Vehicle car(spec);
+  for (int k = 0; k < car.wheel_count(); ++k) car.add_tire_mass(k, tires[k].mass);
+  return trim(car, curves(tires, car.mass() * car.system().gravity().norm(), harder));
+}
+
+/// A vehicle without springs lies on its chassis, and the equilibrium that was found is none of its suspension.
+void check_travel(const VehicleSpec& spec, const VehiclePage& page) {
+  for (std::size_t k = 0; k < page.loaded_radii.size(); ++k) {
+    const WheelTrim& wheel = page.trim.wheels[k];
+    if (std::abs(wheel.travel) < page.loaded_radii[k]) continue;
+    throw input_error(
+        spec.file, fmt::format("axles[{}].suspension", k / 2),
+        fmt::format("lets the wheel '{}' stand {} m from its drawn place, expected springs that carry "
+                    "the vehicle",
+                    wheel.name, digits(wheel.travel)));
+  }
+}
+
+/// The vibrations that stay what they are on harder ground, lowest first.
+std::vector<TrimMode> lasting(const std::vector<TrimMode>& modes, const std::vector<TrimMode>& harder) {
+  std::vector<TrimMode> kept;
+  for (std::size_t k = 0; k < std::min(modes.size(), harder.size()); ++k)
+    if (std::abs(harder[k].frequency - modes[k].frequency) <= kSameFrequency * modes[k].frequency)
+      kept.push_back(harder[k]);
+  return kept;
+}
+
+}  // namespace
+
+double mass_without_tires(const VehicleSpec& spec) {
+  return of_file(spec, [&] { return Vehicle(spec).mass(); });
+}
+
+VehiclePage vehicle_page(const VehicleSpec& spec, std::span<const StandingTire> tires) {
+  FURROW_ASSERT(tires.size() == 2 * spec.axles.size(), tires.size(), spec.axles.size());
+  return of_file(spec, [&] {
+    const Vehicle car(spec);
+    const System& system = car.system();
+    VehiclePage page;
+    page.name = spec.name;
+    page.file = spec.file;
+    page.mass = car.mass();
+    page.bodies = system.body_count();
+    page.rows = system.constraint_count();
+    page.freedoms = 6 * page.bodies - page.rows + system.redundant_count();
+    page.shafts = system.shaft_count();
+    page.shaft_freedoms = car.freedoms() - page.freedoms;
+    for (const AxleSpec& axle : spec.axles) page.axles.push_back(axle.name);
+    for (const StandingTire& tire : tires)
+      page.tires.push_back(tire.text), page.tire_masses.push_back(tire.mass.mass);
+    page.trim = stand(spec, tires, 1.0);
+    if (std::any_of(tires.begin(), tires.end(), [](const StandingTire& t) { return t.points.empty(); }))
+      page.trim.modes = lasting(page.trim.modes, stand(spec, tires, kHarder).modes);
+    for (std::size_t k = 0; k < tires.size(); ++k)
+      page.loaded_radii.push_back(tires[k].radius - std::max(0.0, page.trim.wheels[k].deflection));
+    check_travel(spec, page);
+    return page;
+  });
+}
+
+nlohmann::ordered_json page_json(const VehiclePage& page) {
+  nlohmann::ordered_json json = figures_json(page);
+  // The trim's members stand beside those of the vehicle.
+  const nlohmann::ordered_json trim = json["trim"];
+  json.erase("trim");
+  json.update(trim);
+  return json;
+}
+
+namespace {
+
+/// With so many digits, and no minus before zeros.
+std::string fixed(double value, int digits) {
+  const double unit = std::pow(10.0, -digits);
+  return fmt::format("{:.{}f}", std::abs(value) < 0.5 * unit ? 0.0 : value, digits);
+}
+
+std::string tires_text(const VehiclePage& page) {
+  std::string text;
+  for (std::size_t k = 0; k < page.tires.size(); ++k) {
+    // Wheels of the same tire share a line.
+    if (std::find(page.tires.begin(), page.tires.begin() + static_cast<long>(k), page.tires[k]) !=
+        page.tires.begin() + static_cast<long>(k))
+      continue;
+    const auto count = std::count(page.tires.begin(), page.tires.end(), page.tires[k]);
+    text +=
+        fmt::format("{:<12} {} × {}, {:.2f} kg each\n", "tires", count, page.tires[k], page.tire_masses[k]);
+  }
+  return text;
+}
+
+std::string loads_text(const VehiclePage& page) {
+  double sum = 0.0;
+  for (const double load : page.trim.axle_loads) sum += load;
+  std::string text;
+  for (std::size_t k = 0; k < page.axles.size(); ++k)
+    text += fmt::format("{}{} {:.0f} N ({:.1f} %)", k > 0 ? ", " : "", page.axles[k], page.trim.axle_loads[k],
+                        100.0 * page.trim.axle_loads[k] / sum);
+  return text;
+}
+
+std::string wheels_text(const Trim& trim) {
+  constexpr const char* kRow = "{:<14} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n";
+  std::string text = fmt::format(kRow, "wheel", "load", "tire", "centre", "travel", "camber", "toe");
+  text += fmt::format(kRow, "", "N", "mm", "mm", "mm", "°", "°");
+  for (const WheelTrim& w : trim.wheels)
+    text +=
+        fmt::format(kRow, w.name, fixed(w.load, 0), fixed(1e3 * w.deflection, 1), fixed(1e3 * w.height, 1),
+                    fixed(1e3 * w.travel, 1), fixed(kDegrees * w.camber, 2), fixed(kDegrees * w.toe, 2));
+  return text;
+}
+
+std::string struts_text(const Trim& trim) {
+  constexpr const char* kRow = "{:<22} {:>8} {:>8} {:>12} {:>12}\n";
+  const auto room = [](double to_end) {
+    return std::isfinite(to_end) ? fixed(1e3 * to_end, 1) : std::string("none");
+  };
+  std::string text;
+  for (const WheelTrim& w : trim.wheels)
+    for (const auto& [kind, strut] : {std::pair{"spring", w.spring}, std::pair{"shock", w.shock}})
+      if (strut)
+        text += fmt::format(kRow, w.name + ", " + kind, fixed(1e3 * strut->length, 1), fixed(strut->force, 0),
+                            room(strut->to_shortest), room(strut->to_longest));
+  if (text.empty()) return "";
+  return fmt::format(kRow, "strut", "length", "push", "to shortest", "to longest") +
+         fmt::format(kRow, "", "mm", "N", "mm", "mm") + text + "\n";
+}
+
+std::string modes_text(const Trim& trim) {
+  std::string text =
+      fmt::format("{:<14} {:>8} {:>8}\n{:<14} {:>8} {:>8}\n", "vibration", "Hz", "damping", "", "", "%");
+  for (const TrimMode& mode : trim.modes)
+    text += fmt::format("{:<14} {:>8.2f} {:>8.0f}\n", mode.name, mode.frequency, 100.0 * mode.damping);
+  return text;
+}
+
+}  // namespace
+
+std::string page_text(const VehiclePage& page) {
+  double mass = page.mass;
+  for (const double tire : page.tire_masses) mass += tire;
+  std::string text;
+  const auto line = [&](const char* name, const std::string& value) {
+    text += fmt::format("{:<12} {}\n", name, value);
+  };
+  line("vehicle", fmt::format("{} ({})", page.name, page.file));
+  line("mass", fmt::format("{:.2f} kg, with its tires {:.2f} kg", page.mass, mass));
+  line("bodies", fmt::format("{}, {} rows, {} degrees of freedom", page.bodies, page.rows, page.freedoms));
+  if (page.shafts > 0)
+    line("shafts", fmt::format("{}, {} more degree{} of freedom", page.shafts, page.shaft_freedoms,
+                               page.shaft_freedoms == 1 ? "" : "s"));
+  text += tires_text(page);
+  line("stands", fmt::format("origin {} mm above the ground, nose {}° down, right side {}° down",
+                             fixed(1e3 * page.trim.height, 1), fixed(kDegrees * page.trim.pitch, 2),
+                             fixed(kDegrees * page.trim.roll, 2)));
+  line("axle loads", loads_text(page));
+  return text + "\n" + wheels_text(page.trim) + "\n" + struts_text(page.trim) + modes_text(page.trim);
+}
+
+}  // namespace furrow::vehicle

@@ -1,0 +1,60 @@
+// What there is to know of a vehicle before it drives: bodies and rows, masses, and how it stands on its tires.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "vehicle/analysis/trim.hpp"
+
+namespace furrow::vehicle {
+
+/// The tire of a wheel.
+struct StandingTire {
+  std::string text;  // for people: its file, and where its curve is from
+  MassProperties mass;
+  double radius = 0.0;  // inflated, m
+  std::vector<std::pair<double, double>>
+      points;  // of its press curve (tire_curve.hpp); none: it does not deflect
+};
+
+struct VehiclePage {
+  std::string name, file;
+  double mass = 0.0;                              // without tires, kg
+  int bodies = 0, rows = 0, freedoms = 0;         // of bodies, rows of joints, what these leave
+  int shafts = 0, shaft_freedoms = 0;             // what gears and differentials leave of the shafts
+  std::vector<std::string> axles, tires;          // of each axle, of each wheel
+  std::vector<double> tire_masses, loaded_radii;  // of each wheel, kg; under its load, m
+  Trim trim;
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<VehiclePage> auto& s) {
+  visit(Field{"name", ""}, s.name);
+  visit(Field{"file", ""}, s.file);
+  visit(Field{"mass", "kg"}, s.mass);
+  visit(Field{"bodies", ""}, s.bodies);
+  visit(Field{"rows", ""}, s.rows);
+  visit(Field{"freedoms", ""}, s.freedoms);
+  visit(Field{"shafts", ""}, s.shafts);
+  visit(Field{"shaft_freedoms", ""}, s.shaft_freedoms);
+  visit(Field{"axles", ""}, s.axles);
+  visit(Field{"tires", ""}, s.tires);
+  visit(Field{"tire_masses", "kg"}, s.tire_masses);
+  visit(Field{"loaded_radii", "m"}, s.loaded_radii);
+  visit(Field{"trim", ""}, s.trim);
+}
+
+/// Of all its bodies, kg. @throws Error(bad_input) naming the vehicle's file when it cannot be built
+double mass_without_tires(const VehicleSpec& spec);
+
+/// Builds the vehicle and lets it stand. Of a vehicle with a tire that does not deflect only those vibrations are told
+/// that do not depend on how hard the ground below it is.
+/// @pre one tire for each wheel. @throws Error(bad_input) naming the vehicle's file when it cannot be built or stand
+VehiclePage vehicle_page(const VehicleSpec& spec, std::span<const StandingTire> tires);
+
+nlohmann::ordered_json page_json(const VehiclePage& page);
+std::string page_text(const VehiclePage& page);
+
+}  // namespace furrow::vehicle

@@ -1,0 +1,41 @@
+// What a ring stands on: a polyline z(x) seen from the side, rigid and without friction. Its faces carry segments of the
+// ring; its convex corners, and its two ends, carry the belt between segments. Beyond the ends there is nothing, so that
+// two points are a bar whose base is never touched, and two points far apart a plate.
+#pragma once
+
+#include <vector>
+
+namespace furrow::tire {
+
+struct GroundPoint {
+  double x = 0.0, z = 0.0;  // forward, up, m
+};
+
+class RingGround {
+ public:
+  /// @pre two points at least, x strictly increasing, all finite
+  explicit RingGround(std::vector<GroundPoint> points);
+  /// A flat plate at z = 0, under every tire of a radius up to this.
+  static RingGround plate(double radius);
+  /// A bar with its top at z = 0, from −width/2 to width/2 about `position`. @pre width > 0
+  static RingGround bar(double width, double position);
+
+  const std::vector<GroundPoint>& points() const { return points_; }
+  /// Where the belt can be carried between segments.
+  const std::vector<GroundPoint>& corners() const { return corners_; }
+  double top() const { return top_; }  // m
+
+  /// Index of the face, between points i and i + 1, that is above or below x; −1 beyond the ends.
+  int face(double x) const;
+  double slope(int face) const;
+  double height(int face, double x) const;
+  /// Distance along a ray from (x, z) under the angle θ from straight down to the first face that it meets from above;
+  /// infinite where there is none. @pre |θ| < π/2
+  double distance(double x, double z, double angle) const;
+
+ private:
+  std::vector<GroundPoint> points_, corners_;
+  double top_ = 0.0;
+};
+
+}  // namespace furrow::tire

@@ -1,0 +1,96 @@
+// Energy, force and tangent of the flexible ring without contact: belt, sidewall and air.
+//
+// N segments at the angles θ_j = jφ, φ = 2π/N, with displacements u_j, v_j from the inflated circle of radius R. With
+// the differences
+//   D₁f_j = (f_{j+1} − f_{j−1}) / (2 sin φ),   D₂f_j = (f_{j+1} − 2f_j + f_{j−1}) / (2 (1 − cos φ)),              (1)
+// which are exact for sin θ and cos θ, the energy is
+//   Π = φ Σ ½A (D₁v − D₂u)² + ½B (D₁u + D₂v)²                                     belt                        (2)
+//     + φ Σ ∫₀ᵘ (s₀ + s₁u + s₂u² + s₃u³) du + ½ k_t v²                             sidewall                    (3)
+//     − p₀V₀ ln(V/V₀) + p_a (V − V₀),   V = V₀ + RφT Σu,   V₀ = η π R² T           air                         (4)
+// A resists the change of the belt's curvature, (v − u')'. B resists shear between its plies, which is as the gradient
+// of the hoop strain, (u + v')' (shear lag); B → ∞ is the inextensible ring, whose bending energy is ½A (u'' + u)². The
+// belt's null space is exactly of dimension four, also of (1): both translations (u, v) = (cos θ, −sin θ) and
+// (sin θ, cos θ), the rotation v = 1, and the uniform growth u = 1; no alternating mode is free. Translations and growth
+// are held by the sidewall, the rotation by k_t > 0 alone: its torsional stiffness is 2π R² k_t.
+//
+// (3) is the sidewall's polynomial in w = u + q about the growth q, with s₀ = p R T (ring_params.hpp), p = p₀ − p_a; so
+// the inflated ring is in balance exactly. The belt carries no hoop tension: the whole resultant of the pressure goes to
+// the sidewall. Air of the kind `linearised` has the second-order expansion of (4). Its tangent in either kind is a
+// constant times the outer product of (1, …, 1) on u with itself: a rank of one, given apart (RingTangent::gas).
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "tire/ring/ring_params.hpp"
+
+namespace furrow::tire {
+
+/// Displacements, or forces on them, of all segments.
+struct RingField {
+  std::vector<double> u, v;  // radial, outwards; tangential, towards growing θ: m or N
+};
+
+/// Force on the rim by the tire, or on the belt by the ground, N.
+struct RingForce {
+  double x = 0.0, z = 0.0;  // forward, up
+};
+
+/// Symmetric tangent without air: the 2 × 2 blocks of segments j and j + d, d = 0, 1, 2, indices modulo N.
+struct RingTangent {
+  std::array<std::vector<double>, 3> uu, uv, vu, vv;  // uv[d][j]: of u_j with v_{j+d}; N/m
+  double gas = 0.0;                                   // of every u with every u, N/m
+};
+
+/// Adds factor × a symmetric matrix in (u, v) of three neighbouring segments, row by row, from segment `first` on.
+void add_local(RingTangent& tangent, int first, const std::array<double, 36>& matrix, double factor);
+
+class RingMechanics {
+ public:
+  /// @pre the parameters have a growth, segments ≥ kMinSegments
+  explicit RingMechanics(const RingParams& params);
+
+  int segments() const { return n_; }
+  double angle() const { return phi_; }      // of a segment, φ
+  double radius() const { return radius_; }  // inflated, R, m
+  double growth() const { return growth_; }  // q, m
+  double volume() const { return volume_; }  // inflated, V₀, m³
+  const RingParams& params() const { return params_; }
+
+  RingField zero() const;
+  RingTangent no_tangent() const;  // of the right size
+  /// Π, J; 0 when inflated and not loaded.
+  double energy(const RingField& q) const;
+  /// ∂Π/∂q. @pre the volume is positive
+  void gradient(const RingField& q, RingField& out);
+  void tangent(const RingField& q, RingTangent& out) const;
+  /// Gauge pressure, Pa.
+  double pressure(const RingField& q) const;
+  /// Tangent of one segment's sidewall, N/m.
+  double slope(double u) const { return phi_ * (s_[1] + u * (2.0 * s_[2] + 3.0 * s_[3] * u)); }
+  /// Force of the sidewall on the rim, seen from the axle, N.
+  RingForce spindle(const RingField& q) const;
+  /// Round-off of an entry of the gradient, N: that of the belt's stiffness times the largest displacement.
+  double rounding(const RingField& q) const;
+
+ private:
+  double belt_energy(const RingField& q) const;
+  /// Calls visit(before, j, after) for all segments; its inner loop has no modulo.
+  template <class Visit>
+  void with_neighbours(Visit visit) const {
+    visit(n_ - 1, 0, 1);
+    for (int j = 1; j < n_ - 1; ++j) visit(j - 1, j, j + 1);
+    visit(n_ - 2, n_ - 1, 0);
+  }
+
+  RingParams params_;
+  int n_;
+  double phi_, growth_, radius_, volume_;
+  double first_, second_;                      // 1 / (2 sin φ), 1 / (2 (1 − cos φ))
+  double share_;                               // RφT, m²
+  std::array<double, 4> s_;                    // of (3), per radian
+  std::array<std::array<double, 4>, 3> belt_;  // uu, uv, vu, vv of the belt's blocks d = 0, 1, 2
+  std::vector<double> a_, b_;                  // of gradient(): B (D₁u + D₂v), A (D₁v − D₂u)
+};
+
+}  // namespace furrow::tire

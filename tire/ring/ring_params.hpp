@@ -1,0 +1,42 @@
+// What the flexible-ring tire is made of: fewer than ten numbers, all of them per radian of the belt where they belong
+// to a segment, so that they mean the same for any number of segments.
+//
+// The belt is a ring of radius R and width T whose displacements u (radial, outwards) and v (tangential) count from its
+// inflated, circular shape. Inflation has moved it outwards by the growth q from the radius R − q at which the sidewall
+// is at rest; the sidewall pulls with k₁w + k₂w² + k₃w³, w = u + q, and
+//   k₁q + k₂q² + k₃q³ = p R T,   R = R₀ + q,                                                                  (1)
+// balances the gauge pressure p: q is no number of its own. k₂ > 0 makes the sidewall stiffen with pressure and soften
+// when pressed; the sidewall's force grows with w everywhere while k₂² < 3 k₁k₃.
+#pragma once
+
+namespace furrow::tire {
+
+/// How a segment meets the ground: at its own angle, its tangential movement left out, or where it is.
+enum class RingKinematics { radial, exact };
+/// p V constant, or its tangent at the inflated volume.
+enum class RingGas { linearised, exact };
+
+struct RingParams {
+  int segments = 480;         // N
+  double radius = 0.0;        // R₀, not inflated, m
+  double width = 0.0;         // T, m
+  double air_share = 1.0;     // η: inflated volume / (π R² T)
+  double pressure = 0.0;      // p, gauge, Pa
+  double ambient = 101325.0;  // of the atmosphere, Pa
+  double bending = 0.0;       // A, N/m per radian
+  double shear = 0.0;         // B, N/m per radian
+  double sidewall_1 = 0.0;    // k₁, N/m per radian
+  double sidewall_2 = 0.0;    // k₂, N/m² per radian
+  double sidewall_3 = 0.0;    // k₃, N/m³ per radian
+  double tangential = 0.0;    // k_t, sidewall against tangential displacement, N/m per radian
+  RingGas gas = RingGas::exact;
+  RingKinematics kinematics = RingKinematics::exact;
+};
+
+inline constexpr int kMinSegments = 16, kMaxSegments = 20000;
+
+/// Growth q of (1), m; negative where nothing below half of the radius balances the pressure.
+/// @pre radius, width, k₁ > 0; k₂, k₃, pressure ≥ 0
+double ring_growth(const RingParams& params);
+
+}  // namespace furrow::tire

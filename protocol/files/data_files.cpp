@@ -38,7 +38,7 @@ std::filesystem::path find_file(const std::string& name, const std::string& key,
   } else {
     const std::filesystem::path data = data_folder();
     places = {scenario.parent_path() / given, data / "rigs" / given, data / "tire" / "data" / given,
-              data / "terrain" / "data" / given};
+              data / "terrain" / "data" / given, data / "vehicle" / "data" / given};
   }
   std::error_code error;
   for (const auto& place : places)

@@ -122,12 +122,12 @@ void visit_fields(Visit&& visit, FieldsOf<Stanley> auto& s) {
 
 using SteeringLaw = std::variant<PurePursuit, Stanley>;
 
-struct SteeringSpec {
+struct PathSteeringSpec {
   SteeringLaw law;
   double rate = 1.0;  // largest, of steering, 1/s
 };
 template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<SteeringSpec> auto& s) {
+void visit_fields(Visit&& visit, FieldsOf<PathSteeringSpec> auto& s) {
   visit(Field{"rate", "1/s", role::key}, s.rate);
 }
 
@@ -137,7 +137,7 @@ struct PathSpec {
   PathShape shape;
   double x = 0.0, y = 0.0;   // the path's origin, W, m
   double heading_deg = 0.0;  // of its x axis
-  SteeringSpec steering;
+  PathSteeringSpec steering;
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<PathSpec> auto& s) {

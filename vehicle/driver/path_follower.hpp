@@ -53,7 +53,7 @@ class PathFollower {
                      const DriverRecord& record) const;
 
   Path path_;
-  SteeringSpec spec_;
+  PathSteeringSpec spec_;
   DriverCar car_;
 };
 

@@ -148,8 +148,8 @@ std::variant<Choices...> read_choice(JsonReader& reader, const std::string& key,
   return chosen;
 }
 
-SteeringSpec read_steering(JsonReader reader) {
-  SteeringSpec spec;
+PathSteeringSpec read_steering(JsonReader reader) {
+  PathSteeringSpec spec;
   take_keys(reader, spec);
   above_zero(reader, "rate", spec.rate, 1e6);
   spec.law = read_choice(reader, "law", false, std::type_identity<SteeringLaw>());
@@ -234,8 +234,8 @@ DriverSpec read_driver(const std::filesystem::path& file) {
   return read_driver(load_json(file, "a driver in JSON or CSV"), file.string());
 }
 
-DriverSpec read_driver(const nlohmann::json& document, const std::string& file) {
-  JsonReader reader(document, file);
+DriverSpec read_driver(const nlohmann::json& document, const std::string& file, const std::string& key) {
+  JsonReader reader(document, file, key);
   reader.check_version(kFormatVersion, true);
   for (const char* key : {"$schema", "name", "inputs", "speed", "path"}) reader.skip(key);
   reader.finish();

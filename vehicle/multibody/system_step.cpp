@@ -209,6 +209,16 @@ Outcome System::solve_positions(double h, double end_time) {
   return failure("cannot satisfy its constraints", worst_row, worst);
 }
 
+/// The largest speed that the bodies would have without constraints: what round-off is measured by where they keep the
+/// bodies at rest.
+double System::base_speed() const {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < bodies_.size(); ++i)
+    largest = std::max({largest, base_[i].velocity.cwiseAbs().maxCoeff(),
+                        (bodies_[i].inertia_inverse_W * base_[i].angular_momentum).cwiseAbs().maxCoeff()});
+  return largest;
+}
+
 // Linear: P += S⁻¹ (∂φ/∂t target − G₁ v₁) until round-off; the repetition also removes the regularization.
 Outcome System::solve_velocities(double end_time) {
   const int constraints = static_cast<int>(constraint_rows_.size());
@@ -240,8 +250,10 @@ Outcome System::solve_velocities(double end_time) {
     // No longer falling: round-off reached, or the rates contradict each other.
     if (!std::isfinite(worst) || (iteration > 1 && worst > 0.25 * before)) {
       if (worst <= kVelocityLimit * std::max(scale, 1e-6)) return {};
-      if (!std::isfinite(worst) || worst > 0.9 * before)
+      if (!std::isfinite(worst) || worst > 0.9 * before) {
+        if (worst <= kVelocityLimit * base_speed()) return {};  // at rest under large forces
         return failure("cannot satisfy the rates of its constraints", worst_row, worst);
+      }
     }
     before = worst;
     solver_.solve(residual_, correction_);

@@ -217,7 +217,7 @@ TEST(DriverSchema, has_the_keys_that_the_program_reads) {
   EXPECT_EQ(keys_in(parts["circle"], {"kind"}), keys_of<CirclePath>());
   EXPECT_EQ(keys_in(parts["double_lane_change"], {"kind"}), keys_of<LaneChangePath>());
   EXPECT_EQ(keys_in(parts["waypoints"], {"kind"}), keys_of<WaypointPath>());
-  EXPECT_EQ(keys_in(parts["steering"], {"law"}), keys_of<SteeringSpec>());
+  EXPECT_EQ(keys_in(parts["steering"], {"law"}), keys_of<PathSteeringSpec>());
   EXPECT_EQ(keys_in(parts["pure_pursuit"], {"law"}), keys_of<PurePursuit>());
   EXPECT_EQ(keys_in(parts["stanley"], {"law"}), keys_of<Stanley>());
   EXPECT_EQ(parts["double_lane_change"]["properties"]["track"]["enum"], json(lane_change_names()));

@@ -1,6 +1,7 @@
 // What carries the tires: a test rig (or a vehicle) as a multibody assembly.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -19,6 +20,7 @@ namespace furrow::rigs {
 /// What every rig measures of wheel k over the last advance. Forces, torques, speed, spin and slip are means over
 /// it; positions, vertical speed and momentum, and drift are those of its end. Frame of the heading: e forward, l
 /// = z × e (left when looking along e), z up.
+/// A wheel of a vehicle shares what it carries with the others: its carried mass is that of its load at rest.
 struct WheelReport {
   double slip = 0.0;             // 1 − v/(ω r), r the undeformed radius; at most ±1e6, 0 at rest
   double speed = 0.0;            // of the wheel's carrier along the heading, m/s
@@ -27,7 +29,7 @@ struct WheelReport {
   double lateral_force = 0.0;    // on the rim by the tire, along l, N
   double aligning_moment = 0.0;  // on the rim by the tire, about z, N m
   double axle_height = 0.0;      // z of the rim centre, m
-  double axle_position = 0.0;    // along the heading, m
+  double axle_position = 0.0;    // along the heading, of a vehicle along the one that it starts with, m
   double vertical_speed = 0.0;   // of the wheel carrier, m/s
   double vertical_momentum = 0.0;  // of all mass that the wheel carries (carrier, rim, added tire), kg m/s
   double carried_mass = 0.0;       // kg, including the tire's added mass
@@ -55,6 +57,12 @@ void visit_fields(Visit&& visit, FieldsOf<WheelReport> auto& s) {
   visit(Field{"joint_drift", "m or rad"}, s.joint_drift);
   visit(Field{"gravity", "m/s²"}, s.gravity);
 }
+
+/// What a rig has to say in the live line.
+struct LiveNote {
+  double speed = std::numeric_limits<double>::quiet_NaN();  // m/s; not a number: that of the first wheel is shown
+  std::string text;                                         // "gear 2"
+};
 
 /// Something that a rig measures and that has a table of results: a wheel, a body, the vehicle.
 struct Subject {
@@ -90,7 +98,13 @@ class Rig {
   /// @pre placed; one wrench for each wheel; duration > 0, substeps > 0
   virtual Outcome advance(std::span<const Wrench> wrenches, double duration, int substeps) = 0;
 
+  /// At every synchronization after the first, before anything is measured: z of the lowest point of wheel k's tire and
+  /// of the undisturbed ground, m.
+  virtual void observe(int /*wheel*/, double /*lowest_point*/, double /*ground*/) {}
+
   virtual WheelReport report(int wheel) const = 0;
+
+  virtual LiveNote live() const { return {}; }
 
   /// @post every member is set and finite
   virtual RigAccounts accounts() const = 0;

@@ -18,12 +18,12 @@ namespace furrow::rigs {
 struct RigAccounts {
   static constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
   double kinetic_energy = kMissing;                 // J, now
-  double potential_energy = kMissing;               // of gravity, J, now
-  double drive_work = kMissing;                     // by what turns the wheels, J
+  double potential_energy = kMissing;               // of gravity and of the rig's springs, J, now
+  double drive_work = kMissing;                     // by what turns the wheels, of a vehicle by its engine, J
   double pull_work = kMissing;                      // by what moves the rig along against the tires' pull, J
   double guide_work = kMissing;                     // by rails, steering and whatever else is imposed, J
   double tire_work = kMissing;                      // by the tires' wrenches as the rig received them, J
-  double damper_loss = kMissing;                    // J
+  double damper_loss = kMissing;                    // by dampers and brakes, and in the driveline, J
   Vec3 momentum = Vec3::Constant(kMissing);         // kg m/s, now
   Vec3 gravity_impulse = Vec3::Constant(kMissing);  // N s
   Vec3 guide_impulse = Vec3::Constant(kMissing);    // by the ground through rails and drives, N s

@@ -2,6 +2,7 @@
 // tools know rigs by this interface and by Rig alone; rigs.cpp lists the kinds.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
@@ -27,6 +28,13 @@ struct MountedTire {
   double mass = 0.0;        // kg
   tire::RimProperties rim;  // as its file says
   std::string file;         // for messages
+  double width = 0.0;       // overall, m
+};
+
+/// A file that the section names, whose content decides results.
+struct RigFile {
+  std::string key;  // of the section: "vehicle"
+  std::filesystem::path path;
 };
 
 struct WheelDescription {
@@ -70,6 +78,7 @@ class RigSpec {
   /// bin from x = 0 to `length`, m; at x = 0 where there is no bin.
   virtual void fill_starts(std::span<const WheelSize> tires, double duration, std::optional<double> length,
                            std::span<const double> margins) = 0;
+  virtual std::vector<RigFile> files() const { return {}; }
   /// Writes what was filled in into the scenario's section.
   virtual void complete(nlohmann::json& section) const = 0;
 };

@@ -7,17 +7,26 @@
 #include "protocol/files/json_fields.hpp"
 #include "protocol/files/json_text.hpp"
 #include "rigs/drawbar_spec.hpp"
+#include "rigs/vehicle_spec.hpp"
 
 namespace furrow::rigs {
 namespace {
 
 constexpr auto kKinds = std::to_array<RigKind>({
     {"drawbar", {drawbar_fields, changed_fields<DrawbarRigOptions>}, read_drawbar},
+    {"vehicle", key_list<VehicleRigOptions>(), read_vehicle_rig, tires_of_vehicle},
 });
 
 }  // namespace
 
 std::span<const RigKind> rig_kinds() { return kKinds; }
+
+std::vector<WheelTire> tires_of_rig(const nlohmann::json& section, const ReadContext& context) {
+  if (!section.is_object() || !section.contains("type") || !section["type"].is_string()) return {};
+  for (const RigKind& kind : kKinds)
+    if (section["type"] == kind.name && kind.tires) return kind.tires(section, context);
+  return {};
+}
 
 std::vector<std::string> kinds_of_key(const std::string& key) {
   std::vector<std::string> kinds;

@@ -27,14 +27,27 @@ void visit_fields(Visit&& visit, FieldsOf<RigOptions> auto& s) {
   visit(Field{"drop_height", "m", role::key}, s.drop_height);
 }
 
+/// What the rig itself says of a wheel's tire.
+struct WheelTire {
+  nlohmann::json section;  // of the scenario, `tires.<k>`, where that says nothing else
+  int axle = 0;            // wheels of one axle may share an entry of `tires`
+};
+
 struct RigKind {
   const char* name;  // rig.type
   KeyList keys;      // of its options
   /// @pre the section was checked against the schema. @throws Error(bad_input) naming file and key
   std::unique_ptr<RigSpec> (*read)(const nlohmann::json& section, const ReadContext& context);
+  /// Of a kind whose wheels bring their tires, one for each wheel; empty where the section does not say enough. The
+  /// section was not checked. null: the scenario must say its tires. @throws Error(bad_input)
+  std::vector<WheelTire> (*tires)(const nlohmann::json& section, const ReadContext& context) = nullptr;
 };
 
 std::span<const RigKind> rig_kinds();
+
+/// The tires that the rig of a section brings; empty where it brings none. The section was not checked.
+/// @throws Error(bad_input)
+std::vector<WheelTire> tires_of_rig(const nlohmann::json& section, const ReadContext& context);
 
 /// The kinds that take this key of the section; empty for the keys that all share and for those that none has.
 std::vector<std::string> kinds_of_key(const std::string& key);

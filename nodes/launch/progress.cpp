@@ -45,6 +45,7 @@ std::string progress_text(const Progress& p) {
   std::string text = fmt::format("t {:.3f} of {:g} s", p.time, p.end);
   if (!std::isnan(p.pull)) text += fmt::format("   pull {} N", digits(p.pull));
   text += fmt::format("   sinkage {} mm   {} m/s", digits(1e3 * p.sinkage), digits(p.speed));
+  if (!p.note.empty()) text += "   " + p.note;
   if (p.eta >= 0.0 && p.share >= kShareForGuess) text += fmt::format("   {} left", duration_text(p.eta));
   return text;
 }

@@ -7,14 +7,15 @@
 namespace furrow::launch {
 
 struct Progress {
-  std::string phase;     // "settling", "running", …
-  double share = 0.0;    // of the phase, 0…1
-  double time = 0.0;     // simulated, s
-  double end = 0.0;      // s
-  double pull = 0.0;     // N; NaN: the rig measures none
-  double sinkage = 0.0;  // m
-  double speed = 0.0;    // m/s
-  double eta = -1.0;     // wall seconds left; negative: unknown
+  std::string phase;      // "settling", "running", …
+  double share = 0.0;     // of the phase, 0…1
+  double time = 0.0;      // simulated, s
+  double end = 0.0;       // s
+  double pull = 0.0;      // N; NaN: the rig measures none
+  double sinkage = 0.0;   // of the wheel that has sunk most, m
+  double speed = 0.0;     // m/s
+  double eta = -1.0;      // wall seconds left; negative: unknown
+  std::string note = {};  // what else the rig says: "gear 2"
 };
 
 using ProgressSink = std::function<void(const Progress&)>;

@@ -31,6 +31,7 @@ std::string encode(const RankLine& line) {
   if (line.kind == RankLine::Kind::progress) {
     const Progress& p = line.progress;
     j["phase"] = p.phase;
+    if (!p.note.empty()) j["note"] = p.note;
     j["values"] = {p.share, p.time, p.end, p.pull, p.sinkage, p.speed, p.eta};
   }
   std::string text = line.text, encoded;
@@ -58,6 +59,7 @@ std::optional<RankLine> decode(std::string_view text) {
     if (line.kind == RankLine::Kind::progress) {
       Progress& p = line.progress;
       p.phase = j.at("phase");
+      p.note = j.value("note", std::string());
       const json& v = j.at("values");
       double* const fields[] = {&p.share, &p.time, &p.end, &p.pull, &p.sinkage, &p.speed, &p.eta};
       for (std::size_t i = 0; i < std::size(fields); ++i)

@@ -88,7 +88,10 @@ class RigNode : public Node {
     terrain_ = terrain.state;
     time_ = header.time;
     keep_accounts(header, terrain);
-    if (header.step > 0) measure(header, terrain);
+    if (header.step > 0) {
+      for (int k = 0; k < wheels; ++k) rig_->observe(k, tires_[k].lowest_point, setup_.mean_height[k]);
+      measure(header, terrain);
+    }
     const bool line = header.step > 0 && series_steps_ > 0 && header.step % series_steps_ == 0;
     if (line) record();
     show_progress(header);
@@ -210,6 +213,10 @@ class RigNode : public Node {
     for (int k = 0; k < static_cast<int>(series_.size()); ++k) {
       const std::span<const double> line = series_[k].take(*rig_, k);
       if (k == 0) last_.assign(line.begin(), line.end());
+      if (k < rig_->wheel_count()) {
+        const double sinkage = LineView{series_[k].columns(), line}["sinkage_m"];
+        worst_sinkage_ = k == 0 ? sinkage : std::max(worst_sinkage_, sinkage);
+      }
       if (results_) results_->add(k, line);
     }
     if (results_) results_->add(static_cast<int>(series_.size()), accounts_->line());
@@ -226,8 +233,10 @@ class RigNode : public Node {
     p.end = scenario_.run.end;
     p.share = header.time / scenario_.run.end;
     p.pull = line["drawbar_pull_N"];
-    p.sinkage = line["sinkage_m"];
-    p.speed = line["speed_m_per_s"];
+    p.sinkage = worst_sinkage_;
+    const rigs::LiveNote note = rig_->live();
+    p.speed = std::isnan(note.speed) ? line["speed_m_per_s"] : note.speed;
+    p.note = note.text;
     p.eta = (now - wall_start_) * (p.end - p.time) / (p.time - time_start_);
     context_.progress(p);
   }
@@ -242,7 +251,8 @@ class RigNode : public Node {
   std::vector<output::SubjectSeries> series_;  // as rig_->subjects()
   std::optional<output::Accounts> accounts_;   // once the tables are made
   std::unique_ptr<output::Results> results_;
-  std::vector<double> last_;  // line of wheel 0
+  std::vector<double> last_;    // line of wheel 0
+  double worst_sinkage_ = 0.0;  // of the wheels' last lines, m
   std::int64_t series_steps_ = 0;
   checkpoint::WallSchedule checkpoints_;
   double wall_start_ = 0.0, shown_ = 0.0, checked_ = 0.0;  // wall time, s

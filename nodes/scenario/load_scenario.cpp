@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "nodes/scenario/model_keys.hpp"
+#include "nodes/scenario/rig_tires.hpp"
 #include "nodes/scenario/scenario_checks.hpp"
 #include "nodes/scenario/schema.hpp"
 #include "nodes/scenario/soil_material.hpp"
@@ -103,6 +104,7 @@ json read_document(const std::string& file, const Settings& settings) {
   if (std::none_of(settings.begin(), settings.end(), [&](const auto& one) { return one.first == soil; }))
     apply_soil_material(document, file);
   for (const auto& [key, text] : settings) {
+    if (key.starts_with("tires.") && !document.contains("tires")) fill_rig_tires(document, file);
     set_value(document, key, text, file);
     if (key == soil) override_soil_material(document, file);
   }
@@ -112,13 +114,14 @@ json read_document(const std::string& file, const Settings& settings) {
                       fmt::format("is {}: the file is newer than this program, expected at most {}",
                                   value_text(document["format_version"]), kFormatVersion));
   if (document.contains("vehicle"))
-    throw input_error(file, "vehicle", "whole vehicles are not available in this version, expected 'rig'");
+    throw input_error(file, "vehicle", "is no section, expected rig.vehicle beside rig.type 'vehicle'");
   return document;
 }
 
 /// Returns warnings of keys that were set aside.
 std::vector<std::string> complete(json& document, const std::string& file, const Settings& settings) {
   const Schema schema = Schema::load();
+  fill_rig_tires(document, file);
   schema.normalize(document);
   if (const auto problems = schema.problems(document); !problems.empty()) throw all_problems(file, problems);
   if (document.contains("tire") && document.contains("tires"))
@@ -149,8 +152,12 @@ void take_tires(const json& document, Scenario& s) {
   if (document.contains("tire"))
     s.tires.assign(s.rig->wheel_count(), tire::read_tire(document["tire"], {s.file.string(), "tire"}));
   else
-    for (std::size_t k = 0; k < document["tires"].size(); ++k)
-      s.tires.push_back(tire::read_tire(document["tires"][k], {s.file.string(), fmt::format("tires.{}", k)}));
+    for (std::size_t k = 0; k < document["tires"].size(); ++k) {
+      const json& section = document["tires"][k];
+      const bool as_before = k > 0 && section == document["tires"][k - 1];
+      s.tires.push_back(as_before ? s.tires.back()
+                                  : tire::read_tire(section, {s.file.string(), fmt::format("tires.{}", k)}));
+    }
   s.tire_substeps = s.tires.front()->options().substeps;
   for (std::size_t k = 0; k < s.tires.size(); ++k) {
     const tire::TireOptions& tire = s.tires[k]->options();
@@ -236,6 +243,7 @@ std::string digest_of(json completed, const Scenario& s) {
   for (const std::string& key : harmless_keys()) erase(completed, key);
   erase(completed, std::string("terrain.") + kSoilKey);  // its values stand in the other keys
   // Files count by what they hold, wherever they stand.
+  for (const rigs::RigFile& file : s.rig->files()) completed["rig"].erase(file.key);
   for (const terrain::TerrainFile& file : s.terrain->files()) completed["terrain"].erase(file.key);
   if (completed.contains("tire")) completed["tire"].erase("file");
   if (completed.contains("tires"))
@@ -261,6 +269,7 @@ void make_movable(json& document, const Scenario& s) {
   };
   for (const terrain::TerrainFile& file : s.terrain->files())
     full(document["terrain"][file.key], std::string("terrain.") + file.key);
+  for (const rigs::RigFile& file : s.rig->files()) full(document["rig"][file.key], "rig." + file.key);
   if (document["terrain"].contains(kSoilKey))
     full(document["terrain"][kSoilKey], std::string("terrain.") + kSoilKey);
   if (document.contains("tire")) full(document["tire"]["file"], "tire.file");

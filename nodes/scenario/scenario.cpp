@@ -17,6 +17,7 @@ std::vector<std::string> Scenario::file_hashes() const {
   for (const auto& tire : tires)
     hashes.push_back(text_hash(read_text_file(tire->options().file, "a tire file in JSON")));
   for (const terrain::TerrainFile& file : terrain->files()) hashes.push_back(file_hash(file.path));
+  for (const rigs::RigFile& file : rig->files()) hashes.push_back(file_hash(file.path));
   return hashes;
 }
 

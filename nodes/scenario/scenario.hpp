@@ -127,7 +127,7 @@ struct Scenario {
   /// @throws Error(bad_input) unless the terrain is made of grains; `what` says why it must be
   terrain::dem::DemOptions grains(const std::string& what) const;
 
-  /// Of what the tire files and the terrain's files hold, in this order.
+  /// Of what the tire files, the terrain's and the rig's files hold, in this order.
   std::vector<std::string> file_hashes() const;
 };
 

@@ -28,7 +28,7 @@ std::vector<rigs::MountedTire> mounted_tires(const Scenario& scenario,
   std::vector<rigs::MountedTire> mounted;
   for (std::size_t k = 0; k < tires.size(); ++k)
     mounted.push_back({tires[k].radius, tires[k].mass.mass, scenario.tires[k]->rim(),
-                       scenario.tires[k]->options().file.string()});
+                       scenario.tires[k]->options().file.string(), tires[k].width});
   return mounted;
 }
 

@@ -38,7 +38,7 @@ SCENARIOS = [
     ("unknown_law", text(terrain={"law": "hertz"}), [], "key 'terrain.law': is 'hertz', expected 'mindlin' or 'hertz_tanh'"),
     ("engine_of_later", text(terrain={"engine": "liggghts"}), [], "'liggghts' is not available in this version, expected 'dem' or 'rigid'"),
     ("two_terrain_ranks", text(terrain={"ranks": 2}), [], "key 'terrain.ranks': is 2, expected 1"),
-    ("vehicle", text(vehicle={"file": "hmmwv"}, rig=None), [], "key 'vehicle': whole vehicles are not available in this version, expected 'rig'"),
+    ("vehicle", text(vehicle={"file": "hmmwv"}, rig=None), [], "key 'vehicle': is no section, expected rig.vehicle beside rig.type 'vehicle'"),
     ("newer_format", text(format_version=2), [], "key 'format_version': is 2: the file is newer than this program"),
     ("no_tire", text(tire=None), [], "key 'tire': is missing"),
     ("no_tire_file_key", text(tire=None).replace('"terrain"', '"tire": {}, "terrain"'), [], "key 'tire.file': is missing"),

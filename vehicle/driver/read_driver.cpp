@@ -205,8 +205,8 @@ DriverSpec read_driver(const std::filesystem::path& file) {
   return read_driver(load_json(file, "a driver in JSON or CSV"), file.string());
 }
 
-DriverSpec read_driver(const nlohmann::json& document, const std::string& file) {
-  JsonReader reader(document, file);
+DriverSpec read_driver(const nlohmann::json& document, const std::string& file, const std::string& key) {
+  JsonReader reader(document, file, key);
   reader.check_version(kFormatVersion, true);
   for (const char* key : {"$schema", "name", "inputs", "speed", "path"}) reader.skip(key);
   reader.finish();

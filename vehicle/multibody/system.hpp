@@ -191,6 +191,7 @@ class System {
   Outcome solve_velocities(double end_time);
   Outcome move(double h);  // poses ← start poses moved by h v½
   void element_forces(double h, bool implicit);
+  double base_speed() const;  // m/s or rad/s
   Row line_row(const std::string& name, int a, int b, const Vec3& point_a, const Vec3& point_b) const;
   int add_actuator(const std::string& name, const Row& row, ActuatorLaw law);
   double row_rate(const Row& row, const RowJacobian& J) const;

@@ -124,7 +124,9 @@ void DriveTrain::add_motors(System& system, std::span<const Wheel> wheels) {
 void DriveTrain::set_inputs(System& system, const DriveInputs& inputs) {
   FURROW_ASSERT(std::abs(inputs.throttle) <= 1.0 && std::abs(inputs.steering) <= 1.0, inputs.throttle,
                 inputs.steering);
+  FURROW_ASSERT(inputs.gear >= 0, inputs.gear);
   selector_ = inputs.selector;
+  held_gear_ = inputs.gear;
   if (engine_) engine_->set_throttle(std::clamp(inputs.throttle, 0.0, 1.0));
   for (const FrictionCoupling& lock : locks_) lock.engage(system, inputs.lock ? 1.0 : 0.0);
   const double forward = selector_ == Selector::reverse ? -inputs.throttle : inputs.throttle;
@@ -139,6 +141,7 @@ int DriveTrain::wanted_gear(const System& system) {
   if (selector_ == Selector::neutral || (selector_ == Selector::reverse && !spec_.gearbox->reverse))
     return kNeutral;
   if (selector_ == Selector::reverse) return forward;
+  if (held_gear_ > 0) return std::min(held_gear_, forward) - 1;
   if (gear == kNeutral || gear == forward) return 0;
   const Shaft& in = system.shaft(shaft(spec_.gearbox->in));
   return logic_.wanted(gear, forward, in.state.speed, system.time());
@@ -174,6 +177,7 @@ double DriveTrain::loss(const System& system) const {
 
 void DriveTrain::save(Archive& archive) const {
   archive.put("selector", static_cast<std::int64_t>(selector_));
+  archive.put("held_gear", static_cast<std::int64_t>(held_gear_));
   archive.put("last_shift", logic_.last_shift);
   if (engine_) engine_->save(archive);
   if (gearbox_) gearbox_->save(archive);
@@ -185,6 +189,7 @@ void DriveTrain::save(Archive& archive) const {
 
 void DriveTrain::restore(const Archive& archive) {
   selector_ = static_cast<Selector>(archive.get_int("selector"));
+  held_gear_ = static_cast<int>(archive.get_int("held_gear"));
   logic_.last_shift = archive.get_double("last_shift");
   if (engine_) engine_->restore(archive);
   if (gearbox_) gearbox_->restore(archive);

@@ -26,6 +26,7 @@ struct DriveInputs {
   double steering = 0.0;  // −1 to 1, left positive: for skid steering
   Selector selector = Selector::drive;
   bool lock = false;  // of all differentials that can be
+  int gear = 0;       // forward gear to hold, from 1; 0: as the gearbox decides
 };
 
 class DriveTrain {
@@ -74,6 +75,7 @@ class DriveTrain {
   std::vector<FrictionCoupling> locks_;
   std::vector<WheelMotor> motors_;
   Selector selector_ = Selector::drive;
+  int held_gear_ = 0;  // DriveInputs::gear
 };
 
 }  // namespace furrow::vehicle

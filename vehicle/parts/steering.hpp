@@ -32,6 +32,8 @@ class Steering {
 
   int rods() const { return rods_; }    // body that the tie rods' inner ends are on
   int motor() const { return motor_; }  // of arm or rack
+  /// The coordinate that the motor moves, rad or m, at a time, s.
+  double coordinate(double time) const { return full_left_ * input(time).value; }
   /// The input and its rate at a time, s.
   Motion input(double time) const;
   /// From `time` on. @pre −1 ≤ target ≤ 1
@@ -54,6 +56,7 @@ class Steering {
 
   std::shared_ptr<Follower> follower_ = std::make_shared<Follower>();  // shared with the motor
   int rods_ = 0, motor_ = 0;
+  double full_left_ = 0.0;  // of the motor's coordinate, rad or m
 };
 
 }  // namespace furrow::vehicle

@@ -101,13 +101,28 @@ void Vehicle::set_inputs(const VehicleInputs& inputs) {
     if (brake) brake->engage(system_, inputs.brake);
   for (std::optional<Steering>& steering : steerings_)
     if (steering) steering->set_target(system_.time(), inputs.steering);
-  drive_->set_inputs(system_, {inputs.throttle, inputs.steering, inputs.selector, inputs.lock});
+  drive_->set_inputs(system_,
+                     {inputs.throttle, inputs.steering, inputs.selector, inputs.lock, inputs.gear});
 }
 
 void Vehicle::move(const Vec3& by) {
   for (int i = 0; i < system_.body_count(); ++i) {
     BodyState state = system_.body(i).state;
     state.position += by;
+    system_.set_state(i, state);
+  }
+  system_.assemble(system_.time());
+}
+
+void Vehicle::turn(double angle, const Vec3& about) {
+  FURROW_ASSERT(std::isfinite(angle), angle);
+  const Quat turn(Eigen::AngleAxisd(angle, Vec3::UnitZ()));
+  for (int i = 0; i < system_.body_count(); ++i) {
+    BodyState state = system_.body(i).state;
+    state.position = about + turn * (state.position - about);
+    state.orientation = (turn * state.orientation).normalized();
+    state.velocity = turn * state.velocity;
+    state.angular_velocity = turn * state.angular_velocity;
     system_.set_state(i, state);
   }
   system_.assemble(system_.time());

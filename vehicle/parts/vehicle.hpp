@@ -21,6 +21,7 @@ struct VehicleInputs {
   double steering = 0.0;  // −1 to 1, left positive
   Selector selector = Selector::drive;
   bool lock = false;  // of all differentials that can be
+  int gear = 0;       // forward gear to hold, from 1; 0: as the gearbox decides
 };
 
 class Vehicle {
@@ -43,6 +44,7 @@ class Vehicle {
   }
   /// Of each axle; none where it is not steered.
   std::optional<Steering>& steering(int axle) { return steerings_[axle]; }
+  const std::optional<Steering>& steering(int axle) const { return steerings_[axle]; }
   DriveTrain& drive() { return *drive_; }
   const DriveTrain& drive() const { return *drive_; }
   /// Of each wheel; none where it has none.
@@ -63,6 +65,8 @@ class Vehicle {
   void set_inputs(const VehicleInputs& inputs);
   /// Moves everything by a displacement, m.
   void move(const Vec3& by);
+  /// Turns everything about the upright line through a point, rad.
+  void turn(double angle, const Vec3& about);
   Outcome step(double h);
 
   void save(Archive& archive) const;

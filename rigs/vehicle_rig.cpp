@@ -1,0 +1,493 @@
+#include "rigs/vehicle_rig.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "protocol/core/archive_fields.hpp"
+#include "protocol/core/assert.hpp"
+#include "protocol/core/error.hpp"
+#include "protocol/core/mean_turn.hpp"
+#include "rigs/rut_trace.hpp"
+#include "rigs/vehicle_driving.hpp"
+#include "rigs/vehicle_rows.hpp"
+#include "rigs/vehicle_start.hpp"
+#include "vehicle/analysis/held_vehicle.hpp"
+#include "vehicle/analysis/wheel_angles.hpp"
+#include "vehicle/driver/driver_car.hpp"
+#include "vehicle/driver/file_driver.hpp"
+#include "vehicle/parts/vehicle_energy.hpp"
+
+namespace furrow::rigs {
+namespace {
+
+constexpr double kSlipLimit = 1e6;      // reported instead of larger magnitudes when the wheel hardly turns
+constexpr double kStandsFroude = 0.01;  // v/√(g r) below which a wheel stands
+constexpr double kTraceSpacing = 0.05;  // of ruts, in radii
+constexpr double kTraceDepth = 1e-3;    // in radii, below which there is no rut
+
+/// A row in speeds that turns a wheel, with what its torque does to the wheel.
+struct WheelRow {
+  int row = 0;
+  double factor = 1.0;
+  bool brake = false;
+};
+
+struct MountedMass {
+  MassProperties mass;
+  double radius = 0.0;  // undeformed, m
+};
+
+/// What is saved of a wheel besides the vehicle's own state.
+struct WheelRecord {
+  WheelReport report;
+  VehicleWheelRow row;
+  double load = 0.0;  // at rest, N
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<WheelRecord> auto& s) {
+  visit(Field{"report", ""}, s.report);
+  visit(Field{"row", ""}, s.row);
+  visit(Field{"load", "N"}, s.load);
+}
+
+struct VehicleRecord {
+  VehicleRow row;
+  RigAccounts accounts = RigAccounts::none();
+  vehicle::DriverInputs inputs;
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<VehicleRecord> auto& s) {
+  visit(Field{"row", ""}, s.row);
+  visit(Field{"accounts", ""}, s.accounts);
+  visit(Field{"inputs", ""}, s.inputs);
+}
+
+/// What a wheel does in one advance: sums over the substeps.
+struct WheelSums {
+  double turned = 0.0, torque = 0.0, brake = 0.0, spring = 0.0, shock = 0.0;  // rad; N m, N times substeps
+  Vec3 from = Vec3::Zero();                                                   // of its centre, m
+};
+
+class VehicleRig final : public Rig {
+ public:
+  explicit VehicleRig(const VehicleRigPlan& plan)
+      : plan_(plan), tires_(2 * plan.vehicle.axles.size()), wheels_(tires_.size()) {}
+
+  std::string kind() const override { return "vehicle"; }
+  int wheel_count() const override { return static_cast<int>(tires_.size()); }
+  Vec3 heading(int wheel) const override;
+  void add_tire_mass(int wheel, const MassProperties& tire, double tire_radius) override;
+  void place(std::span<const double> axle_height) override;
+  RimState rim(int wheel) const override;
+  Outcome advance(std::span<const Wrench> wrenches, double duration, int substeps) override;
+  void observe(int wheel, double lowest_point, double ground) override;
+  WheelReport report(int wheel) const override { return wheels_.at(wheel).report; }
+  LiveNote live() const override;
+  RigAccounts accounts() const override;
+  std::vector<Subject> subjects() const override;
+  void measure(int subject, std::span<double> values) const override;
+  void save(Archive& archive) const override;
+  void restore(const Archive& archive) override;
+
+ private:
+  void check_built() const;
+  void build();
+  void find_wheel_rows();
+  void drive();
+  bool let_down() const;
+  double damping() const;
+  Outcome step(std::span<const Wrench> wrenches, double h, std::vector<WheelSums>& sums);
+  void book(std::span<const RimState> before, std::span<const Wrench> wrenches, double h);
+  void add_to(WheelSums& sum, int k, const RimState& before) const;
+  void measure_wheel(int k, const Wrench& wrench, const WheelSums& sums, double duration, int substeps);
+  void measure_wheel_end(int k);
+  void measure_vehicle(const Vec3& origin, const Vec3& momentum, double duration);
+  void measure_vehicle_end();
+
+  VehicleRigPlan plan_;
+  std::vector<MountedMass> tires_;
+  std::vector<WheelRecord> wheels_;
+  VehicleRecord record_;
+
+  std::unique_ptr<vehicle::Vehicle> car_;  // built by place() or restore()
+  std::unique_ptr<vehicle::Driver> driver_;
+  std::vector<std::vector<WheelRow>> rows_;  // of each wheel
+  std::vector<RutTrace> traces_;             // of each wheel
+  Vec3 seat_ = Vec3::Zero();                 // of the driver's view, in the vehicle's frame, m
+};
+
+void VehicleRig::check_built() const {
+  if (!car_) throw physics_error("vehicle rig: it must be placed before it moves");
+}
+
+void VehicleRig::add_tire_mass(int wheel, const MassProperties& tire, double tire_radius) {
+  FURROW_ASSERT(in_range(wheel, tires_.size()), wheel, tires_.size());
+  FURROW_ASSERT(tire.mass >= 0.0 && tire.inertia.allFinite(), tire.mass);
+  if (car_) throw physics_error("vehicle rig: tire mass must be added before the rig is placed");
+  if (!(tire_radius > 0.0)) throw physics_error("vehicle rig: the tire radius must be positive");
+  tires_[wheel] = {tire, tire_radius};
+}
+
+void VehicleRig::build() {
+  car_ = std::make_unique<vehicle::Vehicle>(plan_.vehicle, plan_.gravity);
+  std::vector<double> radii;
+  traces_.clear();
+  for (int k = 0; k < wheel_count(); ++k) {
+    if (!(tires_[k].radius > 0.0))
+      throw physics_error("vehicle rig: the tires' masses and radii must be added before placing");
+    car_->add_tire_mass(k, tires_[k].mass);
+    radii.push_back(tires_[k].radius);
+    traces_.emplace_back(kTraceSpacing * tires_[k].radius,
+                         plan_.tire_width > 0.0 ? 0.5 * plan_.tire_width : 0.5 * tires_[k].radius);
+  }
+  car_->system().assemble(0.0);
+  seat_ = vehicle::rear_axle_middle(plan_.vehicle);
+  if (plan_.driver)
+    driver_ = vehicle::make_driver(*plan_.driver,
+                                   vehicle::driver_car(plan_.vehicle, radii, plan_.tire_width, car_->mass()));
+  find_wheel_rows();
+}
+
+/// Rows in speeds act on a wheel's spindle as their second body, about the axle as it was when they were added.
+void VehicleRig::find_wheel_rows() {
+  rows_.assign(wheel_count(), {});
+  const vehicle::System& system = car_->system();
+  for (int k = 0; k < wheel_count(); ++k)
+    for (int i = 0; i < system.rate_row_count(); ++i)
+      for (const vehicle::SpinTerm& term : system.rate_row(i).spins)
+        if (term.b == car_->wheel(k).spindle) {
+          const bool brake = car_->brake(k) && car_->brake(k)->row() == i;
+          rows_[k].push_back({i, term.factor * term.axis.y(), brake});
+        }
+}
+
+void VehicleRig::place(std::span<const double> axle_height) {
+  if (axle_height.size() != tires_.size())
+    throw physics_error(fmt::format("vehicle rig: expected {} axle heights", tires_.size()));
+  if (!car_) {
+    build();
+    std::vector<double> radii;
+    for (const MountedMass& tire : tires_) radii.push_back(tire.radius);
+    const vehicle::Trim trim = stand(*car_, radii);
+    for (int k = 0; k < wheel_count(); ++k) wheels_[k].load = trim.wheels[k].load;
+    car_->turn(plan_.options.heading, car_->origin());
+    const Vec3 origin = car_->origin();
+    car_->move(Vec3(plan_.options.start - origin.x(), plan_.options.lateral - origin.y(), 0.0));
+  }
+  double up = -std::numeric_limits<double>::infinity();
+  for (int k = 0; k < wheel_count(); ++k) {
+    if (!std::isfinite(axle_height[k])) throw physics_error("vehicle rig: an axle height is not finite");
+    up = std::max(up, axle_height[k] - car_->rim(k).position.z());
+  }
+  car_->move(Vec3(0.0, 0.0, up));
+  record_ = {};
+  record_.inputs = parked();
+  for (WheelRecord& wheel : wheels_) wheel = {{}, {}, wheel.load};
+  for (int k = 0; k < wheel_count(); ++k) measure_wheel_end(k);
+  measure_vehicle_end();
+}
+
+RimState VehicleRig::rim(int wheel) const {
+  check_built();
+  return car_->rim(wheel);
+}
+
+Vec3 VehicleRig::heading(int wheel) const {
+  check_built();
+  const Vec3 axle = vehicle::spin_axis(*car_, wheel);
+  return Vec3(axle.y(), -axle.x(), 0.0).normalized();
+}
+
+void VehicleRig::drive() {
+  if (driver_) record_.inputs = driver_->drive(driver_view(*car_, seat_));
+  car_->set_inputs(vehicle_inputs(record_.inputs));
+}
+
+bool VehicleRig::let_down() const {
+  return plan_.options.lowering_speed > 0.0 && car_->system().time() < plan_.options.touchdown_time;
+}
+
+double VehicleRig::damping() const {
+  return car_->mass() * plan_.gravity.norm() / plan_.options.lowering_speed;
+}
+
+Outcome VehicleRig::advance(std::span<const Wrench> wrenches, double duration, int substeps) {
+  check_built();
+  FURROW_ASSERT(wrenches.size() == tires_.size(), wrenches.size(), tires_.size());
+  FURROW_ASSERT(substeps >= 1 && duration > 0.0, substeps, duration);
+  for (const Wrench& wrench : wrenches)
+    if (!wrench.force.allFinite() || !wrench.moment.allFinite())
+      return Outcome::failure("was pulled with a wrench that is not finite",
+                              "it comes from a tire; try a smaller run.step");
+  drive();
+  const Vec3 origin = car_->origin(), momentum = car_->system().momentum();
+  const double drive_work = car_->drive().work(car_->system()), tire_work = record_.accounts.tire_work;
+  std::vector<WheelSums> sums(wheel_count());
+  for (int k = 0; k < wheel_count(); ++k) {
+    car_->set_wrench(k, wrenches[k]);
+    sums[k].from = car_->rim(k).position;
+  }
+  VehicleRow& row = record_.row;
+  row.shifting = row.engine_speed = row.engine_torque = 0.0;
+  for (int i = 0; i < substeps; ++i)
+    if (Outcome outcome = step(wrenches, duration / substeps, sums); !outcome.ok) return outcome;
+  row.shifting /= substeps;
+  row.engine_speed /= substeps;
+  row.engine_torque /= substeps;
+  row.engine_power = (car_->drive().work(car_->system()) - drive_work) / duration;
+  row.soil_power = (tire_work - record_.accounts.tire_work) / duration;
+  row.wheel_power = 0.0;
+  for (int k = 0; k < wheel_count(); ++k) {
+    measure_wheel(k, wrenches[k], sums[k], duration, substeps);
+    row.wheel_power += wheels_[k].report.drive_torque * wheels_[k].report.spin;
+  }
+  measure_vehicle(origin, momentum, duration);
+  return {};
+}
+
+Outcome VehicleRig::step(std::span<const Wrench> wrenches, double h, std::vector<WheelSums>& sums) {
+  FURROW_ASSERT(sums.size() == tires_.size(), sums.size(), tires_.size());
+  vehicle::System& system = car_->system();
+  const vehicle::BodyState& chassis = system.body(car_->chassis()).state;
+  const double lift = let_down() ? -damping() * chassis.velocity.z() : 0.0, height = chassis.position.z();
+  system.set_load(car_->chassis(), Vec3(0.0, 0.0, lift), Vec3::Zero());
+  std::vector<RimState> before;
+  for (int k = 0; k < wheel_count(); ++k) before.push_back(car_->rim(k));
+  if (Outcome outcome = car_->step(h); !outcome.ok) return outcome;
+  record_.row.lowering_heat -= lift * (chassis.position.z() - height);
+  record_.accounts.guide_impulse.z() += h * lift;
+  book(before, wrenches, h);
+  for (int k = 0; k < wheel_count(); ++k) add_to(sums[k], k, before[k]);
+  VehicleRow& row = record_.row;
+  const vehicle::DriveTrain& drive = car_->drive();
+  if (drive.engine()) {
+    row.engine_speed += system.shaft(drive.shaft(plan_.vehicle.driveline.engine->shaft)).state.speed;
+    row.engine_torque += drive.engine()->torque(system);
+  }
+  if (drive.gearbox() && drive.gearbox()->shifting()) row.shifting += 1.0;
+  return {};
+}
+
+/// Works and impulses of a step: mean force times way.
+void VehicleRig::book(std::span<const RimState> before, std::span<const Wrench> wrenches, double h) {
+  FURROW_ASSERT(before.size() == wrenches.size() && h > 0.0, before.size(), h);
+  const vehicle::System& system = car_->system();
+  RigAccounts& a = record_.accounts;
+  for (int k = 0; k < wheel_count(); ++k) {
+    const RimState now = car_->rim(k);
+    a.tire_work += wrenches[k].force.dot(now.position - before[k].position) +
+                   wrenches[k].moment.dot(mean_turn(before[k].orientation, now.orientation));
+    a.tire_impulse += h * wrenches[k].force;
+  }
+  for (int axle = 0; axle < wheel_count() / 2; ++axle)
+    if (const auto& steering = std::as_const(*car_).steering(axle))
+      a.guide_work += system.motor_force(steering->motor()) *
+                      (steering->coordinate(system.time()) - steering->coordinate(system.time() - h));
+  a.gravity_impulse += h * car_->mass() * plan_.gravity;
+}
+
+void VehicleRig::add_to(WheelSums& sum, int k, const RimState& before) const {
+  const vehicle::System& system = car_->system();
+  const vehicle::Wheel& wheel = car_->wheel(k);
+  const Eigen::AngleAxisd turn(car_->rim(k).orientation * before.orientation.conjugate());
+  sum.turned += turn.angle() * turn.axis().dot(vehicle::spin_axis(*car_, k));
+  for (const WheelRow& one : rows_[k]) {
+    const double torque = one.factor * system.rate_state(one.row).torque;
+    sum.torque += torque;
+    if (one.brake) sum.brake += torque;
+  }
+  if (wheel.spring) sum.spring += system.element_force(*wheel.spring);
+  if (wheel.shock) sum.shock += system.element_force(*wheel.shock);
+}
+
+void VehicleRig::measure_wheel(int k, const Wrench& wrench, const WheelSums& sums, double duration,
+                               int substeps) {
+  FURROW_ASSERT(in_range(k, wheels_.size()), k, wheels_.size());
+  WheelReport& report = wheels_[k].report;
+  VehicleWheelRow& row = wheels_[k].row;
+  const Vec3 forward = heading(k), left = Vec3::UnitZ().cross(forward);
+  const double radius = tires_[k].radius;
+  report.speed = forward.dot(car_->rim(k).position - sums.from) / duration;
+  report.spin = sums.turned / duration;
+  const double rolled = report.spin * radius, slid = rolled - report.speed;
+  const double stands = kStandsFroude * std::sqrt(plan_.gravity.norm() * radius);
+  if (std::abs(rolled) < stands && std::abs(report.speed) < stands)
+    report.slip = 0.0;
+  else if (std::abs(slid) <= kSlipLimit * std::abs(rolled))
+    report.slip = slid / rolled;
+  else
+    report.slip = (slid > 0.0) == (rolled > 0.0) ? kSlipLimit : -kSlipLimit;
+  report.drive_torque = sums.torque / substeps;
+  report.lateral_force = wrench.force.dot(left);
+  report.aligning_moment = wrench.moment.z();
+  row.brake_torque = sums.brake / substeps;
+  row.spring_force = sums.spring / substeps;
+  row.shock_force = sums.shock / substeps;
+  measure_wheel_end(k);
+}
+
+void VehicleRig::measure_wheel_end(int k) {
+  const vehicle::System& system = car_->system();
+  const vehicle::Body& chassis = system.body(car_->chassis());
+  const vehicle::Wheel& wheel = car_->wheel(k);
+  const vehicle::Body& spindle = system.body(wheel.spindle);
+  WheelReport& report = wheels_[k].report;
+  VehicleWheelRow& row = wheels_[k].row;
+  const double psi = plan_.options.heading, outward = vehicle::outward(wheel.side);
+  report.axle_height = spindle.state.position.z();
+  report.axle_position = Vec3(std::cos(psi), std::sin(psi), 0.0).dot(spindle.state.position);
+  report.vertical_speed = system.body(wheel.carrier).state.velocity.z();
+  report.carried_mass = wheels_[k].load / plan_.gravity.norm();
+  report.vertical_momentum = spindle.mass * spindle.state.velocity.z() +
+                             (report.carried_mass - spindle.mass) * chassis.state.velocity.z();
+  report.joint_drift = system.max_violation();
+  report.gravity = plan_.gravity;
+  const Vec3 axle = chassis.R.transpose() * vehicle::spin_axis(*car_, k),
+             center = chassis.R.transpose() * (spindle.state.position - car_->origin());
+  row.travel = center.z() - vehicle::spindle_of(wheel.corner->suspension).center.z();
+  row.camber = vehicle::camber_angle(axle, outward);
+  row.toe = vehicle::toe_angle(axle, outward);
+  row.steer = vehicle::steer_angle(axle);
+}
+
+void VehicleRig::observe(int k, double lowest_point, double ground) {
+  FURROW_ASSERT(in_range(k, wheels_.size()), k, wheels_.size());
+  const Vec3 at = rim(k).position;
+  double bottom = ground;
+  for (int other = 0; other < wheel_count(); ++other)
+    if (const auto rut = other == k ? std::nullopt : traces_[other].bottom(at.x(), at.y()))
+      bottom = std::min(bottom, *rut);
+  wheels_[k].row.sinkage_in_rut = bottom - lowest_point;
+  if (ground - lowest_point > kTraceDepth * tires_[k].radius)
+    traces_[k].add(Vec3(at.x(), at.y(), lowest_point));
+}
+
+void VehicleRig::measure_vehicle(const Vec3& origin, const Vec3& momentum, double duration) {
+  FURROW_ASSERT(duration > 0.0, duration);
+  const double psi = yaw_of(*car_);
+  const Vec3 forward(std::cos(psi), std::sin(psi), 0.0), left(-forward.y(), forward.x(), 0.0);
+  const Vec3 way = car_->origin() - origin, gain = car_->system().momentum() - momentum;
+  VehicleRow& row = record_.row;
+  row.distance += std::hypot(way.x(), way.y());
+  row.speed = forward.dot(way) / duration;
+  row.lateral_speed = left.dot(way) / duration;
+  row.acceleration = forward.dot(gain) / (car_->mass() * duration);
+  row.lateral_acceleration = left.dot(gain) / (car_->mass() * duration);
+  row.yaw_rate = std::remainder(psi - row.yaw, 2.0 * std::numbers::pi) / duration;
+  row.throttle = record_.inputs.throttle;
+  row.brake = record_.inputs.brake;
+  row.steering = record_.inputs.steering;
+  if (driver_) {
+    const vehicle::DriverRecord& driver = driver_->record();
+    row.target_speed = driver.target_speed;
+    row.path_distance = driver.path_distance;
+    row.cross_track = driver.cross_track;
+    row.heading_error = driver.heading_error;
+  }
+  measure_vehicle_end();
+}
+
+void VehicleRig::measure_vehicle_end() {
+  const Mat3& R = car_->system().body(car_->chassis()).R;
+  const Vec3 origin = car_->origin();
+  VehicleRow& row = record_.row;
+  row.x = origin.x();
+  row.y = origin.y();
+  row.z = origin.z();
+  row.roll = std::atan2(R(2, 1), R(2, 2));
+  row.pitch = -std::asin(std::clamp(R(2, 0), -1.0, 1.0));
+  row.yaw = yaw_of(*car_);
+  row.gear = gear_of(*car_, record_.inputs);
+  const vehicle::VehicleEnergy energy = vehicle::vehicle_energy(*car_);
+  row.drive_work = energy.drive_work;
+  row.converter_heat = energy.converter_heat;
+  row.clutch_heat = energy.clutch_heat;
+  row.shift_heat = energy.shift_heat;
+  row.brake_heat = energy.brake_heat;
+  row.shock_heat = energy.shock_heat;
+  row.spring_energy = energy.springs;
+}
+
+LiveNote VehicleRig::live() const {
+  const int gear = static_cast<int>(record_.row.gear);
+  LiveNote note;
+  note.speed = record_.row.speed;
+  if (!car_->drive().gearbox()) return note;
+  note.text = gear < 0 ? "reverse" : gear == 0 ? "neutral" : fmt::format("gear {}", gear);
+  return note;
+}
+
+RigAccounts VehicleRig::accounts() const {
+  check_built();
+  const vehicle::VehicleEnergy energy = vehicle::vehicle_energy(*car_);
+  RigAccounts now = record_.accounts;
+  now.kinetic_energy = energy.kinetic;
+  now.potential_energy = energy.gravity + energy.springs;
+  now.drive_work = energy.drive_work;
+  now.damper_loss = energy.lost() + record_.row.lowering_heat;
+  now.momentum = car_->system().momentum();
+  return now;
+}
+
+std::vector<Subject> VehicleRig::subjects() const {
+  std::vector<Subject> all = plain_wheels(wheel_count());
+  for (Subject& wheel : all) wheel.columns = columns_of<VehicleWheelRow>();
+  all.push_back({"vehicle", columns_of<VehicleRow>()});
+  return all;
+}
+
+void VehicleRig::measure(int subject, std::span<double> values) const {
+  FURROW_ASSERT(subject >= 0 && subject <= wheel_count(), subject, wheel_count());
+  if (subject < wheel_count())
+    get_values(wheels_[subject].row, values);
+  else
+    get_values(record_.row, values);
+}
+
+void VehicleRig::save(Archive& archive) const {
+  check_built();
+  const Archive::Scope scope(archive, "rig/");
+  {
+    const Archive::Scope inner(archive, "vehicle/");
+    car_->save(archive);
+  }
+  if (driver_) driver_->save(archive);
+  save_fields(archive, "record", record_);
+  archive.put("mass", car_->mass());
+  for (int k = 0; k < wheel_count(); ++k) {
+    save_fields(archive, fmt::format("wheel{}", k), wheels_[k]);
+    traces_[k].save(archive, fmt::format("rut{}", k));
+  }
+}
+
+void VehicleRig::restore(const Archive& archive) {
+  const Archive::Scope scope(archive, "rig/");
+  build();
+  if (archive.get_double("mass") != car_->mass())
+    throw Error(ExitCode::io, "saved rig state belongs to other tires (their masses differ)");
+  {
+    const Archive::Scope inner(archive, "vehicle/");
+    car_->restore(archive);
+  }
+  if (driver_) driver_->restore(archive);
+  restore_fields(archive, "record", record_);
+  for (int k = 0; k < wheel_count(); ++k) {
+    restore_fields(archive, fmt::format("wheel{}", k), wheels_[k]);
+    traces_[k].restore(archive, fmt::format("rut{}", k));
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<Rig> make_vehicle_rig(const VehicleRigPlan& plan) {
+  FURROW_ASSERT(plan.options.lowering_speed >= 0.0 && plan.options.touchdown_time >= 0.0,
+                plan.options.lowering_speed, plan.options.touchdown_time);
+  return std::make_unique<VehicleRig>(plan);
+}
+
+}  // namespace furrow::rigs

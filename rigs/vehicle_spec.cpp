@@ -1,0 +1,294 @@
+#include "rigs/vehicle_spec.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "protocol/core/assert.hpp"
+#include "protocol/core/error.hpp"
+#include "protocol/files/data_files.hpp"
+#include "protocol/files/json_fields.hpp"
+#include "protocol/files/json_text.hpp"
+#include "rigs/vehicle_rig.hpp"
+#include "rigs/vehicle_start.hpp"
+#include "vehicle/driver/driver_car.hpp"
+#include "vehicle/driver/read_driver.hpp"
+#include "vehicle/driver/speed_control.hpp"
+#include "vehicle/driver/write_driver.hpp"
+#include "vehicle/spec/read_vehicle.hpp"
+
+namespace furrow::rigs {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kLoweringFroude = 0.18;  // v/√(g R) at which the vehicle is let down: drawbar_mount.hpp
+constexpr double kLoweringTime = 1.6;     // √(R/g), how long the damper acts
+
+bool says(const json& section, const char* name) {
+  const auto entry = section.find(name);
+  return entry != section.end() && !entry->is_null();
+}
+
+std::filesystem::path vehicle_file(const json& section, const ReadContext& context) {
+  if (!says(section, "vehicle"))
+    throw input_error(context.file, context.key("vehicle"),
+                      "is missing, expected the name of a vehicle's file: hmmwv.json");
+  return find_file(section["vehicle"].get<std::string>(), context.key("vehicle"), context.file);
+}
+
+/// A driver's file, or its content within the scenario, which may leave its version out.
+std::optional<vehicle::DriverSpec> read_driver_of(const json& driver, const ReadContext& context) {
+  const std::string key = context.key("driver");
+  if (driver.is_null()) return std::nullopt;
+  if (driver.is_string())
+    return vehicle::read_driver(find_file(driver.get<std::string>(), key, context.file));
+  json document = driver;
+  if (!document.contains("format_version")) document["format_version"] = 1;
+  return vehicle::read_driver(document, context.file, key);
+}
+
+class VehicleRigSpec final : public RigSpec {
+ public:
+  VehicleRigSpec(VehicleRigPlan plan, std::filesystem::path file, ReadContext context)
+      : plan_(std::move(plan)), file_(std::move(file)), context_(std::move(context)) {
+    check_driver();
+    attempt([&] {
+      const vehicle::Vehicle car(plan_.vehicle, plan_.gravity);
+      bodies_ = car.system().body_count();
+      for (int k = 0; k < car.wheel_count(); ++k) {
+        wheels_.emplace_back();
+        wheels_.back().center = vehicle::spindle_of(car.wheel(k).corner->suspension).center;
+      }
+    });
+  }
+
+  std::size_t wheel_count() const override { return wheels_.size(); }
+  void mount(std::span<const MountedTire> tires) override;
+  RigDescription describe(std::span<const WheelSize> tires, double duration) const override;
+  std::unique_ptr<Rig> make() const override { return make_vehicle_rig(plan_); }
+  void fill_starts(std::span<const WheelSize> tires, double duration, std::optional<double> length,
+                   std::span<const double> margins) override;
+  std::vector<RigFile> files() const override { return {{"vehicle", file_}}; }
+  void complete(json& section) const override;
+
+  bool start_given = true;
+  bool drops = false;  // rig.drop_height is above zero
+
+ private:
+  struct WheelPlace {
+    Vec3 center = Vec3::Zero();  // in the vehicle's frame, m
+    double load = 0.0;           // at rest, N
+    double camber = 0.0, toe = 0.0;
+    double tire_mass = 0.0;  // kg
+  };
+
+  /// What a vehicle of this file cannot do is the file's fault. @throws Error(bad_input)
+  template <class Work>
+  void attempt(const Work& work) const {
+    try {
+      work();
+    } catch (const Error& error) {
+      throw input_error(context_.file, context_.key("vehicle"),
+                        fmt::format("is {}, which cannot be used: {}", file_.string(), error.what()));
+    }
+  }
+  void check_driver() const;
+  void check_gears() const;
+  Vec3 place_of(std::size_t wheel) const;
+  double travel(double duration) const;
+  double top_speed() const;
+  bool steers() const;
+  WheelDescription wheel(std::size_t k, const WheelSize& tire, double duration) const;
+
+  VehicleRigPlan plan_;
+  std::filesystem::path file_;
+  ReadContext context_;
+  std::vector<WheelPlace> wheels_;
+  int bodies_ = 0;
+  double lock_ = 0.0;  // mean angle of the steered wheels at the steering's end, rad
+};
+
+void VehicleRigSpec::check_gears() const {
+  const std::string& name = plan_.vehicle.name;
+  const auto& gearbox = plan_.vehicle.driveline.gearbox;
+  const int gears = gearbox ? static_cast<int>(gearbox->ratios.size()) : 1;
+  for (const auto& [time, gear] : plan_.driver->inputs.gear) {
+    if (gear == vehicle::gear_request::reverse && gearbox && !gearbox->reverse)
+      throw input_error(
+          context_.file, context_.key("driver"),
+          fmt::format(
+              "asks for gear -1 at {} s, expected 0 to {} or 'auto': the vehicle {} has no reverse gear",
+              number_text(time), gears, name));
+    if (gear > gears)
+      throw input_error(
+          context_.file, context_.key("driver"),
+          fmt::format("asks for gear {} at {} s, expected at most {}: the vehicle {} has {}",
+                      number_text(gear), number_text(time), gears, name, gearbox ? "no more" : "no gearbox"));
+  }
+}
+
+void VehicleRigSpec::check_driver() const {
+  if (!plan_.driver) return;
+  check_gears();
+  const auto refuse = [&](const char* what, const char* lacks) {
+    throw input_error(context_.file, context_.key("driver"),
+                      fmt::format("{}, expected a driver that does not: the vehicle {} has {}", what,
+                                  plan_.vehicle.name, lacks));
+  };
+  if (plan_.driver->path && !vehicle::can_steer(plan_.vehicle)) refuse("follows a path", "no steering");
+  if (plan_.driver->speed && !vehicle::can_drive(plan_.vehicle))
+    refuse("holds a speed", "neither engine nor motors");
+}
+
+/// With the tires' masses it can be seen how the vehicle stands.
+void VehicleRigSpec::mount(std::span<const MountedTire> tires) {
+  FURROW_ASSERT(tires.size() == wheels_.size(), tires.size(), wheels_.size());
+  std::vector<double> radii;
+  double mass = 0.0, largest = 0.0;
+  for (const MountedTire& tire : tires) {
+    radii.push_back(tire.radius);
+    largest = std::max(largest, tire.radius);
+    plan_.tire_width = std::max(plan_.tire_width, tire.width);
+  }
+  attempt([&] {
+    vehicle::Vehicle car(plan_.vehicle, plan_.gravity);
+    for (std::size_t k = 0; k < tires.size(); ++k)
+      car.add_tire_mass(static_cast<int>(k), {tires[k].mass, Mat3::Zero()});
+    car.system().assemble(0.0);
+    mass = car.mass();
+    const vehicle::Trim trim = stand(car, radii);
+    for (std::size_t k = 0; k < tires.size(); ++k) {
+      const vehicle::WheelTrim& at = trim.wheels[k];
+      wheels_[k] = {at.center, at.load, at.camber, at.toe, tires[k].mass};
+    }
+    if (plan_.driver) lock_ = vehicle::driver_car(plan_.vehicle, radii, plan_.tire_width, mass).steering_lock;
+  });
+  const double g = plan_.gravity.norm();
+  VehicleRigOptions& o = plan_.options;
+  if (o.lowering_speed < 0.0) o.lowering_speed = drops ? 0.0 : kLoweringFroude * std::sqrt(g * largest);
+  if (o.touchdown_time < 0.0) o.touchdown_time = kLoweringTime * std::sqrt(largest / g);
+}
+
+/// Of a wheel against the vehicle's origin, W, m.
+Vec3 VehicleRigSpec::place_of(std::size_t k) const {
+  return Eigen::AngleAxisd(plan_.options.heading, Vec3::UnitZ()) * wheels_.at(k).center;
+}
+
+/// Of a driver that holds speeds and goes straight, at most, m; of others it is not known.
+double VehicleRigSpec::travel(double duration) const {
+  if (!plan_.driver || !plan_.driver->speed || steers()) return 0.0;
+  const vehicle::Table target = vehicle::table_of_time("target", plan_.driver->speed->target);
+  constexpr int kParts = 1000;
+  double way = 0.0;
+  for (int i = 0; i < kParts; ++i) way += target.value((i + 0.5) * duration / kParts) * duration / kParts;
+  return way;
+}
+
+double VehicleRigSpec::top_speed() const {
+  double most = 0.0;
+  if (plan_.driver && plan_.driver->speed)
+    for (const auto& [time, speed] : plan_.driver->speed->target) most = std::max(most, speed);
+  return most;
+}
+
+bool VehicleRigSpec::steers() const {
+  if (!plan_.driver) return false;
+  const vehicle::DriverPoints& points = plan_.driver->inputs.steering;
+  return plan_.driver->path ||
+         std::any_of(points.begin(), points.end(), [](const auto& point) { return point.second != 0.0; });
+}
+
+WheelDescription VehicleRigSpec::wheel(std::size_t k, const WheelSize& tire, double duration) const {
+  const WheelPlace& place = wheels_[k];
+  const Vec3 at = place_of(k);
+  const double psi = plan_.options.heading;
+  const bool steered = steers() && plan_.vehicle.axles[k / 2].steering;
+  const double angle = std::abs(psi) + (steered ? lock_ : std::abs(place.toe));
+  WheelDescription d;
+  d.lateral = plan_.options.lateral + at.y();
+  d.from = plan_.options.start + at.x();
+  d.to = d.from + std::cos(psi) * travel(duration);
+  const double s = std::abs(std::sin(angle)), half = 0.5 * tire.width;
+  d.along = tire.radius + half * s;
+  d.across = half + tire.radius * s;
+  d.toe_angle = steered ? lock_ : place.toe;
+  d.camber_angle = place.camber;
+  d.travel_sign = std::cos(psi) < 0.0 ? -1.0 : 1.0;
+  d.carried_mass = std::max(0.0, place.load / plan_.gravity.norm() - place.tire_mass);
+  d.speed = d.tread_speed = top_speed();
+  d.start_key = context_.key("start");
+  return d;
+}
+
+RigDescription VehicleRigSpec::describe(std::span<const WheelSize> tires, double duration) const {
+  FURROW_ASSERT(tires.size() == wheels_.size(), tires.size(), wheels_.size());
+  RigDescription d;
+  d.kind = "vehicle";
+  d.text = fmt::format("vehicle {} on {} wheels, {} bodies, {}", plan_.vehicle.name, wheels_.size(), bodies_,
+                       plan_.driver ? "with a driver" : "parked");
+  d.speeds_up_key = context_.key("driver");
+  for (std::size_t k = 0; k < wheels_.size(); ++k) d.wheels.push_back(wheel(k, tires[k], duration));
+  return d;
+}
+
+/// The wheel that comes nearest to the wall behind the vehicle says where it starts.
+void VehicleRigSpec::fill_starts(std::span<const WheelSize> tires, double duration,
+                                 std::optional<double> length, std::span<const double> margins) {
+  FURROW_ASSERT(margins.size() == wheels_.size(), margins.size(), wheels_.size());
+  if (start_given || !length) return;
+  const bool forward = std::cos(plan_.options.heading) >= 0.0;
+  double start = forward ? 0.0 : *length;
+  for (std::size_t k = 0; k < wheels_.size(); ++k) {
+    const double reach = wheel(k, tires[k], duration).along + margins[k], x = place_of(k).x();
+    start = forward ? std::max(start, reach - x) : std::min(start, *length - reach - x);
+  }
+  plan_.options.start = start;
+}
+
+void VehicleRigSpec::complete(json& section) const {
+  section["start"] = plan_.options.start;
+  section["driver"] = plan_.driver ? vehicle::driver_document(*plan_.driver) : json();
+  if (plan_.options.lowering_speed > 0.0) section["lowering_speed"] = plan_.options.lowering_speed;
+  section["touchdown_time"] = plan_.options.touchdown_time;
+}
+
+}  // namespace
+
+std::unique_ptr<RigSpec> read_vehicle_rig(const json& section, const ReadContext& context) {
+  const std::filesystem::path file = vehicle_file(section, context);
+  VehicleRigPlan plan;
+  read_fields(section, plan.options);
+  plan.vehicle = vehicle::read_vehicle(file);
+  plan.driver = read_driver_of(plan.options.driver, context);
+  RigOptions common;
+  read_fields(section, common);
+  auto spec = std::make_unique<VehicleRigSpec>(std::move(plan), file, context);
+  spec->start_given = says(section, "start");
+  spec->drops = common.drop_height > 0.0;
+  return spec;
+}
+
+/// Tire files stand beside the vehicle's file, or where those of a scenario do.
+std::vector<WheelTire> tires_of_vehicle(const json& section, const ReadContext& context) {
+  if (!says(section, "vehicle") || !section["vehicle"].is_string()) return {};
+  const std::filesystem::path file = vehicle_file(section, context);
+  const vehicle::VehicleSpec spec = vehicle::read_vehicle(file);
+  std::vector<WheelTire> tires;
+  for (std::size_t axle = 0; axle < spec.axles.size(); ++axle)
+    for (const vehicle::CornerSpec& corner : spec.axles[axle].corners) {
+      const std::string& name = corner.wheel.tire;
+      const std::filesystem::path found = find_file(name, fmt::format("axles[{}].wheel.tire", axle), file);
+      std::error_code error;
+      const bool own = std::filesystem::equivalent(found.parent_path(), file.parent_path(), error);
+      WheelTire tire{{{"file", own ? std::filesystem::absolute(found, error).string() : name}},
+                     static_cast<int>(axle)};
+      if (corner.wheel.rigid) tire.section["rigid"] = true;
+      tires.push_back(std::move(tire));
+    }
+  return tires;
+}
+
+}  // namespace furrow::rigs

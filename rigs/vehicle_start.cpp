@@ -1,0 +1,44 @@
+#include "rigs/vehicle_start.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "protocol/core/assert.hpp"
+#include "protocol/core/error.hpp"
+
+namespace furrow::rigs {
+namespace {
+
+constexpr double kDeflection = 0.02;  // of the radius, in the trim
+constexpr double kLeastLoad = 1e-3;   // of the mean, that a wheel must carry
+
+vehicle::TireCurve spring(double radius, double load) {
+  const double stiffness = load / (kDeflection * radius);
+  return {radius, [stiffness](double deflection) { return stiffness * std::max(0.0, deflection); }};
+}
+
+}  // namespace
+
+// First with springs for the mean load, then with each wheel's own for the load that it was found to have: all tires are
+// deflected alike, and the wheels' heights differ by their radii alone.
+vehicle::Trim stand(vehicle::Vehicle& vehicle, std::span<const double> radii) {
+  FURROW_ASSERT(radii.size() == static_cast<std::size_t>(vehicle.wheel_count()), radii.size());
+  const double weight = vehicle.mass() * vehicle.system().gravity().norm(),
+               mean = weight / static_cast<double>(radii.size());
+  std::vector<vehicle::TireCurve> tires;
+  for (const double radius : radii) tires.push_back(spring(radius, mean));
+  const vehicle::Trim first = vehicle::trim(vehicle, tires);
+  for (std::size_t k = 0; k < radii.size(); ++k) {
+    if (!(first.wheels[k].load > kLeastLoad * mean))
+      throw physics_error(
+          fmt::format("vehicle '{}': at rest the wheel {} carries {:.3g} N, expected a vehicle that "
+                      "stands on all its wheels",
+                      vehicle.spec().name, first.wheels[k].name, first.wheels[k].load));
+    tires[k] = spring(radii[k], first.wheels[k].load);
+  }
+  return vehicle::trim(vehicle, tires);
+}
+
+}  // namespace furrow::rigs

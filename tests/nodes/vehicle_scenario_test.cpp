@@ -1,0 +1,191 @@
+// Scenarios of vehicles: whose tires they have, what decides their results, and what is refused.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+
+#include "nodes/scenario/validate.hpp"
+#include "nodes/scenario/wheel_geometry.hpp"
+#include "protocol/files/data_files.hpp"
+#include "tests/nodes/scenario_fixture.hpp"
+
+namespace furrow {
+namespace {
+
+using nlohmann::json;
+using testing::ScenarioFile;
+
+json hmmwv() {
+  return {{"rig", {{"type", "vehicle"}, {"vehicle", "hmmwv.json"}}}, {"terrain", {{"engine", "rigid"}}}};
+}
+
+scenario::Scenario load(const json& document,
+                        const std::vector<std::pair<std::string, std::string>>& settings = {}) {
+  return ScenarioFile(document.dump()).load(settings);
+}
+
+std::string complaint(const json& document,
+                      const std::vector<std::pair<std::string, std::string>>& settings = {}) {
+  return ScenarioFile(document.dump()).complaint(settings);
+}
+
+TEST(VehicleScenario, brings_the_tires_of_its_wheels) {
+  const scenario::Scenario s = load(hmmwv());
+  ASSERT_EQ(s.tires.size(), 4U);
+  for (const auto& tire : s.tires) EXPECT_EQ(tire->options().file.filename(), "hmmwv_layered.json");
+  EXPECT_FALSE(s.tires[3]->options().rigid);
+  const rigs::RigDescription rig = scenario::describe_rig(s);
+  EXPECT_EQ(rig.kind, "vehicle");
+  ASSERT_EQ(rig.wheels.size(), 4U);
+  EXPECT_NEAR(rig.wheels[0].lateral, 0.91, 0.01);
+  EXPECT_NEAR(rig.wheels[0].from - rig.wheels[2].from, 3.302, 0.01);
+  EXPECT_EQ(rig.wheels[1].start_key, "rig.start");
+  EXPECT_NE(scenario::validation_text(s).find("vehicle HMMWV on 4 wheels, 19 bodies, parked"),
+            std::string::npos);
+}
+
+TEST(VehicleScenario, changes_the_tires_of_all_wheels_of_each_axle_or_of_each_wheel) {
+  const auto rigid = [](const scenario::Scenario& s) {
+    std::vector<bool> all;
+    for (const auto& tire : s.tires) all.push_back(tire->options().rigid);
+    return all;
+  };
+  using Flags = std::vector<bool>;
+  EXPECT_EQ(rigid(load(hmmwv(), {{"tire.rigid", "true"}})), Flags({true, true, true, true}));
+  json axles = hmmwv(), wheels = hmmwv();
+  axles["tires"] = {json::object(), {{"rigid", true}, {"file", "toroidal.json"}}};
+  EXPECT_EQ(rigid(load(axles)), Flags({false, false, true, true}));
+  EXPECT_EQ(load(axles).tires[2]->options().file.filename(), "toroidal.json");
+  wheels["tires"] = {nullptr, {{"rigid", true}}, nullptr, nullptr};
+  EXPECT_EQ(rigid(load(wheels)), Flags({false, true, false, false}));
+  const scenario::Scenario one = load(hmmwv(), {{"tires.2.pressure", "1e5"}, {"tires.0.rigid", "true"}});
+  EXPECT_EQ(rigid(one), Flags({true, false, false, false}));
+  EXPECT_EQ(one.tires[2]->options().pressure, (tire::PressureSchedule{{{0.0, 1e5}}}));
+  json rover = hmmwv();
+  rover["rig"]["vehicle"] = "rover.json";
+  EXPECT_EQ(rigid(load(rover)), Flags(6, true));
+}
+
+TEST(VehicleScenario, completed_text_is_a_scenario_that_gives_the_same_digest_from_any_folder) {
+  const json driver = {{"inputs", {{"gear", {{0, 1}, {1, "auto"}}}}},
+                       {"speed", {{"target", 5}}},
+                       {"path", {{"kind", "circle"}, {"radius", 30}, {"steering", {{"law", "stanley"}}}}}};
+  json document = hmmwv();
+  document["rig"]["driver"] = driver;
+  const scenario::Scenario s = load(document, {{"tire.rigid", "true"}});
+  const scenario::Scenario again = ScenarioFile(s.completed).load();
+  EXPECT_EQ(again.completed, s.completed);
+  EXPECT_EQ(again.digest, s.digest);
+  EXPECT_EQ(json::parse(s.completed)["rig"]["driver"]["speed"]["target"], json::parse("[[0.0, 5.0]]"));
+  EXPECT_NE(load(document, {{"tire.rigid", "true"}, {"rig.driver.speed.target", "6"}}).digest, s.digest);
+  EXPECT_NE(load(document).digest, s.digest);
+}
+
+/// Files count by what they hold: the driver's stands in the completed scenario, the vehicle's is named in full.
+TEST(VehicleScenario, files_beside_the_scenario_are_found_and_decide_the_results) {
+  json document = hmmwv();
+  document["rig"]["vehicle"] = "mine.json";
+  document["rig"]["driver"] = "mine.csv";
+  const ScenarioFile file(document.dump());
+  const std::filesystem::path folder = file.path().parent_path();
+  json car = json::parse(std::ifstream(data_folder() / "vehicle" / "data" / "hmmwv.json"));
+  const auto write = [&] { std::ofstream(folder / "mine.json") << car.dump(); };
+  write();
+  std::ofstream(folder / "mine.csv") << "time_s,throttle\n0,0\n1,0.5\n";
+  const scenario::Scenario s = file.load();
+  const json completed = json::parse(s.completed);
+  EXPECT_EQ(completed["rig"]["vehicle"], (folder / "mine.json").string());
+  EXPECT_EQ(completed["rig"]["driver"]["inputs"]["throttle"], json::parse("[[0.0, 0.0], [1.0, 0.5]]"));
+  EXPECT_EQ(ScenarioFile(s.completed).load().digest, s.digest);
+  car["chassis"]["mass"] = 2100.0;
+  write();
+  EXPECT_NE(file.load().digest, s.digest);
+}
+
+TEST(VehicleScenario, starts_clear_of_the_wall_and_says_when_the_bin_is_too_short) {
+  json document = hmmwv();
+  document["terrain"] = {{"radius", 0.03}, {"layers", 4}, {"length", 8.0}, {"width", 3.0}};
+  document["rig"]["driver"] = {{"speed", {{"target", {{0, 0}, {1, 2}}}}}};
+  document["run"] = {{"end", 1.5}};
+  document["tire"] = {{"rigid", true}};
+  const scenario::Scenario s = load(document);
+  const std::vector<rigs::WheelDescription> wheels = scenario::describe_rig(s).wheels;
+  EXPECT_NEAR(wheels[2].from - wheels[2].along, 0.02, 1e-6);
+  EXPECT_NEAR(wheels[0].to - wheels[0].from, 2.0, 1e-3);
+  EXPECT_NEAR(json::parse(s.completed)["rig"]["start"].get<double>(), wheels[2].from + 1.653, 0.01);
+  EXPECT_TRUE(complaint(document, {{"terrain.length", "5"}})
+                  .starts_with(": key 'terrain.length': is 5 m, but the axle travels from x = "))
+      << complaint(document, {{"terrain.length", "5"}});
+  EXPECT_TRUE(complaint(document, {{"terrain.width", "1.5"}})
+                  .starts_with(": key 'terrain.width': is 1.5 m, expected at "))
+      << complaint(document, {{"terrain.width", "1.5"}});
+  EXPECT_TRUE(complaint(document, {{"rig.start", "1"}}).starts_with(": key 'rig.start': "))
+      << complaint(document, {{"rig.start", "1"}});
+}
+
+TEST(VehicleScenario, wrong_combinations_are_refused_by_key) {
+  const auto with = [](const char* pointer, const json& value) {
+    json document = hmmwv();
+    document[json::json_pointer(pointer)] = value;
+    return document;
+  };
+  json none = hmmwv();
+  none["rig"].erase("vehicle");
+  none["tire"] = {{"file", "hmmwv_layered.json"}};
+  EXPECT_EQ(complaint(none),
+            ": key 'rig.vehicle': is missing, expected the name of a vehicle's file: hmmwv.json");
+  EXPECT_TRUE(
+      complaint(with("/rig/vehicle", "nowhere.json"))
+          .starts_with(": key 'rig.vehicle': 'nowhere.json' does not exist, expected a file at one of: "));
+  EXPECT_EQ(complaint(with("/tires", json::array({json::object()}))),
+            ": key 'tires': has 1 entries, expected 4, one per wheel, or 2, one per axle");
+  EXPECT_EQ(complaint(with("/rig/slip", 0.5)),
+            ": key 'rig.slip': is a key of type 'drawbar', but rig.type is 'vehicle', expected keys of that "
+            "type alone");
+  EXPECT_TRUE(complaint(with("/rig/driver", {{"inputs", {{"throttle", 2}}}}))
+                  .starts_with(": key 'rig.driver.inputs.throttle': "))
+      << complaint(with("/rig/driver", {{"inputs", {{"throttle", 2}}}}));
+  EXPECT_EQ(complaint(with("/rig/driver", {{"inputs", {{"gear", {{0, 1}, {2, 4}}}}}})),
+            ": key 'rig.driver': asks for gear 4 at 2 s, expected at most 3: the vehicle HMMWV has no more");
+  json rover = with("/rig/driver", {{"inputs", {{"gear", 2}}}});
+  rover["rig"]["vehicle"] = "rover.json";
+  EXPECT_EQ(
+      complaint(rover),
+      ": key 'rig.driver': asks for gear 2 at 0 s, expected at most 1: the vehicle Rover has no gearbox");
+  json foreign = hmmwv();
+  foreign["rig"] = {{"type", "drawbar"}, {"vehicle", "hmmwv.json"}};
+  foreign["tire"] = {{"file", "hmmwv_layered.json"}};
+  EXPECT_EQ(complaint(foreign),
+            ": key 'rig.vehicle': is a key of type 'vehicle', but rig.type is 'drawbar', expected "
+            "keys of that type alone");
+}
+
+/// What the vehicle's own file gets wrong is said with its name.
+TEST(VehicleScenario, faults_of_the_vehicle_s_file_are_told_with_its_name) {
+  json document = hmmwv();
+  document["rig"]["vehicle"] = "mine.json";
+  const ScenarioFile file(document.dump());
+  const std::filesystem::path path = file.path().parent_path() / "mine.json";
+  const json car = json::parse(std::ifstream(data_folder() / "vehicle" / "data" / "hmmwv.json"));
+  const auto complains = [&](const char* pointer, const json& value) {
+    json changed = car;
+    changed[json::json_pointer(pointer)] = value;
+    std::ofstream(path) << changed.dump();
+    return file.complaint({}, path);
+  };
+  EXPECT_TRUE(
+      complains("/axles/0/wheel/tire", "none.json")
+          .starts_with(
+              ": key 'axles[0].wheel.tire': 'none.json' does not exist, expected a file at one of: "));
+  EXPECT_EQ(complains("/driveline/gearbox/ratios/0", 0.0),
+            ": key 'driveline.gearbox.ratios[0]': is 0, expected a number above zero");
+  // It cannot stand on wheels that all are in front of its centre of mass.
+  const std::string falls = complains("/chassis/center_of_mass/0", -9.0);
+  EXPECT_NE(falls.find("key 'rig.vehicle': is " + path.string() + ", which cannot be used: "),
+            std::string::npos)
+      << falls;
+}
+
+}  // namespace
+}  // namespace furrow

@@ -1,0 +1,241 @@
+// A vehicle as a rig: it stands as its trim says, stays where it is braked, and drives as its engine can.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "rigs/vehicle_start.hpp"
+#include "tests/rigs/vehicle_fixture.hpp"
+#include "vehicle/driveline/torque_converter.hpp"
+
+using namespace furrow;
+using namespace furrow::testing;
+using nlohmann::json;
+
+namespace {
+
+const json kFullThrottle = {{"inputs", {{"throttle", 1.0}}}};
+
+std::vector<double> loads(const rigs::Rig& rig, const Track& track) {
+  std::vector<double> all;
+  for (int k = 0; k < rig.wheel_count(); ++k) all.push_back(track.wrench(rig.rim(k)).force.z());
+  return all;
+}
+
+}  // namespace
+
+TEST(VehicleRig, starts_in_the_trim_of_hard_ground_with_its_tires_at_their_heights) {
+  rigs::VehicleRigPlan plan = vehicle_plan("hmmwv.json");
+  plan.options.start = 3.0;
+  plan.options.lateral = -0.4;
+  plan.options.heading = 0.3;
+  const Track track;
+  const auto rig = track.rig(plan, 0.001);
+  EXPECT_NEAR(of_vehicle(*rig, "x_m"), 3.0, 1e-12);
+  EXPECT_NEAR(of_vehicle(*rig, "y_m"), -0.4, 1e-12);
+  EXPECT_NEAR(of_vehicle(*rig, "yaw_rad"), 0.3, 1e-9);
+  EXPECT_LT((rig->heading(0) - Vec3(std::cos(0.3), std::sin(0.3), 0.0)).norm(), 0.02);  // toe
+  double total = 0.0;
+  for (int k = 0; k < 4; ++k) {
+    EXPECT_NEAR(rig->rim(k).position.z(), track.radius + 0.001, 2e-4) << k;
+    EXPECT_GE(rig->rim(k).position.z(), track.radius + 0.001 - 1e-12) << k;
+    EXPECT_EQ(rig->rim(k).velocity.norm(), 0.0);
+    EXPECT_NEAR(measured(*rig, k, "suspension_travel_m"), 0.0, 2e-3) << k;  // drawn at rest
+    EXPECT_NEAR(measured(*rig, k, "spring_force_N"), 0.0, 0.0);             // a mean over no time
+    total += rig->report(k).load();
+  }
+  EXPECT_NEAR(total, (2422.739 + 4 * 4.8) * kStandardGravity, 0.1);
+  EXPECT_NEAR(rig->report(0).load(), rig->report(1).load(), 5.0);
+}
+
+TEST(VehicleRig, parked_settles_to_the_loads_of_its_trim_and_stays) {
+  for (const auto& [lowering, gap] : {std::pair{0.39, 0.001}, {0.0, 0.11}}) {
+    const Track track;
+    const auto rig = track.rig(vehicle_plan("hmmwv.json", nullptr, lowering), gap);
+    double highest = 0.0;
+    track.drive(*rig, 1.0, [&] {
+      for (const double load : loads(*rig, track)) highest = std::max(highest, load);
+    });
+    EXPECT_LT(highest, lowering > 0.0 ? 12e3 : 30e3);  // 6 kN at rest
+    EXPECT_GT(highest, lowering > 0.0 ? 5e3 : 9e3);
+    track.drive(*rig, 3.0);
+    const std::vector<double> now = loads(*rig, track);
+    for (int k = 0; k < 4; ++k) EXPECT_NEAR(now[k], rig->report(k).load(), 5e-3 * now[k]) << k;
+    const double x = of_vehicle(*rig, "x_m"), distance = of_vehicle(*rig, "distance_m");
+    track.drive(*rig, 2.0);
+    EXPECT_NEAR(of_vehicle(*rig, "x_m"), x, 1e-5) << "it creeps";
+    EXPECT_LT(of_vehicle(*rig, "distance_m") - distance, 1e-4);
+    for (int k = 0; k < 4; ++k) EXPECT_EQ(rig->report(k).slip, 0.0);
+    EXPECT_GT(of_vehicle(*rig, "engine_speed_rad_per_s"), 60.0);  // it idles against the brakes
+  }
+}
+
+// In the lowest gear: T = T_t/i is what the turbine gives the wheels through the ratio i of wheel to turbine, T_t the
+// converter's torque at the speeds of crank and wheels. It accelerates the mass and what turns with the wheels:
+//   T = m a r + J α,  r the radius under load.
+TEST(VehicleRig, accelerates_as_engine_and_converter_say) {
+  rigs::VehicleRigPlan plan = vehicle_plan("hmmwv.json", {{"inputs", {{"throttle", 0.4}, {"gear", 1}}}});
+  const Track track;
+  const auto rig = track.rig(plan);
+  const auto spin = [&] {
+    double sum = 0.0;
+    for (int k = 0; k < 4; ++k) sum += rig->report(k).spin / 4.0;
+    return sum;
+  };
+  track.drive(*rig, 1.5);
+  const double speed = of_vehicle(*rig, "speed_m_per_s"), before = spin();
+  const vehicle::DrivelineSpec& line = plan.vehicle.driveline;
+  const vehicle::ConverterOptions converter{{"capacity", line.converter->capacity},
+                                            {"ratio", line.converter->torque_ratio}};
+  const double ratio = 0.2 * 0.2;
+  double torque = 0.0, acceleration = 0.0;
+  constexpr int kSteps = 1000;
+  track.drive(*rig, kSteps * track.step, [&] {
+    const double crank = of_vehicle(*rig, "engine_speed_rad_per_s");
+    torque += vehicle::converter_torque(converter, crank, spin() / ratio).turbine / ratio / kSteps;
+    acceleration += of_vehicle(*rig, "acceleration_m_per_s2") / kSteps;
+  });
+  const double time = kSteps * track.step, radius = rig->rim(0).position.z();
+  const double wheels = 4.0 * (0.07352 + 0.6243 + 0.78 + 0.4), boxes = 2.0 * 0.6,
+               shafts = (2.0 * 0.5 + 0.6 + 0.5) / (0.2 * 0.2), turbine = 0.3 / (ratio * ratio);
+  const double turning = (wheels + boxes + shafts + turbine) * (spin() - before) / time;
+  const double mass = 2422.739 + 4.0 * 4.8;
+  EXPECT_GT(acceleration, 1.0);
+  EXPECT_NEAR((torque - turning) / radius, mass * acceleration, 0.01 * mass * acceleration);
+  EXPECT_NEAR(acceleration, (of_vehicle(*rig, "speed_m_per_s") - speed) / time, 0.02 * acceleration);
+  EXPECT_EQ(of_vehicle(*rig, "gear"), 1.0);
+  EXPECT_NEAR(of_vehicle(*rig, "throttle"), 0.4, 1e-12);
+}
+
+TEST(VehicleRig, shifts_by_itself_and_holds_the_gear_that_its_driver_asks_for) {
+  const Track track;
+  const auto automatic = track.rig(vehicle_plan("hmmwv.json", kFullThrottle));
+  double highest = 0.0, shifting = 0.0;
+  track.drive(*automatic, 6.0, [&] {
+    highest = std::max(highest, of_vehicle(*automatic, "gear"));
+    shifting += track.step * of_vehicle(*automatic, "shifting");
+  });
+  EXPECT_GE(highest, 2.0);
+  EXPECT_GT(shifting, 0.3);
+  const auto held = track.rig(vehicle_plan(
+      "hmmwv.json", {{"inputs", {{"throttle", 1.0}, {"gear", json::array({{0, 1}, {2, 2}, {4, "auto"}})}}}}));
+  track.drive(*held, 1.9);
+  EXPECT_EQ(of_vehicle(*held, "gear"), 1.0);
+  track.drive(*held, 0.2);
+  EXPECT_EQ(of_vehicle(*held, "gear"), 2.0);
+  track.drive(*held, 1.5);
+  EXPECT_EQ(of_vehicle(*held, "gear"), 2.0);
+  EXPECT_EQ(held->live().text, "gear 2");
+  EXPECT_NEAR(held->live().speed, of_vehicle(*held, "speed_m_per_s"), 0.0);
+}
+
+TEST(VehicleRig, drives_backwards_in_reverse_and_not_at_all_in_neutral) {
+  const Track track;
+  const auto back = track.rig(vehicle_plan("hmmwv.json", {{"inputs", {{"throttle", 0.3}, {"gear", -1}}}}));
+  track.drive(*back, 2.0);
+  EXPECT_LT(of_vehicle(*back, "speed_m_per_s"), -0.3);
+  EXPECT_EQ(of_vehicle(*back, "gear"), -1.0);
+  const auto neutral = track.rig(vehicle_plan("hmmwv.json", {{"inputs", {{"throttle", 0.3}, {"gear", 0}}}}));
+  track.drive(*neutral, 2.0);
+  EXPECT_LT(std::abs(of_vehicle(*neutral, "speed_m_per_s")), 0.02);
+  EXPECT_EQ(of_vehicle(*neutral, "gear"), 0.0);
+}
+
+TEST(VehicleRig, steers_to_the_left_and_measures_its_turn) {
+  const Track track;
+  const auto rig = track.rig(vehicle_plan(
+      "hmmwv.json",
+      {{"inputs", {{"steering", json::array({{0, 0}, {1, 0}, {1.5, 0.5}})}}}, {"speed", {{"target", 3.0}}}}));
+  track.drive(*rig, 5.0);
+  EXPECT_GT(of_vehicle(*rig, "yaw_rad"), 0.3);
+  EXPECT_GT(of_vehicle(*rig, "y_m"), 0.3);
+  EXPECT_GT(measured(*rig, 0, "wheel_steer_rad"), 0.1);
+  EXPECT_NEAR(measured(*rig, 2, "wheel_steer_rad"), 0.0, 0.02);
+  EXPECT_GT(rig->heading(0).y(), rig->heading(2).y());
+  EXPECT_GT(of_vehicle(*rig, "lateral_acceleration_m_per_s2"), 0.3);
+  // It leans outward, to the right, and its outer wheels carry more.
+  EXPECT_GT(of_vehicle(*rig, "roll_rad"), 0.001);
+  EXPECT_GT(track.wrench(rig->rim(1)).force.z(), track.wrench(rig->rim(0)).force.z());
+  EXPECT_NEAR(of_vehicle(*rig, "speed_m_per_s"), 3.0, 0.4);
+  EXPECT_EQ(of_vehicle(*rig, "target_speed_m_per_s"), 3.0);
+}
+
+TEST(VehicleRig, a_braked_wheel_slips_and_the_vehicle_stops) {
+  Track track;
+  const auto rig =
+      track.rig(vehicle_plan("hmmwv.json", {{"inputs",
+                                             {{"throttle", json::array({{0, 0.6}, {3, 0.6}, {3.01, 0}})},
+                                              {"brake", json::array({{0, 0}, {3, 0}, {3.1, 0.3}})}}}}));
+  track.drive(*rig, 3.0);
+  const double speed = of_vehicle(*rig, "speed_m_per_s"), slip = rig->report(0).slip;
+  EXPECT_GT(speed, 3.0);
+  track.drive(*rig, 0.3);
+  EXPECT_LT(measured(*rig, 0, "brake_torque_Nm"), -1000.0);
+  EXPECT_LT(rig->report(0).slip, slip - 0.02);  // against the undeformed radius it is not zero at rolling
+  track.drive(*rig, 4.0);
+  EXPECT_LT(std::abs(of_vehicle(*rig, "speed_m_per_s")), 0.02);
+  EXPECT_GT(of_vehicle(*rig, "brake_heat_J"), 0.3 * 2441.9 * speed * speed / 2.0);
+}
+
+// The tires' inertia is the rig's: in the air, everything falls together.
+TEST(VehicleRig, falls_freely_with_its_tires_masses) {
+  const Track track;
+  const auto rig = track.rig(vehicle_plan("hmmwv.json", nullptr, 0.0), 2.0);
+  const double z = of_vehicle(*rig, "z_m");
+  const rigs::RigAccounts start = rig->accounts();
+  track.drive(*rig, 0.4);
+  const rigs::RigAccounts end = rig->accounts();
+  EXPECT_NEAR(end.momentum.z() - start.momentum.z(), -(2422.739 + 4 * 4.8) * kStandardGravity * 0.4, 1e-2);
+  EXPECT_NEAR(of_vehicle(*rig, "z_m") - z, -0.5 * kStandardGravity * 0.16, 0.08);  // the wheels spring out
+  EXPECT_EQ(end.tire_impulse.norm(), 0.0);
+}
+
+TEST(VehicleRig, rover_drives_on_its_motors_on_six_rigid_wheels) {
+  Track track;
+  track.radius = 0.058;
+  track.stiffness = 2e4;
+  track.damping = 50.0;
+  track.slip_scale = 100.0;
+  track.tire = {0.0, Mat3::Zero()};
+  rigs::VehicleRigPlan plan = vehicle_plan("rover.json", {{"inputs", {{"throttle", 0.5}}}}, 0.13);
+  plan.options.touchdown_time = 0.12;
+  plan.tire_width = 0.05;
+  const auto rig = track.rig(plan, 0.0005);
+  ASSERT_EQ(rig->wheel_count(), 6);
+  double weight = 0.0;
+  for (int k = 0; k < 6; ++k) weight += rig->report(k).load();
+  EXPECT_NEAR(weight, 6 * 24.5, 2.0);
+  track.drive(*rig, 2.0);
+  // Without load half of the no-load speed: 6000 rpm / 100 × ½ on 58 mm.
+  const double free = 0.5 * 6000.0 * std::numbers::pi / 30.0 / 100.0 * 0.058;
+  EXPECT_NEAR(of_vehicle(*rig, "speed_m_per_s"), free, 0.03 * free);  // on 2 % less than 58 mm
+  EXPECT_EQ(rig->live().text, "");
+  EXPECT_GT(of_vehicle(*rig, "drive_work_J"), 0.0);
+}
+
+// The engine's work is in the vehicle's motion, in what the driveline, brakes and shocks took, and in the tires.
+TEST(VehicleRig, accounts_of_energy_and_momentum_close) {
+  const json driver = {{"inputs",
+                        {{"throttle", json::array({{0, 0}, {0.5, 1}, {4, 1}, {4.01, 0}})},
+                         {"brake", json::array({{0, 0}, {4.5, 0}, {4.6, 0.4}})},
+                         {"steering", json::array({{0, 0}, {2, 0}, {3, 0.3}})}}}};
+  const auto residuals = [&](double step) {
+    Track track;
+    track.step = step;
+    const auto rig = track.rig(vehicle_plan("hmmwv.json", driver), 0.01);
+    const rigs::RigAccounts a = rig->accounts();
+    EXPECT_EQ(first_missing(a), nullptr);
+    track.drive(*rig, 5.5);
+    const rigs::RigAccounts b = rig->accounts();
+    const Vec3 momentum = b.momentum - a.momentum - b.gravity_impulse - b.guide_impulse - b.tire_impulse;
+    EXPECT_LT(momentum.norm(), 1e-9 * b.gravity_impulse.norm());
+    EXPECT_GT(of_vehicle(*rig, "shift_heat_J"), 10.0);
+    EXPECT_GT(b.drive_work, 1e5);
+    return (b.drive_work + b.pull_work + b.guide_work + b.tire_work - (b.stored() - a.stored()) -
+            b.damper_loss) /
+           b.drive_work;
+  };
+  const double coarse = residuals(2e-3), fine = residuals(1e-3);
+  EXPECT_LT(std::abs(fine), 1e-3);
+  EXPECT_LT(std::abs(fine), 0.6 * std::abs(coarse) + 1e-6) << coarse;
+}

@@ -1,0 +1,32 @@
+// What a driver knows of a vehicle, from the vehicle's own data.
+//
+//   wheelbase      from the middle of the rear axle to that of the axle that steers, or without one to the foremost
+//   steering lock  mean angle of the steered wheels at steering 1. A vehicle that steers by the speeds of its sides turns
+//                  at full command with the curvature 2 s/b, s its skid_steer and b its track, if its wheels do not slip
+//                  sideways; its lock is that of a car with the same curvature, atan(2 s L/b)
+//   drive force    largest torque of the engine times the converter's ratio at stall through the lowest gear, or all motors
+//                  at stall; brake force: all brakes, or the motors where there are none; either at most kGrip × weight
+#pragma once
+
+#include <span>
+
+#include "vehicle/driver/driver.hpp"
+#include "vehicle/driver/driver_spec.hpp"
+#include "vehicle/parts/vehicle.hpp"
+
+namespace furrow::vehicle {
+
+/// Index of the rearmost axle.
+int rear_axle(const VehicleSpec& spec);
+/// Middle of the rear axle as drawn, in the vehicle's frame, m: what drivers are told the place of.
+Vec3 rear_axle_middle(const VehicleSpec& spec);
+/// Whether the steering wheel does anything.
+bool can_steer(const VehicleSpec& spec);
+/// Whether it drives: engine or motors that reach a wheel.
+bool can_drive(const VehicleSpec& spec);
+
+/// @param radii of the tires, m, one for each wheel @param tire_width the widest tire's, m @param mass with tires, kg
+/// @post every member is above zero. @throws Error(physics) naming a suspension that cannot be steered
+DriverCar driver_car(const VehicleSpec& spec, std::span<const double> radii, double tire_width, double mass);
+
+}  // namespace furrow::vehicle

@@ -229,61 +229,6 @@ Outcome System::solve_velocities(double end_time) {
   double before = 0.0, worst_rate = 0.0;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     apply_impulses();
-    if (Outcome outcome = move(h); !outcome.ok) return outcome;
-    worst = 0.0;
-    bool done = true;
-    for (int i = 0; i < constraints; ++i) {
-      const Row& row = rows_[i];
-      const double violation =
-          row_difference(row, row_value(row, pose(row.a), pose(row.b)), targets_[i].value);
-      residual_[i] = -violation / h;
-      if (!(std::abs(violation) <= worst)) worst = std::abs(violation), worst_row = i;
-    }
-    done = worst <= kPositionTolerance;
-    for (int i = constraints; i < count; ++i) {
-      const double compliance = dampers_factored_ ? compliance_[i] : -1.0;
-      residual_[i] = 0.0;
-      if (compliance < 0.0) continue;
-      const double speed = rate(i), flow = impulses_[i] * compliance;
-      residual_[i] = -(speed + flow);
-      done = done && std::abs(residual_[i]) <= 1e-13 * (std::abs(speed) + std::abs(flow)) + 1e-14 * scale;
-    }
-    if (rate_count() > 0 && !rates_done(worst_rate, iteration)) done = false;
-    if (done) return {};
-    if (!std::isfinite(worst)) break;
-    solver_.solve(residual_, correction_);
-    impulses_ += correction_;
-  }
-  return failure("cannot satisfy its constraints", worst_row, worst);
-}
-
-/// The largest speed that the bodies would have without constraints: what round-off is measured by where they keep the
-/// bodies at rest.
-double System::base_speed() const {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < bodies_.size(); ++i)
-    largest = std::max({largest, base_[i].velocity.cwiseAbs().maxCoeff(),
-                        (bodies_[i].inertia_inverse_W * base_[i].angular_momentum).cwiseAbs().maxCoeff()});
-  return largest;
-}
-
-// Linear: P += S⁻¹ (∂φ/∂t target − G₁ v₁) until round-off; the repetition also removes the regularization.
-Outcome System::solve_velocities(double end_time) {
-  const int constraints = static_cast<int>(constraint_rows_.size());
-  for (int i = 0; i < constraints; ++i) targets_[i] = target(i, end_time);
-  impulses_.setZero();
-  residual_.setZero();
-  rates_.known_impulses(rate_part(impulses_));
-  double before = 0.0, worst_rate = 0.0;
-  const auto speed_before = [&] {  // the largest that there is without the constraints
-    double speed = 0.0;
-    for (std::size_t i = 0; i < bodies_.size(); ++i)
-      speed = std::max({speed, base_[i].velocity.cwiseAbs().maxCoeff(),
-                        (bodies_[i].inertia_inverse_W * base_[i].angular_momentum).cwiseAbs().maxCoeff()});
-    return speed;
-  };
-  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-    apply_impulses();
     set_angular_velocities();
     double scale = 0.0, worst = 0.0;
     int worst_row = 0;

@@ -6,6 +6,7 @@
 #include "protocol/core/error.hpp"
 #include "tests/protocol/fields_of.hpp"
 #include "tests/vehicle/rate_controls.hpp"
+#include "tests/verification/record.hpp"
 #include "vehicle/driveline/engine.hpp"
 #include "vehicle/driveline/friction_coupling.hpp"
 #include "vehicle/driveline/gearbox.hpp"
@@ -14,7 +15,8 @@
 #include "vehicle/driveline/torque_converter.hpp"
 
 using namespace furrow;
-using furrow::testing::held, furrow::testing::member_count, furrow::testing::names_of, furrow::testing::torque;
+using furrow::testing::held, furrow::testing::member_count, furrow::testing::names_of,
+    furrow::testing::torque;
 using vehicle::Gearbox, vehicle::kGround, vehicle::Table;
 
 namespace {
@@ -86,8 +88,12 @@ TEST(Converter, stall_balances_the_engine_against_the_square_law) {
   system.assemble(0.0);
   for (int i = 0; i < 20000; ++i) ASSERT_TRUE(system.step(1e-3).ok);
   const double speed = system.shaft(crank).state.speed;
-  EXPECT_NEAR(options.full.value(speed) + options.losses.value(speed), std::pow(speed / 15.0, 2), 1e-6);
-  EXPECT_NEAR(system.rate_state(stall).torque, -2.0 * std::pow(speed / 15.0, 2), 1e-6);
+  verification::verify("converter stalled", "torque of the engine, N m",
+                       options.full.value(speed) + options.losses.value(speed), std::pow(speed / 15.0, 2),
+                       1e-8, "square law of the converter");
+  verification::verify("converter stalled", "torque that holds the turbine, N m",
+                       -system.rate_state(stall).torque, 2.0 * std::pow(speed / 15.0, 2), 1e-8,
+                       "twice that of the engine");
   EXPECT_NEAR(speed / kRpm, 2500.0, 200.0);
 }
 

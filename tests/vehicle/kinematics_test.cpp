@@ -8,6 +8,7 @@
 
 #include "tests/vehicle/double_wishbone.hpp"
 #include "tests/vehicle/shipped.hpp"
+#include "tests/verification/record.hpp"
 
 using namespace furrow;
 using namespace furrow::testing;
@@ -36,21 +37,21 @@ struct Expected {
   double outward;
   DoubleWishbone::Points p;
 
-  void compare(const KinematicsRow& row) const {
+  void compare(const KinematicsRow& row, verification::Worst& worst) const {
     const Vec3 a = (p[DoubleWishbone::kAxle] - p[DoubleWishbone::kCenter]).normalized();
     const Vec3 u = (p[DoubleWishbone::kUpper] - p[DoubleWishbone::kLower]).normalized();
     const Vec3 contact = touching(p);
     const Vec3 low = p[DoubleWishbone::kLower] + (contact.z() - p[DoubleWishbone::kLower].z()) / u.z() * u;
-    EXPECT_NEAR(row.camber, std::asin(-outward * a.z()), kTolerance) << row.wheel;
-    EXPECT_NEAR(row.toe, outward * std::atan2(a.x(), a.y()), kTolerance) << row.wheel;
-    EXPECT_NEAR(row.steer, std::atan2(-a.x(), a.y()), kTolerance) << row.wheel;
-    EXPECT_NEAR(row.caster, std::atan2(-u.x(), u.z()), kTolerance) << row.wheel;
-    EXPECT_NEAR(row.kingpin, std::atan2(-outward * u.y(), u.z()), kTolerance) << row.wheel;
-    EXPECT_NEAR(row.half_track, std::abs(contact.y()), kTolerance) << row.wheel;
-    EXPECT_NEAR(row.wheel_x, p[DoubleWishbone::kCenter].x(), kTolerance) << row.wheel;
-    EXPECT_NEAR(row.scrub, outward * (contact.y() - low.y()), kTolerance) << row.wheel;
-    EXPECT_NEAR(row.trail, low.x() - contact.x(), kTolerance) << row.wheel;
-    EXPECT_NEAR(row.spring_length, side.spring_length(p), kTolerance) << row.wheel;
+    worst.add(row.camber, std::asin(-outward * a.z()), 1.0, row.wheel + "'s camber");
+    worst.add(row.toe, outward * std::atan2(a.x(), a.y()), 1.0, row.wheel + "'s toe");
+    worst.add(row.steer, std::atan2(-a.x(), a.y()), 1.0, row.wheel + "'s steer");
+    worst.add(row.caster, std::atan2(-u.x(), u.z()), 1.0, row.wheel + "'s caster");
+    worst.add(row.kingpin, std::atan2(-outward * u.y(), u.z()), 1.0, row.wheel + "'s kingpin");
+    worst.add(row.half_track, std::abs(contact.y()), 1.0, row.wheel + "'s half track");
+    worst.add(row.wheel_x, p[DoubleWishbone::kCenter].x(), 1.0, row.wheel + "'s wheel x");
+    worst.add(row.scrub, outward * (contact.y() - low.y()), 1.0, row.wheel + "'s scrub");
+    worst.add(row.trail, low.x() - contact.x(), 1.0, row.wheel + "'s trail");
+    worst.add(row.spring_length, side.spring_length(p), 1.0, row.wheel + "'s spring length");
   }
 };
 
@@ -64,6 +65,11 @@ std::vector<KinematicsRow> sweep(const vehicle::VehicleSpec& spec, double radius
 
 TEST(Kinematics, double_wishbones_match_an_independent_solution_of_distances) {
   const vehicle::VehicleSpec spec = shipped("hmmwv.json");
+  const std::string name = "double wishbones of the HMMWV, travel of 80 mm and steering";
+  verification::Worst places(name, "camber, toe, caster, kingpin, scrub, trail, track, spring, rad and m",
+                             kTolerance, "solution of distances");
+  verification::Worst slopes(name, "roll centre, anti-dive, motion ratio, m and 1", kTolerance,
+                             "differences of the solution of distances");
   int compared = 0;
   for (const KinematicsRow& row : sweep(spec, kRadius)) {
     const int axle = row.wheel.starts_with("front") ? 0 : 1, k = row.wheel.ends_with("left") ? 0 : 1;
@@ -71,7 +77,7 @@ TEST(Kinematics, double_wishbones_match_an_independent_solution_of_distances) {
     const DoubleWishbone side(suspension);
     const Vec3 rod = axle == 0 ? link_motion(row.steering) : Vec3(Vec3::Zero());
     const Expected expected{side, k == 0 ? 1.0 : -1.0, side.solve(row.travel, rod)};
-    expected.compare(row);
+    expected.compare(row, places);
     ++compared;
     // Slopes by differences of the independent solution.
     const double e = 1e-5;
@@ -82,10 +88,10 @@ TEST(Kinematics, double_wishbones_match_an_independent_solution_of_distances) {
       return Vec3(p[DoubleWishbone::kLower] + DoubleWishbone::upright_axes(p) * local);
     };
     const Vec3 slope = (moved(up) - moved(down)) / (2.0 * e);
-    EXPECT_NEAR(row.roll_center, touching(expected.p).y() * slope.y(), kTolerance) << row.wheel;
-    EXPECT_NEAR(row.brake_slope, (axle == 0 ? 1.0 : -1.0) * slope.x(), kTolerance) << row.wheel;
-    EXPECT_NEAR(row.spring_ratio, -(side.spring_length(up) - side.spring_length(down)) / (2.0 * e),
-                kTolerance);
+    slopes.add(row.roll_center, touching(expected.p).y() * slope.y(), 1.0, row.wheel + "'s roll centre");
+    slopes.add(row.brake_slope, (axle == 0 ? 1.0 : -1.0) * slope.x(), 1.0, row.wheel + "'s brake slope");
+    slopes.add(row.spring_ratio, -(side.spring_length(up) - side.spring_length(down)) / (2.0 * e), 1.0,
+               row.wheel + "'s spring ratio");
   }
   EXPECT_EQ(compared, 5 * 2 * (3 + 2));
 }

@@ -6,6 +6,7 @@
 #include "tests/protocol/fields_of.hpp"
 #include "tests/vehicle/planar.hpp"
 #include "tests/vehicle/rate_controls.hpp"
+#include "tests/verification/record.hpp"
 #include "vehicle/driveline/gears.hpp"
 
 using namespace furrow;
@@ -64,7 +65,9 @@ TEST(Gear, pair_accelerates_with_the_reduced_inertia_and_the_carrier_takes_the_d
   EXPECT_NEAR(w, w_per_u * u, 1e-10);
   EXPECT_NEAR(system.shaft(in).state.speed - w, u, 1e-10);
   EXPECT_NEAR(system.shaft(out).state.speed - w, g * u, 1e-10);
-  EXPECT_NEAR(system.rate_state(gear).torque, J2 * (g + w_per_u) * u / 1.0, 1e-9);
+  verification::verify("gear pair in a free housing", "torque at the output, N m",
+                       system.rate_state(gear).torque, J2 * (g + w_per_u) * u / 1.0, 1e-10,
+                       "Lagrange's equations");
   EXPECT_LT(system.angular_momentum(Vec3::Zero()).norm(), 1e-11);
   EXPECT_NEAR(system.rate_state(motor).work, system.kinetic_energy(), 1e-10 * system.kinetic_energy());
   EXPECT_NEAR(system.rate_state(gear).work, 0.0, 1e-10);
@@ -87,11 +90,14 @@ TEST(Gear, differential_splits_the_torque_exactly_and_planetary_by_willis) {
   for (int i = 0; i < 1000; ++i) ASSERT_TRUE(system.step(h).ok);
   const double split =
       0.5 * system.rate_state(differential).torque;  // on each side, constant over the second
-  EXPECT_NEAR(system.shaft(left).state.speed, split / 0.4, 1e-9);
-  EXPECT_NEAR(system.shaft(box).state.speed, (100.0 - 2 * split) / 0.6, 1e-9);
+  verification::verify("differential", "speed of the left shaft after 1 s, rad/s",
+                       system.shaft(left).state.speed, split / 0.4, 1e-10, "half of the box's torque");
+  verification::verify("differential", "speed of the box after 1 s, rad/s", system.shaft(box).state.speed,
+                       (100.0 - 2 * split) / 0.6, 1e-10, "what the outputs leave");
   const double lambda = system.rate_state(set).torque;
   EXPECT_NEAR(system.shaft(sun).state.speed, lambda / 0.1, 1e-9);
-  EXPECT_NEAR(system.shaft(ring).state.speed, k * lambda / 0.2, 1e-9);
+  verification::verify("planetary gear", "speed of the ring after 1 s, rad/s", system.shaft(ring).state.speed,
+                       k * lambda / 0.2, 1e-10, "Willis");
   EXPECT_NEAR(system.shaft(right).state.speed, (split - (1 + k) * lambda) / 0.9, 1e-9);
   const auto speed = [&](int shaft) { return system.shaft(shaft).state.speed; };
   EXPECT_NEAR(speed(left) + speed(right), 2.0 * speed(box), 1e-11);
@@ -154,8 +160,9 @@ TEST(Shaft, gyroscope_moves_like_one_whose_rotor_is_a_body) {
   const Vec3 reference = Gyroscope(true).after(0.5, 40000);
   const double coarse = (Gyroscope(false).after(0.5, 500) - reference).norm();
   const double fine = (Gyroscope(false).after(0.5, 1000) - reference).norm();
-  EXPECT_LT(fine, 1e-4);
-  EXPECT_NEAR(coarse / fine, 4.0, 0.4);
+  verification::verify("gyroscope, 0.5 s in 1000 steps", "distance to one whose rotor is a body, m", fine,
+                       0.0, 1e-4, "40,000 steps", 1.0);
+  verification::verify("gyroscope", "error of steps twice as long", coarse / fine, 4.0, 0.1, "second order");
 }
 
 TEST(Shaft, free_carrier_with_a_rotor_keeps_its_angular_momentum_and_nearly_its_energy) {

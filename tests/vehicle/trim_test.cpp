@@ -10,6 +10,7 @@
 #include "protocol/core/constants.hpp"
 #include "protocol/core/error.hpp"
 #include "tests/vehicle/shipped.hpp"
+#include "tests/verification/record.hpp"
 #include "vehicle/analysis/kinematics.hpp"
 
 using namespace furrow;
@@ -58,7 +59,8 @@ TEST(Trim, hmmwv_stands_at_the_drawn_height_with_the_axle_loads_of_hand_statics)
     const double mass = 2422.739;
     const double x = (2086.52 * 56.0 + steering + front + rear) / mass;
     const double by_hand = mass * kStandardGravity * (x + 1652.965) / 3301.93;
-    EXPECT_NEAR(trim.axle_loads[0], by_hand, 2e-3 * by_hand) << name;
+    verification::verify(std::string(name) + " at rest", "load of the front axle, N", trim.axle_loads[0],
+                         by_hand, 2e-3, "hand statics of the drawn points");
     // In the posture itself: the sums are exact.
     EXPECT_NEAR(trim.axle_loads[0] + trim.axle_loads[1], car.mass() * kStandardGravity, 1e-6);
     const double xf = car.rim(0).position.x(), xr = car.rim(2).position.x();
@@ -139,8 +141,9 @@ TEST(Trim, modes_of_a_rigid_vehicle_on_four_springs_match_the_closed_form) {
   EXPECT_NEAR(trim.pitch, 0.0, 1e-3);
   std::vector<double> found{mode(trim, "heave").frequency, mode(trim, "pitch").frequency};
   std::sort(found.begin(), found.end());
-  EXPECT_NEAR(found[0], hertz(squares[0]), 1e-5 * found[0]);
-  EXPECT_NEAR(found[1], hertz(squares[1]), 1e-5 * found[1]);
+  for (const int k : {0, 1})
+    verification::verify("rigid vehicle on four springs, vibrations", k == 0 ? "heave, Hz" : "pitch, Hz",
+                         found[k], hertz(squares[k]), 1e-5, "closed form");
   EXPECT_NEAR(trim.wheels[0].load, W * -xr / (xf - xr) / 2.0, 1e-6 * W);
   EXPECT_NEAR(mode(trim, "roll").frequency, hertz((4.0 * k * s * s - W * centre.z()) / J(0, 0)),
               2e-3 * mode(trim, "roll").frequency);
@@ -179,9 +182,13 @@ TEST(Trim, ride_frequencies_of_the_hmmwv_match_a_model_of_two_axles_with_its_whe
       Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix4d>(K, mass).eigenvalues();
   std::vector<double> body{mode(trim, "heave").frequency, mode(trim, "pitch").frequency};
   std::sort(body.begin(), body.end());
-  EXPECT_NEAR(body[0], hertz(squares[0]), 0.05 * body[0]);
-  EXPECT_NEAR(body[1], hertz(squares[1]), 0.05 * body[1]);
-  EXPECT_NEAR(mode(trim, "hop front").frequency, hertz(squares[2]), 0.05 * hertz(squares[2]));
+  const auto verify = [](const char* what, double value, double reference) {
+    verification::verify("hmmwv_tr.json, vibrations", what, value, reference, 0.05,
+                         "half-car on its wheel rates");
+  };
+  verify("lower of heave and pitch, Hz", body[0], hertz(squares[0]));
+  verify("upper of heave and pitch, Hz", body[1], hertz(squares[1]));
+  verify("hop of the front axle, Hz", mode(trim, "hop front").frequency, hertz(squares[2]));
   EXPECT_GT(mode(trim, "heave").damping, 0.1);
 }
 

@@ -1,0 +1,126 @@
+// The whole HMMWV over many steps on hard ground: drift of its constraints, brakes that hold it on a slope, a gearbox that
+// does not hunt.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "tests/vehicle/shipped.hpp"
+#include "tests/vehicle/verification/simple_ground.hpp"
+#include "tests/verification/record.hpp"
+
+using namespace furrow;
+using namespace furrow::testing;
+using vehicle::Vehicle, vehicle::VehicleInputs;
+
+namespace {
+
+constexpr double kSlipWidth = 4.0;  // m/s, soft enough for an explicit force at 1 ms
+
+double heading(const Vehicle& car) {
+  const Vec3 forward = car.system().body(car.chassis()).R * Vec3::UnitX();
+  return std::atan2(forward.y(), forward.x());
+}
+
+double speed(const Vehicle& car) {
+  const vehicle::Body& chassis = car.system().body(car.chassis());
+  return chassis.state.velocity.dot(chassis.R * Vec3::UnitX());
+}
+
+/// A step of a vehicle that rolls.
+Outcome roll(Vehicle& car, const std::vector<GroundContact>& contacts, double h) {
+  for (int k = 0; k < car.wheel_count(); ++k) car.set_wrench(k, contacts[k].roll(car.rim(k), kSlipWidth));
+  return car.step(h);
+}
+
+}  // namespace
+
+// Throttle, brake and steering change all the time, and so do the gears.
+TEST(WholeVehicle, constraints_do_not_drift_over_a_million_steps) {
+  Vehicle car(shipped("hmmwv.json"));
+  add_tires(car);
+  const std::vector<GroundContact> contacts(car.wheel_count());
+  put_on_ground(car, contacts.front());
+  double worst = 0.0;
+  int shifts = 0, gear = car.drive().gearbox()->gear();
+  const int steps = 1000000;
+  for (int i = 0; i < steps; ++i) {
+    const double t = 1e-3 * i;
+    VehicleInputs inputs;
+    inputs.steering = 0.8 * std::sin(0.7 * t);
+    inputs.throttle = std::max(0.0, 0.6 * std::sin(0.2 * t));
+    inputs.brake = std::max(0.0, -0.3 * std::sin(0.2 * t));
+    car.set_inputs(inputs);
+    const Outcome outcome = roll(car, contacts, 1e-3);
+    ASSERT_TRUE(outcome.ok) << outcome.message("HMMWV") << " at step " << i;
+    if (i % 1000 == 999) worst = std::max(worst, car.system().max_violation());
+    if (const int now = car.drive().gearbox()->gear(); now != gear) gear = now, ++shifts;
+  }
+  EXPECT_GT(shifts, 50);
+  verification::verify("HMMWV, 1,000,000 steps of 1 ms", "largest violation of a constraint, m and rad",
+                       worst, 0.0, 1e-10, "constraints", 1.0);
+}
+
+TEST(WholeVehicle, brakes_hold_it_on_a_slope_of_20_percent) {
+  for (const double h : {1e-3, 2e-4}) {
+    vehicle::VehicleSpec spec = shipped("hmmwv.json");
+    Vehicle car(spec, gravity_on_slope(0.2));
+    add_tires(car);
+    std::vector<GroundContact> contacts(car.wheel_count());
+    put_on_ground(car, contacts.front());
+    VehicleInputs inputs;
+    inputs.brake = 1.0;
+    inputs.selector = vehicle::Selector::neutral;
+    car.set_inputs(inputs);
+    const auto stand = [&](double duration) {
+      const long steps = std::lround(duration / h);
+      for (long i = 0; i < steps; ++i) {
+        for (int k = 0; k < car.wheel_count(); ++k) car.set_wrench(k, contacts[k].stick(car.rim(k), h));
+        const Outcome outcome = car.step(h);
+        ASSERT_TRUE(outcome.ok) << outcome.message("HMMWV") << " at step " << i << " of " << h << " s";
+      }
+    };
+    stand(5.0);  // it sways as it is let go
+    const Vec3 before = car.origin();
+    std::vector<double> angle;
+    for (int k = 0; k < car.wheel_count(); ++k)
+      angle.push_back(car.system().coordinate(car.wheel(k).bearing).value);
+    stand(10.0);
+    const std::string step = verification::brief(h);
+    verification::verify("HMMWV braked on a slope of 20 %, step " + step + " s", "creep within 10 s, m",
+                         (car.origin() - before).norm(), 0.0, 1e-3, "limit of 1 mm", 1.0);
+    verification::Worst turned("HMMWV braked on a slope of 20 %, step " + step + " s",
+                               "turn of a wheel in its bearing within 10 s, rad", 1e-9, "no motion");
+    for (int k = 0; k < car.wheel_count(); ++k)
+      turned.add(car.system().coordinate(car.wheel(k).bearing).value, angle[k], 1.0, car.wheel(k).name);
+  }
+}
+
+// Ten minutes uphill at constant throttle. In balance the speed stays, and so does the gear.
+TEST(WholeVehicle, gearbox_does_not_hunt_on_a_slope_of_10_percent_at_a_fifth_of_the_throttle) {
+  Vehicle car(shipped("hmmwv.json"), gravity_on_slope(0.1));
+  add_tires(car);
+  const std::vector<GroundContact> contacts(car.wheel_count());
+  put_on_ground(car, contacts.front());
+  const double h = 1e-3;
+  int early = 0, late = 0, gear = car.drive().gearbox()->gear();
+  double slowest = 1e300, fastest = -1e300;
+  for (int i = 0; i < 600000; ++i) {
+    VehicleInputs inputs;
+    inputs.throttle = 0.2;
+    inputs.steering = std::clamp(-2.0 * heading(car) - 0.05 * car.origin().y(), -1.0, 1.0);
+    car.set_inputs(inputs);
+    const Outcome outcome = roll(car, contacts, h);
+    ASSERT_TRUE(outcome.ok) << outcome.message("HMMWV") << " at step " << i;
+    const bool settled = i >= 60000;
+    if (const int now = car.drive().gearbox()->gear(); now != gear) gear = now, ++(settled ? late : early);
+    if (settled) slowest = std::min(slowest, speed(car)), fastest = std::max(fastest, speed(car));
+  }
+  const std::string name = "HMMWV up a slope of 10 % at 20 % throttle, ten minutes";
+  verification::verify(name, "changes of gear after the first minute", late, 0.0, 0.5, "no hunting", 1.0);
+  verification::verify(name, "changes of gear in the first minute", early, gear, 0.5,
+                       "one for each gear passed", 1.0);
+  verification::verify(name, "fastest after the first minute, m/s", fastest, slowest, 0.01, "slowest");
+  EXPECT_GT(slowest, 1.0);
+}

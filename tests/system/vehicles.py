@@ -1,0 +1,88 @@
+#!/usr/bin/python3
+"""Whole vehicles as users run them: the shipped scenarios begin, the tables say what vehicle, driver and wheels do, and what
+is wrong is told in one line."""
+import csv
+import json
+
+from program import ROOT, SystemTest, furrow, main
+
+QUICK = ["--set", "tire.rigid=true", "--set", "output.frame_interval=0", "--no-plots"]
+
+
+class Vehicles(SystemTest):
+    def run_it(self, name, *flags, code=0):
+        done = furrow("run", ROOT / "rigs" / name, "--out", self.folder / "out", *flags, cwd=self.folder, timeout=600)
+        self.assertEqual(done.returncode, code, done.stderr)
+        return done
+
+    def table(self, subject):
+        with open(self.folder / "out" / f"timeseries_{subject}.csv", newline="") as file:
+            return [{key: float(value) for key, value in line.items()} for line in csv.DictReader(file)]
+
+    def summary(self):
+        return json.loads((self.folder / "out" / "summary.json").read_text())
+
+    def test_the_car_on_hard_ground_is_let_down_stands_and_drives_off(self):
+        self.run_it("hmmwv_rigid.json", *QUICK, "--set", "run.end=0.9", "--set", "run.average_from=0.7")
+        vehicle, wheels = self.table("vehicle"), [self.table(f"wheel{k}") for k in range(4)]
+        at = {round(line["time_s"], 3): i for i, line in enumerate(vehicle)}
+        stands, drives = at[0.5], at[0.9]
+        loads = [sum(line["vertical_force_N"] for line in wheel[stands - 20:stands]) / 20 for wheel in wheels]
+        summary = self.summary()
+        for load, wheel in zip(loads, summary["wheels"]):
+            self.assertAlmostEqual(load / wheel["vertical_load_N"], 1.0, delta=0.03)
+        self.assertLess(abs(vehicle[stands]["x_m"] - vehicle[0]["x_m"]), 0.005)
+        self.assertEqual(vehicle[drives]["gear"], 1)
+        self.assertEqual(vehicle[drives]["throttle"], 1)
+        self.assertGreater(vehicle[drives]["acceleration_m_per_s2"], 1.0)
+        self.assertGreater(vehicle[drives]["engine_power_W"], vehicle[drives]["wheel_power_W"])
+        for wheel in wheels:
+            self.assertGreater(wheel[drives]["spindle_torque_Nm"], 100)
+            self.assertGreater(wheel[drives]["iso_force_x_N"], 100)
+            self.assertLess(abs(wheel[drives]["suspension_travel_m"]), 0.05)
+        self.assertIn("vehicle", summary["subjects"])
+        self.assertTrue(summary["accounts"]["energy"]["closes"])
+        self.assertTrue(summary["accounts"]["momentum"]["closes"])
+        self.assertLess(summary["accounts"]["energy"]["residual_share"], 0.01)
+
+    def test_the_rover_begins_on_its_sand(self):
+        self.run_it("rover_small.json", "--no-plots", "--set", "run.end=0.05", "--set", "run.average_from=0.02",
+                    "--set", "terrain.layers=2", "--set", "terrain.radius=0.012")
+        self.assertEqual(len(self.summary()["wheels"]), 6)
+        self.assertIn("sinkage_in_rut_m", self.table("wheel5")[0])
+
+    def test_every_shipped_scenario_of_a_vehicle_is_valid(self):
+        names = [path.name for path in (ROOT / "rigs").glob("*.json")
+                 if json.loads(path.read_text()).get("rig", {}).get("type") == "vehicle"]
+        self.assertGreaterEqual(len(names), 3)
+        for name in names:
+            done = furrow("validate", ROOT / "rigs" / name, cwd=self.folder)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("vehicle ", done.stdout)
+            ranks = furrow("ranks", ROOT / "rigs" / name, cwd=self.folder)
+            self.assertEqual(ranks.returncode, 0, ranks.stderr)
+
+    def test_what_is_wrong_is_told_in_one_line_before_anything_is_written(self):
+        for setting, message in (
+                ("rig.vehicle=none.json", "key 'rig.vehicle': 'none.json' does not exist"),
+                ("rig.vehicle=null", "key 'rig.vehicle': is missing, expected the name of a vehicle's file: hmmwv.json"),
+                ("rig.driver=none.csv", "key 'rig.driver': 'none.csv' does not exist"),
+                ('rig.driver={"speed": {"target": -1}}', "key 'rig.driver.speed.target': "),
+                ("rig.heading=9", "key 'rig.heading': is 9 rad, expected a number, -3.15 to 3.15 rad"),
+                ("tires=[{},{},{}]", "key 'tires': has 3 entries, expected 4, one per wheel, or 2, one per axle"),
+                ("rig.type=drawbar", "key 'tire.file': is missing")):
+            with self.subTest(setting=setting):
+                flags = [] if setting.startswith("tires") else QUICK
+                scenario = json.loads((ROOT / "rigs" / "hmmwv_rigid.json").read_text())
+                del scenario["tire"]
+                path = self.folder / "car.json"
+                path.write_text(json.dumps(scenario))
+                done = furrow("run", path, "--out", self.folder / "out", "--set", setting, *flags, cwd=self.folder)
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertIn(message, done.stderr)
+                self.assertEqual(done.stderr.count("error"), 1, done.stderr)
+                self.assertFalse((self.folder / "out").exists())
+
+
+if __name__ == "__main__":
+    main()

@@ -10,6 +10,7 @@
 #include "protocol/files/json_fields.hpp"
 #include "protocol/files/read_context.hpp"
 #include "rigs/rig_spec.hpp"
+#include "rigs/wheel_tire.hpp"
 
 namespace furrow::rigs {
 
@@ -26,12 +27,6 @@ void visit_fields(Visit&& visit, FieldsOf<RigOptions> auto& s) {
   visit(Field{"substeps", "", role::key}, s.substeps);
   visit(Field{"drop_height", "m", role::key}, s.drop_height);
 }
-
-/// What the rig itself says of a wheel's tire.
-struct WheelTire {
-  nlohmann::json section;  // of the scenario, `tires.<k>`, where that says nothing else
-  int axle = 0;            // wheels of one axle may share an entry of `tires`
-};
 
 struct RigKind {
   const char* name;  // rig.type

@@ -263,17 +263,15 @@ std::unique_ptr<RigSpec> read_vehicle_rig(const json& section, const ReadContext
   read_fields(section, plan.options);
   plan.vehicle = vehicle::read_vehicle(file);
   plan.driver = read_driver_of(plan.options.driver, context);
-  RigOptions common;
-  read_fields(section, common);
   auto spec = std::make_unique<VehicleRigSpec>(std::move(plan), file, context);
   spec->start_given = says(section, "start");
-  spec->drops = common.drop_height > 0.0;
+  spec->drops = section.value("drop_height", 0.0) > 0.0;
   return spec;
 }
 
 /// Tire files stand beside the vehicle's file, or where those of a scenario do.
 std::vector<WheelTire> tires_of_vehicle(const json& section, const ReadContext& context) {
-  if (!says(section, "vehicle") || !section["vehicle"].is_string()) return {};
+  if (says(section, "vehicle") && !section["vehicle"].is_string()) return {};
   const std::filesystem::path file = vehicle_file(section, context);
   const vehicle::VehicleSpec spec = vehicle::read_vehicle(file);
   std::vector<WheelTire> tires;

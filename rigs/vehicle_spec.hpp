@@ -6,8 +6,8 @@
 
 #include "protocol/files/read_context.hpp"
 #include "rigs/rig_spec.hpp"
-#include "rigs/rigs.hpp"
 #include "rigs/vehicle_options.hpp"
+#include "rigs/wheel_tire.hpp"
 
 namespace furrow::rigs {
 

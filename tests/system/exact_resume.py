@@ -79,5 +79,22 @@ class SeveralWheels(Exact, CheckpointTest):
     LOADED = 6
 
 
+class Vehicle(Exact, CheckpointTest):
+    """It lands, shifts and turns its wheels at the checkpoints."""
+    SCENARIO = {
+        "format_version": 1,
+        "rig": {"type": "vehicle", "vehicle": "hmmwv.json", "drop_height": 0.005,
+                "driver": {"inputs": {"throttle": [[0, 0], [0.02, 1]], "gear": [[0, 1], [0.045, 2]],
+                                      "steering": [[0, 0], [0.05, 0.5]]}}},
+        "tire": {"rigid": True, "elements_circumference": 40},
+        "terrain": {"engine": "rigid", "ground_stiffness": 2e7, "ground_shear_stiffness": 5e6, "ground_damping": 5e3},
+        "run": {"step": 2e-4, "end": 0.08, "average_from": 0.04, "peer_timeout": 20},
+        "output": {"series_interval": 0.002, "frame_interval": 0.01},
+        "checkpoint": {"interval": 0.01, "keep": 1000},
+    }
+    WHEELS = 4
+    LOADED = 5
+
+
 if __name__ == "__main__":
     main()

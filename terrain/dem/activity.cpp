@@ -27,6 +27,8 @@ void Activity::plan(const Strips& strips) {
   static constexpr int kListedBy[5][2] = {{0, 0}, {0, -1}, {-1, -1}, {-1, 0}, {-1, 1}};
   static constexpr int kListed[5][2] = {{0, 0}, {0, 1}, {1, -1}, {1, 0}, {1, 1}};
   constexpr Need kAwake{8};
+  if (planned_ == strips.changes()) return;
+  planned_ = strips.changes();
   across_ = strips.across();
   need_.assign(static_cast<std::size_t>(strips.count()) * across_, 0);
   of_strip_.assign(strips.count(), 0);
@@ -35,7 +37,7 @@ void Activity::plan(const Strips& strips) {
     if (strip.asleep && !strip.stale) continue;
     for (int p = 0; p < across_; ++p) {
       if (!strip.parcels[p].asleep) mark(k, p, kAwake);
-      if (strip.parcels[p].stale) mark(k, p, kLoads);
+      if (strip.parcels[p].stale) mark(k, p, kLoads), planned_ = -1;  // only once
     }
   }
   spread(strips, kAwake, kLoads, kAround);
@@ -74,7 +76,7 @@ void Activity::wake_moving(const Resorted& range, Strips& strips, const Grains& 
     for (Parcel& parcel : strip.parcels)
       if (parcel.asleep && std::any_of(first + parcel.part.first, first + parcel.part.last, moves))
         changed |= wake(parcel);
-    if (changed) strips.sum_parcels(k);
+    if (changed) strips.sleep_changed(k);
   }
 }
 

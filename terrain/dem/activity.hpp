@@ -93,7 +93,7 @@ class Activity {
   }
 
   /// It falls asleep after the coming step, if that is calm.
-  static bool about_to_sleep(const Parcel& parcel) { return !parcel.asleep && parcel.calm + 1 >= kCalmSteps; }
+  static bool about_to_sleep(const Parcel& parcel) { return !parcel.asleep && parcel.calm >= kCalmSteps - 1; }
 
   /// Calm parcels without a tire near fall asleep, those pushed too hard or near a tire wake.
   /// Sets what stops moving to rest and returns the motion that this took away.
@@ -125,7 +125,7 @@ class Activity {
           }
         }
       }
-      if (changed) strips.sum_parcels(k);
+      if (changed) strips.sleep_changed(k);
     }
     return stopped;
   }
@@ -152,6 +152,7 @@ class Activity {
 
   Limits limits_;
   int across_ = 1;
+  std::int64_t planned_ = -1;           // Strips::changes() for which what follows was decided
   std::vector<std::uint8_t> need_;      // per parcel, those of a strip one after another
   std::vector<std::uint8_t> of_strip_;  // what any of its parcels needs
 };

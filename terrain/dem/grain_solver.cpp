@@ -102,7 +102,7 @@ void GrainSolver::wake(int grain) {
       const int at = grain - strips_[k].first;
       if (at < parcel.part.first || at >= parcel.part.last) continue;
       Activity::wake(parcel);
-      strips_.sum_parcels(k);
+      strips_.sleep_changed(k);
     }
 }
 

@@ -62,6 +62,11 @@ void take_parcels(Strip& strip, int across, std::optional<ColumnReader<Parcel>>&
   }
 }
 
+/// Counts of steps are followed no further.
+void bound_calm(Strip& strip) {
+  for (Parcel& parcel : strip.parcels) parcel.calm = std::clamp(parcel.calm, 0, kCalmSteps);
+}
+
 /// The next step evaluates it all.
 void wake_all(Strip& strip) {
   strip.asleep = strip.stale = false;
@@ -177,6 +182,7 @@ void GrainSolver::restore(const Archive& archive) {
     strips.take(strip);
     if (pressed) strip.motion.max_net_force = (*pressed)[k];
     take_parcels(strip, strips_.across(), parcels);
+    bound_calm(strip);
     if (!same_parcels || !params_.activity) wake_all(strip);
     strip.cell_start.assign(cells.begin() + k * per_strip, cells.begin() + (k + 1) * per_strip);
     strips_.size_lists(strip, strip.pairs);

@@ -100,6 +100,7 @@ void Strips::restore_shape(int cells_z, std::int64_t resorted) {
   FURROW_ASSERT(cells_z >= 1 && resorted >= 0, cells_z, resorted);
   nz_ = cells_z;
   resorted_ = resorted;
+  ++changes_;
 }
 
 std::size_t Strips::bytes() const {
@@ -410,6 +411,7 @@ void Strips::mark_stale(std::span<const Strip> old, int old_from, const Resorted
           const int strip = beside(s, ds), parcel = parcel_beside(p, dp);
           if (strip < 0 || parcel < 0 || !strips_[strip].parcels[parcel].asleep) continue;
           strips_[strip].stale = strips_[strip].parcels[parcel].stale = true;
+          ++changes_;
         }
     }
 }
@@ -426,7 +428,7 @@ Resorted Strips::rebuild(Grains& grains, int from, int to, int threads) {
     strip.x_min = old.x_min, strip.x_max = old.x_max, strip.z_max = old.z_max;
     strip.travel = old.travel;
     strip.asleep = old.asleep, strip.stale = old.stale;
-    strip.parcels = old.parcels;
+    strip.parcels = old.parcels;  // who sleeps is as before
     strip.lost = old.lost;
     strip.contact = old.contact, strip.motion = old.motion;
     if (lists_from + k < from) strip.cell_start = old.cell_start, strip.walls = old.walls;
@@ -459,6 +461,7 @@ Resorted Strips::rebuild_all(Grains& grains, int threads) {
   for (int g = 0; g < grains.count; ++g) top = std::max(top, grains.position[g].z);
   nz_ = static_cast<int>(std::clamp(top * inverse_z_, 0.0, kMaxCellsZ - 1.0)) + 1;
   if (strips_.back().last != grains.count) {  // grains were placed anew: all in the first strip
+    ++changes_;
     for (Strip& strip : strips_) {
       strip = {};
       strip.parcels.resize(across_);

@@ -170,8 +170,15 @@ class Strips {
   int across() const { return across_; }
   /// Whether any of a parcel's columns stand between these y, m. The outer ones reach beyond the sides.
   bool parcel_between(int p, double y_min, double y_max) const;
-  /// After who sleeps has changed: `asleep` and the sums of motion of strip k.
+  /// After parcels of strip k were moved, or changed otherwise: `asleep` and the sums of motion.
   void sum_parcels(int k);
+  /// After parcels of strip k fell asleep or woke.
+  void sleep_changed(int k) {
+    sum_parcels(k);
+    ++changes_;
+  }
+  /// Another number after any parcel fell asleep, woke or became stale.
+  std::int64_t changes() const { return changes_; }
 
   /// Sorts all grains and makes all lists. Returns the order. @pre threads > 0
   Resorted rebuild_all(Grains& grains, int threads);
@@ -218,7 +225,7 @@ class Strips {
   int across_ = 1;
   double inverse_x_ = 0.0, inverse_y_ = 0.0, inverse_z_ = 0.0;  // cells per metre
   std::vector<Strip> strips_;
-  std::int64_t resorted_ = 0;
+  std::int64_t resorted_ = 0, changes_ = 0;
   // Memory that is kept from rebuild to rebuild.
   std::vector<Strip> old_;
   struct Scratch {

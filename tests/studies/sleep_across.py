@@ -6,12 +6,13 @@ usage: sleep_across.py --before PROGRAM COMMIT [--seeds 1 2 3] [--core N]     wr
 PROGRAM: of COMMIT, the last whose grains sleep by whole strips. Per seed it runs with sleep, and the present program
 ($FURROW, or build/furrow) with and without, one after another on one thread. The table has a line for each: drawbar pull
 and its standard error over the averaging window, sinkage and rut of the run, share of the grains that are awake, wall time
-of the run without its bed, and that beside the run of whole strips. Lines without a seed are means over the seeds, with the
-standard deviation between them.
+of the run without its bed, processor time of all of it (the bed is made beforehand), and that beside the run of whole strips.
+Lines without a seed are means over the seeds, with the standard deviation between them.
 """
 import argparse
 import os
 import pathlib
+import resource
 import statistics
 import subprocess
 
@@ -31,9 +32,21 @@ def run(program, seed, sleep, core):
     out = ROOT / "results" / "studies" / "sleep_across" / f"{sleep}_{seed}"
     words = [program, "run", *SCENARIO, "--set", f"run.seed={seed}", "--set", f"terrain.activity={json_bool(sleep != 'none')}",
              "--out", str(out), "--overwrite", "--no-plots"]
-    subprocess.run([*(["taskset", "-c", str(core)] if core is not None else []), *words], check=True, stdout=subprocess.DEVNULL,
-                   env=dict(os.environ, FURROW_HOME=str(ROOT)))
-    return provenance.read_json(out / "summary.json")
+    pinned = ["taskset", "-c", str(core)] if core is not None else []
+    begin = processor_time()
+    subprocess.run([*pinned, *words], check=True, stdout=subprocess.DEVNULL, env=dict(os.environ, FURROW_HOME=str(ROOT)))
+    return provenance.read_json(out / "summary.json") | {"cpu_s": processor_time() - begin}
+
+
+def processor_time():
+    """Of all processes that this one has started and waited for, s."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def make_bed(seed):
+    subprocess.run([provenance.program(), "bed", *SCENARIO[:-2], "--set", f"run.seed={seed}"], check=True,
+                   stdout=subprocess.DEVNULL, env=dict(os.environ, FURROW_HOME=str(ROOT)))
 
 
 def json_bool(value):
@@ -47,7 +60,9 @@ def row_of(summary, seed, sleep, whole):
         row[column] = (1e3 if column.endswith("_mm") else 1.0) * value
     row["pull_sem_N"] = summary["drawbar_pull_N"]["sem"]
     row["wall_s"] = summary["wall_s"]
+    row["cpu_s"] = summary["cpu_s"]
     row["wall_ratio"] = summary["wall_s"] / whole["wall_s"]
+    row["cpu_ratio"] = summary["cpu_s"] / whole["cpu_s"]
     return row
 
 
@@ -70,6 +85,7 @@ def main():
     arguments = parser.parse_args()
     rows = []
     for seed in arguments.seeds:
+        make_bed(seed)
         of = {sleep: run(arguments.before[0] if sleep == "strips" else provenance.program(), seed, sleep, arguments.core)
               for sleep in SLEEP}
         rows += [row_of(of[sleep], seed, sleep, of["strips"]) for sleep in SLEEP]

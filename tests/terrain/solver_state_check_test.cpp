@@ -36,9 +36,36 @@ Archive saved() {
   return archive;
 }
 
+/// Of a row of grains across a bed that is cut into parcels, asleep but for one.
+FewGrains wide_grains() {
+  FewGrains few = rough_grains();
+  few.options.width = 2.6;
+  few.activity = true;
+  return few;
+}
+Archive saved_asleep() {
+  const FewGrains few = wide_grains();
+  const double radius = few.options.radius;
+  const double load = grain_properties(radius, few.options.density).mass * few.gravity;
+  const double z = radius - std::pow(load / few.coefficients().floor.stiffness, 2.0 / 3.0);
+  std::vector<Quad> positions;
+  for (int j = 0; j < 60; ++j)
+    for (int i = 0; i < 2; ++i) positions.push_back({0.1 + 0.041 * i, -1.2 + 0.041 * j, z, 0.0});
+  GrainSolver solver = few.make(positions);
+  for (int step = 0; step < 100; ++step) solver.step(kStep);
+  EXPECT_EQ(solver.accounts().active, 0);
+  solver.wake(solver.index_of(7));
+  solver.step(kStep);
+  EXPECT_GT(solver.accounts().active, 0);
+  EXPECT_LT(solver.accounts().active, 20);
+  Archive archive;
+  solver.save(archive);
+  return archive;
+}
+
 /// What restoring complains of; empty when it does not, and the state can be stepped.
-std::string complaint(const Archive& archive) {
-  GrainSolver solver = rough_grains().make({});
+std::string complaint(const Archive& archive, const FewGrains& few = rough_grains()) {
+  GrainSolver solver = few.make({});
   try {
     solver.restore(archive);
     for (int step = 0; step < 3; ++step) solver.step(kStep);
@@ -103,8 +130,7 @@ TEST(SolverState, every_index_that_is_wild_is_refused_by_its_array) {
 
 /// Numbers anywhere, changed to anything, and arrays cut short: a message, or a state that can be stepped. More of them:
 /// --gtest_shuffle --gtest_repeat=1000.
-TEST(SolverState, random_changes_are_refused_or_harmless) {
-  const Archive good = saved();
+void change_at_random(const Archive& good, const FewGrains& few) {
   std::mt19937_64 random(static_cast<unsigned>(::testing::UnitTest::GetInstance()->random_seed()));
   std::vector<std::string> names;
   for (const auto& [name, array] : good.arrays()) names.push_back(name);
@@ -131,9 +157,29 @@ TEST(SolverState, random_changes_are_refused_or_harmless) {
         array);
     Archive archive = good;
     archive.put_array(name, array);
-    refused += !complaint(archive).empty();
+    refused += !complaint(archive, few).empty();
   }
   EXPECT_GT(refused, 100);
+}
+
+TEST(SolverState, random_changes_are_refused_or_harmless) { change_at_random(saved(), rough_grains()); }
+TEST(SolverState, random_changes_of_sleeping_parcels_are_refused_or_harmless) {
+  change_at_random(saved_asleep(), wide_grains());
+}
+
+TEST(SolverState, parcels_need_all_their_columns_and_lists_in_order) {
+  const Archive good = saved_asleep();
+  EXPECT_EQ(complaint(good, wide_grains()), "");
+  Archive cut = good;
+  cut.put("parcels/calm", std::vector<std::int32_t>(3));
+  EXPECT_NE(complaint(cut, wide_grains()), "");
+  const auto& partners = good.get<std::uint64_t>("pairs/partners");
+  ASSERT_GT(partners.size(), 2U);
+  EXPECT_TRUE(complaint(with(good, "pairs/partners", 1, std::uint64_t{kQuad}), wide_grains())
+                  .starts_with("saved state 'pairs/partners' lists the grains of strip"));
+  EXPECT_TRUE(complaint(with(good, "walls/grain", 1, std::int32_t{0}), wide_grains()).empty());
+  EXPECT_TRUE(complaint(with(good, "walls/grain", 0, std::int32_t{5}), wide_grains())
+                  .starts_with("saved state 'walls/grain' lists the grains of strip"));
 }
 
 }  // namespace

@@ -279,7 +279,8 @@ struct FinalReport {
   static constexpr MessageKind kKind = MessageKind::final_report;
   Address self;
   std::uint64_t state_hash = 0;
-  double cpu_s = 0.0, compute_s = 0.0, wait_s = 0.0;  // of the stepping loop
+  // Of the stepping loop, s: processor time; and wall time, what computing, communicating and waiting took of it.
+  double cpu_s = 0.0, compute_s = 0.0, communicate_s = 0.0, wait_s = 0.0;
   std::int32_t threads = 1;
   std::vector<double> profile;              // what StepProfile::times() holds; empty unless asked for
   HeightField height_before, height_after;  // terrain
@@ -290,6 +291,7 @@ void visit_fields(Visit&& visit, FieldsOf<FinalReport> auto& s) {
   visit(Field{"state_hash"}, s.state_hash);
   visit(Field{"cpu_s", "s"}, s.cpu_s);
   visit(Field{"compute_s", "s"}, s.compute_s);
+  visit(Field{"communicate_s", "s"}, s.communicate_s);
   visit(Field{"wait_s", "s"}, s.wait_s);
   visit(Field{"threads"}, s.threads);
   visit(Field{"profile", "s"}, s.profile);

@@ -17,10 +17,12 @@
 #include "nodes/launch/progress.hpp"
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
+#include "nodes/scenario/calibration.hpp"
 #include "nodes/scenario/explain.hpp"
 #include "nodes/scenario/load_scenario.hpp"
 #include "nodes/scenario/memory_check.hpp"
 #include "nodes/scenario/rank_table.hpp"
+#include "nodes/scenario/run_time.hpp"
 #include "nodes/scenario/validate.hpp"
 #include "nodes/scenario/vehicle_tires.hpp"
 #include "protocol/files/nearest_words.hpp"
@@ -164,8 +166,9 @@ ExitCode validate_command(Typed& typed) {
     return validate_vehicle(typed.scenario, typed.json);
   }
   const scenario::Scenario scenario = load(typed);
-  std::cout << (typed.json ? scenario::validation_report(scenario).dump(2) + "\n"
-                           : scenario::validation_text(scenario));
+  const scenario::RunTime time = scenario::run_time(scenario, scenario::calibration());
+  std::cout << (typed.json ? scenario::validation_report(scenario, &time).dump(2) + "\n"
+                           : scenario::validation_text(scenario, &time));
   return ExitCode::done;
 }
 

@@ -57,12 +57,25 @@ std::string pull_line(const json& summary, const scenario::Scenario& scenario) {
                               number(summary, "rut_depth_m"));
 }
 
-std::string ranks_line(const json& summary) {
+/// What each rank did; a table where there are more than rig, one tire and terrain.
+std::string ranks_text(const json& summary) {
   std::vector<std::string> parts;
+  const json ranks = summary.value("ranks", json::array());
+  if (ranks.size() > 3) {
+    std::string table = fmt::format("\nfurrow: {:<10} {:>9} {:>9} {:>7} {:>9} {:>9} {:>9} {:>6}\n", "node", "size",
+                                    "step, s", "threads", "comp., s", "comm., s", "wait, s", "busy");
+    for (const json& rank : ranks)
+      table += fmt::format("furrow: {:<10} {:>9} {:>9.3g} {:>7} {:>9.1f} {:>9.1f} {:>9.1f} {:>4.0f} %\n",
+                           rank.value("node", std::string("?")), rank.value("size", std::int64_t{0}),
+                           number(rank, "step_s"), rank.value("threads", 0), number(rank, "compute_s"),
+                           number(rank, "communicate_s"), number(rank, "wait_s"),
+                           100.0 * number(rank, "busy_share"));
+    return table;
+  }
   for (const json& rank : summary.value("ranks", json::array()))
     parts.push_back(fmt::format("{} {:.0f} % busy", rank.value("node", std::string("?")),
                                 100.0 * number(rank, "busy_share")));
-  return parts.empty() ? "" : fmt::format(": {}", fmt::join(parts, ", "));
+  return parts.empty() ? "\n" : fmt::format(": {}\n", fmt::join(parts, ", "));
 }
 
 /// Whether the run's accounts close, and what fails if they do not.
@@ -148,9 +161,9 @@ std::string result_text(const std::filesystem::path& run, const scenario::Scenar
         "of the step\n",
         added, 100.0 * number(summary, "substeps_refined_share"), number(summary, "substeps_most_parts"));
   text += accounts_line(summary);
-  text += fmt::format("furrow: {:.1f} s for {:g} simulated s, {:.1f} s to prepare the bed{}\n",
+  text += fmt::format("furrow: {:.1f} s for {:g} simulated s, {:.1f} s to prepare the bed{}",
                       number(summary, "wall_s"), number(summary, "simulated_s"),
-                      number(summary, "settle_wall_s"), ranks_line(summary));
+                      number(summary, "settle_wall_s"), ranks_text(summary));
   return text;
 }
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "protocol/core/clock.hpp"
 #include "protocol/messages.hpp"
 
 namespace furrow::output {
@@ -16,16 +17,25 @@ class StepProfile {
  public:
   /// @param steps of the run; 0: record nothing
   explicit StepProfile(std::int64_t steps);
-  void begin(std::int64_t step) { start(step, 0); }  // synchronize begins
-  void exchanged(std::int64_t step) { start(step, 1); }
+  void begin(std::int64_t step) {  // synchronize begins
+    begin_ = wall_clock();
+    start(step, 0);
+  }
+  void exchanged(std::int64_t step) {
+    exchanging_ += wall_clock() - begin_;
+    start(step, 1);
+  }
   void advanced(std::int64_t step) { start(step, 2); }
   /// Step number and the three times of each recorded step, s of wall_clock().
   const std::vector<double>& times() const { return times_; }
+  /// What all synchronizations took, waiting included, s; recorded or not.
+  double exchanging() const { return exchanging_; }
 
  private:
   void start(std::int64_t step, int part);
   std::int64_t every_ = 0;
   std::vector<double> times_;
+  double begin_ = 0.0, exchanging_ = 0.0;  // s
 };
 
 /// @throws Error(io)

@@ -171,14 +171,19 @@ Json rank_table(const SummaryInput& in) {
   Json ranks = Json::array();
   for (std::size_t i = 0; i < in.end.reports.size(); ++i) {
     const FinalReport& r = in.end.reports[i];
+    const NodeCard& card = in.cards[i];
+    const double busy = r.compute_s + r.communicate_s;
     ranks.push_back({{"rank", i},
                      {"node", to_string(r.self)},
-                     {"kind", in.cards[i].node_kind},
+                     {"kind", card.node_kind},
                      {"threads", r.threads},
+                     {"size", r.self.role == Role::terrain ? in.setup.grains : card.size},  // grains, unknowns of a tire
+                     {"step_s", in.scenario.run.step / std::max(1, card.substeps)},
                      {"cpu_s", r.cpu_s},
                      {"compute_s", r.compute_s},
+                     {"communicate_s", r.communicate_s},
                      {"wait_s", r.wait_s},
-                     {"busy_share", json_number(r.compute_s / (r.compute_s + r.wait_s))}});
+                     {"busy_share", json_number(busy / (busy + r.wait_s))}});
   }
   return ranks;
 }

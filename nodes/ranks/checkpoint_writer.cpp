@@ -19,6 +19,7 @@ namespace {
 
 constexpr Address kRig{Role::rig, 0};
 constexpr char kCost[] = "run/cost";
+constexpr char kCommunicate[] = "run/communicate_s";  // checkpoints written before it was counted have it in computing
 
 }  // namespace
 
@@ -131,11 +132,15 @@ void CheckpointWriter::complete(CheckpointPart own, bool needed) {
   if (context_.note) context_.note("warning: " + text + "; the run goes on");
 }
 
-void save_cost(Archive& archive, const NodeCost& cost) { save_fields(archive, kCost, cost); }
+void save_cost(Archive& archive, const NodeCost& cost) {
+  save_fields(archive, kCost, cost);
+  archive.put(kCommunicate, cost.communicate_s);
+}
 
 NodeCost restore_cost(const Archive& archive) {
   NodeCost cost;
   restore_fields(archive, kCost, cost);
+  if (archive.has(kCommunicate)) cost.communicate_s = archive.get_double(kCommunicate);
   return cost;
 }
 

@@ -8,7 +8,7 @@ namespace furrow::ranks {
 
 /// What a node used so far, summed over the segments of its run.
 struct NodeCost {
-  double cpu_s = 0.0, compute_s = 0.0, wait_s = 0.0;
+  double cpu_s = 0.0, compute_s = 0.0, communicate_s = 0.0, wait_s = 0.0;
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<NodeCost> auto& s) {

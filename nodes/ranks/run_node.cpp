@@ -1,5 +1,6 @@
 #include "nodes/ranks/run_node.hpp"
 
+#include <algorithm>
 #include <ctime>
 #include <new>
 
@@ -94,11 +95,11 @@ class RunLoop {
 
   ExitCode step(const std::vector<NodeCard>& cards) {
     const std::int64_t steps = scenario_.run.steps();
-    output::StepProfile profile(context_.profile ? steps : 0);
+    profile_ = output::StepProfile(context_.profile ? steps : 0);
     wall_start_ = wall_clock(), cpu_start_ = cpu_s(), waited_start_ = transport_.wait_clock().waited_s;
     CheckpointWriter checkpoints(scenario_, *node_, transport_, context_, cards, [this] { return cost(); });
     const std::int64_t at =
-        run_steps(*node_, transport_, scenario_.run.step, from_, steps, &profile,
+        run_steps(*node_, transport_, scenario_.run.step, from_, steps, &profile_,
                   [&](std::int64_t n) { checkpoints.write(n, node_->due() == Order::stop && n < steps); });
     const bool stopped = at < steps;
     if (!stopped) {
@@ -111,9 +112,10 @@ class RunLoop {
     const NodeCost used = cost();
     own.wait_s = used.wait_s;
     own.compute_s = used.compute_s;
+    own.communicate_s = used.communicate_s;
     own.cpu_s = used.cpu_s;
     own.threads = context_.threads;
-    own.profile = profile.times();
+    own.profile = profile_.times();
     own.state_hash = state_hash(*node_);
     fault_point("results");
     node_->finish(transport_, own, stopped);
@@ -123,8 +125,11 @@ class RunLoop {
 
   NodeCost cost() const {
     const double wait = transport_.wait_clock().waited_s - waited_start_;
-    return {before_.cpu_s + cpu_s() - cpu_start_, before_.compute_s + wall_clock() - wall_start_ - wait,
-            before_.wait_s + wait};
+    // Nearly all waiting is for messages; the little that checkpoints wait for each other is none of them.
+    const double communicate = std::max(0.0, profile_.exchanging() - wait);
+    return {before_.cpu_s + cpu_s() - cpu_start_,
+            before_.compute_s + wall_clock() - wall_start_ - wait - communicate,
+            before_.communicate_s + communicate, before_.wait_s + wait};
   }
 
   const scenario::Scenario& scenario_;
@@ -132,6 +137,7 @@ class RunLoop {
   RunContext context_;
   std::unique_ptr<Node> node_;
   NodeCost before_;
+  output::StepProfile profile_{0};
   std::int64_t from_ = 0;
   double wall_start_ = 0.0, cpu_start_ = 0.0, waited_start_ = 0.0;
 };

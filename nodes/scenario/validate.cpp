@@ -61,9 +61,39 @@ std::vector<std::pair<std::string, std::string>> scales_lines(const WheelScales&
   return lines;
 }
 
+nlohmann::ordered_json time_json(const RunTime& t) {
+  return {{"all_s", number(t.all())},
+          {"bed_s", number(t.bed)},
+          {"bed_is_kept", t.bed_is_kept},
+          {"run_s", number(t.run)},
+          {"step_s", number(t.step)},
+          {"slowest_tire_s", number(t.tire)},
+          {"terrain_s", number(t.terrain)},
+          {"awake_share", number(t.awake)},
+          {"terrain_threads", t.threads},
+          {"cores", t.cores}};
+}
+
+/// "about 2 min".
+std::string duration(double seconds) {
+  if (seconds < 100.0) return digits(seconds) + " s";
+  if (seconds < 6000.0) return digits(seconds / 60.0) + " min";
+  return digits(seconds / 3600.0) + " h";
+}
+
+std::string time_text(const RunTime& t) {
+  std::string text = fmt::format("about {} on {} core{} that nobody else uses: ", duration(t.all()), t.cores,
+                                 t.cores > 1 ? "s" : "");
+  if (t.bed > 0.0) text += fmt::format("bed {}, ", duration(t.bed));
+  text += fmt::format("run {}; of a step of {} ms the slowest tire takes {}, the terrain {}", duration(t.run),
+                      digits(1e3 * t.step), digits(1e3 * t.tire), digits(1e3 * t.terrain));
+  if (t.awake < 1.0) text += fmt::format(" with {:.0f} % of its grains awake", 100.0 * t.awake);
+  return text;
+}
+
 }  // namespace
 
-nlohmann::ordered_json validation_report(const Scenario& s) {
+nlohmann::ordered_json validation_report(const Scenario& s, const RunTime* time) {
   const Estimate e = estimate(s);
   nlohmann::ordered_json json;
   json["scenario"] = s.name;
@@ -81,6 +111,7 @@ nlohmann::ordered_json validation_report(const Scenario& s) {
   json["tire_coordinates"] = e.coordinates;
   json["memory_MB"] = std::round(e.memory / kMegabyte);
   json["disk_MB"] = std::round(e.disk / kMegabyte);
+  if (time) json["time"] = time_json(*time);
   for (const rigs::WheelDescription& wheel : describe_rig(s).wheels)
     json["axle_path_m"].push_back({wheel.from, wheel.to});
   for (const tire::TireDescription& tire : describe_tires(s)) json["tire_mass_kg"].push_back(tire.mass.mass);
@@ -94,7 +125,7 @@ nlohmann::ordered_json validation_report(const Scenario& s) {
   return json;
 }
 
-std::string validation_text(const Scenario& s) {
+std::string validation_text(const Scenario& s, const RunTime* time) {
   const Estimate e = estimate(s);
   std::string text;
   const auto line = [&](const std::string& name, const std::string& value) {
@@ -121,6 +152,7 @@ std::string validation_text(const Scenario& s) {
   }
   line("memory", fmt::format("about {:.0f} MB in all", e.memory / kMegabyte));
   line("disk", fmt::format("about {:.0f} MB of results", e.disk / kMegabyte));
+  if (time) line("time", time_text(*time));
   for (const Bound& bound : scale_bounds(s)) line("bound by", bound.key + ": " + bound.what);
   return text + "ranks\n" + rank_table_text(s);
 }

@@ -147,15 +147,18 @@ def ranks(run):
     names = [f"rank {r['rank']}: {r['node']}" + (f" ({r['kind']})" if r.get("kind") else "")
              + f", {r['threads']} thread{'s' if r['threads'] != 1 else ''}" for r in table]
     compute = np.array([r["compute_s"] for r in table])
+    communicate = np.array([r.get("communicate_s", 0.0) for r in table])  # runs before it was counted have it in computing
     wait = np.array([r["wait_s"] for r in table])
     position = np.arange(len(table))
     axis.barh(position, compute, color=BLUE, label="computing")
-    axis.barh(position, wait, left=compute, color="#d0d0d0", label="waiting for others")
-    longest = max((compute + wait).max(), 1e-12)
+    axis.barh(position, communicate, left=compute, color="#e0a030", label="communicating")
+    busy = compute + communicate
+    axis.barh(position, wait, left=busy, color="#d0d0d0", label="waiting for others")
+    longest = max((busy + wait).max(), 1e-12)
     for i, r in enumerate(table):
         share = r.get("busy_share")
         text = f"{100 * share:.0f} % busy" if share is not None else ""
-        axis.text(compute[i] + wait[i] + 0.01 * longest, i, f"{text}, {r['cpu_s']:.0f} s CPU", va="center", fontsize=9)
+        axis.text(busy[i] + wait[i] + 0.01 * longest, i, f"{text}, {r['cpu_s']:.0f} s CPU", va="center", fontsize=9)
     axis.set_yticks(position, names)
     axis.invert_yaxis()
     axis.grid(axis="y", visible=False)
@@ -164,5 +167,5 @@ def ranks(run):
     per_second = run.number("wall_s_per_simulated_s")
     axis.set_title(f"{run.title}\nWho computes and who waits"
                    + (f" · {per_second:.1f} s of wall time per simulated second" if per_second else ""))
-    axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), ncol=2)
+    axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), ncol=3)
     return figure

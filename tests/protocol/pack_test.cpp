@@ -74,6 +74,7 @@ FinalReport final_report() {
   m.state_hash = 0xfedcba9876543210ULL;
   m.cpu_s = 1;
   m.compute_s = 2;
+  m.communicate_s = 5;
   m.wait_s = 3;
   m.threads = 4;
   m.profile = {0.5, 1.5};

@@ -2,7 +2,7 @@
 """Tiled beds (terrain.tile) beside beds settled as a whole: are seams seen, and what does it save? Writes tiled_beds.csv,
 tiled_beds_wheel.csv and tiled_beds_cost.csv beside this script.
 
-usage: tiled_beds.py [--parts beds wheel cost] [--seeds N]
+usage: tiled_beds.py [--parts beds wheel cost] [--seeds N] [--soils cohesive loose_sand]
 
 beds   Grains of the small rig, cohesive and as loose sand, 3 x 0.6 m, pieces of 1 m. By slices of 50 mm along x: share of solid
        in the middle half of the depth, contacts per grain, height and roughness of the surface (standard deviation of the highest
@@ -10,8 +10,8 @@ beds   Grains of the small rig, cohesive and as loose sand, 3 x 0.6 m, pieces of
        seams and walls. In the bed that was settled as a whole the same places are compared.
 wheel  A rigid wheel on such beds. `stands`: let down on a seam (x = 1 m) or away from it (x = 1.5 m), sinkage after 0.6 s.
        `rolls`: the small rig's run at slip 0.3, whose averaging window holds the seam at x = 2 m: pull and sinkage.
-cost   The bed of hmmwv_straight at full size (REFERENCE: 20 x 3 m, 15 layers, r = 12 mm, 100 kPa): processor time and wall time of
-       `furrow bed`, tiled and as a whole.
+cost   Processor time and wall time of `furrow bed`, tiled and as a whole: the small rig's grains on 12 x 0.6 m, pieces of 1 m.
+       --full: also the bed for a vehicle, 20 x 3 m, r = 12 mm, 15 layers, 100 kPa, pieces of 3 m (a million grains).
 """
 import argparse
 import json
@@ -22,6 +22,7 @@ import resource
 import statistics
 import subprocess
 import sys
+import tempfile
 import time
 
 import h5py
@@ -38,6 +39,7 @@ OUT = ROOT / "results" / "studies" / "tiled_beds"
 SOILS = {"cohesive": {}, "loose_sand": {"terrain.material": "loose_sand.json", "terrain.cohesion": 0, "terrain.layers": 14}}
 KINDS = {"tiled": {"terrain.tile": 1.0}, "whole": {}}
 SLICE = 0.05  # m
+LONG = {"terrain.length": 12.0}
 FULL = {"terrain.radius": 0.012, "terrain.layers": 15, "terrain.cohesion": 100e3, "terrain.length": 20.0, "terrain.width": 3.0}
 
 
@@ -116,9 +118,10 @@ def place_of(x):
     return "seam" if to_seam < SLICE else "away" if to_seam > 0.2 and 0.2 < x < 2.8 else None
 
 
-def study_beds(seeds):
+def study_beds(seeds, soils):
     rows = []
-    for soil, of_soil in SOILS.items():
+    for soil in soils:
+        of_soil = SOILS[soil]
         figures = {}  # (kind, place, quantity): a mean for each seed
         for seed in range(1, seeds + 1):
             for kind, of_kind in KINDS.items():
@@ -138,7 +141,8 @@ def study_beds(seeds):
                 values = [a - b for a, b in zip(figures[kind, "seam", name], figures[kind, "away", name])]
                 rows.append({"soil": soil, "bed": kind, "where": "seam - away", "what": name, "beds": len(values),
                              "mean": f"{statistics.mean(values):.3g}", "half_width_95": f"{half_interval(values):.2g}"})
-    provenance.write_table(HERE / "tiled_beds.csv", list(rows[0]), rows, provenance.made_here())
+    provenance.write_table(HERE / f"tiled_beds{'' if len(soils) > 1 else '_' + soils[0]}.csv", list(rows[0]), rows,
+                           provenance.made_here())
 
 
 def run(name, settings):
@@ -168,32 +172,37 @@ def study_wheel(seeds):
     provenance.write_table(HERE / "tiled_beds_wheel.csv", list(rows[0]), rows, provenance.made_here())
 
 
-def study_cost():
+def study_cost(full):
     rows = []
-    for kind, settings in (("tiled", {**FULL, "terrain.tile": 3.0}), ("whole", FULL)):
-        cache = OUT / f"cache_{kind}"  # of its own and empty: nothing is found in it
-        subprocess.run(["rm", "-rf", str(cache)], check=True)
-        os.environ["XDG_CACHE_HOME"] = str(cache)
-        told = bed(settings)
-        rows.append({"bed": kind, "grains": told["grains"], "settled": told["settled"], "simulated_s": f"{told['settling_time_s']:.3g}",
-                     "solid_fraction_bulk": f"{told['solid_fraction_bulk']:.4f}", "contacts_per_grain": f"{told['coordination_number']:.4f}",
-                     "depth_mm": f"{1e3 * told['depth_m']:.4g}", "max_overlap_mm": f"{1e3 * told['max_overlap_m']:.3g}",
-                     "threads": told["threads"], "processor_s": f"{told['processor_s']:.0f}", "wall_s": f"{told['elapsed_s']:.0f}"})
+    cases = [("12 x 0.6", "tiled", {**LONG, "terrain.tile": 1.0}), ("12 x 0.6", "whole", LONG)]
+    if full:
+        cases += [("20 x 3", "tiled", {**FULL, "terrain.tile": 3.0}), ("20 x 3", "whole", FULL)]
+    for size, kind, settings in cases:
+        with tempfile.TemporaryDirectory() as cache:  # empty: nothing is found in it
+            os.environ["XDG_CACHE_HOME"] = cache
+            told = bed(settings)
+        rows.append({"size_m": size, "bed": kind, "grains": told["grains"], "settled": told["settled"],
+                     "simulated_s": f"{told['settling_time_s']:.3g}", "solid_fraction_bulk": f"{told['solid_fraction_bulk']:.4f}",
+                     "contacts_per_grain": f"{told['coordination_number']:.4f}", "depth_mm": f"{1e3 * told['depth_m']:.4g}",
+                     "max_overlap_mm": f"{1e3 * told['max_overlap_m']:.3g}", "threads": told["threads"],
+                     "processor_s": f"{told['processor_s']:.0f}", "wall_s": f"{told['elapsed_s']:.0f}"})
         print(rows[-1], flush=True)
-    provenance.write_table(HERE / "tiled_beds_cost.csv", list(rows[0]), rows, provenance.made_here())
+        provenance.write_table(HERE / "tiled_beds_cost.csv", list(rows[0]), rows, provenance.made_here())
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--parts", nargs="+", choices=("beds", "wheel", "cost"), default=["beds", "wheel", "cost"])
     parser.add_argument("--seeds", type=int, default=5)
+    parser.add_argument("--soils", nargs="+", choices=tuple(SOILS), default=tuple(SOILS))
+    parser.add_argument("--full", action="store_true")
     arguments = parser.parse_args()
     if "beds" in arguments.parts:
-        study_beds(arguments.seeds)
+        study_beds(arguments.seeds, arguments.soils)
     if "wheel" in arguments.parts:
         study_wheel(arguments.seeds)
     if "cost" in arguments.parts:
-        study_cost()
+        study_cost(arguments.full)
 
 
 if __name__ == "__main__":

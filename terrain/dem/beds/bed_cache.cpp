@@ -1,6 +1,5 @@
 #include "terrain/dem/beds/bed_cache.hpp"
 
-#include <cstdlib>
 #include <span>
 #include <string>
 #include <utility>
@@ -10,6 +9,7 @@
 #include "protocol/core/hash.hpp"
 #include "protocol/core/paced_call.hpp"
 #include "protocol/files/archive_file.hpp"
+#include "protocol/files/cache_folder.hpp"
 #include "protocol/files/text_file.hpp"
 #include "terrain/dem/beds/bed_format_4.hpp"
 #include "terrain/dem/beds/bed_settling.hpp"
@@ -68,15 +68,8 @@ std::string bed_digest(const DemOptions& o) {
 }
 
 std::filesystem::path bed_cache_file(const std::string& digest) {
-  std::filesystem::path folder;
-  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache) {
-    folder = cache;
-  } else if (const char* home = std::getenv("HOME"); home && *home) {
-    folder = std::filesystem::path(home) / ".cache";
-  } else {
-    return {};
-  }
-  return folder / "furrow" / "beds" / (digest + ".h5");
+  const std::filesystem::path folder = cache_folder("beds");
+  return folder.empty() ? folder : folder / (digest + ".h5");
 }
 
 void write_bed(const std::filesystem::path& file, const Archive& archive, const ProgressCall& progress) {

@@ -1,0 +1,129 @@
+#include "nodes/scenario/calibration.hpp"
+
+#include <ctime>
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+
+#include "protocol/core/error.hpp"
+#include "protocol/core/hash.hpp"
+#include "protocol/files/cache_folder.hpp"
+#include "protocol/files/data_files.hpp"
+#include "protocol/files/text_file.hpp"
+#include "protocol/host.hpp"
+#include "rigs/rolling_tire.hpp"
+#include "terrain/dem/beds/bed_generators.hpp"
+#include "terrain/dem/beds/bed_settling.hpp"
+#include "terrain/dem/solver_setup.hpp"
+#include "tire/tires.hpp"
+
+namespace furrow::scenario {
+namespace {
+
+constexpr double kSettle = 0.12;            // of the small bed, s: it has its contacts, resting or not
+constexpr double kGrainTime = 0.3;          // processor time for the steps that are timed, s
+constexpr double kTireTime = 0.8;           // s
+constexpr double kTireWarm = 0.8;           // processor time before, s
+constexpr int kColumns = 60, kAcross = 12;  // mesh of the reference tire
+
+/// Processor time of this thread, s.
+double processor_time() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// Runs `step` for so much processor time and returns that of one.
+template <class Step>
+double time_of(double seconds, const Step& step) {
+  const double begin = processor_time();
+  int count = 0;
+  do {
+    step();
+    ++count;
+  } while (processor_time() - begin < seconds);
+  return (processor_time() - begin) / count;
+}
+
+double measured_grain_step() {
+  terrain::dem::DemOptions o;
+  o.cohesion = 80e3;
+  o.length = o.width = 0.24;
+  o.periodic_x = true;
+  o.sides = "periodic";
+  terrain::dem::GrainSolver solver(terrain::dem::settling_params(o));
+  solver.place(terrain::dem::starting_positions(o, {}));
+  terrain::dem::settle(solver, o, {}, kSettle);
+  const double dt = terrain::dem::settle_step(o);
+  return time_of(kGrainTime, [&] { solver.step(dt); }) / solver.grains().count;
+}
+
+void measure_tire(Calibration& found) {
+  tire::TireOptions options;
+  options.file = data_folder() / "tire" / "data" / "hmmwv_layered.json";
+  options.elements_circumference = kColumns;
+  options.elements_width = kAcross;
+  const auto tire = tire::read_tire(options)->make({});
+  rigs::RollingTire rolling(*tire, {.step = 6e-5});
+  const auto step = [&] {
+    rolling.push();
+    rolling.roll();
+    rolling.follow(0.0);
+  };
+  time_of(kTireWarm, step);
+  found.tire_step = time_of(kTireTime, step);
+  found.tire_coordinates = static_cast<int>(tire->coordinates());
+}
+
+/// Names machine and build.
+std::string digest() {
+  Hash hash;
+  hash.add(file_hash("/proc/self/exe"));
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);)
+    if (line.starts_with("model name")) {
+      hash.add(line);
+      break;
+    }
+  return hash.hex();
+}
+
+bool kept(const std::filesystem::path& file, Calibration& found) {
+  std::ifstream in(file);
+  const nlohmann::json json = nlohmann::json::parse(in, nullptr, false);
+  if (!json.is_object()) return false;
+  const auto positive = [&](const char* key) {
+    const auto at = json.find(key);
+    return at != json.end() && at->is_number() && at->get<double>() > 0.0 ? at->get<double>() : 0.0;
+  };
+  found.grain_step = positive("grain_step_s");
+  found.tire_step = positive("tire_step_s");
+  found.tire_coordinates = static_cast<int>(positive("tire_coordinates"));
+  return found.grain_step > 0.0 && found.tire_step > 0.0 && found.tire_coordinates > 0;
+}
+
+}  // namespace
+
+Calibration calibration() {
+  Calibration found;
+  found.cores = static_cast<int>(allowed_cores().size());
+  std::filesystem::path file = cache_folder("calibration");
+  if (!file.empty()) file /= digest() + ".json";
+  if (!file.empty() && kept(file, found)) return found;
+  found.grain_step = measured_grain_step();
+  measure_tire(found);
+  if (file.empty()) return found;
+  try {
+    std::filesystem::create_directories(file.parent_path());
+    write_whole_file(file, nlohmann::json{{"grain_step_s", found.grain_step},
+                                          {"tire_step_s", found.tire_step},
+                                          {"tire_coordinates", found.tire_coordinates}}
+                                   .dump(2) +
+                               "\n");
+  } catch (const std::exception&) {
+    // A cache that cannot be written costs a second the next time.
+  }
+  return found;
+}
+
+}  // namespace furrow::scenario

@@ -1,0 +1,106 @@
+#include "nodes/scenario/run_time.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include "nodes/scenario/wheel_geometry.hpp"
+#include "protocol/core/assert.hpp"
+#include "terrain/dem/beds/bed_cache.hpp"
+#include "terrain/dem/beds/bed_generators.hpp"
+#include "terrain/dem/beds/bed_preparation.hpp"
+#include "terrain/dem/beds/bed_settling.hpp"
+#include "terrain/dem/beds/bed_tiling.hpp"
+
+namespace furrow::scenario {
+namespace {
+
+constexpr double kDouble = 1.5;        // what a grain-step takes in double precision, of one in mixed
+constexpr double kSettling = 0.6;      // that a new bed takes to settle, simulated s
+constexpr double kJoints = 0.15;       // the same for joints, as if all grains were awake
+constexpr double kAwake = 1.6;         // tire radii before and behind an axle within which grains are awake
+constexpr double kMeshExponent = 1.1;  // of the time of a tire's step with its unknowns
+constexpr double kRigidTire = 1e-4;    // of a step: moving the surface, s
+constexpr double kMessages = 6e-5;     // that each rank computes in a step to send, receive and write, s
+constexpr double kLatency = 5e-5;      // until a message is noticed, s
+constexpr int kMaxAutoThreads = 32;    // as launch/thread_setup.hpp has it
+constexpr int kPlaces = 9;             // along the axles' paths at which the awake share is looked at
+
+/// Mean share of a bin's length that lies near an axle.
+double awake_share(const Scenario& s, const std::vector<tire::TireDescription>& tires, double length) {
+  const rigs::RigDescription rig = describe_rig(s, tires);
+  FURROW_ASSERT(rig.wheels.size() == tires.size(), rig.wheels.size(), tires.size());
+  double sum = 0.0;
+  for (int place = 0; place < kPlaces; ++place) {
+    std::vector<std::pair<double, double>> near;
+    for (std::size_t k = 0; k < tires.size(); ++k) {
+      const double x = rig.wheels[k].from + (rig.wheels[k].to - rig.wheels[k].from) * place / (kPlaces - 1.0);
+      const double reach = kAwake * tires[k].radius;
+      near.emplace_back(std::max(0.0, x - reach), std::min(length, x + reach));
+    }
+    std::sort(near.begin(), near.end());
+    double until = 0.0;
+    for (const auto& [from, to] : near) {
+      sum += std::max(0.0, to - std::max(from, until));
+      until = std::max(until, to);
+    }
+  }
+  return std::clamp(sum / (kPlaces * length), 0.0, 1.0);
+}
+
+/// Grain-steps that settling the bed takes; 0 where it is kept.
+double settling(const terrain::dem::DemOptions& o) {
+  namespace dem = terrain::dem;
+  std::error_code error;
+  const auto is_kept = [&](const dem::DemOptions& of) {
+    return of.cache && std::filesystem::exists(dem::bed_cache_file(dem::bed_digest(of)), error);
+  };
+  if (!dem::bed_is_settled_anew(o) || is_kept(o)) return 0.0;
+  const auto steps = [](const dem::DemOptions& of, double time) {
+    return dem::expected_grains(of) * time / dem::settle_step(of);
+  };
+  const bool twice = o.compaction_pressure > 0.0 || o.settling_friction >= 0.0;
+  const double time = kSettling * (twice ? 2.0 : 1.0);
+  if (!dem::is_tiled(o)) return steps(o, time);
+  const dem::DemOptions piece = dem::piece_of(o);
+  return (is_kept(piece) ? 0.0 : steps(piece, time)) + steps(o, kJoints);
+}
+
+}  // namespace
+
+RunTime run_time(const Scenario& s, const Calibration& machine) {
+  FURROW_ASSERT(machine.cores > 0 && machine.tire_coordinates > 0, machine.cores, machine.tire_coordinates);
+  RunTime t;
+  t.cores = machine.cores;
+  const std::vector<tire::TireDescription> tires = describe_tires(s);
+  const int count = static_cast<int>(tires.size());
+  t.threads = s.run.threads > 0 ? s.run.threads : std::clamp(t.cores - count, 1, kMaxAutoThreads);
+  double all = kMessages * (2.0 + count);
+  for (const tire::TireDescription& tire : tires) {
+    const double mesh = static_cast<double>(tire.coordinates) / machine.tire_coordinates;
+    const double step =
+        s.tire_substeps *
+        (tire.coordinates > 0 ? machine.tire_step * std::pow(mesh, kMeshExponent) : kRigidTire);
+    t.tire = std::max(t.tire, step);
+    all += step;
+  }
+  t.bed_is_kept = true;
+  if (const terrain::dem::DemOptions* const keys = s.terrain->grains()) {
+    const terrain::dem::DemOptions o = terrain::dem::with_context(*keys, s.terrain_context());
+    const double grain = machine.grain_step * (o.precision == "double" ? kDouble : 1.0);
+    const double settled = settling(o);
+    t.bed_is_kept = settled == 0.0;
+    t.bed = settled * grain / std::clamp(o.settle_threads, 1, t.cores);
+    if (o.activity) t.awake = awake_share(s, tires, o.length);
+    const double terrain = s.terrain_substeps * t.awake * terrain::dem::expected_grains(o) * grain;
+    t.terrain = terrain / std::min(t.threads, t.cores);
+    all += terrain;
+  }
+  t.step = std::max({t.tire, t.terrain, all / t.cores}) + kLatency;
+  t.run = t.step * static_cast<double>(s.run.steps());
+  return t;
+}
+
+}  // namespace furrow::scenario

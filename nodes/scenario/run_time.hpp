@@ -1,0 +1,29 @@
+// How long a run will take on this machine, if nobody else uses it.
+//
+// A step takes as long as its slowest node, and not less than all processor time of the step over the cores:
+//   T = max(max tires, terrain/threads, (Σ tires + terrain + messages)/cores) + latency.
+// The terrain's is that of the grains awake: those within kAwake tire radii of an axle, where strips may sleep.
+#pragma once
+
+#include "nodes/scenario/calibration.hpp"
+#include "nodes/scenario/scenario.hpp"
+
+namespace furrow::scenario {
+
+struct RunTime {
+  bool bed_is_kept = false;  // in the cache, or the user's file: nothing is settled
+  double bed = 0.0;          // preparing it, s
+  double run = 0.0;          // all communication steps, s
+  double step = 0.0;         // one of them, s
+  double tire = 0.0;         // of it: the slowest tire, s
+  double terrain = 0.0;      // of it: the terrain on its threads, s
+  double awake = 1.0;        // mean share of the grains that is stepped
+  int threads = 1;           // of the terrain
+  int cores = 1;
+
+  double all() const { return bed + run; }
+};
+
+RunTime run_time(const Scenario& scenario, const Calibration& machine);
+
+}  // namespace furrow::scenario

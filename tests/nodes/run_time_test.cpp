@@ -1,0 +1,110 @@
+// The wall time of a run by the speed of a machine.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+
+#include "nodes/scenario/calibration.hpp"
+#include "nodes/scenario/run_time.hpp"
+#include "nodes/scenario/validate.hpp"
+#include "protocol/files/data_files.hpp"
+#include "tests/nodes/scenario_fixture.hpp"
+
+namespace furrow {
+namespace {
+
+using Settings = std::vector<std::pair<std::string, std::string>>;
+
+constexpr scenario::Calibration kMachine{
+    .grain_step = 5e-8, .tire_step = 2e-3, .tire_coordinates = 4680, .cores = 2};
+
+scenario::RunTime time_of(const char* name, Settings settings = {},
+                          scenario::Calibration machine = kMachine) {
+  settings.emplace_back("terrain.cache", "false");
+  const scenario::Scenario s = scenario::load_scenario(data_folder() / "rigs" / name, settings);
+  return scenario::run_time(s, machine);
+}
+
+/// By hand: 25,000 steps; the tire 2 ms, the terrain less, together less than two cores' time of that.
+TEST(RunTime, the_slowest_node_decides_where_there_are_cores_for_all) {
+  const scenario::RunTime t = time_of("drawbar_pull_small.json");
+  EXPECT_NEAR(t.tire, 2e-3, 1e-9);
+  EXPECT_LT(t.terrain, t.tire);
+  EXPECT_NEAR(t.run, 25000 * 2.05e-3, 1.0);
+  EXPECT_GT(t.bed, 1.0);
+  EXPECT_EQ(t.threads, 1);
+}
+
+TEST(RunTime, tires_share_the_cores_that_there_are) {
+  const Settings flexible{{"tire.elements_circumference", "60"}, {"tire.elements_width", "12"}};
+  scenario::Calibration machine = kMachine;
+  const double on_two = time_of(
+                            "four_wheels.json",
+                            [&] {
+                              Settings s = flexible;
+                              s.emplace_back("tire.rigid", "false");
+                              return s;
+                            }(),
+                            machine)
+                            .step;
+  EXPECT_GT(on_two, 4e-3);  // four tires of 2 ms on two cores
+  EXPECT_LT(on_two, 5e-3);
+  machine.cores = 16;
+  const double on_many = time_of(
+                             "four_wheels.json",
+                             [&] {
+                               Settings s = flexible;
+                               s.emplace_back("tire.rigid", "false");
+                               return s;
+                             }(),
+                             machine)
+                             .step;
+  EXPECT_NEAR(on_many, 2.05e-3, 1e-4);
+}
+
+TEST(RunTime, sleeping_tiled_and_kept_beds_take_less) {
+  const scenario::RunTime awake = time_of("drawbar_pull.json", {{"terrain.activity", "false"}});
+  const scenario::RunTime asleep = time_of("drawbar_pull.json");
+  EXPECT_EQ(awake.awake, 1.0);
+  // Measured: 14.8 % of 10 m (tests/studies/full_size_activity.json).
+  EXPECT_NEAR(asleep.awake, 0.148, 0.02);
+  EXPECT_LT(asleep.terrain, 0.2 * awake.terrain);
+  const scenario::RunTime tiled =
+      time_of("drawbar_pull.json", {{"terrain.width", "0.6"}, {"terrain.tile", "1"}});
+  EXPECT_LT(tiled.bed, 0.5 * asleep.bed);
+  const scenario::RunTime rigid = time_of("rigid_ground.json");
+  EXPECT_EQ(rigid.bed, 0.0);
+  EXPECT_EQ(rigid.terrain, 0.0);
+}
+
+TEST(RunTime, a_report_tells_it_where_it_is_known) {
+  const scenario::Scenario s = scenario::load_scenario(data_folder() / "rigs" / "first_look.json", {});
+  EXPECT_FALSE(scenario::validation_report(s).contains("time"));
+  const scenario::RunTime t = scenario::run_time(s, kMachine);
+  EXPECT_NEAR(scenario::validation_report(s, &t)["time"]["all_s"].get<double>(), t.all(), 1e-9);
+  EXPECT_NE(scenario::validation_text(s, &t).find("\ntime         about "), std::string::npos);
+}
+
+/// What was kept is taken, whatever it says; what is damaged is measured anew and kept.
+TEST(Calibration, is_kept_and_made_anew_when_damaged) {
+  const TemporaryFolder folder;
+  setenv("XDG_CACHE_HOME", folder.path().c_str(), 1);
+  const scenario::Calibration first = scenario::calibration();
+  EXPECT_GT(first.grain_step, 1e-9);
+  EXPECT_LT(first.grain_step, 1e-5);
+  EXPECT_GT(first.tire_step, 1e-5);
+  EXPECT_EQ(first.tire_coordinates, 4680);
+  const std::filesystem::path kept =
+      std::filesystem::directory_iterator(folder.path() / "furrow" / "calibration")->path();
+  std::ofstream(kept) << R"({"grain_step_s": 1e-7, "tire_step_s": 1e-3, "tire_coordinates": 4680})";
+  EXPECT_EQ(scenario::calibration().grain_step, 1e-7);
+  std::ofstream(kept) << R"({"grain_step_s": "fast)";
+  EXPECT_NE(scenario::calibration().grain_step, 1e-7);
+  EXPECT_NE(scenario::calibration().tire_step, 1e-3);
+}
+
+}  // namespace
+}  // namespace furrow

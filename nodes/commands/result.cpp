@@ -107,6 +107,22 @@ std::string accounts_line(const json& summary) {
   return text;
 }
 
+/// What is told of tables that are not a wheel's: of a vehicle how far it went and what that took.
+std::string subject_lines(const json& summary, double average_from) {
+  std::string text;
+  const json subjects = summary.value("subjects", json::object());
+  for (const auto& [name, figures] : subjects.items()) {
+    const auto told = [&, &of = figures](const char* key) { return digits(number(of, key)); };
+    if (std::isfinite(number(figures, "distance_m")))
+      text += fmt::format(
+          "furrow: {}: {} m in all; from {:g} s on {} m/s on average, engine {} W, wheels {} W, tires and "
+          "ground {} W\n",
+          name, told("distance_m"), average_from, told("speed_m_per_s"), told("engine_power_W"),
+          told("wheel_power_W"), told("soil_power_W"));
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string expected_text(const scenario::ExpectedResult& expected, int beds, double pull, double sinkage,
@@ -160,6 +176,7 @@ std::string result_text(const std::filesystem::path& run, const scenario::Scenar
         "1/{:.0f} "
         "of the step\n",
         added, 100.0 * number(summary, "substeps_refined_share"), number(summary, "substeps_most_parts"));
+  text += subject_lines(summary, scenario.run.average_from);
   text += accounts_line(summary);
   text += fmt::format("furrow: {:.1f} s for {:g} simulated s, {:.1f} s to prepare the bed{}",
                       number(summary, "wall_s"), number(summary, "simulated_s"),

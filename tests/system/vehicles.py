@@ -23,7 +23,8 @@ class Vehicles(SystemTest):
         return json.loads((self.folder / "out" / "summary.json").read_text())
 
     def test_the_car_on_hard_ground_is_let_down_stands_and_drives_off(self):
-        self.run_it("hmmwv_rigid.json", *QUICK, "--set", "run.end=0.9", "--set", "run.average_from=0.7")
+        done = self.run_it("hmmwv_rigid.json", *QUICK, "--set", "run.end=0.9", "--set", "run.average_from=0.7")
+        self.assertRegex(done.stderr + done.stdout, r"vehicle: 0\.\d+ m in all; from 0\.7 s on 0\.\d+ m/s on average, engine ")
         vehicle, wheels = self.table("vehicle"), [self.table(f"wheel{k}") for k in range(4)]
         at = {round(line["time_s"], 3): i for i, line in enumerate(vehicle)}
         stands, drives = at[0.5], at[0.9]

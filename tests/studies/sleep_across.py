@@ -90,10 +90,10 @@ def main():
               for sleep in SLEEP}
         rows += [row_of(of[sleep], seed, sleep, of["strips"]) for sleep in SLEEP]
         print(*rows[-3:], sep="\n", flush=True)
-    text = [{key: f"{value:.4g}" if isinstance(value, float) else value for key, value in row.items()} for row in rows]
-    text += [pooled(rows, sleep) for sleep in SLEEP]
-    made = provenance.made_here() | {"note": f"sleep = strips: commit {arguments.before[1]}"}
-    provenance.write_table(HERE / "sleep_across.csv", list(text[0]), text, made)
+        text = [{key: f"{value:.4g}" if isinstance(value, float) else value for key, value in row.items()} for row in rows]
+        text += [pooled(rows, sleep) for sleep in SLEEP]
+        made = provenance.made_here() | {"note": f"sleep = strips: commit {arguments.before[1]}"}
+        provenance.write_table(HERE / "sleep_across.csv", list(text[0]), text, made)
 
 
 if __name__ == "__main__":

@@ -5,8 +5,8 @@ usage: sleep_across.py --before PROGRAM COMMIT [--seeds 1 2 3] [--core N]     wr
 
 PROGRAM: of COMMIT, the last whose grains sleep by whole strips. Per seed it runs with sleep, and the present program
 ($FURROW, or build/furrow) with and without, one after another on one thread. The table has a line for each: drawbar pull
-and its standard error over the averaging window, sinkage and rut of the run, share of the grains that are awake, wall time
-of the run without its bed, processor time of all of it (the bed is made beforehand), and that beside the run of whole strips.
+and its standard error over the averaging window, sinkage and rut of the run, the rut's mean depth along the whole track,
+0.24 m wide, share of the grains that are awake, wall time of the run without its bed, processor time of all of it (the bed is made beforehand), and that beside the run of whole strips.
 Lines without a seed are means over the seeds, with the standard deviation between them.
 """
 import argparse
@@ -16,6 +16,9 @@ import resource
 import statistics
 import subprocess
 
+import h5py
+import numpy as np
+
 import provenance
 from provenance import ROOT
 
@@ -24,6 +27,7 @@ SCENARIO = [str(ROOT / "rigs" / "drawbar_pull_small.json"), "--set", "terrain.wi
             "terrain.layers=8", "--set", "terrain.length=3", "--set", "tire.rigid=true", "--set", 'rig.wheels=[{"lateral":-1.0}]',
             "--set", "run.step=1e-4", "--set", "output.frame_interval=0", "--threads", "1"]
 FIGURES = {"pull_N": "drawbar_pull_N", "sinkage_mm": "sinkage_m", "rut_depth_mm": "rut_depth_m", "rut_width_mm": "rut_width_m",
+           "rut_track_mm": "rut_track_m",
            "active_share": "active_share_mean"}
 SLEEP = ("strips", "parcels", "none")  # what sleeps as a whole
 
@@ -35,7 +39,17 @@ def run(program, seed, sleep, core):
     pinned = ["taskset", "-c", str(core)] if core is not None else []
     begin = processor_time()
     subprocess.run([*pinned, *words], check=True, stdout=subprocess.DEVNULL, env=dict(os.environ, FURROW_HOME=str(ROOT)))
-    return provenance.read_json(out / "summary.json") | {"cpu_s": processor_time() - begin}
+    return provenance.read_json(out / "summary.json") | {"cpu_s": processor_time() - begin, "rut_track_m": rut_along(out)}
+
+
+def rut_along(folder):
+    """Mean depth from where the wheel rolls steadily to behind it, within 0.12 m of its middle, m."""
+    with h5py.File(folder / "results.h5") as file:
+        axle = np.ravel(file["series/wheel0/position_m"][-1])[0]
+        x0, y0, cell = file["terrain/height_before_grid"][:]
+        depth = file["terrain/height_before"][:] - file["terrain/height_after"][:]
+    x, y = x0 + cell * np.arange(depth.shape[0]), y0 + cell * np.arange(depth.shape[1])
+    return float(np.nanmean(depth[(x > 0.75) & (x < axle - 0.25)][:, abs(y + 1.0) < 0.12]))
 
 
 def processor_time():
@@ -90,10 +104,10 @@ def main():
               for sleep in SLEEP}
         rows += [row_of(of[sleep], seed, sleep, of["strips"]) for sleep in SLEEP]
         print(*rows[-3:], sep="\n", flush=True)
-    text = [{key: f"{value:.4g}" if isinstance(value, float) else value for key, value in row.items()} for row in rows]
-    text += [pooled(rows, sleep) for sleep in SLEEP]
-    made = provenance.made_here() | {"note": f"sleep = strips: commit {arguments.before[1]}"}
-    provenance.write_table(HERE / "sleep_across.csv", list(text[0]), text, made)
+        text = [{key: f"{value:.4g}" if isinstance(value, float) else value for key, value in row.items()} for row in rows]
+        text += [pooled(rows, sleep) for sleep in SLEEP]
+        made = provenance.made_here() | {"note": f"sleep = strips: commit {arguments.before[1]}"}
+        provenance.write_table(HERE / "sleep_across.csv", list(text[0]), text, made)
 
 
 if __name__ == "__main__":

@@ -175,8 +175,9 @@ TEST(SolverState, parcels_need_all_their_columns_and_lists_in_order) {
   EXPECT_NE(complaint(cut, wide_grains()), "");
   const auto& partners = good.get<std::uint64_t>("pairs/partners");
   ASSERT_GT(partners.size(), 2U);
-  EXPECT_TRUE(complaint(with(good, "pairs/partners", 1, std::uint64_t{kQuad}), wide_grains())
-                  .starts_with("saved state 'pairs/partners' lists the grains of strip"));
+  EXPECT_TRUE(
+      complaint(with(good, "pairs/partners", 0, std::uint64_t{kQuad} << 32 | 2 * kQuad), wide_grains())
+          .starts_with("saved state 'pairs/partners' lists the grains of strip"));
   EXPECT_TRUE(complaint(with(good, "walls/grain", 1, std::int32_t{0}), wide_grains()).empty());
   EXPECT_TRUE(complaint(with(good, "walls/grain", 0, std::int32_t{5}), wide_grains())
                   .starts_with("saved state 'walls/grain' lists the grains of strip"));

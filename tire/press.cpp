@@ -7,10 +7,7 @@
 #include <fmt/format.h>
 
 #include "protocol/core/assert.hpp"
-#include "protocol/core/error.hpp"
 #include "protocol/files/text_file.hpp"
-#include "tire/ancf/inflation.hpp"
-#include "tire/tire_file.hpp"
 
 namespace furrow::tire {
 namespace {
@@ -20,8 +17,8 @@ constexpr int kMaxTrials = 12;
 constexpr double kEdgePressure = 0.02;  // of the largest: where the footprint ends
 
 /// Deflection that carries the load, between two points of the curve; the solver is left there.
-template <class Press>
-PressPoint find_load(Press&& press, PressPoint low, PressPoint high, double load) {
+PressPoint find_load(const std::function<PressPoint(double)>& press, PressPoint low, PressPoint high,
+                     double load) {
   FURROW_ASSERT(load > low.force && load <= high.force, load, low.force, high.force);
   PressPoint now = high;
   for (int n = 0; n < kMaxTrials && std::abs(now.force - load) > kLoadTolerance * load; ++n) {
@@ -40,65 +37,43 @@ struct Extent {
 
 }  // namespace
 
-PressResults press_tire(const TireFile& file, const PressOptions& options, const ProgressCall& progress) {
-  FURROW_ASSERT(options.points > 0 && options.deflection > 0.0, options.points, options.deflection);
-  const ShellMesh mesh = make_shell_mesh(file);
-  const ShellCarcass shell(file, mesh);
-  InflationReport inflation;
-  const auto inflating = [&] {
-    if (progress) progress("inflating", 0.0);
-  };
-  PressSolver solver(file, mesh, inflate(shell, mesh, inflation, inflating), options.obstacle);
-  PressResults results;
-  results.pressure = file.pressure;
-  results.mass = rigid_mass(mesh, element_masses(file, mesh));
-  results.inflation_growth = solver.start_radius() - file.radius;
+void measure_press(const PressOptions& options, const PressModel& model,
+                   const std::function<void(double)>& share, PressResults& results) {
   const int total = (options.unload ? 2 : 1) * options.points;
-  double share = 0.0;
-  const auto press = [&](double deflection) {
-    try {
-      return solver.press(deflection, [&] {
-        if (progress) progress("pressing", share);
-      });
-    } catch (const Error& error) {
-      if (error.code() != ExitCode::physics || results.loading.empty()) throw;
-      throw physics_error(fmt::format("{}; up to {:.4g} m it was found: see --deflection", error.what(),
-                                      results.loading.back().deflection));
-    }
-  };
   const auto at = [&](int k) {
-    share = static_cast<double>(k) / total;
+    share(static_cast<double>(k) / total);
     const int step = k <= options.points ? k : 2 * options.points - k;
-    return press(options.deflection * step / options.points);
+    return model.press(options.deflection * step / options.points);
   };
   results.loading.push_back(at(0));
-  results.runout = solver.runout();
+  if (model.unpressed) model.unpressed();
   for (int k = 1; k <= options.points; ++k) {
     const PressPoint before = results.loading.back();
     results.loading.push_back(at(k));
     const PressPoint& now = results.loading.back();
     const bool reached = before.force < options.load && now.force >= options.load;
     if (reached || (k == options.points && results.footprint.empty())) {
-      results.at_load = reached ? find_load(press, before, now, options.load) : now;
-      results.footprint = solver.footprint();
+      results.at_load = reached ? find_load(model.press, before, now, options.load) : now;
+      results.footprint = model.footprint();
     }
   }
   for (int k = options.points + 1; k <= total; ++k) results.unloading.push_back(at(k));
-  return results;
 }
 
 nlohmann::ordered_json press_json(const PressOptions& options, const PressResults& results) {
   nlohmann::ordered_json j;
-  const bool cleat = options.obstacle.height > 0.0;
-  j["obstacle"] = cleat ? "cleat" : "plate";
+  const bool profile = !options.obstacle.profile.empty(), cleat = !profile && options.obstacle.height > 0.0;
+  j["obstacle"] = profile ? "profile" : (cleat ? "cleat" : "plate");
   if (cleat) {
     j["cleat_height_m"] = options.obstacle.height;
     j["cleat_width_m"] = options.obstacle.width;
+    j["cleat_position_m"] = options.obstacle.position;
   }
   j["pressure_Pa"] = results.pressure;
   j["mass_kg"] = results.mass.mass;
   j["spin_inertia_kg_m2"] = results.mass.inertia(1, 1);
-  j["inflation_growth_m"] = results.inflation_growth;
+  j["inflation_growth_m"] =
+      results.inflation_growth ? nlohmann::ordered_json(*results.inflation_growth) : nlohmann::ordered_json();
   j["runout_m"] = results.runout;
   j["load_N"] = options.load;
   const PressPoint& p = results.at_load;
@@ -134,7 +109,10 @@ nlohmann::ordered_json press_json(const PressOptions& options, const PressResult
   j["statically_stable"] = results.loading.front().failed_factorizations == 0;  // inflated and not pressed
   double area = 0.0, force = 0.0, highest = 0.0;
   for (const PressSample& s : results.footprint) highest = std::max(highest, s.pressure);
-  Extent length, width;
+  // A patch on plate or cleat holds the middle of it.
+  const double middle =
+      profile && !results.footprint.empty() ? results.footprint.front().x : options.obstacle.position;
+  Extent length{middle, middle}, width;
   for (const PressSample& s : results.footprint) {
     force += s.pressure * s.area;
     if (s.pressure < kEdgePressure * highest) continue;
@@ -144,7 +122,7 @@ nlohmann::ordered_json press_json(const PressOptions& options, const PressResult
   j["footprint"] = {{"deflection_m", p.deflection},
                     {"force_N", p.force},
                     {"length_m", length.size()},
-                    {"width_m", width.size()},
+                    {"width_m", results.footprint_width.value_or(width.size())},
                     {"area_m2", area},
                     {"mean_pressure_Pa", area > 0.0 ? force / area : 0.0},
                     {"max_pressure_Pa", highest}};

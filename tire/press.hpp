@@ -2,12 +2,15 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <optional>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include "protocol/core/progress_call.hpp"
-#include "tire/ancf/press_solver.hpp"
-#include "tire/tire_file.hpp"
+#include "protocol/core/surface.hpp"
+#include "tire/press_obstacle.hpp"
 
 namespace furrow::tire {
 
@@ -23,11 +26,23 @@ struct PressResults {
   std::vector<PressPoint> loading, unloading;
   PressPoint at_load;  // of the footprint; at the largest deflection when the load is not reached
   std::vector<PressSample> footprint;
-  double inflation_growth = 0.0;  // of the largest radius, axisymmetric, m
-  double pressure = 0.0;          // gauge, Pa
-  MassProperties mass;            // of the whole tire about its centre
-  double runout = 0.0;            // of the tire at rest before it is pressed: its wrinkles, m
+  std::optional<double> inflation_growth;  // of the largest radius, axisymmetric, m; where the model has one
+  std::optional<double> footprint_width;   // m; where the model has no points across
+  double pressure = 0.0;                   // gauge, Pa
+  MassProperties mass;                     // of the whole tire about its centre
+  double runout = 0.0;                     // of the tire at rest before it is pressed: its wrinkles, m
 };
+
+/// The curve, loading and unloading, and the footprint under the load, for whatever model presses.
+/// @param press to a deflection, @param footprint of the last point, @param unpressed called after the first point
+struct PressModel {
+  std::function<PressPoint(double deflection)> press;
+  std::function<std::vector<PressSample>()> footprint;
+  std::function<void()> unpressed;
+};
+/// @param share called with the share of the curve that is done
+void measure_press(const PressOptions& options, const PressModel& model,
+                   const std::function<void(double share)>& share, PressResults& results);
 
 /// What TireSpec::static_test() gives for models that can be pressed.
 class StaticTest {
@@ -36,9 +51,6 @@ class StaticTest {
   /// @throws Error(physics) when there is no equilibrium
   virtual PressResults press(const PressOptions& options, const ProgressCall& progress) const = 0;
 };
-
-/// The static test of the shell. @pre points > 0, deflection > 0. @throws Error(physics) when there is no equilibrium
-PressResults press_tire(const TireFile& file, const PressOptions& options, const ProgressCall& progress);
 
 /// summary.json without what names the run.
 nlohmann::ordered_json press_json(const PressOptions& options, const PressResults& results);

@@ -101,7 +101,7 @@ PressCurve press(const StaticTest& test, const TireSpec& tire, double deflection
     }
   }();
   PressCurve curve;
-  curve.radius = tire.describe().radius + results.inflation_growth;
+  curve.radius = tire.describe().radius + results.inflation_growth.value_or(0.0);
   for (const PressPoint& point : results.loading) {
     const bool first = curve.points.empty();
     if (!first && !(point.force > curve.points.back().second))

@@ -73,21 +73,6 @@ Section read_section(JsonReader reader, const std::vector<LayerMaterial>& materi
   return section;
 }
 
-ContactMaterial read_contact(JsonReader reader) {
-  ContactMaterial c;
-  c.young_modulus = reader.positive("young_modulus");
-  c.poisson_ratio = reader.not_negative("poisson_ratio");
-  c.friction = reader.not_negative("friction");
-  c.restitution = reader.not_negative("restitution");
-  c.normal_stiffness = reader.positive("normal_stiffness");
-  c.normal_damping = reader.not_negative("normal_damping");
-  if (c.poisson_ratio >= 0.5)
-    reader.fail("poisson_ratio", fmt::format("is {}, expected 0 to below 0.5", c.poisson_ratio));
-  if (c.restitution > 1.0) reader.fail("restitution", fmt::format("is {}, expected 0 to 1", c.restitution));
-  reader.finish();
-  return c;
-}
-
 std::vector<MaxwellBranch> read_prony(JsonReader& reader) {
   std::vector<MaxwellBranch> branches;
   if (!reader.has("prony")) return branches;

@@ -1,5 +1,7 @@
 #include "tire/tire_file_reader.hpp"
 
+#include <fmt/format.h>
+
 namespace furrow::tire {
 namespace {
 
@@ -10,6 +12,21 @@ constexpr int kFormatVersion = 1;
 void take_common_keys(JsonReader& reader) {
   reader.check_version(kFormatVersion, true);
   for (const char* key : {"model", "rim", "name", "source", "$schema"}) reader.skip(key);
+}
+
+ContactMaterial read_contact(JsonReader reader) {
+  ContactMaterial c;
+  c.young_modulus = reader.positive("young_modulus");
+  c.poisson_ratio = reader.not_negative("poisson_ratio");
+  c.friction = reader.not_negative("friction");
+  c.restitution = reader.not_negative("restitution");
+  c.normal_stiffness = reader.positive("normal_stiffness");
+  c.normal_damping = reader.not_negative("normal_damping");
+  if (c.poisson_ratio >= 0.5)
+    reader.fail("poisson_ratio", fmt::format("is {}, expected 0 to below 0.5", c.poisson_ratio));
+  if (c.restitution > 1.0) reader.fail("restitution", fmt::format("is {}, expected 0 to 1", c.restitution));
+  reader.finish();
+  return c;
 }
 
 }  // namespace furrow::tire

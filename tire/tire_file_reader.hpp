@@ -1,6 +1,7 @@
 // What the files of all tire models have in common.
 #pragma once
 
+#include "protocol/core/surface.hpp"
 #include "protocol/files/json_reader.hpp"
 
 namespace furrow::tire {
@@ -9,5 +10,8 @@ namespace furrow::tire {
 /// `name`, `source` and `$schema`. The model reads its own keys and then calls finish().
 /// @throws Error(bad_input) naming file and key
 void take_common_keys(JsonReader& reader);
+
+/// The block `contact`: what grains and ground feel of the tread. @throws Error(bad_input) naming file and key
+ContactMaterial read_contact(JsonReader reader);
 
 }  // namespace furrow::tire

@@ -14,6 +14,7 @@
 #include "protocol/files/json_text.hpp"
 #include "tire/ancf/shell_spec.hpp"
 #include "tire/rigid/rigid_spec.hpp"
+#include "tire/ring/ring_spec.hpp"
 
 namespace furrow::tire {
 namespace {
@@ -22,9 +23,10 @@ using nlohmann::json;
 
 constexpr auto kModels = std::to_array<TireModel>({
     {"shell", read_shell},
+    {"ring", read_ring},
 });
 // Names that tire files may come to use.
-constexpr std::array<std::string_view, 3> kLater{"ring", "planar", "wheel"};
+constexpr std::array<std::string_view, 2> kLater{"planar", "wheel"};
 
 const TireModel& model_of(const json& document, const std::string& file) {
   JsonReader reader(document, file);

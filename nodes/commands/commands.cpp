@@ -23,6 +23,7 @@
 #include "nodes/scenario/memory_check.hpp"
 #include "nodes/scenario/rank_table.hpp"
 #include "nodes/scenario/run_time.hpp"
+#include "nodes/scenario/runnable.hpp"
 #include "nodes/scenario/validate.hpp"
 #include "nodes/scenario/vehicle_tires.hpp"
 #include "protocol/files/nearest_words.hpp"
@@ -109,13 +110,17 @@ void add_press_options(CLI::App& command, PressArguments& press) {
   command.add_option("--out", press.out,
                      "new folder for the results (default: results/<scenario>-press-NNN here)");
   command.add_flag("--overwrite", press.overwrite, "let --out replace the results of an earlier run");
-  command.add_option("--on", press.obstacle, "obstacle: plate or cleat")->capture_default_str();
+  command.add_option("--on", press.obstacle, "obstacle: plate, cleat or profile")->capture_default_str();
   command.add_option("--deflection", press.deflection, "largest deflection, m")->capture_default_str();
   command.add_option("--points", press.points, "points of the load–deflection curve")->capture_default_str();
   command.add_option("--load", press.load, "load of the footprint, N")->capture_default_str();
   command.add_option("--cleat-height", press.cleat_height, "height of the cleat, m")->capture_default_str();
   command.add_option("--cleat-width", press.cleat_width, "width of the cleat's top along the travel, m")
       ->capture_default_str();
+  command.add_option("--cleat-position", press.cleat_position, "middle of the cleat, forward of the axle, m")
+      ->capture_default_str();
+  command.add_option("--profile", press.profile,
+                     "CSV x_m,z_m of the ground's profile seen from the axle, for --on profile (flexible ring)");
 }
 
 void add_soil_options(CLI::App& command, SoilArguments& soil) {
@@ -166,6 +171,7 @@ ExitCode validate_command(Typed& typed) {
     return validate_vehicle(typed.scenario, typed.json);
   }
   const scenario::Scenario scenario = load(typed);
+  scenario::require_runnable(scenario);
   const scenario::RunTime time = scenario::run_time(scenario, scenario::calibration());
   std::cout << (typed.json ? scenario::validation_report(scenario, &time).dump(2) + "\n"
                            : scenario::validation_text(scenario, &time));

@@ -77,11 +77,13 @@ ExitCode soil_command(const scenario::Scenario& scenario, const SoilArguments& a
 struct PressArguments {
   std::filesystem::path out;  // empty: a fresh folder under results/
   bool overwrite = false;
-  std::string obstacle = "plate";                    // plate | cleat
+  std::string obstacle = "plate";                    // plate | cleat | profile
+  std::filesystem::path profile;                     // CSV; empty: none
   double deflection = 0.02;                          // largest, m
   int points = 10;                                   // of the curve up to it
   double load = 4561.65;                             // of the footprint, N
   double cleat_height = 0.025, cleat_width = 0.025;  // m
+  double cleat_position = 0.0;                       // of its middle, forward of the axle, m
 };
 
 /// `furrow press` (commands_press.cpp). @throws Error

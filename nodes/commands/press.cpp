@@ -23,8 +23,13 @@ tire::PressOptions press_options(const PressArguments& arguments) {
   const auto require = [](bool ok, const char* key, const std::string& what) {
     if (!ok) throw input_error("command line", key, what);
   };
-  require(arguments.obstacle == "plate" || arguments.obstacle == "cleat", "--on",
-          "is '" + arguments.obstacle + "', expected plate or cleat");
+  require(arguments.obstacle == "plate" || arguments.obstacle == "cleat" || arguments.obstacle == "profile",
+          "--on", "is '" + arguments.obstacle + "', expected plate, cleat or profile");
+  const bool profile = arguments.obstacle == "profile";
+  require(!profile || !arguments.profile.empty(), "--profile",
+          "is missing, expected a CSV file for --on profile");
+  require(profile || arguments.profile.empty(), "--profile",
+          "is given for --on " + arguments.obstacle + ", expected it for --on profile alone");
   require(arguments.deflection > 0.0 && arguments.deflection <= 0.2, "--deflection",
           "expected above 0 up to 0.2 m");
   require(arguments.points >= 1 && arguments.points <= 1000, "--points", "expected 1 to 1000");
@@ -33,9 +38,12 @@ tire::PressOptions press_options(const PressArguments& arguments) {
           "expected above 0 up to 0.2 m");
   require(arguments.cleat_width > 0.0 && arguments.cleat_width <= 1.0, "--cleat-width",
           "expected above 0 up to 1 m");
+  require(std::abs(arguments.cleat_position) <= 1.0, "--cleat-position", "expected -1 to 1 m");
   tire::PressOptions o;
   if (arguments.obstacle == "cleat")
-    o.obstacle.height = arguments.cleat_height, o.obstacle.width = arguments.cleat_width;
+    o.obstacle.height = arguments.cleat_height, o.obstacle.width = arguments.cleat_width,
+    o.obstacle.position = arguments.cleat_position;
+  if (!arguments.profile.empty()) o.obstacle.profile = tire::read_press_profile(arguments.profile);
   o.deflection = arguments.deflection;
   o.points = arguments.points;
   o.load = arguments.load;
@@ -80,7 +88,8 @@ ExitCode press_command(const scenario::Scenario& scenario, const PressArguments&
     if (!summary["statically_stable"].get<bool>())
       print_warning(
           "this tire wrinkles under its pressure: the equilibrium was reached by creep and need not be the "
-          "only one; see loading_unloading_difference in summary.json and tire/README.md, \"Static pressing\"");
+          "only one; see loading_unloading_difference in summary.json and tire/README.md, \"Static "
+          "pressing\"");
     if (summary["deflection_m"].is_null())
       print_warning(fmt::format(
           "the load of {:g} N was not reached: the largest force is {:.4g} N; no stiffness is given, and the "

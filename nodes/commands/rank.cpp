@@ -24,6 +24,7 @@
 #include "nodes/ranks/run_node.hpp"
 #include "nodes/scenario/load_scenario.hpp"
 #include "nodes/scenario/memory_check.hpp"
+#include "nodes/scenario/runnable.hpp"
 #include "protocol/abandon_mpi.hpp"
 #include "protocol/mpi_transport.hpp"
 
@@ -202,6 +203,7 @@ void read_task(const RunArguments& arguments, Task& task) try {
   if (task.plan.finished) return;
   task.scenario =
       arguments.resume ? task.plan.scenario : scenario::load_scenario(arguments.scenario, arguments.settings);
+  scenario::require_runnable(*task.scenario);
   if (launched_rank() > static_cast<int>(task.scenario->tires.size()))
     scenario::require_memory(*task.scenario);
 } catch (const std::bad_alloc&) {

@@ -16,6 +16,7 @@
 #include "nodes/launch/supervisor.hpp"
 #include "nodes/scenario/load_scenario.hpp"
 #include "nodes/scenario/memory_check.hpp"
+#include "nodes/scenario/runnable.hpp"
 #include "protocol/core/no_step_helps.hpp"
 #include "protocol/files/json_text.hpp"
 #include "protocol/files/text_file.hpp"
@@ -140,6 +141,7 @@ ExitCode supervise_run(const scenario::Scenario& scenario, launch::RunDirectory&
 }  // namespace
 
 void require_launch(const scenario::Scenario& scenario) {
+  scenario::require_runnable(scenario);
   scenario::require_memory(scenario);
   launch::start_patience();
   launch::find_mpirun();

@@ -39,11 +39,23 @@ def load_deflection(run):
     return figure
 
 
+def centre_line(run, axis, table, values):
+    """Of a tire without points across."""
+    axis.plot(1e3 * table["x_m"], 1e-3 * table["pressure_Pa"], ".-", color=BLUE)
+    axis.set_ylim(bottom=0.0)
+    axis.set(xlabel="along, mm", ylabel="pressure along the centre line, kPa",
+             title=f"{1e-3 * values['force_N']:.3g} kN: {1e3 * values['length_m']:.0f} mm long, "
+                   f"mean {1e-3 * values['mean_pressure_Pa']:.0f} kPa")
+
+
 def footprint(run):
     table = run.table("footprint.csv")
     values = run.values["footprint"]
     figure, axis = plt.subplots(figsize=(7.2, 4.6))
     run.title(figure, "contact pressure")
+    if not np.any(table["y_m"]):
+        centre_line(run, axis, table, values)
+        return figure
     points = axis.scatter(1e3 * table["y_m"], 1e3 * table["x_m"], c=1e-3 * table["pressure_Pa"], s=14, marker="s",
                           cmap="viridis", vmin=0, vmax=1e-3 * np.max(table["pressure_Pa"], initial=1.0))
     figure.colorbar(points, label="kPa")

@@ -31,7 +31,7 @@ def documents(root, *patterns):
 
 def tires(root):
     files = documents(root, "tire/data/*.json")
-    files = [file for file in files if "template" in file or "Template" in file]
+    files = [file for file in files if "template" in file or "Template" in file or "model" in file]
     return files + [{"file": files[0], "pressure": [[0, 2e5], [0.5, 1e5]], "rigid": True},
                     {"file": files[-1], "pressure": 1.5e5, "around": 24, "across": 6}]
 

@@ -90,7 +90,7 @@ TEST(RunTime, a_report_tells_it_where_it_is_known) {
 
 /// What was kept is taken, whatever it says; what is damaged is measured anew and kept.
 TEST(Calibration, is_kept_and_made_anew_when_damaged) {
-  const TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   setenv("XDG_CACHE_HOME", folder.path().c_str(), 1);
   const scenario::Calibration first = scenario::calibration();
   EXPECT_GT(first.grain_step, 1e-9);

@@ -98,9 +98,45 @@ class Press(SystemTest):
         plate = json.loads((self.folder / "out/summary.json").read_text())
         self.assertLess(cleat["footprint"]["force_N"], plate["footprint"]["force_N"])
 
+    def test_flexible_ring(self):
+        path = self.folder / "ring.json"
+        path.write_text(json.dumps({**SCENARIO, "tire": {"file": "hmmwv_ring.json"}}))
+        deflections = {}
+        profile = self.folder / "bar.csv"
+        profile.write_text("x_m,z_m\n-0.0255,0\n0.0255,0\n")
+        for name, more in (("plate", ()), ("cleat", ("--on", "cleat", "--cleat-width", "0.051")),
+                           ("profile", ("--on", "profile", "--profile", profile))):
+            done = furrow("press", path, "--out", self.folder / "out", "--overwrite", "--deflection", "0.03", "--points",
+                          "6", "--load", "3000", *more, cwd=self.folder)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            summary = json.loads((self.folder / "out/summary.json").read_text())
+            self.assertEqual(summary["obstacle"], name)
+            self.assertLess(summary["max_residual"], 1e-6)
+            self.assertLess(summary["loading_unloading_difference"], 1e-6)
+            self.assertAlmostEqual(summary["footprint"]["force_N"], 3000, delta=3)
+            self.assertAlmostEqual(summary["footprint"]["width_m"], 0.24)
+            deflections[name] = summary["deflection_m"]
+        self.assertLess(deflections["plate"], deflections["cleat"])
+        self.assertAlmostEqual(deflections["profile"], deflections["cleat"], places=9)
+        self.assertTrue((self.folder / "out/load_deflection.png").exists(), list((self.folder / "out").iterdir()))
+
+    def test_a_flexible_ring_does_not_run(self):
+        path = self.folder / "ring.json"
+        path.write_text(json.dumps({**SCENARIO, "tire": {"file": "hmmwv_ring.json"}}))
+        for command in ("validate", "run"):
+            done = furrow(command, path, cwd=self.folder)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn("key 'tire.file': is a flexible ring, which has no motion of its own", done.stderr)
+            self.assertEqual(sorted(file.name for file in self.folder.iterdir()), ["ring.json"])
+        done = furrow("validate", path, "--set", "tire.rigid=true", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
     def test_bad_input(self):
         for more, word in ((("--on", "sand"), "--on"), (("--deflection", "-1"), "--deflection"), (("--load", "inf"), "--load"),
-                           (("--set", "tire.rigid=true"), "tire.rigid")):
+                           (("--set", "tire.rigid=true"), "tire.rigid"),
+                           (("--on", "profile"), "--profile"), (("--profile", "road.csv"), "--profile"),
+                           (("--on", "profile", "--profile", "road.csv"), "road.csv"),
+                           (("--on", "cleat", "--cleat-position", "2"), "--cleat-position")):
             done = self.press(*more)
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(word, done.stderr)

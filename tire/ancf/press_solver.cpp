@@ -41,18 +41,6 @@ int points_around(const ShellMesh& mesh, const PressObstacle& obstacle) {
 
 }  // namespace
 
-PressObstacle::Profile PressObstacle::at(double x) const {
-  if (height <= 0.0) return {};
-  const double beyond = std::abs(x) - 0.5 * width;
-  if (beyond <= 0.0) return {};
-  if (beyond >= edge) return {-height, 0.0};
-  const double s = beyond / edge;  // smooth step, its slope and curvature continuous
-  const double fall = s * s * s * (10.0 - s * (15.0 - 6.0 * s));
-  const double slope = 30.0 * s * s * (1.0 - s) * (1.0 - s) / edge;
-  const double curvature = 60.0 * s * (1.0 - s) * (1.0 - 2.0 * s) / (edge * edge);
-  return {-height * fall, -height * slope * (x < 0.0 ? -1.0 : 1.0), -height * curvature};
-}
-
 /// The tangent of the free coordinates, 6 (column × rows between the beads + row) + component, and its factor.
 struct PressSolver::Linear {
   Eigen::SparseMatrix<double> matrix;  // lower triangle

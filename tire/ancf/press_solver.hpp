@@ -19,37 +19,9 @@
 
 #include "tire/ancf/rim_clearance.hpp"
 #include "tire/ancf/shell_carcass.hpp"
+#include "tire/press_obstacle.hpp"
 
 namespace furrow::tire {
-
-/// A flat plate, or a flat-topped bar across the direction of travel with rounded edges.
-struct PressObstacle {
-  double height = 0.0;     // of the top above the base, m; 0: a plate
-  double width = 0.0;      // of the top along x, m
-  double edge = 5e-3;      // along x, over which the bar's sides rise, m
-  double stiffness = 4e9;  // κ, N/m³: 0.06 mm under 240 kPa
-
-  struct Profile {
-    double height = 0.0, slope = 0.0, curvature = 0.0;  // m, -, 1/m
-  };
-  /// Top at 0; the base of a bar is never touched.
-  Profile at(double x) const;
-};
-
-struct PressPoint {
-  double deflection = 0.0;  // m
-  double force = 0.0;       // on the tire, upwards, N
-  double residual = 0.0;    // of the free forces, relative to the load
-  int creep_steps = 0;
-  int failed_factorizations = 0;
-};
-
-/// Pressure at a point of the contact surface.
-struct PressSample {
-  double x = 0.0, y = 0.0;  // m, from under the rim's centre
-  double area = 0.0;        // m²
-  double pressure = 0.0;    // Pa
-};
 
 class PressSolver {
  public:

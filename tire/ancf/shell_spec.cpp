@@ -8,7 +8,7 @@
 
 #include "protocol/core/error.hpp"
 #include "tire/ancf/ancf_tire.hpp"
-#include "tire/press.hpp"
+#include "tire/ancf/shell_press.hpp"
 #include "tire/read_tire_file.hpp"
 #include "tire/tire_magnitudes.hpp"
 
@@ -36,6 +36,8 @@ class ShellPress final : public StaticTest {
  public:
   explicit ShellPress(const TireFile& file) : file_(file) {}
   PressResults press(const PressOptions& options, const ProgressCall& progress) const override {
+    if (!options.obstacle.profile.empty())
+      throw input_error("command line", "--on", "is profile, expected plate or cleat for a layered shell tire");
     return press_tire(file_, options, progress);
   }
 

@@ -16,6 +16,7 @@ class RigidSpec final : public TireSpec {
     d.coordinates = 0;
     d.memory = d.saved_bytes = 0.0;
     d.takes_tangents = false;
+    d.static_only.clear();
     d.damping_time = d.step_share = 0.0;
     return d;
   }

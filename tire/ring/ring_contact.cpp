@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kHidden = 1e-9;  // m by which another face may stand before a corner that is seen
+constexpr double kNear = 0.02;    // of the radius: gaps that are looked at
 constexpr double kFound = 1e-10;  // of the radius, along, to which a corner's place under the belt is found
 
 }  // namespace
@@ -98,15 +99,18 @@ SegmentGap RingContact::segment(const RingField& q, int j) const {
           sine_[j] - m * cosine_[j], -m, 1.0};
 }
 
-void RingContact::corners(const RingField& q, std::vector<CornerGap>& out) const {
+bool RingContact::corners(const RingField& q, std::vector<CornerGap>& out) const {
   for (int k = 0; k < static_cast<int>(corner_ray_.size()); ++k) {
     if (!(std::abs(ground_.corners()[k].x - axle_.x) < radius_)) continue;
-    if (static_cast<int>(out.size()) == kMostCornerGaps) return;
+    if (static_cast<int>(out.size()) == kMostCornerGaps) return false;
     if (kinematics_ == RingKinematics::radial)
       radial_corner(q, k, out);
     else
       exact_corner(q, k, out);
+    // A step that crosses what is left out here sees it in the next one.
+    if (!out.empty() && out.back().corner == k && out.back().gap > kNear * radius_) out.pop_back();
   }
+  return true;
 }
 
 void RingContact::radial_corner(const RingField& q, int k, std::vector<CornerGap>& out) const {

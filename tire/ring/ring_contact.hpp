@@ -46,7 +46,7 @@ struct CornerGap {
 
 class RingContact {
  public:
-  static constexpr int kMostCornerGaps = 62;
+  static constexpr int kMostCornerGaps = 254;
 
   RingContact(const RingMechanics& ring, const RingGround& ground);
 
@@ -56,8 +56,8 @@ class RingContact {
   /// Puts the axle in its place: (3) depends on nothing else.
   void place(const AxlePlace& axle);
   SegmentGap segment(const RingField& q, int j) const;
-  /// Appends the gaps of all corners under the belt, at most kMostCornerGaps in all.
-  void corners(const RingField& q, std::vector<CornerGap>& out) const;
+  /// Appends the gaps of all corners near the belt. @returns whether they were no more than kMostCornerGaps
+  bool corners(const RingField& q, std::vector<CornerGap>& out) const;
   /// Where the segment is, seen from the axle, m, whatever the kinematics.
   GroundPoint position(const RingField& q, int j) const;
   double sine(int j) const { return sine_[j]; }

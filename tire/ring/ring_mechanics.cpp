@@ -25,15 +25,15 @@ RingMechanics::RingMechanics(const RingParams& params)
     : params_(params),
       n_(params.segments),
       phi_(2.0 * std::numbers::pi / params.segments),
-      growth_(ring_growth(params)),
-      radius_(params.radius + growth_),
+      draw_(sidewall_draw(params)),
+      radius_(params.radius),
       volume_(params.air_share * std::numbers::pi * radius_ * radius_ * params.width),
       first_(0.5 / std::sin(phi_)),
       second_(0.25 / (std::sin(0.5 * phi_) * std::sin(0.5 * phi_))),
       share_(radius_ * phi_ * params.width) {
-  FURROW_ASSERT(n_ >= kMinSegments && growth_ >= 0.0, n_, growth_);
+  FURROW_ASSERT(n_ >= kMinSegments, n_);
   FURROW_ASSERT(params.ambient > 0.0 && params.air_share > 0.0, params.ambient, params.air_share);
-  const double q = growth_, k1 = params.sidewall_1, k2 = params.sidewall_2, k3 = params.sidewall_3;
+  const double q = draw_, k1 = params.sidewall_1, k2 = params.sidewall_2, k3 = params.sidewall_3;
   s_ = {params.pressure * radius_ * params.width, k1 + q * (2.0 * k2 + 3.0 * k3 * q), k2 + 3.0 * k3 * q, k3};
   // Block (j, j + d) of (2): φ Σ_o A b(o) b(o + d)ᵀ + B a(o) a(o + d)ᵀ; o: place of segment j as the measure's own
   // segment sees it, −1, 0, 1.

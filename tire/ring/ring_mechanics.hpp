@@ -13,7 +13,7 @@
 // (sin θ, cos θ), the rotation v = 1, and the uniform growth u = 1; no alternating mode is free. Translations and growth
 // are held by the sidewall, the rotation by k_t > 0 alone: its torsional stiffness is 2π R² k_t.
 //
-// (3) is the sidewall's polynomial in w = u + q about the growth q, with s₀ = p R T (ring_params.hpp), p = p₀ − p_a; so
+// (3) is the sidewall's polynomial in w = u + q about the draw q, with s₀ = p R T (ring_params.hpp), p = p₀ − p_a; so
 // the inflated ring is in balance exactly. The belt carries no hoop tension: the whole resultant of the pressure goes to
 // the sidewall. Air of the kind `linearised` has the second-order expansion of (4). Its tangent in either kind is a
 // constant times the outer product of (1, …, 1) on u with itself: a rank of one, given apart (RingTangent::gas).
@@ -47,13 +47,13 @@ void add_local(RingTangent& tangent, int first, const std::array<double, 36>& ma
 
 class RingMechanics {
  public:
-  /// @pre the parameters have a growth, segments ≥ kMinSegments
+  /// @pre as of sidewall_draw(); segments ≥ kMinSegments, ambient, air_share > 0
   explicit RingMechanics(const RingParams& params);
 
   int segments() const { return n_; }
   double angle() const { return phi_; }      // of a segment, φ
-  double radius() const { return radius_; }  // inflated, R, m
-  double growth() const { return growth_; }  // q, m
+  double radius() const { return radius_; }  // R, m
+  double draw() const { return draw_; }      // q, m
   double volume() const { return volume_; }  // inflated, V₀, m³
   const RingParams& params() const { return params_; }
 
@@ -85,7 +85,7 @@ class RingMechanics {
 
   RingParams params_;
   int n_;
-  double phi_, growth_, radius_, volume_;
+  double phi_, draw_, radius_, volume_;
   double first_, second_;                      // 1 / (2 sin φ), 1 / (2 (1 − cos φ))
   double share_;                               // RφT, m²
   std::array<double, 4> s_;                    // of (3), per radian

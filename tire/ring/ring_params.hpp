@@ -2,11 +2,12 @@
 // to a segment, so that they mean the same for any number of segments.
 //
 // The belt is a ring of radius R and width T whose displacements u (radial, outwards) and v (tangential) count from its
-// inflated, circular shape. Inflation has moved it outwards by the growth q from the radius R − q at which the sidewall
-// is at rest; the sidewall pulls with k₁w + k₂w² + k₃w³, w = u + q, and
-//   k₁q + k₂q² + k₃q³ = p R T,   R = R₀ + q,                                                                  (1)
-// balances the gauge pressure p: q is no number of its own. k₂ > 0 makes the sidewall stiffen with pressure and soften
-// when pressed; the sidewall's force grows with w everywhere while k₂² < 3 k₁k₃.
+// inflated, circular shape. The sidewall pulls it inwards with k₁w + k₂w² + k₃w³, w = u + q, where the draw q is how far
+// inflation holds it from the length at which it is at rest:
+//   k₁q + k₂q² + k₃q³ = p R T                                                                                 (1)
+// balances the gauge pressure p, so that q is no number of its own. R is that of the inflated tire whatever the
+// pressure: a belt hardly stretches. k₂ > 0 makes the sidewall stiffen with pressure and soften when pressed; its force
+// grows with w everywhere while k₂² < 3 k₁k₃.
 #pragma once
 
 namespace furrow::tire {
@@ -18,7 +19,7 @@ enum class RingGas { linearised, exact };
 
 struct RingParams {
   int segments = 480;         // N
-  double radius = 0.0;        // R₀, not inflated, m
+  double radius = 0.0;        // R, inflated, m
   double width = 0.0;         // T, m
   double air_share = 1.0;     // η: inflated volume / (π R² T)
   double pressure = 0.0;      // p, gauge, Pa
@@ -35,8 +36,7 @@ struct RingParams {
 
 inline constexpr int kMinSegments = 16, kMaxSegments = 20000;
 
-/// Growth q of (1), m; negative where nothing below half of the radius balances the pressure.
-/// @pre radius, width, k₁ > 0; k₂, k₃, pressure ≥ 0
-double ring_growth(const RingParams& params);
+/// Draw q of (1), m. @pre radius, width, k₁ > 0; k₂, k₃, pressure ≥ 0
+double sidewall_draw(const RingParams& params);
 
 }  // namespace furrow::tire

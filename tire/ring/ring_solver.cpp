@@ -28,9 +28,9 @@ RingSolver::RingSolver(const RingParams& params, const RingGround& ground)
         set->corner_force.reserve(RingContact::kMostCornerGaps);
 }
 
-void RingSolver::reset() {
-  q_ = ring_.zero();
-  std::fill(set_.segment.begin(), set_.segment.end(), 0);
+void RingSolver::restart(const RingField& state, const std::vector<char>& closed_segments) {
+  q_ = state;
+  set_.segment = closed_segments;
   std::fill(set_.corner.begin(), set_.corner.end(), 0);
 }
 
@@ -38,7 +38,8 @@ RingReport RingSolver::solve(const AxlePlace& axle) {
   contact_.place(axle);
   RingReport report;
   for (report.steps = 0;; ++report.steps) {
-    evaluate();
+    report.crowded = !evaluate();
+    if (report.crowded) break;
     const double force_tolerance =
         kForceTolerance * ring_.radius() * std::abs(ring_.slope(0.0)) + kRoundings * ring_.rounding(q_);
     const double gap_tolerance = kGapTolerance * ring_.radius();
@@ -76,29 +77,31 @@ int RingSolver::step(double force_tolerance, double gap_tolerance) {
   return 0;
 }
 
-void RingSolver::evaluate() {
+/// @returns whether the corners near the belt are few enough
+bool RingSolver::evaluate() {
   ring_.gradient(q_, gradient_);
   for (int j = 0; j < n_; ++j) {
     gaps_[j] = contact_.segment(q_, j);
     if (!std::isfinite(gaps_[j].gap)) set_.segment[j] = 0;
   }
-  carry_corners();
+  return carry_corners();
 }
 
 /// A corner's closed gap stays closed while the belt moves over it. Corners come in their order in both lists.
-void RingSolver::carry_corners() {
+bool RingSolver::carry_corners() {
   std::swap(corners_, corners_before_);
   std::swap(set_.corner, set_before_.corner), std::swap(set_.corner_force, set_before_.corner_force);
   corners_.clear();
-  contact_.corners(q_, corners_);
+  const bool all = contact_.corners(q_, corners_);
   set_.corner.assign(corners_.size(), 0), set_.corner_force.assign(corners_.size(), 0.0);
   std::size_t old = 0;
   for (std::size_t k = 0; k < corners_.size(); ++k) {
     while (old < corners_before_.size() && corners_before_[old].corner < corners_[k].corner) ++old;
-    if (old == corners_before_.size()) return;
+    if (old == corners_before_.size()) break;
     if (corners_before_[old].corner != corners_[k].corner) continue;
     set_.corner[k] = set_before_.corner[old], set_.corner_force[k] = set_before_.corner_force[old];
   }
+  return all;
 }
 
 /// Largest force that contact leaves; sets the segments' contact forces.

@@ -22,6 +22,7 @@ struct RingReport {
   static constexpr int kMostSteps = 40;
 
   bool converged = false;
+  bool crowded = false;  // more corners near the belt than RingContact::kMostCornerGaps
   int steps = 0;
   int systems = 0;                                 // linear systems solved
   double residual = 0.0;                           // largest free force, N
@@ -33,15 +34,15 @@ struct RingReport {
 
 class RingSolver {
  public:
-  /// @pre the parameters have a growth
+  /// @pre as of RingMechanics
   RingSolver(const RingParams& params, const RingGround& ground);
 
   const RingMechanics& ring() const { return ring_; }
   const RingContact& contact() const { return contact_; }
   /// Equilibrium with the axle in this place, from the present state.
   RingReport solve(const AxlePlace& axle);
-  /// Back to the inflated circle without contact.
-  void reset();
+  /// Back to a state that was found before; its corners are found anew. @pre of as many segments
+  void restart(const RingField& state, const std::vector<char>& closed_segments);
 
   const RingField& state() const { return q_; }
   /// Contact forces and gaps at the last place; of corners those that are under the belt.
@@ -53,8 +54,8 @@ class RingSolver {
 
  private:
   int step(double force_tolerance, double gap_tolerance);
-  void evaluate();
-  void carry_corners();
+  bool evaluate();
+  bool carry_corners();
   double free_residual();
   void judge(RingReport& report) const;
   void add_bends();

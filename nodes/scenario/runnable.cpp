@@ -1,0 +1,18 @@
+#include "nodes/scenario/runnable.hpp"
+
+#include <fmt/format.h>
+
+#include "protocol/core/error.hpp"
+
+namespace furrow::scenario {
+
+void require_runnable(const Scenario& scenario) {
+  for (std::size_t k = 0; k < scenario.tires.size(); ++k) {
+    const tire::TireDescription tire = scenario.tires[k]->describe();
+    if (!tire.static_only.empty())
+      throw input_error(scenario.file.string(), scenario.tire_key(k, "file"),
+                        fmt::format("is a {}, {}", tire.name, tire.static_only));
+  }
+}
+
+}  // namespace furrow::scenario

@@ -1,0 +1,11 @@
+// Whether a scenario can run: every tire of it needs a model that moves.
+#pragma once
+
+#include "nodes/scenario/scenario.hpp"
+
+namespace furrow::scenario {
+
+/// @throws Error(bad_input) naming the key of a tire that can only be pressed
+void require_runnable(const Scenario& scenario);
+
+}  // namespace furrow::scenario

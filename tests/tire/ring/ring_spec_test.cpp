@@ -1,0 +1,225 @@
+// The flexible ring as a tire: its file, what is wrong with files, and what furrow press finds.
+#include "tire/ring/ring_spec.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "protocol/core/error.hpp"
+#include "tire/outward.hpp"
+#include "tire/press.hpp"
+#include "tire/tires.hpp"
+
+namespace furrow::tire {
+namespace {
+
+using nlohmann::json;
+
+const std::filesystem::path kFile = TIRE_DATA "/hmmwv_ring.json";
+
+json file_text() { return json::parse(std::ifstream(kFile)); }
+
+std::string complaint(const json& file, const TireOptions& options = {}) {
+  try {
+    TireOptions given = options;
+    given.file = "tire.json";
+    read_ring(file, given);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::bad_input);
+    return error.what();
+  }
+  return "no error";
+}
+
+TireOptions options(int segments = 120) {
+  TireOptions o;
+  o.file = kFile;
+  o.elements_circumference = segments;
+  return o;
+}
+
+PressResults pressed(const TireOptions& tire, const PressOptions& options) {
+  return read_tire(tire)->static_test()->press(options, {});
+}
+
+TEST(RingSpec, wrong_files_are_refused_with_file_and_key) {
+  EXPECT_EQ(complaint(file_text()), "no error");
+  const std::vector<std::pair<const char*, json>> wrong{{"segments", 15},
+                                                        {"segments", 20001},
+                                                        {"segments", 48.5},
+                                                        {"radius", 0},
+                                                        {"radius", "wide"},
+                                                        {"width", -0.2},
+                                                        {"rim_radius", 0.5},
+                                                        {"rim_radius", nullptr},
+                                                        {"pressure", -1},
+                                                        {"pressure", 1e9},
+                                                        {"air_share", 0},
+                                                        {"air_share", 1.2},
+                                                        {"bending", 0},
+                                                        {"bending", -140},
+                                                        {"shear", json::array()},
+                                                        {"tangential", 0},
+                                                        {"sidewall", 8e5},
+                                                        {"sidewall", {8e5, 1e6}},
+                                                        {"sidewall", {0, 0, 0}},
+                                                        {"sidewall", {8e5, -1, 1e7}},
+                                                        {"sidewall", {8e5, 1e8, 1e6}},
+                                                        {"gas", "ideal"},
+                                                        {"kinematics", "polar"},
+                                                        {"kinematics", 1},
+                                                        {"mass", 0},
+                                                        {"spin_inertia", -2},
+                                                        {"diametral_inertia", false},
+                                                        {"contact", 3},
+                                                        {"format_version", 2},
+                                                        {"bending_stiffness", 140}};
+  for (const auto& [key, value] : wrong) {
+    json file = file_text();
+    file[key] = value;
+    EXPECT_EQ(complaint(file).rfind("tire.json: key '" + std::string(key), 0), 0U)
+        << key << " " << value << ": " << complaint(file);
+  }
+  for (const char* key :
+       {"segments", "radius", "width", "rim_radius", "pressure", "air_share", "bending", "shear", "sidewall",
+        "tangential", "mass", "spin_inertia", "diametral_inertia", "contact"}) {
+    json file = file_text();
+    file.erase(key);
+    EXPECT_EQ(complaint(file).rfind("tire.json: key '" + std::string(key), 0), 0U) << complaint(file);
+  }
+  json file = file_text();
+  file.erase("gas"), file.erase("kinematics");
+  EXPECT_EQ(complaint(file), "no error");
+}
+
+TEST(RingSpec, a_scenario_may_change_pressure_friction_and_segments) {
+  TireOptions o = options(64);
+  o.pressure.knots = {{0.0, 1e5}};
+  o.friction = 0.4;
+  const auto spec = read_tire(o);
+  EXPECT_EQ(idle_keys(*spec), std::vector<std::string>());
+  EXPECT_EQ(spec->describe().coordinates, 128);
+  EXPECT_EQ(spec->shape().material.friction, 0.4);
+  PressOptions press;
+  EXPECT_EQ(pressed(o, press).pressure, 1e5);
+  EXPECT_LT(pressed(o, press).loading.back().force, pressed(options(64), press).loading.back().force);
+  o.elements_circumference = 8;
+  EXPECT_NE(complaint(file_text(), o).find("expected 16 to 20000"), std::string::npos);
+  o = options();
+  o.pressure.knots = {{0.0, 1e8}};
+  EXPECT_NE(complaint(file_text(), o).find("a stiffer sidewall or less pressure"), std::string::npos);
+}
+
+TEST(RingSpec, it_is_pressed_but_not_run_unless_held_rigid) {
+  TireOptions o = options();
+  const auto spec = read_tire(o);
+  EXPECT_NE(spec->describe().static_only.find("tire.rigid"), std::string::npos);
+  EXPECT_THROW(spec->make(), Error);
+  o.rigid = true;
+  const auto rigid = read_tire(o);
+  EXPECT_EQ(rigid->describe().static_only, "");
+  EXPECT_EQ(rigid->static_test(), nullptr);
+  const auto tire = rigid->make();
+  tire->place(RimState());
+  SurfaceState state;
+  tire->surface(state);
+  EXPECT_EQ(static_cast<int>(state.position.size()), rigid->describe().vertices);
+  EXPECT_NO_THROW(require_outward(tire->mesh(), state.position, Vec3::Zero(), "tire.json"));
+  EXPECT_EQ(tire->mass_properties().mass, 11.5);
+}
+
+TEST(RingSpec, pressing_gives_curve_and_footprint) {
+  PressOptions press;
+  press.deflection = 0.03, press.points = 6, press.load = 6000.0;
+  const PressResults r = pressed(options(480), press);
+  ASSERT_EQ(r.loading.size(), 7U);
+  ASSERT_EQ(r.unloading.size(), 6U);
+  EXPECT_EQ(r.loading.front().force, 0.0);
+  for (int k = 0; k < 6; ++k) {
+    EXPECT_LT(r.loading[k].force, r.loading[k + 1].force);
+    EXPECT_NEAR(r.unloading[k].force, r.loading[5 - k].force, 1e-7 * r.loading.back().force);
+  }
+  EXPECT_NEAR(r.at_load.force, 6000.0, 6.0);
+  double force = 0.0;
+  for (const PressSample& s : r.footprint) {
+    EXPECT_EQ(s.y, 0.0);
+    EXPECT_GE(s.pressure, 0.0);
+    force += s.pressure * s.area;
+  }
+  EXPECT_NEAR(force, r.at_load.force, 1e-6 * force);
+  const json summary = press_json(press, r);
+  EXPECT_NEAR(summary["footprint"]["width_m"], 0.24, 1e-12);
+  EXPECT_TRUE(summary["statically_stable"]);
+  EXPECT_TRUE(summary["inflation_growth_m"].is_null());
+}
+
+TEST(RingSpec, cleats_of_any_size_and_place_and_profiles) {
+  PressOptions press;
+  press.deflection = 0.05, press.points = 5;
+  press.obstacle.height = 0.1, press.obstacle.width = 0.05;
+  const double middle = pressed(options(), press).loading.back().force;
+  press.obstacle.position = 0.1;
+  const PressResults aside = pressed(options(), press);
+  EXPECT_LT(aside.loading.back().force, middle);
+  for (const PressSample& s : aside.footprint) EXPECT_NEAR(s.x, 0.1, 0.0251);
+  press.obstacle = {};
+  press.obstacle.profile = {{-0.025, 0.3}, {0.025, 0.3}};  // the bar again, elsewhere in height
+  EXPECT_NEAR(pressed(options(), press).loading.back().force, middle, 1e-6 * middle);
+  press.obstacle.profile = {{-1, 0}, {-0.1, 0}, {0.0, 0.02}, {0.1, 0.0}, {1, 0}};
+  EXPECT_GT(pressed(options(), press).loading.back().force, 1000.0);
+}
+
+TEST(RingSpec, what_lies_beyond_the_model_is_refused) {
+  PressOptions press;
+  press.deflection = 0.12;
+  try {
+    pressed(options(), press);
+    ADD_FAILURE() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::bad_input);
+    EXPECT_NE(std::string(error.what()).find("key '--deflection': is 0.12 m, expected at most 0.1175 m"),
+              std::string::npos)
+        << error.what();
+  }
+  json file = file_text();
+  file["rim_radius"] = 0.44;
+  TireOptions o;
+  o.file = "tire.json";
+  press.deflection = 0.05;
+  EXPECT_THROW(read_ring(file, o)->static_test()->press(press, {}), Error);
+}
+
+TEST(PressProfile, is_read_from_csv_and_mistakes_name_their_line) {
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / ("furrow_profile_" + std::to_string(::getpid()) + ".csv");
+  const auto read = [&](const std::string& text) {
+    std::ofstream(file) << text;
+    return read_press_profile(file);
+  };
+  const auto points = read("# a kerb\nx_m,z_m\n-1,0\r\n0.5,1e-2\n\n0.75,0.2\n");
+  ASSERT_EQ(points.size(), 3U);
+  EXPECT_EQ(points[1][1], 0.01);
+  const std::pair<const char*, const char*> wrong[] = {
+      {"0,0\n1,0\n", "line 1: expected the header x_m,z_m"},
+      {"x_m,z_m\n0,0\n1;0\n", "line 3: expected two numbers"},
+      {"x_m,z_m\n0,0,1\n", "line 2: expected two numbers"},
+      {"x_m,z_m\n0,nan\n", "line 2: expected two numbers"},
+      {"x_m,z_m\n0,0\n0,1\n", "line 3: x is 0 m, expected more"},
+      {"x_m,z_m\n0,0\n", "has 1 points, expected two at least"}};
+  for (const auto& [text, words] : wrong) {
+    try {
+      read(text);
+      ADD_FAILURE() << text << " was accepted";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::bad_input);
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+  }
+  std::filesystem::remove(file);
+}
+
+}  // namespace
+}  // namespace furrow::tire

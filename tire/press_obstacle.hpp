@@ -1,0 +1,44 @@
+// What a tire is pressed on, and what is measured there: of every model's static test.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <vector>
+
+namespace furrow::tire {
+
+/// A flat plate, a flat-topped bar across the direction of travel with rounded edges, or a profile.
+struct PressObstacle {
+  double height = 0.0;                         // of the bar's top above the base, m; 0: a plate
+  double width = 0.0;                          // of the top along x, m
+  double position = 0.0;                       // of the bar's middle, forward of the axle, m
+  double edge = 5e-3;                          // along x, over which the bar's sides rise, m
+  double stiffness = 4e9;                      // κ, N/m³: 0.06 mm under 240 kPa
+  std::vector<std::array<double, 2>> profile;  // x from the axle, z, m; empty: plate or bar
+
+  struct Profile {
+    double height = 0.0, slope = 0.0, curvature = 0.0;  // m, -, 1/m
+  };
+  /// Of plate and bar. Top at 0; the base of a bar is never touched.
+  Profile at(double x) const;
+};
+
+/// Rows x_m,z_m of a CSV file, x increasing. @throws Error(bad_input) naming file and line
+std::vector<std::array<double, 2>> read_press_profile(const std::filesystem::path& file);
+
+struct PressPoint {
+  double deflection = 0.0;  // m
+  double force = 0.0;       // on the tire, upwards, N
+  double residual = 0.0;    // of the free forces, relative to the load
+  int creep_steps = 0;
+  int failed_factorizations = 0;
+};
+
+/// Pressure at a point of the contact surface.
+struct PressSample {
+  double x = 0.0, y = 0.0;  // m, from under the rim's centre
+  double area = 0.0;        // m²
+  double pressure = 0.0;    // Pa
+};
+
+}  // namespace furrow::tire

@@ -1,0 +1,196 @@
+#include "tire/ring/ring_spec.hpp"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "protocol/core/error.hpp"
+#include "protocol/files/json_text.hpp"
+#include "tire/ring/ring_press.hpp"
+#include "tire/tire_file_reader.hpp"
+
+namespace furrow::tire {
+namespace {
+
+constexpr double kMostDraw = 0.5;  // of the radius: beyond, a sidewall is too soft for its pressure
+constexpr double kBytesPerSegment = 1200.0;
+constexpr std::array<std::string_view, 2> kGas{"linearised", "exact"}, kKinematics{"radial", "exact"};
+
+/// One of two names, in the order of their enumeration; the second where the key is not given.
+template <class Enum>
+Enum choice(JsonReader& reader, const std::string& key, const std::array<std::string_view, 2>& names) {
+  const std::string given = reader.text_or(key, std::string(names[1]));
+  for (int k = 0; k < 2; ++k)
+    if (given == names[k]) return static_cast<Enum>(k);
+  reader.fail(key, fmt::format("is '{}', expected {}", given,
+                               one_of({std::string(names[0]), std::string(names[1])})));
+}
+
+void check(const RingFile& f) {
+  const RingParams& p = f.params;
+  if (!(f.rim_radius < p.radius))
+    throw input_error(
+        f.path, "rim_radius",
+        fmt::format("is {:g} m, expected less than the radius of {:g} m", f.rim_radius, p.radius));
+  if (p.air_share > 1.0)
+    throw input_error(f.path, "air_share", fmt::format("is {:g}, expected above 0 up to 1", p.air_share));
+  if (p.sidewall_2 * p.sidewall_2 > 3.0 * p.sidewall_1 * p.sidewall_3)
+    throw input_error(
+        f.path, "sidewall",
+        fmt::format("is {:g}, {:g}, {:g}: the force falls somewhere, expected k2² at most 3 k1 k3",
+                    p.sidewall_1, p.sidewall_2, p.sidewall_3));
+}
+
+void check_pressure(const RingFile& f, const std::string& key) {
+  const double draw = sidewall_draw(f.params);
+  if (!(draw < kMostDraw * f.params.radius))
+    throw input_error(
+        f.path, key,
+        fmt::format("at {:g} Pa the sidewall is drawn out by {:.3g} m, expected less than {:.3g} m, half "
+                    "of the radius: a stiffer sidewall or less pressure",
+                    f.params.pressure, draw, kMostDraw * f.params.radius));
+}
+
+class RingStatic final : public StaticTest {
+ public:
+  RingStatic(const RingFile& file, const MassProperties& mass) : file_(file), mass_(mass) {}
+  PressResults press(const PressOptions& options, const ProgressCall& progress) const override {
+    return press_ring(file_.params, file_.rim_radius, mass_, options, progress);
+  }
+
+ private:
+  RingFile file_;
+  MassProperties mass_;
+};
+
+class RingSpec final : public TireSpec {
+ public:
+  RingSpec(RingFile file, const TireOptions& options) : TireSpec(options), file_(std::move(file)) {}
+
+  TireDescription describe() const override;
+  std::unique_ptr<Tire> make(const TireContext&) const override {
+    throw input_error(file_.path, "model", std::string("is 'ring', ") + kNoMotion);
+  }
+  TireShape shape() const override;
+  std::unique_ptr<StaticTest> static_test() const override {
+    return std::make_unique<RingStatic>(file_, mass());
+  }
+
+ private:
+  static constexpr const char* kNoMotion =
+      "which has no motion of its own: it can be pressed (furrow press); for a run expected another model, "
+      "or "
+      "tire.rigid true";
+  MassProperties mass() const {
+    return {file_.mass,
+            Vec3(file_.diametral_inertia, file_.spin_inertia, file_.diametral_inertia).asDiagonal()};
+  }
+
+  RingFile file_;
+};
+
+TireDescription RingSpec::describe() const {
+  const RingParams& p = file_.params;
+  TireDescription d;
+  d.kind = "ring";
+  d.name = "flexible ring";
+  d.details =
+      fmt::format("{} segments, {} coordinates, {:g} kPa", p.segments, 2 * p.segments, 1e-3 * p.pressure);
+  d.radius = p.radius;
+  d.width = d.tread_width = p.width;
+  d.coordinates = 2 * p.segments;
+  d.vertices = 2 * p.segments + 2;
+  d.facets = p.segments;
+  d.mass = mass();
+  d.memory = kBytesPerSegment * p.segments;
+  d.static_only = kNoMotion;
+  d.takes = {"pressure", "friction", "elements_circumference"};
+  d.model = {{"draw_m", sidewall_draw(p)}};
+  return d;
+}
+
+/// A cylinder, closed by discs with a vertex at their middle.
+TireShape RingSpec::shape() const {
+  const RingParams& p = file_.params;
+  const int n = p.segments;
+  TireShape shape;
+  for (int j = 0; j < n; ++j)
+    for (const double side : {0.5, -0.5}) {
+      const double angle = 2.0 * std::numbers::pi * j / n;
+      shape.vertex.emplace_back(p.radius * std::sin(angle), side * p.width, p.radius * std::cos(angle));
+    }
+  shape.vertex.emplace_back(0.0, 0.5 * p.width, 0.0);
+  shape.vertex.emplace_back(0.0, -0.5 * p.width, 0.0);
+  for (int j = 0; j < n; ++j) {
+    const int left = 2 * j, right = left + 1, next_left = 2 * ((j + 1) % n), next_right = next_left + 1;
+    shape.mesh.triangles.push_back({right, next_right, left});
+    shape.mesh.triangles.push_back({next_right, next_left, left});
+    shape.mesh.triangles.push_back({left, next_left, 2 * n});
+    shape.mesh.triangles.push_back({next_right, right, 2 * n + 1});
+  }
+  shape.mesh.vertex_count = 2 * n + 2;
+  shape.material = file_.contact;
+  shape.mass = mass();
+  shape.radius = p.radius;
+  shape.tread_width = p.width;
+  return shape;
+}
+
+/// What the scenario says in place of the file.
+void apply(RingFile& file, const TireOptions& options) {
+  if (!options.pressure.empty()) file.params.pressure = options.pressure.at(0.0);
+  if (options.friction >= 0.0) file.contact.friction = options.friction;
+  if (options.elements_circumference == 0) return;
+  if (options.elements_circumference < kMinSegments || options.elements_circumference > kMaxSegments)
+    throw input_error(
+        file.path, "segments",
+        fmt::format("is {}, expected {} to {}", options.elements_circumference, kMinSegments, kMaxSegments));
+  file.params.segments = options.elements_circumference;
+}
+
+}  // namespace
+
+RingFile read_ring_file(const nlohmann::json& document, const std::string& path) {
+  JsonReader reader(document, path);
+  take_common_keys(reader);
+  RingFile f;
+  f.path = path;
+  RingParams& p = f.params;
+  p.segments = reader.count("segments", kMinSegments, kMaxSegments);
+  p.radius = reader.positive("radius");
+  p.width = reader.positive("width");
+  f.rim_radius = reader.positive("rim_radius");
+  p.pressure = reader.not_negative("pressure");
+  p.air_share = reader.positive("air_share");
+  p.bending = reader.positive("bending");
+  p.shear = reader.positive("shear");
+  p.tangential = reader.positive("tangential");
+  const std::vector<double> k = reader.numbers("sidewall", 3);
+  if (!(k[0] > 0.0 && k[1] >= 0.0 && k[2] >= 0.0))
+    reader.fail("sidewall", fmt::format("is {:g}, {:g}, {:g}, expected k1 above 0, k2 and k3 of 0 or more",
+                                        k[0], k[1], k[2]));
+  p.sidewall_1 = k[0], p.sidewall_2 = k[1], p.sidewall_3 = k[2];
+  p.gas = choice<RingGas>(reader, "gas", kGas);
+  p.kinematics = choice<RingKinematics>(reader, "kinematics", kKinematics);
+  f.mass = reader.positive("mass");
+  f.spin_inertia = reader.positive("spin_inertia");
+  f.diametral_inertia = reader.positive("diametral_inertia");
+  f.contact = read_contact(reader.child("contact"));
+  reader.finish();
+  check(f);
+  check_pressure(f, "pressure");
+  return f;
+}
+
+std::unique_ptr<TireSpec> read_ring(const nlohmann::json& file, const TireOptions& options) {
+  RingFile ring = read_ring_file(file, options.file.string());
+  apply(ring, options);
+  check_pressure(ring, "pressure");
+  return std::make_unique<RingSpec>(std::move(ring), options);
+}
+
+}  // namespace furrow::tire

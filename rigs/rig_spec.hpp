@@ -79,6 +79,8 @@ class RigSpec {
   virtual void fill_starts(std::span<const WheelSize> tires, double duration, std::optional<double> length,
                            std::span<const double> margins) = 0;
   virtual std::vector<RigFile> files() const { return {}; }
+  /// On the rig and its tires, W, m/s²: tilted on a slope, whose surface is level in W.
+  virtual Vec3 gravity() const { return standard_gravity(); }
   /// Writes what was filled in into the scenario's section.
   virtual void complete(nlohmann::json& section) const = 0;
 };

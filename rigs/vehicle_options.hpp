@@ -22,6 +22,7 @@ struct VehicleRigOptions {
       0.0;  // x of the vehicle's origin at t = 0, m; where the scenario does not say it, it is filled in
   double lateral = 0.0;          // y of the vehicle's origin at t = 0, m
   double heading = 0.0;          // of the vehicle's x axis at t = 0, about +z from the world's, rad
+  double slope = 0.0;            // of the ground, which rises along +x, rad
   double lowering_speed = -1.0;  // at which the vehicle is let down, m/s; negative: open
   double touchdown_time = -1.0;  // how long the damper of the lowering acts, s; negative: open
 };
@@ -32,6 +33,7 @@ void visit_fields(Visit&& visit, FieldsOf<VehicleRigOptions> auto& s) {
   visit(Field{"start", "m", role::key}, s.start);
   visit(Field{"lateral", "m", role::key}, s.lateral);
   visit(Field{"heading", "rad", role::key}, s.heading);
+  visit(Field{"slope", "rad", role::key}, s.slope);
   visit(Field{"lowering_speed", "m/s", role::key}, s.lowering_speed);
   visit(Field{"touchdown_time", "s", role::key}, s.touchdown_time);
 }

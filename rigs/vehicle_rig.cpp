@@ -342,7 +342,7 @@ void VehicleRig::measure_wheel_end(int k) {
   report.axle_height = spindle.state.position.z();
   report.axle_position = Vec3(std::cos(psi), std::sin(psi), 0.0).dot(spindle.state.position);
   report.vertical_speed = system.body(wheel.carrier).state.velocity.z();
-  report.carried_mass = wheels_[k].load / plan_.gravity.norm();
+  report.carried_mass = -wheels_[k].load / plan_.gravity.z();
   report.vertical_momentum = spindle.mass * spindle.state.velocity.z() +
                              (report.carried_mass - spindle.mass) * chassis.state.velocity.z();
   report.joint_drift = system.max_violation();

@@ -72,6 +72,7 @@ class VehicleRigSpec final : public RigSpec {
   void fill_starts(std::span<const WheelSize> tires, double duration, std::optional<double> length,
                    std::span<const double> margins) override;
   std::vector<RigFile> files() const override { return {{"vehicle", file_}}; }
+  Vec3 gravity() const override { return plan_.gravity; }
   void complete(json& section) const override;
 
   bool start_given = true;
@@ -217,7 +218,7 @@ WheelDescription VehicleRigSpec::wheel(std::size_t k, const WheelSize& tire, dou
   d.toe_angle = steered ? lock_ : place.toe;
   d.camber_angle = place.camber;
   d.travel_sign = std::cos(psi) < 0.0 ? -1.0 : 1.0;
-  d.carried_mass = std::max(0.0, place.load / plan_.gravity.norm() - place.tire_mass);
+  d.carried_mass = std::max(0.0, -place.load / plan_.gravity.z() - place.tire_mass);
   d.speed = d.tread_speed = top_speed();
   d.start_key = context_.key("start");
   return d;
@@ -261,6 +262,8 @@ std::unique_ptr<RigSpec> read_vehicle_rig(const json& section, const ReadContext
   const std::filesystem::path file = vehicle_file(section, context);
   VehicleRigPlan plan;
   read_fields(section, plan.options);
+  if (const double slope = plan.options.slope; slope != 0.0)
+    plan.gravity = kStandardGravity * Vec3(-std::sin(slope), 0.0, -std::cos(slope));
   plan.vehicle = vehicle::read_vehicle(file);
   plan.driver = read_driver_of(plan.options.driver, context);
   auto spec = std::make_unique<VehicleRigSpec>(std::move(plan), file, context);

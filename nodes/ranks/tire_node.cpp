@@ -31,7 +31,8 @@ class TireNode : public Node {
         index_(index),
         kind_(scenario.tires.at(index)->describe().kind),
         pressure_(scenario.tires.at(index)->options().pressure),
-        tire_(scenario.tires.at(index)->make({.alive = std::move(alive)})),
+        tire_(
+            scenario.tires.at(index)->make({.gravity = scenario.rig->gravity(), .alive = std::move(alive)})),
         reach_(tire::inflated_reach(*tire_, scenario::describe_rig(scenario).wheels.at(index).camber_angle)) {
     report_.contact_tangent = scenario.tires.at(index)->options().contact_tangent;
     if (report_.contact_tangent) ledger_ = ImpulseLedger(tire_->mesh().vertex_count);

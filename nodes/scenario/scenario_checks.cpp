@@ -173,6 +173,9 @@ void Checks::room() {
 
 void Checks::bin() {
   if (!terrain_.bounds) return;
+  if (rig_.gravity() != standard_gravity())
+    throw wrong("rig.slope", fmt::format("is not 0, expected 0 on {} (terrain.engine '{}'), which lies level",
+                                         terrain_.name, terrain_.engine));
   const double least = kMinGrains * terrain_.grain_radius;
   for (const auto& [key, size] :
        {std::pair{"terrain.length", terrain_.bounds->length}, {"terrain.width", terrain_.bounds->width}})

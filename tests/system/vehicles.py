@@ -46,6 +46,20 @@ class Vehicles(SystemTest):
         self.assertTrue(summary["accounts"]["momentum"]["closes"])
         self.assertLess(summary["accounts"]["energy"]["residual_share"], 0.01)
 
+    def test_brakes_hold_the_car_on_a_slope(self):
+        self.run_it("hmmwv_slope.json", *QUICK, "--set", "run.end=1.5", "--set", "run.average_from=0.8")
+        vehicle, wheels = self.table("vehicle"), [self.table(f"wheel{k}") for k in range(4)]
+        tail = [line for line in vehicle if line["time_s"] > 1.0]
+        self.assertLess(max(line["x_m"] for line in tail) - min(line["x_m"] for line in tail), 1e-3)
+        mean = lambda wheel, key: sum(line[key] for line in wheel[-100:]) / 100
+        up, along = (sum(mean(wheel, key) for wheel in wheels) for key in ("vertical_force_N", "force_x_N"))
+        self.assertAlmostEqual(along / up, 0.2, delta=0.01)
+        self.assertGreater(mean(wheels[2], "vertical_force_N"), mean(wheels[0], "vertical_force_N"))
+        # Grains lie level.
+        done = furrow("validate", ROOT / "rigs" / "hmmwv_small.json", "--set", "rig.slope=0.1", cwd=self.folder)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("key 'rig.slope': is not 0, expected 0 on grains", done.stderr)
+
     def test_the_rover_begins_on_its_sand(self):
         self.run_it("rover_small.json", "--no-plots", "--set", "run.end=0.05", "--set", "run.average_from=0.02",
                     "--set", "terrain.layers=2", "--set", "terrain.radius=0.012")

@@ -17,16 +17,21 @@
 namespace furrow::scenario {
 namespace {
 
+// Measured runs against the rates of the calibration, whose bed fits a cache and whose tire rolls on hard ground.
+constexpr double kLargeBed = 1.8;      // a grain-step of a bed that is settled or rolled on
+constexpr double kOnSoil = 1.2;        // a step of a tire
 constexpr double kDouble = 1.5;        // what a grain-step takes in double precision, of one in mixed
 constexpr double kSettling = 0.6;      // that a new bed takes to settle, simulated s
 constexpr double kJoints = 0.15;       // the same for joints, as if all grains were awake
 constexpr double kAwake = 1.6;         // tire radii before and behind an axle within which grains are awake
 constexpr double kMeshExponent = 1.1;  // of the time of a tire's step with its unknowns
-constexpr double kRigidTire = 1e-4;    // of a step: moving the surface, s
-constexpr double kMessages = 6e-5;     // that each rank computes in a step to send, receive and write, s
-constexpr double kLatency = 5e-5;      // until a message is noticed, s
-constexpr int kMaxAutoThreads = 32;    // as launch/thread_setup.hpp has it
-constexpr int kPlaces = 9;             // along the axles' paths at which the awake share is looked at
+constexpr double kRigidTire = 5e-5;    // of a step: moving the surface, s
+constexpr double kMessages =
+    8e-5;  // for each tire, in its rank and in the rig's: to send, receive and write, s
+constexpr double kVertex = 8e-8;     // of a tire, in the terrain: finding its contacts, messages, s
+constexpr double kLatency = 5e-5;    // until a message is noticed, s
+constexpr int kMaxAutoThreads = 32;  // as launch/thread_setup.hpp has it
+constexpr int kPlaces = 9;           // along the axles' paths at which the awake share is looked at
 
 /// Mean share of a bin's length that lies near an axle.
 double awake_share(const Scenario& s, const std::vector<tire::TireDescription>& tires, double length) {
@@ -77,19 +82,20 @@ RunTime run_time(const Scenario& s, const Calibration& machine) {
   const std::vector<tire::TireDescription> tires = describe_tires(s);
   const int count = static_cast<int>(tires.size());
   t.threads = s.run.threads > 0 ? s.run.threads : std::clamp(t.cores - count, 1, kMaxAutoThreads);
-  double all = kMessages * (2.0 + count);
+  double all = kMessages * (1.0 + count), surfaces = 0.0;
   for (const tire::TireDescription& tire : tires) {
     const double mesh = static_cast<double>(tire.coordinates) / machine.tire_coordinates;
     const double step =
         s.tire_substeps *
-        (tire.coordinates > 0 ? machine.tire_step * std::pow(mesh, kMeshExponent) : kRigidTire);
-    t.tire = std::max(t.tire, step);
-    all += step;
+        (tire.coordinates > 0 ? kOnSoil * machine.tire_step * std::pow(mesh, kMeshExponent) : kRigidTire);
+    t.tire = std::max(t.tire, step + kMessages);
+    all += step + kMessages;
+    surfaces += kVertex * tire.vertices;
   }
   t.bed_is_kept = true;
   if (const terrain::dem::DemOptions* const keys = s.terrain->grains()) {
     const terrain::dem::DemOptions o = terrain::dem::with_context(*keys, s.terrain_context());
-    const double grain = machine.grain_step * (o.precision == "double" ? kDouble : 1.0);
+    const double grain = kLargeBed * machine.grain_step * (o.precision == "double" ? kDouble : 1.0);
     const double settled = settling(o);
     t.bed_is_kept = settled == 0.0;
     t.bed = settled * grain / std::clamp(o.settle_threads, 1, t.cores);
@@ -98,6 +104,8 @@ RunTime run_time(const Scenario& s, const Calibration& machine) {
     t.terrain = terrain / std::min(t.threads, t.cores);
     all += terrain;
   }
+  t.terrain += surfaces;
+  all += surfaces;
   t.step = std::max({t.tire, t.terrain, all / t.cores}) + kLatency;
   t.run = t.step * static_cast<double>(s.run.steps());
   return t;

@@ -31,6 +31,7 @@ import numpy as np
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "scripts"))
 import provenance  # noqa: E402
+import run_study  # noqa: E402
 from plot.student import half_interval  # noqa: E402
 from provenance import ROOT  # noqa: E402
 
@@ -146,9 +147,10 @@ def study_beds(seeds, soils):
 
 
 def run(name, settings):
-    out = OUT / name
-    subprocess.run([provenance.program(), "run", RIG, *flags(settings), "--out", str(out), "--overwrite", "--no-plots"], check=True,
-                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    """The summary of a run; one that this build made of this scenario is used again."""
+    out, scenario = OUT / name, [RIG, *flags(settings)]
+    if run_study.stale_because(scenario, out) and not run_study.run_case(name, scenario, out):
+        sys.exit(f"{name}: failed")
     return provenance.read_json(out / "summary.json")
 
 

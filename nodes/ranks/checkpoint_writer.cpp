@@ -19,7 +19,7 @@ namespace {
 
 constexpr Address kRig{Role::rig, 0};
 constexpr char kCost[] = "run/cost";
-constexpr char kCommunicate[] = "run/communicate_s";  // checkpoints written before it was counted have it in computing
+constexpr char kCommunicate[] = "run/cost/communicate_s";  // checkpoints written before it was counted have it in computing
 
 }  // namespace
 

@@ -107,16 +107,17 @@ class Press(SystemTest):
         for name, more in (("plate", ()), ("cleat", ("--on", "cleat", "--cleat-width", "0.051")),
                            ("profile", ("--on", "profile", "--profile", profile))):
             done = furrow("press", path, "--out", self.folder / "out", "--overwrite", "--deflection", "0.03", "--points",
-                          "6", "--load", "3000", *more, cwd=self.folder)
+                          "6", "--load", "8000", *more, cwd=self.folder)
             self.assertEqual(done.returncode, 0, done.stderr)
             summary = json.loads((self.folder / "out/summary.json").read_text())
             self.assertEqual(summary["obstacle"], name)
             self.assertLess(summary["max_residual"], 1e-6)
             self.assertLess(summary["loading_unloading_difference"], 1e-6)
-            self.assertAlmostEqual(summary["footprint"]["force_N"], 3000, delta=3)
+            self.assertAlmostEqual(summary["footprint"]["force_N"], 8000, delta=8)
             self.assertAlmostEqual(summary["footprint"]["width_m"], 0.24)
             deflections[name] = summary["deflection_m"]
-        self.assertLess(deflections["plate"], deflections["cleat"])
+        # The patch on a plate is far longer than the bar; up to 3 kN it is not, and the bar is as good as a plate.
+        self.assertLess(1.1 * deflections["plate"], deflections["cleat"])
         self.assertAlmostEqual(deflections["profile"], deflections["cleat"], places=9)
         self.assertTrue((self.folder / "out/load_deflection.png").exists(), list((self.folder / "out").iterdir()))
 

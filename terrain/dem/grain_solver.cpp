@@ -472,7 +472,8 @@ void GrainSolver::take_samples() {
     force += samples_[k].force;
     contacts += samples_[k].contacts;
   }
-  if (contacts > 0) mean_contact_force_ = force / static_cast<double>(contacts);
+  // A forged state may have brought sums that no contacts have.
+  if (contacts > 0) mean_contact_force_ = std::max(0.0, force / static_cast<double>(contacts));
   until_sample_ = kSampleSteps;
 }
 

@@ -9,13 +9,12 @@
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_text.hpp"
+#include "rigs/lowering.hpp"
 
 namespace furrow::rigs {
 namespace {
 
-constexpr double kLoweringFroude = 0.18;  // v/√(g R) at which a wheel is let down
-constexpr double kLoweringTime = 1.6;     // √(R/g), how long the damper acts
-constexpr double kRingInertia = 0.5;      // of a thin ring about a diameter, of that about its axle
+constexpr double kRingInertia = 0.5;  // of a thin ring about a diameter, of that about its axle
 
 bool open(double value) { return value < 0.0; }
 

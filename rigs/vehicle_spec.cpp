@@ -11,6 +11,7 @@
 #include "protocol/files/data_files.hpp"
 #include "protocol/files/json_fields.hpp"
 #include "protocol/files/json_text.hpp"
+#include "rigs/lowering.hpp"
 #include "rigs/vehicle_rig.hpp"
 #include "rigs/vehicle_start.hpp"
 #include "vehicle/driver/driver_car.hpp"
@@ -23,9 +24,6 @@ namespace furrow::rigs {
 namespace {
 
 using nlohmann::json;
-
-constexpr double kLoweringFroude = 0.18;  // v/√(g R) at which the vehicle is let down: drawbar_mount.hpp
-constexpr double kLoweringTime = 1.6;     // √(R/g), how long the damper acts
 
 bool says(const json& section, const char* name) {
   const auto entry = section.find(name);

@@ -9,6 +9,7 @@
 #include "protocol/core/hash.hpp"
 #include "protocol/files/cache_folder.hpp"
 #include "protocol/files/data_files.hpp"
+#include "protocol/files/json_text.hpp"
 #include "protocol/files/text_file.hpp"
 #include "protocol/host.hpp"
 #include "rigs/rolling_tire.hpp"
@@ -89,8 +90,7 @@ std::string digest() {
 }
 
 bool kept(const std::filesystem::path& file, Calibration& found) {
-  std::ifstream in(file);
-  const nlohmann::json json = nlohmann::json::parse(in, nullptr, false);
+  const nlohmann::ordered_json json = read_json_if_whole(file);
   if (!json.is_object()) return false;
   const auto positive = [&](const char* key) {
     const auto at = json.find(key);

@@ -66,7 +66,6 @@ std::optional<PressCurve> read_curve(const std::filesystem::path& file) {
   return curve;
 }
 
-/// A cache that cannot be written costs time, nothing else.
 void write_curve(const std::filesystem::path& file, const PressCurve& curve) {
   if (file.empty()) return;
   nlohmann::ordered_json json;
@@ -75,13 +74,7 @@ void write_curve(const std::filesystem::path& file, const PressCurve& curve) {
     json["deflection_m"].push_back(deflection);
     json["force_N"].push_back(force);
   }
-  std::error_code failed;
-  std::filesystem::create_directories(file.parent_path(), failed);
-  try {
-    write_whole_file(file, json.dump(2) + "\n");
-  } catch (const Error&) {
-    return;
-  }
+  keep_json(file, json);
 }
 
 PressCurve press(const StaticTest& test, const TireSpec& tire, double deflection,

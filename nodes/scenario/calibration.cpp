@@ -112,17 +112,10 @@ Calibration calibration() {
   if (!file.empty() && kept(file, found)) return found;
   found.grain_step = measured_grain_step();
   measure_tire(found);
-  if (file.empty()) return found;
-  try {
-    std::filesystem::create_directories(file.parent_path());
-    write_whole_file(file, nlohmann::json{{"grain_step_s", found.grain_step},
-                                          {"tire_step_s", found.tire_step},
-                                          {"tire_coordinates", found.tire_coordinates}}
-                                   .dump(2) +
-                               "\n");
-  } catch (const std::exception&) {
-    // A cache that cannot be written costs a second the next time.
-  }
+  if (!file.empty())
+    keep_json(file, {{"grain_step_s", found.grain_step},
+                     {"tire_step_s", found.tire_step},
+                     {"tire_coordinates", found.tire_coordinates}});
   return found;
 }
 

@@ -2,6 +2,11 @@
 
 #include <cstdlib>
 
+#include <nlohmann/json.hpp>
+
+#include "protocol/core/error.hpp"
+#include "protocol/files/text_file.hpp"
+
 namespace furrow {
 
 std::filesystem::path cache_folder(const std::string& kind) {
@@ -10,6 +15,16 @@ std::filesystem::path cache_folder(const std::string& kind) {
   if (const char* home = std::getenv("HOME"); home && *home)
     return std::filesystem::path(home) / ".cache" / "furrow" / kind;
   return {};
+}
+
+void keep_json(const std::filesystem::path& file, const nlohmann::ordered_json& json) {
+  std::error_code failed;
+  std::filesystem::create_directories(file.parent_path(), failed);
+  try {
+    write_whole_file(file, json.dump(2) + "\n");
+  } catch (const Error&) {
+    return;
+  }
 }
 
 }  // namespace furrow

@@ -17,9 +17,9 @@
 #include "terrain/dem/beds/bed_preparation.hpp"
 #include "terrain/dem/grain_sizes.hpp"
 #include "terrain/dem/material_check.hpp"
+#include "terrain/dem/refinement/step_refinement.hpp"
 #include "terrain/dem/solver_setup.hpp"
 #include "terrain/dem/solver_state_check.hpp"
-#include "terrain/dem/step_refinement.hpp"
 #include "terrain/surface/surface_check.hpp"
 
 namespace furrow::terrain {

@@ -29,14 +29,10 @@ Strips::Options strip_options(const SolverParams& p) {
   return o;
 }
 
-double cube(double a) { return a * a * a; }
-
 Vec3 against(const Vec3& gravity) {
   const double strength = gravity.norm();
   return strength > 0.0 ? Vec3(-gravity / strength) : Vec3(Vec3::UnitZ());
 }
-
-Double4 lanes_of(const Vec3& v) { return Double4{v.x(), v.y(), v.z(), 0.0}; }
 
 template <class T>
 void grow(std::vector<T>& v, std::size_t n) {
@@ -106,60 +102,8 @@ void GrainSolver::wake(int grain) {
     }
 }
 
-double GrainSolver::relative_mass() const {
-  double sum = 0.0;
-  for (int g = 0; g < grains_.count; ++g) sum += cube(grains_.position[g].w / params_.grain.radius);
-  return sum;
-}
-
 double GrainSolver::rebuilds() const {
   return static_cast<double>(strips_.resorted()) / std::max(1, grains_.count);
-}
-
-void GrainSolver::reset_accounts() {
-  const Accounts old = accounts_;
-  accounts_ = {};
-  accounts_.elastic = accounts_.elastic_start = old.elastic;
-  accounts_.floor_force = old.floor_force;
-  accounts_.contacts = old.contacts;
-  accounts_.contact_force = old.contact_force;
-  accounts_.net_force = old.net_force;
-  double rotation = 0.0;
-  for (int g = 0; g < grains_.count; ++g) {
-    const Quad &v = grains_.velocity[g], &w = grains_.spin[g];
-    const double size = grains_.position[g].w / params_.grain.radius, mass = cube(size);
-    accounts_.kinetic +=
-        mass * (0.5 * params_.grain.mass * (v.x * v.x + v.y * v.y + v.z * v.z) +
-                0.5 * params_.grain.inertia * size * size * (w.x * w.x + w.y * w.y + w.z * w.z));
-    rotation += mass * 0.5 * params_.grain.inertia * size * size * (w.x * w.x + w.y * w.y + w.z * w.z);
-    const Quad& x = grains_.position[g];
-    accounts_.height += mass * up_.dot(Vec3(x.x, x.y, x.z));
-    accounts_.velocity += mass * Vec3(v.x, v.y, v.z);
-  }
-  for (int k = 0; k < strips_.count(); ++k) accounts_.active += grains_awake(strips_[k]);
-  strips_.set_resorted(0);
-  relative_mass_ = relative_mass();
-  energies_.begin(stored_energy(grains_, strips_, coefficients_, params_.grain.radius), rotation);
-}
-
-TerrainEnergies GrainSolver::reported_energies() const {
-  const Losses lost = energies_.lost();
-  const EnergyAccounts::State& sampled = energies_.state();
-  TerrainEnergies e;
-  e.kinetic = accounts_.kinetic - sampled.rotation;
-  e.rotational = sampled.rotation;
-  e.potential = params_.grain.mass * params_.gravity.norm() * accounts_.height;
-  e.elastic_normal = accounts_.elastic - sampled.stored.cohesion;
-  e.elastic_tangential = sampled.stored.tangential;
-  e.cohesion = sampled.stored.cohesion;
-  e.sliding_loss = lost.sliding;
-  e.normal_damping_loss = lost.normal_damping;
-  e.tangential_damping_loss = lost.tangential_damping;
-  e.rolling_loss = lost.rolling;
-  e.opening_loss = lost.opening;
-  e.sleep_loss = accounts_.slept;
-  e.sample_error = energies_.error();
-  return e;
 }
 
 /// @pre room for `last`
@@ -368,115 +312,6 @@ void GrainSolver::finish_strip(int k, const Loads& loads, const StepPart& part, 
   if (!strip.asleep) strip.travel += part.dt * strip.motion.max_speed;
 }
 
-void GrainSolver::move_parcel(const Strip& strip, Parcel& parcel, const Loads& loads, const StepPart& part,
-                              Wanted wanted) {
-  if (params_.sizes()) {
-    params_.activity ? integrate<true, true>(strip, parcel, loads, part, wanted)
-                     : integrate<false, true>(strip, parcel, loads, part, wanted);
-  } else {
-    params_.activity ? integrate<true, false>(strip, parcel, loads, part, wanted)
-                     : integrate<false, false>(strip, parcel, loads, part, wanted);
-  }
-}
-
-void GrainSolver::load_sleeper(const Strip& strip, Parcel& parcel, const Loads& loads) const {
-  const Double4 weight = lanes_of(params_.gravity * params_.grain.mass);
-  const double* const force = flat(loads.force);
-  const double* const position = flat(grains_.position.data() + strip.first + parcel.part.first);
-  const double per_radius = 1.0 / params_.grain.radius;
-  Double4 largest{}, held{};
-  for (int g = 0; g < kQuad * parcel.part.grains(); g += kQuad) {
-    const Double4 f = load_lanes<Double4>(force + g) + cube(position[g + 3] * per_radius) * weight;
-    largest = larger(largest, f * f);
-    held += f;
-  }
-  store(parcel.motion.held, held);
-  parcel.motion.max_net_force = std::sqrt(sum_of(largest));
-}
-
-template <bool kMaySleep, bool kSizes>
-void GrainSolver::integrate(const Strip& strip, Parcel& parcel, const Loads& loads, const StepPart& part,
-                            Wanted wanted) {
-  const double dt = part.dt, kick = part.kick();
-  const double mass = params_.grain.mass, inertia = params_.grain.inertia;
-  const double radius = params_.grain.radius;
-  double per_mass = 1.0 / mass, per_inertia = 1.0 / inertia;
-  double m = 1.0, i = 1.0;  // of a grain, in those of the reference radius
-  const double keep = 1.0 / (1.0 + kick * drag_);
-  const Double4 gravity = lanes_of(params_.gravity);
-  const int n = parcel.part.grains(), first = strip.first + parcel.part.first;
-  const double *const force = flat(loads.force), *const torque = flat(loads.torque);
-  double* const velocity = flat(grains_.velocity.data() + first);
-  double* const spin = flat(grains_.spin.data() + first);
-  double* const position = flat(grains_.position.data() + first);
-  Double4 moving{}, spinning{}, work{}, momentum{}, moment{}, fastest{}, net{};
-  Double4 pushed{}, most_pushed{};  // Σ m a / m₀, largest squares of the acceleration
-  for (int g = 0; g < kQuad * n; g += kQuad) {
-    const Double4 f = load_lanes<Double4>(force + g), t = load_lanes<Double4>(torque + g);
-    if constexpr (kSizes) {
-      const double size = position[g + 3] / radius;
-      m = cube(size), i = m * size * size;
-      per_mass = 1.0 / (mass * m), per_inertia = 1.0 / (inertia * i);
-    }
-    const Double4 a = f * per_mass + gravity, alpha = t * per_inertia;
-    const Double4 v = (load_lanes<Double4>(velocity + g) + kick * a) * keep;
-    const Double4 w = (load_lanes<Double4>(spin + g) + kick * alpha) * keep;
-    const Double4 x = load_lanes<Double4>(position + g) + dt * v;
-    store_lanes(velocity + g, v);
-    store_lanes(spin + g, w);
-    store_lanes(position + g, x);
-    const Double4 v2 = v * v;
-    const auto weighed = [](Double4 one, double by) { return kSizes ? by * one : one; };
-    moving += weighed(v2, m);
-    spinning += weighed(w * w, i);
-    work += f * a + t * alpha;
-    momentum += weighed(v, m);
-    moment += weighed(x, m);
-    fastest = larger(fastest, v2);
-    if constexpr (kMaySleep) {
-      pushed += weighed(a, m);
-      most_pushed = larger(most_pushed, weighed(a * a, m * m));
-    }
-    if (wanted.forces) net[0] += mass * m * std::sqrt(sum_of(a * a));
-  }
-  MotionTotals& sums = parcel.motion;
-  sums.speed2 = sum_of(moving);
-  sums.kinetic = 0.5 * (mass * sums.speed2 + inertia * sum_of(spinning));
-  sums.spin2 = sum_of(spinning);
-  sums.step_work = sum_of(work);
-  store(sums.velocity, momentum);
-  sums.height = up_.dot(Vec3(moment[0], moment[1], moment[2]));
-  store(sums.fastest2, fastest);
-  // Not a number when one of the sums is not: the strip will be sorted, and the grain be found.
-  sums.max_speed = std::sqrt(sum_of(fastest)) + 0.0 * (sums.kinetic + sum_of(moment));
-  sums.max_net_force = mass * std::sqrt(sum_of(most_pushed));
-  store(sums.held, mass * pushed);
-  sums.net_force = net[0];
-}
-
-std::int32_t GrainSolver::grains_awake(const Strip& strip) const {
-  if (strip.asleep) return 0;
-  std::int32_t awake = strip.grains();
-  for (const Parcel& parcel : strip.parcels)
-    if (parcel.asleep) awake -= parcel.part.grains();
-  return awake;
-}
-
-void GrainSolver::take_samples() {
-  samples_.resize(strips_.count());
-  double force = 0.0;
-  std::int64_t contacts = 0;
-  for (int k = 0; k < strips_.count(); ++k) {
-    const ContactTotals& now = strips_[k].contact;
-    if (activity_.evaluated(k)) samples_[k] = {now.contact_force, now.contacts};
-    force += samples_[k].force;
-    contacts += samples_[k].contacts;
-  }
-  // A forged state may have brought sums that no contacts have.
-  if (contacts > 0) mean_contact_force_ = std::max(0.0, force / static_cast<double>(contacts));
-  until_sample_ = kSampleSteps;
-}
-
 void GrainSolver::change_activity(bool counts) {
   if (!params_.activity) return;
   const double speed = std::sqrt(params_.gravity.norm() * params_.grain.radius);
@@ -525,52 +360,6 @@ double GrainSolver::top() const {
   for (int k = 0; k < strips_.count(); ++k)
     if (strips_[k].grains() > 0) top = std::max(top, strips_[k].z_max + strips_[k].travel);
   return top + params_.largest_radius();
-}
-
-void GrainSolver::reduce(const StepPart& part, Wanted wanted) {
-  const double dt = part.kick();
-  Accounts& a = accounts_;
-  double power = 0.0, work = 0.0, contact_force = 0.0, net_force = 0.0, spin2 = 0.0;
-  Quad wall, held;
-  a.elastic = a.floor_force = a.kinetic = a.height = 0.0;
-  a.velocity.setZero();
-  a.contacts = a.active = 0;
-  for (int k = 0; k < strips_.count(); ++k) {
-    const ContactTotals& c = strips_[k].contact;
-    const MotionTotals& m = strips_[k].motion;
-    power += c.power;
-    work += m.step_work;
-    contact_force += c.contact_force;
-    net_force += m.net_force;
-    add(wall, load(c.wall_force));
-    a.elastic += c.elastic;
-    a.floor_force += c.floor_force;
-    a.kinetic += m.kinetic;
-    spin2 += m.spin2;
-    a.height += m.height;
-    a.velocity += Vec3(m.velocity.x, m.velocity.y, m.velocity.z);
-    a.contacts += c.contacts;
-    a.max_overlap = std::max(a.max_overlap, c.max_overlap);
-    a.active += grains_awake(strips_[k]);
-    if (strips_[k].asleep) {
-      add(held, load(m.held));
-    } else if (strips_[k].parcels.size() > 1) {
-      for (const Parcel& parcel : strips_[k].parcels)
-        if (parcel.asleep) add(held, load(parcel.motion.held));
-    }
-  }
-  // Forces of the step act on velocities that change during it: Σ F·v at mid-step = Σ F·v + ½ dt Σ (F·a + T·α).
-  a.contact_work += dt * (power + 0.5 * dt * work);
-  a.wall_impulse += dt * Vec3(wall.x, wall.y, wall.z);
-  a.momentum_removed += dt * Vec3(held.x, held.y, held.z);
-  if (wanted.losses)
-    energies_.sample(strips_.count(),
-                     [&](int k) { return activity_.evaluated(k) ? &strips_[k].contact.sample : nullptr; });
-  energies_.advance(dt, part.last, 0.5 * params_.grain.inertia * spin2);
-  if (wanted.forces) {
-    a.contact_force = contact_force;
-    a.net_force = net_force;
-  }
 }
 
 template <class Real, class Law, bool kRolling, bool kSizes>

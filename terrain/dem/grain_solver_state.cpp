@@ -144,7 +144,7 @@ void GrainSolver::restore(const Archive& archive) {
   restore_fields(archive, "accounts", accounts_);
   energies_.restore(archive, strips_.count());
   relative_mass_ = relative_mass();
-  mean_contact_force_ = std::max(0.0, archive.get_double("mean_contact_force"));
+  mean_contact_force_ = archive.get_double("mean_contact_force");
   overlap_bound_.clear();
   // Cached beds of older programs hold no samples: the first step takes them.
   samples_.clear();

@@ -10,6 +10,9 @@
 
 namespace furrow::terrain::dem {
 
+/// Of a radius in reference radii: the volume and mass in those of the reference grain.
+inline double cube(double a) { return a * a * a; }
+
 /// Of a contact against the reference contact, all -.
 template <class T>
 struct SizeScale {

@@ -58,14 +58,26 @@ class Check {
       require(id >= 0 && id < n_, "id", [&] { return fmt::format("names grain {} of {}", id, n_); });
   }
 
+  static void force(const char* array, double sum) {
+    require(sum >= 0.0 && std::isfinite(sum), array,
+            [&] { return fmt::format("holds {:g} N, expected 0 or more", sum); });
+  }
+
+  /// Limits of sleep and waking follow from the mean of these: a negative one would turn them round.
   void samples() {
+    force("mean_contact_force", archive_.get_double("mean_contact_force"));
+    if (archive_.has("parcels/measured_force"))
+      for (const double sum : archive_.get<double>("parcels/measured_force"))
+        force("parcels/measured_force", sum);
     if (!archive_.has("samples/until")) return;
     const auto& samples = archive_.get<double>("samples/strips");
     require(samples.empty() || samples.size() == 2 * count_, "samples/strips",
             [&] { return fmt::format("has {} numbers, expected {}", samples.size(), 2 * count_); });
-    for (std::size_t k = 1; k < samples.size(); k += 2)
-      require(samples[k] >= 0.0 && samples[k] < 1e15, "samples/strips",
+    for (std::size_t k = 0; k + 1 < samples.size(); k += 2) {
+      force("samples/strips", samples[k]);
+      require(samples[k + 1] >= 0.0 && samples[k + 1] < 1e15, "samples/strips",
               [&] { return "holds what is no number of contacts"; });
+    }
   }
 
   /// The strips share out the grains without a gap.

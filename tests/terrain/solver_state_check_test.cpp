@@ -126,6 +126,9 @@ TEST(SolverState, every_index_that_is_wild_is_refused_by_its_array) {
   Archive archive = good;
   archive.put("samples/strips", std::vector<double>{1.0, 2.0, 3.0});
   refused(archive, "samples/strips");
+  archive = good;
+  archive.put("mean_contact_force", -1.0);
+  refused(archive, "mean_contact_force");
 }
 
 /// Numbers anywhere, changed to anything, and arrays cut short: a message, or a state that can be stepped. More of them:
@@ -173,6 +176,7 @@ TEST(SolverState, parcels_need_all_their_columns_and_lists_in_order) {
   Archive cut = good;
   cut.put("parcels/calm", std::vector<std::int32_t>(3));
   EXPECT_NE(complaint(cut, wide_grains()), "");
+  EXPECT_NE(complaint(with(good, "parcels/measured_force", 1, -1.0), wide_grains()), "");
   const auto& partners = good.get<std::uint64_t>("pairs/partners");
   ASSERT_GT(partners.size(), 2U);
   EXPECT_TRUE(

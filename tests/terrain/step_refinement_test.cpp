@@ -9,8 +9,8 @@
 #include "protocol/core/archive_hash.hpp"
 #include "protocol/core/no_step_helps.hpp"
 #include "terrain/dem/dem_terrain.hpp"
+#include "terrain/dem/refinement/step_refinement.hpp"
 #include "terrain/dem/solver_setup.hpp"
-#include "terrain/dem/step_refinement.hpp"
 #include "tests/terrain/few_grains.hpp"
 
 namespace furrow::terrain {

@@ -26,7 +26,7 @@
 #include "protocol/core/fields.hpp"
 #include "protocol/core/outcome.hpp"
 #include "terrain/dem/dem_options.hpp"
-#include "terrain/dem/hard_contacts.hpp"
+#include "terrain/dem/refinement/hard_contacts.hpp"
 
 namespace furrow::terrain::dem {
 

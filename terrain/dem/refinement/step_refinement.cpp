@@ -1,4 +1,4 @@
-#include "terrain/dem/step_refinement.hpp"
+#include "terrain/dem/refinement/step_refinement.hpp"
 
 #include <algorithm>
 #include <cmath>

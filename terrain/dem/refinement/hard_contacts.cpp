@@ -1,4 +1,4 @@
-#include "terrain/dem/hard_contacts.hpp"
+#include "terrain/dem/refinement/hard_contacts.hpp"
 
 #include <algorithm>
 #include <array>

@@ -119,8 +119,9 @@ void add_press_options(CLI::App& command, PressArguments& press) {
       ->capture_default_str();
   command.add_option("--cleat-position", press.cleat_position, "middle of the cleat, forward of the axle, m")
       ->capture_default_str();
-  command.add_option("--profile", press.profile,
-                     "CSV x_m,z_m of the ground's profile seen from the axle, for --on profile (flexible ring)");
+  command.add_option(
+      "--profile", press.profile,
+      "CSV x_m,z_m of the ground's profile seen from the axle, for --on profile (flexible ring)");
 }
 
 void add_soil_options(CLI::App& command, SoilArguments& soil) {
@@ -247,7 +248,8 @@ std::string parse_problem(const CLI::App& app, const CLI::ParseError& error, int
     commands.push_back(command->get_name());
   const std::string first = argc > 1 ? argv[1] : "";
   if (first.empty())
-    return fmt::format("no command is given, expected one of: {}; see furrow --help", fmt::join(commands, ", "));
+    return fmt::format("no command is given, expected one of: {}; see furrow --help",
+                       fmt::join(commands, ", "));
   if (first[0] != '-' && std::find(commands.begin(), commands.end(), first) == commands.end()) {
     const std::vector<std::string> similar = nearest_words(first, commands);
     return fmt::format("unknown command '{}'; {}", excerpt(first),
@@ -283,14 +285,19 @@ class CommandLine {
     app_.set_version_flag("--version", "furrow " FURROW_VERSION);
     app_.require_subcommand(1);
     app_.footer(
+        "Examples:\n"
+        "  furrow run first_look.json                        a wheel on soil, in seconds\n"
+        "  furrow new mine --tire my_tire.json               a scenario to begin with\n"
+        "  furrow run mine.json --set rig.slip=0.2 --seeds 5 pull and sinkage with their intervals\n\n"
         "Exit codes: 0 done, 2 bad input, 3 the physics failed, 4 a rank was lost, 5 input/output, "
         "6 memory or another limit ran out, 75 stopped by a signal.");
-    add_runs();
-    add_questions();
-    add_virtual_tests();
-    add_vehicles();
-    add_studies();
-    add_benches();
+    add_group("Begin", &CommandLine::add_beginnings);
+    add_group("Run", &CommandLine::add_runs);
+    add_group("Ask before a run", &CommandLine::add_questions);
+    add_group("Test tires, soils and vehicles", &CommandLine::add_virtual_tests);
+    add_group("Test tires, soils and vehicles", &CommandLine::add_vehicles);
+    add_group("Compare and look", &CommandLine::add_studies);
+    add_group("Measure this machine", &CommandLine::add_benches);
   }
 
   ExitCode execute() {
@@ -321,6 +328,15 @@ class CommandLine {
     return add(app_, name, purpose, std::move(action));
   }
 
+  /// Commands that serve one task stand together in the help.
+  void add_group(const char* task, void (CommandLine::*add_commands)()) {
+    const auto all = [](const CLI::App*) { return true; };
+    const std::size_t before = app_.get_subcommands(all).size();
+    (this->*add_commands)();
+    const std::vector<CLI::App*> commands = app_.get_subcommands([](CLI::App*) { return true; });
+    for (std::size_t k = before; k < commands.size(); ++k) commands[k]->group(task);
+  }
+  void add_beginnings();
   void add_runs();
   void add_questions();
   void add_virtual_tests();
@@ -336,10 +352,32 @@ class CommandLine {
   SoilArguments soil_;
   PressArguments press_;
   KinematicsArguments kinematics_;
+  NewArguments new_;
   SweepArguments sweep_;
   GrainBench grains_;
   TireBench tire_;
 };
+
+void CommandLine::add_beginnings() {
+  CLI::App& list = add("list", "list the scenarios, studies, tires, soils and vehicles that come with Furrow",
+                       [this] { return list_command(typed_.key, typed_.json); });
+  list.add_option("KIND", typed_.key, "scenarios, studies, tires, soils or vehicles (default: all)");
+  list.add_flag("--json", typed_.json, "print JSON");
+
+  CLI::App& starter =
+      add("new", "write a scenario to begin with, with a comment for every key; prints its name",
+          [this] { return new_command(new_); });
+  starter.add_option("NAME", new_.name, "file to write; .json is added")->required();
+  CLI::Option* tire = starter.add_option("--tire", new_.tire, "tire file (default: the layered HMMWV tire)");
+  starter.add_option("--soil", new_.soil, "soil file (default: cohesive grains)");
+  starter.add_flag("--rigid", new_.rigid, "the tires keep their shape (tire.rigid)");
+  CLI::Option* load =
+      starter.add_option("--load", new_.load, "load on the wheel, N (default: by the tire's size)")
+          ->check(CLI::PositiveNumber);
+  starter.add_option("--vehicle", new_.vehicle, "vehicle file: a whole vehicle in place of one wheel")
+      ->excludes(tire)
+      ->excludes(load);
+}
 
 void CommandLine::add_runs() {
   CLI::App& run = add("run", "run a scenario; prints the folder that holds the results",
@@ -378,15 +416,15 @@ void CommandLine::add_questions() {
   validate.add_flag("--json", typed_.json, "print JSON");
 
   add_scenario(add("ranks", "list which MPI rank does what, and how to start the ranks by hand",
-                   [this] { return ranks_command(typed_, {argv_, argv_ + argc_}); }),
+                   [this] {
+                     return ranks_command(typed_, {argv_, argv_ + argc_});
+                   }),
                typed_);
 
-  add("explain", "explain a scenario key; without KEY, list all keys",
-      [this] {
-        std::cout << scenario::explain(typed_.key);
-        return ExitCode::done;
-      })
-      .add_option("KEY", typed_.key, "dotted path, for example terrain.cohesion");
+  add("explain", "explain a scenario key; without KEY, list all keys", [this] {
+    std::cout << scenario::explain(typed_.key);
+    return ExitCode::done;
+  }).add_option("KEY", typed_.key, "dotted path, for example terrain.cohesion");
 }
 
 void CommandLine::add_virtual_tests() {
@@ -401,21 +439,24 @@ void CommandLine::add_virtual_tests() {
   add_scenario(soil, typed_);
   add_soil_options(soil, soil_);
 
-  CLI::App& press = add("press", "press the tire of a scenario on a plate or a cleat, statically; prints the folder",
-                        [this] { return press_command(load(typed_), press_); });
+  CLI::App& press =
+      add("press", "press the tire of a scenario on a plate or a cleat, statically; prints the folder",
+          [this] { return press_command(load(typed_), press_); });
   add_scenario(press, typed_);
   add_press_options(press, press_);
 }
 
 void CommandLine::add_vehicles() {
-  CLI::App& kc = add("kc",
-                     "move the suspensions of a vehicle: camber, toe, roll centre, rates and more against travel and "
-                     "steering; prints the folder",
-                     [this] {
-                       kinematics_.plots = !typed_.no_plots;
-                       return kinematics_command(kinematics_);
-                     });
-  kc.add_option("VEHICLE", kinematics_.vehicle, "vehicle file (JSON), as given or in vehicle/data/")->required();
+  CLI::App& kc =
+      add("kc",
+          "move the suspensions of a vehicle: camber, toe, roll centre, rates and more against travel and "
+          "steering; prints the folder",
+          [this] {
+            kinematics_.plots = !typed_.no_plots;
+            return kinematics_command(kinematics_);
+          });
+  kc.add_option("VEHICLE", kinematics_.vehicle, "vehicle file (JSON), as given or in vehicle/data/")
+      ->required();
   CLI::Option* out = kc.add_option("--out", kinematics_.out,
                                    "new folder for the results (default: results/<vehicle>-kc-NNN here)");
   kc.add_flag("--overwrite", kinematics_.overwrite, "let --out replace the results of an earlier run");
@@ -423,7 +464,8 @@ void CommandLine::add_vehicles() {
                 "travel of the wheels up and down, m (default: a fifth of the smallest tire's radius)");
   kc.add_option("--points", kinematics_.points, "points of each motion")->capture_default_str();
   kc.add_flag("--no-plots", typed_.no_plots, "make no plots; 'furrow report' makes them later");
-  CLI::Option* csv = kc.add_flag("--csv", kinematics_.csv, "print the table and make no folder")->excludes(out);
+  CLI::Option* csv =
+      kc.add_flag("--csv", kinematics_.csv, "print the table and make no folder")->excludes(out);
   kc.add_flag("--json", kinematics_.json, "print table and figures as JSON and make no folder")
       ->excludes(out)
       ->excludes(csv);
@@ -434,7 +476,8 @@ void CommandLine::add_studies() {
                         [this] { return sweep_command(sweep_); });
   sweep.add_option("STUDY", sweep_.study, "study file (JSON)")->required();
   sweep.add_option("--out", sweep_.out, "folder of the study (default: results/<study> here)");
-  sweep.add_option("--jobs", sweep_.jobs, "runs at once, each with its share of the cores")->capture_default_str();
+  sweep.add_option("--jobs", sweep_.jobs, "runs at once, each with its share of the cores")
+      ->capture_default_str();
 
   CLI::App& report = add("report", "plot a finished run, as PNG files in its folder",
                          [this] { return report_command(typed_); });

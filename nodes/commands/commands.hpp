@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -103,6 +104,19 @@ struct KinematicsArguments {
 ExitCode kinematics_command(const KinematicsArguments& arguments);
 /// `furrow validate` of a vehicle's file (vehicle.cpp). @throws Error
 ExitCode validate_vehicle(const std::string& name, bool json);
+
+/// `furrow list` (catalogue.cpp). @param only a kind, or empty: all @throws Error
+ExitCode list_command(const std::string& only, bool json);
+
+struct NewArguments {
+  std::filesystem::path name;
+  std::string tire, soil, vehicle;  // files; empty: see scenario::StarterOptions
+  bool rigid = false;
+  std::optional<double> load;  // of the wheel, N
+};
+
+/// `furrow new` (catalogue.cpp). @throws Error
+ExitCode new_command(const NewArguments& arguments);
 
 /// `furrow bed` (commands_bed.cpp). @throws Error
 ExitCode bed_command(const scenario::Scenario& scenario);

@@ -21,7 +21,7 @@ matplotlib.use("Agg")
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 from plot import (accounts, charts, ground, kinematics, press, scene, soil, sweep, vehicle_ground, vehicle_plots,  # noqa: E402
-                  vehicle_run, wheels)
+                  vehicle_run, vehicle_scene, wheels)
 from plot.digits import with_error  # noqa: E402
 from plot.run_data import Damaged, Missing, Run, printable  # noqa: E402
 
@@ -57,7 +57,7 @@ VEHICLE_PLOTS = {
     "ranks": charts.ranks,
     "energy": accounts.energy,
     "momentum": accounts.momentum,
-    "scene": scene.scene,
+    "scene": of_vehicle(vehicle_scene.vehicle_scene),
 }
 SWEEP_PLOTS = {"curve": sweep.curve, "passes": sweep.passes, "rut_along": sweep.rut_along}
 BEDS_PLOTS = {"beds": sweep.beds}

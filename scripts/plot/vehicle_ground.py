@@ -39,7 +39,8 @@ def top_view(figure, axis, v, field, depth):
     figure.colorbar(image, ax=axis, label="depth below the surface before, mm\n(red: rut, blue: heaped up)", pad=0.01, shrink=0.8)
     axis.set_aspect("equal", anchor="W")
     axis.grid(False)
-    for set_limit, all_, cells in ((axis.set_xlim, [x for x, _ in v.tracks()], field.x), (axis.set_ylim, [y for _, y in v.tracks()], field.y)):
+    for set_limit, all_, cells in ((axis.set_xlim, [x for x, _ in v.tracks()], field.x),
+                                   (axis.set_ylim, [y for _, y in v.tracks()], field.y)):
         margin = 0.5 * max(abs(ahead) for ahead, _ in v.places)
         set_limit(max(np.min(all_) - margin, cells[0]), min(np.max(all_) + margin, cells[-1]))
     for wheel, (x, y) in zip(v.wheels, v.tracks()):

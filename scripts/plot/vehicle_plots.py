@@ -10,7 +10,8 @@ from .vehicle_style import AXLES, grid, limits, mark_events, mark_window
 
 RPM = 30.0 / np.pi
 HEATS = {"drive_work_J": "engine and motors give", "converter_heat_J": "converter", "clutch_heat_J": "clutch and locks",
-         "shift_heat_J": "changes of gear", "brake_heat_J": "brakes", "shock_heat_J": "shock absorbers", "lowering_heat_J": "touch-down damper"}
+         "shift_heat_J": "changes of gear", "brake_heat_J": "brakes", "shock_heat_J": "shock absorbers",
+         "lowering_heat_J": "touch-down damper"}
 
 
 def place(axis, v):
@@ -154,7 +155,8 @@ def gear(v):
     given = [line.wheel_torque(u / radius, found.throttle) / radius / v.weight for u in wheel]
     axis.plot(wheel, given, color=PURPLE, lw=1.8, label=f"engine and lowest gear give, steady, throttle {found.throttle:.2g}")
     driving = (v["throttle"] >= 0.99 * found.throttle) & (v["gear"] == 1)
-    for values, colour, label in ((torque, BLUE, "torque at the wheels / radius"), (gross, GREEN, "gross traction: tractive effort of all tires")):
+    for values, colour, label in ((torque, BLUE, "torque at the wheels / radius"),
+                                  (gross, GREEN, "gross traction: tractive effort of all tires")):
         axis.plot(np.where(driving, speed, np.nan), np.where(driving, values, np.nan), color=colour, lw=1.0, label=label)
     axis.axvline(found.shift_speed, color=RED, lw=1.0, ls="--", label=f"speed of the change, {found.shift_speed:.2f} m/s")
     axis.plot(found.shift_speed, found.limit, "o", color=RED, label=f"gross traction must be below {found.limit:.3f}")

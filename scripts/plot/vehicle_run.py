@@ -65,6 +65,9 @@ class VehicleRun:
         self.wheels = []
         while columns := run.table(f"timeseries_wheel{len(self.wheels)}.csv"):
             self.wheels.append(Wheel(len(self.wheels), columns))
+        files = sum(1 for path in run.directory.glob("timeseries_wheel*.csv"))
+        if len(self.wheels) < files:
+            raise Missing(f"timeseries_wheel{len(self.wheels)}.csv is missing or empty, but there are tables of {files} wheels")
         if not self.wheels or len(self.wheels) % 2:
             raise Missing(f"there are tables of {len(self.wheels)} wheels, expected two per axle")
         self._cut()

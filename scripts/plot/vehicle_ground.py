@@ -3,10 +3,11 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from .ground import FARTHEST, NEAREST, median3, row_mean
-from .run_data import Missing
+from .run_data import Damaged, Missing
 from .style import GREY
 from .vehicle_style import AXLES, SIDES
 
+LARGEST = 1e5  # cells that a way may be long
 LINES = 24  # across the vehicle, that a section is the mean of
 
 
@@ -23,6 +24,9 @@ def rut(v):
     depth = 1e3 * (before.z - after.z)  # mm
     if not np.isfinite(depth).any() or not np.nanmax(np.abs(depth)) > 0.0:
         raise Missing("the ground has not changed its shape")
+    reach = max(np.ptp(np.concatenate(track)) for track in v.tracks()) + max(abs(place) for both in v.places for place in both)
+    if not reach < LARGEST * after.cell:
+        raise Damaged("the vehicle's way is beyond what its ground could be")
     depth = median3(depth)
     figure = plt.figure(figsize=(13, 8.4))
     cells = figure.add_gridspec(2, 2, height_ratios=[1.15, 1], width_ratios=[1, 1.5])

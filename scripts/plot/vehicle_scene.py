@@ -164,6 +164,8 @@ class Stage:
         corners = np.concatenate([vertex for vertex, _ in self.tires])
         self.front, self.back = corners[:, 0].max(), corners[:, 0].min()
         self.size = self.front - self.back
+        if not 0.0 < self.size < 1e3 * scene.TIRE_HEIGHT or not np.ptp(corners[:, 1]) < 1e3 * scene.TIRE_HEIGHT:
+            raise Damaged("the frames of the tires are too far apart to be drawn")
         self.outside = corners[:, 1].min()  # of the right wheels
         self.half = np.abs(corners[:, 1]).max()
         self.ground = self.scale * v.wheels[0].surface

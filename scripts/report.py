@@ -142,6 +142,9 @@ def main():
         except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
             print(f"report: no {name}.png: {printable(repr(error))}", file=sys.stderr)
             continue
+        except MemoryError:
+            print(f"report: no {name}.png: there is not enough memory for it", file=sys.stderr)
+            continue
         except (OSError, RuntimeError) as error:  # h5py's errors for a damaged file
             print(f"report: no {name}.png: a file in {arguments.directory} is damaged: {printable(error)}", file=sys.stderr)
             continue

@@ -105,7 +105,7 @@ class Balance:
     @property
     def verdict(self):
         if self.changed:
-            return "the gear was changed"
+            return f"the gear was changed, gross traction {self.gross:.3f} beside {self.limit:.3f}"
         if self.gross < self.limit:
             return f"gross traction {self.gross:.3f} is below {self.limit:.3f}: the wheels gain speed, but the run ends before the change"
         return f"gross traction {self.gross:.3f} is above {self.limit:.3f}: at this traction no change of gear comes"

@@ -53,7 +53,10 @@ class Wheel:
     @property
     def radius(self):
         """Undeformed, m."""
-        return float(self["sinkage_kinematic_m"][0] + self["axle_height_m"][0]) - self.surface
+        found = float(self["sinkage_kinematic_m"][0] + self["axle_height_m"][0]) - self.surface
+        if not found > 0.0:
+            raise Damaged(f"timeseries_wheel{self.index}.csv: sinkages and heights give the wheel a radius of {found:g} m")
+        return found
 
 
 class VehicleRun:

@@ -353,6 +353,7 @@ class CommandLine {
   PressArguments press_;
   KinematicsArguments kinematics_;
   NewArguments new_;
+  EventsArguments events_;
   SweepArguments sweep_;
   GrainBench grains_;
   TireBench tire_;
@@ -484,6 +485,15 @@ void CommandLine::add_studies() {
   report.add_option("DIR", typed_.directory, "folder of the run, or of soil tests")->required();
   report.add_option("--soil", typed_.soil,
                     "soil.json of 'furrow soil': add what soil theory expects to the run's result");
+
+  CLI::App& events = add("events", "tell what happened in a vehicle's run, and compare its axles", [this] {
+    events_.directory = typed_.directory;
+    return events_command(events_);
+  });
+  events.add_option("DIR", typed_.directory, "folder of the run")->required();
+  events.add_option("--from", events_.from, "beginning of the means, s (default: where they are steady)");
+  events.add_option("--to", events_.to, "their end, s (default: the end of the run)");
+  events.add_flag("--json", events_.json, "print JSON");
 }
 
 void CommandLine::add_benches() {

@@ -53,6 +53,15 @@ std::vector<std::filesystem::path> make_report(const std::filesystem::path& run,
 /// The same after a command whose results stand without plots: what goes wrong is a warning.
 std::vector<std::filesystem::path> make_report_or_warn(const std::filesystem::path& run);
 
+struct EventsArguments {
+  std::filesystem::path directory;
+  std::optional<double> from, to;  // window of the means, s
+  bool json = false;
+};
+
+/// `furrow events` (events.cpp). @throws Error
+ExitCode events_command(const EventsArguments& arguments);
+
 struct SweepArguments {
   std::filesystem::path study;
   std::filesystem::path out;  // empty: results/<study>

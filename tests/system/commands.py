@@ -21,7 +21,7 @@ class Commands(SystemTest):
 
     def test_help_names_every_command(self):
         text = self.output("--help")
-        for command in ("run", "validate", "ranks", "explain", "report", "bed", "soil"):
+        for command in ("run", "validate", "ranks", "explain", "report", "events", "bed", "soil"):
             self.assertIn(command, text)
             self.assertIn("SCENARIO" if command in ("run", "validate", "ranks", "bed", "soil") else "KEY" if command == "explain" else "DIR",
                           self.output(command, "--help"))

@@ -63,7 +63,7 @@ std::string launch_lines(const Scenario& scenario, const std::vector<std::string
   for (const std::string& argument : arguments) tail += " " + shell_quoted(argument);
   const char* as_root = geteuid() == 0 ? " --allow-run-as-root" : "";
   return fmt::format(
-      "mpirun -n {} --oversubscribe --bind-to none{}{}\nsrun -n {} --mpi=pmix --cpu-bind=none{}\n", ranks,
+      "mpirun -n {} --oversubscribe --bind-to none{}{}\nsrun -n {} --mpi=pmix -K1 --cpu-bind=none{}\n", ranks,
       as_root, tail, ranks, tail);
 }
 

@@ -38,8 +38,8 @@ class ClusterTest(CheckpointTest):
         return self.cluster.call("srun", f"--mpi={mpi}", "-K1", "--cpu-bind=none", "--overcommit", "-n", count, FAULTY, *arguments,
                                  cwd=self.folder, check=False)
 
-    def requeued_job_ends_as_if_undisturbed(self):
-        number = self.cluster.submit(self.script(), cwd=self.folder, env=self.fault("step", 0, 250, "wait"))
+    def requeued_job_ends_as_if_undisturbed(self, **env):
+        number = self.cluster.submit(self.script(), cwd=self.folder, env={**self.fault("step", 0, 250, "wait"), **env})
         self.addCleanup(self.cluster.call, "scancel", "--quiet", number, check=False)
         wait_for(self.mark.exists, 60, f"the job comes to its 250th step: {self.cluster.job(number)}")
         self.cluster.call("scancel", "--batch", "--signal=USR1", number)
@@ -60,6 +60,21 @@ class ClusterTest(CheckpointTest):
 class QueuedAgainBySlurm(ClusterTest):
     def test_job_ends_as_if_undisturbed(self):
         self.requeued_job_ends_as_if_undisturbed()
+
+    def test_job_whose_ranks_srun_starts_ends_as_if_undisturbed(self):
+        self.requeued_job_ends_as_if_undisturbed(FURROW_MPIRUN=self.cluster.path_of("srun"))
+
+    def test_a_rank_that_dies_under_srun_is_named(self):
+        script = self.folder / "job.sh"
+        script.write_text(f"#!/bin/bash\nexec '{FAULTY}' run --no-plots '{self.path}' --out '{self.run_folder}'\n")
+        number = self.cluster.submit(script, cwd=self.folder, env={**self.fault("step", 1, 250, "kill"),
+                                                                   "FURROW_MPIRUN": self.cluster.path_of("srun")})
+        self.cluster.wait_for_state(number, lambda job: job["JobState"] == "FAILED", 120)
+        self.assertEqual(self.cluster.job(number)["ExitCode"], "4:0")
+        text = (self.folder / f"slurm-{number}.out").read_text()
+        self.assertIn("furrow: error: rank 1 (tire 0) was lost: killed by signal 9", text)
+        self.resume()
+        self.same_as_whole()
 
     def test_ranks_that_srun_starts(self):
         done = self.srun("run", self.path, "--out", self.run_folder, "--no-plots")

@@ -45,7 +45,7 @@ cat >"$work/home/scenario.json" <<'JSON'
 JSON
 chown -R nobody "$work/home"
 cd "$work/home"
-setpriv --reuid=nobody --regid=nogroup --clear-groups env -i HOME="$work/home" PATH=/opt/furrow/bin:/usr/bin:/bin \
+setpriv --reuid=nobody --regid=nogroup --clear-groups env -i USER=nobody HOME="$work/home" PATH=/opt/furrow/bin:/usr/bin:/bin \
   ch-run --no-home --bind="$work/home:/mnt" --cd=/mnt "$work/unpacked" -- furrow run scenario.json --out out >&2
 test -s out/summary.json
 ls out/*.png >/dev/null

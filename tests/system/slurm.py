@@ -61,7 +61,7 @@ class Cluster:
         host = socket.gethostname().split(".")[0]
         control, node = free_ports(2)
         user = subprocess.run(["id", "-un"], capture_output=True, text=True, check=True).stdout.strip()
-        lines = [f"ClusterName=test", f"SlurmctldHost={host}(127.0.0.1)", "AuthType=auth/munge",
+        lines = ["ClusterName=test", f"SlurmctldHost={host}(127.0.0.1)", "AuthType=auth/munge",
                  f"AuthInfo=socket={munge}", f"SlurmUser={user}", f"SlurmdUser={user}",
                  f"SlurmctldPort={control}", f"SlurmdPort={node}",
                  *(f"{key}={self.folder / value}" for key, value in (
@@ -92,6 +92,10 @@ class Cluster:
 
     def scontrol(self, *arguments, check=True):
         return self.call("scontrol", *arguments, check=check).stdout
+
+    @staticmethod
+    def path_of(program):
+        return shutil.which(program, path=PATH)
 
     def submit(self, script, cwd, env=None):
         return self.call("sbatch", "--parsable", script, cwd=cwd, env=env).stdout.strip()

@@ -21,7 +21,7 @@ Address address_of(int rank, int tires) {
   FURROW_ASSERT(rank >= 0 && tires >= 0, rank, tires);
   if (rank == 0) return {Role::rig, 0};
   if (rank <= tires) return {Role::tire, rank - 1};
-  return {Role::terrain, 0};
+  return {Role::terrain, rank - 1 - tires};
 }
 
 std::vector<int> gather(const Communicator& comm, const std::vector<int>& own, std::vector<int>& counts) {
@@ -85,13 +85,6 @@ std::unique_ptr<Transport> make_mpi_transport(int* argc, char*** argv, int tire_
   std::vector<HostNode> host = gather_host_nodes(tire_count);
   return std::make_unique<NodeTransport>(std::make_unique<MpiWire>(session, role), tire_count,
                                          std::move(host));
-}
-
-int role_communicator(const Transport& transport) {
-  const auto* node = dynamic_cast<const NodeTransport*>(&transport);
-  const auto* wire = node ? dynamic_cast<const MpiWire*>(&node->wire()) : nullptr;
-  if (!wire) throw Error(ExitCode::bad_input, "this run has no MPI communicators");
-  return MPI_Comm_c2f(wire->role().get());
 }
 
 std::vector<std::string> launcher_variables() {

@@ -196,6 +196,9 @@ ResumePlan plan_resume(const fs::path& run,
   plan.scenario.name = manifest.name;
   take_changes(run, read_failed_summary(run), plan);
   check_files(plan.scenario, manifest);
+  if (const terrain::TerrainDescription terrain = plan.scenario.terrain->describe(); !terrain.exact_restart)
+    plan.warnings.push_back(fmt::format("{}: the engine '{}' continues with the same physics, not with the same bits",
+                                        run.string(), terrain.engine));
   const std::int64_t reached = std::max(ended, manifest.step);
   if (steps < reached)
     throw input_error(run.string(), "run.end",

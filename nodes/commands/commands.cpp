@@ -38,7 +38,7 @@ namespace {
 struct Typed {
   std::string scenario, out, threads, key, directory, soil, until;
   std::vector<std::string> settings;
-  bool overwrite = false, profile = false, json = false, no_plots = false;
+  bool overwrite = false, profile = false, json = false, no_plots = false, slurm = false;
   std::optional<int> seeds, jobs;
   double memory = 0.0;  // that the scenario needs, bytes; 0: not known yet
 };
@@ -144,6 +144,25 @@ void add_soil_options(CLI::App& command, SoilArguments& soil) {
                    "use small boxes and one seed: an impression within seconds, not a result to quote");
 }
 
+void add_slurm_options(CLI::App& command, Typed& typed, SlurmArguments& job) {
+  CLI::Option* slurm = command.add_flag(
+      "--slurm", typed.slurm,
+      "print a batch script for sbatch: it saves the run before its time is over, and continues when it is queued again");
+  const auto of_slurm = [&](CLI::Option* option) { option->needs(slurm); };
+  of_slurm(command.add_option("--nodes", job.nodes, "nodes; the ranks are spread over them in their order")
+               ->capture_default_str());
+  of_slurm(command.add_option("--cores-per-node", job.cores_per_node,
+                              "cores of each node (default: whole nodes, whatever they have)")
+               ->check(CLI::PositiveNumber));
+  of_slurm(command.add_option("--partition", job.partition, "partition (default: the cluster's)"));
+  of_slurm(command.add_option("--time", job.time,
+                              "time of one start of the job: minutes, hh:mm:ss or days-hh:mm:ss; a longer run takes "
+                              "several (default: the partition's)"));
+  of_slurm(command.add_option("--account", job.account, "account that pays (default: your own)"));
+  of_slurm(command.add_option("--out", job.out,
+                              "new folder for the results (default: results/<scenario>-job<number> where you submit)"));
+}
+
 Settings settings_of(const Typed& typed) {
   Settings settings;
   for (const std::string& text : typed.settings) {
@@ -179,8 +198,12 @@ ExitCode validate_command(Typed& typed) {
   return ExitCode::done;
 }
 
-ExitCode ranks_command(Typed& typed, const std::vector<std::string>& command_line) {
+ExitCode ranks_command(Typed& typed, const SlurmArguments& slurm, const std::vector<std::string>& command_line) {
   const scenario::Scenario scenario = load(typed);
+  if (typed.slurm) {
+    std::cout << slurm_script(scenario, slurm, settings_of(typed));
+    return ExitCode::done;
+  }
   std::vector<std::string> arguments = command_line;
   *std::find(arguments.begin(), arguments.end(), "ranks") = "run";
   std::cout << scenario::rank_table_text(scenario) << "\n" << scenario::launch_lines(scenario, arguments);
@@ -355,6 +378,7 @@ class CommandLine {
   NewArguments new_;
   EventsArguments events_;
   SweepArguments sweep_;
+  SlurmArguments slurm_;
   GrainBench grains_;
   TireBench tire_;
 };
@@ -416,11 +440,11 @@ void CommandLine::add_questions() {
   validate.get_option("SCENARIO")->description("scenario file, or vehicle file (JSON)");
   validate.add_flag("--json", typed_.json, "print JSON");
 
-  add_scenario(add("ranks", "list which MPI rank does what, and how to start the ranks by hand",
-                   [this] {
-                     return ranks_command(typed_, {argv_, argv_ + argc_});
-                   }),
-               typed_);
+  CLI::App& ranks = add("ranks",
+                        "list which MPI rank does what, and how to start the ranks by hand; or print a batch script",
+                        [this] { return ranks_command(typed_, slurm_, {argv_, argv_ + argc_}); });
+  add_scenario(ranks, typed_);
+  add_slurm_options(ranks, typed_, slurm_);
 
   add("explain", "explain a scenario key; without KEY, list all keys", [this] {
     std::cout << scenario::explain(typed_.key);

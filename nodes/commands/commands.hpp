@@ -48,6 +48,16 @@ bool runs_as_rank(int argc, char** argv);
 /// @returns false when nobody ended this rank meanwhile: then it should say it, too
 bool first_rank_speaks();
 
+struct SlurmArguments {
+  int nodes = 1;
+  int cores_per_node = 0;  // 0: whole nodes, whatever they have
+  std::string partition, time, account;  // empty: as the cluster has it
+  std::filesystem::path out;             // empty: results/<scenario>-job<number of the job>
+};
+
+/// `furrow ranks --slurm`: a batch script (slurm.cpp). @throws Error(bad_input)
+std::string slurm_script(const scenario::Scenario& scenario, const SlurmArguments& job, const Settings& settings);
+
 /// `furrow report`: makes the plots of a run (commands_report.cpp). @throws Error
 std::vector<std::filesystem::path> make_report(const std::filesystem::path& run, bool quiet);
 /// The same after a command whose results stand without plots: what goes wrong is a warning.

@@ -137,7 +137,7 @@ std::filesystem::path agree_on_directory(Transport& transport, const scenario::S
   if (resume) require_same_start(arguments.out, *resume);
   const RunFolder folder{std::filesystem::absolute(made->path()).string()};
   for (int k = 0; k < transport.tire_count(); ++k) send(transport, Address{Role::tire, k}, folder);
-  send(transport, Address{Role::terrain, 0}, folder);
+  for (int k = 0; k < transport.terrain_ranks(); ++k) send(transport, Address{Role::terrain, k}, folder);
   return made->path();
 }
 

@@ -104,8 +104,9 @@ void Results::write_hdf5(std::span<const FinalReport> reports) const {
       file.put(fmt::format("series/{}/{}", table.subject, column.name), table.column(column.name),
                {table.lines()});
   if (!reports.empty()) {
-    put_heights(file, "terrain/height_before", reports.back().height_before);
-    put_heights(file, "terrain/height_after", reports.back().height_after);
+    const FinalReport& terrain = reports[1 + scenario_.tires.size()];  // of several ranks the leader's
+    put_heights(file, "terrain/height_before", terrain.height_before);
+    put_heights(file, "terrain/height_after", terrain.height_after);
   }
   file.finish();
 }
@@ -114,7 +115,7 @@ SummaryInput Results::summary_input(const RunEnd& end) const {
   std::int64_t steps = std::llround(end.time / scenario_.run.step);
   if (resume_) steps = std::max(steps, resume_->manifest.step);
   return {scenario_, cards_, setup_,
-          tables_,   end,    checkpoint::segments_until(steps, end.wall, cards_.back().threads, resume_)};
+          tables_,   end,    checkpoint::segments_until(steps, end.wall, cards_[1 + scenario_.tires.size()].threads, resume_)};
 }
 
 void Results::finish(const RunEnd& end, bool stopped) {

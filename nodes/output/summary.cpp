@@ -108,7 +108,7 @@ void add_rut(const WheelInput& in, Json& json) {
   terrain::Rut rut;
   rut.missing = in.rows.empty() ? "the series has no lines" : "the run failed before its end";
   if (!in.rows.empty() && !in.run.end.reports.empty()) {
-    const FinalReport& terrain = in.run.end.reports.back();
+    const FinalReport& terrain = in.run.end.reports[1 + in.run.scenario.tires.size()];
     terrain::RutOptions options;
     options.direction = in.end.heading.x() < 0.0 ? -1.0 : 1.0;
     options.lateral = scenario::describe_rig(in.run.scenario).wheels[in.wheel].lateral;
@@ -174,10 +174,10 @@ Json rank_table(const SummaryInput& in) {
     const NodeCard& card = in.cards[i];
     const double busy = r.compute_s + r.communicate_s;
     ranks.push_back({{"rank", i},
-                     {"node", to_string(r.self)},
+                     {"node", to_string(r.self, in.scenario.terrain_ranks)},
                      {"kind", card.node_kind},
                      {"threads", r.threads},
-                     {"size", r.self.role == Role::terrain ? in.setup.grains : card.size},  // grains, unknowns of a tire
+                     {"size", r.self.role == Role::terrain ? r.grains : card.size},  // grains, unknowns of a tire
                      {"step_s", in.scenario.run.step / std::max(1, card.substeps)},
                      {"cpu_s", r.cpu_s},
                      {"compute_s", r.compute_s},
@@ -300,6 +300,7 @@ std::string summary_text(const SummaryInput& in) {
     json["state_hash"] = state.hex();
   const terrain::TerrainDescription terrain = in.scenario.terrain->describe();
   json["terrain_engine"] = terrain.engine;
+  if (in.scenario.terrain_ranks > 1) json["terrain_ranks"] = in.scenario.terrain_ranks;
   if (!terrain.law.empty()) json["law"] = terrain.law;
   Json wheels = Json::array();
   for (std::size_t k = 0; k < in.end.wheels.size(); ++k)

@@ -16,6 +16,7 @@
 #include "nodes/ranks/run_context.hpp"
 #include "nodes/scenario/scenario.hpp"
 #include "protocol/core/archive.hpp"
+#include "protocol/core/rank_group.hpp"
 #include "protocol/transport.hpp"
 
 namespace furrow::ranks {
@@ -56,12 +57,18 @@ class Node {
 std::unique_ptr<Node> make_rig_node(const scenario::Scenario& scenario);
 std::unique_ptr<Node> make_tire_node(const scenario::Scenario& scenario, int index,
                                      std::function<void()> alive);
-std::unique_ptr<Node> make_terrain_node(const scenario::Scenario& scenario, int threads);
+/// @param group of a terrain of several ranks, whose leader this is; null: it is the only one
+std::unique_ptr<Node> make_terrain_node(const scenario::Scenario& scenario, int threads,
+                                        std::shared_ptr<RankGroup> group = nullptr);
+/// A rank of a terrain that is not its leader, and follows it.
+std::unique_ptr<Node> make_terrain_follower(const scenario::Scenario& scenario, int threads,
+                                            std::shared_ptr<RankGroup> group);
 
 /// The node that `self` is in this scenario.
 /// @param alive  called now and then while it makes itself ready; may throw to stop
+/// @param group  of a terrain of several ranks
 std::unique_ptr<Node> make_node(const scenario::Scenario& scenario, Address self, int threads,
-                                std::function<void()> alive = {});
+                                std::function<void()> alive = {}, std::shared_ptr<RankGroup> group = nullptr);
 
 /// Synchronizes and advances for n = from … to − 1; calls `checkpoint(n)` when one falls due. Ends early when ordered
 /// to.

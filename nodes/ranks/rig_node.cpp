@@ -37,7 +37,7 @@ class RigNode : public Node {
   }
 
   void set_up(Transport& transport, std::span<const NodeCard> cards, const RunContext& context) override {
-    FURROW_ASSERT(cards.size() == static_cast<std::size_t>(rig_->wheel_count()) + 2, cards.size(),
+    FURROW_ASSERT(cards.size() >= static_cast<std::size_t>(rig_->wheel_count()) + 2, cards.size(),
                   rig_->wheel_count());
     context_ = context;
     cards_.assign(cards.begin(), cards.end());

@@ -13,6 +13,7 @@
 #include "protocol/core/clock.hpp"
 #include "protocol/files/archive_file.hpp"
 #include "protocol/files/fault_point.hpp"
+#include "protocol/transport_group.hpp"
 
 namespace furrow::ranks {
 namespace {
@@ -73,7 +74,8 @@ class RunLoop {
       before_ = restore_cost(saved);
       from_ = context_.resume->manifest.step;
     }
-    node_ = make_node(scenario_, transport_.self(), context_.threads, [this] { show_life(); });
+    node_ = make_node(scenario_, transport_.self(), context_.threads, [this] { show_life(); },
+                      make_terrain_group(transport_));
     NodeCard card = node_->card();
     card.threads = context_.threads;
     card.from_step = from_;

@@ -45,6 +45,7 @@ class Checks {
   void tires();
   void tire_options(std::size_t wheel);
   void room();
+  void ranks();
   void bin();
   void start();
   void overlaps();
@@ -171,6 +172,14 @@ void Checks::room() {
   }
 }
 
+void Checks::ranks() {
+  if (s_.terrain_ranks <= terrain_.most_ranks) return;
+  throw wrong("terrain.ranks",
+              fmt::format("is {}, expected {}: engine '{}' runs on {}", s_.terrain_ranks,
+                          terrain_.most_ranks > 1 ? fmt::format("1 to {}", terrain_.most_ranks) : "1",
+                          terrain_.engine, terrain_.most_ranks > 1 ? "no more" : "one rank, on all of its cores"));
+}
+
 void Checks::bin() {
   if (!terrain_.bounds) return;
   if (rig_.gravity() != standard_gravity())
@@ -258,6 +267,7 @@ void check_scenario(Scenario& scenario, rigs::RigSpec& rig) {
   Checks checks(scenario, rig);
   checks.times();
   checks.rig();
+  checks.ranks();
   checks.bin();
   checks.tires();
   checks.room();

@@ -331,7 +331,7 @@ class BadFile(SystemTest):
         told = [line for line in done.stderr.splitlines() if line.startswith("furrow: error: ")]
         self.assertEqual(len(told), 1, done.stderr)
         self.assertIn("needs 3 ranks", told[0])
-        self.assertIn("mpirun started 2", told[0])
+        self.assertIn("but 2 were started", told[0])
         self.assertEqual(self.names(), ["small.json"])
 
     def test_bad_scenario_under_the_users_mpirun_is_told_once(self):

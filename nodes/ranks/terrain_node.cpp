@@ -1,5 +1,6 @@
 // The terrain's rank: prepares the bed, says how high it stands under each tire, then pushes back.
 #include "nodes/output/frames.hpp"
+#include "nodes/ranks/early_end.hpp"
 #include "nodes/ranks/node.hpp"
 #include "nodes/ranks/saved_forces.hpp"
 #include "protocol/core/archive_fields.hpp"
@@ -58,7 +59,9 @@ class TerrainNode : public Node {
       terrain_->attach(surfaces[k].mesh, surfaces[k].material, targets_[k]);
     }
     report_.state = terrain_->state();
-    if (context.saved) restore(*context.saved);
+    if (!context.saved) return;
+    restore(*context.saved);
+    ends_at_ = saved_end(*context.saved);
   }
 
   void synchronize(Transport& transport, const StepHeader& header) override {
@@ -71,6 +74,7 @@ class TerrainNode : public Node {
       SurfaceMotion motion = receive_step<SurfaceMotion>(transport, {Role::tire, k}, header.step);
       targets_[k] = std::move(motion.surface);
       due_ = motion.order;
+      ends_at_ = motion.ends_at;
     }
   }
 
@@ -84,6 +88,7 @@ class TerrainNode : public Node {
   }
 
   Order due() const override { return due_; }
+  std::int64_t ends_at() const override { return ends_at_; }
 
   void finish(Transport& transport, FinalReport own, bool) override {
     own.height_before = before_;
@@ -102,6 +107,7 @@ class TerrainNode : public Node {
   void save_setup(Archive& archive) const override {
     save_fields(archive, kSetup, setup_);
     save_fields(archive, kBefore, before_);
+    save_end(archive, ends_at_);
   }
 
   void restore(const Archive& archive) override {
@@ -176,6 +182,7 @@ class TerrainNode : public Node {
   launch::HeldFolder* held_ = nullptr;
   checkpoint::FrameClock frames_;
   Order due_ = Order::go_on;
+  std::int64_t ends_at_ = kNotYet;
 };
 
 }  // namespace

@@ -18,10 +18,10 @@ namespace furrow::ranks {
 
 /// A wheel as walls know it.
 struct WheelPlace {
-  Vec3 center = Vec3::Zero();     // m
-  Vec3 heading = Vec3::UnitX();   // unit, horizontal
-  double radius = 0.0;            // m
-  double width = 0.0;             // m
+  Vec3 center = Vec3::Zero();    // m
+  Vec3 heading = Vec3::UnitX();  // unit, horizontal
+  double radius = 0.0;           // m
+  double width = 0.0;            // m
 };
 
 class WallWatch {
@@ -38,8 +38,8 @@ class WallWatch {
   /// To the walls behind, ahead, to the right and to the left, m.
   Distances distances(const WheelPlace& wheel) const;
 
-  double length_, width_;            // of the bin, m
-  std::vector<Distances> nearest_;   // that each wheel may come to each wall, m
+  double length_, width_;           // of the bin, m
+  std::vector<Distances> nearest_;  // that each wheel may come to each wall, m
 };
 
 }  // namespace furrow::ranks

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -153,17 +154,22 @@ enum class Order : std::int32_t {
   stop = 2,        // save and end: a signal asked for it
 };
 
+/// The step of an end that is not known yet.
+inline constexpr std::int64_t kNotYet = std::numeric_limits<std::int64_t>::max();
+
 struct RimMotion {
   static constexpr MessageKind kKind = MessageKind::rim_motion;
   StepHeader header;
   RimState rim;
-  Order order = Order::go_on;  // due at synchronization n + 1
+  Order order = Order::go_on;      // due at synchronization n + 1
+  std::int64_t ends_at = kNotYet;  // the step at which the run is complete before its planned end, at least n + 2
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<RimMotion> auto& s) {
   visit(Field{"header", ""}, s.header);
   visit(Field{"rim", ""}, s.rim);
   visit(Field{"order", ""}, s.order);
+  visit(Field{"ends_at"}, s.ends_at);
 }
 
 /// tire k → rig.
@@ -215,13 +221,15 @@ struct SurfaceMotion {
   static constexpr MessageKind kKind = MessageKind::surface_motion;
   StepHeader header;
   SurfaceState surface;
-  Order order = Order::go_on;  // due now: terrain hears of it through the tires
+  Order order = Order::go_on;      // due now: terrain hears of it through the tires
+  std::int64_t ends_at = kNotYet;  // as the rig said, at least n + 1
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<SurfaceMotion> auto& s) {
   visit(Field{"header", ""}, s.header);
   visit(Field{"surface", ""}, s.surface);
   visit(Field{"order", ""}, s.order);
+  visit(Field{"ends_at"}, s.ends_at);
 }
 
 /// terrain → tire k.

@@ -213,7 +213,7 @@ void read_task(const RunArguments& arguments, Task& task) try {
 /// A run that is over leaves nothing to do: told as `furrow resume` tells it without a launcher.
 void tell_finished(const checkpoint::ResumePlan& plan, const RunArguments& arguments) {
   std::cerr << fmt::format("furrow: {} has come to its end at {:g} s, there is nothing to do\n",
-                           arguments.out.string(), plan.scenario.run.end);
+                           arguments.out.string(), plan.ended);
   std::cout << arguments.out.string() << std::endl;
 }
 

@@ -182,7 +182,7 @@ ExitCode resume_supervised(const RunArguments& arguments) {
     for (const std::string& warning : *warnings) print_warning(warning);
   if (plan.finished) {
     std::fprintf(stderr, "furrow: %s has come to its end at %g s, there is nothing to do\n",
-                 directory.path().c_str(), plan.scenario.run.end);
+                 directory.path().c_str(), plan.ended);
     std::cout << directory.path().string() << "\n";
     return ExitCode::done;
   }

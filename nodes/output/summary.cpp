@@ -23,6 +23,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kMaxLate =
     0.05;  // of load × speed: energy error of the interface of a run that can be trusted
+constexpr double kLeastWindow = 0.1;        // of the planned averaging window, that a run must have come to
 constexpr double kLeastRolled = 1e-3;       // of the radius: a wheel that went less stands
 constexpr char kPull[] = "drawbar_pull_N";  // the rig's, if it has one
 
@@ -228,6 +229,22 @@ Json column_figures(const Table& table, std::size_t first) {
   return json;
 }
 
+/// Where a run ended so early that little is left of its averaging window, the window begins after the same share of it.
+double average_from(const SummaryInput& in) {
+  const scenario::RunOptions& run = in.scenario.run;
+  const bool enough = in.end.time - run.average_from >= kLeastWindow * (run.end - run.average_from);
+  return in.failure || enough ? run.average_from : run.average_from * in.end.time / run.end;
+}
+
+/// What a rig found beside its columns.
+void add_findings(const rigs::RigFindings& findings, Json& json) {
+  for (const rigs::RigEvent& event : findings.events) {
+    json["events"].push_back({{"event", event.what}, {"from_s", event.from}, {"to_s", json_number(event.to)}});
+    if (event.wheel >= 0) json["events"].back()["wheel"] = event.wheel;
+  }
+  for (const auto& [name, value] : findings.figures) json["figures"][name] = json_number(value);
+}
+
 Json wheel_summary(const WheelInput& in) {
   Json json;
   const rigs::WheelDescription wheel = scenario::describe_rig(in.run.scenario).wheels[in.wheel];
@@ -238,7 +255,7 @@ Json wheel_summary(const WheelInput& in) {
   json["tire_radius_m"] = in.card().tire_radius;
   json["tread_width_m"] = in.card().tire_width;
   json["surface_height_m"] = json_number(in.run.setup.mean_height.at(in.wheel));
-  const Window window = averaging_window(in.table, in.rows, in.run.scenario.run.average_from,
+  const Window window = averaging_window(in.table, in.rows, average_from(in.run),
                                          in.run.scenario.tires[in.wheel]->describe().facets);
   add_mobility(in, window, json);
   add_plumbing(in, json);
@@ -298,6 +315,9 @@ std::string summary_text(const SummaryInput& in) {
                       {"time_s", in.end.time}};
   else
     json["state_hash"] = state.hex();
+  if (!in.failure) json["end_reason"] = to_string(in.end.reason);
+  json["end_time_s"] = in.end.time;
+  json["average_from_s"] = average_from(in);
   const terrain::TerrainDescription terrain = in.scenario.terrain->describe();
   json["terrain_engine"] = terrain.engine;
   if (in.scenario.terrain_ranks > 1) json["terrain_ranks"] = in.scenario.terrain_ranks;
@@ -308,16 +328,17 @@ std::string summary_text(const SummaryInput& in) {
         wheel_summary({in, static_cast<int>(k), in.tables[k], wheel_rows(in.tables[k]), in.end.wheels[k]}));
   if (wheels.size() == 1) json.update(wheels.front());
   if (!in.end.wheels.empty())
-    json["accounts"] = accounts_json(in.end.accounts, in.tables.back(), in.scenario.run.average_from);
+    json["accounts"] = accounts_json(in.end.accounts, in.tables.back(), average_from(in));
   add_cost(in, wheel_rows(in.tables.front()), json);
   json["wheels"] = wheels;
   for (const Table& table : in.tables.subspan(std::min(in.scenario.tires.size(), in.tables.size()))) {
     if (table.subject == kAccountsTable) continue;
     const std::vector<double> times = table.column("time_s");
     std::size_t first = 1;
-    while (first < times.size() && times[first] < in.scenario.run.average_from) ++first;
+    while (first < times.size() && times[first] < average_from(in)) ++first;
     json["subjects"][table.subject] = column_figures(table, first);
   }
+  add_findings(in.end.findings, json);
   return json.dump(2) + "\n";
 }
 

@@ -2,6 +2,7 @@
 // tires and the rig speaks the leader alone.
 #include <fmt/format.h>
 
+#include "nodes/ranks/early_end.hpp"
 #include "nodes/ranks/node.hpp"
 #include "nodes/ranks/terrain_orders.hpp"
 #include "protocol/core/assert.hpp"
@@ -49,7 +50,9 @@ class TerrainFollower final : public Node {
     forces_.resize(attach.surfaces.size());
     contact_.resize(attach.surfaces.size());
     terrain_->state();
-    if (context.saved) restore(*context.saved);
+    if (!context.saved) return;
+    restore(*context.saved);
+    now_.ends_at = saved_end(*context.saved);
   }
 
   void synchronize(Transport&, const StepHeader& header) override {
@@ -70,6 +73,7 @@ class TerrainFollower final : public Node {
   }
 
   Order due() const override { return now_.order; }
+  std::int64_t ends_at() const override { return now_.ends_at; }
 
   void finish(Transport& transport, FinalReport own, bool) override {
     terrain_->height_field();
@@ -78,6 +82,7 @@ class TerrainFollower final : public Node {
   }
 
   void save(Archive& archive) const override { terrain_->save(archive); }
+  void save_setup(Archive& archive) const override { save_end(archive, now_.ends_at); }
   void restore(const Archive& archive) override {
     terrain_->restore(archive);
     terrain_->state();

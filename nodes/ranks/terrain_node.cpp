@@ -1,6 +1,7 @@
 // The terrain's rank: prepares the bed, says how high it stands under each tire, then pushes back. Of a terrain of
 // several ranks it is the leader: whatever all of them do, it orders (terrain_orders.hpp).
 #include "nodes/output/frames.hpp"
+#include "nodes/ranks/early_end.hpp"
 #include "nodes/ranks/node.hpp"
 #include "nodes/ranks/saved_forces.hpp"
 #include "nodes/ranks/terrain_orders.hpp"
@@ -65,7 +66,9 @@ class TerrainNode : public Node {
       terrain_->attach(attach.surfaces[k].mesh, attach.surfaces[k].material, attach.start[k]);
     now_.targets = std::move(attach.start);
     report_.state = terrain_->state();
-    if (context.saved) restore(*context.saved);
+    if (!context.saved) return;
+    restore(*context.saved);
+    now_.ends_at = saved_end(*context.saved);
   }
 
   void synchronize(Transport& transport, const StepHeader& header) override {
@@ -78,6 +81,7 @@ class TerrainNode : public Node {
       SurfaceMotion motion = receive_step<SurfaceMotion>(transport, {Role::tire, k}, header.step);
       now_.targets[k] = std::move(motion.surface);
       now_.order = motion.order;
+      now_.ends_at = motion.ends_at;
     }
     now_.header = header;
     share(group_.get(), now_);
@@ -93,6 +97,7 @@ class TerrainNode : public Node {
   }
 
   Order due() const override { return now_.order; }
+  std::int64_t ends_at() const override { return now_.ends_at; }
 
   void finish(Transport& transport, FinalReport own, bool) override {
     own.height_before = before_;
@@ -112,6 +117,7 @@ class TerrainNode : public Node {
   void save_setup(Archive& archive) const override {
     save_fields(archive, kSetup, setup_);
     save_fields(archive, kBefore, before_);
+    save_end(archive, now_.ends_at);
   }
 
   void restore(const Archive& archive) override {

@@ -47,13 +47,15 @@ void visit_fields(Visit&& visit, FieldsOf<AttachOrder> auto& s) {
 /// Now advance from this step.
 struct AdvanceOrder {
   StepHeader header;
-  Order order = Order::go_on;  // due once that is done
+  Order order = Order::go_on;      // due once that is done
+  std::int64_t ends_at = kNotYet;  // the step at which the run is complete before its planned end
   std::vector<SurfaceState> targets;
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<AdvanceOrder> auto& s) {
   visit(Field{"header", ""}, s.header);
   visit(Field{"order", ""}, s.order);
+  visit(Field{"ends_at", ""}, s.ends_at);
   visit(Field{"targets", ""}, s.targets);
 }
 

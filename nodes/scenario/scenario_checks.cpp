@@ -182,9 +182,6 @@ void Checks::ranks() {
 
 void Checks::bin() {
   if (!terrain_.bounds) return;
-  if (rig_.gravity() != standard_gravity())
-    throw wrong("rig.slope", fmt::format("is not 0, expected 0 on {} (terrain.engine '{}'), which lies level",
-                                         terrain_.name, terrain_.engine));
   const double least = kMinGrains * terrain_.grain_radius;
   for (const auto& [key, size] :
        {std::pair{"terrain.length", terrain_.bounds->length}, {"terrain.width", terrain_.bounds->width}})
@@ -202,6 +199,10 @@ void Checks::start() {
   const double length = terrain_.bounds->length;
   for (const rigs::WheelDescription& wheel : describe().wheels) {
     const double radius = wheel.along;
+    if (wheel.stops_before_wall)
+      warn("run.end", fmt::format("the run will end before {} s, where a tire is {} m from the end wall "
+                                  "(rig.stop_before_wall)",
+                                  number_text(s_.run.end), number_text(rig_.stop_before_wall())));
     if (wheel.from - radius < 0.0 || wheel.from + radius > length)
       throw wrong(wheel.start_key,
                   fmt::format("is {} m, expected {:.3f} to {:.3f} m: the tire of radius {} m would stand in "

@@ -21,7 +21,8 @@ const checkpoint::SeriesMark& mark_of(const checkpoint::ResumePoint& resume, con
   throw io_error(resume.folder.string(), "knows no table of '" + subject + "'");
 }
 
-void label(Hdf5Writer& file, const std::string& dataset, const std::string& units, const std::string& long_name) {
+void label(Hdf5Writer& file, const std::string& dataset, const std::string& units,
+           const std::string& long_name) {
   file.attribute_of(dataset, "units", units);
   file.attribute_of(dataset, "long_name", long_name);
 }

@@ -41,8 +41,8 @@ class Hdf5Writer {
   void attribute_of(const std::string& dataset, const std::string& name, const std::string& text);
   /// An axis without numbers of its own: a dimension of netCDF, which other datasets may lie along.
   void put_axis(const std::string& name, hsize_t length);
-  /// Says along which axes a dataset lies, by the names of datasets of one dimension: HDF5 dimension scales, which netCDF
-  /// (and so xarray) reads as coordinates. A dataset that lies along itself is a coordinate.
+  /// Says along which axes a dataset lies, by the names of datasets of one dimension: HDF5 dimension scales, which
+  /// netCDF (and so xarray) reads as coordinates. A dataset that lies along itself is a coordinate.
   /// @pre all of them were put; one axis per dimension of the dataset, of the same length
   void lay_along(const std::string& dataset, const std::vector<std::string>& axes);
 

@@ -6,6 +6,7 @@ import importlib.util
 import json
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import unittest
@@ -19,7 +20,7 @@ if not all(importlib.util.find_spec(name) for name in NEEDED):
 sys.path.insert(0, str(ROOT / "scripts" / "python"))
 os.environ.setdefault("MPLBACKEND", "Agg")
 
-import matplotlib  # noqa: E402
+import matplotlib.image  # noqa: E402
 import numpy as np  # noqa: E402
 import xarray as xr  # noqa: E402
 
@@ -37,7 +38,7 @@ class Package(SystemTest):
         cls.holder = tempfile.TemporaryDirectory(prefix="furrow test ")
         cls.addClassCleanup(cls.holder.cleanup)
         cls.path = pathlib.Path(cls.holder.name) / "out"
-        cls.run_ = furrow.run(SMALL, out=cls.path, progress=False, rig__slip=0.4)
+        cls.run_ = furrow.run(SMALL, out=cls.path, progress=False, rig__slip=0.4, run__end=0.1, output__frame_interval=0.05)
 
     def test_a_run_is_what_its_files_say(self):
         run = self.run_
@@ -50,7 +51,7 @@ class Package(SystemTest):
         self.assertRaisesRegex(KeyError, "no key 'pull.mean'", run.number, "pull.mean")
         self.assertEqual(run.subjects, ["wheel0", "accounts"])
         series = run.series()
-        self.assertEqual((series.index.name, len(series)), ("time_s", 50))
+        self.assertEqual((series.index.name, len(series)), ("time_s", 100))
         self.assertEqual(series.attrs["units"]["drawbar_pull_N"], "N")
         self.assertEqual(len(run.wheels), 1)
         self.assertIn("sliding_loss_J", run.accounts.columns)
@@ -59,7 +60,7 @@ class Package(SystemTest):
     def test_frames_are_found_by_index_and_time(self):
         tire, grains = self.run_.tire(), self.run_.grains
         self.assertEqual(len(tire), 3)
-        self.assertEqual(tire.at(0.021).index, 1)
+        self.assertEqual(tire.at(0.055).index, 1)
         self.assertEqual(tire[-1].time, grains[-1].time)
         self.assertEqual(tire[0].position.shape, tire[0].force.shape)
         self.assertLess(tire[0].triangle.max(), len(tire[0].position))
@@ -114,6 +115,16 @@ class Package(SystemTest):
         self.assertEqual(grains[:3], [str(len(ground.radius)), str(len(ground.radius)), "radius"])
         np.testing.assert_allclose([float(x) for x in tire[4:]], frame.position[7], rtol=1e-6)
         self.assertAlmostEqual(float(grains[3]), float(ground.radius.max()), places=6)
+
+    def test_paraview_shows_the_frames(self):
+        if not shutil.which("pvpython") or not shutil.which("xvfb-run"):
+            self.skipTest("no pvpython or xvfb-run")
+        folder, picture = self.run_.write_vtk(self.folder / "vtk"), self.folder / "run.png"
+        done = subprocess.run(["xvfb-run", "-a", "-s", "-noreset", "pvpython", ROOT / "scripts" / "python" / "paraview_run.py", folder,
+                               "--picture", picture], text=True, capture_output=True, timeout=300)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        seen = matplotlib.image.imread(picture)[100:-100, 200:-200, :3]
+        self.assertGreater(float(seen.std()), 0.03, "nothing but the background")
 
     def test_errors_are_the_programs_own(self):
         with self.assertRaises(furrow.BadInput) as caught:

@@ -5,7 +5,9 @@ import importlib
 import importlib.util
 import pathlib
 import sys
+from functools import cache
 from types import ModuleType
+from typing import Any
 
 FOLDER = pathlib.Path(__file__).resolve().parents[2] / "plot"
 
@@ -24,8 +26,25 @@ def _load() -> str:
 
 
 def module(name: str) -> ModuleType:
-    """One module of scripts/plot."""
+    """One module of scripts/plot, of those that do not draw."""
     return importlib.import_module(f"{_load()}.{name}")
+
+
+@cache
+def style() -> dict[str, Any]:
+    """What scripts/plot sets in matplotlib for its own plots; for those of the user all stays as it is."""
+    import matplotlib
+    before = dict(matplotlib.rcParams)
+    module("style")
+    changed = {key: value for key, value in matplotlib.rcParams.items() if before[key] != value}
+    matplotlib.rcParams.update({key: before[key] for key in changed})
+    return changed
+
+
+def drawing(name: str) -> ModuleType:
+    """A module of scripts/plot that draws."""
+    style()
+    return module(name)
 
 
 run_data = module("run_data")

@@ -9,33 +9,21 @@ from typing import Any
 import matplotlib
 from matplotlib.figure import Figure
 
-from ._scripts import module
+from ._scripts import drawing, style
 from .runs import Run
 from .studies import Study
 from .virtual_tests import Kinematics, Press, Soil
 
 
-def _style() -> dict[str, Any]:
-    """What scripts/plot sets for its own plots; those of the user stay as they are."""
-    before = dict(matplotlib.rcParams)
-    module("style")
-    changed = {key: value for key, value in matplotlib.rcParams.items() if before[key] != value}
-    matplotlib.rcParams.update({key: before[key] for key in changed})
-    return changed
-
-
-_STYLE = _style()
-
-
 def _draw(where: str, name: str, shown: Any) -> Figure:
-    with matplotlib.rc_context(_STYLE):
-        figure = getattr(module(where), name)(shown)
+    with matplotlib.rc_context(style()):
+        figure = getattr(drawing(where), name)(shown)
     assert isinstance(figure, Figure)
     return figure
 
 
 def _of(where: str, kind: str, opened: Study | Soil | Press | Kinematics) -> Any:
-    return getattr(module(where), kind)(opened.directory)
+    return getattr(drawing(where), kind)(opened.directory)
 
 
 def pull_slip_sinkage(run: Run) -> Figure:

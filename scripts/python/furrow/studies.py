@@ -7,7 +7,7 @@ from typing import Any
 
 import pandas as pd
 
-from ._scripts import Missing, module, run_data
+from ._scripts import Missing, drawing, run_data
 from .runs import Run
 from .tables import frame_of, read_csv
 
@@ -65,7 +65,7 @@ class Study:
         if rows.empty:
             raise Missing(f"{self.directory}: no such run is done")
         lines = [{name: str(value) for name, value in row.items()} for row in rows.to_dict("records")]
-        values = module("sweep").points(lines, x, y, error, mean_over)
+        values = drawing("sweep").points(lines, x, y, error, mean_over)
         table = frame_of({x: values[0], y: values[1], "half_bar": values[2]})
         table["unsteady"] = values[3].astype(bool)
         return table

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Plots of a run, of soil tests, of a pressed tire, of a vehicle's suspensions or of a study: PNG files in the run directory; their names, without the folder, as a JSON list on stdout.
+"""Plots of a run, of soil tests, of a pressed tire, of a vehicle's suspensions or of a study: PNG files in the run
+directory, and report.html, a page with all of it; their names, without the folder, as a JSON list on stdout.
 
 usage: report.py DIR [--out FOLDER] [--only NAME]...
 
@@ -13,15 +14,17 @@ import os
 import pathlib
 import sys
 
-import matplotlib
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # its threads cost more than they save
+import matplotlib  # noqa: E402
 
 matplotlib.use("Agg")
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent), str(pathlib.Path(__file__).resolve().parent / "report")]
 
 from plot import accounts, charts, ground, kinematics, press, scene, soil, sweep  # noqa: E402
 from plot.digits import with_error  # noqa: E402
 from plot.run_data import Damaged, Missing, Run, printable  # noqa: E402
+import page  # noqa: E402
 
 PLOTS = {
     "pull_slip_sinkage": charts.pull_slip_sinkage,
@@ -135,6 +138,8 @@ def main():
         except Damaged as error:
             print(f"furrow: error: {arguments.directory}: {printable(error)}", file=sys.stderr)
             return 5
+    if written and not arguments.only:
+        written += page.write(out, [run], may_write)
     print(json.dumps(written))
     if not written:
         print(f"furrow: error: {arguments.directory}: holds nothing to plot", file=sys.stderr)

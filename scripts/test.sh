@@ -6,7 +6,8 @@ root=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/.." && pwd -
 usage() { cat <<'HELP'
 usage: scripts/test.sh [--label LABEL]... [--preset NAME] [-- CTEST-OPTION ...]
 Builds everything and runs the tests with the labels unit, mpi and system; or builds what the labels given need, and runs those.
-  --label LABEL  unit, mpi, system, verify (longer comparisons), campaign (hours), fresh (bare Debian machine; needs root)
+  --label LABEL  unit, mpi, system, verify (longer comparisons), campaign (hours), fresh (bare Debian machine; needs root),
+                 browser (report.html in Chromium), network (what needs package registries)
   --preset NAME  a preset of CMakePresets.json, for example asan
   --             what follows goes to ctest, for example -- -R terrain
 HELP

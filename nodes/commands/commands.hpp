@@ -47,8 +47,14 @@ bool runs_as_rank(int argc, char** argv);
 /// @returns false when nobody ended this rank meanwhile: then it should say it, too
 bool first_rank_speaks();
 
-/// `furrow report`: makes the plots of a run (commands_report.cpp). @throws Error
-std::vector<std::filesystem::path> make_report(const std::filesystem::path& run, bool quiet);
+struct ReportArguments {
+  std::vector<std::filesystem::path> runs;  // one: its plots and page; several: a page that compares them
+  std::filesystem::path out = {};           // folder of what is made; empty: that of the run
+  bool quiet = false;                       // no messages, and no longer than a minute
+};
+
+/// `furrow report`: makes the plots and the page of a run, or the page of several (report.cpp). @throws Error
+std::vector<std::filesystem::path> make_report(const ReportArguments& report);
 /// The same after a command whose results stand without plots: what goes wrong is a warning.
 std::vector<std::filesystem::path> make_report_or_warn(const std::filesystem::path& run);
 

@@ -1,5 +1,6 @@
-// The plots of a run, made by scripts/report.py with Debian's own Python, whatever python stands first on PATH, and
-// isolated (-I) from what the user's environment and folders have for Python.
+// The plots of a run and its page, or the page that compares several, made by scripts/report.py with Debian's own
+// Python, whatever python stands first on PATH, and isolated (-I) from what the user's environment and folders have for
+// Python.
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/wait.h>
@@ -74,8 +75,9 @@ Finished run_program(std::vector<std::string> command, bool quiet,
 
 }  // namespace
 
-std::vector<std::filesystem::path> make_report(const std::filesystem::path& run, bool quiet) {
-  launch::require_run_directory(run);
+std::vector<std::filesystem::path> make_report(const ReportArguments& report) {
+  for (const auto& run : report.runs) launch::require_run_directory(run);
+  const std::filesystem::path& run = report.runs.front();
   const std::filesystem::path script = data_folder() / "scripts" / "report.py";
   if (access(kPython, X_OK) != 0)
     throw io_error(kPython, "is missing, expected Debian's python3 with python3-matplotlib and python3-h5py");
@@ -86,9 +88,12 @@ std::vector<std::filesystem::path> make_report(const std::filesystem::path& run,
   if (const MemoryLimit limit = address_space_limit(); limit.bytes < kAddressSpace)
     throw limit_error(fmt::format("{}: plots need {:.0f} MB of memory, limit {:.0f} MB ({})", run.string(),
                                   kAddressSpace / 1e6, limit.bytes / 1e6, limit.name));
-  const auto deadline = quiet ? std::optional(Clock::now() + kPatience) : std::nullopt;
-  const Finished finished =
-      run_program({kPython, "-I", script.string(), "--", run.string()}, quiet, deadline);
+  const auto deadline = report.quiet ? std::optional(Clock::now() + kPatience) : std::nullopt;
+  std::vector<std::string> command{kPython, "-I", script.string()};
+  if (!report.out.empty()) command.insert(command.end(), {"--out", report.out.string()});
+  command.emplace_back("--");
+  for (const auto& one : report.runs) command.push_back(one.string());
+  const Finished finished = run_program(std::move(command), report.quiet, deadline);
   const auto list = nlohmann::json::parse(finished.output, nullptr, false);
   if (finished.too_late)
     throw io_error(run.string(),
@@ -96,17 +101,18 @@ std::vector<std::filesystem::path> make_report(const std::filesystem::path& run,
                                kPatience.count(), scenario::shell_path(run.string())));
   if (!WIFEXITED(finished.status) || WEXITSTATUS(finished.status) != 0 || !list.is_array())
     throw io_error(run.string(), launch::stop_signalled() ? "the plots were interrupted"
-                                 : quiet ? fmt::format("made no plots; 'furrow report {}' says why",
-                                                       scenario::shell_path(run.string()))
-                                         : "made no plots, expected the results of a run");
+                                 : report.quiet ? fmt::format("made no plots; 'furrow report {}' says why",
+                                                              scenario::shell_path(run.string()))
+                                                : "made no plots, expected the results of a run");
   std::vector<std::filesystem::path> plots;
-  for (const auto& name : list) plots.push_back(run / name.get<std::string>());
+  for (const auto& name : list)
+    plots.push_back((report.out.empty() ? run : report.out) / name.get<std::string>());
   return plots;
 }
 
 std::vector<std::filesystem::path> make_report_or_warn(const std::filesystem::path& run) {
   try {
-    return make_report(run, true);
+    return make_report({.runs = {run}, .quiet = true});
   } catch (const Error& error) {
     print_warning(std::string("no plots: ") + error.what());
     return {};

@@ -24,6 +24,10 @@ class Stream:
     def add(self, data):
         self._keep(self._deflate.compress(data))
 
+    def mark(self):
+        """From here on `size` counts all that was added."""
+        self._keep(self._deflate.flush(zlib.Z_SYNC_FLUSH))
+
     def base64(self):
         self._keep(self._deflate.flush())
         return base64.b64encode(b"".join(self._parts)).decode()

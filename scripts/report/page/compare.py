@@ -1,4 +1,6 @@
 """Several runs on one page: their answers with intervals beside each other, and their curves laid over each other."""
+import numpy as np
+
 from plot.digits import digits
 from plot.run_data import Missing
 
@@ -64,10 +66,12 @@ def overlay(runs, arrays):
     columns = dict.fromkeys(name for _, group in curves.WHEEL for name in group)
     items = []
     for column in (*columns, "vertical_force_N"):
-        lines = [table.line(column, name) for name, table in tables.items() if column in table.columns]
+        lines = [table.line(column, name) for name, table in tables.items()
+                 if column in table.columns and np.nanmax(np.abs(table.columns[column]), initial=0.0) > curves.NOISE]
         if lines:
             words, unit, _ = naming(column)
             items.append(blocks.chart(words.capitalize(), "time", "s", unit, lines))
+            curves.limit_slip(items[-1], column, *tables.values())
     if not items:
         raise Missing("no run has a table of a wheel")
     return {"id": "series", "title": "Curves", "blocks": [blocks.charts(items, "Wheel 0 of each run.")]}

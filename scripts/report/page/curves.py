@@ -71,6 +71,7 @@ def plain(table, groups, window, errors=None):
         if names:
             levels = [level for name in names for level in (errors or {}).get(name, ())]
             items.append(blocks.chart(title, "time", "s", naming(names[0])[1], [table.line(name) for name in names], window, levels))
+            limit_slip(items[-1], names[0], table)
     return items
 
 
@@ -79,11 +80,19 @@ def over_wheels(tables, window):
     items = []
     for name in WHEELS:
         lines = [table.line(name, f"wheel {k}") for k, table in list(tables.items())[:MOST_WHEELS]
-                 if name in table.columns and np.isfinite(table.columns[name]).any()]
+                 if name in table.columns and np.nanmax(np.abs(table.columns[name]), initial=0.0) > NOISE]
         if lines:
             words, unit, _ = naming(name)
             items.append(blocks.chart(words.capitalize(), "time", "s", unit, lines, window))
+            limit_slip(items[-1], name, *tables.values())
     return items
+
+
+def limit_slip(chart, name, *tables):
+    """Of a wheel that stands, the slip is any number: the plot then begins with a part of it in view."""
+    if name == "slip" and any(np.nanmax(np.abs(table.columns[name]), initial=0.0) > 2.0 for table in tables if name in table.columns):
+        chart["clip"] = [-1.5, 1.5]
+        chart["title"] += " (only ±1.5 shown)"
 
 
 def explorer(table, window, most=80):

@@ -17,7 +17,7 @@ from .blobs import Stream, shuffled
 STILL = 0.04  # of a grain's radius
 MOST_GRAINS = 40000
 MOST_FRAMES = 400
-MOST_READ = 60e6  # grains times frames that are read
+MOST_READ = 40e6  # grains times frames that are read
 MOST_SHOWN = 16e6  # grains times frames that a browser keeps
 MOST_CELLS = 16000  # of the surface
 SAMPLES = 6  # frames that decide which grains are shown
@@ -151,6 +151,8 @@ class Packing:
         if self.bed:
             times.append(self._grains(index))
         self.times.append(times[0])
+        for stream in self.stream.values():
+            stream.mark()
 
     @property
     def size(self):

@@ -57,7 +57,5 @@ def playback(run, arrays, budget):
                         "low": [float(v) for v in bed.low], "scale": [float(v) for v in bed.scale], "cell": float(bed.cell),
                         "nx": bed.nx, "ny": bed.ny, "largest": bed.largest}
     words = [blocks.text(" ".join(sentences), "note") for sentences in [left_out(packing)] if sentences]
-    blobs = {name: stream.base64() for name, stream in packing.stream.items() if stream.size or name == "tires"}
-    if not packing.bed:
-        blobs = {"tires": blobs["tires"]}
+    blobs = {name: stream.base64() for name, stream in packing.stream.items() if packing.bed or name == "tires"}
     return {"id": "playback", "title": "Playback", "blocks": [block, *words]}, blobs

@@ -26,6 +26,8 @@ ACCOUNTS = (("Energy that does not close", ("residual_J", "terrain_residual_J", 
                         "tire_viscous_loss_J", "damper_loss_J")),
             ("Momentum that does not close", ("momentum_residual_x_Ns", "momentum_residual_y_Ns", "momentum_residual_z_Ns")))
 
+CHANGING = 0.05  # m/s²: a mean acceleration beyond it is no steady drive
+
 
 def failed_summary(run):
     """What a failed run left, or nothing."""
@@ -112,6 +114,10 @@ def vehicle_answer(run):
             if is_number(speed):
                 made.append(blocks.text(f"In the averaging window the {subject} drives at {digits(speed)} m/s on average"
                                         + (f"; {digits(load)} W reach its wheels." if is_number(load) else "."), "lead"))
+            change = values.get("acceleration_m_per_s2")
+            if is_number(change) and abs(change) > CHANGING:
+                made.append(blocks.text(f"The {subject} is not in a steady state: on average its speed changes by {digits(change)} m/s each second. "
+                                        "Means over the window describe this stretch, not a constant speed.", "warn"))
             made.append({"type": "fold", "title": f"All means of the {subject} in the averaging window",
                          "blocks": [blocks.table(["quantity", "mean", "unit"], rows)]})
     return made
@@ -160,7 +166,7 @@ def answer(run):
     elif not run.summary:
         made.append(blocks.text("This run has no summary: it is still going on, or it was stopped before its end.", "warn"))
     made += pull_answer(run)
-    if items := answer_cards(run):
+    if len(run.summary.get("wheels") or []) < 2 and (items := answer_cards(run)):
         made.append(blocks.cards(items))
     made += vehicle_answer(run) + wheels_table(run) + expected_table(run)
     for what, found in (run.summary.get("accounts") or {}).items():

@@ -5,9 +5,9 @@ import os
 import pathlib
 import sys
 
-from plot.run_data import Damaged, Missing, printable
+from plot.run_data import Damaged, Missing, Run, printable
 
-from . import kinds
+from . import kinds, run_page
 from .blobs import Arrays
 from .playback import playback
 
@@ -81,6 +81,28 @@ def write(folder, runs, may_write):
         print(f"report: no {NAME}: {printable(error or repr(error))[:300]}", file=sys.stderr)
         return []
     return [NAME]
+
+
+def compare(directories, folder, may_write):
+    """The page of several runs; the exit code."""
+    runs = []
+    for directory in directories:
+        try:
+            runs.append(Run(directory))
+        except PROBLEMS as error:
+            print(f"furrow: error: {directory}: {printable(error or repr(error))}", file=sys.stderr)
+            return 5
+        if not runs[-1].scenario or not run_page.wheel_tables(runs[-1]):
+            print(f"furrow: error: {directory}: holds no results of a run, expected scenario.json and a table of a wheel", file=sys.stderr)
+            return 5
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        print(f"furrow: error: {folder}: {printable(error)}", file=sys.stderr)
+        return 5
+    written = write(folder, runs, may_write)
+    print(json.dumps(written))
+    return 0 if written else 5
 
 
 def write_page(runs, path):

@@ -4,6 +4,7 @@ import { curve, grid, ink, windowTint } from "./colours.js";
 import { digits, el } from "./data.js";
 
 const sync = uPlot.sync("time");
+const COUNTED = new Set(["run", "bed", "pass"]); // values of x that are whole numbers
 const drawn = new Set(); // plots that exist, to be drawn again in another theme
 
 /** One common x for lines that have their own; missing values are gaps that are spanned. */
@@ -92,9 +93,9 @@ function options(chart, arrays, width) {
   const base = {
     width, height: chart.wide ? 380 : 240, ms: 1, scales: {
       x: { time: false, range: points ? (u, low, high) => pad(low, high, 0.06) : undefined },
-      y: { range: (u, low, high) => pad(Math.min(low ?? Infinity, ...wanted), Math.max(high ?? -Infinity, ...wanted), 0.06) },
+      y: { range: chart.clip ?? ((u, low, high) => pad(Math.min(low ?? Infinity, ...wanted), Math.max(high ?? -Infinity, ...wanted), 0.06)) },
     },
-    axes: [axis(chart.x, chart.x_unit), { ...axis("", ""), label: undefined, size: 58, values: (u, ticks) => ticks.map((v) => shortTick(v)) }],
+    axes: [{ ...axis(chart.x, chart.x_unit), ...(COUNTED.has(chart.x) ? { incrs: [1, 2, 5, 10, 20, 50, 100, 500, 1000] } : {}) }, { ...axis("", ""), label: undefined, size: 58, values: (u, ticks) => ticks.map((v) => shortTick(v)) }],
     cursor: { drag: { x: true, y: false }, sync: time ? { key: sync.key, scales: ["x", null] } : undefined },
     legend: { live: true },
     series: [

@@ -1,7 +1,9 @@
 #!/usr/bin/python3
-"""Plots of a run, of soil tests, of a pressed tire, of a vehicle's suspensions or of a study: PNG files in the run directory; their names, without the folder, as a JSON list on stdout.
+"""Plots of a run, of soil tests, of a pressed tire, of a vehicle's suspensions or of a study: PNG files in the run
+directory, and report.html, a page with all of it; their names, without the folder, as a JSON list on stdout.
 
 usage: report.py DIR [--out FOLDER] [--only NAME]...
+       report.py DIR DIR... --out FOLDER    one report.html that compares the runs
 
 Every plot is made from what the directory holds; a plot whose data are missing is left out with a word on stderr.
 Exit codes: 0 at least one plot was written, 5 a file could not be read or written.
@@ -14,11 +16,12 @@ import os
 import pathlib
 import sys
 
-import matplotlib
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # its threads cost more than they save
+import matplotlib  # noqa: E402
 
 matplotlib.use("Agg")
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent), str(pathlib.Path(__file__).resolve().parent / "report")]
 
 from plot import (accounts, charts, ground, kinematics, press, scene, soil, sweep, vehicle_ground, vehicle_plots,  # noqa: E402
                   vehicle_run, vehicle_scene, wheels)
@@ -107,9 +110,13 @@ def words(run):
 def main():
     parser = argparse.ArgumentParser(description="Plots of a run as PNG files.")
     parser.add_argument("directory", type=pathlib.Path)
+    parser.add_argument("others", type=pathlib.Path, nargs="*", help="further runs: one page that compares all of them")
     parser.add_argument("--out", type=pathlib.Path, help="folder for the plots (default: the run directory)")
     parser.add_argument("--only", action="append", choices=PLOTS | VEHICLE_PLOTS | SOIL_PLOTS | PRESS_PLOTS | KINEMATICS_PLOTS | SWEEP_PLOTS | BEDS_PLOTS, help="this plot only; may be repeated")
     arguments = parser.parse_args()
+    if arguments.others:
+        import page
+        return page.compare([arguments.directory, *arguments.others], arguments.out or pathlib.Path("."), may_write)
     out = arguments.out or arguments.directory
     try:
         of_soil = (arguments.directory / "soil.json").is_file()
@@ -165,6 +172,9 @@ def main():
         except Damaged as error:
             print(f"furrow: error: {arguments.directory}: {printable(error)}", file=sys.stderr)
             return 5
+    if (written or (arguments.directory / "summary_failed.json").is_file()) and not arguments.only:
+        import page
+        written += page.write(out, [run], may_write)
     print(json.dumps(written))
     if not written:
         print(f"furrow: error: {arguments.directory}: holds nothing to plot", file=sys.stderr)

@@ -37,7 +37,7 @@ namespace {
 /// What the user typed, as CLI11 fills it in.
 struct Typed {
   std::string scenario, out, threads, key, directory, soil, until;
-  std::vector<std::string> settings;
+  std::vector<std::string> settings, others;
   bool overwrite = false, profile = false, json = false, no_plots = false, slurm = false;
   std::optional<int> seeds, jobs;
   double memory = 0.0;  // that the scenario needs, bytes; 0: not known yet
@@ -212,6 +212,13 @@ ExitCode ranks_command(Typed& typed, const SlurmArguments& slurm, const std::vec
 
 ExitCode report_command(const Typed& typed) {
   launch::require_run_directory(typed.directory);
+  ReportArguments report{.runs = {typed.directory}, .out = typed.out};
+  report.runs.insert(report.runs.end(), typed.others.begin(), typed.others.end());
+  if (!typed.others.empty() && typed.out.empty())
+    throw input_error("command line", "--out",
+                      "is missing, expected the folder of the page that compares several runs");
+  if (!typed.others.empty() && !typed.soil.empty())
+    throw input_error("command line", "--soil", "is given with several runs, expected one");
   if (!typed.soil.empty()) {
     if (launch::has_run_list(typed.directory))
       launch::add_to_run_list(typed.directory, {"soil_estimate.json"});
@@ -219,7 +226,7 @@ ExitCode report_command(const Typed& typed) {
     std::cerr << "furrow: " << theory << "\n";
   }
   std::cerr << "furrow: plotting " << typed.directory << "\n";
-  for (const auto& plot : make_report(typed.directory, false)) std::cout << plot.string() << "\n";
+  for (const auto& plot : make_report(report)) std::cout << plot.string() << "\n";
   return ExitCode::done;
 }
 
@@ -504,9 +511,12 @@ void CommandLine::add_studies() {
   sweep.add_option("--jobs", sweep_.jobs, "runs at once, each with its share of the cores")
       ->capture_default_str();
 
-  CLI::App& report = add("report", "plot a finished run, as PNG files in its folder",
+  CLI::App& report = add("report",
+                         "show a finished run: PNG files and report.html, a page with plots and 3-D playback",
                          [this] { return report_command(typed_); });
   report.add_option("DIR", typed_.directory, "folder of the run, or of soil tests")->required();
+  report.add_option("OTHERS", typed_.others, "folders of further runs: one page compares all of them");
+  report.add_option("--out", typed_.out, "folder for the files (default: DIR); required with several runs");
   report.add_option("--soil", typed_.soil,
                     "soil.json of 'furrow soil': add what soil theory expects to the run's result");
 

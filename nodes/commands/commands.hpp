@@ -58,8 +58,14 @@ struct SlurmArguments {
 /// `furrow ranks --slurm`: a batch script (slurm.cpp). @throws Error(bad_input)
 std::string slurm_script(const scenario::Scenario& scenario, const SlurmArguments& job, const Settings& settings);
 
-/// `furrow report`: makes the plots of a run (commands_report.cpp). @throws Error
-std::vector<std::filesystem::path> make_report(const std::filesystem::path& run, bool quiet);
+struct ReportArguments {
+  std::vector<std::filesystem::path> runs;  // one: its plots and page; several: a page that compares them
+  std::filesystem::path out = {};           // folder of what is made; empty: that of the run
+  bool quiet = false;                       // no messages, and no longer than a minute
+};
+
+/// `furrow report`: makes the plots and the page of a run, or the page of several (report.cpp). @throws Error
+std::vector<std::filesystem::path> make_report(const ReportArguments& report);
 /// The same after a command whose results stand without plots: what goes wrong is a warning.
 std::vector<std::filesystem::path> make_report_or_warn(const std::filesystem::path& run);
 

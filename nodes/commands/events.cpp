@@ -21,7 +21,7 @@ ExitCode events_command(const EventsArguments& arguments) {
   launch::require_run_directory(arguments.directory);
   PythonScript script{.name = "events.py",
                       .arguments = {},
-                      .folder = arguments.directory,
+                      .folders = {arguments.directory},
                       .what = "the table of events",
                       .address_space = kAddressSpace,
                       .quiet = false,

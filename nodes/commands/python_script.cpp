@@ -69,11 +69,12 @@ Finished run_python(const PythonScript& script) {
                                               script.what));
   if (const MemoryLimit limit = address_space_limit(); limit.bytes < script.address_space)
     throw limit_error(fmt::format("{}: {} need {:.0f} MB of memory, limit {:.0f} MB ({})",
-                                  script.folder.string(), script.what, script.address_space / 1e6,
+                                  script.folders.front().string(), script.what, script.address_space / 1e6,
                                   limit.bytes / 1e6, limit.name));
   std::vector<std::string> command{kPython, "-I", path.string()};
   command.insert(command.end(), script.arguments.begin(), script.arguments.end());
-  command.insert(command.end(), {"--", script.folder.string()});
+  command.emplace_back("--");
+  for (const auto& folder : script.folders) command.push_back(folder.string());
   return run_program(std::move(command), script.quiet, script.deadline);
 }
 

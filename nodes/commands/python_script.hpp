@@ -12,8 +12,8 @@ namespace furrow::commands {
 
 struct PythonScript {
   std::string name;                                               // in scripts/
-  std::vector<std::string> arguments;                             // options; the folder follows them
-  std::filesystem::path folder;                                   // that it reads
+  std::vector<std::string> arguments;                             // options; the folders follow them
+  std::vector<std::filesystem::path> folders;                     // that it reads; messages name the first
   std::string what;                                               // it makes, for errors: "plots"
   double address_space = 0.0;                                     // bytes that it must have
   bool quiet = false;                                             // nothing on standard error

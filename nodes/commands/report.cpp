@@ -1,4 +1,4 @@
-// The plots of a run, made by scripts/report.py.
+// The plots of a run and its page, or the page that compares several, made by scripts/report.py.
 #include <sys/wait.h>
 
 #include <chrono>
@@ -24,16 +24,18 @@ constexpr std::chrono::seconds kPatience{60};  // for plots that nobody asked fo
 
 }  // namespace
 
-std::vector<std::filesystem::path> make_report(const std::filesystem::path& run, bool quiet) {
-  launch::require_run_directory(run);
-  const Finished finished =
-      run_python({.name = "report.py",
-                  .arguments = {},
-                  .folder = run,
-                  .what = "plots",
-                  .address_space = kAddressSpace,
-                  .quiet = quiet,
-                  .deadline = quiet ? std::optional(Clock::now() + kPatience) : std::nullopt});
+std::vector<std::filesystem::path> make_report(const ReportArguments& report) {
+  for (const auto& run : report.runs) launch::require_run_directory(run);
+  const std::filesystem::path& run = report.runs.front();
+  PythonScript script{.name = "report.py",
+                      .arguments = {},
+                      .folders = report.runs,
+                      .what = "plots",
+                      .address_space = kAddressSpace,
+                      .quiet = report.quiet,
+                      .deadline = report.quiet ? std::optional(Clock::now() + kPatience) : std::nullopt};
+  if (!report.out.empty()) script.arguments = {"--out", report.out.string()};
+  const Finished finished = run_python(script);
   const auto list = nlohmann::json::parse(finished.output, nullptr, false);
   if (finished.too_late)
     throw io_error(run.string(),
@@ -41,17 +43,18 @@ std::vector<std::filesystem::path> make_report(const std::filesystem::path& run,
                                kPatience.count(), scenario::shell_path(run.string())));
   if (!WIFEXITED(finished.status) || WEXITSTATUS(finished.status) != 0 || !list.is_array())
     throw io_error(run.string(), launch::stop_signalled() ? "the plots were interrupted"
-                                 : quiet ? fmt::format("made no plots; 'furrow report {}' says why",
-                                                       scenario::shell_path(run.string()))
-                                         : "made no plots, expected the results of a run");
+                                 : report.quiet ? fmt::format("made no plots; 'furrow report {}' says why",
+                                                              scenario::shell_path(run.string()))
+                                                : "made no plots, expected the results of a run");
   std::vector<std::filesystem::path> plots;
-  for (const auto& name : list) plots.push_back(run / name.get<std::string>());
+  for (const auto& name : list)
+    plots.push_back((report.out.empty() ? run : report.out) / name.get<std::string>());
   return plots;
 }
 
 std::vector<std::filesystem::path> make_report_or_warn(const std::filesystem::path& run) {
   try {
-    return make_report(run, true);
+    return make_report({.runs = {run}, .quiet = true});
   } catch (const Error& error) {
     print_warning(std::string("no plots: ") + error.what());
     return {};

@@ -63,7 +63,7 @@ class Beds(SystemTest):
         again = self.beds("--seeds", "4", "--out", run, *SHORT)
         self.assertEqual(again.stderr.count("is done already"), 3, again.stderr)
         self.check_means(run, [*names, "seed4"])
-        self.assertEqual(furrow("report", run, cwd=self.folder).stdout, f"{run}/beds.png\n")
+        self.assertEqual(furrow("report", run, cwd=self.folder).stdout, f"{run}/beds.png\n{run}/report.html\n")
 
         other = self.beds("--seeds", "2", "--out", run, "--no-plots", *SHORT, "--set", "rig.slip=0.2", code=2)
         self.assertIn("holds beds of another scenario or other settings, expected a new folder or --overwrite", other.stderr)

@@ -90,7 +90,7 @@ class Soil(WithCache):
         self.assertEqual(soil, json.loads((self.work / "out" / "soil.json").read_text()))
         names = {".furrow-run", "soil.json", "scenario.json", "plate.csv", "shear.csv", "cone.csv", "repose.csv"}
         if "no plots" not in told:
-            names |= {"plate.png", "shear.png", "cone.png", "repose.png"}
+            names |= {"plate.png", "shear.png", "cone.png", "repose.png", "report.html"}
         self.assertEqual({p.name for p in (self.work / "out").iterdir()}, names)
         self.assertEqual(soil["format_version"], 1)
         self.assertTrue(soil["quick"])

@@ -1,0 +1,14 @@
+#!/usr/bin/env bash
+# Makes bundle/ from source/. Needs Node.js 20, npm and its registry.
+# usage: build.sh [FOLDER]   FOLDER: where bundle/ is written instead of here
+set -euo pipefail
+here=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd -P)
+out=${1:-$here}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cp -r "$here"/{package.json,package-lock.json,.npmrc,build.mjs,source} "$work"
+cd "$work"
+npm ci --ignore-scripts --no-audit --no-fund --loglevel=error
+node build.mjs
+mkdir -p "$out/bundle"
+cp bundle/* "$out/bundle/"

@@ -1,0 +1,27 @@
+"""What columns and keys are called, and their units: `drawbar_pull_N` is the drawbar pull in N."""
+import math
+
+# Ending of a name: (unit as shown, factor to it). The first that fits counts.
+ENDINGS = (("_kg_m_per_s", "kg m/s", 1.0), ("_rad_per_s", "rad/s", 1.0), ("_m_per_s2", "m/s²", 1.0), ("_m_per_s", "m/s", 1.0),
+           ("_N_per_mm", "N/mm", 1.0), ("_N_per_m", "kN/m", 1e-3), ("_N_per_s", "N/s", 1.0), ("_kg_m2", "kg m²", 1.0),
+           ("_Nm", "N m", 1.0), ("_Ns", "N s", 1.0), ("_N", "N", 1.0), ("_J", "J", 1.0), ("_W", "W", 1.0), ("_m2", "m²", 1.0),
+           ("_deg", "°", 1.0), ("_rad", "°", math.degrees(1.0)), ("_Pa", "kPa", 1e-3), ("_kg", "kg", 1.0), ("_s", "s", 1.0),
+           ("_m", "mm", 1e3))
+LONG = {"position_m", "distance_m", "path_distance_m", "x_m", "y_m", "z_m", "axle_height_m", "lateral_m", "cross_track_error_m",
+        "tire_radius_m", "surface_height_m", "effective_rolling_radius_m", "loaded_radius_m", "tread_width_m",
+        "axle_height", "travel_x_m"}  # in m, not in mm
+
+
+def naming(name):
+    """(words, unit, factor by which values are multiplied)."""
+    for ending, unit, factor in ENDINGS:
+        if name.endswith(ending) and len(name) > len(ending):
+            words = name[:-len(ending)]
+            if name in LONG:
+                unit, factor = "m", 1.0
+            return words.replace("_", " ").replace(".", " "), unit, factor
+    return name.replace("_", " "), "", 1.0
+
+
+def is_number(value):
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) < 1e300

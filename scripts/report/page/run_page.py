@@ -1,0 +1,315 @@
+"""The page of a run: the answer in words, its curves, rut, accounts, ranks, scenario and provenance."""
+import re
+
+from plot.digits import digits
+from plot.run_data import Missing, printable
+
+from . import blocks, curves, ground, scenario
+from .names import is_number, naming
+
+# Keys of a wheel that become cards: (key, its standard error, how many independent values, what it is).
+CARDS = (("sinkage_m", "sinkage_sem_m", "sinkage_n_eff", "sinkage"),
+         ("rut_depth_m", "rut_depth_sem_m", "rut_depth_n_eff", "rut depth"),
+         ("drawbar_coefficient", None, None, "pull over load"),
+         ("vertical_load_N", None, None, "load"),
+         ("drive_torque_Nm", None, None, "drive torque"),
+         ("tractive_efficiency", None, None, "tractive efficiency"))
+EXPECTED = (("drawbar_pull", "drawbar_pull_N", "drawbar pull"), ("sinkage", "sinkage_m", "sinkage"), ("rut_depth", "rut_depth_m", "rut depth"))
+OF_WHEELS = ("slip", "vertical_load_N", "tractive_effort_N", "terrain_resistance_N", "drive_torque_Nm", "sinkage_m", "rut_depth_m",
+             "lateral_force_N", "tire_deflection_m", "tractive_efficiency")
+PROVENANCE = ("version", "scenario", "scenario_digest", "state_hash", "format_version", "compiler", "cpu", "terrain_engine", "law", "simulated_s",
+              "wall_s", "settle_wall_s", "wall_s_per_simulated_s", "grains", "contacts_mean", "active_share_mean", "substeps_added",
+              "substeps_refined_share", "substeps_most_parts")
+ACCOUNTS = (("Energy that does not close", ("residual_J", "terrain_residual_J", "tire_residual_J", "rig_residual_J")),
+            ("Work", ("drive_work_J", "pull_work_J", "guide_work_J", "wall_work_J")),
+            ("Losses", ("sliding_loss_J", "normal_damping_loss_J", "tangential_damping_loss_J", "rolling_loss_J", "opening_loss_J",
+                        "tire_viscous_loss_J", "damper_loss_J")),
+            ("Momentum that does not close", ("momentum_residual_x_Ns", "momentum_residual_y_Ns", "momentum_residual_z_Ns")))
+
+CHANGING = 0.05  # m/s²: a mean acceleration beyond it is no steady drive
+
+
+def failed_summary(run):
+    """What a failed run left, or nothing."""
+    return run._json("summary_failed.json") if not run.summary and (run.directory / "summary_failed.json").is_file() else {}
+
+
+def window_of(run):
+    """The averaging window, s; of runs without a pull, from average_from to the end."""
+    if run.window:
+        return list(run.window)
+    section = run.scenario.get("run") or {}
+    if run.summary and is_number(section.get("average_from")) and is_number(run.summary.get("simulated_s")):
+        return [section["average_from"], run.summary["simulated_s"]]
+    return None
+
+
+def pull_words(run, pull):
+    """Sentences on the pull, its interval, and whether it is steady."""
+    half = blocks.half_95(pull.get("sem"), pull.get("n_eff"))
+    value, _ = blocks.quantity("pull_N", pull["mean"], half)
+    slip = f" at {100 * run.number('slip'):g} % slip" if is_number(run.number("slip")) else ""
+    words = f"The tire pulls {value} N{slip}"
+    if half is not None:
+        words += f" (95 % interval; standard error {digits(pull['sem'])} N from about {pull['n_eff']:.0f} independent values)"
+    words += f", as the mean from {run.window[0]:.3g} to {run.window[1]:.3g} s." if run.window else "."
+    return words
+
+
+def steady_words(pull):
+    """(kind, sentence)."""
+    if pull.get("steady"):
+        details = []
+        if is_number(pull.get("drift_N_per_s")) and is_number(pull.get("drift_t")):
+            details.append(f"the drift of {digits(pull['drift_N_per_s'])} N/s is {abs(pull['drift_t']):.2g} times its standard error")
+        if is_number(pull.get("halves_differ_N")):
+            details.append(f"the halves of the window differ by {digits(pull['halves_differ_N'])} N")
+        return "good", ("Steady: within the averaging window the pull neither drifts nor changes between its halves by more than its own noise"
+                        + (f" ({'; '.join(details)})" if details else "") + ". A longer window would give the same mean within the interval.")
+    reasons = "; ".join(map(printable, pull.get("unsteady_because") or ["the averaging window is not long or even enough"]))
+    return "warn", (f"Not steady: {reasons}. The mean depends on where the averaging window lies, and the interval is too small. "
+                    "Run longer, or average later (run.end, run.average_from), before you quote this number.")
+
+
+def pull_answer(run):
+    pull = run.summary.get("drawbar_pull_N") or {}
+    if not is_number(pull.get("mean")):
+        return []
+    if not run.measured:
+        return [blocks.text("The tire did not touch the ground in the averaging window: nothing was measured.", "warn")]
+    kind, words = steady_words(pull)
+    return [blocks.text(pull_words(run, pull), "lead"), blocks.text(words, kind),
+            blocks.text("The interval holds for this bed of grains: it covers the noise within this run, not the scatter between beds. "
+                        "'furrow run SCENARIO --seeds N' gives the mean over N beds and its interval.", "note")]
+
+
+def answer_cards(run):
+    summary, items = run.summary, []
+    pull = summary.get("drawbar_pull_N") or {}
+    if is_number(pull.get("mean")) and run.measured:
+        half = blocks.half_95(pull.get("sem"), pull.get("n_eff"))
+        value, unit = blocks.quantity("drawbar_pull_N", pull["mean"], half)
+        items.append(blocks.card("drawbar pull", value, unit, "95 %" if half is not None else "", "good" if pull.get("steady") else "warn",
+                                 "steady" if pull.get("steady") else "not steady"))
+    for key, sem, count, name in CARDS:
+        if not is_number(summary.get(key)):
+            continue
+        half = blocks.half_95(summary.get(sem), summary.get(count)) if sem else None
+        value, unit = blocks.quantity(key, summary[key], half)
+        items.append(blocks.card(name, value, unit, "95 %" if half is not None else ""))
+    return items
+
+
+def vehicle_answer(run):
+    """Means over the averaging window of what drives on several wheels."""
+    made = []
+    for subject, values in (run.summary.get("subjects") or {}).items():
+        rows = []
+        for key, value in (values if isinstance(values, dict) else {}).items():
+            if is_number(value):
+                words, unit, _ = naming(key)
+                rows.append([words, blocks.quantity(key, value)[0], unit])
+        if rows:
+            speed, load = values.get("speed_m_per_s"), values.get("wheel_power_W")
+            if is_number(speed):
+                made.append(blocks.text(f"In the averaging window the {subject} drives at {digits(speed)} m/s on average"
+                                        + (f"; {digits(load)} W reach its wheels." if is_number(load) else "."), "lead"))
+            change = values.get("acceleration_m_per_s2")
+            if is_number(change) and abs(change) > CHANGING:
+                made.append(blocks.text(f"The {subject} is not in a steady state: on average its speed changes by {digits(change)} m/s each second. "
+                                        "Means over the window describe this stretch, not a constant speed.", "warn"))
+            made.append({"type": "fold", "title": f"All means of the {subject} in the averaging window",
+                         "blocks": [blocks.table(["quantity", "mean", "unit"], rows)]})
+    return made
+
+
+def wheels_table(run):
+    wheels = [wheel for wheel in run.summary.get("wheels") or [] if isinstance(wheel, dict)]
+    names = [name for name in OF_WHEELS if any(is_number(wheel.get(name)) for wheel in wheels)]
+    if len(wheels) < 2 or not names:
+        return []
+    columns = ["wheel"] + [", ".join(filter(None, naming(name)[:2])) for name in names]
+    rows = [[str(k)] + [blocks.quantity(name, wheel.get(name))[0] for name in names] for k, wheel in enumerate(wheels)]
+    return [blocks.table(columns, rows, note="Means over the averaging window.")]
+
+
+def expected_table(run):
+    expected = run.scenario.get("expected")
+    if not isinstance(expected, dict):
+        return []
+    rows, outside = [], 0
+    for key, result, name in EXPECTED:
+        value = run.summary.get(result)
+        value = value.get("mean") if isinstance(value, dict) else value
+        target, spread = expected.get(key), expected.get(f"{key}_spread")
+        if not is_number(target) or not is_number(value):
+            continue
+        verdict = "no spread stated"
+        if is_number(spread):
+            verdict = "within the spread" if abs(value - target) <= spread else "outside of the spread"
+            outside += abs(value - target) > spread
+        rows.append([name, *(blocks.quantity(result, v)[0] for v in (value, target, spread)), naming(result)[1], verdict])
+    if not rows:
+        return []
+    words = ("This run is within what the scenario's author expects." if not outside
+             else "This run differs from what the scenario's author expects. Keys that you changed may be the reason.")
+    return [blocks.text(words, "warn" if outside else "good"),
+            blocks.table(["quantity", "this run", "expected", "± spread between beds", "unit", ""], rows)]
+
+
+def answer(run):
+    failed = failed_summary(run).get("failed")
+    made = []
+    if isinstance(failed, dict):
+        made.append(blocks.text(f"The run failed at t = {failed.get('time_s')} s: {failed.get('error')}.", "bad"))
+        made.append(blocks.text("Everything below is what it left until then. There are no means and no intervals.", "note"))
+    elif not run.summary:
+        made.append(blocks.text("This run has no summary: it is still going on, or it was stopped before its end.", "warn"))
+    made += pull_answer(run)
+    if len(run.summary.get("wheels") or []) < 2 and (items := answer_cards(run)):
+        made.append(blocks.cards(items))
+    made += vehicle_answer(run) + wheels_table(run) + expected_table(run)
+    for what, found in (run.summary.get("accounts") or {}).items():
+        if isinstance(found, dict) and found.get("closes") is False:
+            made.append(blocks.text(f"The account of {what} does not close. The result may be wrong: see Accounts.", "bad"))
+    return {"id": "answer", "title": "Result", "blocks": made}
+
+
+def wheel_tables(run):
+    """Names of the tables of the wheels by number."""
+    names = {int(m[1]): p.name for p in run.directory.glob("timeseries_wheel*.csv") if (m := re.match(r"timeseries_wheel(\d+)\.csv$", p.name))}
+    return {0: "timeseries.csv"} if (run.directory / "timeseries.csv").is_file() else dict(sorted(names.items()))
+
+
+def series(run, arrays):
+    window = window_of(run)
+    names = wheel_tables(run)
+    if not names:
+        raise Missing("there is no table of a wheel")
+    tables = {k: curves.Table(run, name, arrays) for k, name in list(names.items())[:curves.MOST_WHEELS]}
+    made = []
+    if len(tables) == 1:
+        (table,) = tables.values()
+        pull = run.summary.get("drawbar_pull_N") or {}
+        levels = {}
+        if is_number(pull.get("mean")) and run.measured:
+            half = blocks.half_95(pull.get("sem"), pull.get("n_eff"))
+            levels["drawbar_pull_N"] = [{"y": pull["mean"], "half": half, "label": "mean and 95 % interval"}]
+        made.append(blocks.charts(curves.plain(table, curves.WHEEL, window, levels), table.note))
+    else:
+        table = next(iter(tables.values()))
+        more = f" The first {curves.MOST_WHEELS} of {len(names)} wheels are drawn." if len(names) > len(tables) else ""
+        made.append(blocks.charts(curves.over_wheels(tables, window), table.note + more))
+    made.append(curves.explorer(table, window))
+    shaded = "Shaded: the averaging window. " if window else ""
+    made.insert(0, blocks.text(shaded + "Drag across a plot to zoom, double-click to see all. Click a name in the legend to hide its curve.", "note"))
+    return {"id": "series", "title": "Curves", "blocks": list(filter(None, made))}
+
+
+def vehicle_series(run, arrays):
+    table = curves.Table(run, "timeseries_vehicle.csv", arrays)
+    made = [blocks.charts(curves.plain(table, curves.VEHICLE, window_of(run)), table.note)]
+    if "x_m" in table.columns and "y_m" in table.columns:
+        x, y = (arrays.add(table.columns[name]) for name in ("x_m", "y_m"))
+        made[0]["charts"].insert(0, blocks.chart("Path from above", "x", "m", "m", [{"label": "chassis", "x": x, "y": y, "style": "line"}]))
+    made.append(curves.explorer(table, window_of(run)))
+    return {"id": "vehicle", "title": "Vehicle", "blocks": list(filter(None, made))}
+
+
+def energy_rows(energy):
+    rows = []
+    for group in ("work", "stored", "lost"):
+        for name, value in (energy.get(group) or {}).items():
+            if is_number(value):
+                rows.append([group, name.replace("_", " "), digits(value)])
+    return rows
+
+
+def accounts(run, arrays):
+    made = []
+    found = (run.summary or failed_summary(run)).get("accounts") or {}
+    for what in ("energy", "momentum"):
+        account = found.get(what)
+        if isinstance(account, dict) and isinstance(account.get("closes"), bool):
+            share = account.get("residual_share")
+            whole = "what was turned over" if what == "energy" else "the largest impulse"
+            size = f" {digits(100 * abs(share))} % of {whole} is not accounted for." if is_number(share) else ""
+            closes = account["closes"]
+            made.append(blocks.text(f"The account of {what} {'closes' if closes else 'does not close'}.{size}", "good" if closes else "bad"))
+    energy = found.get("energy")
+    if isinstance(energy, dict) and (rows := energy_rows(energy)):
+        made.append({"type": "fold", "title": "The terms of the energy account",
+                     "blocks": [blocks.table(["", "term", "J"], rows, note="Over the whole run.")]})
+    try:
+        table = curves.Table(run, "timeseries_accounts.csv", arrays)
+    except Missing:
+        table = None
+    if table:
+        made.append(blocks.charts(curves.plain(table, ACCOUNTS, window_of(run)), table.note))
+        made.append(curves.explorer(table, window_of(run)))
+    return {"id": "accounts", "title": "Accounts", "blocks": list(filter(None, made))}
+
+
+def rut(run, arrays):
+    return {"id": "rut", "title": "Rut", "blocks": [
+        blocks.text("Height of the surface after the run, against that before it. Move over the map for values, click for cross-sections.", "note"),
+        ground.rut(run, arrays)]}
+
+
+def ranks(run):
+    rows, lines = [], []
+    found = [rank for rank in run.summary.get("ranks") or [] if isinstance(rank, dict)]
+    if not found:
+        raise Missing("the summary names no ranks")
+    keys = [key for key in found[0] if key not in ("rank", "node", "busy_share")]
+    for rank in found:
+        share = rank.get("busy_share")
+        label = f"{rank.get('rank')} · {rank.get('node')}"
+        rows.append((label, share if is_number(share) else 0.0, f"{100 * share:.0f} % busy" if is_number(share) else "unknown"))
+        lines.append([label] + [digits(rank[key]) if isinstance(rank.get(key), float) else str(rank.get(key, "–")) for key in keys])
+    busiest = max(rows, key=lambda row: row[1])
+    words = f"Rank {busiest[0]} sets the pace: it computes {100 * busiest[1]:.0f} % of the time. The others wait for it the rest of the time."
+    return {"id": "ranks", "title": "Ranks", "blocks": [blocks.text(words), blocks.bars(rows, "Share of the wall time in which a rank computes."),
+                                                        blocks.table(["rank"] + [key.replace("_", " ") for key in keys], lines)]}
+
+
+def provenance(run):
+    summary = run.summary or failed_summary(run)
+    rows = [[key.replace("_", " "), digits(summary[key]) if isinstance(summary[key], float) else str(summary[key])]
+            for key in PROVENANCE if summary.get(key) is not None]
+    if run.scenario.get("completed_by"):
+        rows.append(["scenario completed by", str(run.scenario["completed_by"])])
+    segments = [s for s in summary.get("segments") or [] if isinstance(s, dict)]
+    for segment in segments if len(segments) > 1 else []:
+        rows.append(["segment", f"steps {segment.get('from_step')} to {segment.get('to_step')}, {segment.get('threads')} threads, "
+                     f"{segment.get('wall_s')} s"])
+    if not rows:
+        raise Missing("there is no summary")
+    rows.append(["folder", run.directory.name])
+    return {"id": "provenance", "title": "Provenance", "blocks": [blocks.table(["", ""], rows)]}
+
+
+def badges(run):
+    pull = run.summary.get("drawbar_pull_N") or {}
+    if failed_summary(run):
+        return [{"text": "failed", "kind": "bad"}]
+    if not run.summary:
+        return [{"text": "not finished", "kind": "warn"}]
+    if is_number(pull.get("mean")):
+        return [{"text": "steady", "kind": "good"} if pull.get("steady") else {"text": "not steady", "kind": "warn"}]
+    return []
+
+
+def fill(page, arrays, run, sections):
+    page["title"] = run.title if run.summary else str((failed_summary(run).get("scenario")) or run.directory.name)
+    page["badges"] = badges(run)
+    sections(page, [
+        ("result", lambda: answer(run)),
+        ("curves of the vehicle", lambda: vehicle_series(run, arrays) if (run.directory / "timeseries_vehicle.csv").is_file() else None),
+        ("curves", lambda: series(run, arrays)),
+        ("rut", lambda: rut(run, arrays)),
+        ("accounts", lambda: accounts(run, arrays)),
+        ("ranks", lambda: ranks(run)),
+        ("scenario", lambda: scenario.section(run.scenario) if run.scenario else None),
+        ("provenance", lambda: provenance(run)),
+    ])

@@ -1,0 +1,116 @@
+"""The page of a study, of passes or of a run on several beds."""
+import math
+
+import numpy as np
+
+from plot import sweep as studies
+from plot.digits import with_error
+from plot.run_data import Missing
+
+from . import blocks
+from .names import naming
+
+PASSES = (("drawbar_pull_N.mean", "drawbar_pull_N.sem", "Drawbar pull"), ("sinkage_m", None, "Sinkage"), ("rut_depth_m", None, "Rut depth"),
+          ("tractive_efficiency", None, "Tractive efficiency"))
+MOST_ROWS = 2000
+
+
+def named(key):
+    """Naming of a column such as `drawbar_pull_N.mean`."""
+    words, unit, factor = naming(key.removesuffix(".mean").removesuffix(".sem"))
+    return words, unit, factor
+
+
+def line(arrays, label, x, y, half, factor):
+    made = {"label": label, "x": arrays.add(x, exact=True), "y": arrays.add(factor * np.asarray(y)), "style": "points"}
+    if half is not None and np.isfinite(half).any():
+        half = np.nan_to_num(half)
+        made["low"], made["high"] = (arrays.add(factor * (np.asarray(y) + sign * half)) for sign in (-1, 1))
+    return made
+
+
+def curve(sweep, arrays):
+    """y over x as the study's plot says."""
+    plot = sweep.plot
+    if not plot.get("x") or not plot.get("y") or not sweep.rows:
+        raise Missing("the study asks for no plot" if sweep.rows else "no run is done")
+    words, unit, factor = named(plot["y"])
+    x_words, x_unit, x_factor = named(plot["x"])
+    groups = {}
+    for row in sweep.rows:
+        groups.setdefault(row.get(plot.get("lines", ""), ""), []).append(row)
+    lines, unsteady = [], 0
+    for label, rows in groups.items():
+        x, y, half, which = studies.points(rows, plot["x"], plot["y"], plot.get("error", ""), plot.get("mean_over"))
+        unsteady += int(np.asarray(which, bool).sum())
+        lines.append(line(arrays, f"{plot['lines']} = {label}" if label else words, x_factor * x, y, half, factor))
+    made = [blocks.charts([{**blocks.chart(words.capitalize(), x_words, x_unit, unit, lines), "wide": True}],
+                          "Whiskers" + studies.bar_meaning(plot).replace("bars:", "show").rstrip() if plot.get("error") or plot.get("mean_over") else "")]
+    if unsteady:
+        made.append(blocks.text(f"{unsteady} of the points include a run whose pull is not steady.", "warn"))
+    return {"id": "curve", "title": "Result", "blocks": made}
+
+
+def passes(sweep, arrays):
+    """Pull, sinkage and rut over the number of the pass."""
+    groups, over, items = studies.chains(sweep), sweep.plot.get("mean_over"), []
+    for key, sem, title in PASSES:
+        _, unit, factor = named(key)
+        lines = []
+        for label, rows in groups.items():
+            if any(math.isfinite(studies.number(row.get(key))) for row in rows):
+                x, y, half, _ = studies.points(rows, "pass", key, sem or "", over)
+                lines.append(line(arrays, label or title.lower(), x, y, half, factor))
+        if lines:
+            items.append(blocks.chart(title, "pass", "", unit, lines))
+    return {"id": "passes", "title": "Passes", "blocks": [blocks.charts(items, "Whiskers: 95 % interval of the mean over "
+            + str(over) if over else "Whiskers: standard error of each run.")]}
+
+
+def beds(sweep, arrays):
+    """Every bed with its own standard error, and the mean over beds with its 95 % interval."""
+    if not sweep.rows:
+        raise Missing("no bed is done")
+    at = np.array([studies.number(row["folder"].removeprefix("seed")) for row in sweep.rows])
+    items, cards = [], []
+    for key, sem, what, unit, factor in studies.OF_BEDS:
+        values, errors = (factor * np.array([studies.number(row.get(name)) for row in sweep.rows]) for name in (key, sem))
+        known = values[np.isfinite(values)]
+        if not len(known):
+            continue
+        mean, half = studies.mean_and_interval(known)
+        cards.append(blocks.card(what, with_error(mean, half), unit, "95 %", explanation=f"mean over {len(known)} beds"))
+        items.append(blocks.chart(what.capitalize(), "bed", "", unit, [line(arrays, "a bed, its own standard error", at, values, errors, 1.0)],
+                                  levels=[{"y": mean, "half": half if math.isfinite(half) else None, "label": "mean over beds, 95 %"}]))
+    words = blocks.text("The interval covers the scatter between beds: another set of beds would give a mean within it in 95 of 100 cases.", "note")
+    return {"id": "beds", "title": "Result", "blocks": [blocks.cards(cards), words, blocks.charts(items)]}
+
+
+def rows_of(sweep):
+    """The table of all runs."""
+    rows = sweep.rows + sweep.failed
+    if not rows:
+        raise Missing("no run is done")
+    columns = [name for name in rows[0] if name and any(row.get(name) for row in rows)]
+    cells = [[cell(row.get(name)) for name in columns] for row in rows[:MOST_ROWS]]
+    failed = [k for k, row in enumerate(rows[:MOST_ROWS]) if row["state"] == "failed"]
+    return {"id": "runs", "title": "Runs", "blocks": [blocks.table([name.replace("_", " ") for name in columns], cells, marked=failed,
+                                                                   note="Highlighted: failed." if failed else "")]}
+
+
+def cell(text):
+    value = studies.number(text)
+    return f"{value:.4g}" if math.isfinite(value) and "." in text else str(text or "")
+
+
+def fill(page, arrays, sweep, sections):
+    page["title"] = str(sweep.title())
+    done = {"text": f"{len(sweep.rows)} done", "kind": "good"}
+    page["badges"] = [done] + ([{"text": f"{len(sweep.failed)} failed", "kind": "bad"}] if sweep.failed else [])
+    of_beds = sweep.values.get("beds")
+    sections(page, [
+        ("beds", lambda: beds(sweep, arrays) if of_beds else None),
+        ("curve", lambda: curve(sweep, arrays) if sweep.plot.get("x") and not of_beds else None),
+        ("passes", lambda: passes(sweep, arrays) if sweep.values.get("passes") else None),
+        ("runs", lambda: rows_of(sweep)),
+    ])

@@ -1,0 +1,149 @@
+"""The pages of soil tests, of a pressed tire and of a vehicle's suspensions."""
+import numpy as np
+
+from plot import kinematics as suspensions
+from plot.run_data import Missing
+from plot.soil import runs
+
+from . import blocks, scenario
+from .names import is_number, naming
+
+# Soil values: key, words, unit, factor.
+SOIL = (("k_c", "k_c", "kN/mⁿ⁺¹", 1e-3), ("k_phi", "k_φ", "kN/mⁿ⁺²", 1e-3), ("n", "sinkage exponent n", "", 1.0),
+        ("cohesion_Pa", "cohesion c", "kPa", 1e-3), ("friction_angle_deg", "friction angle φ", "°", 1.0), ("janosi_K_m", "shear modulus K", "mm", 1e3),
+        ("final_cohesion_Pa", "cohesion at the end", "kPa", 1e-3), ("final_friction_angle_deg", "friction angle at the end", "°", 1.0),
+        ("cone_index_Pa", "cone index", "kPa", 1e-3), ("repose_angle_deg", "angle of repose", "°", 1.0),
+        ("repose_angle_without_cohesion_deg", "angle of repose without cohesion", "°", 1.0))
+# Tables of soil tests: file, title, keys that tell its runs apart, x, y.
+TESTS = (("plate.csv", "Plate sinkage", ("width_m", "seed"), "sinkage_m", "pressure_Pa"),
+         ("shear.csv", "Direct shear", ("nominal_normal_stress_Pa", "seed"), "travel_m", "shear_stress_Pa"),
+         ("cone.csv", "Cone penetration", ("seed",), "depth_m", "pressure_Pa"),
+         ("repose.csv", "Angle of repose", ("cohesion_Pa", "seed"), "x_m", "height_after_m"))
+FOOTPRINT = ("force_N", "length_m", "width_m", "mean_pressure_Pa", "max_pressure_Pa")
+
+
+def line(arrays, label, x, y, style="line"):
+    return {"label": label, "x": arrays.add(x, exact=True), "y": arrays.add(y), "style": style}
+
+
+def soil_values(soil):
+    rows = []
+    errors, intervals = (soil.values.get(key) or {} for key in ("standard_error", "interval_95"))
+    for key, words, unit, factor in SOIL:
+        value, error, interval = soil.values.get(key), errors.get(key), intervals.get(key)
+        if is_number(value):
+            known = isinstance(interval, list) and len(interval) == 2 and all(map(is_number, interval))
+            rows.append([words, f"{factor * value:.4g}", f"{factor * error:.2g}" if is_number(error) else "–",
+                         f"{factor * interval[0]:.3g} … {factor * interval[1]:.3g}" if known else "–", unit])
+    made = [blocks.table(["parameter", "value", "standard error", "95 % interval", "unit"], rows)] if rows else []
+    if soil.values.get("quick"):
+        made.insert(0, blocks.text("A quick look with few and small tests: no result to quote.", "warn"))
+    return {"id": "answer", "title": "Result", "blocks": made}
+
+
+def soil_curves(soil, arrays):
+    items = []
+    for file, title, keys, x, y in TESTS:
+        try:
+            table = soil.table(file)
+        except Missing:
+            continue
+        (x_words, x_unit, x_factor), (words, unit, factor) = naming(x), naming(y)
+        lines = []
+        for mark, which in runs(table, *keys):
+            label = ", ".join(f"{naming(key)[0].replace('nominal ', '')} {naming(key)[2] * value:g} {naming(key)[1]}".strip() for key, value in zip(keys, mark))
+            lines.append(line(arrays, label, x_factor * table[x][which], factor * table[y][which]))
+        items.append({**blocks.chart(f"{title}: {words}", x_words, x_unit, unit, lines[:40]), "wide": True})
+    if not items:
+        raise Missing("there is no table of a test")
+    return {"id": "series", "title": "Curves", "blocks": [blocks.charts(items)]}
+
+
+def kept_scenario(directory):
+    from plot.run_data import read_object
+    path = directory / "scenario.json"
+    return scenario.section(read_object(path)) if path.is_file() else None
+
+
+def provenance(values):
+    rows = [[key.replace("_", " "), str(value)] for key, value in values.items() if isinstance(value, (str, int, float)) or value is True]
+    return {"id": "provenance", "title": "All values", "blocks": [blocks.table(["", ""], rows)]}
+
+
+def soil(page, arrays, run, sections):
+    page["title"] = f"{run.values.get('scenario', run.directory.name)} · soil tests"
+    page["badges"] = [{"text": "quick look", "kind": "warn"}] if run.values.get("quick") else []
+    sections(page, [("result", lambda: soil_values(run)), ("curves", lambda: soil_curves(run, arrays)),
+                    ("scenario", lambda: kept_scenario(run.directory)), ("all values", lambda: provenance(run.values))])
+
+
+def press_answer(run):
+    values, items = run.values, []
+    for key in ("load_N", "deflection_m", "secant_stiffness_N_per_m", "tangent_stiffness_N_per_m", "pressure_Pa"):
+        if is_number(values.get(key)):
+            value, unit = blocks.quantity(key, values[key])
+            items.append(blocks.card(naming(key)[0], value, unit))
+    for key in FOOTPRINT:
+        if is_number((values.get("footprint") or {}).get(key)):
+            value, unit = blocks.quantity(key, values["footprint"][key])
+            items.append(blocks.card(f"footprint {naming(key)[0]}", value, unit))
+    made = [blocks.cards(items)]
+    if is_number(values.get("deflection_m")) and is_number(values.get("load_N")):
+        made.insert(0, blocks.text(f"Under {values['load_N']:.4g} N the tire deflects by {1e3 * values['deflection_m']:.4g} mm.", "lead"))
+    if isinstance(values.get("statically_stable"), bool):
+        stable = values["statically_stable"]
+        made.append(blocks.text("The tire is statically stable along the whole curve." if stable else
+                                "The tire is not statically stable along the whole curve.", "good" if stable else "warn"))
+    return {"id": "answer", "title": "Result", "blocks": made}
+
+
+def press_curves(run, arrays):
+    table = run.table("press.csv")
+    back = table["unloading"] > 0
+    lines = [line(arrays, name, 1e3 * table["deflection_m"][which], 1e-3 * table["force_N"][which], "points")
+             for name, which in (("loading", ~back), ("unloading", back)) if which.any()]
+    return {"id": "series", "title": "Load and deflection",
+            "blocks": [blocks.charts([{**blocks.chart("Force", "deflection", "mm", "kN", lines), "wide": True}])]}
+
+
+def footprint(run, arrays):
+    table = run.table("footprint.csv")
+    if np.any(table["y_m"]):
+        return {"id": "footprint", "title": "Footprint", "blocks": [{
+            "type": "scatter", "x": arrays.add(1e3 * table["x_m"]), "y": arrays.add(1e3 * table["y_m"]),
+            "values": arrays.add(1e-3 * table["pressure_Pa"]), "label": "contact pressure", "unit": "kPa"}]}
+    lines = [line(arrays, "pressure along the centre line", 1e3 * table["x_m"], 1e-3 * table["pressure_Pa"], "points")]
+    return {"id": "footprint", "title": "Footprint", "blocks": [blocks.charts([{**blocks.chart("Pressure", "along", "mm", "kPa", lines), "wide": True}])]}
+
+
+def press(page, arrays, run, sections):
+    page["title"] = f"{run.values.get('scenario', '')} · {run.values.get('tire', '')} on a {run.values.get('obstacle', '')}"
+    sections(page, [("result", lambda: press_answer(run)), ("load and deflection", lambda: press_curves(run, arrays)),
+                    ("footprint", lambda: footprint(run, arrays)), ("scenario", lambda: kept_scenario(run.directory)),
+                    ("all values", lambda: provenance({**run.values, **{f"footprint {k}": v for k, v in (run.values.get("footprint") or {}).items()}}))])
+
+
+def motion(run, arrays, name):
+    """The plots of one motion of the suspensions."""
+    if name not in run.motions:
+        raise Missing(f"no axle of this vehicle has the motion '{name}'")
+    against = "steering" if name == "steering" else "travel_m"
+    x_words, x_unit, x_factor = naming(against)
+    places = dict(run.curves(name, against))
+    first = next(iter(next(iter(run.motions[name].values()))))
+    items = []
+    for column in first:
+        if column in ("motion", "wheel", against) or not column:
+            continue
+        words, unit, factor = naming(column)
+        lines = [line(arrays, wheel, x_factor * places[wheel], factor * values) for wheel, values in run.curves(name, column) if np.isfinite(values).any()]
+        if lines and any(np.ptp(values[np.isfinite(values)]) > 0 for _, values in run.curves(name, column) if np.isfinite(values).any()):
+            items.append(blocks.chart(words.capitalize(), x_words, x_unit, unit, lines))
+    return {"id": name, "title": {"parallel": "Both wheels lifted alike", "opposite": "One wheel lifted, the other lowered",
+                                  "steering": "Steered"}[name], "blocks": [blocks.charts(items)]}
+
+
+def kinematics(page, arrays, run, sections):
+    page["title"] = f"{run.values.get('vehicle', '')} · suspensions"
+    sections(page, [(name, lambda name=name: motion(run, arrays, name)) for name in ("parallel", "opposite", "steering") if name in run.motions]
+             + [("all values", lambda: provenance(run.values))])

@@ -1,0 +1,219 @@
+#!/usr/bin/python3
+"""report.html of runs of known contents: what it holds, that it asks for nothing from outside, and that its frames are
+those of the run."""
+import base64
+import json
+import pathlib
+import re
+import sys
+import unittest
+import zlib
+
+import h5py
+import numpy as np
+
+from program import ROOT, SystemTest, furrow, main
+
+sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "scripts" / "report")]
+import page  # noqa: E402
+from page import frames  # noqa: E402
+from page.blobs import Arrays, thin  # noqa: E402
+from plot.run_data import Run  # noqa: E402
+
+FRAMES, GRAINS, STEP = 5, 900, 0.05
+RADIUS = 0.02
+
+
+def document(path):
+    """(description of the page, bytes of its element `name`)."""
+    text = path.read_text(encoding="utf-8")
+
+    def element(name):
+        return re.search(rf'<script type="[^"]*" id="{name}">([^<]*)</script>', text)[1]
+    return json.loads(element("document")), lambda name: zlib.decompress(base64.b64decode(element(name)))
+
+
+def planes(data, count, size):
+    """Numbers whose bytes stand by significance."""
+    return np.frombuffer(data, np.uint8)[:count * size].reshape(size, count).T.copy()
+
+
+def array(about, numbers, which):
+    first, count = about["arrays"][which]
+    return planes(numbers[4 * first:4 * (first + count)], count, 4).view("<f4").ravel()
+
+
+def blocks_of(about, kind):
+    return [block for section in about["sections"] for block in section["blocks"] if block["type"] == kind]
+
+
+def wheel(turned, shift, dent):
+    """A coarse cylinder, turned about y, with one dented point."""
+    angle = np.linspace(0, 2 * np.pi, 24, endpoint=False)
+    points = np.array([[0.4 * np.cos(a + turned), y, 0.4 * np.sin(a + turned)] for a in angle for y in (-0.1, 0.1)])
+    points[7] *= 1 - dent
+    triangle = [t for k in range(24) for a in [2 * k] for b in [2 * ((k + 1) % 24)] for t in ((a, b, a + 1), (a + 1, b, b + 1))]
+    return points + shift, np.array(triangle)
+
+
+def known_run(folder, count=FRAMES, grains=GRAINS):
+    """A run of known contents; the positions of its grains by frame."""
+    (folder / "frames").mkdir(parents=True)
+    (folder / "scenario.json").write_text(json.dumps({
+        "description": "</script><img src=x onerror=alert(1)>", "rig": {"slip": 0.2}, "run": {"end": 1.5, "average_from": 0.1},
+        "expected": {"drawbar_pull": 100.0, "drawbar_pull_spread": 5.0}}))
+    (folder / "summary.json").write_text(json.dumps({
+        "scenario": "known", "slip": 0.2, "simulated_s": 0.25, "net_terrain_force_N": [100.0, 0.0, 4000.0], "terrain_engine": "dem",
+        "drawbar_pull_N": {"mean": 110.0, "sem": 4.0, "n_eff": 9.0, "steady": False, "unsteady_because": ["it drifts"],
+                           "from_s": 0.1, "to_s": 0.25},
+        "ranks": [{"rank": 0, "node": "rig", "threads": 1, "busy_share": 0.25}]}))
+    time = np.arange(0, 0.25, 1e-3)
+    (folder / "timeseries.csv").write_text("time_s,drawbar_pull_N,sinkage_m\n" + "".join(f"{t},{100 * t},{t}\n" for t in time))
+    chance = np.random.default_rng(1)
+    position = np.column_stack([chance.uniform(0, 2, grains), chance.uniform(-0.3, 0.3, grains), np.full(grains, 0.05)])
+    kept = []
+    for k in range(count):
+        position[:grains // 3, 2] -= 0.004  # a third sinks
+        position[-1, 0] += 1e-4  # and one creeps
+        kept.append(position.astype("f4"))
+        with h5py.File(folder / "frames" / f"terrain_{k:06d}.h5", "w") as file:
+            file.attrs["time_s"] = STEP * k
+            file["position"], file["radius"] = kept[-1], np.full(grains, RADIUS, "f4")
+            file["speed"] = np.linspace(0, 1, grains, dtype="f4")
+        with h5py.File(folder / "frames" / f"tire0_{k:06d}.h5", "w") as file:
+            points, triangle = wheel(0.7 * k, [0.5 + 0.1 * k, 0.0, 0.5], 0.02 * k)
+            file.attrs["time_s"] = STEP * k
+            file["position"], file["triangle"] = points.astype("f4"), triangle.astype("i4")
+            file["force"] = np.tile([3.0, 0.0, 4.0], (len(points), 1)).astype("f4")
+            file["velocity"] = np.zeros((len(points), 3), "f4")
+    return kept
+
+
+class Packing(unittest.TestCase):
+    def test_arrays_come_back_to_15_bits_or_exactly(self):
+        arrays, values = Arrays(), np.array([1.0, np.pi, -1e-7, np.nan, 0.0])
+        numbers = [arrays.add(values), arrays.add(values, exact=True), arrays.add(values)]
+        self.assertEqual(numbers, [0, 1, 0])  # the same array is stored once
+        data, about = zlib.decompress(base64.b64decode(arrays.base64())), {"arrays": arrays.places}
+        np.testing.assert_allclose(array(about, data, 0), values, rtol=3.1e-5)
+        np.testing.assert_array_equal(array(about, data, 1), values.astype("f4"))
+
+    def test_thinned_curves_keep_their_extremes(self):
+        time = np.arange(100000.0)
+        values = np.sin(time)
+        values[54321], values[77777] = 9.0, -7.0
+        at, columns, bucket = thin(time, {"a": values})
+        self.assertEqual((columns["a"].max(), columns["a"].min()), (9.0, -7.0))
+        self.assertLessEqual(len(at), 3000)
+        self.assertEqual(len(at), len(columns["a"]))
+        self.assertGreater(bucket, 60)
+
+
+class Page(SystemTest):
+    def setUp(self):
+        super().setUp()
+        self.run_folder = self.folder / "run"
+        self.positions = known_run(self.run_folder)
+
+    def made(self):
+        self.assertEqual(page.write(self.run_folder, [Run(self.run_folder)], lambda *_: True), ["report.html"])
+        return self.run_folder / "report.html"
+
+    def test_it_asks_for_nothing_from_outside_and_runs_nothing_of_the_results(self):
+        text = self.made().read_text(encoding="utf-8")
+        self.assertIn("default-src 'none'", text)
+        self.assertNotRegex(text.split("<script")[0], r"(src|href)\s*=")
+        self.assertNotIn("<img", text)
+        self.assertEqual(text.count("</script>"), text.count("<script"))
+
+    def test_answer_expectation_and_defaults(self):
+        about, _ = document(self.made())
+        words = " ".join(block["text"] for block in blocks_of(about, "text"))
+        self.assertIn("110.0 ± 9.2 N at 20 % slip (95 % interval", words)  # 2.306 standard errors of 4 N, 8 degrees of freedom
+        self.assertIn("Not steady: it drifts", words)
+        self.assertIn("differs from what the scenario's author expects", words)
+        scenario = next(section for section in about["sections"] if section["id"] == "scenario")["blocks"][-1]
+        marked = {scenario["rows"][k][0] for k in scenario["marked"]}
+        self.assertIn("rig.slip", marked)  # 0.2, the default is 0.3
+        self.assertNotIn("run.end", marked)  # 1.5 is the default
+        self.assertEqual(about["badges"], [{"text": "not steady", "kind": "warn"}])
+
+    def test_curves_are_those_of_the_table(self):
+        about, part = document(self.made())
+        (pull,) = (chart for block in blocks_of(about, "charts") for chart in block["charts"] if chart["title"] == "Drawbar pull")
+        self.assertEqual((pull["unit"], pull["window"]), ("N", [0.1, 0.25]))
+        x, y = (array(about, part("numbers"), pull["lines"][0][axis]) for axis in "xy")
+        np.testing.assert_allclose(y, 100 * x, rtol=1e-4, atol=1e-6)
+
+    def test_grains_and_tires_are_where_the_frames_have_them(self):
+        about, part = document(self.made())
+        (block,) = blocks_of(about, "playback")
+        bed, numbers = block["bed"], part("numbers")
+        self.assertEqual(bed["grains"], GRAINS)
+        np.testing.assert_allclose(block["times"], STEP * np.arange(FRAMES))
+        data, at, last = part("grains"), 0, np.zeros((GRAINS, 3), np.uint16)
+        for k in range(FRAMES):
+            for axis in range(3):
+                last[:, axis] += planes(data[at:at + 2 * GRAINS], GRAINS, 2).view("<u2").ravel()
+                at += 2 * GRAINS
+            at += GRAINS  # speeds
+            off = np.linalg.norm(last * bed["scale"] + bed["low"] - self.positions[k], axis=1)
+            self.assertLess(off.max(), frames.STILL * RADIUS + np.linalg.norm(bed["scale"]))
+        self.assertEqual(at, len(data))
+        tire, data = block["tires"][0], part("tires")
+        count = tire["vertices"]
+        reference, poses = array(about, numbers, tire["reference"]).reshape(-1, 3), array(about, numbers, block["poses"]).reshape(FRAMES, 14)
+        for k in range(FRAMES):
+            at = 8 * count * k
+            deviation = np.column_stack([planes(data[at + 2 * count * a:at + 2 * count * (a + 1)], count, 2).view("<i2").ravel() for a in range(3)])
+            shown = reference @ poses[k, :9].reshape(3, 3).T + poses[k, 9:12] + tire["quantum"] * deviation
+            points, _ = wheel(0.7 * k, [0.5 + 0.1 * k, 0.0, 0.5], 0.02 * k)
+            np.testing.assert_allclose(shown, points, atol=tire["quantum"])
+            self.assertAlmostEqual(float(poses[k, 12]), 5.0, places=5)
+
+    def test_frames_are_left_out_until_the_rest_fits(self):
+        run = Run(self.run_folder)
+        whole = frames.pack(run, 1e9)
+        part = frames.pack(run, 0.6 * whole.size)
+        self.assertEqual(whole.indices, list(range(FRAMES)))
+        self.assertIn(len(part.indices), (1, 2, 3))
+        self.assertEqual(part.indices[-1], FRAMES - 1)
+
+    def test_a_failed_run_and_one_without_frames(self):
+        (self.run_folder / "summary.json").unlink()
+        (self.run_folder / "summary_failed.json").write_text(json.dumps({"scenario": "known", "failed": {"error": "too hard", "time_s": 0.2}}))
+        for path in (self.run_folder / "frames").iterdir():
+            path.unlink()
+        done = furrow("report", self.run_folder, cwd=self.folder)
+        self.assertEqual((done.returncode, done.stdout), (0, f"{self.run_folder}/report.html\n"), done.stderr)
+        about, _ = document(self.run_folder / "report.html")
+        self.assertEqual(about["badges"], [{"text": "failed", "kind": "bad"}])
+        self.assertIn("failed at t = 0.2 s: too hard", " ".join(block["text"] for block in blocks_of(about, "text")))
+        self.assertIn("playback: there are no frames", " ".join(about["left_out"]))
+
+    def test_several_runs_beside_each_other(self):
+        other = self.folder / "other"
+        known_run(other)
+        (other / "scenario.json").write_text(json.dumps({"rig": {"slip": 0.25}}))
+        done = furrow("report", self.run_folder, other, cwd=self.folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("'--out'", done.stderr)
+        done = furrow("report", self.run_folder, other, "--out", "both", cwd=self.folder)
+        self.assertEqual((done.returncode, done.stdout), (0, "both/report.html\n"), done.stderr)
+        about, _ = document(self.folder / "both" / "report.html")
+        tables = blocks_of(about, "table")
+        self.assertEqual(tables[0]["rows"][0], ["drawbar pull", "110.0 ± 9.2", "110.0 ± 9.2", "N"])
+        self.assertIn(["rig.slip", "0.2", "0.25"], tables[1]["rows"])
+        (pull,) = (chart for chart in blocks_of(about, "charts")[1]["charts"] if chart["title"] == "Drawbar pull")
+        self.assertEqual([line["label"] for line in pull["lines"]], ["run", "other"])
+
+    def test_a_page_of_ones_own_stays(self):
+        (self.run_folder / ".furrow-run").write_text("furrow-run 1\nsummary.json\n")
+        (self.run_folder / "report.html").write_text("mine")
+        done = furrow("report", self.run_folder, cwd=self.folder)
+        self.assertIn("no report.html: a file of that name stands there that furrow did not write", done.stderr)
+        self.assertEqual((self.run_folder / "report.html").read_text(), "mine")
+
+
+if __name__ == "__main__":
+    main()

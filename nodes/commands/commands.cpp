@@ -119,9 +119,9 @@ void add_press_options(CLI::App& command, PressArguments& press) {
       ->capture_default_str();
   command.add_option("--cleat-position", press.cleat_position, "middle of the cleat, forward of the axle, m")
       ->capture_default_str();
-  command.add_option(
-      "--profile", press.profile,
-      "CSV x_m,z_m of the ground's profile seen from the axle, for --on profile (flexible ring)");
+  command.add_option("--profile", press.profile,
+                     "CSV x_m,z_m of the ground's profile seen from the axle, for --on profile (flexible ring, planar "
+                     "tire)");
 }
 
 void add_soil_options(CLI::App& command, SoilArguments& soil) {

@@ -270,7 +270,7 @@ Outcome VehicleRig::advance(std::span<const Wrench> wrenches, double duration, i
   for (int i = 0; i < substeps; ++i)
     if (Outcome outcome = step(wrenches, duration / substeps, sums); !outcome.ok) return outcome;
   row.shifting /= substeps;
-  row.engine_speed /= substeps;
+  row.engine_speed *= 30.0 / std::numbers::pi / substeps;  // 1/min
   row.engine_torque /= substeps;
   row.engine_power = (car_->drive().work(car_->system()) - drive_work) / duration;
   row.soil_power = (tire_work - record_.accounts.tire_work) / duration;

@@ -43,7 +43,7 @@ struct VehicleRow {
   double steering = 0.0;                      // −1 to 1, positive to the left: what the driver turns
   double gear = 0.0;                          // −1 reverse, 0 neutral, 1, 2, …
   double shifting = 0.0;                      // share of the time
-  double engine_speed = 0.0;                  // of the crank, rad/s
+  double engine_speed = 0.0;                  // of the crank, 1/min
   double engine_torque = 0.0;                 // N m
   double engine_power = 0.0;                  // of engine and motors, W
   double wheel_power = 0.0;                   // of drive and brakes at the wheels, W
@@ -68,7 +68,7 @@ void visit_fields(Visit&& visit, FieldsOf<VehicleRow> auto& r) {
   visit(instant("pitch_rad", "rad"), r.pitch);
   visit(instant("yaw_rad", "rad"), r.yaw);
   visit(cumulative("distance_m", "m"), r.distance);
-  visit(mean("speed_m_per_s", "m/s"), r.speed);
+  visit(mean("speed_m_s", "m/s"), r.speed);
   visit(mean("lateral_speed_m_per_s", "m/s"), r.lateral_speed);
   visit(mean("acceleration_m_per_s2", "m/s²"), r.acceleration);
   visit(mean("lateral_acceleration_m_per_s2", "m/s²"), r.lateral_acceleration);
@@ -78,9 +78,9 @@ void visit_fields(Visit&& visit, FieldsOf<VehicleRow> auto& r) {
   visit(mean("steering"), r.steering);
   visit(instant("gear"), r.gear);
   visit(mean("shifting"), r.shifting);
-  visit(mean("engine_speed_rad_per_s", "rad/s"), r.engine_speed);
+  visit(mean("engine_speed_rpm", "1/min"), r.engine_speed);
   visit(mean("engine_torque_Nm", "N m"), r.engine_torque);
-  visit(mean("engine_power_W", "W"), r.engine_power);
+  visit(mean("power_W", "W"), r.engine_power);
   visit(mean("wheel_power_W", "W"), r.wheel_power);
   visit(mean("soil_power_W", "W"), r.soil_power);
   visit(mean("target_speed_m_per_s", "m/s"), r.target_speed);

@@ -118,7 +118,7 @@ std::string subject_lines(const json& summary, double average_from) {
       text += fmt::format(
           "furrow: {}: {} m in all; from {:g} s on {} m/s on average, engine {} W, wheels {} W, tires and "
           "ground {} W\n",
-          name, told("distance_m"), average_from, told("speed_m_per_s"), told("engine_power_W"),
+          name, told("distance_m"), average_from, told("speed_m_s"), told("power_W"),
           told("wheel_power_W"), told("soil_power_W"));
   }
   return text;

@@ -174,17 +174,18 @@ Json rank_table(const SummaryInput& in) {
     const FinalReport& r = in.end.reports[i];
     const NodeCard& card = in.cards[i];
     const double busy = r.compute_s + r.communicate_s;
-    ranks.push_back({{"rank", i},
-                     {"node", to_string(r.self, in.scenario.terrain_ranks)},
-                     {"kind", card.node_kind},
-                     {"threads", r.threads},
-                     {"size", r.self.role == Role::terrain ? r.grains : card.size},  // grains, unknowns of a tire
-                     {"step_s", in.scenario.run.step / std::max(1, card.substeps)},
-                     {"cpu_s", r.cpu_s},
-                     {"compute_s", r.compute_s},
-                     {"communicate_s", r.communicate_s},
-                     {"wait_s", r.wait_s},
-                     {"busy_share", json_number(busy / (busy + r.wait_s))}});
+    ranks.push_back(
+        {{"rank", i},
+         {"node", to_string(r.self, in.scenario.terrain_ranks)},
+         {"kind", card.node_kind},
+         {"threads", r.threads},
+         {"size", r.self.role == Role::terrain ? r.grains : card.size},  // grains, unknowns of a tire
+         {"step_s", in.scenario.run.step / std::max(1, card.substeps)},
+         {"cpu_s", r.cpu_s},
+         {"compute_s", r.compute_s},
+         {"communicate_s", r.communicate_s},
+         {"wait_s", r.wait_s},
+         {"busy_share", json_number(busy / (busy + r.wait_s))}});
   }
   return ranks;
 }
@@ -239,7 +240,8 @@ double average_from(const SummaryInput& in) {
 /// What a rig found beside its columns.
 void add_findings(const rigs::RigFindings& findings, Json& json) {
   for (const rigs::RigEvent& event : findings.events) {
-    json["events"].push_back({{"event", event.what}, {"from_s", event.from}, {"to_s", json_number(event.to)}});
+    json["events"].push_back(
+        {{"event", event.what}, {"from_s", event.from}, {"to_s", json_number(event.to)}});
     if (event.wheel >= 0) json["events"].back()["wheel"] = event.wheel;
   }
   for (const auto& [name, value] : findings.figures) json["figures"][name] = json_number(value);
@@ -293,6 +295,27 @@ void add_cost(const SummaryInput& in, std::span<const WheelRow> rows, Json& json
   json["substeps_most_parts"] = in.end.terrain.most_parts;
   json["compiler"] = "g++ " __VERSION__;
   json["cpu"] = checkpoint::cpu_model();
+}
+
+/// What is asked of a vehicle first; all of its columns are in `subjects`.
+void add_vehicle(std::span<const Table> tables, Json& json) {
+  const auto table =
+      std::find_if(tables.begin(), tables.end(), [](const Table& t) { return t.subject == "vehicle"; });
+  if (table == tables.end()) return;
+  const Json& figures = json["subjects"]["vehicle"];
+  double weight = 0.0, pitch = 0.0;
+  for (const Json& wheel : json["wheels"])
+    if (wheel["vertical_load_N"].is_number()) weight += wheel["vertical_load_N"].get<double>();
+  for (const double angle : table->column("pitch_rad")) pitch = std::max(pitch, std::abs(angle));
+  Json energy = {{"engine", figures["drive_work_J"]}};
+  for (const char* heat : {"converter", "clutch", "shift", "brake", "shock", "lowering"})
+    energy[heat] = figures[std::string(heat) + "_heat_J"];
+  energy["residual"] = json.contains("accounts") ? json["accounts"]["energy"]["residual_of"]["rig"] : Json();
+  json["vehicle"] = {{"mass_kg", json_number(weight / kStandardGravity)},
+                     {"distance_m", figures["distance_m"]},
+                     {"mean_speed_m_s", figures["speed_m_s"]},
+                     {"max_pitch_rad", json_number(pitch)},
+                     {"energy_J", energy}};
 }
 
 }  // namespace

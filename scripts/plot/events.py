@@ -95,7 +95,7 @@ def pedal_events(v):
 def drive_off(v):
     """(index at which the vehicle moves, None if it does not; the speed that decides it)."""
     limit = SPEED * math.sqrt(GRAVITY * v.wheels[0].radius)
-    for begin, end in stretches(np.abs(running_mean(v.time, v["speed_m_per_s"])) > limit):
+    for begin, end in stretches(np.abs(running_mean(v.time, v["speed_m_s"])) > limit):
         if v.time[end - 1] - v.time[begin] >= MOVES:
             return int(begin), limit
     return None, limit
@@ -104,7 +104,7 @@ def drive_off(v):
 def driving_events(v):
     at, limit = drive_off(v)
     if at is not None:
-        yield Event(v.time[at], "drives off", "vehicle", v["speed_m_per_s"][at], "m/s",
+        yield Event(v.time[at], "drives off", "vehicle", v["speed_m_s"][at], "m/s",
                     f"speed (mean of 50 ms) above {SPEED:g} √(g R) = {limit:.2f} m/s for {MOVES:g} s")
     gear = v["gear"] if "gear" in v else np.zeros(0)
     for at in np.flatnonzero(np.diff(gear)) + 1:

@@ -8,7 +8,6 @@ from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY
 from .vehicle_run import running_mean
 from .vehicle_style import AXLES, grid, limits, mark_events, mark_window
 
-RPM = 30.0 / np.pi
 HEATS = {"drive_work_J": "engine and motors give", "converter_heat_J": "converter", "clutch_heat_J": "clutch and locks",
          "shift_heat_J": "changes of gear", "brake_heat_J": "brakes", "shock_heat_J": "shock absorbers",
          "lowering_heat_J": "touch-down damper"}
@@ -34,10 +33,10 @@ def speeds(axis, v):
         values = running_mean(v.time, sum(wheel["spin_rad_per_s"] * wheel.radius for wheel in wheels) / len(wheels))
         axis.plot(v.time, values, color=AXLES[number % len(AXLES)], lw=1.0, label=f"ω R, {v.axles[axle]} wheels")
         curves.append(values)
-    axis.plot(v.time, v["speed_m_per_s"], color="black", lw=1.6, label="vehicle")
+    axis.plot(v.time, v["speed_m_s"], color="black", lw=1.6, label="vehicle")
     if "target_speed_m_per_s" in v and v["target_speed_m_per_s"].any():
         axis.plot(v.time, v["target_speed_m_per_s"], color=GREEN, ls="--", lw=1.0, label="target")
-    limits(axis, v, [v["speed_m_per_s"], *curves])
+    limits(axis, v, [v["speed_m_s"], *curves])
     axis.set_ylabel("m/s")
     axis.set_title("Speed, and circumferential speed of the wheels (mean of 50 ms)")
 
@@ -50,10 +49,10 @@ def angles(axis, v):
 
 
 def engine(axis, v):
-    if not v["engine_speed_rad_per_s"].any():
+    if not v["engine_speed_rpm"].any():
         axis.set_title("No engine: motors in the wheels or none")
         return
-    axis.plot(v.time, RPM * v["engine_speed_rad_per_s"], color=PURPLE, label="engine")
+    axis.plot(v.time, v["engine_speed_rpm"], color=PURPLE, label="engine")
     axis.set_ylabel("1/min")
     axis.set_ylim(bottom=0.0)
     axis.set_title("Engine speed, and gear (right)")
@@ -75,7 +74,7 @@ def inputs(axis, v):
 
 def powers(axis, v):
     curves = []
-    for name, colour, label in (("engine_power_W", PURPLE, "engine and motors give"), ("wheel_power_W", BLUE, "arrives at the wheels"),
+    for name, colour, label in (("power_W", PURPLE, "engine and motors give"), ("wheel_power_W", BLUE, "arrives at the wheels"),
                                 ("soil_power_W", ORANGE, "tires and ground take")):
         values = 1e-3 * running_mean(v.time, v[name])
         axis.plot(v.time, values, color=colour, label=label)

@@ -105,7 +105,7 @@ def sketch(v, scale, half_tire):
     base = max(front - rear, 2.0 * radius)
     inner = min(abs(left) for _, left in v.places) - half_tire / scale
     height = v.columns["z_m"][0] - np.mean([wheel["axle_height_m"][0] for wheel in v.wheels])
-    parts = [(LOWER, 0.95, BODY), (UPPER, 0.85, CAB)] if "engine_speed_rad_per_s" in v and v["engine_speed_rad_per_s"].any() \
+    parts = [(LOWER, 0.95, BODY), (UPPER, 0.85, CAB)] if "engine_speed_rpm" in v and v["engine_speed_rpm"].any() \
         else [(DECK, 0.8, BODY)]
     found = []
     for outline, share, colour in parts:
@@ -314,7 +314,7 @@ def show(figure, image, left, bottom, width, height, label):
 
 def words(v, stage):
     at = min(int(np.searchsorted(v.time, stage.time)), len(v.time) - 1)
-    lines = [f"t = {stage.time:.2f} s", f"speed {digits(v['speed_m_per_s'][at])} m/s, way {digits(v['distance_m'][at])} m"]
+    lines = [f"t = {stage.time:.2f} s", f"speed {digits(v['speed_m_s'][at])} m/s, way {digits(v['distance_m'][at])} m"]
     for axle in v.order:
         depth = [f"{1e3 * wheel['sinkage_m'][at]:.0f}" for wheel in v.of_axle(axle)]
         slip = [f"{wheel['slip'][at]:.2f}" for wheel in v.of_axle(axle)]

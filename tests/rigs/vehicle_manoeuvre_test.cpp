@@ -51,11 +51,11 @@ TEST(StartAtSpeed, wheels_roll_and_the_driveline_turns_with_them) {
     EXPECT_NEAR(rig->rim(3).velocity.y(), speed * std::sin(0.4), 1e-9);
     track.drive(*rig, 0.5, [&] {
       for (int k = 0; k < 4; ++k) ASSERT_LT(std::abs(rig->report(k).slip), 0.06);
-      ASSERT_NEAR(of_vehicle(*rig, "speed_m_per_s"), speed, 0.5);
+      ASSERT_NEAR(of_vehicle(*rig, "speed_m_s"), speed, 0.5);
     });
     EXPECT_EQ(of_vehicle(*rig, "gear"), gear);
     EXPECT_EQ(figure(*rig, "gear_changes"), 0.0);
-    EXPECT_GT(of_vehicle(*rig, "engine_speed_rad_per_s"), 83.0);
+    EXPECT_GT(of_vehicle(*rig, "engine_speed_rpm"), 793.0);
   }
 }
 

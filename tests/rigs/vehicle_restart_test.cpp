@@ -35,7 +35,7 @@ TEST(VehicleRestart, continues_bit_for_bit_in_the_air_in_a_shift_in_a_brake_hold
                      {"path", {{"kind", "circle"}, {"radius", 20.0}, {"lead_in", 1.0}}}};
   for (const Case& c :
        {Case{"air", shifts, 0.1, "distance_m", 0.0, 0.1}, Case{"shift", shifts, 1.2, "shifting", 1.0, 1.0},
-        Case{"brake hold", holds, 3.0, "speed_m_per_s", -1e-2, 1e-2},
+        Case{"brake hold", holds, 3.0, "speed_m_s", -1e-2, 1e-2},
         Case{"path", path, 2.5, "path_distance_m", 1.5, 20.0}}) {
     SCOPED_TRACE(c.name);
     const Track track;

@@ -66,7 +66,7 @@ TEST(VehicleRig, parked_settles_to_the_loads_of_its_trim_and_stays) {
     EXPECT_NEAR(of_vehicle(*rig, "x_m"), x, 1e-5) << "it creeps";
     EXPECT_LT(of_vehicle(*rig, "distance_m") - distance, 1e-4);
     for (int k = 0; k < 4; ++k) EXPECT_EQ(rig->report(k).slip, 0.0);
-    EXPECT_GT(of_vehicle(*rig, "engine_speed_rad_per_s"), 60.0);  // it idles against the brakes
+    EXPECT_GT(of_vehicle(*rig, "engine_speed_rpm"), 573.0);  // it idles against the brakes
   }
 }
 
@@ -83,7 +83,7 @@ TEST(VehicleRig, accelerates_as_engine_and_converter_say) {
     return sum;
   };
   track.drive(*rig, 1.5);
-  const double speed = of_vehicle(*rig, "speed_m_per_s"), before = spin();
+  const double speed = of_vehicle(*rig, "speed_m_s"), before = spin();
   const vehicle::DrivelineSpec& line = plan.vehicle.driveline;
   const vehicle::ConverterOptions converter{{"capacity", line.converter->capacity},
                                             {"ratio", line.converter->torque_ratio}};
@@ -91,7 +91,7 @@ TEST(VehicleRig, accelerates_as_engine_and_converter_say) {
   double torque = 0.0, acceleration = 0.0;
   constexpr int kSteps = 1000;
   track.drive(*rig, kSteps * track.step, [&] {
-    const double crank = of_vehicle(*rig, "engine_speed_rad_per_s");
+    const double crank = of_vehicle(*rig, "engine_speed_rpm") * std::numbers::pi / 30.0;
     torque += vehicle::converter_torque(converter, crank, spin() / ratio).turbine / ratio / kSteps;
     acceleration += of_vehicle(*rig, "acceleration_m_per_s2") / kSteps;
   });
@@ -102,7 +102,7 @@ TEST(VehicleRig, accelerates_as_engine_and_converter_say) {
   const double mass = 2422.739 + 4.0 * 4.8;
   EXPECT_GT(acceleration, 1.0);
   EXPECT_NEAR((torque - turning) / radius, mass * acceleration, 0.01 * mass * acceleration);
-  EXPECT_NEAR(acceleration, (of_vehicle(*rig, "speed_m_per_s") - speed) / time, 0.02 * acceleration);
+  EXPECT_NEAR(acceleration, (of_vehicle(*rig, "speed_m_s") - speed) / time, 0.02 * acceleration);
   EXPECT_EQ(of_vehicle(*rig, "gear"), 1.0);
   EXPECT_NEAR(of_vehicle(*rig, "throttle"), 0.4, 1e-12);
 }
@@ -126,18 +126,18 @@ TEST(VehicleRig, shifts_by_itself_and_holds_the_gear_that_its_driver_asks_for) {
   track.drive(*held, 1.5);
   EXPECT_EQ(of_vehicle(*held, "gear"), 2.0);
   EXPECT_EQ(held->live().text, "gear 2");
-  EXPECT_NEAR(held->live().speed, of_vehicle(*held, "speed_m_per_s"), 0.0);
+  EXPECT_NEAR(held->live().speed, of_vehicle(*held, "speed_m_s"), 0.0);
 }
 
 TEST(VehicleRig, drives_backwards_in_reverse_and_not_at_all_in_neutral) {
   const Track track;
   const auto back = track.rig(vehicle_plan("hmmwv.json", {{"inputs", {{"throttle", 0.3}, {"gear", -1}}}}));
   track.drive(*back, 2.0);
-  EXPECT_LT(of_vehicle(*back, "speed_m_per_s"), -0.3);
+  EXPECT_LT(of_vehicle(*back, "speed_m_s"), -0.3);
   EXPECT_EQ(of_vehicle(*back, "gear"), -1.0);
   const auto neutral = track.rig(vehicle_plan("hmmwv.json", {{"inputs", {{"throttle", 0.3}, {"gear", 0}}}}));
   track.drive(*neutral, 2.0);
-  EXPECT_LT(std::abs(of_vehicle(*neutral, "speed_m_per_s")), 0.02);
+  EXPECT_LT(std::abs(of_vehicle(*neutral, "speed_m_s")), 0.02);
   EXPECT_EQ(of_vehicle(*neutral, "gear"), 0.0);
 }
 
@@ -156,7 +156,7 @@ TEST(VehicleRig, steers_to_the_left_and_measures_its_turn) {
   // It leans outward, to the right, and its outer wheels carry more.
   EXPECT_GT(of_vehicle(*rig, "roll_rad"), 0.001);
   EXPECT_GT(track.wrench(rig->rim(1)).force.z(), track.wrench(rig->rim(0)).force.z());
-  EXPECT_NEAR(of_vehicle(*rig, "speed_m_per_s"), 3.0, 0.4);
+  EXPECT_NEAR(of_vehicle(*rig, "speed_m_s"), 3.0, 0.4);
   EXPECT_EQ(of_vehicle(*rig, "target_speed_m_per_s"), 3.0);
 }
 
@@ -167,13 +167,13 @@ TEST(VehicleRig, a_braked_wheel_slips_and_the_vehicle_stops) {
                                              {{"throttle", json::array({{0, 0.6}, {3, 0.6}, {3.01, 0}})},
                                               {"brake", json::array({{0, 0}, {3, 0}, {3.1, 0.3}})}}}}));
   track.drive(*rig, 3.0);
-  const double speed = of_vehicle(*rig, "speed_m_per_s"), slip = rig->report(0).slip;
+  const double speed = of_vehicle(*rig, "speed_m_s"), slip = rig->report(0).slip;
   EXPECT_GT(speed, 3.0);
   track.drive(*rig, 0.3);
   EXPECT_LT(measured(*rig, 0, "brake_torque_Nm"), -1000.0);
   EXPECT_LT(rig->report(0).slip, slip - 0.02);  // against the undeformed radius it is not zero at rolling
   track.drive(*rig, 4.0);
-  EXPECT_LT(std::abs(of_vehicle(*rig, "speed_m_per_s")), 0.02);
+  EXPECT_LT(std::abs(of_vehicle(*rig, "speed_m_s")), 0.02);
   EXPECT_GT(of_vehicle(*rig, "brake_heat_J"), 0.3 * 2441.9 * speed * speed / 2.0);
 }
 
@@ -208,7 +208,7 @@ TEST(VehicleRig, rover_drives_on_its_motors_on_six_rigid_wheels) {
   track.drive(*rig, 2.0);
   // Without load half of the no-load speed: 6000 rpm / 100 × ½ on 58 mm.
   const double free = 0.5 * 6000.0 * std::numbers::pi / 30.0 / 100.0 * 0.058;
-  EXPECT_NEAR(of_vehicle(*rig, "speed_m_per_s"), free, 0.03 * free);  // on 2 % less than 58 mm
+  EXPECT_NEAR(of_vehicle(*rig, "speed_m_s"), free, 0.03 * free);  // on 2 % less than 58 mm
   EXPECT_EQ(rig->live().text, "");
   EXPECT_GT(of_vehicle(*rig, "drive_work_J"), 0.0);
 }

@@ -31,10 +31,10 @@ def series(seed=1, **shape):
     speed, way = shape.get("pace", 2.0) * ACCELERATION * t, shape.get("pace", 2.0) * 0.5 * ACCELERATION * t ** 2
     zero = np.zeros_like(time)
     vehicle = {"time_s": time, "x_m": 2.5 + way, "y_m": zero, "z_m": 0.66 + zero, "roll_rad": zero, "pitch_rad": zero.copy(),
-               "yaw_rad": zero, "distance_m": way, "speed_m_per_s": speed, "throttle": np.where(time > MOVE, 0.8, 0.0),
+               "yaw_rad": zero, "distance_m": way, "speed_m_s": speed, "throttle": np.where(time > MOVE, 0.8, 0.0),
                "brake": np.where(time < 0.4, 1.0, 0.0), "steering": zero, "gear": np.where(time < SHIFT[0], 1.0, 2.0),
                "shifting": np.where((time >= SHIFT[0]) & (time < SHIFT[1]), 1.0, 0.0),
-               "engine_speed_rad_per_s": 100.0 + 10.0 * speed, "engine_power_W": 2e4 + zero, "wheel_power_W": 1e4 + zero,
+               "engine_speed_rpm": 1000.0 + 100.0 * speed, "power_W": 2e4 + zero, "wheel_power_W": 1e4 + zero,
                "soil_power_W": 5e3 + zero, "drive_work_J": 2e4 * time, "converter_heat_J": 1e3 * time}
     # The rear tires meet the ruts: the nose rises by 0.02 rad.
     meets = time[np.searchsorted(way, MEETS)] if way[-1] > MEETS else np.inf

@@ -36,7 +36,12 @@ class Vehicles(SystemTest):
         self.assertEqual(vehicle[drives]["gear"], 1)
         self.assertEqual(vehicle[drives]["throttle"], 1)
         self.assertGreater(vehicle[drives]["acceleration_m_per_s2"], 1.0)
-        self.assertGreater(vehicle[drives]["engine_power_W"], vehicle[drives]["wheel_power_W"])
+        self.assertGreater(vehicle[drives]["power_W"], vehicle[drives]["wheel_power_W"])
+        told = summary["vehicle"]
+        self.assertAlmostEqual(told["mass_kg"] * 9.81 / sum(wheel["vertical_load_N"] for wheel in summary["wheels"]), 1.0, delta=1e-3)
+        self.assertEqual(told["distance_m"], summary["subjects"]["vehicle"]["distance_m"])
+        self.assertEqual(told["energy_J"]["engine"], summary["subjects"]["vehicle"]["drive_work_J"])
+        self.assertGreater(told["max_pitch_rad"], 0.0)
         for wheel in wheels:
             self.assertGreater(wheel[drives]["spindle_torque_Nm"], 100)
             self.assertGreater(wheel[drives]["iso_force_x_N"], 100)
@@ -70,7 +75,7 @@ class Vehicles(SystemTest):
     def test_a_car_begins_at_speed_and_tells_its_path(self):
         self.run_it("hmmwv_lane_change.json", *QUICK, "--set", "run.end=0.6", "--set", "run.average_from=0.3")
         vehicle = self.table("vehicle")
-        self.assertAlmostEqual(vehicle[0]["speed_m_per_s"], 12, delta=0.1)
+        self.assertAlmostEqual(vehicle[0]["speed_m_s"], 12, delta=0.1)
         self.assertEqual({line["gear"] for line in vehicle}, {3.0})
         figures = self.summary()["figures"]
         self.assertEqual(figures["gear_changes"], 0)

@@ -26,14 +26,14 @@ WHEEL = (("Drawbar pull", ("drawbar_pull_N", "tractive_effort_N", "terrain_resis
 WHEELS = ("vertical_force_N", "slip", "sinkage_m", "spindle_torque_Nm", "tractive_effort_N", "lateral_force_N", "speed_m_per_s",
           "suspension_travel_m", "spring_force_N", "shock_force_N", "wheel_steer_rad", "wheel_camber_rad", "drawbar_pull_N")
 
-VEHICLE = (("Speed", ("speed_m_per_s", "target_speed_m_per_s")),
+VEHICLE = (("Speed", ("speed_m_s", "target_speed_m_per_s")),
            ("Driver", ("throttle", "brake", "steering")),
            ("Attitude", ("roll_rad", "pitch_rad")),
            ("Heading", ("yaw_rad", "heading_error_rad")),
            ("Acceleration", ("acceleration_m_per_s2", "lateral_acceleration_m_per_s2")),
            ("Yaw rate", ("yaw_rate_rad_per_s",)),
-           ("Power", ("engine_power_W", "wheel_power_W", "soil_power_W")),
-           ("Engine speed", ("engine_speed_rad_per_s",)),
+           ("Power", ("power_W", "wheel_power_W", "soil_power_W")),
+           ("Engine speed", ("engine_speed_rpm",)),
            ("Engine torque", ("engine_torque_Nm",)),
            ("Gear", ("gear",)),
            ("Distance from the path", ("cross_track_error_m",)),

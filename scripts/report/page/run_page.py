@@ -110,7 +110,7 @@ def vehicle_answer(run):
                 words, unit, _ = naming(key)
                 rows.append([words, blocks.quantity(key, value)[0], unit])
         if rows:
-            speed, load = values.get("speed_m_per_s"), values.get("wheel_power_W")
+            speed, load = values.get("speed_m_s"), values.get("wheel_power_W")
             if is_number(speed):
                 made.append(blocks.text(f"In the averaging window the {subject} drives at {digits(speed)} m/s on average"
                                         + (f"; {digits(load)} W reach its wheels." if is_number(load) else "."), "lead"))

@@ -239,7 +239,8 @@ double average_from(const SummaryInput& in) {
 /// What a rig found beside its columns.
 void add_findings(const rigs::RigFindings& findings, Json& json) {
   for (const rigs::RigEvent& event : findings.events) {
-    json["events"].push_back({{"event", event.what}, {"from_s", event.from}, {"to_s", json_number(event.to)}});
+    json["events"].push_back(
+        {{"event", event.what}, {"from_s", event.from}, {"to_s", json_number(event.to)}});
     if (event.wheel >= 0) json["events"].back()["wheel"] = event.wheel;
   }
   for (const auto& [name, value] : findings.figures) json["figures"][name] = json_number(value);

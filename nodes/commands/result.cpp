@@ -156,8 +156,8 @@ std::string event_lines(const json& summary) {
   }
   std::string text;
   for (const auto& [name, kind] : kinds)
-    text += fmt::format("furrow: {}: {} times, {:.3g} s in all, first at {:g} s{}\n", name, kind.count, kind.time,
-                        kind.first, kind.wheel);
+    text += fmt::format("furrow: {}: {} times, {:.3g} s in all, first at {:g} s{}\n", name, kind.count,
+                        kind.time, kind.first, kind.wheel);
   return text;
 }
 

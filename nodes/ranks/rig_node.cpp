@@ -137,7 +137,13 @@ class RigNode : public Node {
       check_folder();  // by now it may be another run's
       std::vector<output::WheelEnd> wheels;
       if (time_ > time_start_) wheels = wheel_ends();
-      results_->fail({{}, wheels, terrain_, *accounts_, time_, wall_clock() - wall_start_, end_reason_,
+      results_->fail({{},
+                      wheels,
+                      terrain_,
+                      *accounts_,
+                      time_,
+                      wall_clock() - wall_start_,
+                      end_reason_,
                       rig_->findings()},
                      {code, text});
     } catch (...) {
@@ -177,7 +183,8 @@ class RigNode : public Node {
   std::vector<WheelPlace> wheel_places() const {
     std::vector<WheelPlace> places;
     for (int k = 0; k < rig_->wheel_count(); ++k)
-      places.push_back({rig_->rim(k).position, rig_->heading(k), cards_[1 + k].tire_radius, cards_[1 + k].tire_width});
+      places.push_back(
+          {rig_->rim(k).position, rig_->heading(k), cards_[1 + k].tire_radius, cards_[1 + k].tire_width});
     return places;
   }
 
@@ -300,7 +307,7 @@ class RigNode : public Node {
   double time_ = 0.0;                                      // simulated, of the last synchronization, s
   TerrainState terrain_;                                   // then
   Order next_ = Order::go_on, due_ = Order::go_on;
-  std::optional<WallWatch> walls_;   // of a bin, if the run is to end before them
+  std::optional<WallWatch> walls_;  // of a bin, if the run is to end before them
   std::int64_t ends_at_ = kNotYet;
   output::EndReason end_reason_ = output::EndReason::run_end;
 };

@@ -101,10 +101,9 @@ class RunLoop {
     wall_start_ = wall_clock(), cpu_start_ = cpu_s(), waited_start_ = transport_.wait_clock().waited_s;
     CheckpointWriter checkpoints(scenario_, *node_, transport_, context_, cards, [this] { return cost(); });
     const std::int64_t at =
-        run_steps(*node_, transport_, scenario_.run.step, from_, steps, &profile_,
-                  [&](std::int64_t n) {
-                    checkpoints.write(n, node_->due() == Order::stop && n < std::min(steps, node_->ends_at()));
-                  });
+        run_steps(*node_, transport_, scenario_.run.step, from_, steps, &profile_, [&](std::int64_t n) {
+          checkpoints.write(n, node_->due() == Order::stop && n < std::min(steps, node_->ends_at()));
+        });
     const bool stopped = at < std::min(steps, node_->ends_at());
     if (!stopped) {
       if (scenario_.checkpoint.at_end && checkpoints.last_step() != at) checkpoints.write(at, false);

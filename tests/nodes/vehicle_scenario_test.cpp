@@ -125,7 +125,8 @@ TEST(VehicleScenario, starts_clear_of_the_wall_and_says_when_the_bin_is_too_shor
   EXPECT_TRUE(foremost.stops_before_wall);
   EXPECT_NEAR(5.0 - foremost.to - foremost.along, 0.4673, 1e-6);  // a tire's radius
   EXPECT_TRUE(std::any_of(early.warnings.begin(), early.warnings.end(), [](const std::string& warning) {
-    return warning.find("'run.end': the run will end before 1.5 s, where a tire is 0.4673 m") != std::string::npos;
+    return warning.find("'run.end': the run will end before 1.5 s, where a tire is 0.4673 m") !=
+           std::string::npos;
   }));
   EXPECT_TRUE(complaint(document, {{"terrain.width", "1.5"}})
                   .starts_with(": key 'terrain.width': is 1.5 m, expected at "))

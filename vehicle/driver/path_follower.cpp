@@ -11,7 +11,8 @@ namespace furrow::vehicle {
 namespace {
 
 constexpr double kWheelbases = 1.5;  // to look ahead at least, or in which errors decay
-constexpr double kWindow = 0.25, kLeastWindow = 0.05;  // wheelbases on each side, over which curvature is a mean
+constexpr double kWindow = 0.25,
+                 kLeastWindow = 0.05;  // wheelbases on each side, over which curvature is a mean
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -82,7 +83,8 @@ double PathFollower::wheel_angle(const Preview& law, const DriverView& view, con
   const double error = std::clamp(record.cross_track, -most, most);
   const double heading = record.heading_error - law.side_slip * v * v * halfway;
   const double wanted = ahead - (error + 2.0 * d * std::sin(heading)) / (d * d);
-  return std::atan(L * wanted) + law.understeer * v * v * ahead - law.yaw_damping * (view.yaw_rate - v * halfway);
+  return std::atan(L * wanted) + law.understeer * v * v * ahead -
+         law.yaw_damping * (view.yaw_rate - v * halfway);
 }
 
 }  // namespace furrow::vehicle

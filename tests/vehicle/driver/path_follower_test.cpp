@@ -116,7 +116,8 @@ TEST(Stanley, keeps_the_front_axle_on_a_circle) {
 // Critically damped in the distance d: e = e₀ (1 + s/d) e^(−s/d), from e₀ along the path.
 TEST(Preview, comes_back_to_a_straight_critically_damped) {
   const double d = 5.0, speed = 6.0, dt = 1e-4, start = 0.01;
-  const auto driver = make_driver(along(StraightPath{100.0}, Preview{0.2, 0.0, d, 0.0, 0.0, 0.0}), test_car());
+  const auto driver =
+      make_driver(along(StraightPath{100.0}, Preview{0.2, 0.0, d, 0.0, 0.0, 0.0}), test_car());
   Bicycle bicycle{0.0, start, 0.0, speed};
   follow(*driver, bicycle, 50000, dt, [&](double time) {
     const double s = speed * time / d;
@@ -129,8 +130,9 @@ TEST(Preview, keeps_an_understeering_vehicle_on_a_circle) {
   const double radius = 40.0, speed = 10.0, gradient = 0.01, d = 5.0;
   const DriverCar car = test_car();
   for (const bool known : {true, false}) {
-    const auto driver = make_driver(
-        along(CirclePath{0.0, radius, 1080.0, "left"}, Preview{0.2, 0.0, d, known ? gradient : 0.0, 0.0, 0.0}), car);
+    const auto driver = make_driver(along(CirclePath{0.0, radius, 1080.0, "left"},
+                                          Preview{0.2, 0.0, d, known ? gradient : 0.0, 0.0, 0.0}),
+                                    car);
     Bicycle bicycle{0.0, 0.0, 0.0, speed};
     double curvature = 0.0;
     for (int i = 0; i < 40000; ++i) {
@@ -146,7 +148,9 @@ TEST(Preview, keeps_an_understeering_vehicle_on_a_circle) {
 
 // The curvature is that of the path at the axle for a driver who need not look ahead: nothing is cut.
 TEST(Preview, stays_on_a_lane_change) {
-  const auto driver = make_driver(along(LaneChangePath{"iso_3888_1", 10.0, 10.0}, Preview{0.0, 0.6, -1.0, 0.0, 0.0, 0.0}, 1.0), test_car());
+  const auto driver = make_driver(
+      along(LaneChangePath{"iso_3888_1", 10.0, 10.0}, Preview{0.0, 0.6, -1.0, 0.0, 0.0, 0.0}, 1.0),
+      test_car());
   Bicycle bicycle{0.0, 0.0, 0.0, 12.0};
   double largest = 0.0;
   follow(*driver, bicycle, 11500, 1e-3,

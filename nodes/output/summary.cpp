@@ -361,6 +361,7 @@ std::string summary_text(const SummaryInput& in) {
     while (first < times.size() && times[first] < average_from(in)) ++first;
     json["subjects"][table.subject] = column_figures(table, first);
   }
+  add_vehicle(in.tables, json);
   add_findings(in.end.findings, json);
   return json.dump(2) + "\n";
 }

@@ -6,11 +6,11 @@
 namespace furrow {
 namespace {
 
-std::vector<Address> all_nodes(int tire_count) {
-  FURROW_ASSERT(tire_count >= 0, tire_count);
+std::vector<Address> all_nodes(int tire_count, int terrain_ranks) {
+  FURROW_ASSERT(tire_count >= 0 && terrain_ranks > 0, tire_count, terrain_ranks);
   std::vector<Address> nodes{{Role::rig, 0}};
   for (int k = 0; k < tire_count; ++k) nodes.push_back({Role::tire, k});
-  nodes.push_back({Role::terrain, 0});
+  for (int k = 0; k < terrain_ranks; ++k) nodes.push_back({Role::terrain, k});
   return nodes;
 }
 
@@ -22,9 +22,9 @@ void require_same(const NodeCard& first, const NodeCard& card, const char* what,
                           to_string(first.self), a, to_string(card.self), b));
 }
 
-void check(const std::vector<NodeCard>& cards, const std::vector<Address>& nodes) {
+void check(const std::vector<NodeCard>& cards, const std::vector<Address>& nodes, int tires) {
   FURROW_ASSERT(cards.size() == nodes.size() && cards.size() >= 2, cards.size(), nodes.size());
-  const NodeCard &rig = cards.front(), &terrain = cards.back();
+  const NodeCard& rig = cards.front();
   for (std::size_t i = 0; i < cards.size(); ++i) {
     const NodeCard& card = cards[i];
     if (card.self != nodes[i])
@@ -39,21 +39,20 @@ void check(const std::vector<NodeCard>& cards, const std::vector<Address>& nodes
       throw Error(ExitCode::bad_input, fmt::format("handshake: {} takes {} substeps; expected 1 or more",
                                                    to_string(card.self), card.substeps));
   }
-  const int tires = static_cast<int>(cards.size()) - 2;
   if (rig.wheel_count != tires)
     throw Error(ExitCode::bad_input,
                 fmt::format("handshake: the rig carries {} wheel(s) but the scenario has {} tire(s)",
                             rig.wheel_count, tires));
-  for (const NodeCard* card : {&rig, &terrain})
-    if (card->tire_count != tires)
+  for (const NodeCard& card : cards)
+    if (card.self.role != Role::tire && card.tire_count != tires)
       throw Error(ExitCode::bad_input, fmt::format("handshake: the {} expects {} tire(s) but there are {}",
-                                                   to_string(card->self), card->tire_count, tires));
+                                                   to_string(card.self), card.tire_count, tires));
 }
 
 }  // namespace
 
 std::vector<NodeCard> handshake(Transport& transport, const NodeCard& own) {
-  const std::vector<Address> nodes = all_nodes(transport.tire_count());
+  const std::vector<Address> nodes = all_nodes(transport.tire_count(), transport.terrain_ranks());
   for (const Address& node : nodes)
     if (node != transport.self()) send(transport, node, own);
   std::vector<NodeCard> cards;
@@ -61,7 +60,7 @@ std::vector<NodeCard> handshake(Transport& transport, const NodeCard& own) {
     cards.push_back(node == transport.self() ? own : receive<NodeCard>(transport, node));
 
   try {
-    check(cards, nodes);
+    check(cards, nodes, transport.tire_count());
   } catch (const Error& error) {
     // All nodes find the same; it is the rig's to tell.
     if (transport.self() == nodes.front()) throw;

@@ -11,7 +11,7 @@ namespace furrow {
 struct HostNode {
   Address node;
   std::vector<int> cores;
-  bool self = false;  // this very process: a terrain of several ranks has one address
+  bool self = false;  // this very process
 };
 
 /// Cores that this process may use; logical CPUs that share a core count once. Never empty.

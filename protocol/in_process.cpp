@@ -86,15 +86,15 @@ class QueueWire final : public Wire {
 
 }  // namespace
 
-std::vector<std::unique_ptr<Transport>> make_in_process_transports(int tire_count) {
-  FURROW_ASSERT(tire_count >= 0, tire_count);
-  const int nodes = tire_count + 2;
+std::vector<std::unique_ptr<Transport>> make_in_process_transports(int tire_count, int terrain_ranks) {
+  FURROW_ASSERT(tire_count >= 0 && terrain_ranks > 0, tire_count, terrain_ranks);
+  const int nodes = 1 + tire_count + terrain_ranks;
   auto boxes = std::make_shared<std::vector<Mailbox>>(nodes);
   std::vector<HostNode> host;
   for (int i = 0; i < nodes; ++i) {
     const Address address = i == 0            ? Address{Role::rig, 0}
                             : i <= tire_count ? Address{Role::tire, i - 1}
-                                              : Address{Role::terrain, 0};
+                                              : Address{Role::terrain, i - 1 - tire_count};
     host.push_back({address, allowed_cores(), false});
   }
   std::vector<std::unique_ptr<Transport>> transports;

@@ -14,8 +14,10 @@ std::string to_string(Role role) {
   return "unknown";
 }
 
-std::string to_string(const Address& address) {
-  return address.role == Role::tire ? "tire " + std::to_string(address.index) : to_string(address.role);
+std::string to_string(const Address& address, int terrain_ranks) {
+  const bool one_of_several = address.role == Role::terrain && (terrain_ranks > 1 || address.index > 0);
+  if (address.role != Role::tire && !one_of_several) return to_string(address.role);
+  return to_string(address.role) + " " + std::to_string(address.index);
 }
 
 std::string to_string(MessageKind kind) {
@@ -44,6 +46,8 @@ std::string to_string(MessageKind kind) {
       return "run folder";
     case MessageKind::checkpoint_part:
       return "part of a checkpoint";
+    case MessageKind::group:
+      return "its share";
   }
   return "unknown kind";
 }

@@ -7,10 +7,12 @@
 //   terrain → tire k  TerrainForces   nodal forces over the last interval
 //   terrain → rig     TerrainReport   sums of the same forces, and the terrain's own measurements
 //
+// The ranks of a terrain tell each other what they need by messages of the kind `group` (protocol/transport_group.hpp).
 // What a message holds is said once, in the list of fields beside each struct: it is packed and saved by that list.
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -21,7 +23,7 @@
 
 namespace furrow {
 
-inline constexpr std::int32_t kProtocolVersion = 7;
+inline constexpr std::int32_t kProtocolVersion = 8;
 
 enum class Role : std::int32_t { rig = 0, tire = 1, terrain = 2 };
 /// "rig", "tire", "terrain".
@@ -30,7 +32,7 @@ std::string to_string(Role role);
 /// A partner by what it does, never by its world rank.
 struct Address {
   Role role = Role::rig;
-  std::int32_t index = 0;  // which tire; 0 for the others
+  std::int32_t index = 0;  // which tire; which rank of a terrain, 0 being its leader; 0 for the rig
   bool operator==(const Address&) const = default;
 };
 template <class Visit>
@@ -38,8 +40,8 @@ void visit_fields(Visit&& visit, FieldsOf<Address> auto& s) {
   visit(Field{"role", ""}, s.role);
   visit(Field{"index"}, s.index);
 }
-/// "rig", "terrain", "tire 0".
-std::string to_string(const Address& address);
+/// "rig", "tire 0", "terrain", or "terrain 0" where it has several ranks.
+std::string to_string(const Address& address, int terrain_ranks = 1);
 
 /// Tag of a message on the wire: its kind, never a step number.
 enum class MessageKind : std::int32_t {
@@ -55,6 +57,7 @@ enum class MessageKind : std::int32_t {
   control = 10,
   run_folder = 11,
   checkpoint_part = 12,
+  group = 13,
 };
 std::string to_string(MessageKind kind);
 
@@ -151,17 +154,22 @@ enum class Order : std::int32_t {
   stop = 2,        // save and end: a signal asked for it
 };
 
+/// The step of an end that is not known yet.
+inline constexpr std::int64_t kNotYet = std::numeric_limits<std::int64_t>::max();
+
 struct RimMotion {
   static constexpr MessageKind kKind = MessageKind::rim_motion;
   StepHeader header;
   RimState rim;
-  Order order = Order::go_on;  // due at synchronization n + 1
+  Order order = Order::go_on;      // due at synchronization n + 1
+  std::int64_t ends_at = kNotYet;  // the step at which the run is complete before its planned end, at least n + 2
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<RimMotion> auto& s) {
   visit(Field{"header", ""}, s.header);
   visit(Field{"rim", ""}, s.rim);
   visit(Field{"order", ""}, s.order);
+  visit(Field{"ends_at"}, s.ends_at);
 }
 
 /// tire k → rig.
@@ -213,13 +221,15 @@ struct SurfaceMotion {
   static constexpr MessageKind kKind = MessageKind::surface_motion;
   StepHeader header;
   SurfaceState surface;
-  Order order = Order::go_on;  // due now: terrain hears of it through the tires
+  Order order = Order::go_on;      // due now: terrain hears of it through the tires
+  std::int64_t ends_at = kNotYet;  // as the rig said, at least n + 1
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<SurfaceMotion> auto& s) {
   visit(Field{"header", ""}, s.header);
   visit(Field{"surface", ""}, s.surface);
   visit(Field{"order", ""}, s.order);
+  visit(Field{"ends_at"}, s.ends_at);
 }
 
 /// terrain → tire k.
@@ -282,6 +292,7 @@ struct FinalReport {
   // Of the stepping loop, s: processor time; and wall time, what computing, communicating and waiting took of it.
   double cpu_s = 0.0, compute_s = 0.0, communicate_s = 0.0, wait_s = 0.0;
   std::int32_t threads = 1;
+  std::int64_t grains = 0;                  // of this rank of a terrain
   std::vector<double> profile;              // what StepProfile::times() holds; empty unless asked for
   HeightField height_before, height_after;  // terrain
 };
@@ -294,6 +305,7 @@ void visit_fields(Visit&& visit, FieldsOf<FinalReport> auto& s) {
   visit(Field{"communicate_s", "s"}, s.communicate_s);
   visit(Field{"wait_s", "s"}, s.wait_s);
   visit(Field{"threads"}, s.threads);
+  visit(Field{"grains"}, s.grains);
   visit(Field{"profile", "s"}, s.profile);
   visit(Field{"height_before", ""}, s.height_before);
   visit(Field{"height_after", ""}, s.height_after);

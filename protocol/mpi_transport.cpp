@@ -21,7 +21,7 @@ Address address_of(int rank, int tires) {
   FURROW_ASSERT(rank >= 0 && tires >= 0, rank, tires);
   if (rank == 0) return {Role::rig, 0};
   if (rank <= tires) return {Role::tire, rank - 1};
-  return {Role::terrain, 0};
+  return {Role::terrain, rank - 1 - tires};
 }
 
 std::vector<int> gather(const Communicator& comm, const std::vector<int>& own, std::vector<int>& counts) {
@@ -61,9 +61,9 @@ std::string launcher_text(const std::vector<std::string>& names) {
 Error wrong_count(int needed, int tires, int terrain_ranks, const std::string& found) {
   FURROW_ASSERT(needed > 1, needed);
   std::string text = fmt::format(
-      "this scenario needs {} ranks ({} rig, {} tire(s), {} terrain), but mpirun started {}; "
-      "start it with mpirun -n {}",
-      needed, 1, tires, terrain_ranks, world_size(), needed);
+      "this scenario needs {} ranks ({} rig, {} tire(s), {} terrain), but {} were started; "
+      "start it with mpirun -n {} or srun -n {}",
+      needed, 1, tires, terrain_ranks, world_size(), needed, needed);
   if (world_size() == 1 && !found.empty())
     text = fmt::format(
         "this scenario needs {} ranks ({} rig, {} tire(s), {} terrain), but was started as a single "
@@ -85,13 +85,6 @@ std::unique_ptr<Transport> make_mpi_transport(int* argc, char*** argv, int tire_
   std::vector<HostNode> host = gather_host_nodes(tire_count);
   return std::make_unique<NodeTransport>(std::make_unique<MpiWire>(session, role), tire_count,
                                          std::move(host));
-}
-
-int role_communicator(const Transport& transport) {
-  const auto* node = dynamic_cast<const NodeTransport*>(&transport);
-  const auto* wire = node ? dynamic_cast<const MpiWire*>(&node->wire()) : nullptr;
-  if (!wire) throw Error(ExitCode::bad_input, "this run has no MPI communicators");
-  return MPI_Comm_c2f(wire->role().get());
 }
 
 std::vector<std::string> launcher_variables() {

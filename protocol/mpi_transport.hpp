@@ -8,10 +8,6 @@
 
 namespace furrow {
 
-/// The communicator of this rank's role, as MPI_Comm_f2c takes it: for a terrain engine that spans several ranks.
-/// It belongs to the transport. @throws Error(bad_input) when the transport is not one of MPI
-int role_communicator(const Transport& transport);
-
 /// The variables of the environment by which mpirun, srun and the like tell a process its rank: of
 /// OMPI_COMM_WORLD_RANK, PMIX_RANK and PMI_RANK those that are set and not empty. They may be left over from a shell that
 /// a launcher started.

@@ -27,10 +27,9 @@ class MpiWire final : public Wire {
   MpiWire(MpiSession& session, int role);
   ~MpiWire() override;
 
-  const Communicator& role() const { return role_; }
-
   int self() const override { return self_; }
   int node_count() const override { return nodes_; }
+  std::optional<int> role_communicator() const override { return MPI_Comm_c2f(role_.get()); }
   void send(int to, MessageKind kind, Bytes payload) override;
   void send_control(int to, Bytes payload) override;
   void progress() override;

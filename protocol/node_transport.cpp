@@ -54,7 +54,8 @@ int NodeTransport::number(Address node) const {
       if (node.index < 0 || node.index >= tire_count_) break;
       return 1 + node.index;
     case Role::terrain:
-      return 1 + tire_count_;  // its leader
+      if (node.index < 0 || node.index >= terrain_ranks()) break;
+      return 1 + tire_count_ + node.index;
   }
   throw Error(ExitCode::rank_lost,
               to_string(self()) + " addressed " + to_string(node) + ", which does not exist");

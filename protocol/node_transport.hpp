@@ -15,6 +15,8 @@ class NodeTransport final : public Transport {
 
   Address self() const override { return watch_.address(wire_->self()); }
   int tire_count() const override { return tire_count_; }
+  int terrain_ranks() const override { return wire_->node_count() - 1 - tire_count_; }
+  std::optional<int> role_communicator() const override { return wire_->role_communicator(); }
   std::vector<HostNode> host_nodes() const override { return host_nodes_; }
 
   void send(Address to, MessageKind kind, std::vector<std::byte> payload) override;
@@ -25,8 +27,6 @@ class NodeTransport final : public Transport {
   void check_peers() override;
   const WaitClock& wait_clock() const override { return clock_; }
   void set_peer_timeout(double seconds) override { timeout_ = seconds; }
-
-  const Wire& wire() const { return *wire_; }
 
  private:
   int number(Address node) const;

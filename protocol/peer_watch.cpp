@@ -29,7 +29,11 @@ Address PeerWatch::address(int node) const {
   FURROW_ASSERT(node >= 0, node);
   if (node == 0) return {Role::rig, 0};
   if (node <= tire_count_) return {Role::tire, node - 1};
-  return {Role::terrain, 0};
+  return {Role::terrain, node - 1 - tire_count_};
+}
+
+std::string PeerWatch::name(int node) const {
+  return to_string(address(node), static_cast<int>(peers_.size()) - 1 - tire_count_);
 }
 
 void PeerWatch::listen() {
@@ -113,20 +117,20 @@ void PeerWatch::tell(int target) {
 
 Error PeerWatch::lost(int from, const std::string& what, double timeout) const {
   FURROW_ASSERT(in_range(from, peers_.size()), from, peers_.size());
-  std::string text = fmt::format("{} waited {:g} s for {} ({})", to_string(address(wire_.self())), timeout,
-                                 to_string(address(from)), what);
+  std::string text = fmt::format("{} waited {:g} s for {} ({})", name(wire_.self()), timeout,
+                                 name(from), what);
   std::vector<bool> met(peers_.size(), false);
   met[wire_.self()] = true;
   int silent = from;
   while (!met[silent] && peers_[silent].waits_for >= 0) {
     met[silent] = true;
     silent = peers_[silent].waits_for;
-    text += fmt::format(", which waits for {}", to_string(address(silent)));
+    text += fmt::format(", which waits for {}", name(silent));
   }
   if (met[silent]) return Error(ExitCode::rank_lost, text + ": the nodes wait for one another");
   return Error(ExitCode::rank_lost,
                text + fmt::format(": {} does not answer; raise run.peer_timeout if it is only slow",
-                                  to_string(address(silent))));
+                                  name(silent)));
 }
 
 void PeerWatch::to_all_others(const Bytes& payload) {

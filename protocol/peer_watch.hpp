@@ -43,6 +43,8 @@ class PeerWatch {
   Error lost(int from, const std::string& what, double timeout) const;
 
   Address address(int node) const;
+  /// For people: "tire 0", "terrain 1".
+  std::string name(int node) const;
 
  private:
   struct Peer {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,9 @@ class Transport {
 
   virtual Address self() const = 0;
   virtual int tire_count() const = 0;
+  virtual int terrain_ranks() const = 0;
+  /// The communicator of this rank's role, as MPI_Comm_f2c takes it; it belongs to the transport. None without MPI.
+  virtual std::optional<int> role_communicator() const { return std::nullopt; }
   /// The nodes whose processes run on this machine, in rank order, this one included.
   virtual std::vector<HostNode> host_nodes() const { return {{self(), allowed_cores(), true}}; }
 
@@ -100,7 +104,7 @@ M receive_step(Transport& transport, Address from, std::int64_t step) {
 std::vector<NodeCard> handshake(Transport& transport, const NodeCard& own);
 
 /// In one process: one transport per node, each to be used by a thread of its own (protocol/in_process.cpp).
-std::vector<std::unique_ptr<Transport>> make_in_process_transports(int tire_count);
+std::vector<std::unique_ptr<Transport>> make_in_process_transports(int tire_count, int terrain_ranks = 1);
 
 /// World rank 0 is the rig, 1…k the tires, the rest the terrain (protocol/mpi_transport.cpp).
 /// MPI is initialised here, and finalised when the process ends.

@@ -23,6 +23,8 @@ class Wire {
 
   virtual int self() const = 0;
   virtual int node_count() const = 0;
+  /// As Transport::role_communicator.
+  virtual std::optional<int> role_communicator() const { return std::nullopt; }
 
   /// Non-blocking; order is kept per (sender, receiver, kind), and among the control messages of one sender.
   virtual void send(int to, MessageKind kind, Bytes payload) = 0;

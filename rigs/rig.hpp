@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "protocol/core/archive.hpp"
@@ -77,6 +78,20 @@ inline std::vector<Subject> plain_wheels(int count) {
   return wheels;
 }
 
+/// Something that happened during a run and is worth telling.
+struct RigEvent {
+  std::string what;   // "wheel_lift"
+  int wheel = -1;     // -1: of no wheel
+  double from = 0.0;  // s
+  double to = std::numeric_limits<double>::quiet_NaN();  // s; not a number: not over yet
+};
+
+/// What a rig found during a run besides its columns, for the summary.
+struct RigFindings {
+  std::vector<RigEvent> events;                            // in the order in which they began
+  std::vector<std::pair<std::string, double>> figures;     // named after their unit
+};
+
 class Rig {
  public:
   virtual ~Rig() = default;
@@ -105,6 +120,7 @@ class Rig {
   virtual WheelReport report(int wheel) const = 0;
 
   virtual LiveNote live() const { return {}; }
+  virtual RigFindings findings() const { return {}; }
 
   /// @post every member is set and finite
   virtual RigAccounts accounts() const = 0;
@@ -121,6 +137,9 @@ class Rig {
 
   virtual void save(Archive& archive) const = 0;
   virtual void restore(const Archive& archive) = 0;
+  /// What the findings are made of. It is no state: nothing that moves depends on it.
+  virtual void save_findings(Archive& /*archive*/) const {}
+  virtual void restore_findings(const Archive& /*archive*/) {}
 };
 
 }  // namespace furrow::rigs

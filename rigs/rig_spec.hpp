@@ -51,6 +51,7 @@ struct WheelDescription {
   double tread_speed = 0.0;     // of the tread against the axle at full speed, m/s
   double lowering_time = 0.0;   // until the motions begin, s; 0: they begin at once
   double lowering_speed = 0.0;  // at which the wheel is let down, m/s; 0: it falls
+  bool stops_before_wall = false;  // the run ends where it comes near the wall ahead, before its planned end
   std::string start_key;        // of the scenario, says where the axle starts
 };
 
@@ -78,6 +79,9 @@ class RigSpec {
   /// bin from x = 0 to `length`, m; at x = 0 where there is no bin.
   virtual void fill_starts(std::span<const WheelSize> tires, double duration, std::optional<double> length,
                            std::span<const double> margins) = 0;
+  /// A run ends before a wheel comes nearer to an end wall than this, m; 0: it does not, and motions that are imposed
+  /// must keep clear of it. After mount().
+  virtual double stop_before_wall() const { return 0.0; }
   virtual std::vector<RigFile> files() const { return {}; }
   /// On the rig and its tires, W, m/s²: tilted on a slope, whose surface is level in W.
   virtual Vec3 gravity() const { return standard_gravity(); }

@@ -14,6 +14,7 @@
 #include "protocol/core/mean_turn.hpp"
 #include "rigs/rut_trace.hpp"
 #include "rigs/vehicle_driving.hpp"
+#include "rigs/vehicle_findings.hpp"
 #include "rigs/vehicle_rows.hpp"
 #include "rigs/vehicle_start.hpp"
 #include "vehicle/analysis/held_vehicle.hpp"
@@ -88,17 +89,22 @@ class VehicleRig final : public Rig {
   void observe(int wheel, double lowest_point, double ground) override;
   WheelReport report(int wheel) const override { return wheels_.at(wheel).report; }
   LiveNote live() const override;
+  RigFindings findings() const override { return findings_ ? findings_->told() : RigFindings{}; }
   RigAccounts accounts() const override;
   std::vector<Subject> subjects() const override;
   void measure(int subject, std::span<double> values) const override;
   void save(Archive& archive) const override;
   void restore(const Archive& archive) override;
+  void save_findings(Archive& archive) const override;
+  void restore_findings(const Archive& archive) override;
 
  private:
   void check_built() const;
   void build();
   void find_wheel_rows();
+  void roll();
   void drive();
+  void note_findings(std::span<const Wrench> wrenches);
   bool let_down() const;
   double damping() const;
   Outcome step(std::span<const Wrench> wrenches, double h, std::vector<WheelSums>& sums);
@@ -118,6 +124,8 @@ class VehicleRig final : public Rig {
   std::unique_ptr<vehicle::Driver> driver_;
   std::vector<std::vector<WheelRow>> rows_;  // of each wheel
   std::vector<RutTrace> traces_;             // of each wheel
+  vehicle::DriverCar driven_;                // what a driver knows of it
+  std::optional<VehicleFindings> findings_;  // once it moves
   Vec3 seat_ = Vec3::Zero();                 // of the driver's view, in the vehicle's frame, m
 };
 
@@ -147,9 +155,10 @@ void VehicleRig::build() {
   }
   car_->system().assemble(0.0);
   seat_ = vehicle::rear_axle_middle(plan_.vehicle);
-  if (plan_.driver)
-    driver_ = vehicle::make_driver(*plan_.driver,
-                                   vehicle::driver_car(plan_.vehicle, radii, plan_.tire_width, car_->mass()));
+  if (plan_.driver) {
+    driven_ = vehicle::driver_car(plan_.vehicle, radii, plan_.tire_width, car_->mass());
+    driver_ = vehicle::make_driver(*plan_.driver, driven_);
+  }
   find_wheel_rows();
 }
 
@@ -185,11 +194,21 @@ void VehicleRig::place(std::span<const double> axle_height) {
     up = std::max(up, axle_height[k] - car_->rim(k).position.z());
   }
   car_->move(Vec3(0.0, 0.0, up));
+  if (plan_.options.start_speed > 0.0) roll();
   record_ = {};
   record_.inputs = parked();
   for (WheelRecord& wheel : wheels_) wheel = {{}, {}, wheel.load};
   for (int k = 0; k < wheel_count(); ++k) measure_wheel_end(k);
   measure_vehicle_end();
+}
+
+/// From the first instant on, in the gear that the driver holds then.
+void VehicleRig::roll() {
+  std::vector<double> radii;
+  for (const MountedMass& tire : tires_) radii.push_back(tire.radius);
+  const bool chosen = plan_.driver && !plan_.driver->inputs.gear.empty();
+  car_->begin_rolling(plan_.options.start_speed, radii,
+                      chosen ? std::max(0, static_cast<int>(plan_.driver->inputs.gear.front().second)) : 0);
 }
 
 RimState VehicleRig::rim(int wheel) const {
@@ -206,6 +225,19 @@ Vec3 VehicleRig::heading(int wheel) const {
 void VehicleRig::drive() {
   if (driver_) record_.inputs = driver_->drive(driver_view(*car_, seat_));
   car_->set_inputs(vehicle_inputs(record_.inputs));
+}
+
+/// Of the instant at which the step begins.
+void VehicleRig::note_findings(std::span<const Wrench> wrenches) {
+  if (!findings_) {
+    std::vector<double> loads;
+    for (const WheelRecord& wheel : wheels_) loads.push_back(wheel.load);
+    findings_.emplace(std::move(loads), plan_.driver, driven_);
+  }
+  const double time = car_->system().time();
+  for (int k = 0; k < wheel_count(); ++k) findings_->wheel(k, wrenches[k].force.z(), time);
+  if (driver_) findings_->path(driver_view(*car_, seat_), driver_->record());
+  findings_->gear(gear_of(*car_, record_.inputs));
 }
 
 bool VehicleRig::let_down() const {
@@ -225,6 +257,7 @@ Outcome VehicleRig::advance(std::span<const Wrench> wrenches, double duration, i
       return Outcome::failure("was pulled with a wrench that is not finite",
                               "it comes from a tire; try a smaller run.step");
   drive();
+  note_findings(wrenches);
   const Vec3 origin = car_->origin(), momentum = car_->system().momentum();
   const double drive_work = car_->drive().work(car_->system()), tire_work = record_.accounts.tire_work;
   std::vector<WheelSums> sums(wheel_count());
@@ -463,6 +496,18 @@ void VehicleRig::save(Archive& archive) const {
     save_fields(archive, fmt::format("wheel{}", k), wheels_[k]);
     traces_[k].save(archive, fmt::format("rut{}", k));
   }
+}
+
+void VehicleRig::save_findings(Archive& archive) const {
+  if (findings_) findings_->save(archive);
+}
+
+/// @pre restored
+void VehicleRig::restore_findings(const Archive& archive) {
+  std::vector<double> loads;
+  for (const WheelRecord& wheel : wheels_) loads.push_back(wheel.load);
+  findings_.emplace(std::move(loads), plan_.driver, driven_);
+  findings_->restore(archive);
 }
 
 void VehicleRig::restore(const Archive& archive) {

@@ -71,6 +71,7 @@ class VehicleRigSpec final : public RigSpec {
                    std::span<const double> margins) override;
   std::vector<RigFile> files() const override { return {{"vehicle", file_}}; }
   Vec3 gravity() const override { return plan_.gravity; }
+  double stop_before_wall() const override { return std::max(0.0, plan_.options.stop_before_wall); }
   void complete(json& section) const override;
 
   bool start_given = true;
@@ -107,6 +108,7 @@ class VehicleRigSpec final : public RigSpec {
   ReadContext context_;
   std::vector<WheelPlace> wheels_;
   int bodies_ = 0;
+  std::optional<double> length_;  // of the bin, m
   double lock_ = 0.0;  // mean angle of the steered wheels at the steering's end, rad
 };
 
@@ -169,6 +171,7 @@ void VehicleRigSpec::mount(std::span<const MountedTire> tires) {
   VehicleRigOptions& o = plan_.options;
   if (o.lowering_speed < 0.0) o.lowering_speed = drops ? 0.0 : kLoweringFroude * std::sqrt(g * largest);
   if (o.touchdown_time < 0.0) o.touchdown_time = kLoweringTime * std::sqrt(largest / g);
+  if (o.stop_before_wall < 0.0) o.stop_before_wall = largest;
 }
 
 /// Of a wheel against the vehicle's origin, W, m.
@@ -187,7 +190,7 @@ double VehicleRigSpec::travel(double duration) const {
 }
 
 double VehicleRigSpec::top_speed() const {
-  double most = 0.0;
+  double most = plan_.options.start_speed;
   if (plan_.driver && plan_.driver->speed)
     for (const auto& [time, speed] : plan_.driver->speed->target) most = std::max(most, speed);
   return most;
@@ -213,6 +216,12 @@ WheelDescription VehicleRigSpec::wheel(std::size_t k, const WheelSize& tire, dou
   const double s = std::abs(std::sin(angle)), half = 0.5 * tire.width;
   d.along = tire.radius + half * s;
   d.across = half + tire.radius * s;
+  if (length_ && stop_before_wall() > 0.0) {
+    const double reach = d.along + stop_before_wall();
+    const double last = d.to >= d.from ? std::max(d.from, *length_ - reach) : std::min(d.from, reach);
+    d.stops_before_wall = std::abs(d.to - d.from) > std::abs(last - d.from);
+    if (d.stops_before_wall) d.to = last;
+  }
   d.toe_angle = steered ? lock_ : place.toe;
   d.camber_angle = place.camber;
   d.travel_sign = std::cos(psi) < 0.0 ? -1.0 : 1.0;
@@ -237,6 +246,7 @@ RigDescription VehicleRigSpec::describe(std::span<const WheelSize> tires, double
 void VehicleRigSpec::fill_starts(std::span<const WheelSize> tires, double duration,
                                  std::optional<double> length, std::span<const double> margins) {
   FURROW_ASSERT(margins.size() == wheels_.size(), margins.size(), wheels_.size());
+  length_ = length;
   if (start_given || !length) return;
   const bool forward = std::cos(plan_.options.heading) >= 0.0;
   double start = forward ? 0.0 : *length;
@@ -252,6 +262,7 @@ void VehicleRigSpec::complete(json& section) const {
   section["driver"] = plan_.driver ? vehicle::driver_document(*plan_.driver) : json();
   if (plan_.options.lowering_speed > 0.0) section["lowering_speed"] = plan_.options.lowering_speed;
   section["touchdown_time"] = plan_.options.touchdown_time;
+  section["stop_before_wall"] = plan_.options.stop_before_wall;
 }
 
 }  // namespace

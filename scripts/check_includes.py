@@ -40,6 +40,7 @@ NO_ROOMS = {"tests", "scripts"}
 DUMMIES = {
     "tests/dummies/spring_wheel": ("tire", "tire/tires"),
     "tests/dummies/spring_mat": ("terrain", "terrain/terrains"),
+    "tests/dummies/strip_mat": ("terrain", "terrain/terrains"),
     "tests/dummies/held_hub": ("rigs", "rigs/rigs"),
 }
 INCLUDE = re.compile(r'\s*#\s*include\s*([<"])([^>"]+)[>"]')

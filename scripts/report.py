@@ -10,6 +10,7 @@ Exit codes: 0 at least one plot was written, 5 a file could not be read or writt
 """
 import argparse
 import csv
+import functools
 import json
 import os
 import pathlib
@@ -22,9 +23,22 @@ matplotlib.use("Agg")
 
 sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent), str(pathlib.Path(__file__).resolve().parent / "report")]
 
-from plot import accounts, charts, ground, kinematics, press, scene, soil, sweep  # noqa: E402
+from plot import (accounts, charts, ground, kinematics, press, scene, soil, sweep, vehicle_ground, vehicle_plots,  # noqa: E402
+                  vehicle_run, vehicle_scene, wheels)
 from plot.digits import with_error  # noqa: E402
 from plot.run_data import Damaged, Missing, Run, printable  # noqa: E402
+
+
+
+@functools.lru_cache(maxsize=1)
+def vehicle_of(run):
+    return vehicle_run.VehicleRun(run)
+
+
+def of_vehicle(plot):
+    """A plot of a vehicle's run, for `Run`."""
+    return lambda run: plot(vehicle_of(run))
+
 
 PLOTS = {
     "pull_slip_sinkage": charts.pull_slip_sinkage,
@@ -34,6 +48,19 @@ PLOTS = {
     "energy": accounts.energy,
     "momentum": accounts.momentum,
     "scene": scene.scene,
+}
+VEHICLE_PLOTS = {
+    "vehicle": of_vehicle(vehicle_plots.vehicle),
+    "wheel_forces": of_vehicle(wheels.wheel_forces),
+    "wheel_motion": of_vehicle(wheels.wheel_motion),
+    "front_and_rear": of_vehicle(wheels.front_and_rear),
+    "path": of_vehicle(vehicle_plots.path),
+    "gear": of_vehicle(vehicle_plots.gear),
+    "rut": of_vehicle(vehicle_ground.rut),
+    "ranks": charts.ranks,
+    "energy": accounts.energy,
+    "momentum": accounts.momentum,
+    "scene": of_vehicle(vehicle_scene.vehicle_scene),
 }
 SWEEP_PLOTS = {"curve": sweep.curve, "passes": sweep.passes, "rut_along": sweep.rut_along}
 BEDS_PLOTS = {"beds": sweep.beds}
@@ -85,7 +112,7 @@ def main():
     parser.add_argument("directory", type=pathlib.Path)
     parser.add_argument("others", type=pathlib.Path, nargs="*", help="further runs: one page that compares all of them")
     parser.add_argument("--out", type=pathlib.Path, help="folder for the plots (default: the run directory)")
-    parser.add_argument("--only", action="append", choices=PLOTS | SOIL_PLOTS | PRESS_PLOTS | KINEMATICS_PLOTS | SWEEP_PLOTS | BEDS_PLOTS, help="this plot only; may be repeated")
+    parser.add_argument("--only", action="append", choices=PLOTS | VEHICLE_PLOTS | SOIL_PLOTS | PRESS_PLOTS | KINEMATICS_PLOTS | SWEEP_PLOTS | BEDS_PLOTS, help="this plot only; may be repeated")
     arguments = parser.parse_args()
     if arguments.others:
         import page
@@ -109,7 +136,7 @@ def main():
     written = []
     of_beds = of_sweep and run.values.get("beds")
     plots = (SOIL_PLOTS if of_soil else BEDS_PLOTS if of_beds else SWEEP_PLOTS if of_sweep else PRESS_PLOTS if of_press
-             else KINEMATICS_PLOTS if of_kinematics else PLOTS)
+             else KINEMATICS_PLOTS if of_kinematics else VEHICLE_PLOTS if run.has_vehicle else PLOTS)
     for name in arguments.only or plots:
         try:
             figure = plots[name](run)
@@ -121,6 +148,9 @@ def main():
             continue
         except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
             print(f"report: no {name}.png: {printable(repr(error))}", file=sys.stderr)
+            continue
+        except MemoryError:
+            print(f"report: no {name}.png: there is not enough memory for it", file=sys.stderr)
             continue
         except (OSError, RuntimeError) as error:  # h5py's errors for a damaged file
             print(f"report: no {name}.png: a file in {arguments.directory} is damaged: {printable(error)}", file=sys.stderr)

@@ -35,11 +35,22 @@ python3-paraview                          its VTK reads XDMF, which python3-vtk9
 LIST
 }
 
+python_packages() { cat <<'LIST'
+python3-pandas                            tables of scripts/python
+python3-xarray                            data sets of scripts/python
+python3-h5netcdf                          xarray's reader of HDF5
+python3-nbclient                          runs the notebooks, for a test
+python3-ipykernel                         likewise
+mypy                                      checks the types of scripts/python, for a test
+LIST
+}
+
 usage() { cat <<'HELP'
-usage: scripts/setup.sh [--liggghts] [--vtk] [-y]
+usage: scripts/setup.sh [--liggghts] [--vtk] [--python] [-y]
 Installs the missing Debian packages, after saying which and how large, and asking.
   --liggghts  also LIGGGHTS (optional: distributed terrain, comparisons of tests/peers)
   --vtk       also the VTK that reads XDMF (needed by one test only; large)
+  --python    also what the Python package of scripts/python needs
   -y, --yes   do not ask; nor is asked where CI is set, or as root without a terminal
   --check     install nothing; exit 0 if nothing is missing, 1 if something is
 HELP
@@ -53,6 +64,7 @@ while (($#)); do
   case $1 in
     --liggghts) lists+=(liggghts) ;;
     --vtk) lists+=(vtk) ;;
+    --python) lists+=(python) ;;
     -y|--yes) assume_yes=true ;;
     --check) check_only=true ;;
     -h|--help) usage; exit 0 ;;

@@ -1,4 +1,9 @@
 // The interface of every terrain: something that pushes back on the contact surfaces of tires.
+//
+// A terrain may span several ranks (TerrainContext::group). Each rank then has an object of its own, and every verb but
+// save, restore and grains_here is called on all of them, in the same order and with the same arguments. What the verbs
+// return holds for the whole terrain and counts on the leader, rank 0; frame gives each rank's own share. An advance
+// that fails returns the same outcome on every rank; a rank that fails alone throws.
 #pragma once
 
 #include <memory>
@@ -52,9 +57,11 @@ class Terrain {
 
   virtual TerrainState state() const = 0;
   virtual std::int64_t size() const = 0;  // grains
+  virtual std::int64_t grains_here() const { return size(); }  // on this rank now
   virtual void frame(TerrainFrame& out) const = 0;
 
-  /// State for an exact continuation, including contact history and attached surfaces' last positions.
+  /// State for a continuation, including contact history and attached surfaces' last positions: of several ranks each
+  /// its own. Bit for bit where the engine says so (TerrainDescription::exact_restart).
   virtual void save(Archive& archive) const = 0;
   virtual void restore(const Archive& archive) = 0;
 };

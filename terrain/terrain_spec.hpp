@@ -12,6 +12,7 @@
 
 #include "protocol/core/constants.hpp"
 #include "protocol/core/fields.hpp"
+#include "protocol/core/rank_group.hpp"
 #include "terrain/terrain.hpp"
 
 namespace furrow::terrain {
@@ -27,6 +28,7 @@ struct TerrainContext {
   int threads = 1;                // OpenMP threads while stepping
   int settle_threads = 1;         // OpenMP threads while a bed settles
   bool contact_tangents = false;  // tire.contact_tangent of any tire: send them beside the forces
+  std::shared_ptr<RankGroup> group;  // the terrain's ranks, this one among them; null: there is one
   Vec3 gravity = standard_gravity();  // m/s²; acts on the grains, the rigid ground has no weight
 };
 
@@ -54,6 +56,7 @@ struct TerrainDescription {
   std::string name;                          // for people: "grains, law mindlin"
   std::string law;                           // of contact between grains; empty: there are none
   double grain_radius = 0.0;                 // m; 0: there are none
+  int most_ranks = 1;                        // that the engine can use
   bool exact_restart = true;                 // a run continued from a checkpoint has the same bits
   bool gives_tangents = false;               // sends contact tangents beside forces where tires ask for them
   bool unstable_step_allowed = false;        // a step above the stable one is warned of, not refused

@@ -9,6 +9,7 @@
 #include "protocol/files/json_text.hpp"
 #include "terrain/dem/dem_options.hpp"
 #include "terrain/dem/dem_spec.hpp"
+#include "terrain/extra_terrains.hpp"
 #include "terrain/rigid/ground_options.hpp"
 #include "terrain/rigid/ground_spec.hpp"
 
@@ -24,17 +25,25 @@ constexpr auto kTerrains = std::to_array<TerrainEntry>({
 template <class Wanted>
 std::string names_of(const Wanted& wanted) {
   std::vector<std::string> names;
-  for (const TerrainEntry& entry : kTerrains)
+  for (const TerrainEntry& entry : terrains())
     if (wanted(entry)) names.emplace_back(entry.name);
   return one_of(names);
 }
 
 }  // namespace
 
-std::span<const TerrainEntry> terrains() { return kTerrains; }
+std::span<const TerrainEntry> terrains() {
+  static const std::vector<TerrainEntry> all = [] {
+    std::vector<TerrainEntry> entries(kTerrains.begin(), kTerrains.end());
+    const std::span<const TerrainEntry> extra = extra_terrains();
+    entries.insert(entries.end(), extra.begin(), extra.end());
+    return entries;
+  }();
+  return all;
+}
 
 const TerrainEntry& find_terrain(const std::string& engine, const ReadContext& context) {
-  for (const TerrainEntry& entry : kTerrains)
+  for (const TerrainEntry& entry : terrains())
     if (engine == entry.name) return entry;
   const std::string names = names_of([](const TerrainEntry&) { return true; });
   throw input_error(context.file, context.key("engine"), "is '" + engine + "', expected " + names);
@@ -44,7 +53,7 @@ std::vector<Field> common_terrain_fields() { return fields_of<CommonOptions>(); 
 
 std::vector<std::string> engines_of_key(const std::string& key) {
   std::vector<std::string> engines;
-  for (const TerrainEntry& entry : kTerrains)
+  for (const TerrainEntry& entry : terrains())
     for (const Field& field : entry.keys.fields())
       if (field.is(role::key) && key == field.name) engines.emplace_back(entry.name);
   return engines;
@@ -52,7 +61,7 @@ std::vector<std::string> engines_of_key(const std::string& key) {
 
 std::vector<std::string> terrain_keys(unsigned roles) {
   std::vector<std::string> keys;
-  for (const TerrainEntry& entry : kTerrains)
+  for (const TerrainEntry& entry : terrains())
     for (const Field& field : entry.keys.fields())
       if (field.is(role::key | roles) && std::find(keys.begin(), keys.end(), field.name) == keys.end())
         keys.emplace_back(field.name);

@@ -69,11 +69,13 @@ nlohmann::ordered_json press_json(const PressOptions& options, const PressResult
     j["cleat_width_m"] = options.obstacle.width;
     j["cleat_position_m"] = options.obstacle.position;
   }
-  j["pressure_Pa"] = results.pressure;
+  const auto if_any = [](const std::optional<double>& value) {
+    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+  };
+  j["pressure_Pa"] = if_any(results.pressure);
   j["mass_kg"] = results.mass.mass;
   j["spin_inertia_kg_m2"] = results.mass.inertia(1, 1);
-  j["inflation_growth_m"] =
-      results.inflation_growth ? nlohmann::ordered_json(*results.inflation_growth) : nlohmann::ordered_json();
+  j["inflation_growth_m"] = if_any(results.inflation_growth);
   j["runout_m"] = results.runout;
   j["load_N"] = options.load;
   const PressPoint& p = results.at_load;

@@ -28,7 +28,7 @@ struct PressResults {
   std::vector<PressSample> footprint;
   std::optional<double> inflation_growth;  // of the largest radius, axisymmetric, m; where the model has one
   std::optional<double> footprint_width;   // m; where the model has no points across
-  double pressure = 0.0;                   // gauge, Pa
+  std::optional<double> pressure;          // gauge, Pa; where the model has one
   MassProperties mass;                     // of the whole tire about its centre
   double runout = 0.0;                     // of the tire at rest before it is pressed: its wrinkles, m
 };

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "protocol/files/json_text.hpp"
+
 namespace furrow::tire {
 namespace {
 
@@ -12,6 +14,14 @@ constexpr int kFormatVersion = 1;
 void take_common_keys(JsonReader& reader) {
   reader.check_version(kFormatVersion, true);
   for (const char* key : {"model", "rim", "name", "source", "$schema"}) reader.skip(key);
+}
+
+int choice_of(JsonReader& reader, const std::string& key, std::string_view first, std::string_view second) {
+  const std::string given = reader.text_or(key, std::string(second));
+  if (given == first) return 0;
+  if (given == second) return 1;
+  reader.fail(key,
+              fmt::format("is '{}', expected {}", given, one_of({std::string(first), std::string(second)})));
 }
 
 ContactMaterial read_contact(JsonReader reader) {

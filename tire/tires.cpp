@@ -13,6 +13,7 @@
 #include "protocol/files/json_reader.hpp"
 #include "protocol/files/json_text.hpp"
 #include "tire/ancf/shell_spec.hpp"
+#include "tire/planar/planar_spec.hpp"
 #include "tire/rigid/rigid_spec.hpp"
 #include "tire/ring/ring_spec.hpp"
 
@@ -24,9 +25,10 @@ using nlohmann::json;
 constexpr auto kModels = std::to_array<TireModel>({
     {"shell", read_shell},
     {"ring", read_ring},
+    {"planar", read_planar},
 });
 // Names that tire files may come to use.
-constexpr std::array<std::string_view, 2> kLater{"planar", "wheel"};
+constexpr std::array<std::string_view, 1> kLater{"wheel"};
 
 const TireModel& model_of(const json& document, const std::string& file) {
   JsonReader reader(document, file);

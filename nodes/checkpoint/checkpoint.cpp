@@ -140,7 +140,7 @@ std::int64_t step_of(const fs::path& folder) {
 }
 
 constexpr const char* kFolderForms[] = {"%012d", ".%012d.part"};
-constexpr const char* kFileForms[] = {kManifest, "rig.h5", "tire%1d.h5", "terrain.h5"};
+constexpr const char* kFileForms[] = {kManifest, "rig.h5", "tire%1d.h5", "terrain.h5", "terrain%1d.h5"};
 
 /// Removes what is a checkpoint's in its folder, and the folder unless somebody else's files stand there.
 void remove_checkpoint(const fs::path& run, const fs::path& folder) {
@@ -168,7 +168,8 @@ std::vector<std::string> checkpoint_forms() {
 }
 
 std::string part_name(const Address& node) {
-  return node.role == Role::tire ? fmt::format("tire{}.h5", node.index) : to_string(node.role) + ".h5";
+  const bool numbered = node.role == Role::tire || node.index > 0;
+  return numbered ? fmt::format("{}{}.h5", to_string(node.role), node.index) : to_string(node.role) + ".h5";
 }
 
 fs::path checkpoints_folder(const fs::path& run) { return run / "checkpoints"; }

@@ -2,7 +2,7 @@
 //
 //   manifest.json  format_version, scenario and its digest, step, checksum of every part, where each series stood,
 //                  frames, segments, and a checksum of itself
-//   rig.h5, tire<k>.h5, terrain.h5   archive_file.hpp
+//   rig.h5, tire<k>.h5, terrain.h5, terrain<k>.h5 of its further ranks   archive_file.hpp
 //
 // All is written into .<step>.part/, flushed to the disk, and that folder renamed: a checkpoint is whole or not there.
 #pragma once
@@ -46,7 +46,7 @@ struct ResumePoint {
 /// The segments before this one, and this one until `step`.
 std::vector<Segment> segments_until(std::int64_t step, double wall_s, int threads, const ResumePoint* resume);
 
-/// "rig.h5", "tire0.h5", "terrain.h5".
+/// "rig.h5", "tire0.h5", "terrain.h5", of the further ranks of a terrain "terrain1.h5" ….
 std::string part_name(const Address& node);
 
 /// Their folders and files, for the run's list (launch/run_list.hpp).

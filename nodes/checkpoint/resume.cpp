@@ -154,14 +154,6 @@ void take_changes(const fs::path& run, const nlohmann::ordered_json& failed, Res
                  std::string("the scenario of the checkpoint is damaged: ") + problem.what());
 }
 
-/// Step at which the finished run ended; negative while there is no summary.
-std::int64_t finished_at(const fs::path& run) {
-  const auto segments = value_at(read_summary(run), "segments");
-  if (!segments.is_array() || segments.empty()) return -1;
-  const auto step = value_at(segments.back(), "to_step");
-  return step.is_number_integer() ? step.get<std::int64_t>() : -1;
-}
-
 }  // namespace
 
 ResumePoint last_checkpoint(const fs::path& run) {
@@ -185,10 +177,11 @@ ResumePlan plan_resume(const fs::path& run,
   ResumePlan plan;
   plan.scenario = scenario::load_scenario(file, settings);
   const std::int64_t steps = plan.scenario.run.steps(), ended = finished_at(run);
-  if (ended == steps) {
+  if (ended == steps || ended_early(run)) {
     changes(run, json::parse(scenario::load_scenario(file, {}).completed),
             json::parse(plan.scenario.completed), false);
     plan.finished = true;
+    plan.ended = static_cast<double>(ended) * plan.scenario.run.step;
     return plan;
   }
   plan.point = newest_whole(run, plan.warnings);
@@ -196,6 +189,9 @@ ResumePlan plan_resume(const fs::path& run,
   plan.scenario.name = manifest.name;
   take_changes(run, read_failed_summary(run), plan);
   check_files(plan.scenario, manifest);
+  if (const terrain::TerrainDescription terrain = plan.scenario.terrain->describe(); !terrain.exact_restart)
+    plan.warnings.push_back(fmt::format("{}: the engine '{}' continues with the same physics, not with the same bits",
+                                        run.string(), terrain.engine));
   const std::int64_t reached = std::max(ended, manifest.step);
   if (steps < reached)
     throw input_error(run.string(), "run.end",

@@ -15,6 +15,7 @@ namespace furrow::checkpoint {
 struct ResumePlan {
   scenario::Scenario scenario;  // from <run>/scenario.json and the settings
   bool finished = false;        // there is nothing to do
+  double ended = 0.0;           // of a finished run, s
   ResumePoint point;            // unless finished
   std::vector<std::string> warnings;
 };

@@ -31,6 +31,18 @@ Json read_failed_summary(const std::filesystem::path& run) {
   return summary.is_object() && summary.value("failed", Json()).is_object() ? summary : Json();
 }
 
+std::int64_t finished_at(const std::filesystem::path& run) {
+  const Json segments = value_at(read_summary(run), "segments");
+  if (!segments.is_array() || segments.empty()) return -1;
+  const Json step = value_at(segments.back(), "to_step");
+  return step.is_number_integer() ? step.get<std::int64_t>() : -1;
+}
+
+bool ended_early(const std::filesystem::path& run) {
+  const Json reason = value_at(read_summary(run), "end_reason");
+  return reason.is_string() && reason != "run_end";
+}
+
 Json value_at(const Json& summary, const std::string& path) {
   const Json* at = &summary;
   for (std::size_t from = 0; from <= path.size();) {

@@ -1,6 +1,7 @@
 // What a run found, for those that come after it: results on the terminal, sweeps, resume.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -14,6 +15,12 @@ nlohmann::ordered_json read_summary(const std::filesystem::path& run);
 
 /// The same of a run that has failed: means of what there is, and why under `failed`; null while it has not.
 nlohmann::ordered_json read_failed_summary(const std::filesystem::path& run);
+
+/// Step at which the finished run ended; negative while there is no summary.
+std::int64_t finished_at(const std::filesystem::path& run);
+
+/// Whether a finished run is complete although it ended before its planned end: nothing is left to be done.
+bool ended_early(const std::filesystem::path& run);
 
 /// summary["a"]["b"][1] for "a.b.1"; null where there is no such entry.
 nlohmann::ordered_json value_at(const nlohmann::ordered_json& summary, const std::string& path);

@@ -38,7 +38,7 @@ namespace {
 struct Typed {
   std::string scenario, out, threads, key, directory, soil, until;
   std::vector<std::string> settings, others;
-  bool overwrite = false, profile = false, json = false, no_plots = false;
+  bool overwrite = false, profile = false, json = false, no_plots = false, slurm = false;
   std::optional<int> seeds, jobs;
   double memory = 0.0;  // that the scenario needs, bytes; 0: not known yet
 };
@@ -120,7 +120,8 @@ void add_press_options(CLI::App& command, PressArguments& press) {
   command.add_option("--cleat-position", press.cleat_position, "middle of the cleat, forward of the axle, m")
       ->capture_default_str();
   command.add_option("--profile", press.profile,
-                     "CSV x_m,z_m of the ground's profile seen from the axle, for --on profile (flexible ring)");
+                     "CSV x_m,z_m of the ground's profile seen from the axle, for --on profile (flexible ring, planar "
+                     "tire)");
 }
 
 void add_soil_options(CLI::App& command, SoilArguments& soil) {
@@ -141,6 +142,25 @@ void add_soil_options(CLI::App& command, SoilArguments& soil) {
       ->allow_extra_args(false);
   command.add_flag("--quick", soil.quick,
                    "use small boxes and one seed: an impression within seconds, not a result to quote");
+}
+
+void add_slurm_options(CLI::App& command, Typed& typed, SlurmArguments& job) {
+  CLI::Option* slurm = command.add_flag(
+      "--slurm", typed.slurm,
+      "print a batch script for sbatch: it saves the run before its time is over, and continues when it is queued again");
+  const auto of_slurm = [&](CLI::Option* option) { option->needs(slurm); };
+  of_slurm(command.add_option("--nodes", job.nodes, "nodes; the ranks are spread over them in their order")
+               ->capture_default_str());
+  of_slurm(command.add_option("--cores-per-node", job.cores_per_node,
+                              "cores of each node (default: whole nodes, whatever they have)")
+               ->check(CLI::PositiveNumber));
+  of_slurm(command.add_option("--partition", job.partition, "partition (default: the cluster's)"));
+  of_slurm(command.add_option("--time", job.time,
+                              "time of one start of the job: minutes, hh:mm:ss or days-hh:mm:ss; a longer run takes "
+                              "several (default: the partition's)"));
+  of_slurm(command.add_option("--account", job.account, "account that pays (default: your own)"));
+  of_slurm(command.add_option("--out", job.out,
+                              "new folder for the results (default: results/<scenario>-job<number> where you submit)"));
 }
 
 Settings settings_of(const Typed& typed) {
@@ -178,8 +198,12 @@ ExitCode validate_command(Typed& typed) {
   return ExitCode::done;
 }
 
-ExitCode ranks_command(Typed& typed, const std::vector<std::string>& command_line) {
+ExitCode ranks_command(Typed& typed, const SlurmArguments& slurm, const std::vector<std::string>& command_line) {
   const scenario::Scenario scenario = load(typed);
+  if (typed.slurm) {
+    std::cout << slurm_script(scenario, slurm, settings_of(typed));
+    return ExitCode::done;
+  }
   std::vector<std::string> arguments = command_line;
   *std::find(arguments.begin(), arguments.end(), "ranks") = "run";
   std::cout << scenario::rank_table_text(scenario) << "\n" << scenario::launch_lines(scenario, arguments);
@@ -254,7 +278,8 @@ std::string parse_problem(const CLI::App& app, const CLI::ParseError& error, int
     commands.push_back(command->get_name());
   const std::string first = argc > 1 ? argv[1] : "";
   if (first.empty())
-    return fmt::format("no command is given, expected one of: {}; see furrow --help", fmt::join(commands, ", "));
+    return fmt::format("no command is given, expected one of: {}; see furrow --help",
+                       fmt::join(commands, ", "));
   if (first[0] != '-' && std::find(commands.begin(), commands.end(), first) == commands.end()) {
     const std::vector<std::string> similar = nearest_words(first, commands);
     return fmt::format("unknown command '{}'; {}", excerpt(first),
@@ -290,14 +315,19 @@ class CommandLine {
     app_.set_version_flag("--version", "furrow " FURROW_VERSION);
     app_.require_subcommand(1);
     app_.footer(
+        "Examples:\n"
+        "  furrow run first_look.json                        a wheel on soil, in seconds\n"
+        "  furrow new mine --tire my_tire.json               a scenario to begin with\n"
+        "  furrow run mine.json --set rig.slip=0.2 --seeds 5 pull and sinkage with their intervals\n\n"
         "Exit codes: 0 done, 2 bad input, 3 the physics failed, 4 a rank was lost, 5 input/output, "
         "6 memory or another limit ran out, 75 stopped by a signal.");
-    add_runs();
-    add_questions();
-    add_virtual_tests();
-    add_vehicles();
-    add_studies();
-    add_benches();
+    add_group("Begin", &CommandLine::add_beginnings);
+    add_group("Run", &CommandLine::add_runs);
+    add_group("Ask before a run", &CommandLine::add_questions);
+    add_group("Test tires, soils and vehicles", &CommandLine::add_virtual_tests);
+    add_group("Test tires, soils and vehicles", &CommandLine::add_vehicles);
+    add_group("Compare and look", &CommandLine::add_studies);
+    add_group("Measure this machine", &CommandLine::add_benches);
   }
 
   ExitCode execute() {
@@ -328,6 +358,15 @@ class CommandLine {
     return add(app_, name, purpose, std::move(action));
   }
 
+  /// Commands that serve one task stand together in the help.
+  void add_group(const char* task, void (CommandLine::*add_commands)()) {
+    const auto all = [](const CLI::App*) { return true; };
+    const std::size_t before = app_.get_subcommands(all).size();
+    (this->*add_commands)();
+    const std::vector<CLI::App*> commands = app_.get_subcommands([](CLI::App*) { return true; });
+    for (std::size_t k = before; k < commands.size(); ++k) commands[k]->group(task);
+  }
+  void add_beginnings();
   void add_runs();
   void add_questions();
   void add_virtual_tests();
@@ -343,10 +382,34 @@ class CommandLine {
   SoilArguments soil_;
   PressArguments press_;
   KinematicsArguments kinematics_;
+  NewArguments new_;
+  EventsArguments events_;
   SweepArguments sweep_;
+  SlurmArguments slurm_;
   GrainBench grains_;
   TireBench tire_;
 };
+
+void CommandLine::add_beginnings() {
+  CLI::App& list = add("list", "list the scenarios, studies, tires, soils and vehicles that come with Furrow",
+                       [this] { return list_command(typed_.key, typed_.json); });
+  list.add_option("KIND", typed_.key, "scenarios, studies, tires, soils or vehicles (default: all)");
+  list.add_flag("--json", typed_.json, "print JSON");
+
+  CLI::App& starter =
+      add("new", "write a scenario to begin with, with a comment for every key; prints its name",
+          [this] { return new_command(new_); });
+  starter.add_option("NAME", new_.name, "file to write; .json is added")->required();
+  CLI::Option* tire = starter.add_option("--tire", new_.tire, "tire file (default: the layered HMMWV tire)");
+  starter.add_option("--soil", new_.soil, "soil file (default: cohesive grains)");
+  starter.add_flag("--rigid", new_.rigid, "the tires keep their shape (tire.rigid)");
+  CLI::Option* load =
+      starter.add_option("--load", new_.load, "load on the wheel, N (default: by the tire's size)")
+          ->check(CLI::PositiveNumber);
+  starter.add_option("--vehicle", new_.vehicle, "vehicle file: a whole vehicle in place of one wheel")
+      ->excludes(tire)
+      ->excludes(load);
+}
 
 void CommandLine::add_runs() {
   CLI::App& run = add("run", "run a scenario; prints the folder that holds the results",
@@ -384,16 +447,16 @@ void CommandLine::add_questions() {
   validate.get_option("SCENARIO")->description("scenario file, or vehicle file (JSON)");
   validate.add_flag("--json", typed_.json, "print JSON");
 
-  add_scenario(add("ranks", "list which MPI rank does what, and how to start the ranks by hand",
-                   [this] { return ranks_command(typed_, {argv_, argv_ + argc_}); }),
-               typed_);
+  CLI::App& ranks = add("ranks",
+                        "list which MPI rank does what, and how to start the ranks by hand; or print a batch script",
+                        [this] { return ranks_command(typed_, slurm_, {argv_, argv_ + argc_}); });
+  add_scenario(ranks, typed_);
+  add_slurm_options(ranks, typed_, slurm_);
 
-  add("explain", "explain a scenario key; without KEY, list all keys",
-      [this] {
-        std::cout << scenario::explain(typed_.key);
-        return ExitCode::done;
-      })
-      .add_option("KEY", typed_.key, "dotted path, for example terrain.cohesion");
+  add("explain", "explain a scenario key; without KEY, list all keys", [this] {
+    std::cout << scenario::explain(typed_.key);
+    return ExitCode::done;
+  }).add_option("KEY", typed_.key, "dotted path, for example terrain.cohesion");
 }
 
 void CommandLine::add_virtual_tests() {
@@ -408,21 +471,24 @@ void CommandLine::add_virtual_tests() {
   add_scenario(soil, typed_);
   add_soil_options(soil, soil_);
 
-  CLI::App& press = add("press", "press the tire of a scenario on a plate or a cleat, statically; prints the folder",
-                        [this] { return press_command(load(typed_), press_); });
+  CLI::App& press =
+      add("press", "press the tire of a scenario on a plate or a cleat, statically; prints the folder",
+          [this] { return press_command(load(typed_), press_); });
   add_scenario(press, typed_);
   add_press_options(press, press_);
 }
 
 void CommandLine::add_vehicles() {
-  CLI::App& kc = add("kc",
-                     "move the suspensions of a vehicle: camber, toe, roll centre, rates and more against travel and "
-                     "steering; prints the folder",
-                     [this] {
-                       kinematics_.plots = !typed_.no_plots;
-                       return kinematics_command(kinematics_);
-                     });
-  kc.add_option("VEHICLE", kinematics_.vehicle, "vehicle file (JSON), as given or in vehicle/data/")->required();
+  CLI::App& kc =
+      add("kc",
+          "move the suspensions of a vehicle: camber, toe, roll centre, rates and more against travel and "
+          "steering; prints the folder",
+          [this] {
+            kinematics_.plots = !typed_.no_plots;
+            return kinematics_command(kinematics_);
+          });
+  kc.add_option("VEHICLE", kinematics_.vehicle, "vehicle file (JSON), as given or in vehicle/data/")
+      ->required();
   CLI::Option* out = kc.add_option("--out", kinematics_.out,
                                    "new folder for the results (default: results/<vehicle>-kc-NNN here)");
   kc.add_flag("--overwrite", kinematics_.overwrite, "let --out replace the results of an earlier run");
@@ -430,7 +496,8 @@ void CommandLine::add_vehicles() {
                 "travel of the wheels up and down, m (default: a fifth of the smallest tire's radius)");
   kc.add_option("--points", kinematics_.points, "points of each motion")->capture_default_str();
   kc.add_flag("--no-plots", typed_.no_plots, "make no plots; 'furrow report' makes them later");
-  CLI::Option* csv = kc.add_flag("--csv", kinematics_.csv, "print the table and make no folder")->excludes(out);
+  CLI::Option* csv =
+      kc.add_flag("--csv", kinematics_.csv, "print the table and make no folder")->excludes(out);
   kc.add_flag("--json", kinematics_.json, "print table and figures as JSON and make no folder")
       ->excludes(out)
       ->excludes(csv);
@@ -441,7 +508,8 @@ void CommandLine::add_studies() {
                         [this] { return sweep_command(sweep_); });
   sweep.add_option("STUDY", sweep_.study, "study file (JSON)")->required();
   sweep.add_option("--out", sweep_.out, "folder of the study (default: results/<study> here)");
-  sweep.add_option("--jobs", sweep_.jobs, "runs at once, each with its share of the cores")->capture_default_str();
+  sweep.add_option("--jobs", sweep_.jobs, "runs at once, each with its share of the cores")
+      ->capture_default_str();
 
   CLI::App& report = add("report",
                          "show a finished run: PNG files and report.html, a page with plots and 3-D playback",
@@ -451,6 +519,15 @@ void CommandLine::add_studies() {
   report.add_option("--out", typed_.out, "folder for the files (default: DIR); required with several runs");
   report.add_option("--soil", typed_.soil,
                     "soil.json of 'furrow soil': add what soil theory expects to the run's result");
+
+  CLI::App& events = add("events", "tell what happened in a vehicle's run, and compare its axles", [this] {
+    events_.directory = typed_.directory;
+    return events_command(events_);
+  });
+  events.add_option("DIR", typed_.directory, "folder of the run")->required();
+  events.add_option("--from", events_.from, "beginning of the means, s (default: where they are steady)");
+  events.add_option("--to", events_.to, "their end, s (default: the end of the run)");
+  events.add_flag("--json", events_.json, "print JSON");
 }
 
 void CommandLine::add_benches() {

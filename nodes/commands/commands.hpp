@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -47,6 +48,16 @@ bool runs_as_rank(int argc, char** argv);
 /// @returns false when nobody ended this rank meanwhile: then it should say it, too
 bool first_rank_speaks();
 
+struct SlurmArguments {
+  int nodes = 1;
+  int cores_per_node = 0;  // 0: whole nodes, whatever they have
+  std::string partition, time, account;  // empty: as the cluster has it
+  std::filesystem::path out;             // empty: results/<scenario>-job<number of the job>
+};
+
+/// `furrow ranks --slurm`: a batch script (slurm.cpp). @throws Error(bad_input)
+std::string slurm_script(const scenario::Scenario& scenario, const SlurmArguments& job, const Settings& settings);
+
 struct ReportArguments {
   std::vector<std::filesystem::path> runs;  // one: its plots and page; several: a page that compares them
   std::filesystem::path out = {};           // folder of what is made; empty: that of the run
@@ -57,6 +68,15 @@ struct ReportArguments {
 std::vector<std::filesystem::path> make_report(const ReportArguments& report);
 /// The same after a command whose results stand without plots: what goes wrong is a warning.
 std::vector<std::filesystem::path> make_report_or_warn(const std::filesystem::path& run);
+
+struct EventsArguments {
+  std::filesystem::path directory;
+  std::optional<double> from, to;  // window of the means, s
+  bool json = false;
+};
+
+/// `furrow events` (events.cpp). @throws Error
+ExitCode events_command(const EventsArguments& arguments);
 
 struct SweepArguments {
   std::filesystem::path study;
@@ -109,6 +129,19 @@ struct KinematicsArguments {
 ExitCode kinematics_command(const KinematicsArguments& arguments);
 /// `furrow validate` of a vehicle's file (vehicle.cpp). @throws Error
 ExitCode validate_vehicle(const std::string& name, bool json);
+
+/// `furrow list` (catalogue.cpp). @param only a kind, or empty: all @throws Error
+ExitCode list_command(const std::string& only, bool json);
+
+struct NewArguments {
+  std::filesystem::path name;
+  std::string tire, soil, vehicle;  // files; empty: see scenario::StarterOptions
+  bool rigid = false;
+  std::optional<double> load;  // of the wheel, N
+};
+
+/// `furrow new` (catalogue.cpp). @throws Error
+ExitCode new_command(const NewArguments& arguments);
 
 /// `furrow bed` (commands_bed.cpp). @throws Error
 ExitCode bed_command(const scenario::Scenario& scenario);

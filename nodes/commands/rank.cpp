@@ -137,7 +137,7 @@ std::filesystem::path agree_on_directory(Transport& transport, const scenario::S
   if (resume) require_same_start(arguments.out, *resume);
   const RunFolder folder{std::filesystem::absolute(made->path()).string()};
   for (int k = 0; k < transport.tire_count(); ++k) send(transport, Address{Role::tire, k}, folder);
-  send(transport, Address{Role::terrain, 0}, folder);
+  for (int k = 0; k < transport.terrain_ranks(); ++k) send(transport, Address{Role::terrain, k}, folder);
   return made->path();
 }
 
@@ -213,7 +213,7 @@ void read_task(const RunArguments& arguments, Task& task) try {
 /// A run that is over leaves nothing to do: told as `furrow resume` tells it without a launcher.
 void tell_finished(const checkpoint::ResumePlan& plan, const RunArguments& arguments) {
   std::cerr << fmt::format("furrow: {} has come to its end at {:g} s, there is nothing to do\n",
-                           arguments.out.string(), plan.scenario.run.end);
+                           arguments.out.string(), plan.ended);
   std::cout << arguments.out.string() << std::endl;
 }
 

@@ -1,5 +1,6 @@
 // The last lines of a run: what it found, from its summary.
 #include <cmath>
+#include <map>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -123,6 +124,43 @@ std::string subject_lines(const json& summary, double average_from) {
   return text;
 }
 
+/// Of a run that came near a wall.
+std::string end_lines(const json& summary, const scenario::Scenario& scenario) {
+  const std::string reason = summary.value("end_reason", std::string("run_end"));
+  if (reason == "run_end") return "";
+  std::string text = fmt::format(
+      "furrow: the run ended at {:g} s, before {:g} s: a tire came near {} wall (rig.stop_before_wall)\n",
+      number(summary, "end_time_s"), scenario.run.end, reason == "end_wall" ? "the end" : "a side");
+  if (number(summary, "average_from_s") != scenario.run.average_from)
+    text += fmt::format("furrow: so means are from {:.3g} s on, not from run.average_from = {:g} s\n",
+                        number(summary, "average_from_s"), scenario.run.average_from);
+  return text;
+}
+
+/// Of each kind of event how often it came, where first, and how long in all.
+std::string event_lines(const json& summary) {
+  struct Kind {
+    int count = 0;
+    double first = 0.0, time = 0.0;
+    std::string wheel;
+  };
+  std::map<std::string, Kind> kinds;
+  for (const json& event : summary.value("events", json::array())) {
+    Kind& kind = kinds[event.value("event", std::string("?"))];
+    if (kind.count++ == 0) {
+      kind.first = number(event, "from_s");
+      if (event.contains("wheel")) kind.wheel = fmt::format(", wheel {}", event.value("wheel", 0));
+    }
+    const double to = number(event, "to_s");
+    kind.time += (std::isfinite(to) ? to : number(summary, "end_time_s")) - number(event, "from_s");
+  }
+  std::string text;
+  for (const auto& [name, kind] : kinds)
+    text += fmt::format("furrow: {}: {} times, {:.3g} s in all, first at {:g} s{}\n", name, kind.count, kind.time,
+                        kind.first, kind.wheel);
+  return text;
+}
+
 }  // namespace
 
 std::string expected_text(const scenario::ExpectedResult& expected, int beds, double pull, double sinkage,
@@ -176,7 +214,8 @@ std::string result_text(const std::filesystem::path& run, const scenario::Scenar
         "1/{:.0f} "
         "of the step\n",
         added, 100.0 * number(summary, "substeps_refined_share"), number(summary, "substeps_most_parts"));
-  text += subject_lines(summary, scenario.run.average_from);
+  text += subject_lines(summary, number(summary, "average_from_s"));
+  text += end_lines(summary, scenario) + event_lines(summary);
   text += accounts_line(summary);
   text += fmt::format("furrow: {:.1f} s for {:g} simulated s, {:.1f} s to prepare the bed{}",
                       number(summary, "wall_s"), number(summary, "simulated_s"),

@@ -1,6 +1,7 @@
 // `furrow run` and `furrow resume` outside MPI: check first, then have the ranks started and watched, then tell the
 // result.
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 
 #include <fmt/format.h>
@@ -138,6 +139,20 @@ ExitCode supervise_run(const scenario::Scenario& scenario, launch::RunDirectory&
   return result.code;
 }
 
+/// srun without MPI starts as many supervisors as ranks were wanted: they would fight for the folder.
+void refuse_tasks_without_mpi() {
+  const char* tasks = std::getenv("SLURM_STEP_NUM_TASKS");
+  if (!tasks || std::atoi(tasks) < 2) return;
+  const char* task = std::getenv("SLURM_PROCID");
+  const Error error = input_error(
+      "srun", "",
+      fmt::format("started {} tasks that know nothing of MPI, expected srun --mpi=pmix, or furrow run "
+                  "without srun: it starts its ranks by itself",
+                  tasks));
+  if (task && std::atoi(task) > 0 && first_rank_speaks()) std::exit(static_cast<int>(error.code()));
+  throw error;
+}
+
 }  // namespace
 
 void require_launch(const scenario::Scenario& scenario) {
@@ -149,6 +164,7 @@ void require_launch(const scenario::Scenario& scenario) {
 }
 
 ExitCode run_supervised(const RunArguments& arguments) {
+  refuse_tasks_without_mpi();
   const scenario::Scenario scenario = scenario::load_scenario(arguments.scenario, arguments.settings);
   for (const std::string& warning : scenario.warnings) print_warning(warning);
   require_launch(scenario);
@@ -159,13 +175,14 @@ ExitCode run_supervised(const RunArguments& arguments) {
 }
 
 ExitCode resume_supervised(const RunArguments& arguments) {
+  refuse_tasks_without_mpi();
   launch::RunDirectory directory(arguments.out);
   const checkpoint::ResumePlan plan = checkpoint::plan_resume(directory.path(), arguments.settings);
   for (const auto* warnings : {&plan.scenario.warnings, &plan.warnings})
     for (const std::string& warning : *warnings) print_warning(warning);
   if (plan.finished) {
     std::fprintf(stderr, "furrow: %s has come to its end at %g s, there is nothing to do\n",
-                 directory.path().c_str(), plan.scenario.run.end);
+                 directory.path().c_str(), plan.ended);
     std::cout << directory.path().string() << "\n";
     return ExitCode::done;
   }

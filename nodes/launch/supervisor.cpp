@@ -57,19 +57,19 @@ std::string signal_name(int signal) {
   return fmt::format("killed by signal {} ({})", signal, name ? name : "unknown");
 }
 
-std::vector<std::string> mpirun_command(const Launch& launch) {
+std::vector<std::string> launcher_command(const Launch& launch) {
   FURROW_ASSERT(!launch.ranks.empty(), launch.ranks.size());
-  std::vector<std::string> command{find_mpirun().string(),
-                                   "--oversubscribe",
-                                   "--bind-to",
-                                   "none",
-                                   "-n",
-                                   std::to_string(launch.ranks.size())};
-  // Ranks on other machines of an allocation do not inherit the environment.
-  for (const char* variable : {kSupervisedVariable, "OMP_WAIT_POLICY", "OPENBLAS_NUM_THREADS"}) {
-    command.push_back("-x");
-    command.push_back(variable);
+  const std::filesystem::path launcher = find_mpirun();
+  std::vector<std::string> command{launcher.string()};
+  if (launcher.filename() == "srun") {  // hands the environment on
+    command.insert(command.end(), {"--mpi=pmix", "-K1", "--cpu-bind=none", "--overcommit"});
+  } else {
+    command.insert(command.end(), {"--oversubscribe", "--bind-to", "none"});
+    // Ranks on other machines of an allocation do not inherit the environment.
+    for (const char* variable : {kSupervisedVariable, "OMP_WAIT_POLICY", "OPENBLAS_NUM_THREADS"})
+      command.insert(command.end(), {"-x", variable});
   }
+  command.insert(command.end(), {"-n", std::to_string(launch.ranks.size())});
   std::error_code error;
   command.push_back(std::filesystem::read_symlink("/proc/self/exe", error).string());
   command.insert(command.end(), launch.arguments.begin(), launch.arguments.end());
@@ -171,7 +171,7 @@ void Supervisor::start() {
   const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
   // When this process is killed the ranks save their state and stop: mpirun hands USR1 on at once, and TERM after two
   // seconds in which they would go on.
-  child_ = start_child({.command = mpirun_command(launch_),
+  child_ = start_child({.command = launcher_command(launch_),
                         .in = nothing,
                         .out = out_.write,
                         .err = err_.write,

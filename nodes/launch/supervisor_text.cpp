@@ -1,5 +1,8 @@
 #include "nodes/launch/supervisor_text.hpp"
 
+#include <csignal>
+#include <cstring>
+
 #include <algorithm>
 #include <regex>
 
@@ -13,6 +16,13 @@ constexpr std::size_t kMaxLine = 2000;  // characters: a search in a longer one 
 bool is_rule(std::string_view line) {
   return line.size() > 10 &&
          std::all_of(line.begin(), line.end(), [](char c) { return c == '-' || c == '='; });
+}
+
+/// The signal that strsignal calls so; 0: none.
+int signal_called(const std::string& name) {
+  for (int signal = 1; signal < NSIG; ++signal)
+    if (const char* known = strsignal(signal); known && name == known) return signal;
+  return 0;
 }
 
 std::string trimmed(std::string_view line) {
@@ -29,6 +39,13 @@ void LauncherText::add(std::string_view line) {
   std::match_results<std::string_view::const_iterator> found;
   if (std::regex_search(line.begin(), line.end(), found, kDead)) {
     if (!lost_) lost_ = LostRank{std::stoi(found[1].str()), std::stoi(found[2].str())};
+    return;
+  }
+  // "srun: error: node7: task 2: Killed"
+  static const std::regex kDeadTask("srun: error: .*: task ([0-9]+): ([A-Za-z ]+)");
+  if (std::regex_search(line.begin(), line.end(), found, kDeadTask)) {
+    if (const int signal = signal_called(trimmed(found[2].str())); signal > 0 && !lost_)
+      lost_ = LostRank{std::stoi(found[1].str()), signal};
     return;
   }
   const std::string text = trimmed(line);

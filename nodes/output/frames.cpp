@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <regex>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -30,6 +31,15 @@ std::vector<float> flatten(const std::vector<Vec3>& vectors) {
   for (const Vec3& v : vectors)
     for (int i = 0; i < 3; ++i) flat.push_back(static_cast<float>(v[i]));
   return flat;
+}
+
+void put(Hdf5Writer& file, const std::string& name, std::span<const float> values,
+         const std::vector<std::string>& axes, const std::string& units) {
+  std::vector<hsize_t> shape{values.size()};
+  if (axes.size() == 2) shape = {values.size() / 3, 3};
+  file.put(name, values, shape);
+  file.attribute_of(name, "units", units);
+  file.lay_along(name, axes);
 }
 
 }  // namespace
@@ -63,11 +73,16 @@ void write_tire_frame(const std::filesystem::path& run, int tire, std::int64_t i
 
   Hdf5Writer file(new_frame(run, {fmt::format("tire{}", tire), index}));
   file.attribute("time_s", time);
-  file.put("position", flatten(surface.position), {count, 3});
+  file.put_axis("node", count);
+  file.put_axis("face", mesh.triangles.size());
+  file.put_axis("xyz", 3);
+  file.put_axis("corner", 3);
+  put(file, "position", flatten(surface.position), {"node", "xyz"}, "m");
   fault_point("frame");
-  file.put("velocity", flatten(surface.velocity), {count, 3});
-  file.put("force", flatten(dense), {count, 3});
+  put(file, "velocity", flatten(surface.velocity), {"node", "xyz"}, "m/s");
+  put(file, "force", flatten(dense), {"node", "xyz"}, "N");
   file.put("triangle", triangles, {mesh.triangles.size(), 3});
+  file.lay_along("triangle", {"face", "corner"});
   file.finish();
 }
 
@@ -79,10 +94,12 @@ void write_terrain_frame(const std::filesystem::path& run, std::int64_t index, d
   if (count == 0) return;
   Hdf5Writer file(new_frame(run, {"terrain", index}));
   file.attribute("time_s", time);
-  file.put("position", frame.position, {count, 3});
+  file.put_axis("grain", count);
+  file.put_axis("xyz", 3);
+  put(file, "position", frame.position, {"grain", "xyz"}, "m");
   fault_point("frame");
-  file.put("speed", frame.speed, {count});
-  file.put("radius", frame.radius, {count});
+  put(file, "speed", frame.speed, {"grain"}, "m/s");
+  put(file, "radius", frame.radius, {"grain"}, "m");
   file.finish();
 }
 

@@ -1,7 +1,7 @@
 // Frames: what the tire and the terrain looked like at one instant, one HDF5 file each under <run>/frames/.
 //   tire<k>_<index>.h5     /position (n, 3) m, /velocity (n, 3) m/s, /force (n, 3) N, /triangle (m, 3)
 //   terrain_<index>.h5     /position (n, 3) m, /speed (n) m/s, /radius (n) m
-// Attribute `time_s` on the file.
+// Attribute `time_s` on the file, `units` on the datasets; they lie along the axes node, face, grain, xyz and corner.
 #pragma once
 
 #include <cstdint>

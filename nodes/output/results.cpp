@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
-
 #include "nodes/launch/run_list.hpp"
+#include "nodes/output/column_labels.hpp"
 #include "nodes/output/frames.hpp"
 #include "nodes/output/xdmf.hpp"
 #include "protocol/core/assert.hpp"
@@ -22,12 +21,56 @@ const checkpoint::SeriesMark& mark_of(const checkpoint::ResumePoint& resume, con
   throw io_error(resume.folder.string(), "knows no table of '" + subject + "'");
 }
 
-void put_heights(Hdf5Writer& file, const std::string& name, const HeightField& field) {
+void label(Hdf5Writer& file, const std::string& dataset, const std::string& units,
+           const std::string& long_name) {
+  file.attribute_of(dataset, "units", units);
+  file.attribute_of(dataset, "long_name", long_name);
+}
+
+/// A coordinate of `count` cells.
+void put_cells(Hdf5Writer& file, const std::string& name, double first, double cell, int count,
+               const std::string& long_name) {
+  std::vector<double> places;
+  for (int i = 0; i < count; ++i) places.push_back(first + i * cell);
+  file.put(name, places, {places.size()});
+  label(file, name, "m", long_name);
+  file.lay_along(name, {name});
+}
+
+/// terrain/x_m, terrain/y_m and terrain/grid, along which the surfaces before and after lie.
+void put_height_axes(Hdf5Writer& file, const HeightField& field) {
+  if (field.nx == 0) return;
+  put_cells(file, "terrain/x_m", field.x0, field.cell, field.nx, "place of the cell's centre, forward");
+  put_cells(file, "terrain/y_m", field.y0, field.cell, field.ny, "place of the cell's centre, to the left");
+  file.put_axis("terrain/grid", 3);
+}
+
+/// @pre their axes were put for a field on the same grid
+void put_heights(Hdf5Writer& file, const std::string& when, const HeightField& field) {
+  const std::string name = "terrain/height_" + when;
   FURROW_ASSERT(field.height.size() == static_cast<std::size_t>(field.nx) * field.ny, name,
                 field.height.size(), field.nx, field.ny);
   if (field.nx == 0) return;
   file.put(name, field.height, {static_cast<hsize_t>(field.nx), static_cast<hsize_t>(field.ny)});
+  label(file, name, "m", "height of the surface " + when + " the run");
+  file.lay_along(name, {"terrain/x_m", "terrain/y_m"});
   file.put(name + "_grid", std::vector<double>{field.x0, field.y0, field.cell}, {3});
+  label(file, name + "_grid", "m", "x and y of the first cell's centre, size of a cell");
+  file.lay_along(name + "_grid", {"terrain/grid"});
+}
+
+/// series/<subject>/<column>, along the column that is the table's time.
+void put_table(Hdf5Writer& file, const Table& table) {
+  const std::string group = "series/" + table.subject + "/", time = group + "time_s";
+  for (const Column& column : table.columns) {
+    const std::string name = group + column.name;
+    file.put(name, table.column(column.name), {table.lines()});
+    label(file, name, units_label(column.unit), long_name(column));
+    if (const std::string methods = cell_methods(column); !methods.empty() && name != time)
+      file.attribute_of(name, "cell_methods", methods);
+  }
+  if (!table.find("time_s")) return;
+  for (const Column& column : table.columns) file.lay_along(group + column.name, {time});
 }
 
 }  // namespace
@@ -95,17 +138,17 @@ void Results::add(int table, std::span<const double> line) {
 
 void Results::write_hdf5(std::span<const FinalReport> reports) const {
   // series/<subject>/<column>: as the subject's CSV file, same names. terrain/height_before, height_after: (nx, ny) m,
-  // NaN where no grain is; terrain/height_*_grid: x and y of the first cell's centre and the cell's size, m.
+  // NaN where no grain is, over terrain/x_m (nx), terrain/y_m (ny); terrain/height_*_grid: x and y of the first cell's
+  // centre and the cell's size, m.
   Hdf5Writer file(directory_ / "results.h5");
   file.attribute("scenario", scenario_.name);
   file.attribute("scenario_digest", scenario_.digest);
-  for (const Table& table : tables_)
-    for (const Column& column : table.columns)
-      file.put(fmt::format("series/{}/{}", table.subject, column.name), table.column(column.name),
-               {table.lines()});
+  for (const Table& table : tables_) put_table(file, table);
   if (!reports.empty()) {
-    put_heights(file, "terrain/height_before", reports.back().height_before);
-    put_heights(file, "terrain/height_after", reports.back().height_after);
+    const FinalReport& terrain = reports[1 + scenario_.tires.size()];  // of several ranks the leader's
+    put_height_axes(file, terrain.height_after);
+    put_heights(file, "before", terrain.height_before);
+    put_heights(file, "after", terrain.height_after);
   }
   file.finish();
 }
@@ -114,7 +157,7 @@ SummaryInput Results::summary_input(const RunEnd& end) const {
   std::int64_t steps = std::llround(end.time / scenario_.run.step);
   if (resume_) steps = std::max(steps, resume_->manifest.step);
   return {scenario_, cards_, setup_,
-          tables_,   end,    checkpoint::segments_until(steps, end.wall, cards_.back().threads, resume_)};
+          tables_,   end,    checkpoint::segments_until(steps, end.wall, cards_[1 + scenario_.tires.size()].threads, resume_)};
 }
 
 void Results::finish(const RunEnd& end, bool stopped) {

@@ -10,6 +10,7 @@
 
 #include "nodes/checkpoint/checkpoint.hpp"
 #include "nodes/output/accounts.hpp"
+#include "nodes/output/end_reason.hpp"
 #include "nodes/output/series_builder.hpp"
 #include "nodes/output/table.hpp"
 #include "nodes/scenario/scenario.hpp"
@@ -33,6 +34,8 @@ struct RunEnd {
   const Accounts& accounts;
   double time = 0.0;                     // simulated, s
   double wall = 0.0;                     // of this segment, s
+  EndReason reason = EndReason::run_end;
+  rigs::RigFindings findings = {};
 };
 
 /// Why a run failed.

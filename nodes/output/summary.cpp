@@ -23,6 +23,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kMaxLate =
     0.05;  // of load × speed: energy error of the interface of a run that can be trusted
+constexpr double kLeastWindow = 0.1;        // of the planned averaging window, that a run must have come to
 constexpr double kLeastRolled = 1e-3;       // of the radius: a wheel that went less stands
 constexpr char kPull[] = "drawbar_pull_N";  // the rig's, if it has one
 
@@ -108,7 +109,7 @@ void add_rut(const WheelInput& in, Json& json) {
   terrain::Rut rut;
   rut.missing = in.rows.empty() ? "the series has no lines" : "the run failed before its end";
   if (!in.rows.empty() && !in.run.end.reports.empty()) {
-    const FinalReport& terrain = in.run.end.reports.back();
+    const FinalReport& terrain = in.run.end.reports[1 + in.run.scenario.tires.size()];
     terrain::RutOptions options;
     options.direction = in.end.heading.x() < 0.0 ? -1.0 : 1.0;
     options.lateral = scenario::describe_rig(in.run.scenario).wheels[in.wheel].lateral;
@@ -174,10 +175,10 @@ Json rank_table(const SummaryInput& in) {
     const NodeCard& card = in.cards[i];
     const double busy = r.compute_s + r.communicate_s;
     ranks.push_back({{"rank", i},
-                     {"node", to_string(r.self)},
+                     {"node", to_string(r.self, in.scenario.terrain_ranks)},
                      {"kind", card.node_kind},
                      {"threads", r.threads},
-                     {"size", r.self.role == Role::terrain ? in.setup.grains : card.size},  // grains, unknowns of a tire
+                     {"size", r.self.role == Role::terrain ? r.grains : card.size},  // grains, unknowns of a tire
                      {"step_s", in.scenario.run.step / std::max(1, card.substeps)},
                      {"cpu_s", r.cpu_s},
                      {"compute_s", r.compute_s},
@@ -228,6 +229,22 @@ Json column_figures(const Table& table, std::size_t first) {
   return json;
 }
 
+/// Where a run ended so early that little is left of its averaging window, the window begins after the same share of it.
+double average_from(const SummaryInput& in) {
+  const scenario::RunOptions& run = in.scenario.run;
+  const bool enough = in.end.time - run.average_from >= kLeastWindow * (run.end - run.average_from);
+  return in.failure || enough ? run.average_from : run.average_from * in.end.time / run.end;
+}
+
+/// What a rig found beside its columns.
+void add_findings(const rigs::RigFindings& findings, Json& json) {
+  for (const rigs::RigEvent& event : findings.events) {
+    json["events"].push_back({{"event", event.what}, {"from_s", event.from}, {"to_s", json_number(event.to)}});
+    if (event.wheel >= 0) json["events"].back()["wheel"] = event.wheel;
+  }
+  for (const auto& [name, value] : findings.figures) json["figures"][name] = json_number(value);
+}
+
 Json wheel_summary(const WheelInput& in) {
   Json json;
   const rigs::WheelDescription wheel = scenario::describe_rig(in.run.scenario).wheels[in.wheel];
@@ -238,7 +255,7 @@ Json wheel_summary(const WheelInput& in) {
   json["tire_radius_m"] = in.card().tire_radius;
   json["tread_width_m"] = in.card().tire_width;
   json["surface_height_m"] = json_number(in.run.setup.mean_height.at(in.wheel));
-  const Window window = averaging_window(in.table, in.rows, in.run.scenario.run.average_from,
+  const Window window = averaging_window(in.table, in.rows, average_from(in.run),
                                          in.run.scenario.tires[in.wheel]->describe().facets);
   add_mobility(in, window, json);
   add_plumbing(in, json);
@@ -298,8 +315,12 @@ std::string summary_text(const SummaryInput& in) {
                       {"time_s", in.end.time}};
   else
     json["state_hash"] = state.hex();
+  if (!in.failure) json["end_reason"] = to_string(in.end.reason);
+  json["end_time_s"] = in.end.time;
+  json["average_from_s"] = average_from(in);
   const terrain::TerrainDescription terrain = in.scenario.terrain->describe();
   json["terrain_engine"] = terrain.engine;
+  if (in.scenario.terrain_ranks > 1) json["terrain_ranks"] = in.scenario.terrain_ranks;
   if (!terrain.law.empty()) json["law"] = terrain.law;
   Json wheels = Json::array();
   for (std::size_t k = 0; k < in.end.wheels.size(); ++k)
@@ -307,16 +328,17 @@ std::string summary_text(const SummaryInput& in) {
         wheel_summary({in, static_cast<int>(k), in.tables[k], wheel_rows(in.tables[k]), in.end.wheels[k]}));
   if (wheels.size() == 1) json.update(wheels.front());
   if (!in.end.wheels.empty())
-    json["accounts"] = accounts_json(in.end.accounts, in.tables.back(), in.scenario.run.average_from);
+    json["accounts"] = accounts_json(in.end.accounts, in.tables.back(), average_from(in));
   add_cost(in, wheel_rows(in.tables.front()), json);
   json["wheels"] = wheels;
   for (const Table& table : in.tables.subspan(std::min(in.scenario.tires.size(), in.tables.size()))) {
     if (table.subject == kAccountsTable) continue;
     const std::vector<double> times = table.column("time_s");
     std::size_t first = 1;
-    while (first < times.size() && times[first] < in.scenario.run.average_from) ++first;
+    while (first < times.size() && times[first] < average_from(in)) ++first;
     json["subjects"][table.subject] = column_figures(table, first);
   }
+  add_findings(in.end.findings, json);
   return json.dump(2) + "\n";
 }
 

@@ -99,7 +99,7 @@ checkpoint::CheckpointManifest CheckpointWriter::manifest(std::int64_t step,
         checkpoint::unfinished_checkpoint(context_.directory, step) / part.file, ignored));
   m.frames = frames_;
   m.segments =
-      checkpoint::segments_until(step, wall_clock() - begin_, cards_.back().threads, context_.resume);
+      checkpoint::segments_until(step, wall_clock() - begin_, cards_[1 + scenario_.tires.size()].threads, context_.resume);
   m.write_s = wall_clock() - write_begin_;
   return m;
 }

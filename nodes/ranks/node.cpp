@@ -36,14 +36,15 @@ checkpoint::FrameClock frame_clock(const scenario::Scenario& scenario, const Run
 }
 
 std::unique_ptr<Node> make_node(const scenario::Scenario& scenario, Address self, int threads,
-                                std::function<void()> alive) {
+                                std::function<void()> alive, std::shared_ptr<RankGroup> group) {
   switch (self.role) {
     case Role::rig:
       return make_rig_node(scenario);
     case Role::tire:
       return make_tire_node(scenario, self.index, std::move(alive));
     case Role::terrain:
-      return make_terrain_node(scenario, threads);
+      return self.index == 0 ? make_terrain_node(scenario, threads, std::move(group))
+                             : make_terrain_follower(scenario, threads, std::move(group));
   }
   throw Error(ExitCode::rank_lost, "unknown role");
 }

@@ -4,7 +4,8 @@
 //
 // synchronize sends everything before it receives anything, so that no order of ranks can deadlock. The rig orders
 // checkpoints and stops: at t_n it tells the tires, at t_{n+1} they tell the terrain, and all save at t_{n+2}, before
-// they synchronize there. Between the steps nothing is in flight, so that the nodes' states are all there is.
+// they synchronize there. Between the steps nothing is in flight, so that the nodes' states are all there is. In the
+// same way it tells the step at which a run is complete before its planned end; who knows it keeps it in checkpoints.
 #pragma once
 
 #include <memory>
@@ -16,6 +17,7 @@
 #include "nodes/ranks/run_context.hpp"
 #include "nodes/scenario/scenario.hpp"
 #include "protocol/core/archive.hpp"
+#include "protocol/core/rank_group.hpp"
 #include "protocol/transport.hpp"
 
 namespace furrow::ranks {
@@ -38,6 +40,9 @@ class Node {
   /// What falls due once the interval after the synchronization just done has been advanced.
   virtual Order due() const = 0;
 
+  /// The step at which the run is complete before its planned end, as far as this node knows.
+  virtual std::int64_t ends_at() const { return kNotYet; }
+
   /// Sends (tire, terrain) or gathers and writes (rig) the results. `stopped`: before the planned end.
   virtual void finish(Transport& transport, FinalReport own, bool stopped) = 0;
 
@@ -56,15 +61,21 @@ class Node {
 std::unique_ptr<Node> make_rig_node(const scenario::Scenario& scenario);
 std::unique_ptr<Node> make_tire_node(const scenario::Scenario& scenario, int index,
                                      std::function<void()> alive);
-std::unique_ptr<Node> make_terrain_node(const scenario::Scenario& scenario, int threads);
+/// @param group of a terrain of several ranks, whose leader this is; null: it is the only one
+std::unique_ptr<Node> make_terrain_node(const scenario::Scenario& scenario, int threads,
+                                        std::shared_ptr<RankGroup> group = nullptr);
+/// A rank of a terrain that is not its leader, and follows it.
+std::unique_ptr<Node> make_terrain_follower(const scenario::Scenario& scenario, int threads,
+                                            std::shared_ptr<RankGroup> group);
 
 /// The node that `self` is in this scenario.
 /// @param alive  called now and then while it makes itself ready; may throw to stop
+/// @param group  of a terrain of several ranks
 std::unique_ptr<Node> make_node(const scenario::Scenario& scenario, Address self, int threads,
-                                std::function<void()> alive = {});
+                                std::function<void()> alive = {}, std::shared_ptr<RankGroup> group = nullptr);
 
 /// Synchronizes and advances for n = from … to − 1; calls `checkpoint(n)` when one falls due. Ends early when ordered
-/// to.
+/// to, and where the run is complete.
 /// @returns the step it stands at, not yet synchronized there
 std::int64_t run_steps(Node& node, Transport& transport, double step, std::int64_t from, std::int64_t to,
                        output::StepProfile* profile = nullptr,

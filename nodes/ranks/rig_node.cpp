@@ -11,7 +11,9 @@
 #include "nodes/output/profile.hpp"
 #include "nodes/output/results.hpp"
 #include "nodes/output/subject_series.hpp"
+#include "nodes/ranks/early_end.hpp"
 #include "nodes/ranks/node.hpp"
+#include "nodes/ranks/wall_watch.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/clock.hpp"
 
@@ -37,7 +39,7 @@ class RigNode : public Node {
   }
 
   void set_up(Transport& transport, std::span<const NodeCard> cards, const RunContext& context) override {
-    FURROW_ASSERT(cards.size() == static_cast<std::size_t>(rig_->wheel_count()) + 2, cards.size(),
+    FURROW_ASSERT(cards.size() >= static_cast<std::size_t>(rig_->wheel_count()) + 2, cards.size(),
                   rig_->wheel_count());
     context_ = context;
     cards_.assign(cards.begin(), cards.end());
@@ -52,6 +54,9 @@ class RigNode : public Node {
                   std::min(kPlacementShare * cards[1 + k].tire_radius, kMostPlacementGap) +
                   scenario_.drop_height;
     rig_->place(height);
+    const std::optional<terrain::TerrainBounds> bin = scenario_.terrain->describe().bounds;
+    if (bin && scenario_.rig->stop_before_wall() > 0.0)
+      walls_.emplace(*bin, scenario_.rig->stop_before_wall(), wheel_places());
     make_tables();
     check_folder();
     // First of all, as the others begin to write frames once they are placed.
@@ -66,7 +71,7 @@ class RigNode : public Node {
       send(transport, Address{Role::tire, k}, RimMotion{{kPlacement, 0.0}, rig_->rim(k)});
     wrenches_.resize(wheels);
     series_steps_ = scenario_.run.steps_in(scenario_.output.series_interval);
-    if (context.saved) restore(*context.saved);
+    if (context.saved) restore(*context.saved), restore_setup(*context.saved);
     wall_start_ = wall_clock();
     checkpoints_ = {scenario_.checkpoint.wall_interval, wall_start_};
     if (context.resume) time_start_ = time_ = context.resume->manifest.time;
@@ -75,10 +80,11 @@ class RigNode : public Node {
   void synchronize(Transport& transport, const StepHeader& header) override {
     due_ = next_;
     next_ = order(header.step + 2);
+    watch_walls(header.step + 2);
     if (wall_clock() - checked_ > kFolderInterval) check_folder();
     const int wheels = rig_->wheel_count();
     for (int k = 0; k < wheels; ++k)
-      send(transport, Address{Role::tire, k}, RimMotion{header, rig_->rim(k), next_});
+      send(transport, Address{Role::tire, k}, RimMotion{header, rig_->rim(k), next_, ends_at_});
     tires_.resize(wheels);
     for (int k = 0; k < wheels; ++k) {
       tires_[k] = receive_step<SpindleReport>(transport, {Role::tire, k}, header.step);
@@ -105,6 +111,7 @@ class RigNode : public Node {
   }
 
   Order due() const override { return due_; }
+  std::int64_t ends_at() const override { return ends_at_; }
 
   std::vector<checkpoint::SeriesMark> mark_series() override {
     return results_ ? results_->mark_series() : std::vector<checkpoint::SeriesMark>();
@@ -119,7 +126,9 @@ class RigNode : public Node {
     if (context_.profile) launch::add_to_run_list(context_.directory, {"profile.json"});
     if (context_.profile) output::write_profile(context_.directory / "profile.json", reports);
     const std::vector<output::WheelEnd> wheels = wheel_ends();
-    results_->finish({reports, wheels, terrain_, *accounts_, time_, wall_clock() - wall_start_}, stopped);
+    results_->finish({reports, wheels, terrain_, *accounts_, time_, wall_clock() - wall_start_, end_reason_,
+                      rig_->findings()},
+                     stopped);
   }
 
   void fail(ExitCode code, const std::string& text) noexcept override {
@@ -128,7 +137,9 @@ class RigNode : public Node {
       check_folder();  // by now it may be another run's
       std::vector<output::WheelEnd> wheels;
       if (time_ > time_start_) wheels = wheel_ends();
-      results_->fail({{}, wheels, terrain_, *accounts_, time_, wall_clock() - wall_start_}, {code, text});
+      results_->fail({{}, wheels, terrain_, *accounts_, time_, wall_clock() - wall_start_, end_reason_,
+                      rig_->findings()},
+                     {code, text});
     } catch (...) {
       // The failure itself is told; what else went wrong with the disk is not worth hiding it.
     }
@@ -140,6 +151,12 @@ class RigNode : public Node {
     accounts_->save(archive);
   }
 
+  void save_setup(Archive& archive) const override {
+    rig_->save_findings(archive);
+    save_end(archive, ends_at_);
+    if (ends_at_ != kNotYet) archive.put(kEndReason, static_cast<std::int64_t>(end_reason_));
+  }
+
   void restore(const Archive& archive) override {
     rig_->restore(archive);
     for (output::SubjectSeries& series : series_) series.restore(archive);
@@ -149,6 +166,29 @@ class RigNode : public Node {
  private:
   static constexpr Address kSelf{Role::rig, 0};
   static constexpr Address kTerrain{Role::terrain, 0};
+  static constexpr char kEndReason[] = "run/end_reason";  // in the saved state
+
+  void restore_setup(const Archive& archive) {
+    rig_->restore_findings(archive);
+    ends_at_ = saved_end(archive);
+    if (ends_at_ != kNotYet) end_reason_ = static_cast<output::EndReason>(archive.get_int(kEndReason));
+  }
+
+  std::vector<WheelPlace> wheel_places() const {
+    std::vector<WheelPlace> places;
+    for (int k = 0; k < rig_->wheel_count(); ++k)
+      places.push_back({rig_->rim(k).position, rig_->heading(k), cards_[1 + k].tire_radius, cards_[1 + k].tire_width});
+    return places;
+  }
+
+  /// @param step at which all can end when they hear of it now
+  void watch_walls(std::int64_t step) {
+    if (!walls_ || ends_at_ != kNotYet) return;
+    const std::optional<output::EndReason> reason = walls_->near(wheel_places());
+    if (!reason || step >= scenario_.run.steps()) return;
+    ends_at_ = step;
+    end_reason_ = *reason;
+  }
 
   std::vector<output::WheelEnd> wheel_ends() const {
     std::vector<output::WheelEnd> wheels;
@@ -260,6 +300,9 @@ class RigNode : public Node {
   double time_ = 0.0;                                      // simulated, of the last synchronization, s
   TerrainState terrain_;                                   // then
   Order next_ = Order::go_on, due_ = Order::go_on;
+  std::optional<WallWatch> walls_;   // of a bin, if the run is to end before them
+  std::int64_t ends_at_ = kNotYet;
+  output::EndReason end_reason_ = output::EndReason::run_end;
 };
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "protocol/core/clock.hpp"
 #include "protocol/files/archive_file.hpp"
 #include "protocol/files/fault_point.hpp"
+#include "protocol/transport_group.hpp"
 
 namespace furrow::ranks {
 namespace {
@@ -36,7 +37,7 @@ std::int64_t run_steps(Node& node, Transport& transport, double step, std::int64
                        output::StepProfile* profile, const std::function<void(std::int64_t)>& checkpoint) {
   FURROW_ASSERT(step > 0.0, step);
   FURROW_ASSERT(from >= 0 && from <= to, from, to);
-  for (std::int64_t n = from; n < to; ++n) {
+  for (std::int64_t n = from; n < std::min(to, node.ends_at()); ++n) {
     const StepHeader header{n, static_cast<double>(n) * step};
     if (profile) profile->begin(n);
     node.synchronize(transport, header);
@@ -48,7 +49,7 @@ std::int64_t run_steps(Node& node, Transport& transport, double step, std::int64
     if (node.due() != Order::go_on && checkpoint) checkpoint(n + 1);
     if (node.due() == Order::stop) return n + 1;
   }
-  return to;
+  return std::min(to, node.ends_at());
 }
 
 namespace {
@@ -73,7 +74,8 @@ class RunLoop {
       before_ = restore_cost(saved);
       from_ = context_.resume->manifest.step;
     }
-    node_ = make_node(scenario_, transport_.self(), context_.threads, [this] { show_life(); });
+    node_ = make_node(scenario_, transport_.self(), context_.threads, [this] { show_life(); },
+                      make_terrain_group(transport_));
     NodeCard card = node_->card();
     card.threads = context_.threads;
     card.from_step = from_;
@@ -100,11 +102,13 @@ class RunLoop {
     CheckpointWriter checkpoints(scenario_, *node_, transport_, context_, cards, [this] { return cost(); });
     const std::int64_t at =
         run_steps(*node_, transport_, scenario_.run.step, from_, steps, &profile_,
-                  [&](std::int64_t n) { checkpoints.write(n, node_->due() == Order::stop && n < steps); });
-    const bool stopped = at < steps;
+                  [&](std::int64_t n) {
+                    checkpoints.write(n, node_->due() == Order::stop && n < std::min(steps, node_->ends_at()));
+                  });
+    const bool stopped = at < std::min(steps, node_->ends_at());
     if (!stopped) {
-      if (scenario_.checkpoint.at_end && checkpoints.last_step() != steps) checkpoints.write(steps, false);
-      node_->synchronize(transport_, {steps, static_cast<double>(steps) * scenario_.run.step});
+      if (scenario_.checkpoint.at_end && checkpoints.last_step() != at) checkpoints.write(at, false);
+      node_->synchronize(transport_, {at, static_cast<double>(at) * scenario_.run.step});
       transport_.flush();
     }
     FinalReport own;

@@ -12,6 +12,7 @@
 
 #include "nodes/output/frames.hpp"
 #include "nodes/ranks/carried_wrench.hpp"
+#include "nodes/ranks/early_end.hpp"
 #include "nodes/ranks/impulse_ledger.hpp"
 #include "nodes/ranks/saved_forces.hpp"
 #include "nodes/scenario/wheel_geometry.hpp"
@@ -65,7 +66,10 @@ class TireNode : public Node {
     motion_.header = {kPlacement, 0.0};
     send(transport, kTerrain, motion_);
     describe_state();
-    if (context.saved) restore(*context.saved);
+    if (context.saved) {
+      restore(*context.saved);
+      motion_.ends_at = saved_end(*context.saved);
+    }
   }
 
   void synchronize(Transport& transport, const StepHeader& header) override {
@@ -76,6 +80,9 @@ class TireNode : public Node {
     send(transport, kTerrain, motion_);
     rim_ = receive_step<RimMotion>(transport, kRig, header.step);
     next_ = rim_.order;
+    const std::int64_t sent = motion_.ends_at;
+    FURROW_ASSERT(sent == kNotYet || sent == rim_.ends_at, sent, rim_.ends_at);
+    motion_.ends_at = rim_.ends_at;
     forces_ = receive_step<TerrainForces>(transport, kTerrain, header.step).forces;
   }
 
@@ -97,6 +104,7 @@ class TireNode : public Node {
   }
 
   Order due() const override { return due_; }
+  std::int64_t ends_at() const override { return motion_.ends_at; }
   void finish(Transport& transport, FinalReport own, bool) override { send(transport, kRig, own); }
 
   void save(Archive& archive) const override {
@@ -109,6 +117,7 @@ class TireNode : public Node {
   /// The next forces come from the terrain; those that acted last are shown by the frame of the checkpoint's step.
   void save_setup(Archive& archive) const override {
     save_fields(archive, kShown, NodalForces{forces_.vertex, forces_.force});
+    save_end(archive, motion_.ends_at);
   }
 
   void restore(const Archive& archive) override {

@@ -9,6 +9,7 @@
 
 #include "nodes/scenario/wheel_geometry.hpp"
 #include "protocol/core/assert.hpp"
+#include "protocol/messages.hpp"
 
 namespace furrow::scenario {
 
@@ -26,14 +27,18 @@ std::vector<RankEntry> rank_table(const Scenario& s) {
                                   : "as many threads as there are cores left";
   const std::string what = s.terrain->describe().name;
   for (int i = 0; i < s.terrain_ranks; ++i)
-    table.push_back({static_cast<int>(table.size()), "terrain", what + "; " + threads});
+    table.push_back({static_cast<int>(table.size()), to_string(Address{Role::terrain, i}, s.terrain_ranks),
+                     what + "; " + threads});
   return table;
 }
 
 std::string rank_table_text(const Scenario& scenario) {
+  const std::vector<RankEntry> table = rank_table(scenario);
+  std::size_t width = 8;
+  for (const RankEntry& entry : table) width = std::max(width, entry.node.size());
   std::string text;
-  for (const RankEntry& entry : rank_table(scenario))
-    text += fmt::format("  {:>3}  {:<8} {}\n", entry.rank, entry.node, entry.does);
+  for (const RankEntry& entry : table)
+    text += fmt::format("  {:>3}  {:<{}} {}\n", entry.rank, entry.node, width, entry.does);
   return text;
 }
 
@@ -63,7 +68,7 @@ std::string launch_lines(const Scenario& scenario, const std::vector<std::string
   for (const std::string& argument : arguments) tail += " " + shell_quoted(argument);
   const char* as_root = geteuid() == 0 ? " --allow-run-as-root" : "";
   return fmt::format(
-      "mpirun -n {} --oversubscribe --bind-to none{}{}\nsrun -n {} --mpi=pmix --cpu-bind=none{}\n", ranks,
+      "mpirun -n {} --oversubscribe --bind-to none{}{}\nsrun -n {} --mpi=pmix -K1 --cpu-bind=none{}\n", ranks,
       as_root, tail, ranks, tail);
 }
 

@@ -30,6 +30,7 @@ terrain::TerrainContext Scenario::terrain_context() const {
   terrain::TerrainContext context;
   context.step = terrain_step();
   context.seed = run.seed;
+  context.gravity = rig->gravity();
   context.threads = context.settle_threads = settle_threads;
   for (const auto& tire : tires) context.contact_tangents |= tire->options().contact_tangent;
   return context;

@@ -45,6 +45,7 @@ class Checks {
   void tires();
   void tire_options(std::size_t wheel);
   void room();
+  void ranks();
   void bin();
   void start();
   void overlaps();
@@ -171,11 +172,16 @@ void Checks::room() {
   }
 }
 
+void Checks::ranks() {
+  if (s_.terrain_ranks <= terrain_.most_ranks) return;
+  throw wrong("terrain.ranks",
+              fmt::format("is {}, expected {}: engine '{}' runs on {}", s_.terrain_ranks,
+                          terrain_.most_ranks > 1 ? fmt::format("1 to {}", terrain_.most_ranks) : "1",
+                          terrain_.engine, terrain_.most_ranks > 1 ? "no more" : "one rank, on all of its cores"));
+}
+
 void Checks::bin() {
   if (!terrain_.bounds) return;
-  if (rig_.gravity() != standard_gravity())
-    throw wrong("rig.slope", fmt::format("is not 0, expected 0 on {} (terrain.engine '{}'), which lies level",
-                                         terrain_.name, terrain_.engine));
   const double least = kMinGrains * terrain_.grain_radius;
   for (const auto& [key, size] :
        {std::pair{"terrain.length", terrain_.bounds->length}, {"terrain.width", terrain_.bounds->width}})
@@ -193,6 +199,10 @@ void Checks::start() {
   const double length = terrain_.bounds->length;
   for (const rigs::WheelDescription& wheel : describe().wheels) {
     const double radius = wheel.along;
+    if (wheel.stops_before_wall)
+      warn("run.end", fmt::format("the run will end before {} s, where a tire is {} m from the end wall "
+                                  "(rig.stop_before_wall)",
+                                  number_text(s_.run.end), number_text(rig_.stop_before_wall())));
     if (wheel.from - radius < 0.0 || wheel.from + radius > length)
       throw wrong(wheel.start_key,
                   fmt::format("is {} m, expected {:.3f} to {:.3f} m: the tire of radius {} m would stand in "
@@ -258,6 +268,7 @@ void check_scenario(Scenario& scenario, rigs::RigSpec& rig) {
   Checks checks(scenario, rig);
   checks.times();
   checks.rig();
+  checks.ranks();
   checks.bin();
   checks.tires();
   checks.room();

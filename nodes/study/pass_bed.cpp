@@ -2,6 +2,7 @@
 
 #include "nodes/checkpoint/checkpoint.hpp"
 #include "nodes/checkpoint/resume.hpp"
+#include "nodes/checkpoint/run_summary.hpp"
 #include "nodes/scenario/load_scenario.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/archive_file.hpp"
@@ -14,7 +15,7 @@ terrain::dem::RestResult make_pass_bed(const std::filesystem::path& run, double 
   const checkpoint::ResumePoint point = checkpoint::last_checkpoint(run);
   const scenario::Scenario scenario = scenario::load_scenario(run / "scenario.json", {});
   const terrain::dem::DemOptions grains = scenario.grains("only grains keep a rut");
-  if (point.manifest.step != scenario.run.steps())
+  if (point.manifest.step != checkpoint::finished_at(run))
     throw input_error(run.string(), "", "has no checkpoint of its end, expected checkpoint.at_end");
   terrain::dem::RestResult result;
   const Archive state = read_archive(point.folder / checkpoint::part_name({Role::terrain, 0}));

@@ -1,7 +1,11 @@
 #include "protocol/files/hdf5_file.hpp"
 
+#include <hdf5_hl.h>
+
 #include <functional>
 #include <numeric>
+
+#include <fmt/format.h>
 
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
@@ -70,22 +74,62 @@ void Hdf5Writer::put(const std::string& name, std::span<const std::uint8_t> valu
   write(name, values, shape, H5T_NATIVE_UINT8);
 }
 
-void Hdf5Writer::write_attribute(const std::string& name, hid_t type, const void* value) {
+void Hdf5Writer::write_attribute(hid_t object, const std::string& name, hid_t type, const void* value) {
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Handle attribute(H5Acreate2(handle_, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  const Handle attribute(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
   check(attribute >= 0 && H5Awrite(attribute, type, value) >= 0, "cannot write attribute '" + name + "'");
 }
 
 void Hdf5Writer::attribute(const std::string& name, double value) {
-  write_attribute(name, H5T_NATIVE_DOUBLE, &value);
+  write_attribute(handle_, name, H5T_NATIVE_DOUBLE, &value);
 }
 void Hdf5Writer::attribute(const std::string& name, std::int64_t value) {
-  write_attribute(name, H5T_NATIVE_INT64, &value);
+  write_attribute(handle_, name, H5T_NATIVE_INT64, &value);
 }
 void Hdf5Writer::attribute(const std::string& name, const std::string& text) {
+  write_text(handle_, name, text);
+}
+
+void Hdf5Writer::write_text(hid_t object, const std::string& name, const std::string& text) {
   const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type, text.size() + 1);
-  write_attribute(name, type, text.c_str());
+  write_attribute(object, name, type, text.c_str());
+}
+
+void Hdf5Writer::attribute_of(const std::string& dataset, const std::string& name, const std::string& text) {
+  const Handle set(H5Dopen2(handle_, dataset.c_str(), H5P_DEFAULT), H5Dclose);
+  check(set.ok(), "cannot find dataset '" + dataset + "'");
+  write_text(set, name, text);
+}
+
+// The format of netCDF-4 knows a dimension without a variable by the name of its scale, which begins with this text and
+// ends with the length in ten places [NetCDF-4 File Format, "Dimensions", docs.unidata.ucar.edu/netcdf-c].
+void Hdf5Writer::put_axis(const std::string& name, hsize_t length) {
+  const Handle space(H5Screate_simple(1, &length, nullptr), H5Sclose);
+  const Handle timeless(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_obj_track_times(timeless, false);
+  const Handle set(
+      H5Dcreate2(handle_, name.c_str(), H5T_IEEE_F32BE, space, H5P_DEFAULT, timeless, H5P_DEFAULT), H5Dclose);
+  check(set.ok(), "cannot create axis '" + name + "'");
+  const std::string known_as =
+      fmt::format("This is a netCDF dimension but not a netCDF variable.{:10}", length);
+  check(H5DSset_scale(set, known_as.c_str()) >= 0, "cannot make an axis of '" + name + "'");
+}
+
+void Hdf5Writer::lay_along(const std::string& dataset, const std::vector<std::string>& axes) {
+  const Handle set(H5Dopen2(handle_, dataset.c_str(), H5P_DEFAULT), H5Dclose);
+  check(set.ok(), "cannot find dataset '" + dataset + "'");
+  for (std::size_t k = 0; k < axes.size(); ++k) {
+    const std::string& name = axes[k];
+    const Handle axis(H5Dopen2(handle_, name.c_str(), H5P_DEFAULT), H5Dclose);
+    check(axis.ok(), "cannot find axis '" + name + "'");
+    if (H5DSis_scale(axis) == 0)
+      check(H5DSset_scale(axis, name.substr(name.rfind('/') + 1).c_str()) >= 0,
+            "cannot make an axis of '" + name + "'");
+    if (name != dataset)
+      check(H5DSattach_scale(set, axis, static_cast<unsigned>(k)) >= 0,
+            "cannot lay '" + dataset + "' along '" + name + "'");
+  }
 }
 
 void Hdf5Writer::finish() {

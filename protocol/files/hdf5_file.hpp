@@ -37,6 +37,15 @@ class Hdf5Writer {
   void attribute(const std::string& name, std::int64_t value);
   void attribute(const std::string& name, const std::string& text);
 
+  /// What other programs are told of a dataset, for example its `units`. @pre the dataset was put
+  void attribute_of(const std::string& dataset, const std::string& name, const std::string& text);
+  /// An axis without numbers of its own: a dimension of netCDF, which other datasets may lie along.
+  void put_axis(const std::string& name, hsize_t length);
+  /// Says along which axes a dataset lies, by the names of datasets of one dimension: HDF5 dimension scales, which
+  /// netCDF (and so xarray) reads as coordinates. A dataset that lies along itself is a coordinate.
+  /// @pre all of them were put; one axis per dimension of the dataset, of the same length
+  void lay_along(const std::string& dataset, const std::vector<std::string>& axes);
+
   /// Closes, flushes to the disk, renames. @throws Error(io)
   void finish();
 
@@ -44,7 +53,8 @@ class Hdf5Writer {
   template <class T>
   void write(const std::string& name, std::span<const T> values, const std::vector<hsize_t>& shape,
              hid_t type);
-  void write_attribute(const std::string& name, hid_t type, const void* value);
+  void write_attribute(hid_t object, const std::string& name, hid_t type, const void* value);
+  void write_text(hid_t object, const std::string& name, const std::string& text);
   void check(bool ok, const std::string& what) const;
 
   std::unique_lock<std::recursive_mutex> lock_;

@@ -20,11 +20,24 @@ constexpr std::size_t kMaxKey = 256;  // bytes of a key
 // Of an object: to find one among ordered keys takes time in proportion to their number.
 constexpr std::size_t kMaxKeys = 10000;
 
-/// Offset of the bracket that opens level kMaxDepth + 1, or npos. Brackets within texts do not count.
+/// The byte after the comment that begins there; where none begins, `at`.
+std::size_t after_comment(const std::string& text, std::size_t at) {
+  if (text.compare(at, 2, "//") == 0) return std::min(text.find_first_of("\n\r", at), text.size());
+  if (text.compare(at, 2, "/*") != 0) return at;
+  const std::size_t end = text.find("*/", at + 2);
+  return end == std::string::npos ? text.size() : end + 2;
+}
+
+/// Offset of the bracket that opens level kMaxDepth + 1, or npos. Brackets within texts and comments do not count.
 std::size_t find_too_deep(const std::string& text) {
   std::size_t depth = 0;
   bool quoted = false;
   for (std::size_t at = 0; at < text.size(); ++at) {
+    if (!quoted)
+      if (const std::size_t after = after_comment(text, at); after != at) {
+        at = after - 1;
+        continue;
+      }
     const char c = text[at];
     if (quoted)
       at += c == '\\';  // whatever is escaped does not end the text
@@ -40,12 +53,6 @@ std::size_t find_too_deep(const std::string& text) {
 
 std::string too_deep() {
   return fmt::format("lists and objects are nested deeper than {} levels, expected fewer", kMaxDepth);
-}
-
-/// Whether a comment of another language begins there.
-bool is_comment(const std::string& text, std::size_t at) {
-  return at < text.size() && (text[at] == '#' || (text[at] == '/' && at + 1 < text.size() &&
-                                                  (text[at + 1] == '/' || text[at + 1] == '*')));
 }
 
 /// Builds a document event by event, so that keys can be checked as they come.
@@ -73,9 +80,10 @@ class Builder final : public nlohmann::json_sax<Json> {
   bool key(std::string& name) override {
     Level& level = levels_.back();
     if (name.size() > kMaxKey || printable(name) != name)
-      throw input_error(name_, path_to(excerpt(name)),
-                        fmt::format("has a control character or is longer than {} bytes, expected the name of a key",
-                                    kMaxKey));
+      throw input_error(
+          name_, path_to(excerpt(name)),
+          fmt::format("has a control character or is longer than {} bytes, expected the name of a key",
+                      kMaxKey));
     level.key = name;
     if (level.value->size() == kMaxKeys)
       throw input_error(name_, path(),
@@ -92,11 +100,8 @@ class Builder final : public nlohmann::json_sax<Json> {
     if (error.id == kOverflow)
       throw input_error(where, path(),
                         "is a number too large for a double, expected at most 1.8e308 in magnitude");
-    // The library looks one character beyond a slash.
-    if (is_comment(text_, at) || (at > 0 && is_comment(text_, at - 1)))
-      throw input_error(where, "",
-                        "is a comment, which JSON has not, expected it to be left out or to stand as a text under the "
-                        "key 'description'");
+    if (at < text_.size() && text_[at] == '#')
+      throw input_error(where, "", "is a comment of another language, expected // or /* */");
     std::string what = error.what();
     // "[json.exception.parse_error.101] parse error at line 1, column 2: syntax error while parsing value - …"
     if (const std::size_t from = what.find(" - "); from != std::string::npos) what = what.substr(from + 3);
@@ -142,8 +147,9 @@ class Builder final : public nlohmann::json_sax<Json> {
     for (std::size_t k = 0; k < levels_.size(); ++k) {
       const bool last = k + 1 == levels_.size();
       const Json& value = *levels_[k].value;
-      text += (text.empty() ? "" : ".") +
-              (value.is_array() ? std::to_string(value.size()) : last ? key : levels_[k].key);
+      text += (text.empty() ? "" : ".") + (value.is_array() ? std::to_string(value.size())
+                                           : last           ? key
+                                                            : levels_[k].key);
     }
     return text;
   }
@@ -161,7 +167,8 @@ Json parse_json(const std::string& text, const std::string& name) {
   if (const std::size_t at = find_too_deep(text); at != std::string::npos)
     throw input_error(name + ":" + place_in_text(text, at), "", too_deep());
   Builder<Json> builder(text, name);
-  Json::sax_parse(text, &builder);
+  constexpr bool kWhole = true, kComments = true;
+  Json::sax_parse(text, &builder, nlohmann::detail::input_format_t::json, kWhole, kComments);
   return builder.take();
 }
 template nlohmann::json parse_json(const std::string&, const std::string&);

@@ -1,6 +1,6 @@
-// Reads JSON that people wrote: says where a mistake stands, and takes neither duplicate keys, nor numbers that no
-// double can hold, nor nesting that would exhaust the stack of whoever walks through it, nor objects of so many keys that
-// nobody wrote them.
+// Reads JSON that people wrote: takes comments (// and /* */), says where a mistake stands, and takes neither duplicate
+// keys, nor numbers that no double can hold, nor nesting that would exhaust the stack of whoever walks through it, nor
+// objects of so many keys that nobody wrote them.
 #pragma once
 
 #include <filesystem>

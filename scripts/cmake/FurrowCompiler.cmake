@@ -16,6 +16,8 @@ target_compile_definitions(furrow_options INTERFACE EIGEN_MAX_STATIC_ALIGN_BYTES
 target_link_libraries(furrow_options INTERFACE Eigen3::Eigen fmt::fmt OpenMP::OpenMP_CXX Threads::Threads)
 if(FURROW_NATIVE)
   target_compile_options(furrow_options INTERFACE -march=native)
+elseif(NOT FURROW_LEVEL STREQUAL "any")
+  target_compile_options(furrow_options INTERFACE -march=${FURROW_LEVEL})
 endif()
 if(FURROW_WERROR)
   target_compile_options(furrow_options INTERFACE -Werror)

@@ -139,12 +139,25 @@ def forces(run):
     return figure
 
 
+def unknowns(run, node):
+    """What a node computes, as far as the summary tells."""
+    if node == "terrain" and run.number("grains"):
+        return f", {run.number('grains'):,.0f} grains"
+    wheels = run.summary.get("wheels") or [run.summary]
+    number = node.removeprefix("tire ")
+    if node.startswith("tire ") and number.isdigit() and int(number) < len(wheels):
+        found = wheels[int(number)].get("tire_coordinates") if isinstance(wheels[int(number)], dict) else None
+        if isinstance(found, (int, float)) and found > 0:
+            return f", {found:,.0f} coordinates"
+    return ""
+
+
 def ranks(run):
     table = run.summary.get("ranks")
     if not table:
         raise Missing("summary.json has no table of ranks")
     figure, axis = plt.subplots(figsize=(9, 1.8 + 0.55 * len(table)))
-    names = [f"rank {r['rank']}: {r['node']}" + (f" ({r['kind']})" if r.get("kind") else "")
+    names = [f"rank {r['rank']}: {r['node']}" + (f" ({r['kind']})" if r.get("kind") else "") + unknowns(run, r["node"])
              + f", {r['threads']} thread{'s' if r['threads'] != 1 else ''}" for r in table]
     compute = np.array([r["compute_s"] for r in table])
     communicate = np.array([r.get("communicate_s", 0.0) for r in table])  # runs before it was counted have it in computing

@@ -6,6 +6,7 @@ occlusion are added to the finished buffers, so that the cost grows with pixels 
 import numpy as np
 
 CHUNK = 1_500_000  # fragments at a time
+LARGEST_STAMP = 256  # pixels: triangles beyond it are drawn one by one
 
 
 class Camera:
@@ -100,41 +101,60 @@ class Buffers:
     def triangles(self, vertex, index, normal=None, colour=None, gloss=0.0, edge=None):
         """`normal` per vertex, `colour` per triangle; `edge`: (n, 3) which sides, opposite to each corner, are drawn."""
         column, row, depth, _ = self.camera.project(vertex)
-        for t, corners in enumerate(index):
-            if (depth[corners] <= 0.0).any():
-                continue
-            found = self._covered(column[corners], row[corners])
-            if found is None:
-                continue
-            px, py, weight, sharp = found
-            inverse = weight @ (1.0 / depth[corners]) if self.camera.perspective else None
-            z = 1.0 / inverse if self.camera.perspective else weight @ depth[corners]
-            pixel = py * self.camera.width + px
-            if self.depth_only:
-                self.put(pixel, z)
-                continue
-            shade = np.repeat(colour[t][None], len(z), 0)
-            if edge is not None and edge[t].any():
-                line = ((weight / sharp < 0.8) & edge[t]).any(1)
-                shade[line] *= 0.45
-            self.put(pixel, z, (weight @ normal[corners]).astype(np.float32), shade, gloss)
+        x, y, z = column[index], row[index], depth[index]
+        area = (x[:, 1] - x[:, 0]) * (y[:, 2] - y[:, 0]) - (x[:, 2] - x[:, 0]) * (y[:, 1] - y[:, 0])
+        size = np.maximum(np.ptp(x, 1), np.ptp(y, 1)) + 2.0
+        seen = ((z > 0.0).all(1) & (np.abs(area) > 1e-9) & (x.max(1) >= 0.0) & (x.min(1) < self.camera.width)
+                & (y.max(1) >= 0.0) & (y.min(1) < self.camera.height))
+        side = 4
+        while seen.any():
+            members = np.flatnonzero(seen & (size <= side)) if side < LARGEST_STAMP else np.flatnonzero(seen)
+            step = max(1, CHUNK // (4 * side * side))
+            for first in range(0, len(members), step):
+                chosen = members[first:first + step]
+                covered = self._covered(x[chosen], y[chosen], side)
+                if covered is not None:
+                    self._fill(chosen, covered, index, z, normal, colour, gloss, edge)
+            seen[members] = False
+            side *= 2
 
-    def _covered(self, x, y):
-        """Pixels of a triangle with barycentric weights and the weights' change per pixel."""
+    def _fill(self, chosen, covered, index, z, normal, colour, gloss, edge):
+        """Fragments of triangles: which of `chosen` they belong to, where they are, and their weights."""
+        which, px, py, weight, sharp = covered
+        corners = z[chosen][which]
+        depth = 1.0 / (weight / corners).sum(1) if self.camera.perspective else (weight * corners).sum(1)
+        pixel = py * self.camera.width + px
+        if self.depth_only:
+            self.put(pixel, depth)
+            return
+        shade = colour[chosen][which]
+        if edge is not None:
+            line = ((weight / sharp[which] < 0.8) & edge[chosen][which]).any(1)
+            shade[line] *= 0.45
+        self.put(pixel, depth, np.einsum("ij,ijk->ik", weight, normal[index[chosen]][which]).astype(np.float32), shade, gloss)
+
+    def _covered(self, x, y, side):
+        """(triangle, column, row) of the pixels of triangles within squares of `side` pixels or, of larger ones, within all
+        that is seen of them; barycentric weights, and per triangle the weights' change per pixel. None: there are none."""
         camera = self.camera
-        left, right = max(int(x.min()), 0), min(int(x.max()) + 1, camera.width)
-        above, below = max(int(y.min()), 0), min(int(y.max()) + 1, camera.height)
-        area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0])
-        if left >= right or above >= below or abs(area) < 1e-9:
+        left, above = (np.maximum(np.floor(v.min(1)), 0.0).astype(int) for v in (x, y))
+        wide, high = side, side
+        if side >= LARGEST_STAMP:
+            wide = int(np.max(np.minimum(x.max(1) + 1.0, camera.width) - left)) + 1
+            high = int(np.max(np.minimum(y.max(1) + 1.0, camera.height) - above)) + 1
+        down, across = np.mgrid[:high, :wide].reshape(2, -1)
+        px, py = left[:, None] + across, above[:, None] + down
+        area = (x[:, 1] - x[:, 0]) * (y[:, 2] - y[:, 0]) - (x[:, 2] - x[:, 0]) * (y[:, 1] - y[:, 0])
+        dx, dy = np.roll(x, -2, 1) - np.roll(x, -1, 1), np.roll(y, -2, 1) - np.roll(y, -1, 1)
+        x1, y1 = np.roll(x, -1, 1), np.roll(y, -1, 1)
+        weight = [((py + 0.5 - y1[:, k, None]) * dx[:, k, None] - (px + 0.5 - x1[:, k, None]) * dy[:, k, None]) / area[:, None]
+                  for k in range(3)]
+        inside = (weight[0] >= 0.0) & (weight[1] >= 0.0) & (weight[2] >= 0.0) & (px < camera.width) & (py < camera.height)
+        which, _ = np.nonzero(inside)
+        if not len(which):
             return None
-        py, px = np.mgrid[above:below, left:right].reshape(2, -1)
-        dx = np.roll(x, -2) - np.roll(x, -1)
-        dy = np.roll(y, -2) - np.roll(y, -1)
-        weight = ((py[:, None] + 0.5 - np.roll(y, -1)) * dx - (px[:, None] + 0.5 - np.roll(x, -1)) * dy) / area
-        inside = (weight >= 0.0).all(1)
-        if not inside.any():
-            return None
-        return px[inside], py[inside], weight[inside], np.hypot(dx, dy) / abs(area)
+        return (which, px[inside], py[inside], np.stack([w[inside] for w in weight], 1),
+                np.hypot(dx, dy) / np.abs(area[:, None]))
 
 
 def box_blur(image, half):

@@ -231,19 +231,25 @@ class Run:
         return pull["from_s"], pull["to_s"]
 
     @property
+    def has_vehicle(self):
+        return (self.directory / "timeseries_vehicle.csv").exists()
+
+    @property
     def title(self):
         name = self.summary.get("scenario") or self.directory.name
         what = [name]
+        if isinstance(self.rig.get("vehicle"), str):
+            what.append(self.rig["vehicle"].removesuffix(".json"))
         if "terrain_engine" in self.summary:
             engine = self.summary["terrain_engine"]
             what.append(f"{engine}, {self.summary.get('law', '?')}" if engine != "rigid" else "rigid ground")
         if self.number("slip") is not None:
             what.append(f"slip {self.number('slip'):g}")
-        if self.number("vertical_load_N") is not None:
+        if self.number("vertical_load_N") is not None and not self.has_vehicle:
             what.append(f"load {digits(self.number('vertical_load_N'))} N")
         wheels = len(self.wheels)
         if wheels > 1:
             what.append(f"wheel 0 of {wheels}")
         if self.scenario and not self.summary:
-            what.append("stopped before its end")
+            what.append("ended by an error" if (self.directory / "summary_failed.json").exists() else "stopped before its end")
         return " · ".join(what)

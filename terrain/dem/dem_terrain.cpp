@@ -65,6 +65,14 @@ void check(const DemOptions& o) {
                       fmt::format("{} is out of range, expected a positive number, s", o.step));
 }
 
+/// A bed settles under gravity straight down; a slope is tilted with its bed.
+DemOptions level(DemOptions o) {
+  const double strength = o.gravity.norm();
+  const bool standard = std::abs(strength - kStandardGravity) <= 1e-9 * kStandardGravity;
+  o.gravity = standard ? standard_gravity() : Vec3(0.0, 0.0, -strength);
+  return o;
+}
+
 class DemTerrain : public Terrain {
  public:
   DemTerrain(const DemOptions& options, std::function<void()> each_substep)
@@ -80,7 +88,7 @@ class DemTerrain : public Terrain {
 
   double prepare(const ProgressCall& progress) override {
     const double begin = wall_clock();
-    const dem::PreparedBed prepared = dem::prepare_bed(options_, progress);
+    const dem::PreparedBed prepared = dem::prepare_bed(level(options_), progress);
     // A run from a cached bed and the run that settled it both start here, from the same archive.
     dem::restore_bed(solver_, prepared);
     solver_.set_threads(std::max(1, options_.threads));

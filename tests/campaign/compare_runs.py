@@ -92,12 +92,27 @@ def same_values(x, y):
 def shown(x, y):
     """Where two arrays differ, in a few words."""
     x, y = np.asarray(x), np.asarray(y)
+    if x.dtype.kind == y.dtype.kind == "U":
+        return f"{x} and {y}"[:120]
     if x.dtype != y.dtype or x.shape != y.shape:
         return f"{x.dtype}{list(x.shape)} and {y.dtype}{list(y.shape)}"
     if x.size == 1 or x.dtype.kind not in "fiu":
         return f"{x.tolist()} and {y.tolist()}"[:120]
     off = x != y
     return f"{int(off.sum())} of {x.size} values, largest {x.max():.6g} and {y.max():.6g}"
+
+
+def attribute_of(thing, name):
+    """An attribute's value. References to other datasets, as those to the axes along which one lies, by their names."""
+    value = thing.attrs[name]
+    if np.asarray(value).dtype.kind != "O" and not (np.asarray(value).dtype.names or ()):
+        return value
+
+    def named(part):
+        if isinstance(part, h5py.Reference):
+            return thing.file[part].name
+        return [named(one) for one in part] if isinstance(part, (list, tuple, np.ndarray, np.void)) else part
+    return np.array(json.dumps(named(value), default=str))
 
 
 def h5_contents(file):
@@ -124,8 +139,8 @@ def h5_file(leave_out=()):
         for name in sorted(names):
             if name not in x.attrs or name not in y.attrs:
                 yield f"attribute {path}@{name}: only in the {'second' if name not in x.attrs else 'first'}"
-            elif not same_values(x.attrs[name], y.attrs[name]):
-                yield f"attribute {path}@{name}: {shown(x.attrs[name], y.attrs[name])}"
+            elif not same_values(attribute_of(x, name), attribute_of(y, name)):
+                yield f"attribute {path}@{name}: {shown(attribute_of(x, name), attribute_of(y, name))}"
 
     def compare(a, b):
         found = []

@@ -57,6 +57,23 @@ class CompareRuns(unittest.TestCase):
         self.assertIn(words, text)
         self.assertEqual(text.count("\n"), 0, text)
 
+    def test_axes_of_datasets_are_compared_by_their_names(self):
+        def lay(run, along, padding):
+            with h5py.File(run / "frames" / "terrain_000001.h5", "w", track_order=False) as file:
+                file.create_dataset("padding", data=np.zeros(padding), track_times=False)  # moves what comes after it
+                del file["padding"]
+                for name in ("time_s", "place", "other"):
+                    file.create_dataset(name, data=np.zeros(3), track_times=False)
+                    if name != "other":
+                        file[name].make_scale()
+                file["other"].dims[0].attach_scale(file[along])
+        lay(self.a, "time_s", 10)
+        lay(self.b, "time_s", 1000)
+        self.assertEqual(differences(self.a, self.b), [])
+        lay(self.b, "place", 10)
+        text = "\n".join(differences(self.a, self.b))
+        self.assertIn("attribute other@DIMENSION_LIST: [[\"/time_s\"]] and [[\"/place\"]]", text)
+
     def test_equal_runs(self):
         self.assertEqual(differences(self.a, self.b), [])
 

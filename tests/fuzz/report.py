@@ -25,6 +25,7 @@ import numpy as np
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts"))
 
+import events  # noqa: E402
 import report  # noqa: E402
 
 ODD = [None, True, False, 0, -1, 3, 1e308, -1e-320, 10 ** 400, float("nan"), float("inf"), "", "x", "\x1b[31m", "ü" * 50, [], [1], [[]], {},
@@ -48,6 +49,19 @@ SOIL = {"format_version": 1, "scenario": "small", "quick": True, "grains": {"rad
 PRESS = {"scenario": "small", "tire": "x", "obstacle": "plate", "deflection_m": 0.01, "load_N": 1e3, "secant_stiffness_N_per_m": 1e5,
          "footprint": {"force_N": 1e3, "length_m": 0.1, "width_m": 0.1, "mean_pressure_Pa": 1e5}}
 KINEMATICS = {"vehicle": "car", "at_rest": {"wheels": [{"name": "front left", "travel_m": 0.01}]}}
+
+
+VEHICLE_SCENARIO = {"rig": {"type": "vehicle", "vehicle": "hmmwv.json", "lateral": 0.0, "driver": {"path": {"steering": {"law": "stanley"}}}},
+                    "run": {"end": 0.2, "average_from": 0.02}, "terrain": {"engine": "dem"}}
+VEHICLE_SUMMARY = {"scenario": "car", "terrain_engine": "dem", "law": "mindlin", "grains": 100,
+                   "wheels": [{"vertical_load_N": 1.0, "lateral_m": 0.5 - k % 2, "tire_coordinates": 10} for k in range(4)],
+                   "ranks": [{"rank": 1, "node": "tire 0", "kind": "ancf", "threads": 1, "cpu_s": 1.0, "compute_s": 1.0, "wait_s": 0.1}]}
+VEHICLE = ["time_s", "x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad", "distance_m", "speed_m_per_s", "throttle", "brake", "steering",
+           "gear", "shifting", "engine_speed_rad_per_s", "engine_power_W", "wheel_power_W", "soil_power_W", "target_speed_m_per_s",
+           "path_distance_m", "cross_track_error_m", "heading_error_rad", "drive_work_J"]
+VEHICLE_WHEEL = ["time_s", "slip", "sinkage_m", "sinkage_in_rut_m", "force_z_N", "iso_force_x_N", "iso_force_y_N", "iso_force_z_N",
+                 "tractive_effort_N", "terrain_resistance_N", "spindle_torque_Nm", "speed_m_per_s", "spin_rad_per_s", "position_m",
+                 "axle_height_m", "lowest_point_m", "sinkage_kinematic_m", "suspension_travel_m"]
 
 
 def places(value, path=()):
@@ -111,24 +125,39 @@ def csv(chance, columns, rows=40):
     return "\n".join(lines[:chance.choice([len(lines), len(lines), 0, 1, 2])]) + "\n"
 
 
-def make_run(chance, folder):
-    (folder / "summary.json").write_text(json.dumps(changed(chance, SUMMARY)))
-    (folder / "scenario.json").write_text(json.dumps(changed(chance, SCENARIO)))
-    columns = [name for name in COLUMNS if chance.random() < 0.95]
-    (folder / "timeseries.csv").write_text(csv(chance, columns))
+def make_grounds(chance, folder, tires):
     with h5py.File(folder / "results.h5", "w") as file:
         for when in ("before", "after"):
             put(chance, file, f"terrain/height_{when}", array(chance, (20, 8)))
             put(chance, file, f"terrain/height_{when}_grid", np.array([0.0, -0.2, 0.05]) if chance.random() < 0.8 else array(chance, (3,)))
     (folder / "frames").mkdir()
-    with h5py.File(folder / "frames" / "tire0_000000.h5", "w") as file:
-        if chance.random() < 0.9:
-            file.attrs["time_s"] = chance.choice([0.0, 0.0, np.ones(3), "x"])
-        put(chance, file, "position", array(chance, (12, 3)))
-        put(chance, file, "triangle", np.array([[0, 1, 2], [3, 4, chance.choice([5, 5, 5, 12, -1])]]))
+    for k in range(tires):
+        with h5py.File(folder / "frames" / f"tire{k}_000000.h5", "w") as file:
+            if chance.random() < 0.9:
+                file.attrs["time_s"] = chance.choice([0.0, 0.0, 0.0, np.ones(3), "x"])
+            put(chance, file, "position", array(chance, (12, 3)))
+            put(chance, file, "triangle", np.array([[0, 1, 2], [3, 4, chance.choice([5, 5, 5, 12, -1])]]))
     with h5py.File(folder / "frames" / "terrain_000000.h5", "w") as file:
         put(chance, file, "position", array(chance, (30, 3)))
         put(chance, file, "radius", array(chance, (30,)))
+
+
+def make_run(chance, folder):
+    (folder / "summary.json").write_text(json.dumps(changed(chance, SUMMARY)))
+    (folder / "scenario.json").write_text(json.dumps(changed(chance, SCENARIO)))
+    columns = [name for name in COLUMNS if chance.random() < 0.95]
+    (folder / "timeseries.csv").write_text(csv(chance, columns))
+    make_grounds(chance, folder, 1)
+
+
+def make_vehicle(chance, folder):
+    (folder / "summary.json").write_text(json.dumps(changed(chance, VEHICLE_SUMMARY)))
+    (folder / "scenario.json").write_text(json.dumps(changed(chance, VEHICLE_SCENARIO)))
+    for subject, names in [("vehicle", VEHICLE)] + [(f"wheel{k}", VEHICLE_WHEEL) for k in range(4)]:
+        columns = names if chance.random() < 0.9 else [name for name in names if chance.random() < 0.95]
+        text = csv(chance, columns, 100)
+        (folder / f"timeseries_{subject}.csv").write_text(text if chance.random() < 0.5 else csv(random.Random(1), columns, 100))
+    make_grounds(chance, folder, 4)
 
 
 def make_soil(chance, folder):
@@ -157,7 +186,8 @@ def run_case(seed, k):
     chance = random.Random(f"{seed}:{k}")
     with tempfile.TemporaryDirectory(prefix="furrow report ") as name:
         folder = pathlib.Path(name)
-        chance.choices([make_run, make_soil, make_press, make_kinematics], [8, 1, 1, 1])[0](chance, folder)
+        make = chance.choices([make_run, make_vehicle, make_soil, make_press, make_kinematics], [8, 3, 1, 1, 1])[0]
+        make(chance, folder)
         if chance.random() < 0.05:
             victim = chance.choice([path for path in folder.rglob("*") if path.is_file()])
             victim.write_bytes(victim.read_bytes()[:chance.randrange(2000)])
@@ -166,7 +196,12 @@ def run_case(seed, k):
         with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err), warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
             code = report.main()
-        report.matplotlib.pyplot.close("all")
+            report.matplotlib.pyplot.close("all")
+            if make is make_vehicle:
+                told = err.getvalue()
+                code_of_events = events.main()
+                if code_of_events not in (0, 2, 5) or (code_of_events and err.getvalue() == told):
+                    return f"{code_of_events} of events", err.getvalue()
         return code, err.getvalue()
 
 

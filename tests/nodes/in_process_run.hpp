@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "nodes/ranks/node.hpp"
+#include "protocol/transport_group.hpp"
 
 namespace furrow::testing {
 
@@ -15,10 +16,11 @@ class InProcessRun {
  public:
   explicit InProcessRun(const scenario::Scenario& scenario, const ranks::RunContext& context = {})
       : scenario_(scenario),
-        transports_(make_in_process_transports(static_cast<int>(scenario.tires.size()))) {
+        transports_(make_in_process_transports(static_cast<int>(scenario.tires.size()), scenario.terrain_ranks)) {
     nodes_.resize(transports_.size());
     on_all([&](std::size_t i) {
-      nodes_[i] = ranks::make_node(scenario_, transports_[i]->self(), context.threads);
+      nodes_[i] = ranks::make_node(scenario_, transports_[i]->self(), context.threads, {},
+                                   make_terrain_group(*transports_[i]));
       const auto cards = handshake(*transports_[i], nodes_[i]->card());
       nodes_[i]->set_up(*transports_[i], cards, context);
     });

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "nodes/checkpoint/segment.hpp"
+#include "nodes/output/column_labels.hpp"
 #include "nodes/output/results.hpp"
 #include "nodes/output/subject_series.hpp"
 #include "protocol/core/error.hpp"
@@ -135,6 +136,17 @@ TEST(WheelRow, names_end_in_their_units_and_are_unique) {
     EXPECT_TRUE(names.insert(column.name).second) << column.name;
     EXPECT_TRUE(std::string(column.name).ends_with(suffix_of(column.unit))) << column.name;
   }
+}
+
+TEST(ColumnLabels, are_units_and_words_for_readers_of_netcdf) {
+  EXPECT_EQ(output::long_name(column::mean("vertical_momentum_kg_m_per_s", "kg m/s")), "vertical momentum");
+  EXPECT_EQ(output::long_name(column::mean("spindle_torque_Nm", "N m")), "spindle torque");
+  EXPECT_EQ(output::long_name(column::mean("lateral_acceleration_m_per_s2", "m/s²")), "lateral acceleration");
+  EXPECT_EQ(output::long_name(column::mean("slip")), "slip");
+  EXPECT_EQ(output::units_label("m/s²"), "m/s2");
+  EXPECT_EQ(output::units_label("-"), "1");
+  EXPECT_EQ(output::cell_methods(column::cumulative("rim_work_J", "J")), "time_s: sum");
+  EXPECT_EQ(output::cell_methods(column::derived("heave_m", "m")), "");
 }
 
 /// Of reports in which no number is zero, every column of a line must be a number other than zero: one that

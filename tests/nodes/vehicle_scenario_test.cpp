@@ -1,6 +1,7 @@
 // Scenarios of vehicles: whose tires they have, what decides their results, and what is refused.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include <nlohmann/json.hpp>
@@ -114,9 +115,18 @@ TEST(VehicleScenario, starts_clear_of_the_wall_and_says_when_the_bin_is_too_shor
   EXPECT_NEAR(wheels[2].from - wheels[2].along, 0.02, 1e-6);
   EXPECT_NEAR(wheels[0].to - wheels[0].from, 2.0, 1e-3);
   EXPECT_NEAR(json::parse(s.completed)["rig"]["start"].get<double>(), wheels[2].from + 1.653, 0.01);
-  EXPECT_TRUE(complaint(document, {{"terrain.length", "5"}})
+  const std::vector<std::pair<std::string, std::string>> into_wall{{"terrain.length", "5"},
+                                                                   {"rig.stop_before_wall", "0"}};
+  EXPECT_TRUE(complaint(document, into_wall)
                   .starts_with(": key 'terrain.length': is 5 m, but the axle travels from x = "))
-      << complaint(document, {{"terrain.length", "5"}});
+      << complaint(document, into_wall);
+  const scenario::Scenario early = load(document, {{"terrain.length", "5"}});
+  const rigs::WheelDescription foremost = scenario::describe_rig(early).wheels[0];
+  EXPECT_TRUE(foremost.stops_before_wall);
+  EXPECT_NEAR(5.0 - foremost.to - foremost.along, 0.4673, 1e-6);  // a tire's radius
+  EXPECT_TRUE(std::any_of(early.warnings.begin(), early.warnings.end(), [](const std::string& warning) {
+    return warning.find("'run.end': the run will end before 1.5 s, where a tire is 0.4673 m") != std::string::npos;
+  }));
   EXPECT_TRUE(complaint(document, {{"terrain.width", "1.5"}})
                   .starts_with(": key 'terrain.width': is 1.5 m, expected at "))
       << complaint(document, {{"terrain.width", "1.5"}});

@@ -101,7 +101,7 @@ void ping(Transport& t) {
   for (const HostNode& node : t.host_nodes()) require(!node.cores.empty(), "cores");
   require(t.host_nodes().size() == 3, "host nodes");
   say("%s: 1000 steps, %.0f us each, role communicator %s\n", to_string(t.self()).c_str(), 1e6 * each,
-      role_communicator(t) > 0 ? "made" : "missing");
+      t.role_communicator().value_or(0) > 0 ? "made" : "missing");
 }
 
 /// The terrain computes; the others wait for it all the time.

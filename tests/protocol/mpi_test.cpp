@@ -77,8 +77,8 @@ TEST(Mpi, a_wrong_number_of_ranks_is_the_same_error_on_each) {
     const Outcome outcome = start("ping", ranks);
     EXPECT_EQ(outcome.exit_code, 2) << outcome.output;
     EXPECT_EQ(outcome.count(
-                  "error: this scenario needs 3 ranks (1 rig, 1 tire(s), 1 terrain), but mpirun started " +
-                  std::to_string(ranks)),
+                  "error: this scenario needs 3 ranks (1 rig, 1 tire(s), 1 terrain), but " +
+                  std::to_string(ranks) + " were started"),
               ranks)
         << outcome.output;
   }

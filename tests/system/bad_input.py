@@ -74,7 +74,7 @@ SCENARIOS = [
     ("missing_comma", '{\n  "rig": {}\n  "run": {}\n}', [], ":3:"),
     ("cut_short", json.dumps(SMALL)[:-20], [], "is not valid JSON"),
     ("a_list", "[1, 2]", [], "is [1,2], expected an object"),
-    ("comment", "// a comment\n{}", [], ":1:1: is a comment, which JSON has not"),
+    ("comment", "# a comment\n{}", [], ":1:1: is a comment of another language, expected // or /* */"),
     ("deep_list", "[" * 100000 + "]" * 100000, [], "in.json:1:65: lists and objects are nested deeper than 64 levels"),
     ("deep_value", json.dumps(SMALL)[:-1] + ', "description": ' + "[" * 100000 + "]" * 100000 + "}", [], "nested deeper than 64 levels"),
     ("deep_setting", json.dumps(SMALL), ["--set", "tire.pressure=" + "[" * 50000 + "]" * 50000],
@@ -331,7 +331,7 @@ class BadFile(SystemTest):
         told = [line for line in done.stderr.splitlines() if line.startswith("furrow: error: ")]
         self.assertEqual(len(told), 1, done.stderr)
         self.assertIn("needs 3 ranks", told[0])
-        self.assertIn("mpirun started 2", told[0])
+        self.assertIn("but 2 were started", told[0])
         self.assertEqual(self.names(), ["small.json"])
 
     def test_bad_scenario_under_the_users_mpirun_is_told_once(self):

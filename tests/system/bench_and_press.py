@@ -121,16 +121,44 @@ class Press(SystemTest):
         self.assertAlmostEqual(deflections["profile"], deflections["cleat"], places=9)
         self.assertTrue((self.folder / "out/load_deflection.png").exists(), list((self.folder / "out").iterdir()))
 
-    def test_a_flexible_ring_does_not_run(self):
-        path = self.folder / "ring.json"
-        path.write_text(json.dumps({**SCENARIO, "tire": {"file": "hmmwv_ring.json"}}))
-        for command in ("validate", "run"):
-            done = furrow(command, path, cwd=self.folder)
-            self.assertEqual(done.returncode, 2, done.stderr)
-            self.assertIn("key 'tire.file': is a flexible ring, which has no motion of its own", done.stderr)
-            self.assertEqual(sorted(file.name for file in self.folder.iterdir()), ["ring.json"])
-        done = furrow("validate", path, "--set", "tire.rigid=true", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+    def test_planar_tire(self):
+        path = self.folder / "planar.json"
+        path.write_text(json.dumps({**SCENARIO, "tire": {"file": "aligator_planar.json", "elements_circumference": 48}}))
+        profile = self.folder / "plate.csv"
+        profile.write_text("x_m,z_m\n-1,0\n1,0\n")
+        deflections = {}
+        for name, more in (("plate", ()), ("cleat", ("--on", "cleat", "--cleat-width", "0.05")),
+                           ("profile", ("--on", "profile", "--profile", profile))):
+            done = furrow("press", path, "--out", self.folder / "out", "--overwrite", "--deflection", "0.08", "--points",
+                          "4", "--load", "15000", *more, cwd=self.folder)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            summary = json.loads((self.folder / "out/summary.json").read_text())
+            self.assertEqual(summary["obstacle"], name)
+            self.assertIsNone(summary["pressure_Pa"])
+            self.assertLess(summary["max_residual"], 1e-6)
+            self.assertLess(summary["loading_unloading_difference"], 1e-5)
+            self.assertAlmostEqual(summary["footprint"]["force_N"], 15000, delta=15)
+            deflections[name] = summary["deflection_m"]
+        self.assertLess(1.2 * deflections["plate"], deflections["cleat"])
+        self.assertAlmostEqual(deflections["profile"], deflections["plate"], places=9)
+        self.assertTrue((self.folder / "out/load_deflection.png").exists(), list((self.folder / "out").iterdir()))
+        done = furrow("press", path, "--out", self.folder / "other", "--deflection", "0.19", cwd=self.folder)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("key '--deflection': is 0.19 m, expected at most 0.1608 m", done.stderr)
+        self.assertFalse((self.folder / "other").exists())
+
+    def test_static_tires_do_not_run(self):
+        for file, words in (("hmmwv_ring.json", "is a flexible ring, which has no motion of its own"),
+                            ("aligator_planar.json", "is a planar finite-element tire, which runs do not move")):
+            path = self.folder / "static.json"
+            path.write_text(json.dumps({**SCENARIO, "tire": {"file": file}}))
+            for command in ("validate", "run"):
+                done = furrow(command, path, cwd=self.folder)
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertIn(f"key 'tire.file': {words}", done.stderr)
+                self.assertEqual(sorted(file.name for file in self.folder.iterdir()), ["static.json"])
+            done = furrow("validate", path, "--set", "tire.rigid=true", cwd=self.folder)
+            self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_bad_input(self):
         for more, word in ((("--on", "sand"), "--on"), (("--deflection", "-1"), "--deflection"), (("--load", "inf"), "--load"),

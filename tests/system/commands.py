@@ -4,7 +4,7 @@ import json
 import pathlib
 import unittest
 
-from program import ROOT, SystemTest, changed, furrow, main, write_scenario
+from program import ROOT, SMALL, SystemTest, changed, furrow, main, write_scenario
 
 STUDIES = ("study_slip.json", "study_slip_angle.json", "study_camber.json", "study_hard_slip.json", "multipass.json")  # for `furrow sweep`
 SHIPPED = sorted(path.name for path in (ROOT / "rigs").glob("*.json") if path.name not in ("scenario.schema.json", *STUDIES))
@@ -21,7 +21,7 @@ class Commands(SystemTest):
 
     def test_help_names_every_command(self):
         text = self.output("--help")
-        for command in ("run", "validate", "ranks", "explain", "report", "bed", "soil"):
+        for command in ("run", "validate", "ranks", "explain", "report", "events", "bed", "soil"):
             self.assertIn(command, text)
             self.assertIn("SCENARIO" if command in ("run", "validate", "ranks", "bed", "soil") else "KEY" if command == "explain" else "DIR",
                           self.output(command, "--help"))
@@ -63,6 +63,54 @@ class Commands(SystemTest):
         self.assertIn("first_look.json", self.output("validate", "first_look.json"))
         (self.folder / "first_look.json").write_text(json.dumps(changed(run={"end": 0.04})))
         self.assertIn("0.04 s in 400 steps", self.output("validate", "first_look.json"), "a file that is here comes first")
+
+    def test_list_names_what_comes_with_the_program(self):
+        listed = json.loads(self.output("list", "--json"))
+        self.assertEqual(sorted(listed["scenarios"]["files"]), SHIPPED)
+        self.assertEqual(sorted(listed["studies"]["files"]), sorted(STUDIES))
+        for kind, folder in (("tires", "tire/data"), ("soils", "terrain/data"), ("vehicles", "vehicle/data")):
+            there = {path.name for path in (ROOT / folder).glob("*.json") if not path.name.endswith(".schema.json")}
+            self.assertEqual(set(listed[kind]["files"]), there)
+        self.assertNotIn("", [line for kind in listed.values() for line in kind["files"].values()], "each says what it is")
+        self.assertEqual(list(json.loads(self.output("list", "soils", "--json"))), ["soils"])
+        self.assertIn("first_look.json", self.output("list", "scenarios"))
+        done = furrow("list", "wheels", cwd=self.folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("KIND': is 'wheels', expected one of 'scenarios', ", done.stderr)
+
+    def test_new_scenarios_are_valid_and_fit_their_tires(self):
+        reports = {}
+        for name, options in (("truck", []), ("lab", ["--tire", "rigid_drum.json", "--rigid", "--soil", "loose_sand.json", "--load", "24.5"]),
+                              ("car", ["--tire", "passenger_205_55r16.json"]), ("six_wheels", ["--vehicle", "rover.json"])):
+            with self.subTest(name):
+                self.assertEqual(self.output("new", name, *options), f"{name}.json\n")
+                report = reports[name] = json.loads(self.output("validate", f"{name}.json", "--json"))
+                self.assertLess(report["terrain_step_s"], report["stable_step_s"])
+                self.assertLess(report["grains"], 300_000)
+                self.assertGreater(report["wheels"][0]["contact_length_in_grains"], 2)
+        self.assertAlmostEqual(reports["lab"]["wheels"][0]["load_N"], 24.5)
+        self.assertIn("// kind of rig: drawbar pulls", (self.folder / "truck.json").read_text())
+        self.assertIn("// grain radius", (self.folder / "truck.json").read_text())
+
+    def test_new_leaves_no_file_where_it_fails_and_none_of_yours_is_touched(self):
+        for options, said in ((["--tire", "no_such.json"], "'no_such.json' does not exist"), (["--soil", "no_such.json"], "no_such.json"),
+                              (["--vehicle", "no_such.json"], "no_such.json"), (["--load", "-1"], "--load"),
+                              (["--vehicle", "rover.json", "--load", "5"], "excludes")):
+            done = furrow("new", "mine", *options, cwd=self.folder)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(said, done.stderr)
+            self.assertEqual(self.names(), [])
+        done = furrow("new", "rover", "--vehicle", "rover.json", cwd=self.folder)
+        self.assertIn("NAME': is 'rover.json': beside that scenario", done.stderr)
+        (self.folder / "mine.json").write_text("mine")
+        done = furrow("new", "mine", cwd=self.folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("'mine.json' exists already, expected a new file", done.stderr)
+        self.assertEqual((self.folder / "mine.json").read_text(), "mine")
+
+    def test_comments_are_taken(self):
+        (self.folder / "small.json").write_text("// mine\n" + json.dumps(SMALL)[:-1] + " /* no more */ }\n// [[")
+        self.assertIn("0.05 s in 500 steps", self.output("validate", "small.json"))
 
     def test_rounded_times_are_explained(self):
         for key in ("run.end", "output.series_interval", "output.frame_interval", "checkpoint.interval"):

@@ -1,12 +1,13 @@
 #!/usr/bin/python3
 """Every file of a run that was continued is that of the run that was not interrupted, also where a frame falls on the step
 of the checkpoint, for every kind of tire. tests/campaign/compare_runs.py compares them."""
+import csv
 import shutil
 import sys
 
 import h5py
 
-from checkpoint_runs import CheckpointTest, steps
+from checkpoint_runs import CheckpointTest, steps, summary
 from program import ROOT, main
 
 sys.path.insert(0, str(ROOT / "tests" / "campaign"))
@@ -94,6 +95,47 @@ class Vehicle(Exact, CheckpointTest):
     }
     WHEELS = 4
     LOADED = 5
+
+
+class BeforeTheWall(CheckpointTest):
+    """A vehicle comes near the end wall: the rig knows two steps before the end, the tires too, the terrain one."""
+    SCENARIO = {
+        "format_version": 1,
+        "rig": {"type": "vehicle", "vehicle": "hmmwv.json", "start": 2.15, "start_speed": 2.0, "stop_before_wall": 1.21,
+                "driver": {"speed": {"target": 2.0}}},
+        "tire": {"rigid": True, "elements_circumference": 40},
+        "terrain": {"engine": "dem", "radius": 0.05, "layers": 2, "length": 5.5, "width": 2.6, "cohesion": 1e4},
+        "run": {"step": 2e-4, "end": 0.04, "average_from": 0.03, "peer_timeout": 20},
+        "output": {"series_interval": 6e-4, "frame_interval": 0.002},
+        "checkpoint": {"interval": 2e-4, "keep": 1000},
+    }
+
+    def test_the_run_is_complete_before_its_planned_end(self):
+        told = summary(self.whole)
+        end = steps(self.whole)[-1]
+        self.assertEqual(told["end_reason"], "end_wall")
+        self.assertAlmostEqual(told["end_time_s"], 2e-4 * end, delta=1e-12)
+        self.assertAlmostEqual(told["average_from_s"], 0.75 * told["end_time_s"], delta=1e-12)
+        self.assertFalse((self.whole / "summary_failed.json").exists())
+        with open(self.whole / "timeseries_wheel0.csv", newline="") as file:
+            position = [float(line["position_m"]) for line in csv.DictReader(file)]
+        self.assertAlmostEqual(5.5 - position[-1] - 0.4673 - 1.21, 0.0, delta=2e-3)
+        done = self.program("resume", self.whole, "--no-plots")
+        self.assertRegex(done.stderr, r"has come to its end at 0\.\d+ s, there is nothing to do")
+
+    def test_from_every_checkpoint_around_the_end(self):
+        all_steps = steps(self.whole)
+        end = all_steps[-1]
+        self.assertLess(end, 200)
+        for step in range(end - 2, end + 1):
+            with self.subTest(step=step):
+                shutil.rmtree(self.run_folder, ignore_errors=True)
+                self.copy_of_whole()
+                for later in [s for s in all_steps if s > step]:
+                    shutil.rmtree(self.run_folder / "checkpoints" / f"{later:012}")
+                done = self.resume()
+                self.assertIn("a tire came near the end wall", done.stderr)
+                self.same_as_whole()
 
 
 if __name__ == "__main__":

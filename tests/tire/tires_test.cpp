@@ -78,9 +78,9 @@ TEST_F(TiresTest, an_unknown_model_lists_the_valid_ones) {
   for (const TireModel& model : tire_models()) names.emplace_back(model.name);
   const std::string valid = one_of(names);
   EXPECT_EQ(complaint(file), "key 'model': is 'brush', expected " + valid);
-  file["model"] = "planar";
+  file["model"] = "wheel";
   EXPECT_EQ(complaint(file),
-            "key 'model': is 'planar', which is not available in this version, expected " + valid);
+            "key 'model': is 'wheel', which is not available in this version, expected " + valid);
   file["model"] = 3;
   EXPECT_EQ(complaint(file).substr(0, 11), "key 'model'");
 }

@@ -1,15 +1,13 @@
 #include "tire/ring/ring_spec.hpp"
 
 #include <array>
-#include <cmath>
-#include <numbers>
 #include <string_view>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "protocol/core/error.hpp"
-#include "protocol/files/json_text.hpp"
+#include "tire/cylinder.hpp"
 #include "tire/ring/ring_press.hpp"
 #include "tire/tire_file_reader.hpp"
 
@@ -19,16 +17,6 @@ namespace {
 constexpr double kMostDraw = 0.5;  // of the radius: beyond, a sidewall is too soft for its pressure
 constexpr double kBytesPerSegment = 1200.0;
 constexpr std::array<std::string_view, 2> kGas{"linearised", "exact"}, kKinematics{"radial", "exact"};
-
-/// One of two names, in the order of their enumeration; the second where the key is not given.
-template <class Enum>
-Enum choice(JsonReader& reader, const std::string& key, const std::array<std::string_view, 2>& names) {
-  const std::string given = reader.text_or(key, std::string(names[1]));
-  for (int k = 0; k < 2; ++k)
-    if (given == names[k]) return static_cast<Enum>(k);
-  reader.fail(key, fmt::format("is '{}', expected {}", given,
-                               one_of({std::string(names[0]), std::string(names[1])})));
-}
 
 void check(const RingFile& f) {
   const RingParams& p = f.params;
@@ -113,30 +101,10 @@ TireDescription RingSpec::describe() const {
   return d;
 }
 
-/// A cylinder, closed by discs with a vertex at their middle.
 TireShape RingSpec::shape() const {
-  const RingParams& p = file_.params;
-  const int n = p.segments;
-  TireShape shape;
-  for (int j = 0; j < n; ++j)
-    for (const double side : {0.5, -0.5}) {
-      const double angle = 2.0 * std::numbers::pi * j / n;
-      shape.vertex.emplace_back(p.radius * std::sin(angle), side * p.width, p.radius * std::cos(angle));
-    }
-  shape.vertex.emplace_back(0.0, 0.5 * p.width, 0.0);
-  shape.vertex.emplace_back(0.0, -0.5 * p.width, 0.0);
-  for (int j = 0; j < n; ++j) {
-    const int left = 2 * j, right = left + 1, next_left = 2 * ((j + 1) % n), next_right = next_left + 1;
-    shape.mesh.triangles.push_back({right, next_right, left});
-    shape.mesh.triangles.push_back({next_right, next_left, left});
-    shape.mesh.triangles.push_back({left, next_left, 2 * n});
-    shape.mesh.triangles.push_back({next_right, right, 2 * n + 1});
-  }
-  shape.mesh.vertex_count = 2 * n + 2;
+  TireShape shape = cylinder(file_.params.segments, file_.params.radius, file_.params.width);
   shape.material = file_.contact;
   shape.mass = mass();
-  shape.radius = p.radius;
-  shape.tread_width = p.width;
   return shape;
 }
 
@@ -174,8 +142,8 @@ RingFile read_ring_file(const nlohmann::json& document, const std::string& path)
     reader.fail("sidewall", fmt::format("is {:g}, {:g}, {:g}, expected k1 above 0, k2 and k3 of 0 or more",
                                         k[0], k[1], k[2]));
   p.sidewall_1 = k[0], p.sidewall_2 = k[1], p.sidewall_3 = k[2];
-  p.gas = choice<RingGas>(reader, "gas", kGas);
-  p.kinematics = choice<RingKinematics>(reader, "kinematics", kKinematics);
+  p.gas = choice_of<RingGas>(reader, "gas", kGas);
+  p.kinematics = choice_of<RingKinematics>(reader, "kinematics", kKinematics);
   f.mass = reader.positive("mass");
   f.spin_inertia = reader.positive("spin_inertia");
   f.diametral_inertia = reader.positive("diametral_inertia");

@@ -45,6 +45,13 @@ Gearbox::Gearbox(System& system, const std::string& name, int in, int out, const
   rows_[1] = system.add_rate_row(row);
 }
 
+void Gearbox::begin_in(System& system, int gear) {
+  FURROW_ASSERT(!shifting() && in_range(gear, ratios_.size()), name_, gear);
+  state_.gear = gear;
+  system.set_rate_factor(rows_[state_.row], kInputTerm, -ratios_[gear]);
+  system.set_rate_control(rows_[state_.row], held());
+}
+
 Outcome Gearbox::shift(System& system, int gear) {
   FURROW_ASSERT(!shifting(), name_, state_.gear);
   FURROW_ASSERT(gear == kNeutral || in_range(gear, ratios_.size()), name_, gear);

@@ -54,6 +54,8 @@ class Gearbox {
   Gearbox(System& system, const std::string& name, int in, int out, const std::vector<double>& ratios,
           double shift_time, int gear = kNeutral);
 
+  /// Engages a gear without a shift. @pre before the first step; assemble() must follow
+  void begin_in(System& system, int gear);
   /// Starts a shift with the next step. @pre not shifting
   Outcome shift(System& system, int gear);
   /// Before every step of size h. @returns failure when the new gear closes a loop of gears

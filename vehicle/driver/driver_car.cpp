@@ -8,6 +8,7 @@
 #include "protocol/core/assert.hpp"
 #include "protocol/core/constants.hpp"
 #include "vehicle/analysis/kinematics.hpp"
+#include "vehicle/spec/shaft_speeds.hpp"
 
 namespace furrow::vehicle {
 namespace {
@@ -53,38 +54,13 @@ double steering_lock(const VehicleSpec& spec, std::span<const double> radii, dou
   return std::atan(2.0 * std::abs(spec.driveline.skid_steer) * wheelbase / track(spec));
 }
 
-/// Speed of each shaft at engine speed 1 in the lowest gear, 0 where nothing reaches it.
-std::vector<double> shaft_speeds(const DrivelineSpec& line) {
-  std::vector<double> speed(line.shafts.size(), 0.0);
-  const auto index = [&](const std::string& name) {
-    return std::find_if(line.shafts.begin(), line.shafts.end(),
-                        [&](const ShaftSpec& shaft) { return shaft.name == name; }) -
-           line.shafts.begin();
-  };
-  const auto join = [&](const std::string& in, const std::string& out, double ratio) {
-    double &a = speed[index(in)], &b = speed[index(out)];
-    if (a != 0.0 && b == 0.0) b = ratio * a;
-    if (b != 0.0 && a == 0.0) a = b / ratio;
-  };
-  speed[index(line.engine->shaft)] = 1.0;
-  for (std::size_t round = 0; round < line.shafts.size(); ++round) {
-    if (line.converter) join(line.converter->in, line.converter->out, 1.0);
-    if (line.clutch) join(line.clutch->in, line.clutch->out, 1.0);
-    if (line.gearbox) join(line.gearbox->in, line.gearbox->out, line.gearbox->ratios.front());
-    for (const GearSpec& gear : line.gears) join(gear.in, gear.out, gear.ratio);
-    for (const DifferentialSpec& d : line.differentials)
-      for (const std::string& output : d.outputs) join(d.box, output, 1.0);
-  }
-  return speed;
-}
-
 double engine_force(const VehicleSpec& spec, double radius) {
   const DrivelineSpec& line = spec.driveline;
   if (!line.engine || line.wheels.empty()) return 0.0;
   double torque = 0.0;
   for (const auto& [rpm, one] : line.engine->torque) torque = std::max(torque, one);
   if (line.converter) torque *= line.converter->torque_ratio.front().second;
-  const std::vector<double> speeds = shaft_speeds(line);
+  const std::vector<double> speeds = shaft_speeds(line, 0);
   double ratio = 0.0;
   for (const WheelShaftSpec& wheel : line.wheels)
     for (std::size_t k = 0; k < line.shafts.size(); ++k)

@@ -118,7 +118,26 @@ void visit_fields(Visit&& visit, FieldsOf<Stanley> auto& s) {
   visit(Field{"soft_speed", "m/s", role::key | kMayMiss}, s.soft_speed);
 }
 
-using SteeringLaw = std::variant<PurePursuit, Stanley>;
+struct Preview {
+  static constexpr const char* kName = "preview";
+  double preview_time = 0.35;       // s
+  double response_time = 0.6;       // s
+  double response_distance = -1.0;  // at least, m; below zero: one and a half wheelbases
+  double understeer = 0.0;          // gradient K, rad s²/m
+  double side_slip = 0.015;         // gradient S of the rear axle, rad s²/m
+  double yaw_damping = 0.1;         // s
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<Preview> auto& s) {
+  visit(Field{"preview_time", "s", role::key | kMayMiss}, s.preview_time);
+  visit(Field{"response_time", "s", role::key | kMayMiss}, s.response_time);
+  visit(Field{"response_distance", "m", role::key | kMayMiss}, s.response_distance);
+  visit(Field{"understeer", "rad s²/m", role::key | kMayMiss}, s.understeer);
+  visit(Field{"side_slip", "rad s²/m", role::key | kMayMiss}, s.side_slip);
+  visit(Field{"yaw_damping", "s", role::key | kMayMiss}, s.yaw_damping);
+}
+
+using SteeringLaw = std::variant<PurePursuit, Stanley, Preview>;
 
 struct PathSteeringSpec {
   SteeringLaw law;

@@ -103,4 +103,21 @@ Vec2 Path::look_ahead(const PathPlace& from, const Vec2& point, double distance)
   return last.position + (std::sqrt(std::max(root, 0.0)) - along) * last.direction;
 }
 
+PathPlace Path::ahead(const PathPlace& from, double along) const {
+  const double wanted = distance(from) + along;
+  for (std::size_t i = static_cast<std::size_t>(from.piece); i < pieces_.size(); ++i) {
+    const Piece& piece = pieces_[i];
+    const auto reached = [&](double u) { return piece.start + piece.length(u) >= wanted; };
+    if (reached(1.0)) return {static_cast<int>(i), bisect(0.0, 1.0, reached)};
+  }
+  return end();
+}
+
+// The angle between the directions at both ends over the distance; a path turns by less than π between them.
+double Path::curvature(const PathPlace& from, double near, double far) const {
+  FURROW_ASSERT(near >= 0.0 && near < far, near, far);
+  const Vec2 a = at(ahead(from, near)).direction, b = at(ahead(from, far)).direction;
+  return std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b)) / (far - near);
+}
+
 }  // namespace furrow::vehicle

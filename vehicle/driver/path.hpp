@@ -46,8 +46,12 @@ class Path {
   /// The first position at or behind `from` that is at least `distance` from `point`.
   /// @pre behind the end of the path, the point is less than `distance` beside it
   Vec2 look_ahead(const PathPlace& from, const Vec2& point, double distance) const;
+  /// Mean curvature of the path between two distances ahead of a place, 1/m, positive to the left; straight behind its end.
+  /// @pre 0 ≤ near < far
+  double curvature(const PathPlace& from, double near, double far) const;
 
  private:
+  PathPlace ahead(const PathPlace& from, double distance) const;  // along the path
   struct Piece {
     Vec2 p0, p1;         // its ends, m
     Vec2 m0, m1;         // tangents there, by the fraction, m

@@ -10,7 +10,8 @@
 namespace furrow::vehicle {
 namespace {
 
-constexpr double kWheelbases = 1.5;  // to look ahead at least
+constexpr double kWheelbases = 1.5;  // to look ahead at least, or in which errors decay
+constexpr double kWindow = 0.25, kLeastWindow = 0.05;  // wheelbases on each side, over which curvature is a mean
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -24,6 +25,8 @@ PathFollower::PathFollower(const PathSpec& spec, const DriverCar& car)
     : path_(make_path(spec, car.width)), spec_(spec.steering), car_(car) {
   if (auto* law = std::get_if<PurePursuit>(&spec_.law); law && law->lookahead_distance < 0.0)
     law->lookahead_distance = kWheelbases * car.wheelbase;
+  if (auto* law = std::get_if<Preview>(&spec_.law); law && law->response_distance < 0.0)
+    law->response_distance = kWheelbases * car.wheelbase;
 }
 
 void PathFollower::steer(const DriverView& view, PathState& s, DriverRecord& record) const {
@@ -65,6 +68,21 @@ double PathFollower::wheel_angle(const Stanley& law, const DriverView& view, con
                                  const DriverRecord& record) const {
   const double speed = law.soft_speed + std::abs(view.speed());
   return -record.heading_error - std::atan2(law.gain * record.cross_track, speed);
+}
+
+double PathFollower::wheel_angle(const Preview& law, const DriverView& view, const PathPlace& place,
+                                 const DriverRecord& record) const {
+  const double L = car_.wheelbase, v = std::abs(view.speed());
+  const auto curvature = [&](double ahead) {
+    const double window = std::max(kLeastWindow * L, std::min(kWindow * L, ahead));
+    return path_.curvature(place, std::max(0.0, ahead - window), ahead + window);
+  };
+  const double ahead = curvature(law.preview_time * v), halfway = curvature(0.5 * law.preview_time * v);
+  const double d = std::max(law.response_distance, law.response_time * v), most = std::numbers::sqrt2 * d;
+  const double error = std::clamp(record.cross_track, -most, most);
+  const double heading = record.heading_error - law.side_slip * v * v * halfway;
+  const double wanted = ahead - (error + 2.0 * d * std::sin(heading)) / (d * d);
+  return std::atan(L * wanted) + law.understeer * v * v * ahead - law.yaw_damping * (view.yaw_rate - v * halfway);
 }
 
 }  // namespace furrow::vehicle

@@ -1,4 +1,4 @@
-// Steers along a path by one of two laws, for a vehicle of wheelbase L whose front wheels stand at the angle δ:
+// Steers along a path by one of three laws, for a vehicle of wheelbase L whose front wheels stand at the angle δ:
 //
 //   pure_pursuit  [Coulter 1992]: the rear axle's circle, tangential to the vehicle, goes through the point ahead on
 //                 the path at the distance D = max(D₀, t v, √2 |e|) from the rear axle. y is this point's distance to
@@ -7,6 +7,13 @@
 //   stanley       [Hoffmann et al. 2007], with front axle, heading error ψ and distance e left of the path; k_s is
 //                 their softening for low speeds. Their damping terms are left out.
 //                   δ = −ψ − arctan(k e/(k_s + |v|))
+//   preview       feedforward of the path's curvature and feedback of the rear axle's error, after [Kapania & Gerdes
+//                 2015], eq. (4), (6) and §4: κ_p at the distance t_p |v| ahead, a mean over up to ±L/4, with the
+//                 understeer gradient K; and the heading error ψ against what a curve of κ_h, halfway there, takes with the
+//                 rear axle's slip angle S v² κ_h. k_r damps the yaw rate r as in [Hoffmann et al. 2007].
+//                   δ = atan(L (κ_p − (e + 2 d sin(ψ − S v² κ_h))/d²)) + K v² κ_p − k_r (r − v κ_h),  d = max(d₀, t_r |v|)
+//                 Small errors of a kinematic vehicle decay critically damped in the distance d, (1 + s/d) e^(−s/d); of
+//                 large ones e counts up to √2 d, so that the vehicle comes back at 45°.
 //
 // Cross-track error e is that of the axle that the law looks at. D grows with |e| so that a vehicle far off the path
 // comes back at 45°. The steering follows the law's with a bounded rate.
@@ -15,6 +22,9 @@
 // University 1992.
 // G. M. Hoffmann, C. J. Tomlin, M. Montemerlo, S. Thrun, Autonomous Automobile Trajectory Tracking for Off-Road
 // Driving, American Control Conference 2007, 2296–2301, doi:10.1109/ACC.2007.4282788.
+// N. R. Kapania, J. C. Gerdes, Design of a feedback-feedforward steering controller for accurate path tracking and
+// stability at the limits of handling, Vehicle System Dynamics 53 (12), 2015, 1687–1704,
+// doi:10.1080/00423114.2015.1055279.
 #pragma once
 
 #include "protocol/core/fields.hpp"
@@ -50,6 +60,8 @@ class PathFollower {
   double wheel_angle(const PurePursuit& law, const DriverView& view, const PathPlace& place,
                      const DriverRecord& record) const;  // δ, rad
   double wheel_angle(const Stanley& law, const DriverView& view, const PathPlace& place,
+                     const DriverRecord& record) const;
+  double wheel_angle(const Preview& law, const DriverView& view, const PathPlace& place,
                      const DriverRecord& record) const;
 
   Path path_;

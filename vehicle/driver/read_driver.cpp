@@ -91,6 +91,16 @@ void finish(Stanley& law, JsonReader& reader) {
   check_positive(reader, "soft_speed", law.soft_speed, 100.0);
 }
 
+void finish(Preview& law, JsonReader& reader) {
+  check_within(reader, "preview_time", law.preview_time, 0.0, 100.0);
+  check_within(reader, "response_time", law.response_time, 0.0, 100.0);
+  if (reader.given("response_distance"))
+    check_positive(reader, "response_distance", law.response_distance, kMostLength);
+  check_within(reader, "understeer", law.understeer, -1.0, 1.0);
+  check_within(reader, "side_slip", law.side_slip, 0.0, 1.0);
+  check_within(reader, "yaw_damping", law.yaw_damping, 0.0, 10.0);
+}
+
 /// One of several structs: the one whose kName is the text under `key`, the first of them when there is none and it may
 /// be missing.
 template <class... Choices>

@@ -51,7 +51,7 @@ json steering(const PathSteeringSpec& spec) {
         put_keys(law, object);
       },
       spec.law);
-  remove_open(object, {"lookahead_distance"});
+  remove_open(object, {"lookahead_distance", "response_distance"});
   return object;
 }
 

@@ -200,6 +200,8 @@ class System {
   void turn_rotors();  // carriers feel what their rotors' turn with them takes
   Outcome solve_half(bool first_half, double h, double end_time);
   bool rates_done(double& before, int iteration);
+  bool dampers_done(double scale, double& before, int iteration);
+  double position_tolerance() const;
   int rate_count() const { return rates_.row_count(); }
   int first_rate() const { return static_cast<int>(constraint_rows_.size() + elements_.size()); }
   std::span<double> rate_part(Eigen::VectorXd& all) const {

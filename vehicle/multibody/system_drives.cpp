@@ -13,6 +13,9 @@ namespace {
 constexpr double kRateLimit =
     1e-9;                       // of a held speed, relative to its scale, where round-off stops the iteration
 constexpr int kMaxRounds = 60;  // in which rows change between holding and slipping
+constexpr double kDamperTolerance = 1e-13;  // of a damper's speed and flow, or
+constexpr double kDamperFloor = 1e-14;      // of the largest speed
+constexpr int kDamperPatience = 8;           // iterations after which dampers may be as near as round-off lets them
 
 }  // namespace
 
@@ -201,6 +204,29 @@ bool System::rates_done(double& before, int iteration) {
   const std::span<const double> compliance = std::span<const double>(compliance_).subspan(first_rate());
   const bool small = rates_.residuals(rate_part(impulses_), compliance, bodies_, rate_part(residual_), worst);
   const bool settled = iteration > 2 && worst <= kRateLimit && worst > 0.25 * before;
+  before = worst;
+  return small || settled;
+}
+
+// Whether the damper rows are met: speed + flow = 0. Bodies are moved by what closes their joints, so that the rounding
+// of positions, over the length of the step, is in their speeds: far from the origin the error no longer falls.
+bool System::dampers_done(double scale, double& before, int iteration) {
+  const auto first = static_cast<int>(constraint_rows_.size()), last = static_cast<int>(rows_.size());
+  FURROW_ASSERT(residual_.size() >= last, residual_.size(), last);
+  bool small = true;
+  double worst = 0.0, fastest = scale;
+  for (int i = first; i < last; ++i) {
+    const double compliance = dampers_factored_ ? compliance_[i] : -1.0;
+    residual_[i] = 0.0;
+    if (compliance < 0.0) continue;
+    const double speed = rate(i), flow = impulses_[i] * compliance;
+    residual_[i] = -(speed + flow);
+    worst = std::max(worst, std::abs(residual_[i]));
+    fastest = std::max({fastest, std::abs(speed), std::abs(flow)});
+    small = small && std::abs(residual_[i]) <=
+                         kDamperTolerance * (std::abs(speed) + std::abs(flow)) + kDamperFloor * scale;
+  }
+  const bool settled = iteration > kDamperPatience && worst <= kRateLimit * fastest && worst > 0.25 * before;
   before = worst;
   return small || settled;
 }

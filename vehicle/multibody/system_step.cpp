@@ -2,6 +2,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "protocol/core/assert.hpp"
 #include "vehicle/multibody/rotation.hpp"
@@ -10,7 +11,8 @@
 namespace furrow::vehicle {
 namespace {
 
-constexpr double kPositionTolerance = 1e-12;  // m or rad, at the end of every step
+constexpr double kPositionTolerance = 1e-12;  // m or rad, at the end of every step, or
+constexpr double kPositionRounding = 8.0;     // units of the last digit of the largest coordinate, if that is more
 constexpr double kVelocityTolerance = 4e-16;  // relative to the largest speed: iterate down to round-off
 constexpr double kVelocityLimit = 1e-9;  // relative to the largest speed, beyond it the constraints clash
 constexpr int kMaxIterations = 60;
@@ -176,7 +178,8 @@ Outcome System::solve_positions(double h, double end_time) {
   for (int i = 0; i < constraints; ++i) targets_[i] = target(i, end_time);
   impulses_.setZero();
   rates_.known_impulses(rate_part(impulses_));
-  double scale = 0.0, worst = 0.0, worst_rate = 0.0;
+  const double tolerance = position_tolerance();
+  double scale = 0.0, worst = 0.0, worst_rate = 0.0, worst_damper = 0.0;
   int worst_row = 0;
   for (const Base& base : base_) scale = std::max(scale, base.velocity.cwiseAbs().maxCoeff());
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
@@ -191,15 +194,8 @@ Outcome System::solve_positions(double h, double end_time) {
       residual_[i] = -violation / h;
       if (!(std::abs(violation) <= worst)) worst = std::abs(violation), worst_row = i;
     }
-    done = worst <= kPositionTolerance;
-    for (int i = constraints; i < count; ++i) {
-      const double compliance = dampers_factored_ ? compliance_[i] : -1.0;
-      residual_[i] = 0.0;
-      if (compliance < 0.0) continue;
-      const double speed = rate(i), flow = impulses_[i] * compliance;
-      residual_[i] = -(speed + flow);
-      done = done && std::abs(residual_[i]) <= 1e-13 * (std::abs(speed) + std::abs(flow)) + 1e-14 * scale;
-    }
+    done = worst <= tolerance;
+    if (count > constraints && !dampers_done(scale, worst_damper, iteration)) done = false;
     if (rate_count() > 0 && !rates_done(worst_rate, iteration)) done = false;
     if (done) return {};
     if (!std::isfinite(worst)) break;
@@ -207,6 +203,13 @@ Outcome System::solve_positions(double h, double end_time) {
     impulses_ += correction_;
   }
   return failure("cannot satisfy its constraints", worst_row, worst);
+}
+
+/// Far from the origin positions are coarser than what constraints are met to near it.
+double System::position_tolerance() const {
+  double largest = 0.0;
+  for (const Body& body : bodies_) largest = std::max(largest, body.state.position.cwiseAbs().maxCoeff());
+  return std::max(kPositionTolerance, kPositionRounding * std::numeric_limits<double>::epsilon() * largest);
 }
 
 /// The largest speed that the bodies would have without constraints: what round-off is measured by where they keep the
@@ -387,7 +390,7 @@ Outcome System::project_positions(double time) {
       residual_[i] = -row_difference(row, row_value(row, pose(row.a), pose(row.b)), target(i, time).value);
       if (!(std::abs(residual_[i]) <= worst)) worst = std::abs(residual_[i]), worst_row = i;
     }
-    if (worst <= kPositionTolerance) return {};
+    if (worst <= position_tolerance()) return {};
     if (Outcome outcome = factorize(false); !outcome.ok) return outcome;
     solver_.solve(residual_, impulses_);
     for (int i = 0; i < constraints; ++i) {

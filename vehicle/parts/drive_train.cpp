@@ -7,6 +7,7 @@
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
 #include "vehicle/driveline/gears.hpp"
+#include "vehicle/spec/shaft_speeds.hpp"
 
 namespace furrow::vehicle {
 namespace {
@@ -116,6 +117,7 @@ void DriveTrain::add_motors(System& system, std::span<const Wheel> wheels) {
                            {{rotor, -1.0}},
                            {{wheel.carrier, wheel.spindle, axis, motor.gear_ratio}}},
                           control);
+      rotors_.push_back(rotor);
       motors_.emplace_back(system, wheel.name + " motor", rotor,
                            WheelMotorOptions{motor.stall_torque, motor.no_load_rpm * kRpm});
     }
@@ -134,6 +136,35 @@ void DriveTrain::set_inputs(System& system, const DriveInputs& inputs) {
     const double turn = -outward(static_cast<int>(k % 2)) * spec_.skid_steer * inputs.steering;
     motors_[k].set_command(selector_ == Selector::neutral ? 0.0 : std::clamp(forward + turn, -1.0, 1.0));
   }
+}
+
+void DriveTrain::begin_rolling(System& system, std::span<const double> spins, int gear) {
+  FURROW_ASSERT(spins.size() == 2 * vehicle_.axles.size() && gear >= 0, spins.size(), gear);
+  for (std::size_t k = 0; k < rotors_.size(); ++k) {
+    const MotorSpec& motor = spec_.motors[k / 2];
+    system.set_shaft_speed(rotors_[k], motor.gear_ratio * spins[2 * vehicle_.axle(motor.axle) + k % 2]);
+  }
+  if (!engine_ || spec_.wheels.empty()) return;
+  double spin = 0.0;
+  for (const WheelShaftSpec& wheel : spec_.wheels)
+    spin += spins[2 * vehicle_.axle(wheel.axle) + (wheel.side == "left" ? kLeft : kRight)] /
+            static_cast<double>(spec_.wheels.size());
+  const auto index = [&](const std::string& name) {
+    return static_cast<std::size_t>(std::find(shafts_.begin(), shafts_.end(), shaft(name)) - shafts_.begin());
+  };
+  const std::size_t out = index(spec_.wheels.front().shaft);
+  const int count = gearbox_ ? static_cast<int>(spec_.gearbox->ratios.size()) : 1;
+  std::vector<double> speeds;
+  for (int g = gear > 0 ? std::min(gear, count) - 1 : 0; g < count; ++g) {
+    speeds = shaft_speeds(spec_, static_cast<std::size_t>(g));
+    const double turns = speeds[out] != 0.0 ? spin / speeds[out] : 0.0;
+    for (double& speed : speeds) speed *= turns;
+    if (gearbox_) gearbox_->begin_in(system, g);
+    if (gear > 0 || !gearbox_ || speeds[index(spec_.gearbox->in)] < spec_.gearbox->up_rpm * kRpm) break;
+  }
+  double& engine = speeds[index(spec_.engine->shaft)];
+  engine = std::max(engine, spec_.engine->idle_rpm * kRpm);
+  for (std::size_t k = 0; k < speeds.size(); ++k) system.set_shaft_speed(shafts_[k], speeds[k]);
 }
 
 int DriveTrain::wanted_gear(const System& system) {

@@ -35,6 +35,9 @@ class DriveTrain {
   DriveTrain(System& system, const VehicleSpec& vehicle, int chassis, std::span<const Wheel> wheels);
 
   void set_inputs(System& system, const DriveInputs& inputs);
+  /// Turns shafts and rotors as wheels do that spin like this, rad/s, in a forward gear from 1, or with 0 in the lowest
+  /// one that the gearbox would stay in. The engine idles at least. @pre before the first step; assemble() must follow
+  void begin_rolling(System& system, std::span<const double> spins, int gear);
   /// Before every step of size h: shifts, clutch.
   Outcome advance(System& system, double h);
 
@@ -74,6 +77,7 @@ class DriveTrain {
   ShiftLogic logic_;
   std::vector<FrictionCoupling> locks_;
   std::vector<WheelMotor> motors_;
+  std::vector<int> rotors_;  // shafts of the motors
   Selector selector_ = Selector::drive;
   int held_gear_ = 0;  // DriveInputs::gear
 };

@@ -128,6 +128,26 @@ void Vehicle::turn(double angle, const Vec3& about) {
   system_.assemble(system_.time());
 }
 
+void Vehicle::begin_rolling(double speed, std::span<const double> radii, int gear) {
+  FURROW_ASSERT(radii.size() == wheels_.size() && std::isfinite(speed), radii.size(), speed);
+  Vec3 forward = system_.body(chassis_).R.col(0);
+  forward.z() = 0.0;
+  std::vector<double> spins;
+  for (int i = 0; i < system_.body_count(); ++i) {
+    BodyState state = system_.body(i).state;
+    state.velocity = speed * forward.normalized();
+    system_.set_state(i, state);
+  }
+  for (std::size_t k = 0; k < wheels_.size(); ++k) {
+    spins.push_back(speed / radii[k]);
+    BodyState state = system_.body(wheels_[k].spindle).state;
+    state.angular_velocity = spins.back() * system_.body(wheels_[k].spindle).R.col(1);
+    system_.set_state(wheels_[k].spindle, state);
+  }
+  drive_->begin_rolling(system_, spins, gear);
+  system_.assemble(system_.time());
+}
+
 Outcome Vehicle::step(double h) {
   if (Outcome drive = drive_->advance(system_, h); !drive.ok) return drive;
   return system_.step(h);

@@ -61,27 +61,38 @@ TEST(JsonText, numbers_beyond_a_double_are_refused) {
 TEST(JsonText, nesting_beyond_64_levels_is_refused_where_it_begins) {
   const auto nested = [](std::size_t levels) { return std::string(levels, '[') + std::string(levels, ']'); };
   EXPECT_EQ(complaint(nested(64)), "");
-  EXPECT_EQ(complaint(nested(65)), "f:1:65: lists and objects are nested deeper than 64 levels, expected fewer");
+  EXPECT_EQ(complaint(nested(65)),
+            "f:1:65: lists and objects are nested deeper than 64 levels, expected fewer");
   EXPECT_EQ(complaint(nested(1000000)).substr(0, 7), "f:1:65:");
   EXPECT_EQ(complaint(std::string(200000, '[')).substr(0, 7), "f:1:65:");
   std::string objects = "{\n\"a\": ";
   for (int k = 0; k < 100000; ++k) objects += "{\"a\": ";
   EXPECT_NE(complaint(objects).find("nested deeper"), std::string::npos);
-  EXPECT_EQ(complaint("[\"" + std::string(100, '[') + "\\\"" + std::string(100, '{') + "\"]"), "") << "in a text";
+  EXPECT_EQ(complaint("[\"" + std::string(100, '[') + "\\\"" + std::string(100, '{') + "\"]"), "")
+      << "in a text";
 }
 
-TEST(JsonText, comments_are_told_by_name) {
-  for (const char* text : {"{\n// note\n}", "{\n/* note */\n}", "{\n# note\n}", "{\"a\": 1 // note\n}"})
-    EXPECT_NE(complaint(text).find("is a comment, which JSON has not"), std::string::npos) << complaint(text);
-  EXPECT_TRUE(complaint("{\n// note\n}").starts_with("f:2:")) << complaint("{\n// note\n}");
-  EXPECT_EQ(complaint("{\"a\": 1/2}").find("comment"), std::string::npos);
+TEST(JsonText, comments_are_skipped_and_those_of_other_languages_refused) {
+  for (const char* text : {"// note\n{}", "{\n/* [[ \" */\n}", "{\"a\": 1 // note\n}", "{\"a\": 1 } // [ \"",
+                           "{\"a//\": \"/* no */\"}"})
+    EXPECT_EQ(complaint(text), "") << text;
+  EXPECT_EQ(parse_json("{\"a\": /* 1 */ 2}", "f")["a"], 2);
+  EXPECT_EQ(parse_json("{\"a\": \"// b\"}", "f")["a"], "// b");
+  EXPECT_EQ(complaint("{\n# note\n}"), "f:2:1: is a comment of another language, expected // or /* */");
+  EXPECT_NE(complaint("{ /* no end }").find("is not valid JSON"), std::string::npos);
+  EXPECT_NE(complaint("{\"a\": 1/2}").find("is not valid JSON"), std::string::npos);
+  const std::string deep(200, '[');
+  EXPECT_EQ(complaint("// \"\n" + deep).substr(0, 7), "f:2:65:") << "a quote in a comment hides no brackets";
+  EXPECT_EQ(complaint("{} // " + deep), "");
 }
 
 TEST(JsonText, keys_that_nobody_could_type_are_refused) {
   EXPECT_EQ(complaint("{\"a\": {\"b\\u001b[31m\\n\": 1}}"),
-            "f: key 'a.b\\x1b[31m\\n': has a control character or is longer than 256 bytes, expected the name of a key");
+            "f: key 'a.b\\x1b[31m\\n': has a control character or is longer than 256 bytes, expected the "
+            "name of a key");
   EXPECT_EQ(complaint("{\"" + std::string(256, 'k') + "\": 1}"), "");
-  EXPECT_NE(complaint("{\"" + std::string(257, 'k') + "\": 1}").find("longer than 256 bytes"), std::string::npos);
+  EXPECT_NE(complaint("{\"" + std::string(257, 'k') + "\": 1}").find("longer than 256 bytes"),
+            std::string::npos);
 }
 
 /// To find a key among ordered ones takes as long as there are keys: a million of them would take an hour.

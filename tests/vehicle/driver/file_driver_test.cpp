@@ -81,7 +81,7 @@ TEST(FileDriver, without_a_table_does_nothing_and_leaves_the_gear) {
 }
 
 TEST(FileDriver, goes_on_bit_for_bit_wherever_it_was_saved) {
-  for (const SteeringLaw& law : {SteeringLaw(PurePursuit{}), SteeringLaw(Stanley{})}) {
+  for (const SteeringLaw& law : {SteeringLaw(PurePursuit{}), SteeringLaw(Stanley{}), SteeringLaw(Preview{})}) {
     const DriverSpec spec = everything(law);
     const auto driver = make_driver(spec, test_car());
     Bicycle bicycle;

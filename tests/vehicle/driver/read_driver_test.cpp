@@ -220,6 +220,12 @@ TEST(DriverSchema, has_the_keys_that_the_program_reads) {
   EXPECT_EQ(keys_in(parts["steering"], {"law"}), keys_of<PathSteeringSpec>());
   EXPECT_EQ(keys_in(parts["pure_pursuit"], {"law"}), keys_of<PurePursuit>());
   EXPECT_EQ(keys_in(parts["stanley"], {"law"}), keys_of<Stanley>());
+  EXPECT_EQ(keys_in(parts["preview"], {"law"}), keys_of<Preview>());
+  EXPECT_EQ(parts["preview"]["properties"]["preview_time"]["default"], Preview{}.preview_time);
+  EXPECT_EQ(parts["preview"]["properties"]["response_time"]["default"], Preview{}.response_time);
+  EXPECT_EQ(parts["preview"]["properties"]["understeer"]["default"], Preview{}.understeer);
+  EXPECT_EQ(parts["preview"]["properties"]["side_slip"]["default"], Preview{}.side_slip);
+  EXPECT_EQ(parts["preview"]["properties"]["yaw_damping"]["default"], Preview{}.yaw_damping);
   EXPECT_EQ(parts["double_lane_change"]["properties"]["track"]["enum"], json(lane_change_names()));
   EXPECT_EQ(parts["speed"]["properties"]["hysteresis"]["default"], SpeedSpec{}.hysteresis);
   EXPECT_EQ(parts["speed"]["properties"]["stop_speed"]["default"], SpeedSpec{}.stop_speed);

@@ -1,0 +1,112 @@
+// `furrow list` and `furrow new`: what comes with the program, and a scenario to begin with.
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "nodes/commands/commands.hpp"
+#include "nodes/scenario/starter.hpp"
+#include "protocol/files/data_files.hpp"
+#include "protocol/files/json_text.hpp"
+
+namespace furrow::commands {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Kind {
+  const char* name;
+  const char* folder;
+  const char* use;
+  /// Whether a file of the folder is one of them.
+  bool (*holds)(const Json& file);
+};
+
+bool is_study(const Json& file) { return file.contains("scenario"); }
+
+constexpr Kind kKinds[] = {
+    {"scenarios", "rigs", "furrow run NAME", [](const Json& file) { return !is_study(file); }},
+    {"studies", "rigs", "furrow sweep FILE", is_study},
+    {"tires", "tire/data", "tire.file of a scenario", [](const Json&) { return true; }},
+    {"soils", "terrain/data", "terrain.material of a scenario", [](const Json&) { return true; }},
+    {"vehicles", "vehicle/data", "rig.vehicle of a scenario", [](const Json&) { return true; }},
+};
+
+/// The first sentence of what a file says of itself.
+std::string line_of(const Json& file) {
+  for (const char* key : {"description", "name"}) {
+    if (!file.contains(key) || !file[key].is_string()) continue;
+    const std::string text = file[key];
+    const std::string first = text.substr(0, text.find(". "));
+    return first.ends_with('.') ? first.substr(0, first.size() - 1) : first;
+  }
+  return {};
+}
+
+Json catalogue(const std::string& only) {
+  Json all = Json::object();
+  for (const Kind& kind : kKinds) {
+    if (!only.empty() && only != kind.name) continue;
+    const std::filesystem::path folder = data_folder() / kind.folder;
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+      if (entry.path().extension() == ".json" && !entry.path().stem().string().ends_with(".schema"))
+        files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    Json& listed =
+        all[kind.name] = {{"folder", folder.string()}, {"use", kind.use}, {"files", Json::object()}};
+    for (const std::filesystem::path& path : files)
+      if (const Json file = load_json<Json>(path, "a file that comes with furrow"); kind.holds(file))
+        listed["files"][path.filename().string()] = line_of(file);
+  }
+  return all;
+}
+
+}  // namespace
+
+ExitCode list_command(const std::string& only, bool json) {
+  std::string kinds;
+  bool known = only.empty();
+  for (const Kind& kind : kKinds) {
+    kinds += (kinds.empty() ? "'" : ", '") + std::string(kind.name) + "'";
+    known = known || only == kind.name;
+  }
+  if (!known)
+    throw input_error("command line", "KIND",
+                      fmt::format("is {}, expected one of {}", value_text(Json(only)), kinds));
+  const Json all = catalogue(only);
+  if (json) {
+    std::cout << all.dump(2) << "\n";
+    return ExitCode::done;
+  }
+  std::string text;
+  for (const auto& [kind, listed] : all.items()) {
+    text += fmt::format("{}{} ({}) in {}\n", text.empty() ? "" : "\n", kind, listed["use"].get<std::string>(),
+                        listed["folder"].get<std::string>());
+    for (const auto& [name, line] : listed["files"].items())
+      text += fmt::format("  {:<26} {}\n", name, line.get<std::string>());
+  }
+  std::cout << text;
+  return ExitCode::done;
+}
+
+ExitCode new_command(const NewArguments& arguments) {
+  std::filesystem::path file = arguments.name;
+  if (!file.has_filename()) throw input_error("command line", "NAME", "is no name of a file, expected one");
+  if (file.extension() != ".json") file += ".json";
+  scenario::write_starter(file, {.tire = arguments.tire,
+                                 .soil = arguments.soil,
+                                 .vehicle = arguments.vehicle,
+                                 .rigid = arguments.rigid,
+                                 .load = arguments.load.value_or(0.0)});
+  std::cout << file.string() << "\n";
+  std::cerr << fmt::format(
+      "furrow: '{}' is written; check it with 'furrow validate {}', run it with 'furrow run {}'\n",
+      file.string(), file.string(), file.string());
+  return ExitCode::done;
+}
+
+}  // namespace furrow::commands

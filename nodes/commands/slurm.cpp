@@ -1,0 +1,197 @@
+// `furrow ranks --slurm`: the batch script that runs a scenario under Slurm, as long as it takes. Slurm signals the job
+// some minutes before its time is over; the run saves its state and ends with 75; the job is queued again and continues
+// (scripts/cluster/README.md).
+#include <algorithm>
+#include <cmath>
+#include <regex>
+
+#include <fmt/format.h>
+
+#include "nodes/commands/commands.hpp"
+#include "nodes/launch/thread_setup.hpp"
+#include "nodes/scenario/rank_table.hpp"
+#include "protocol/core/assert.hpp"
+
+namespace furrow::commands {
+namespace {
+
+constexpr int kWarning =
+    360;  // s before its end that Slurm tells the job: a checkpoint and Slurm's own delays
+constexpr int kMostRestarts = 3;         // of a job that never came to its first checkpoint
+constexpr double kMemoryMargin = 1.3;    // of the estimate
+constexpr double kMemoryOfRank = 256e6;  // bytes beside it, of libraries and files
+constexpr double kMebibyte = 1048576.0;
+
+Error wrong(const std::string& option, const std::string& what) {
+  return input_error("command line", option, what);
+}
+
+void check_word(const std::string& option, const std::string& value) {
+  static const std::regex kWord("[A-Za-z0-9_.,:@+-]+");
+  if (!value.empty() && !std::regex_match(value, kWord))
+    throw wrong(option, "is '" + value + "', expected a name as Slurm has them");
+}
+
+void check_time(const std::string& time) {
+  static const std::regex kTime("[0-9]+(:[0-9]{1,2}){0,2}|[0-9]+-[0-9]{1,2}(:[0-9]{1,2}){0,2}");
+  if (!time.empty() && !std::regex_match(time, kTime))
+    throw wrong("--time", "is '" + time + "', expected minutes, hh:mm:ss or days-hh:mm:ss");
+}
+
+/// How the ranks fall on the nodes: `each` on every one, in their order, fewer on the last.
+struct Layout {
+  int ranks = 0, nodes = 1, each = 0;
+};
+
+Layout layout_of(const scenario::Scenario& scenario, const SlurmArguments& job) {
+  const int ranks = static_cast<int>(scenario::rank_table(scenario).size());
+  if (job.nodes < 1 || job.nodes > ranks)
+    throw wrong("--nodes",
+                fmt::format("is {}, expected 1 to {}: this scenario has {} ranks", job.nodes, ranks, ranks));
+  const Layout layout{ranks, job.nodes, (ranks + job.nodes - 1) / job.nodes};
+  if (const int used = (ranks + layout.each - 1) / layout.each; used < job.nodes)
+    throw wrong("--nodes",
+                fmt::format("is {}, expected {}: {} ranks, {} on each node, leave the others empty",
+                            job.nodes, used, ranks, layout.each));
+  const int least = std::max(1, job.nodes == 1 ? ranks - 1 : layout.each);  // the rig hardly computes
+  if (job.cores_per_node != 0 && job.cores_per_node < least)
+    throw wrong("--cores-per-node", fmt::format("is {}, expected {} or more: {} ranks on each node",
+                                                job.cores_per_node, least, layout.each));
+  return layout;
+}
+
+/// The ranks of one node, as they will find it.
+launch::HostView host_view(const Layout& layout, int node, int tires, int cores) {
+  launch::HostView host;
+  host.machine_cores = cores;
+  std::vector<int> numbers(static_cast<std::size_t>(cores));
+  for (int i = 0; i < cores; ++i) numbers[static_cast<std::size_t>(i)] = i;
+  for (int rank = node * layout.each; rank < std::min(layout.ranks, (node + 1) * layout.each); ++rank) {
+    const Address address = rank == 0       ? Address{Role::rig, 0}
+                            : rank <= tires ? Address{Role::tire, rank - 1}
+                                            : Address{Role::terrain, rank - 1 - tires};
+    host.nodes.push_back({address, numbers, false});
+  }
+  return host;
+}
+
+/// "#   2     0      7  terrain  grains, …", one line per rank.
+std::string rank_lines(const scenario::Scenario& scenario, const SlurmArguments& job, const Layout& layout) {
+  std::string text = "# rank  node  threads  what\n";
+  const int tires = static_cast<int>(scenario.tires.size());
+  for (const scenario::RankEntry& entry : scenario::rank_table(scenario)) {
+    const int node = entry.rank / layout.each;
+    std::string threads = "-";
+    if (job.cores_per_node > 0) {
+      const launch::HostView host = host_view(layout, node, tires, job.cores_per_node);
+      const auto place = static_cast<std::size_t>(entry.rank - node * layout.each);
+      threads = std::to_string(launch::plan_threads(host, place, scenario.run.threads).threads);
+    }
+    text +=
+        fmt::format("# {:>4}  {:>4}  {:>7}  {:<9} {}\n", entry.rank, node, threads, entry.node, entry.does);
+  }
+  return text;
+}
+
+std::string directives(const scenario::Scenario& scenario, const SlurmArguments& job, const Layout& layout) {
+  std::string text;
+  const auto add = [&text](const std::string& option) { text += "#SBATCH " + option + "\n"; };
+  std::string name = "furrow-" + scenario.name;
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return c <= 0x20 || c == 0x7F; }, '_');
+  add("--job-name=" + scenario::shell_quoted(name));
+  add(fmt::format("--nodes={}", layout.nodes));
+  if (job.cores_per_node == 0) {
+    add(fmt::format("--ntasks-per-node={}", layout.each));
+    add("--exclusive");
+    add("--mem=0");
+  } else {
+    const int tasks = layout.nodes == 1 ? 1 : layout.each;
+    const double memory = kMemoryMargin * scenario.memory.all / layout.nodes + kMemoryOfRank * layout.each;
+    add(fmt::format("--ntasks-per-node={}", tasks));
+    add(fmt::format("--cpus-per-task={}", job.cores_per_node / tasks));
+    add(fmt::format("--mem={:.0f}M", std::ceil(memory / kMebibyte)));
+  }
+  if (!job.partition.empty()) add("--partition=" + job.partition);
+  if (!job.account.empty()) add("--account=" + job.account);
+  if (!job.time.empty()) add("--time=" + job.time);
+  add(fmt::format("--signal=B:USR1@{}", kWarning));
+  add("--requeue");
+  add("--open-mode=append");
+  return text;
+}
+
+/// This program; of an installed tree the command that takes the build for the processor where the job runs.
+std::filesystem::path program_for_all_nodes() {
+  std::error_code error;
+  const std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe", error);
+  const std::filesystem::path builds = own.parent_path().parent_path();  // libexec/furrow/<level>/furrow
+  const std::filesystem::path command = builds.parent_path().parent_path() / "bin" / "furrow";
+  const bool installed = builds.filename() == "furrow" && builds.parent_path().filename() == "libexec";
+  return installed && std::filesystem::is_regular_file(command, error) ? command : own;
+}
+
+/// What is the same in every script: how a job begins, and how it is queued again.
+constexpr const char* kBody = R"(
+start=("$program" run "${{settings[@]}}" --out="$run" -- "$scenario")
+if [[ ${{SLURM_RESTART_COUNT:-0}} -gt 0 ]]; then
+  [[ ! -e $run/summary.json ]] || exit 0  # done
+  if compgen -G "$run/checkpoints/[0-9]*" >/dev/null; then
+    start=("$program" resume -- "$run")
+  elif [[ $SLURM_RESTART_COUNT -ge {0} ]]; then
+    echo "furrow: error: ended {0} times before the first checkpoint, expected a job with more --time" >&2
+    exit 2
+  else
+    start=("$program" run --overwrite "${{settings[@]}}" --out="$run" -- "$scenario")
+  fi
+fi
+
+# Signalled, furrow saves its state and ends with 75. Either Slurm then queues the job again by itself …
+if scontrol show config 2>/dev/null | grep -Eq '^RequeueExit *= *([0-9]+,)*75(,|$)'; then
+  exec "${{start[@]}}"
+fi
+# … or this script asks for it.
+"${{start[@]}}" &
+furrow=$! again=
+trap 'asked=1 again=1; kill -USR1 "$furrow"' USR1
+trap 'asked=1; kill -TERM "$furrow"' TERM
+while asked=; wait "$furrow"; code=$?; [[ $asked ]]; do :; done
+if [[ $code -eq 75 && $again ]]; then scontrol requeue "$SLURM_JOB_ID"; fi
+exit "$code"
+)";
+
+}  // namespace
+
+std::string slurm_script(const scenario::Scenario& scenario, const SlurmArguments& job,
+                         const Settings& settings) {
+  check_word("--partition", job.partition);
+  check_word("--account", job.account);
+  check_time(job.time);
+  const Layout layout = layout_of(scenario, job);
+  const std::filesystem::path program = program_for_all_nodes();
+  const auto full = [](const std::filesystem::path& path) {
+    return scenario::shell_quoted(std::filesystem::absolute(path).lexically_normal().string());
+  };
+  std::string list;
+  for (const auto& [key, value] : settings)
+    list += (list.empty() ? "" : " ") + scenario::shell_quoted("--set=" + key + "=" + value);
+
+  std::string text = "#!/bin/bash\n";
+  text += directives(scenario, job, layout);
+  text += fmt::format(
+      "# {} ranks on {} node{} of {}; each binds itself to its share of the cores.\n", layout.ranks,
+      layout.nodes, layout.nodes > 1 ? "s" : "",
+      job.cores_per_node > 0 ? fmt::format("{} cores", job.cores_per_node) : "any number of cores");
+  text += rank_lines(scenario, job, layout) + "\nset -u\n";
+  text += "program=" + full(program) + "\n";
+  text += "scenario=" + full(scenario.file) + "\n";
+  text += "settings=(" + list + ")\n";
+  // The folder of the results: the same each time that this job is started.
+  text += "run=" +
+          (job.out.empty() ? "results/" + scenario::shell_quoted(scenario.name) + "-job$SLURM_JOB_ID"
+                           : full(job.out)) +
+          "\n";
+  return text + fmt::format(kBody, kMostRestarts);
+}
+
+}  // namespace furrow::commands

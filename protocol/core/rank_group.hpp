@@ -1,0 +1,50 @@
+// The ranks that compute one model together, as that model sees them: which of them it is, and what they tell each
+// other. How they do it stands elsewhere (protocol/transport_group.hpp); a model that brings a parallel library of its
+// own hands it the communicator.
+//
+// Every call is made by all ranks of the group, in the same order. It ends with PeerFailure where one of them fails or
+// falls silent.
+#pragma once
+
+#include <cstddef>
+#include <cstring>
+#include <optional>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+namespace furrow {
+
+class RankGroup {
+ public:
+  using Bytes = std::vector<std::byte>;
+
+  virtual ~RankGroup() = default;
+
+  virtual int rank() const = 0;  // 0: the leader, which speaks for all
+  virtual int size() const = 0;
+
+  /// @returns on every rank what the leader has given; what the others give is not looked at
+  virtual Bytes broadcast(Bytes bytes) = 0;
+  /// @returns on the leader what each rank has given, in their order; nothing on the others
+  virtual std::vector<Bytes> gather(Bytes bytes) = 0;
+
+  /// The group's own communicator, as MPI_Comm_f2c takes it; none where ranks are threads of one process.
+  virtual std::optional<int> communicator() const { return std::nullopt; }
+};
+
+/// What each rank has given, one behind the other, on every rank. The same everywhere, in the order of ranks.
+template <class T>
+requires std::is_trivially_copyable_v<T> std::vector<T> gather_on_all(RankGroup& group,
+                                                                      std::span<const T> own) {
+  const auto* from = reinterpret_cast<const std::byte*>(own.data());
+  RankGroup::Bytes all;
+  for (const RankGroup::Bytes& part : group.gather({from, from + own.size_bytes()}))
+    all.insert(all.end(), part.begin(), part.end());
+  all = group.broadcast(std::move(all));
+  std::vector<T> values(all.size() / sizeof(T));
+  if (!values.empty()) std::memcpy(values.data(), all.data(), values.size() * sizeof(T));
+  return values;
+}
+
+}  // namespace furrow

@@ -1,0 +1,35 @@
+"""Furrow from Python: run scenarios, open results.
+
+    import furrow
+    run = furrow.run("drawbar_pull_small", rig__slip=0.5)
+    run.summary["drawbar_pull_N"]            # mean, standard error, whether it is steady
+    run.series()["drawbar_pull_N"].plot()    # pandas, over time in s
+    furrow.plots.pull_slip_sinkage(run)      # the figures of furrow report
+
+Old results are opened by furrow.open(folder). See scripts/python/README.md.
+"""
+from __future__ import annotations
+
+from types import ModuleType
+
+from ._scripts import Damaged, Missing
+from .commands import press, resume, run, soil, sweep
+from .errors import BadInput, FurrowError, InputOutputError, LimitReached, PhysicsFailed, RankLost, Stopped
+from .frames import Frame, Frames, GrainFrame, TireFrame
+from .opening import Opened, open
+from .runs import Run
+from .studies import Study
+from .virtual_tests import Kinematics, Press, Soil
+
+__all__ = [
+    "BadInput", "Damaged", "Frame", "Frames", "FurrowError", "GrainFrame", "InputOutputError", "Kinematics", "LimitReached",
+    "Missing", "Opened", "PhysicsFailed", "Press", "RankLost", "Run", "Soil", "Stopped", "Study", "TireFrame", "plots",
+    "press", "resume", "run", "soil", "sweep"]
+
+
+def __getattr__(name: str) -> ModuleType:
+    """furrow.plots, which needs matplotlib, is loaded when it is first used."""
+    if name == "plots":
+        import importlib
+        return importlib.import_module(f"{__name__}.plots")
+    raise AttributeError(f"module '{__name__}' has no attribute '{name}'")

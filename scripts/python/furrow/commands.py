@@ -1,0 +1,114 @@
+"""The program's commands as functions: each runs the program to its end and opens what it left."""
+from __future__ import annotations
+
+import os
+import pathlib
+from collections.abc import Mapping
+from typing import Any
+
+from ._program import Content, File, as_file, call, named_file, ROOT
+from ._settings import arguments
+from .opening import open
+from .runs import Run
+from .studies import Study
+from .virtual_tests import Press, Soil
+
+
+def _out(out: File | None, overwrite: bool) -> list[str]:
+    return ([f"--out={os.fspath(out)}"] if out is not None else []) + (["--overwrite"] if overwrite else [])
+
+
+def _opened(printed: str) -> Any:
+    return open(printed.splitlines()[-1])
+
+
+def run(scenario: File | Content, *, out: File | None = None, overwrite: bool = False, seeds: int | None = None,
+        jobs: int | None = None, plots: bool = False, progress: bool = True,
+        settings: Mapping[str, Any] | None = None, **keys: Any) -> Run | Study:
+    """Runs a scenario and opens it: a Run, or with `seeds` a Study of as many beds.
+
+    scenario   a file, the name of a shipped one ("drawbar_pull_small"), or the scenario itself as a dict
+    keys       keys of the scenario: rig__slip=0.5 stands for --set rig.slip=0.5; `settings` takes {"rig.slip": 0.5}
+    out        new folder for the results (default: results/<scenario>-NNN here); `overwrite` replaces those of an earlier run
+    jobs       with `seeds`: beds at once
+    plots      whether to make the plots of `furrow report` as files
+    progress   whether to show on stderr what the program says
+
+    Raises a FurrowError with the program's message and exit code: BadInput, PhysicsFailed, …; its `directory` can be
+    opened. An interrupt stops the run with a checkpoint.
+    """
+    options = _out(out, overwrite) + ([] if plots else ["--no-plots"]) + arguments(settings, keys)
+    options += [f"--{name}={value}" for name, value in (("seeds", seeds), ("jobs", jobs)) if value is not None]
+    with as_file(scenario, "scenario") as path:
+        printed, _ = call(["run", *options, "--", os.fspath(path)], progress)
+    opened: Run | Study = _opened(printed)
+    return opened
+
+
+def resume(directory: File, *, plots: bool = False, progress: bool = True, settings: Mapping[str, Any] | None = None,
+           **keys: Any) -> Run:
+    """Continues a run from its last checkpoint and opens it. run__end=… moves its end. Raises FurrowError."""
+    options = ([] if plots else ["--no-plots"]) + arguments(settings, keys)
+    printed, _ = call(["resume", *options, "--", os.fspath(directory)], progress)
+    opened: Run = _opened(printed)
+    return opened
+
+
+def _study(content: Content) -> Content:
+    """A study whose scenario is found from any folder."""
+    named = content.get("scenario")
+    if not isinstance(named, str):
+        return content
+    path = named_file(named)
+    shipped = ROOT / "rigs" / path
+    return {**content, "scenario": str(path.absolute() if path.exists() or not shipped.exists() else shipped)}
+
+
+def sweep(study: File | Content, *, out: File | None = None, jobs: int = 1, progress: bool = True) -> Study:
+    """Runs a study and opens it. The same call continues one that was interrupted, and adds runs to one that grew.
+
+    study   a file, the name of a shipped one ("study_slip"), or the study itself as a dict:
+            {"scenario": "first_look", "grid": {"rig.slip": [0.1, 0.3]}}; its results stand in results/study unless `out` says
+    jobs    runs at once
+
+    Raises a FurrowError if a run of it failed; the folder of the error can be opened.
+    """
+    with as_file(_study(study) if isinstance(study, Mapping) else study, "study") as path:
+        if path.parent == pathlib.Path(".") and not path.exists() and (ROOT / "rigs" / path).exists():
+            path = ROOT / "rigs" / path
+        printed, _ = call(["sweep", *_out(out, False), f"--jobs={jobs}", "--", os.fspath(path)], progress)
+    opened: Study = _opened(printed)
+    return opened
+
+
+def press(scenario: File | Content, *, out: File | None = None, overwrite: bool = False, on: str = "plate",
+          deflection: float | None = None, load: float | None = None, points: int | None = None, progress: bool = True,
+          settings: Mapping[str, Any] | None = None, **keys: Any) -> Press:
+    """Presses the tire of a scenario on a plate or a cleat, statically, and opens what was measured.
+
+    deflection   the largest one, m; `points` of the curve
+    load         of the footprint, N
+    """
+    given = {"on": on, "deflection": deflection, "load": load, "points": points}
+    options = [f"--{name}={value}" for name, value in given.items() if value is not None]
+    with as_file(scenario, "scenario") as path:
+        printed, _ = call(["press", *_out(out, overwrite), *options, *arguments(settings, keys), "--", os.fspath(path)], progress)
+    opened: Press = _opened(printed)
+    return opened
+
+
+def soil(scenario: File | Content, *, out: File | None = None, overwrite: bool = False, quick: bool = False,
+         seeds: int | None = None, only: str | None = None, progress: bool = True,
+         settings: Mapping[str, Any] | None = None, **keys: Any) -> Soil:
+    """Runs virtual soil tests on the grains of a scenario and opens what was measured.
+
+    quick   small boxes and one seed: an impression within seconds, not a result to quote
+    seeds   beds per test
+    only    this test only: "plate", "shear", "cone" or "repose"
+    """
+    options = [f"--{name}={value}" for name, value in (("seeds", seeds), ("only", only)) if value is not None]
+    options += ["--quick"] if quick else []
+    with as_file(scenario, "scenario") as path:
+        _, folder = call(["soil", *_out(out, overwrite), *options, *arguments(settings, keys), "--", os.fspath(path)], progress)
+    assert folder
+    return Soil(folder)

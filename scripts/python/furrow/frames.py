@@ -1,0 +1,119 @@
+"""What tires and grains looked like at single instants: files of <run>/frames, read when they are asked for."""
+from __future__ import annotations
+
+import pathlib
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+from typing import Generic, TypeVar, overload
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from ._scripts import Missing, run_data
+
+Numbers = NDArray[np.float32]
+
+
+class Frame:
+    """One instant of a tire or of the grains. Arrays are read when they are first used."""
+
+    def __init__(self, path: pathlib.Path, index: int) -> None:
+        self.path = path
+        self.index = index
+
+    @cached_property
+    def time(self) -> float:
+        """Time, s."""
+        with h5py.File(self.path, "r") as file:
+            return float(file.attrs["time_s"])
+
+    def dataset(self, name: str, columns: int) -> NDArray[np.generic]:
+        """An array of the file; of shape (n,) where `columns` is 0. Raises Damaged (a ValueError)."""
+        with h5py.File(self.path, "r") as file:
+            values: NDArray[np.generic] = run_data.table(file, name, columns)
+        return values
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.index} at {self.time:g} s>"
+
+
+class TireFrame(Frame):
+    """A tire's surface, world axes: x forward, y left, z up."""
+
+    @cached_property
+    def position(self) -> Numbers:
+        """Nodes, shape (n, 3), m."""
+        return self.dataset("position", 3)  # type: ignore[return-value]
+
+    @cached_property
+    def velocity(self) -> Numbers:
+        """Of the nodes, shape (n, 3), m/s."""
+        return self.dataset("velocity", 3)  # type: ignore[return-value]
+
+    @cached_property
+    def force(self) -> Numbers:
+        """On the nodes by the terrain, shape (n, 3), N."""
+        return self.dataset("force", 3)  # type: ignore[return-value]
+
+    @cached_property
+    def triangle(self) -> NDArray[np.int32]:
+        """Indices of the nodes of each triangle, shape (m, 3)."""
+        return self.dataset("triangle", 3)  # type: ignore[return-value]
+
+
+class GrainFrame(Frame):
+    """All grains of the terrain."""
+
+    @cached_property
+    def position(self) -> Numbers:
+        """Centres, shape (n, 3), m."""
+        return self.dataset("position", 3)  # type: ignore[return-value]
+
+    @cached_property
+    def speed(self) -> Numbers:
+        """Shape (n,), m/s."""
+        return self.dataset("speed", 0)  # type: ignore[return-value]
+
+    @cached_property
+    def radius(self) -> Numbers:
+        """Shape (n,), m."""
+        return self.dataset("radius", 0)  # type: ignore[return-value]
+
+
+F = TypeVar("F", bound=Frame)
+
+
+class Frames(Sequence[F], Generic[F]):
+    """The frames of one tire or of the grains in order of time: `frames[0]`, `frames[-1]`, `frames.at(0.8)`."""
+
+    def __init__(self, kind: type[F], files: Mapping[int, pathlib.Path]) -> None:
+        self._frames = [kind(files[index], index) for index in sorted(files)]
+
+    def __len__(self) -> int:
+        return len(self._frames)
+
+    @overload
+    def __getitem__(self, at: int) -> F: ...
+    @overload
+    def __getitem__(self, at: slice) -> list[F]: ...
+
+    def __getitem__(self, at: int | slice) -> F | list[F]:
+        return self._frames[at]
+
+    def __iter__(self) -> Iterator[F]:
+        return iter(self._frames)
+
+    @property
+    def times(self) -> NDArray[np.float64]:
+        """Times of all frames, s."""
+        return np.array([frame.time for frame in self._frames])
+
+    def at(self, time: float) -> F:
+        """The frame nearest to a time in s. Raises Missing if there are none."""
+        if not self._frames:
+            raise Missing("there are no frames: output.frame_interval was 0, or nothing was written yet")
+        return self._frames[int(np.argmin(np.abs(self.times - time)))]
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} frames>"

@@ -1,0 +1,30 @@
+"""Opens folders of results by what they hold."""
+from __future__ import annotations
+
+import os
+import pathlib
+
+from .runs import Run
+from .studies import Study
+from .virtual_tests import Kinematics, Press, Soil
+
+Opened = Run | Study | Soil | Press | Kinematics
+
+
+def open(directory: str | os.PathLike[str]) -> Opened:
+    """Opens what any command of furrow left: a Run, Study, Soil, Press or Kinematics. Runs may have failed or still go on.
+
+    Raises FileNotFoundError when there is no such folder, Damaged (a ValueError) for a file that does not hold what it
+    should, ValueError for a folder without results.
+    """
+    folder = pathlib.Path(directory)
+    if not folder.is_dir():
+        raise FileNotFoundError(f"{folder}: is no folder")
+    kinds: tuple[tuple[str, type[Opened]], ...] = (
+        ("soil.json", Soil), ("sweep.json", Study), ("press.csv", Press), ("kinematics.csv", Kinematics))
+    for name, kind in kinds:
+        if (folder / name).is_file():
+            return kind(folder)
+    if not any((folder / name).exists() for name in ("scenario.json", "summary.json", "summary_failed.json")):
+        raise ValueError(f"{folder}: holds no results of furrow")
+    return Run(folder)

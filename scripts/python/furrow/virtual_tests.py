@@ -1,0 +1,81 @@
+"""Soil tests, pressed tires and suspensions: what `furrow soil`, `furrow press` and `furrow kc` leave."""
+from __future__ import annotations
+
+import pathlib
+from functools import cached_property
+from typing import Any
+
+import pandas as pd
+
+from ._scripts import Missing, run_data
+from .tables import read_csv
+
+
+class Tests:
+    """A folder with a file of figures and tables beside it."""
+
+    FIGURES = "summary.json"
+
+    def __init__(self, directory: pathlib.Path) -> None:
+        self.directory = directory
+        #: the figures
+        self.summary: dict[str, Any] = run_data.read_object(directory / self.FIGURES)
+
+    def table(self, name: str) -> pd.DataFrame:
+        """A table by its name without .csv; `attrs["units"]` is {column: unit}. Raises Missing."""
+        path = self.directory / f"{name}.csv"
+        if not path.exists():
+            raise Missing(f"{self.directory} has no {name}.csv")
+        return read_csv(path)
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} in {self.directory}>"
+
+
+class Soil(Tests):
+    """Virtual soil tests. `summary["standard_error"]` holds the errors of the figures."""
+
+    FIGURES = "soil.json"
+
+    @cached_property
+    def plate(self) -> pd.DataFrame:
+        """Pressure against sinkage of each plate. Raises Missing when the test was not run, as the others do."""
+        return self.table("plate")
+
+    @cached_property
+    def shear(self) -> pd.DataFrame:
+        """Shear stress against displacement under each normal stress."""
+        return self.table("shear")
+
+    @cached_property
+    def cone(self) -> pd.DataFrame:
+        """Resistance of a cone against its depth."""
+        return self.table("cone")
+
+    @cached_property
+    def repose(self) -> pd.DataFrame:
+        """The slope that is left when a wall is taken away."""
+        return self.table("repose")
+
+
+class Press(Tests):
+    """A tire pressed on a plate or a cleat."""
+
+    @cached_property
+    def curve(self) -> pd.DataFrame:
+        """Force against deflection, loading and unloading."""
+        return self.table("press")
+
+    @cached_property
+    def footprint(self) -> pd.DataFrame:
+        """Contact pressure over the footprint."""
+        return self.table("footprint")
+
+
+class Kinematics(Tests):
+    """Suspensions of a vehicle against travel and steering."""
+
+    @cached_property
+    def curves(self) -> pd.DataFrame:
+        """Camber, toe, rates and more of each wheel, by motion."""
+        return self.table("kinematics")

@@ -1,0 +1,19 @@
+// One engine that a scenario may choose as `terrain.engine`.
+#pragma once
+
+#include <memory>
+
+#include "protocol/files/json_fields.hpp"
+#include "protocol/files/read_context.hpp"
+#include "terrain/terrain_spec.hpp"
+
+namespace furrow::terrain {
+
+struct TerrainEntry {
+  const char* name;  // terrain.engine
+  KeyList keys;      // of its options
+  /// @pre the section was checked against the schema. @throws Error(bad_input) for a file that does not exist
+  std::unique_ptr<TerrainSpec> (*read)(const nlohmann::json& section, const ReadContext& context);
+};
+
+}  // namespace furrow::terrain

@@ -1,0 +1,19 @@
+// furrow_faults has one terrain more than furrow: the mat of several ranks. It takes the place of
+// terrain/extra_terrains.cpp. A scenario that names it needs a schema that knows it (terrain_ranks.py makes one).
+#include "terrain/extra_terrains.hpp"
+
+#include <array>
+
+#include "protocol/files/json_fields.hpp"
+#include "tests/dummies/strip_mat.hpp"
+
+namespace furrow::terrain {
+
+std::span<const TerrainEntry> extra_terrains() {
+  static constexpr std::array kExtra{
+      TerrainEntry{"strip_mat", key_list<StripMatOptions>(), read_strip_mat},
+  };
+  return kExtra;
+}
+
+}  // namespace furrow::terrain

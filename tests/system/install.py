@@ -1,0 +1,66 @@
+#!/usr/bin/python3
+"""The installed tree: it runs from wherever it is moved to, and takes the build for this processor."""
+import os
+import pathlib
+import shutil
+import subprocess
+import unittest
+
+from program import PROGRAM, SystemTest, main, write_scenario
+
+BUILD = pathlib.Path(PROGRAM).parent
+
+
+class Install(SystemTest):
+    def setUp(self):
+        super().setUp()
+        done = subprocess.run(["cmake", "--install", str(BUILD), "--prefix", str(self.folder / "first")], capture_output=True,
+                              text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.tree = self.folder / "moved tree"
+        (self.folder / "first").rename(self.tree)
+        self.builds = self.tree / "libexec" / "furrow"
+
+    def run_installed(self, *arguments, **env):
+        environment = {name: value for name, value in os.environ.items() if not name.startswith("FURROW")}
+        return subprocess.run([str(self.tree / "bin" / "furrow"), *map(str, arguments)], cwd=self.folder, text=True,
+                              capture_output=True, env={**environment, **env}, timeout=120)
+
+    def test_a_moved_tree_runs_and_finds_its_files(self):
+        done = self.run_installed("validate", write_scenario(self.folder))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.run_installed("run", self.folder / "small.json", "--out", "out", "--set", "terrain.engine=rigid", "--set",
+                                  "run.end=0.004", "--set", "run.average_from=0")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue(list((self.folder / "out").glob("*.png")) or "no plots" in done.stderr, done.stderr)
+        self.assertTrue((self.tree / "share/furrow/rigs/scenario.schema.json").exists())
+
+    def test_a_batch_script_names_the_command_that_suits_every_node(self):
+        done = self.run_installed("ranks", "--slurm", write_scenario(self.folder))
+        self.assertIn(f"program='{self.tree}/bin/furrow'\n", done.stdout)
+
+    def test_the_richest_level_is_taken_and_another_can_be_asked_for(self):
+        shutil.rmtree(self.builds)
+        for level in ("any", "x86-64-v2", "x86-64-v3", "x86-64-v4", "m68k"):
+            program = self.builds / level / "furrow"
+            program.parent.mkdir(parents=True)
+            program.write_text(f"#!/bin/sh\necho {level}: \"$@\"\n")
+            program.chmod(0o755)
+        flags = pathlib.Path("/proc/cpuinfo").read_text().split()
+        taken = next((level for level, flag in (("x86-64-v4", "avx512vl"), ("x86-64-v3", "avx2"), ("x86-64-v2", "popcnt"))
+                      if flag in flags), "any")
+        self.assertEqual(self.run_installed("run", "a b").stdout, f"{taken}: run a b\n")
+        self.assertEqual(self.run_installed(FURROW_LEVEL="any").stdout, "any:\n")
+        shutil.rmtree(self.builds / taken)
+        self.assertNotEqual(self.run_installed().stdout, f"{taken}:\n")
+        for level in self.builds.iterdir():
+            if level.name != "m68k":
+                shutil.rmtree(level)
+        done = self.run_installed()
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("has builds for: m68k, expected one for: ", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.skipUnless(shutil.which("cmake"), "needs cmake")(Install)
+    main()

@@ -1,0 +1,114 @@
+#include "tire/planar/planar_contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "protocol/core/assert.hpp"
+
+namespace furrow::tire {
+
+double planar_normal_force(double stiffness, double depth, double separation, double mass, double step) {
+  FURROW_ASSERT(depth >= 0.0 && mass > 0.0 && step > 0.0, depth, mass, step);
+  const double force = stiffness * depth, travel = 0.5 * force / mass * step * step + separation * step;
+  return travel > depth ? force * depth / travel : force;
+}
+
+double planar_friction_force(double friction, double normal, double sliding, double mass, double step) {
+  return std::min(friction * normal, std::abs(sliding) * mass / step);
+}
+
+PlanarContact::PlanarContact(const PlanarMesh& mesh, PlanarGround ground, const PlanarContactLaw& law)
+    : outer_(mesh.outer), reach_(0.0), ground_(std::move(ground)), law_(law) {
+  FURROW_ASSERT(law.stiffness > 0.0 && law.friction >= 0.0, law.stiffness, law.friction);
+  const PlanarField& p = mesh.position;
+  for (std::size_t j = 0; j < outer_.size(); ++j) {
+    const int a = outer_[j], b = outer_[(j + 1) % outer_.size()];
+    reach_ = std::max(reach_, std::hypot(p.x[b] - p.x[a], p.z[b] - p.z[a]));
+  }
+  touches_.reserve(2 * outer_.size());
+}
+
+void PlanarContact::find_nodes(const PlanarField& x) {
+  for (const int n : outer_) {
+    if (x.z[n] >= ground_.top()) continue;
+    const PlanarDepth depth = ground_.depth(x.x[n], x.z[n]);
+    if (depth.depth > 0.0) touches_.push_back({n, -1, 0.0, depth.depth, depth.out_x, depth.out_z, 0.0, 0.0});
+  }
+}
+
+void PlanarContact::find_corners(const PlanarField& x) {
+  double left = x.x[outer_[0]], right = left, low = x.z[outer_[0]];
+  for (const int n : outer_)
+    left = std::min(left, x.x[n]), right = std::max(right, x.x[n]), low = std::min(low, x.z[n]);
+  const auto& corners = ground_.corners();
+  auto corner = std::lower_bound(corners.begin(), corners.end(), left,
+                                 [](const PlanarPoint& p, double at) { return p.x < at; });
+  for (; corner != corners.end() && corner->x <= right; ++corner) {
+    if (corner->z <= low) continue;
+    PlanarTouch touch;
+    touch.depth = reach_;
+    bool found = false, inside = false;
+    for (std::size_t j = 0; j < outer_.size(); ++j) {
+      const int a = outer_[j], b = outer_[j + 1 < outer_.size() ? j + 1 : 0];
+      const double to_x = corner->x - x.x[a], to_z = corner->z - x.z[a];
+      if (std::max(std::abs(to_x), std::abs(to_z)) > 3.0 * reach_) continue;  // bounding boxes
+      const double dx = x.x[b] - x.x[a], dz = x.z[b] - x.z[a];
+      const double share = std::clamp((to_x * dx + to_z * dz) / (dx * dx + dz * dz), 0.0, 1.0);
+      const double in_x = to_x - share * dx, in_z = to_z - share * dz, distance = std::hypot(in_x, in_z);
+      if (!(distance < touch.depth)) continue;
+      found = distance > 0.0;
+      inside = dx * to_z - dz * to_x > 0.0;  // on the left of a counter-clockwise edge
+      touch = {a, b, share, distance, in_x / distance, in_z / distance, 0.0, 0.0};
+    }
+    if (found && inside) touches_.push_back(touch);
+  }
+}
+
+void PlanarContact::load(const PlanarState& state, const std::vector<double>& mass, double step,
+                         PlanarField& force) {
+  touches_.clear();
+  find_nodes(state.x);
+  find_corners(state.x);
+  const PlanarField& v = state.v;
+  for (PlanarTouch& t : touches_) {
+    const int b = t.b < 0 ? t.a : t.b;
+    const double of_a = 1.0 - t.share, of_b = t.share;
+    const double m = 1.0 / (of_a * of_a / mass[t.a] + of_b * of_b / mass[b]);
+    const double vx = of_a * v.x[t.a] + of_b * v.x[b], vz = of_a * v.z[t.a] + of_b * v.z[b];
+    const double sliding = vx * t.push_z - vz * t.push_x;
+    t.force = planar_normal_force(law_.stiffness, t.depth, vx * t.push_x + vz * t.push_z, m, step);
+    t.friction = std::copysign(planar_friction_force(law_.friction, t.force, sliding, m, step), -sliding);
+    const double fx = t.force * t.push_x + t.friction * t.push_z,
+                 fz = t.force * t.push_z - t.friction * t.push_x;
+    force.x[t.a] += of_a * fx, force.z[t.a] += of_a * fz;
+    force.x[b] += of_b * fx, force.z[b] += of_b * fz;
+  }
+}
+
+void PlanarContact::find(const PlanarField& x) {
+  touches_.clear();
+  find_nodes(x);
+  find_corners(x);
+  for (PlanarTouch& t : touches_) t.force = law_.stiffness * t.depth;
+}
+
+double PlanarContact::energy() const {
+  double sum = 0.0;
+  for (const PlanarTouch& t : touches_) sum += 0.5 * law_.stiffness * t.depth * t.depth;
+  return sum;
+}
+
+double PlanarContact::force_x() const {
+  double sum = 0.0;
+  for (const PlanarTouch& t : touches_) sum += t.force * t.push_x + t.friction * t.push_z;
+  return sum;
+}
+
+double PlanarContact::force_z() const {
+  double sum = 0.0;
+  for (const PlanarTouch& t : touches_) sum += t.force * t.push_z - t.friction * t.push_x;
+  return sum;
+}
+
+}  // namespace furrow::tire

@@ -1,0 +1,65 @@
+// Explicit integration of planar triangles and whatever loads them.
+//
+// Semi-implicit Euler: v += (F/m) h, then x += v h. It keeps linear and angular momentum to round-off. Runge and Kutta's
+// method of fourth order is four times the work.
+#pragma once
+
+#include <functional>
+
+#include "tire/planar/planar_elements.hpp"
+
+namespace furrow::tire {
+
+enum class PlanarIntegrator { semi_implicit_euler, runge_kutta_4 };
+
+struct PlanarState {
+  PlanarField x, v;
+};
+
+class PlanarMotion {
+ public:
+  /// Adds what acts from outside on nodes to a force. @param step s, that contact limits its force by
+  using Loads = std::function<void(const PlanarState& state, double step, PlanarField& force)>;
+
+  PlanarMotion(PlanarElements elements, PlanarState start,
+               PlanarIntegrator integrator = PlanarIntegrator::semi_implicit_euler);
+
+  void set_loads(Loads loads) { loads_ = std::move(loads); }
+  /// Mass that a node carries besides its own, kg.
+  void add_mass(int node, double mass) { mass_[node] += mass; }
+  /// A node's velocity in this direction stays as set_velocity() says.
+  void hold(int node, bool x, bool z);
+  void set_velocity(int node, double x, double z) { state_.v.x[node] = x, state_.v.z[node] = z; }
+
+  /// One step of h, s. @returns whether no triangle was turned inside out
+  bool step(double h);
+
+  const PlanarState& state() const { return state_; }
+  const PlanarElements& elements() const { return elements_; }
+  const std::vector<double>& mass() const { return mass_; }  // kg, with what was added
+  /// Sum that acted on nodes in the last step (the first stage of a Runge–Kutta step); of a held node: what the holder
+  /// must resist, N.
+  const PlanarField& force() const { return force_; }
+  double kinetic_energy() const;  // J
+
+ private:
+  bool accelerate(const PlanarState& at, double h, PlanarField& force, PlanarField& rate);
+  bool euler(double h);
+  bool runge_kutta(double h);
+
+  PlanarElements elements_;
+  PlanarIntegrator integrator_;
+  Loads loads_;
+  PlanarState state_;
+  std::vector<double> mass_;
+  struct Held {
+    int node;
+    bool x, z;
+  };
+  std::vector<Held> held_;
+  PlanarField force_, rate_;
+  PlanarState stage_, sum_;  // of Runge–Kutta
+  PlanarField stage_force_;
+};
+
+}  // namespace furrow::tire

@@ -1,0 +1,24 @@
+// The static test of the planar tire: its load–deflection curve and the pressure along its footprint, on a plate, a bar
+// with upright sides or a profile, without friction. Deflection is how far the ground's highest point stands above the
+// undeformed tire's lowest, of a wheel whose centre node is held.
+#pragma once
+
+#include "tire/planar/planar_static.hpp"
+#include "tire/press.hpp"
+
+namespace furrow::tire {
+
+/// Largest deflection, share of the height of the tire over its rim.
+inline constexpr double kMostPlanarDeflection = 0.6;
+
+/// @throws Error(bad_input) when the deflection is beyond kMostPlanarDeflection, Error(physics) without an equilibrium
+PressResults press_planar(const PlanarParams& params, const MassProperties& mass, const PressOptions& options,
+                          const ProgressCall& progress);
+
+/// The ground of an obstacle.
+PlanarGround planar_ground(const PressObstacle& obstacle, double radius);
+
+/// Pressure where nodes and corners touch, their forces spread over a side of the tire.
+std::vector<PressSample> planar_footprint(const PlanarStatic& wheel);
+
+}  // namespace furrow::tire

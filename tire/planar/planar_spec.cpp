@@ -1,0 +1,183 @@
+#include "tire/planar/planar_spec.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "protocol/core/error.hpp"
+#include "tire/cylinder.hpp"
+#include "tire/planar/planar_press.hpp"
+#include "tire/planar/planar_tangent.hpp"
+#include "tire/tire_file_reader.hpp"
+
+namespace furrow::tire {
+namespace {
+
+constexpr int kLeastAround = 12, kMostAround = 2000, kMostRings = 200;
+constexpr double kBytesPerElement = 3000.0;  // of the static test's factor
+constexpr double kLargestPoisson = 0.499;    // beyond, the step limit vanishes
+constexpr std::array<std::string_view, 2> kLaw{"printed", "consistent"}, kVolume{"averaged", "element"},
+    kIntegrator{"runge_kutta_4", "semi_implicit_euler"};
+enum class Volume { averaged, element };
+enum class Integrator { runge_kutta_4, semi_implicit_euler };
+
+PlanarMaterial read_material(JsonReader reader) {
+  PlanarMaterial m;
+  m.density = reader.positive("density");
+  m.young_modulus = reader.positive("young_modulus");
+  m.poisson_ratio = reader.not_negative("poisson_ratio");
+  m.viscosity = reader.not_negative("viscosity");
+  if (m.poisson_ratio > kLargestPoisson)
+    reader.fail("poisson_ratio",
+                fmt::format("is {:g}, expected 0 to {:g}", m.poisson_ratio, kLargestPoisson));
+  reader.finish();
+  return m;
+}
+
+void check(const PlanarFile& f) {
+  const PlanarWheelSize& s = f.params.size;
+  if (!(s.rim_radius < s.radius))
+    throw input_error(
+        f.path, "rim_radius",
+        fmt::format("is {:g} m, expected less than the radius of {:g} m", s.rim_radius, s.radius));
+  const int most = std::min(kMostRings, planar_most_rings(s.rim_radius, s.radius, s.around));
+  if (s.rings > most)
+    throw input_error(f.path, "elements_radial",
+                      fmt::format("is {}, expected 1 to {} for {} elements around: more cut each other",
+                                  s.rings, most, s.around));
+  if (f.params.step_share > 1.0)
+    throw input_error(
+        f.path, "step_share",
+        fmt::format("is {:g}, expected above 0 up to 1: explicit integration is not stable beyond",
+                    f.params.step_share));
+}
+
+class PlanarTest final : public StaticTest {
+ public:
+  PlanarTest(const PlanarParams& params, const MassProperties& mass) : params_(params), mass_(mass) {}
+  PressResults press(const PressOptions& options, const ProgressCall& progress) const override {
+    return press_planar(params_, mass_, options, progress);
+  }
+
+ private:
+  PlanarParams params_;
+  MassProperties mass_;
+};
+
+class PlanarSpec final : public TireSpec {
+ public:
+  PlanarSpec(PlanarFile file, const TireOptions& options) : TireSpec(options), file_(std::move(file)) {}
+
+  TireDescription describe() const override;
+  std::unique_ptr<Tire> make(const TireContext&) const override {
+    throw input_error(file_.path, "model", std::string("is 'planar', ") + kNoMotion);
+  }
+  TireShape shape() const override {
+    TireShape shape =
+        cylinder(file_.params.size.around, file_.params.size.radius, file_.params.options.width);
+    shape.material = file_.contact;
+    shape.mass = mass();
+    return shape;
+  }
+  std::unique_ptr<StaticTest> static_test() const override {
+    return std::make_unique<PlanarTest>(file_.params, mass());
+  }
+
+ private:
+  static constexpr const char* kNoMotion =
+      "which runs do not move in this version: it can be pressed (furrow press); for a run expected another "
+      "model, or "
+      "tire.rigid true";
+
+  /// Of the tire without its disc: a cylinder with a hole.
+  MassProperties mass() const {
+    const PlanarParams& p = file_.params;
+    const double outer = p.size.radius * p.size.radius, inner = p.size.rim_radius * p.size.rim_radius;
+    const double mass = p.tire.density * std::numbers::pi * (outer - inner) * p.options.width;
+    const double spin = 0.5 * mass * (outer + inner);
+    const double diametral = 0.5 * spin + mass * p.options.width * p.options.width / 12.0;
+    return {mass, Vec3(diametral, spin, diametral).asDiagonal()};
+  }
+
+  PlanarFile file_;
+};
+
+TireDescription PlanarSpec::describe() const {
+  const PlanarParams& p = file_.params;
+  const PlanarMesh mesh = planar_wheel(p.size);
+  const double limit = step_limit(planar_elements(mesh, p), mesh.position);
+  TireDescription d;
+  d.kind = "planar";
+  d.name = "planar finite-element tire";
+  d.details = fmt::format("{} triangles, {} x {} of them the tire, {} coordinates, steps up to {:.3g} s",
+                          mesh.elements(), p.size.around, 2 * p.size.rings, 2 * mesh.nodes(), limit);
+  d.radius = p.size.radius;
+  d.width = d.tread_width = p.options.width;
+  d.coordinates = 2 * mesh.nodes();
+  d.vertices = 2 * p.size.around + 2;
+  d.facets = p.size.around;
+  d.mass = mass();
+  d.memory = kBytesPerElement * mesh.elements();
+  d.static_only = kNoMotion;
+  d.takes = {"friction", "elements_circumference"};
+  d.model = {{"elements", static_cast<double>(mesh.elements())}, {"step_limit_s", limit}};
+  return d;
+}
+
+/// What the scenario says in place of the file: another number of elements around takes as many more through the tire.
+void apply(PlanarFile& file, const TireOptions& options) {
+  if (options.friction >= 0.0) file.contact.friction = file.params.friction = options.friction;
+  if (options.elements_circumference == 0) return;
+  const int around = options.elements_circumference;
+  if (around < kLeastAround || around > kMostAround)
+    throw input_error(file.path, "elements_circumference",
+                      fmt::format("is {}, expected {} to {}", around, kLeastAround, kMostAround));
+  PlanarWheelSize& size = file.params.size;
+  const double rings = static_cast<double>(size.rings) * around / size.around;
+  size.around = around;
+  size.rings = std::clamp(static_cast<int>(std::lround(rings)), 1,
+                          std::min(kMostRings, planar_most_rings(size.rim_radius, size.radius, around)));
+}
+
+}  // namespace
+
+PlanarFile read_planar_file(const nlohmann::json& document, const std::string& path) {
+  JsonReader reader(document, path);
+  take_common_keys(reader);
+  PlanarFile f;
+  f.path = path;
+  PlanarParams& p = f.params;
+  p.size.radius = reader.positive("radius");
+  p.size.rim_radius = reader.positive("rim_radius");
+  p.options.width = reader.positive("width");
+  p.size.around = reader.count("elements_circumference", kLeastAround, kMostAround);
+  p.size.rings = reader.count("elements_radial", 1, kMostRings);
+  p.disc = read_material(reader.child("disc"));
+  p.tire = read_material(reader.child("tire"));
+  p.options.law = choice_of<PlanarLaw>(reader, "law", kLaw);
+  p.options.averaged = choice_of<Volume>(reader, "volume", kVolume) == Volume::averaged;
+  p.integrator = choice_of<Integrator>(reader, "integrator", kIntegrator) == Integrator::runge_kutta_4
+                     ? PlanarIntegrator::runge_kutta_4
+                     : PlanarIntegrator::semi_implicit_euler;
+  p.contact_stiffness = reader.positive("contact_stiffness");
+  p.step_share = reader.positive("step_share");
+  f.contact = read_contact(reader.child("contact"));
+  p.friction = f.contact.friction;
+  reader.finish();
+  check(f);
+  return f;
+}
+
+std::unique_ptr<TireSpec> read_planar(const nlohmann::json& file, const TireOptions& options) {
+  PlanarFile planar = read_planar_file(file, options.file.string());
+  apply(planar, options);
+  return std::make_unique<PlanarSpec>(std::move(planar), options);
+}
+
+}  // namespace furrow::tire

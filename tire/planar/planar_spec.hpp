@@ -1,0 +1,27 @@
+// The planar finite-element tire as an entry of the table of models: its file, what a scenario changes of it, what it
+// says of itself. Runs of the program do not move it yet: it is pressed (furrow press), or rolls held rigid (tire.rigid).
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "tire/planar/planar_wheel.hpp"
+#include "tire/tire_spec.hpp"
+
+namespace furrow::tire {
+
+struct PlanarFile {
+  std::string path;
+  PlanarParams params;
+  ContactMaterial contact;
+};
+
+/// @throws Error(bad_input) naming file and key
+PlanarFile read_planar_file(const nlohmann::json& file, const std::string& path);
+
+/// @throws Error(bad_input) naming file and key
+std::unique_ptr<TireSpec> read_planar(const nlohmann::json& file, const TireOptions& options);
+
+}  // namespace furrow::tire

@@ -1,0 +1,59 @@
+// A planar wheel at rest on rigid ground without friction, its centre node held at a place and its disc's rim held
+// against turning by a couple.
+//
+// The minimum of Π = elastic energy + Σ ½ c h² + ½ k θ² with the mean turn θ of the rim; Newton's method with a line
+// search on Π. Where the tangent is not positive definite a share of its diagonal at rest is added. The centre goes to a
+// new place in parts that are small enough to be followed.
+#pragma once
+
+#include <memory>
+
+#include "tire/planar/planar_wheel.hpp"
+
+namespace furrow::tire {
+
+struct PlanarReport {
+  bool converged = false;
+  int steps = 0;          // of Newton's method
+  int indefinite = 0;     // tangents that were not positive definite
+  double residual = 0.0;  // largest free force, N
+};
+
+class PlanarStatic {
+ public:
+  PlanarStatic(const PlanarParams& params, PlanarGround ground);
+  ~PlanarStatic();
+  PlanarStatic(const PlanarStatic&) = delete;
+  PlanarStatic& operator=(const PlanarStatic&) = delete;
+
+  /// Moves the centre there from where it is. First: undeformed, just above the ground, at x = 0.
+  PlanarReport move_to(PlanarPoint centre);
+
+  const PlanarMesh& mesh() const { return mesh_; }
+  const PlanarElements& elements() const { return elements_; }
+  const PlanarField& shape() const { return x_; }
+  const PlanarContact& contact() const { return contact_; }
+  double force() const { return contact_.force_z(); }  // of the ground on the tire, upwards, N
+  double couple() const;                               // that holds the rim, about +y, N m
+
+ private:
+  struct Linear;
+  PlanarReport solve();
+  double potential(const PlanarField& x);
+  double gradient(const PlanarField& x);  // into right_, with its sign changed; largest component
+  void assemble();
+  void stiffen(const PlanarTouch& touch);
+  bool factorize(double share);
+  bool descend(double& potential, double& residual);
+  double turn(const PlanarField& x) const;
+
+  PlanarMesh mesh_;
+  PlanarElements elements_;
+  PlanarContact contact_;
+  PlanarPoint centre_;
+  PlanarField x_, still_, force_, trial_;
+  double spring_ = 0.0, inertia_ = 0.0;  // k, N m; Σr² of the rim, m²
+  std::unique_ptr<Linear> linear_;
+};
+
+}  // namespace furrow::tire

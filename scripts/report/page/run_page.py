@@ -49,7 +49,8 @@ def pull_words(run, pull):
     half = blocks.half_95(pull.get("sem"), pull.get("n_eff"))
     value, _ = blocks.quantity("pull_N", pull["mean"], half)
     slip = f" at {100 * run.number('slip'):g} % slip" if is_number(run.number("slip")) else ""
-    words = f"The tire pulls {value} N{slip}"
+    who = f"Wheel 0 of {len(run.wheels)}" if len(run.wheels) > 1 else "The tire"
+    words = f"{who} pulls {value} N{slip}"
     if half is not None:
         words += f" (95 % interval; standard error {digits(pull['sem'])} N from about {pull['n_eff']:.0f} independent values)"
     words += f", as the mean from {run.window[0]:.3g} to {run.window[1]:.3g} s." if run.window else "."

@@ -63,8 +63,10 @@ def passes(sweep, arrays):
                 lines.append(line(arrays, label or title.lower(), x, y, half, factor))
         if lines:
             items.append(blocks.chart(title, "pass", "", unit, lines))
-    return {"id": "passes", "title": "Passes", "blocks": [blocks.charts(items, "Whiskers: 95 % interval of the mean over "
-            + str(over) if over else "Whiskers: standard error of each run.")]}
+    made = [blocks.charts(items, f"Whiskers: 95 % interval of the mean over {over}." if over else "Whiskers: standard error of each run.")]
+    if unsteady := sum(map(studies.unsteady, sweep.rows)):
+        made.insert(0, blocks.text(f"The pull is not steady in {unsteady} of {len(sweep.rows)} passes: its error is too small there.", "warn"))
+    return {"id": "passes", "title": "Passes", "blocks": made}
 
 
 def beds(sweep, arrays):

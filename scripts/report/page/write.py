@@ -14,7 +14,7 @@ from .playback import playback
 NAME = "report.html"
 LARGEST = 14.6e6  # bytes of a page
 BUNDLE = pathlib.Path(__file__).resolve().parents[1] / "bundle"
-PROBLEMS = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError, RuntimeError, OSError, csv.Error, Missing, Damaged)
+PROBLEMS = (ArithmeticError, AttributeError, LookupError, MemoryError, TypeError, ValueError, RuntimeError, OSError, csv.Error, Missing, Damaged)
 
 HEAD = """<!DOCTYPE html>
 <html lang="en">

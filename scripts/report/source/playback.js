@@ -169,7 +169,7 @@ class Player {
       height: (i) => (z[3 * i + 2] - tire.centre[2]) / (2 * tire.radius) + 0.5 }[by];
     paint(tire.colour, tire.description.vertices, OF_TIRES[by]?.[2] || "rubber", by === "plain" ? share : rim(share));
     if (by === "plain")
-      for (let i = 0; i < tire.description.vertices; i++) for (let c = 0; c < 3; c++) tire.colour.array[3 * i + c] = tire.rim[i] ? 0.3 : tire.sector[i] ? 0.085 : 0.035;
+      for (let i = 0; i < tire.description.vertices; i++) for (let c = 0; c < 3; c++) tire.colour.array[3 * i + c] = tire.rim[i] ? 0.3 : tire.sector[i] ? 0.075 : 0.035;
   }
 
   placeBed(number) {

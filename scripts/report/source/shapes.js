@@ -72,12 +72,13 @@ function rimOf(position) {
   return distance.map((d) => (d < 0.56 * most ? 1 : 0));
 }
 
-/** Twelfths of the circumference by turns, so that one sees the wheel roll. */
+/** Twelfths of the tread by turns, so that one sees the wheel roll. */
 function sectorOf(position) {
   const x = everyThird(position, 0), z = everyThird(position, 2);
   const mid = (values) => (Math.max(...values) + Math.min(...values)) / 2;
   const cx = mid(x), cz = mid(z);
-  return x.map((v, i) => (Math.floor((Math.atan2(z[i] - cz, v - cx) / Math.PI) * 6 + 6) % 2));
+  const distance = x.map((v, i) => Math.hypot(v - cx, z[i] - cz)), most = Math.max(...distance);
+  return x.map((v, i) => (distance[i] > 0.9 * most && Math.floor((Math.atan2(z[i] - cz, v - cx) / Math.PI) * 6 + 6) % 2 ? 1 : 0));
 }
 
 /** The surface of the bed over its grid. */

@@ -129,7 +129,7 @@ TEST(Planar, modulus_for_the_measured_stiffness) {
                            law == tire::PlanarLaw::printed ? "printed" : "consistent",
                            averaged ? "averaged" : "element", by_regression ? "regression" : "ends",
                            p.tire.young_modulus, stiffness, kPapersModulus);
-        EXPECT_NEAR(stiffness, kMeasured, 1e-4 * kMeasured);
+        EXPECT_NEAR(stiffness, kMeasured, 2e-3 * kMeasured);
         EXPECT_GT(p.tire.young_modulus, 0.5 * kPapersModulus);
         EXPECT_LT(p.tire.young_modulus, 2.0 * kPapersModulus);
       }

@@ -69,7 +69,8 @@ def curb():
     axes[0].plot(time[here], 1e3 * column(table, "simple_axle_m")[here], "--", color=COLOURS[1], label="spring and damper")
     axes[0].axvline(np.interp(0.0, centre, time), color="0.6", lw=0.8)
     lifted = (column(table, "ground_force_N") == 0.0) & here
-    axes[0].plot(time[lifted], 1e3 * column(table, "axle_m")[lifted], ".", color=COLOURS[2], label="off the ground")
+    if lifted.any():
+        axes[0].plot(time[lifted], 1e3 * column(table, "axle_m")[lifted], ".", color=COLOURS[2], label="off the ground")
     axes[0].set(xlabel="time, s", ylabel="height of the centre over rest, mm", title="curb of 0.2 m; grey: centre over the edge")
     axes[0].legend(fontsize=9)
     for colour, picture in zip(COLOURS, groups(rows("shapes"), "centre_x_m").values()):

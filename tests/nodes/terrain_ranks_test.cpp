@@ -99,8 +99,8 @@ TEST(TerrainRanks, one_that_falls_silent_is_named) {
     group.gather({});
     group.broadcast({});
   });
-  EXPECT_EQ(ends[0].substr(0, 90),
-            "terrain 0 waited 1 s for terrain 2 (its share): terrain 2 does not answer; raise run.peer_");
+  // Either of the others may lose patience first: it has waited for the silent one, or for the one that waits for it.
+  EXPECT_NE(ends[0].find("terrain 2 does not answer; raise run.peer_"), std::string::npos) << ends[0];
 }
 
 TEST(TerrainRanks, an_engine_that_cannot_use_them_is_refused_by_key) {

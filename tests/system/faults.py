@@ -39,7 +39,7 @@ class Killed(CheckpointTest):
         self.assertEqual(steps(self.run_folder)[-1], step)
         if point == "checkpoint.done":  # what there is can be read
             self.assertEqual(furrow("report", self.run_folder, cwd=self.folder).returncode, 0)
-            for plot in self.run_folder.glob("*.png"):
+            for plot in (*self.run_folder.glob("*.png"), *self.run_folder.glob("report.html")):
                 plot.unlink()
         self.resume()
         self.same_as_whole()

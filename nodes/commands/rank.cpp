@@ -26,6 +26,7 @@
 #include "nodes/scenario/memory_check.hpp"
 #include "nodes/scenario/runnable.hpp"
 #include "protocol/abandon_mpi.hpp"
+#include "protocol/files/hdf5_library.hpp"
 #include "protocol/mpi_transport.hpp"
 
 namespace furrow::commands {
@@ -64,7 +65,8 @@ class RankReporter {
   void error(const Error& error) {
     if (supervised_) {
       send({launch::RankLine::Kind::error, rank_, error.what(), error.code(), {}});
-      std::this_thread::sleep_for(kTimeForNews);  // mpirun may drop the last words of a rank that ends at once
+      std::this_thread::sleep_for(
+          kTimeForNews);  // mpirun may drop the last words of a rank that ends at once
       return;
     }
     display_.clear();
@@ -234,6 +236,7 @@ ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
     return ExitCode::stopped;  // killed while mpirun could not hand the signal on yet
   RankReporter reporter;
   reporter.stage(launch::RankLine::Kind::begun);
+  hdf5::prepare();  // it opens itself on first use, and crashes where memory has run out by then
   Task task;
   std::optional<launch::HeldFolder> held;
   try {

@@ -1,5 +1,6 @@
 // `furrow run` and `furrow resume` outside MPI: check first, then have the ranks started and watched, then tell the
 // result.
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
@@ -42,7 +43,14 @@ void tell_result(const scenario::Scenario& scenario, const std::filesystem::path
   std::fputs(result_text(directory, scenario).c_str(), stderr);
   if (!plots) return;
   const auto made = make_report_or_warn(directory);
-  if (!made.empty())
+  if (made.empty()) return;
+  const auto page = std::find_if(made.begin(), made.end(), [](const std::filesystem::path& file) {
+    return file.extension() == ".html";
+  });
+  if (page != made.end())
+    std::fprintf(stderr, "furrow: %s shows all of it in a browser; %zu plots are beside it\n", page->c_str(),
+                 made.size() - 1);
+  else
     std::fprintf(stderr, "furrow: plots: %s and %zu more\n", made.front().c_str(), made.size() - 1);
 }
 

@@ -51,6 +51,10 @@ Json catalogue(const std::string& only) {
   for (const Kind& kind : kKinds) {
     if (!only.empty() && only != kind.name) continue;
     const std::filesystem::path folder = data_folder() / kind.folder;
+    if (!std::filesystem::is_directory(folder))
+      throw io_error(
+          folder.string(),
+          "is missing, expected the folder that comes with furrow (FURROW_HOME names where it stands)");
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::directory_iterator(folder))
       if (entry.path().extension() == ".json" && !entry.path().stem().string().ends_with(".schema"))
@@ -95,7 +99,9 @@ ExitCode list_command(const std::string& only, bool json) {
 
 ExitCode new_command(const NewArguments& arguments) {
   std::filesystem::path file = arguments.name;
-  if (!file.has_filename()) throw input_error("command line", "NAME", "is no name of a file, expected one");
+  if (const std::string name = file.filename().string(); name.empty() || name[0] == '-' || name[0] == '.')
+    throw input_error("command line", "NAME",
+                      "is '" + arguments.name.string() + "', expected a name for a file");
   if (file.extension() != ".json") file += ".json";
   scenario::write_starter(file, {.tire = arguments.tire,
                                  .soil = arguments.soil,

@@ -102,6 +102,12 @@ class Commands(SystemTest):
             self.assertEqual(self.names(), [])
         done = furrow("new", "rover", "--vehicle", "rover.json", cwd=self.folder)
         self.assertIn("NAME': is 'rover.json': beside that scenario", done.stderr)
+        for name in ("", "-", ".", "no_such_folder/x"):
+            self.assertEqual(furrow("new", name, cwd=self.folder).returncode, 5 if "/" in name else 2)
+        self.assertEqual(self.names(), [])
+        done = furrow("list", cwd=self.folder, env={"FURROW_HOME": str(self.folder)})
+        self.assertEqual(done.returncode, 5)
+        self.assertIn("rigs: is missing, expected the folder that comes with furrow", done.stderr)
         (self.folder / "mine.json").write_text("mine")
         done = furrow("new", "mine", cwd=self.folder)
         self.assertEqual(done.returncode, 2)

@@ -115,8 +115,9 @@ void PeerWatch::tell(int target) {
   to_all_others(writer.take());
 }
 
-Error PeerWatch::lost(int from, const std::string& what, double timeout) const {
+Error PeerWatch::lost(int from, const std::string& what, double timeout) {
   FURROW_ASSERT(in_range(from, peers_.size()), from, peers_.size());
+  told_ = false;  // whoever loses patience just now must still know whom this node waited for
   std::string text = fmt::format("{} waited {:g} s for {} ({})", name(wire_.self()), timeout,
                                  name(from), what);
   std::vector<bool> met(peers_.size(), false);

@@ -40,7 +40,8 @@ class PeerWatch {
   void end_wait();
 
   /// "rig waited 60 s for terrain (terrain report), which waits for tire 0: tire 0 does not answer; …"
-  Error lost(int from, const std::string& what, double timeout) const;
+  /// After this the node is about to fail: it tells nobody that its wait has ended.
+  Error lost(int from, const std::string& what, double timeout);
 
   Address address(int node) const;
   /// For people: "tire 0", "terrain 1".

@@ -37,7 +37,7 @@ constexpr double kTreadSpeed = 0.93;  // √(g R)
 constexpr double kLowering = 0.18;    // √(g R)
 constexpr double kSlip = 0.3;
 // In √(R/kRadius) s.
-constexpr double kMoveFrom = 0.4, kRamp = 0.15, kAverageFrom = 1.0, kEnd = 2.0;
+constexpr double kMoveFrom = 0.4, kRamp = 0.15, kAverageFrom = 1.2, kEnd = 3.0;
 constexpr double kVehicleEnd = 2.5, kThrottleFrom = 0.5, kThrottleAt = 0.7, kThrottle = 0.7;
 constexpr double kStepShare = 0.8;     // of the stable step
 constexpr double kTinyStep = 1e-7;     // s, that any terrain takes

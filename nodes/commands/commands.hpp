@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "nodes/commands/arguments.hpp"
 #include "nodes/scenario/scenario.hpp"
 #include "protocol/core/error.hpp"
 
@@ -48,13 +49,6 @@ bool runs_as_rank(int argc, char** argv);
 /// @returns false when nobody ended this rank meanwhile: then it should say it, too
 bool first_rank_speaks();
 
-struct SlurmArguments {
-  int nodes = 1;
-  int cores_per_node = 0;  // 0: whole nodes, whatever they have
-  std::string partition, time, account;  // empty: as the cluster has it
-  std::filesystem::path out;             // empty: results/<scenario>-job<number of the job>
-};
-
 /// `furrow ranks --slurm`: a batch script (slurm.cpp). @throws Error(bad_input)
 std::string slurm_script(const scenario::Scenario& scenario, const SlurmArguments& job, const Settings& settings);
 
@@ -87,30 +81,8 @@ struct SweepArguments {
 /// `furrow sweep` (commands_sweep.cpp). @throws Error
 ExitCode sweep_command(const SweepArguments& arguments);
 
-struct SoilArguments {
-  std::filesystem::path out;  // empty: a fresh folder under results/
-  bool overwrite = false;
-  bool quick = false;
-  int seeds = 3;
-  double speed = 0.1;             // of the tools, m/s
-  std::vector<std::string> only;  // plate, shear, cone, repose; empty: all
-  std::vector<double> stresses;   // of the shear tests, Pa; empty: the usual ones
-};
-
 /// `furrow soil` (commands_soil.cpp). @throws Error
 ExitCode soil_command(const scenario::Scenario& scenario, const SoilArguments& arguments);
-
-struct PressArguments {
-  std::filesystem::path out;  // empty: a fresh folder under results/
-  bool overwrite = false;
-  std::string obstacle = "plate";                    // plate | cleat | profile
-  std::filesystem::path profile;                     // CSV; empty: none
-  double deflection = 0.02;                          // largest, m
-  int points = 10;                                   // of the curve up to it
-  double load = 4561.65;                             // of the footprint, N
-  double cleat_height = 0.025, cleat_width = 0.025;  // m
-  double cleat_position = 0.0;                       // of its middle, forward of the axle, m
-};
 
 /// `furrow press` (commands_press.cpp). @throws Error
 ExitCode press_command(const scenario::Scenario& scenario, const PressArguments& arguments);

@@ -7,6 +7,7 @@
 #include "nodes/output/column_labels.hpp"
 #include "nodes/output/frames.hpp"
 #include "nodes/output/xdmf.hpp"
+#include "nodes/scenario/rank_table.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/files/hdf5_file.hpp"
 #include "protocol/files/text_file.hpp"
@@ -145,7 +146,7 @@ void Results::write_hdf5(std::span<const FinalReport> reports) const {
   file.attribute("scenario_digest", scenario_.digest);
   for (const Table& table : tables_) put_table(file, table);
   if (!reports.empty()) {
-    const FinalReport& terrain = reports[1 + scenario_.tires.size()];  // of several ranks the leader's
+    const FinalReport& terrain = reports[scenario::terrain_rank(scenario_)];
     put_height_axes(file, terrain.height_after);
     put_heights(file, "before", terrain.height_before);
     put_heights(file, "after", terrain.height_after);
@@ -157,7 +158,7 @@ SummaryInput Results::summary_input(const RunEnd& end) const {
   std::int64_t steps = std::llround(end.time / scenario_.run.step);
   if (resume_) steps = std::max(steps, resume_->manifest.step);
   return {scenario_, cards_, setup_,
-          tables_,   end,    checkpoint::segments_until(steps, end.wall, cards_[1 + scenario_.tires.size()].threads, resume_)};
+          tables_,   end,    checkpoint::segments_until(steps, end.wall, cards_[scenario::terrain_rank(scenario_)].threads, resume_)};
 }
 
 void Results::finish(const RunEnd& end, bool stopped) {

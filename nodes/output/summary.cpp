@@ -9,6 +9,7 @@
 #include "nodes/output/averaging_window.hpp"
 #include "nodes/output/results.hpp"
 #include "nodes/output/steadiness.hpp"
+#include "nodes/scenario/rank_table.hpp"
 #include "nodes/scenario/wheel_geometry.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/constants.hpp"
@@ -109,7 +110,7 @@ void add_rut(const WheelInput& in, Json& json) {
   terrain::Rut rut;
   rut.missing = in.rows.empty() ? "the series has no lines" : "the run failed before its end";
   if (!in.rows.empty() && !in.run.end.reports.empty()) {
-    const FinalReport& terrain = in.run.end.reports[1 + in.run.scenario.tires.size()];
+    const FinalReport& terrain = in.run.end.reports[scenario::terrain_rank(in.run.scenario)];
     terrain::RutOptions options;
     options.direction = in.end.heading.x() < 0.0 ? -1.0 : 1.0;
     options.lateral = scenario::describe_rig(in.run.scenario).wheels[in.wheel].lateral;

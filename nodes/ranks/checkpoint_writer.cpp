@@ -7,6 +7,7 @@
 
 #include "nodes/output/frames.hpp"
 #include "nodes/output/profile.hpp"
+#include "nodes/scenario/rank_table.hpp"
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/clock.hpp"
@@ -99,7 +100,7 @@ checkpoint::CheckpointManifest CheckpointWriter::manifest(std::int64_t step,
         checkpoint::unfinished_checkpoint(context_.directory, step) / part.file, ignored));
   m.frames = frames_;
   m.segments =
-      checkpoint::segments_until(step, wall_clock() - begin_, cards_[1 + scenario_.tires.size()].threads, context_.resume);
+      checkpoint::segments_until(step, wall_clock() - begin_, cards_[scenario::terrain_rank(scenario_)].threads, context_.resume);
   m.write_s = wall_clock() - write_begin_;
   return m;
 }

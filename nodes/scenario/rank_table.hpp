@@ -1,6 +1,7 @@
 // Which MPI rank does what.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct RankEntry {
 
 /// World rank 0 is the rig, 1…k the tires, the rest the terrain.
 std::vector<RankEntry> rank_table(const Scenario& scenario);
+/// The rank of the terrain, of one of several ranks that of its leader.
+inline std::size_t terrain_rank(const Scenario& scenario) { return 1 + scenario.tires.size(); }
 
 /// The table as lines for people.
 std::string rank_table_text(const Scenario& scenario);

@@ -89,15 +89,13 @@ def add_tire(buffers, vertex, triangle):
     buffers.triangles(vertex, triangle, vertex_normals(vertex, triangle), colour, 0.16, edge)
 
 
-def add_plane(buffers, centre, sign, z):
-    """Rigid ground: a board of squares 0.1 m wide."""
-    x = centre[0] + sign * np.arange(-BEHIND, AHEAD, 0.1)
-    y = np.arange(-0.4, 0.4, 0.1)
+def add_squares(buffers, x, y, across, side, z):
+    """Rigid ground: squares of two greys, `across` along x and `side` along y from each x and y."""
     vertex, triangle, colour = [], [], []
     for i, a in enumerate(x):
         for j, b in enumerate(y):
             n = len(vertex)
-            vertex += [(a, b, z), (a + sign * 0.1, b, z), (a + sign * 0.1, b + 0.1, z), (a, b + 0.1, z)]
+            vertex += [(a, b, z), (a + across, b, z), (a + across, b + side, z), (a, b + side, z)]
             triangle += [(n, n + 1, n + 2), (n, n + 2, n + 3)]
             colour += 2 * [(0.42, 0.43, 0.45) if (i + j) % 2 else (0.55, 0.56, 0.58)]
     vertex, triangle = np.array(vertex), np.array(triangle)
@@ -112,7 +110,7 @@ def draw(buffers, tire, soil, colours, centre, sign, ground):
     if soil is not None:
         buffers.spheres(soil.position, soil.radius, colours)
     else:
-        add_plane(buffers, centre, sign, ground)
+        add_squares(buffers, centre[0] + sign * np.arange(-BEHIND, AHEAD, 0.1), np.arange(-0.4, 0.4, 0.1), sign * 0.1, 0.1, ground)
     add_tire(buffers, *tire)
 
 

@@ -241,18 +241,9 @@ def add_bottom(buffers, bed, soil):
 
 def add_board(buffers, stage):
     """Hard ground: squares of half a metre."""
-    side, vertex, triangle, colour = 0.5, [], [], []
-    for i, x in enumerate(np.arange(stage.back - 0.45 * stage.size, stage.front + 0.3 * stage.size, side)):
-        for j, y in enumerate(np.arange(-1.6 * stage.half, 1.6 * stage.half, side)):
-            n = len(vertex)
-            vertex += [(x, y, stage.ground), (x + side, y, stage.ground), (x + side, y + side, stage.ground), (x, y + side, stage.ground)]
-            triangle += [(n, n + 1, n + 2), (n, n + 2, n + 3)]
-            colour += 2 * [(0.42, 0.43, 0.45) if (i + j) % 2 else (0.55, 0.56, 0.58)]
-    vertex, triangle = np.array(vertex), np.array(triangle)
-    if buffers.depth_only:
-        buffers.triangles(vertex, triangle)
-    else:
-        buffers.triangles(vertex, triangle, np.tile([0.0, 0.0, 1.0], (len(vertex), 1)), np.array(colour, np.float32))
+    side = 0.5
+    scene.add_squares(buffers, np.arange(stage.back - 0.45 * stage.size, stage.front + 0.3 * stage.size, side),
+                      np.arange(-1.6 * stage.half, 1.6 * stage.half, side), side, side, stage.ground)
 
 
 def picture(stage, soil, camera, light):

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "protocol/core/error.hpp"
+#include "tests/tire/tire_file_checks.hpp"
 #include "tire/outward.hpp"
 #include "tire/press.hpp"
 #include "tire/tires.hpp"
@@ -23,27 +24,10 @@ const std::filesystem::path kFile = TIRE_DATA "/aligator_planar.json";
 json file_text() { return json::parse(std::ifstream(kFile)); }
 
 std::string complaint(const json& file, const TireOptions& options = {}) {
-  try {
-    TireOptions given = options;
-    given.file = "tire.json";
-    read_planar(file, given);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::bad_input);
-    return error.what();
-  }
-  return "no error";
+  return complaint_of(read_planar, file, options);
 }
 
-TireOptions options(int around = 36) {
-  TireOptions o;
-  o.file = kFile;
-  o.elements_circumference = around;
-  return o;
-}
-
-PressResults pressed(const TireOptions& tire, const PressOptions& options) {
-  return read_tire(tire)->static_test()->press(options, {});
-}
+TireOptions options(int around = 36) { return options_of(kFile, around); }
 
 TEST(PlanarSpec, wrong_files_are_refused_with_file_key_and_what_was_expected) {
   EXPECT_EQ(complaint(file_text()), "no error");

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "protocol/core/error.hpp"
+#include "tests/tire/tire_file_checks.hpp"
 #include "tire/outward.hpp"
 #include "tire/press.hpp"
 #include "tire/tires.hpp"
@@ -23,27 +24,10 @@ const std::filesystem::path kFile = TIRE_DATA "/hmmwv_ring.json";
 json file_text() { return json::parse(std::ifstream(kFile)); }
 
 std::string complaint(const json& file, const TireOptions& options = {}) {
-  try {
-    TireOptions given = options;
-    given.file = "tire.json";
-    read_ring(file, given);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::bad_input);
-    return error.what();
-  }
-  return "no error";
+  return complaint_of(read_ring, file, options);
 }
 
-TireOptions options(int segments = 120) {
-  TireOptions o;
-  o.file = kFile;
-  o.elements_circumference = segments;
-  return o;
-}
-
-PressResults pressed(const TireOptions& tire, const PressOptions& options) {
-  return read_tire(tire)->static_test()->press(options, {});
-}
+TireOptions options(int segments = 120) { return options_of(kFile, segments); }
 
 TEST(RingSpec, wrong_files_are_refused_with_file_and_key) {
   EXPECT_EQ(complaint(file_text()), "no error");

@@ -1,0 +1,18 @@
+// The options of those commands that have many.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "nodes/commands/arguments.hpp"
+#include "nodes/commands/bench.hpp"
+
+namespace furrow::commands {
+
+void add_grain_bench(CLI::App& command, GrainBench& bench);
+void add_tire_bench(CLI::App& command, TireBench& bench);
+void add_press_options(CLI::App& command, PressArguments& press);
+void add_soil_options(CLI::App& command, SoilArguments& soil);
+/// @param wanted whether a batch script is asked for: the options of the job need that
+void add_slurm_options(CLI::App& command, bool& wanted, SlurmArguments& job);
+
+}  // namespace furrow::commands

@@ -19,6 +19,7 @@ import page  # noqa: E402
 from page import frames  # noqa: E402
 from page.blobs import Arrays, thin  # noqa: E402
 from plot.run_data import Run  # noqa: E402
+from plot.sweep import Sweep  # noqa: E402
 
 FRAMES, GRAINS, STEP = 5, 900, 0.05
 RADIUS = 0.02
@@ -206,6 +207,18 @@ class Page(SystemTest):
         self.assertIn(["rig.slip", "0.2", "0.25"], tables[1]["rows"])
         (pull,) = (chart for chart in blocks_of(about, "charts")[1]["charts"] if chart["title"] == "Drawbar pull")
         self.assertEqual([line["label"] for line in pull["lines"]], ["run", "other"])
+
+    def test_the_page_of_a_study_does_not_tell_how_long_its_runs_took(self):
+        pages = []
+        for wall in ("1.25", "12.5"):
+            study = self.folder / f"wall {wall}" / "study"
+            study.mkdir(parents=True)
+            (study / "sweep.json").write_text(json.dumps({"study": "slips", "plot": {}, "results": ["sinkage_m", "wall_s"]}))
+            (study / "sweep.csv").write_text(f"folder,state,exit_code,rig.slip,sinkage_m,wall_s\nruns/1,done,0,0.2,0.021,{wall}\n")
+            self.assertEqual(page.write(study, [Sweep(study)], lambda *_: True), ["report.html"])
+            pages.append((study / "report.html").read_bytes())
+        self.assertIn(b"0.021", pages[0])
+        self.assertEqual(*pages)
 
     def test_a_page_of_ones_own_stays(self):
         (self.run_folder / ".furrow-run").write_text("furrow-run 1\nsummary.json\n")

@@ -13,6 +13,7 @@ from .names import naming
 PASSES = (("drawbar_pull_N.mean", "drawbar_pull_N.sem", "Drawbar pull"), ("sinkage_m", None, "Sinkage"), ("rut_depth_m", None, "Rut depth"),
           ("tractive_efficiency", None, "Tractive efficiency"))
 MOST_ROWS = 2000
+WALL_TIMES = {"wall_s"}  # sweep.csv has them; without them a study that was interrupted has the page of one that was not
 
 
 def named(key):
@@ -93,7 +94,7 @@ def rows_of(sweep):
     rows = sweep.rows + sweep.failed
     if not rows:
         raise Missing("no run is done")
-    columns = [name for name in rows[0] if name and any(row.get(name) for row in rows)]
+    columns = [name for name in rows[0] if name and name not in WALL_TIMES and any(row.get(name) for row in rows)]
     cells = [[cell(row.get(name)) for name in columns] for row in rows[:MOST_ROWS]]
     failed = [k for k, row in enumerate(rows[:MOST_ROWS]) if row["state"] == "failed"]
     return {"id": "runs", "title": "Runs", "blocks": [blocks.table([name.replace("_", " ") for name in columns], cells, marked=failed,

@@ -20,8 +20,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "studies
 import provenance  # noqa: E402
 from provenance import ROOT  # noqa: E402
 
-ACCOUNTS = re.compile(r"::sample\(|sample_of<|spring_losses<|ContactSampleOf|take_samples\(|EnergyAccounts::|stored_energy\(|"
-                      r"reported_energies\(|book_loss(es)?\(|ShellCarcass::account\(|output::Accounts::|output::(energy|momentum)_account|"
+ACCOUNTS = re.compile(r"PairForces<.*>::sample\b|sample_of<|spring_losses<|ContactSampleOf|take_samples|EnergyAccounts::|dem::stored_energy|"
+                      r"reported_energies|::book_loss(es)?\b|ShellCarcass::account\b|output::Accounts::|output::(energy|momentum)_account|"
                       r"output::tire_residual|rigs::RigAccounts|add_normal_loss|add_shear_losses")
 
 

@@ -24,7 +24,7 @@
 namespace furrow::terrain::dem {
 
 /// Steps from one sample to the next.
-inline constexpr int kLossSampleSteps = 23;
+inline constexpr int kLossSampleSteps = 47;
 
 class EnergyAccounts {
  public:

@@ -29,7 +29,7 @@ COLUMNS = ("drawbar_pull_N.mean", "drawbar_pull_N.sem", "drawbar_pull_N.n_eff", 
            "accounts.energy.residual_share", "grains", "active_share_mean", "scenario_digest", "state_hash", "settle_wall_s", "wall_s")
 FIGURES = {"pull_N": ("drawbar_pull_N.mean", 1.0), "sinkage_mm": ("sinkage_m", 1e3), "rut_mm": ("rut_depth_m", 1e3),
            "tractive_effort_N": ("tractive_effort_N", 1.0), "resistance_N": ("terrain_resistance_N", 1.0)}
-SAME_BED = {"terrain.substeps", "terrain.activity", "terrain.precision"}  # of the terrain's keys
+SAME_BED = {"terrain.substeps", "terrain.activity"}  # of the terrain's keys
 REFERENCES = {"20 kPa": "20 kPa, tire 200 kPa", "40 kPa": "40 kPa, tire 200 kPa"}
 
 

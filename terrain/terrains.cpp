@@ -12,6 +12,8 @@
 #include "terrain/extra_terrains.hpp"
 #include "terrain/rigid/ground_options.hpp"
 #include "terrain/rigid/ground_spec.hpp"
+#include "terrain/scm/scm_options.hpp"
+#include "terrain/scm/scm_spec.hpp"
 
 namespace furrow::terrain {
 namespace {
@@ -19,6 +21,7 @@ namespace {
 constexpr auto kTerrains = std::to_array<TerrainEntry>({
     {"dem", key_list<dem::DemOptions>(), dem::read_dem_spec},
     {"rigid", key_list<GroundOptions>(), read_ground_spec},
+    {"scm", key_list<scm::ScmOptions>(), scm::read_scm_spec},
 });
 
 /// "'dem' or 'rigid'", of the engines that `wanted` takes.

@@ -18,8 +18,30 @@ using nlohmann::json;
 
 constexpr int kFormatVersion = 1;
 
-/// The soil named in the scenario; null when it names none.
-json named_material(const json& document, const std::filesystem::path& scenario) {
+bool takes(const std::string& engine, const std::string& key) {
+  const std::vector<std::string> engines = terrain::engines_of_key(key);
+  return std::find(engines.begin(), engines.end(), engine) != engines.end();
+}
+
+/// What of a soil file the engine takes.
+json values_for(const std::string& engine, const json& soil, const std::string& file) {
+  json own = json::object();
+  std::vector<std::string> others;
+  for (const auto& [key, value] : soil.items()) {
+    if (takes(engine, key))
+      own[key] = value;
+    else
+      others.push_back(key);
+  }
+  if (own.empty() && !others.empty() && takes(engine, kSoilKey))
+    throw input_error(file, "terrain",
+                      fmt::format("has keys of other engines alone ({}), expected some of engine '{}'",
+                                  fmt::join(others, ", "), engine));
+  return own;
+}
+
+/// What the soil named in the scenario says to the engine; null when none is named.
+json named_material(const json& document, const std::filesystem::path& scenario, const std::string& engine) {
   const auto terrain = document.find("terrain");
   if (terrain == document.end() || !terrain->is_object()) return {};
   const auto name = terrain->find("material");
@@ -27,7 +49,8 @@ json named_material(const json& document, const std::filesystem::path& scenario)
   if (!name->is_string())
     throw input_error(scenario.string(), "terrain.material",
                       "is " + value_text(*name) + ", expected the name of a soil file or null");
-  return read_soil_material(find_file(*name, "terrain.material", scenario));
+  const std::filesystem::path file = find_file(*name, "terrain.material", scenario);
+  return values_for(engine, read_soil_material(file), file.string());
 }
 
 }  // namespace
@@ -54,14 +77,15 @@ json read_soil_material(const std::filesystem::path& file) {
   return alone["terrain"];
 }
 
-void apply_soil_material(json& document, const std::filesystem::path& scenario) {
-  const json soil = named_material(document, scenario);
+void apply_soil_material(json& document, const std::filesystem::path& scenario, const std::string& engine) {
+  const json soil = named_material(document, scenario, engine);
   for (const auto& [key, value] : soil.items())
     if (!document["terrain"].contains(key)) document["terrain"][key] = value;
 }
 
-void override_soil_material(json& document, const std::filesystem::path& scenario) {
-  const json soil = named_material(document, scenario);
+void override_soil_material(json& document, const std::filesystem::path& scenario,
+                            const std::string& engine) {
+  const json soil = named_material(document, scenario, engine);
   for (const auto& [key, value] : soil.items()) document["terrain"][key] = value;
 }
 

@@ -1,4 +1,5 @@
-// Soil files: sets of values for the section `terrain`, with the strength that `furrow soil` measured for them.
+// Soil files: sets of values for the section `terrain`, with the strength that `furrow soil` measured for them. One file
+// may describe a soil to several engines: each takes those values that are its keys.
 #pragma once
 
 #include <filesystem>
@@ -18,10 +19,13 @@ inline constexpr const char* kSoilKey = "material";
 nlohmann::json read_soil_material(const std::filesystem::path& file);
 
 /// Puts the values of the soil named by `terrain.material` into a scenario, beneath those the scenario states itself.
-/// `scenario`: its file, for messages and as the first place to look in.
-void apply_soil_material(nlohmann::json& document, const std::filesystem::path& scenario);
+/// `scenario`: its file, for messages and as the first place to look in. `engine`: whose keys are wanted.
+/// @throws Error(bad_input) when the engine takes soil files and this one has no value for it
+void apply_soil_material(nlohmann::json& document, const std::filesystem::path& scenario,
+                         const std::string& engine);
 
 /// The same for a soil named on the command line: in place of those the scenario states.
-void override_soil_material(nlohmann::json& document, const std::filesystem::path& scenario);
+void override_soil_material(nlohmann::json& document, const std::filesystem::path& scenario,
+                            const std::string& engine);
 
 }  // namespace furrow::scenario

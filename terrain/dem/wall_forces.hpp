@@ -1,6 +1,8 @@
 // Grains against the bin: arm r − δ, the wall at rest.
 #pragma once
 
+#include <algorithm>
+
 #include "protocol/core/assert.hpp"
 #include "terrain/dem/contact_law.hpp"
 #include "terrain/dem/contact_mixing.hpp"

@@ -1,5 +1,6 @@
 #include "terrain/soil/soil_output.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <numbers>
@@ -177,6 +178,20 @@ json repose_json(const SoilRun& run) {
   return j;
 }
 
+/// The keys of engine scm that the plate and the shear tests tell; none of a test that was not made or says no soil.
+void add_empirical(const SoilParameters& p, json& terrain) {
+  if (p.n.samples > 0 && p.k_phi.value > 0.0 && p.n.value > 0.0) {
+    terrain["bekker_k_c"] = p.k_c.value;
+    terrain["bekker_k_phi"] = p.k_phi.value;
+    terrain["bekker_n"] = p.n.value;
+  }
+  if (p.phi.samples > 0 && p.phi.value >= 0.0 && p.K.value > 0.0) {
+    terrain["mohr_cohesion"] = std::max(p.cohesion.value, 0.0);  // a line through scatter may begin below 0
+    terrain["mohr_friction_angle"] = p.phi.value / kDegree;
+    terrain["janosi_k"] = p.K.value;
+  }
+}
+
 }  // namespace
 
 json soil_json(const SoilRun& run) {
@@ -218,7 +233,8 @@ json soil_json(const SoilRun& run) {
                  {"young_modulus_Pa", o.young_modulus},
                  {"bed_generator", o.bed_generator},
                  {"compaction_pressure_Pa", o.compaction_pressure}};
-  j["terrain"] = fields_json(o, role::soil);  // all that soil files may say
+  j["terrain"] = fields_json(o, role::soil);  // all that soil files may say: of the grains,
+  add_empirical(p, j["terrain"]);             // and of the soil as a whole
   if (run.options.plate) j["plate"] = plate_json(run, p.bekker_goodness);
   if (run.options.shear) j["shear"] = shear_json(run, p.coulomb_goodness);
   if (run.options.cone) j["cone"] = cone_json(run);

@@ -2,6 +2,7 @@
 // of the co-simulation: the force of an interval acts on it during the next.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 

@@ -1,6 +1,7 @@
 // The soil tests themselves on small boxes: balances that must hold, limits that are known.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>

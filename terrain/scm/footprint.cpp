@@ -1,0 +1,75 @@
+#include "terrain/scm/footprint.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "protocol/core/assert.hpp"
+
+namespace furrow::terrain::scm {
+namespace {
+
+// A node on the edge between two triangles belongs to both; the lower one counts, the first of equals.
+constexpr double kEdge = -1e-9;
+constexpr double kWhole = 1e-9;  // of a cell: what round-off may add to a length
+
+/// First k with (k + ½) h ≥ at, not below 0 and not beyond count.
+int first_at(double at, double spacing, int count) {
+  const double k = std::ceil(at / spacing - 0.5);
+  return static_cast<int>(std::clamp(k, 0.0, static_cast<double>(count)));
+}
+
+}  // namespace
+
+Grid Grid::over(double length, double width, double spacing) {
+  FURROW_ASSERT(length > 0.0 && width > 0.0 && spacing > 0.0, length, width, spacing);
+  Grid grid;
+  grid.spacing = spacing;
+  grid.nx = std::max(1, static_cast<int>(std::ceil(length / spacing - kWhole)));
+  grid.ny = std::max(1, static_cast<int>(std::ceil(width / spacing - kWhole)));
+  return grid;
+}
+
+int Grid::first_x(double at) const { return first_at(at, spacing, nx); }
+int Grid::first_y(double at) const { return first_at(at + 0.5 * ny * spacing, spacing, ny); }
+
+void FootprintFinder::find(std::span<const std::array<int, 3>> triangles, std::span<const Vec3> position,
+                           double height, std::vector<NodeHit>& hits) {
+  hits.clear();
+  for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
+    const auto& v = triangles[t];
+    const std::array<Vec3, 3> corner{position[v[0]], position[v[1]], position[v[2]]};
+    if (std::min({corner[0].z(), corner[1].z(), corner[2].z()}) < height) cover(t, corner, height, hits);
+  }
+  for (const NodeHit& hit : hits) slot_[hit.node] = -1;
+  std::sort(hits.begin(), hits.end(), [](const NodeHit& a, const NodeHit& b) { return a.node < b.node; });
+}
+
+void FootprintFinder::cover(int triangle, const std::array<Vec3, 3>& corner, double height,
+                            std::vector<NodeHit>& hits) {
+  const Vec3 ab = corner[1] - corner[0], ac = corner[2] - corner[0], outward = ab.cross(ac);
+  if (!(outward.z() < -kLeastVertical * outward.norm())) return;
+  const Vec3 push = outward / outward.z();  // its z is 1: into the surface
+  const auto [x_low, x_high] = std::minmax({corner[0].x(), corner[1].x(), corner[2].x()});
+  const auto [y_low, y_high] = std::minmax({corner[0].y(), corner[1].y(), corner[2].y()});
+  const double slack = 1e-9 * grid_.spacing;
+  const int i_end = grid_.first_x(x_high + slack), j_end = grid_.first_y(y_high + slack);
+  const int j_begin = grid_.first_y(y_low - slack);
+  for (int i = grid_.first_x(x_low - slack); i < i_end; ++i)
+    for (int j = j_begin; j < j_end; ++j) {
+      const double dx = grid_.x(i) - corner[0].x(), dy = grid_.y(j) - corner[0].y();
+      const double v = (dx * ac.y() - dy * ac.x()) / outward.z(),
+                   w = (ab.x() * dy - ab.y() * dx) / outward.z();
+      if (!(v >= kEdge && w >= kEdge && v + w <= 1.0 - kEdge)) continue;
+      const double z = corner[0].z() + v * ab.z() + w * ac.z();
+      if (!(z < height)) continue;
+      const int node = grid_.index(i, j);
+      if (slot_[node] < 0) {
+        slot_[node] = static_cast<std::int32_t>(hits.size());
+        hits.push_back({node, triangle, {1.0 - v - w, v, w}, -z, push});
+      } else if (NodeHit& other = hits[slot_[node]]; - z > other.sinkage) {
+        other = {node, triangle, {1.0 - v - w, v, w}, -z, push};
+      }
+    }
+}
+
+}  // namespace furrow::terrain::scm

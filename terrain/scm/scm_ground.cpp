@@ -1,0 +1,339 @@
+#include "terrain/scm/scm_ground.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "protocol/core/archive_fields.hpp"
+#include "protocol/core/assert.hpp"
+#include "protocol/core/error.hpp"
+#include "terrain/scm/scm_contact.hpp"
+#include "terrain/surface/surface_check.hpp"
+#include "terrain/surface/surface_forces.hpp"
+
+namespace furrow::terrain::scm {
+namespace {
+
+// How deep a surface may stand in the ground when it is attached, m: static contact, not a misplaced tire.
+constexpr double kMaxStartDepth = 5e-3;
+constexpr double kMostNodes = 1e8;
+constexpr double kDegree = std::numbers::pi / 180.0;  // rad
+
+/// One attached surface and the buffers of its substeps.
+struct GroundSurface {
+  SurfaceMesh mesh;
+  ContactMaterial material;
+  ShearLaw shear;
+  std::vector<Vec3> last;      // where the ground last had the vertices, m
+  std::vector<Vec3> velocity;  // of the running interval, m/s
+  std::vector<Vec3> position;  // at the middle of the running substep, m
+  std::vector<ContactNode> bearing;
+  std::vector<SurfaceContactForce> contacts;
+  NodalForceSum sum;
+  double floor_force = 0.0;  // N
+};
+
+class ScmGround final : public Terrain {
+ public:
+  explicit ScmGround(const ScmOptions& options)
+      : options_(options),
+        soil_(Grid::over(options.length, options.width, options.grid_spacing),
+              {.k_c = options.bekker_k_c,
+               .k_phi = options.bekker_k_phi,
+               .n = options.bekker_n,
+               .unloading = options.unloading_stiffness,
+               .unloading_rate = options.unloading_stiffness_rate,
+               .damping = options.rebound_damping},
+              options.patch_width) {}
+
+  double prepare(const ProgressCall&) override { return 0.0; }
+  double top_height(double x_min, double x_max, double y_min, double y_max) const override;
+  double mean_height(double x_min, double x_max, double y_min, double y_max) const override;
+  double floor_height() const override { return -std::numeric_limits<double>::infinity(); }
+  HeightField height_field() const override;
+  void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) override;
+  Outcome advance(std::span<const SurfaceState> targets, double duration, int substeps,
+                  std::span<NodalForces> forces, std::span<ContactSums> contact) override;
+  TerrainState state() const override;
+  std::int64_t size() const override { return 0; }
+  void frame(TerrainFrame& out) const override;
+  void save(Archive& archive) const override;
+  void restore(const Archive& archive) override;
+
+ private:
+  template <class Visit>
+  friend void visit_fields(Visit&& visit, FieldsOf<ScmGround> auto& s) {
+    visit(Field{"surface_impulse", "N s"}, s.surface_impulse_);
+    visit(Field{"surface_work", "J"}, s.surface_work_);
+    visit(Field{"losses", "J"}, s.losses_);
+  }
+
+  template <class Use>
+  void each_node(double x_min, double x_max, double y_min, double y_max, Use&& use) const;
+  void add_surface(const SurfaceMesh& mesh, const ContactMaterial& material, std::vector<Vec3> last);
+  Outcome set_motion(GroundSurface& surface, const SurfaceState& target, double duration,
+                     std::size_t k) const;
+
+  ScmOptions options_;
+  SoilField soil_;
+  std::vector<GroundSurface> surfaces_;
+  Vec3 surface_impulse_ = Vec3::Zero();  // by surfaces on the ground, N s
+  double surface_work_ = 0.0;            // by the ground on surfaces, J
+  SoilLosses losses_;
+};
+
+template <class Use>
+void ScmGround::each_node(double x_min, double x_max, double y_min, double y_max, Use&& use) const {
+  const Grid& grid = soil_.grid();
+  const int i_end = grid.first_x(x_max), j_begin = grid.first_y(y_min), j_end = grid.first_y(y_max);
+  for (int i = grid.first_x(x_min); i < i_end; ++i)
+    for (int j = j_begin; j < j_end; ++j) use(soil_.nodes()[grid.index(i, j)]);
+}
+
+double ScmGround::top_height(double x_min, double x_max, double y_min, double y_max) const {
+  double least = std::numeric_limits<double>::infinity();
+  each_node(x_min, x_max, y_min, y_max, [&](const SoilNode& node) { least = std::min(least, node.plastic); });
+  return std::isfinite(least) ? -least : 0.0;
+}
+
+double ScmGround::mean_height(double x_min, double x_max, double y_min, double y_max) const {
+  double sum = 0.0;
+  std::int64_t count = 0;
+  each_node(x_min, x_max, y_min, y_max, [&](const SoilNode& node) { sum += node.plastic, ++count; });
+  return count > 0 ? -sum / static_cast<double>(count) : 0.0;
+}
+
+HeightField ScmGround::height_field() const {
+  const Grid& grid = soil_.grid();
+  HeightField field;
+  field.x0 = grid.x(0);
+  field.y0 = grid.y(0);
+  field.cell = grid.spacing;
+  field.nx = grid.nx;
+  field.ny = grid.ny;
+  field.height.reserve(soil_.nodes().size());
+  for (const SoilNode& node : soil_.nodes()) field.height.push_back(-node.plastic);
+  return field;
+}
+
+/// A point for each node.
+void ScmGround::frame(TerrainFrame& out) const {
+  const Grid& grid = soil_.grid();
+  out = TerrainFrame{};
+  for (int k = 0; k < grid.count(); ++k) {
+    const auto [i, j] = grid.cell(k);
+    for (const double value : {grid.x(i), grid.y(j), -soil_.nodes()[k].plastic})
+      out.position.push_back(static_cast<float>(value));
+  }
+  out.speed.assign(grid.count(), 0.0F);
+  out.radius.assign(grid.count(), static_cast<float>(0.5 * grid.spacing));
+}
+
+void ScmGround::add_surface(const SurfaceMesh& mesh, const ContactMaterial& material,
+                            std::vector<Vec3> last) {
+  FURROW_ASSERT(last.size() == static_cast<std::size_t>(mesh.vertex_count), last.size(), mesh.vertex_count);
+  const ShearLaw shear{.cohesion = options_.mohr_cohesion,
+                       .tan_phi = std::tan(kDegree * options_.mohr_friction_angle),
+                       .K = options_.janosi_k,
+                       .friction = material.friction};
+  surfaces_.push_back({.mesh = mesh,
+                       .material = material,
+                       .shear = shear,
+                       .last = std::move(last),
+                       .velocity = std::vector<Vec3>(mesh.vertex_count, Vec3::Zero()),
+                       .position = std::vector<Vec3>(mesh.vertex_count, Vec3::Zero()),
+                       .bearing = {},
+                       .contacts = {},
+                       .sum = NodalForceSum(mesh.vertex_count)});
+}
+
+void ScmGround::attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) {
+  check_surface(mesh, start, static_cast<int>(surfaces_.size()));
+  double lowest = 0.0;
+  for (const Vec3& x : start.position) lowest = std::min(lowest, x.z());
+  if (lowest < -kMaxStartDepth)
+    throw input_error(
+        fmt::format("surface {}", surfaces_.size()), "",
+        fmt::format("starts {:g} m below the ground, expected at most {:g} m", -lowest, kMaxStartDepth));
+  add_surface(mesh, material, start.position);
+}
+
+/// Where the vertices will be at the end of the interval, in `position`, and their velocity.
+Outcome ScmGround::set_motion(GroundSurface& surface, const SurfaceState& target, double duration,
+                              std::size_t k) const {
+  const std::size_t count = surface.last.size();
+  FURROW_ASSERT(target.position.size() == count, k, target.position.size(), count);
+  FURROW_ASSERT(target.velocity.size() == count, k, target.velocity.size(), count);
+  for (std::size_t v = 0; v < count; ++v) {
+    const Vec3 end = target.position[v] + duration * target.velocity[v];
+    if (!end.allFinite())
+      return Outcome::failure("was given a surface that is not finite",
+                              fmt::format("vertex {} of surface {}; try a smaller run.step", v, k));
+    if (end.z() < 0.0 &&
+        (end.x() < 0.0 || end.x() > options_.length || std::abs(end.y()) > 0.5 * options_.width))
+      return Outcome::failure("was left by a tire",
+                              fmt::format("surface {} stands beside it, x = ({:.6g}, {:.6g}, {:.6g}) m", k,
+                                          end.x(), end.y(), end.z()));
+    surface.velocity[v] = (end - surface.last[v]) / duration;
+    surface.position[v] = end;
+  }
+  return {};
+}
+
+Outcome ScmGround::advance(std::span<const SurfaceState> targets, double duration, int substeps,
+                           std::span<NodalForces> forces, std::span<ContactSums> contact) {
+  FURROW_ASSERT(targets.size() == surfaces_.size(), targets.size(), surfaces_.size());
+  FURROW_ASSERT(forces.size() == surfaces_.size(), forces.size(), surfaces_.size());
+  FURROW_ASSERT(contact.size() == surfaces_.size(), contact.size(), surfaces_.size());
+  FURROW_ASSERT(duration > 0.0 && substeps > 0, duration, substeps);
+  const double dt = duration / substeps;
+  for (std::size_t k = 0; k < surfaces_.size(); ++k) {
+    GroundSurface& surface = surfaces_[k];
+    if (Outcome moved = set_motion(surface, targets[k], duration, k); !moved.ok) return moved;
+    const std::vector<Vec3> end = surface.position;
+    for (int s = 0; s < substeps; ++s) {
+      const double share = (s + 0.5) / substeps;
+      for (std::size_t v = 0; v < end.size(); ++v)
+        surface.position[v] = surface.last[v] + share * (end[v] - surface.last[v]);
+      const SurfaceNow now{surface.mesh.triangles, surface.position, surface.velocity};
+      soil_.step(now, surface.shear, dt, surface.bearing, surface.contacts, losses_);
+      surface.sum.add_substep(surface.contacts, now, dt);
+    }
+    surface.floor_force = 0.0;
+    for (const auto& one : surface.contacts) surface.floor_force += one.normal.z() + one.tangential.z();
+    surface_impulse_ -= surface.sum.impulse();
+    surface.sum.finish(duration, forces[k], contact[k]);
+    surface_work_ += contact[k].work;
+    surface.last = end;
+  }
+  return {};
+}
+
+TerrainState ScmGround::state() const {
+  TerrainState state;
+  for (const GroundSurface& surface : surfaces_) {
+    state.energies.elastic_normal += soil_.pressed(surface.bearing);
+    state.energies.elastic_tangential += soil_.sheared(surface.shear, surface.bearing);
+    state.floor_force += surface.floor_force;
+    state.contacts += static_cast<std::int64_t>(surface.bearing.size());
+  }
+  TerrainEnergies& e = state.energies;
+  state.elastic_energy = e.elastic_normal + e.elastic_tangential;
+  e.sliding_loss = losses_.sliding;
+  e.normal_damping_loss = losses_.compaction + losses_.damping;
+  e.opening_loss = losses_.opening;
+  e.surface_work = -surface_work_;
+  state.dissipation = e.losses();
+  state.surface_impulse = surface_impulse_;
+  state.wall_impulse = -surface_impulse_;  // the world holds the ground
+  state.momenta.surface_impulse = state.surface_impulse;
+  state.momenta.wall_impulse = state.wall_impulse;
+  return state;
+}
+
+void ScmGround::save(Archive& archive) const {
+  std::vector<double> plastic, yield, stiffness;
+  for (const SoilNode& node : soil_.nodes()) {
+    plastic.push_back(node.plastic);
+    yield.push_back(node.yield);
+    stiffness.push_back(node.stiffness);
+  }
+  save_fields(archive, "ground", *this);
+  archive.put("ground/plastic", plastic);
+  archive.put("ground/yield", yield);
+  archive.put("ground/stiffness", stiffness);
+  archive.put("ground/surfaces", static_cast<std::int64_t>(surfaces_.size()));
+  for (std::size_t k = 0; k < surfaces_.size(); ++k) {
+    const GroundSurface& surface = surfaces_[k];
+    const Archive::Scope scope(archive, "ground/surface_" + std::to_string(k) + "/");
+    save_fields(archive, "mesh", surface.mesh);
+    save_fields(archive, "material", surface.material);
+    save_value(archive, "last", surface.last);
+    save_value(archive, "bearing", surface.bearing);
+    archive.put("floor_force", surface.floor_force);
+  }
+}
+
+void ScmGround::restore(const Archive& archive) {
+  surfaces_.clear();
+  restore_fields(archive, "ground", *this);
+  std::vector<double> plastic, yield, stiffness;
+  const std::size_t nodes = soil_.nodes().size();
+  restore_value(archive, "ground/plastic", plastic, nodes);
+  restore_value(archive, "ground/yield", yield, nodes);
+  restore_value(archive, "ground/stiffness", stiffness, nodes);
+  for (std::size_t k = 0; k < nodes; ++k) soil_.nodes()[k] = {plastic[k], yield[k], stiffness[k]};
+  const std::int64_t count = archive.get_int("ground/surfaces");
+  for (std::int64_t k = 0; k < count; ++k) {
+    const Archive::Scope scope(archive, "ground/surface_" + std::to_string(k) + "/");
+    SurfaceMesh mesh;
+    ContactMaterial material;
+    std::vector<Vec3> last;
+    restore_fields(archive, "mesh", mesh);
+    restore_fields(archive, "material", material);
+    restore_value(archive, "last", last, mesh.vertex_count);
+    add_surface(mesh, material, std::move(last));
+    GroundSurface& surface = surfaces_.back();
+    restore_value(archive, "bearing", surface.bearing);
+    for (const ContactNode& one : surface.bearing)
+      if (one.node < 0 || one.node >= soil_.grid().count())
+        throw Error(ExitCode::io, "a saved contact names a node that is not in the grid");
+    surface.floor_force = archive.get_double("floor_force");
+  }
+}
+
+/// @throws Error(bad_input) unless wanted
+void require(const ScmOptions& options, const char* key, double value, bool wanted, const char* expected) {
+  if (!wanted || !std::isfinite(value))
+    throw input_error(options.scenario, std::string("terrain.") + key,
+                      fmt::format("is {:g}, expected {}", value, expected));
+}
+
+}  // namespace
+
+void check_scm_options(const ScmOptions& o) {
+  const auto positive = [&](const char* key, double value) {
+    require(o, key, value, value > 0.0, "a finite number above 0");
+  };
+  const auto not_negative = [&](const char* key, double value) {
+    require(o, key, value, value >= 0.0, "a finite number of at least 0");
+  };
+  positive("length", o.length);
+  positive("width", o.width);
+  positive("grid_spacing", o.grid_spacing);
+  positive("bekker_k_phi", o.bekker_k_phi);
+  positive("bekker_n", o.bekker_n);
+  positive("janosi_k", o.janosi_k);
+  not_negative("mohr_cohesion", o.mohr_cohesion);
+  not_negative("unloading_stiffness", o.unloading_stiffness);
+  not_negative("unloading_stiffness_rate", o.unloading_stiffness_rate);
+  not_negative("rebound_damping", o.rebound_damping);
+  require(o, "bekker_k_c", o.bekker_k_c, true, "a finite number");
+  require(o, "mohr_friction_angle", o.mohr_friction_angle,
+          o.mohr_friction_angle >= 0.0 && o.mohr_friction_angle <= 80.0, "an angle from 0 to 80 degrees");
+  if (o.patch_width >= 0.0) {
+    positive("patch_width", o.patch_width);
+    const double modulus = o.bekker_k_c / o.patch_width + o.bekker_k_phi;
+    require(o, "bekker_k_c", o.bekker_k_c, modulus > 0.0,
+            "k_c/b + k_phi above 0 with b = terrain.patch_width");
+  }
+  const double nodes = std::ceil(o.length / o.grid_spacing) * std::ceil(o.width / o.grid_spacing);
+  if (!(nodes <= kMostNodes))
+    throw input_error(o.scenario, "terrain.grid_spacing",
+                      fmt::format("is {:g}: {:g} m x {:g} m have {:.3g} nodes, expected at most {:g}",
+                                  o.grid_spacing, o.length, o.width, nodes, kMostNodes));
+}
+
+std::int64_t scm_nodes(const ScmOptions& options) {
+  return Grid::over(options.length, options.width, options.grid_spacing).count();
+}
+
+std::unique_ptr<Terrain> make_scm_ground(const ScmOptions& options) {
+  check_scm_options(options);
+  return std::make_unique<ScmGround>(options);
+}
+
+}  // namespace furrow::terrain::scm

@@ -1,0 +1,60 @@
+#include "terrain/scm/scm_spec.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "protocol/files/json_fields.hpp"
+#include "terrain/scm/scm_ground.hpp"
+
+namespace furrow::terrain::scm {
+namespace {
+
+constexpr double kFrameBytes = 20.0;  // of each node: position, speed, radius in single precision
+
+class ScmSpec final : public TerrainSpec {
+ public:
+  explicit ScmSpec(ScmOptions options) : options_(std::move(options)) {}
+
+  TerrainDescription describe() const override {
+    TerrainDescription d;
+    d.engine = "scm";
+    d.name = "empirical soil";
+    d.bounds = {options_.length, options_.width};
+    d.undisturbed_height = 0.0;
+    return d;
+  }
+  TerrainEstimate estimate(const TerrainContext&) const override {
+    check_scm_options(options_);
+    const auto nodes = static_cast<double>(scm_nodes(options_));
+    TerrainEstimate e;
+    e.text = fmt::format("grid of {:.0f} nodes, {:g} mm apart", nodes, 1e3 * options_.grid_spacing);
+    e.stable_reason = "no grains";
+    e.memory_bytes = kMemoryPerNode * nodes;
+    e.frame_bytes = kFrameBytes * nodes;
+    e.checkpoint_bytes = kSavedPerNode * nodes;
+    return e;
+  }
+  std::unique_ptr<Terrain> make(const TerrainContext& context) const override {
+    ScmOptions options = options_;
+    static_cast<TerrainContext&>(options) = context;
+    return make_scm_ground(options);
+  }
+
+ private:
+  ScmOptions options_;
+};
+
+}  // namespace
+
+std::unique_ptr<TerrainSpec> read_scm_spec(const nlohmann::json& section, const ReadContext& context) {
+  ScmOptions options;
+  options.scenario = context.file;
+  read_fields(section, options);
+  return make_scm_spec(options);
+}
+
+std::unique_ptr<TerrainSpec> make_scm_spec(const ScmOptions& options) {
+  return std::make_unique<ScmSpec>(options);
+}
+
+}  // namespace furrow::terrain::scm

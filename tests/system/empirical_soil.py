@@ -1,0 +1,69 @@
+#!/usr/bin/python3
+"""Empirical soil as a user meets it: a wheel on it, the same with any number of threads, soil files for several engines."""
+import csv
+import json
+import math
+
+import h5py
+
+from program import SystemTest, changed, furrow, main, write_scenario
+
+# A rigid wheel is let down on dry sand while it starts, and rolls half a metre.
+WHEEL = {
+    **changed(terrain=None, run={"step": 2e-4, "end": 0.5, "average_from": 0.3}, output={"series_interval": 2e-3, "frame_interval": 0.1}),
+    "terrain": {"engine": "scm", "material": "dry_sand.json", "length": 2.5, "width": 0.4, "grid_spacing": 0.01},
+}
+
+
+class EmpiricalSoil(SystemTest):
+    def run_of(self, name, *flags, scenario=WHEEL):
+        path = write_scenario(self.folder, scenario)
+        done = furrow("run", path, "--no-plots", "--out", self.folder / name, *flags, cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads((self.folder / name / "summary.json").read_text()), done.stderr
+
+    def test_a_wheel_sinks_pulls_leaves_a_rut_and_its_accounts_close(self):
+        told, _ = self.run_of("out")
+        self.assertGreater(told["sinkage_m"], 0.005)
+        self.assertLess(told["sinkage_m"], 0.1)
+        energy = told["accounts"]["energy"]
+        self.assertTrue(energy["closes"], energy)
+        self.assertTrue(told["accounts"]["momentum"]["closes"])
+        for entry in ("sliding_loss", "normal_damping_loss"):
+            self.assertGreater(energy["lost"][entry], 0.0)
+        with open(self.folder / "out/timeseries.csv", newline="") as file:
+            for line in csv.DictReader(file):
+                self.assertTrue(all(math.isfinite(float(value)) for value in line.values()), line)
+        frame = sorted((self.folder / "out/frames").glob("terrain_*.h5"))[-1]
+        with h5py.File(frame) as file:
+            deepest = file["position"][:, 2].min()
+        self.assertLess(deepest, -0.005)
+
+    def test_threads_change_nothing(self):
+        self.run_of("one", "--set", "run.end=0.2", "--set", "run.average_from=0.1", "--set", "run.threads=1")
+        self.run_of("two", "--set", "run.end=0.2", "--set", "run.average_from=0.1", "--set", "run.threads=2")
+        for name in ("timeseries.csv", "frames/terrain_000001.h5"):
+            self.assertEqual((self.folder / "one" / name).read_bytes(), (self.folder / "two" / name).read_bytes(), name)
+
+    def test_one_soil_file_serves_grains_and_empirical_soil(self):
+        scenario = {**WHEEL, "run": {"step": 2e-4, "end": 0.01, "average_from": 0.005}, "terrain": {**WHEEL["terrain"], "material": None}}
+        _, told = self.run_of("scm", "--set", "terrain.material=loose_sand.json", scenario=scenario)
+        terrain = json.loads((self.folder / "scm/scenario.json").read_text())["terrain"]
+        self.assertEqual(terrain["bekker_n"], 0.2843)
+        self.assertNotIn("rolling_friction", terrain)
+        self.assertNotIn("set aside", told)
+        path = write_scenario(self.folder, changed(terrain={"material": "loose_sand.json"}))
+        done = furrow("validate", path, cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn("set aside", done.stderr)
+
+    def test_commands_that_need_grains_say_so(self):
+        path = write_scenario(self.folder, WHEEL)
+        for command in ("bed", "soil"):
+            done = furrow(command, path, cwd=self.folder)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn("key 'terrain.engine': is 'scm'", done.stderr)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,51 @@
+// A rigid surface that is moved over empirical soil with given velocities.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "terrain/scm/scm_ground.hpp"
+#include "tests/terrain/surface_meshes.hpp"
+
+namespace furrow::testing {
+
+struct DrivenSurface {
+  Surface surface;
+  Vec3 position = Vec3::Zero();  // of its origin, m
+  double turn = 0.0;             // about +y, rad
+  NodalForces forces{};          // of the last interval
+  ContactSums sums{};
+
+  SurfaceState state(const Vec3& velocity = Vec3::Zero(), double spin = 0.0) const {
+    const Quat orientation(Eigen::AngleAxisd(turn, Vec3::UnitY()));
+    SurfaceState now;
+    for (const Vec3& x : surface.vertex) {
+      const Vec3 arm = orientation * x;
+      now.position.push_back(position + arm);
+      now.velocity.push_back(velocity + Vec3(0.0, spin, 0.0).cross(arm));
+    }
+    return now;
+  }
+  void attach(terrain::Terrain& ground, double friction) const {
+    ContactMaterial material;
+    material.friction = friction;
+    ground.attach(surface.mesh, material, state());
+  }
+  /// One interval.
+  void move(terrain::Terrain& ground, const Vec3& velocity, double spin, double dt, int substeps = 1) {
+    const SurfaceState start = state(velocity, spin);
+    const Outcome outcome = ground.advance({&start, 1}, dt, substeps, {&forces, 1}, {&sums, 1});
+    ASSERT_TRUE(outcome.ok) << outcome.message("terrain");
+    position += dt * velocity;
+    turn += dt * spin;
+  }
+  /// Moment of the last interval's forces about the axle, N m.
+  Vec3 moment() const { return sums.moment - position.cross(sums.force); }
+};
+
+/// What the accounts leave over since the beginning, J.
+inline double residual(const terrain::Terrain& ground) {
+  const TerrainEnergies e = ground.state().energies;
+  return e.stored() + e.losses() - e.surface_work - e.wall_work;
+}
+
+}  // namespace furrow::testing

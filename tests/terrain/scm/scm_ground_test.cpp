@@ -1,0 +1,204 @@
+// Empirical soil under a plate against Bekker's, Wong's and Janosi's closed forms; momentum, energy, continuation, messages.
+#include "terrain/scm/scm_ground.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "protocol/core/error.hpp"
+#include "tests/terrain/scm/driven_surface.hpp"
+
+namespace furrow::terrain::scm {
+namespace {
+
+using testing::DrivenSurface;
+
+ScmOptions small_bed() {
+  ScmOptions options;
+  options.length = 1.0;
+  options.width = 0.4;
+  options.rebound_damping = 0.0;
+  return options;
+}
+
+/// A plate 0.2 m long and 0.1 m wide that covers 20 × 10 cells.
+DrivenSurface plate() { return {testing::box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1}), {0.5, 0.0, 0.0}}; }
+constexpr double kArea = 0.02, kWidth = 0.2 * 0.1 / 0.3;  // m², b = 2 A/P in m
+
+double bekker(const ScmOptions& o, double b, double z) {
+  return (o.bekker_k_c / b + o.bekker_k_phi) * std::pow(z, o.bekker_n);
+}
+
+TEST(ScmGround, a_plate_meets_bekkers_curve_with_the_width_of_its_patch) {
+  for (const double given : {-1.0, 0.1}) {
+    ScmOptions options = small_bed();
+    options.patch_width = given;
+    const auto ground = make_scm_ground(options);
+    DrivenSurface tool = plate();
+    tool.attach(*ground, 0.8);
+    const double dt = 1e-3, speed = 0.1;
+    for (int i = 0; i < 100; ++i) {
+      tool.move(*ground, {0.0, 0.0, -speed}, 0.0, dt);
+      const double z = speed * dt * (i + 0.5);  // forces are those of the middle
+      EXPECT_NEAR(tool.sums.force.z() / (kArea * bekker(options, given > 0.0 ? given : kWidth, z)), 1.0, 1e-9)
+          << i;
+      EXPECT_NEAR(tool.sums.force.head<2>().norm() / tool.sums.force.z(), 0.0, 1e-12);
+      EXPECT_LT(tool.sums.transfer_force_residual, 1e-12);
+      EXPECT_LT(tool.sums.transfer_moment_residual, 1e-12);
+    }
+    EXPECT_NEAR(ground->state().floor_force, tool.sums.force.z(), 1e-9 * tool.sums.force.z());
+    EXPECT_LT(std::abs(testing::residual(*ground)), 0.02 * ground->state().energies.surface_work);
+  }
+}
+
+TEST(ScmGround, a_plate_unloads_and_reloads_along_wongs_line_and_leaves_a_rut) {
+  ScmOptions options = small_bed();
+  options.bekker_k_phi = 505.8e3;
+  options.bekker_n = 0.7;
+  options.unloading_stiffness = 0.0;
+  options.unloading_stiffness_rate = 5.03e8;
+  options.patch_width = 0.1;
+  const auto ground = make_scm_ground(options);
+  DrivenSurface tool = plate();
+  tool.attach(*ground, 0.8);
+  const double dt = 1e-3, speed = 0.1, z_u = 0.02;
+  for (int i = 0; i < 200; ++i) tool.move(*ground, {0.0, 0.0, -speed}, 0.0, dt);
+  tool.move(*ground, Vec3::Zero(), 0.0, dt);  // the middle of this interval is z_u
+  const double p_u = bekker(options, 0.1, z_u), k_u = options.unloading_stiffness_rate * z_u;
+  EXPECT_NEAR(tool.sums.force.z() / (kArea * p_u), 1.0, 1e-9);
+  for (int i = 0; i < 100; ++i) {
+    tool.move(*ground, {0.0, 0.0, speed}, 0.0, dt);
+    const double p = p_u - k_u * speed * dt * (i + 0.5);
+    EXPECT_NEAR(tool.sums.force.z() / kArea, std::max(p, 0.0), 1e-6 * p_u) << i;
+  }
+  const double rut = z_u - p_u / k_u;
+  const HeightField field = ground->height_field();
+  int sunk = 0;
+  for (const double height : field.height)
+    if (height != 0.0) {
+      EXPECT_NEAR(height, -rut, 1e-9);
+      ++sunk;
+    }
+  EXPECT_EQ(sunk, 200);
+  EXPECT_NEAR(ground->mean_height(0.4, 0.6, -0.05, 0.05), -rut, 1e-9);
+  EXPECT_EQ(ground->top_height(0.3, 0.7, -0.1, 0.1), 0.0);
+  // What is lost is the work less what came back.
+  const TerrainEnergies e = ground->state().energies;
+  EXPECT_EQ(e.stored(), 0.0);
+  const double compaction =
+      kArea *
+      ((options.bekker_k_c / 0.1 + options.bekker_k_phi) * std::pow(z_u, 1.7) / 1.7 - 0.5 * p_u * p_u / k_u);
+  EXPECT_NEAR(e.normal_damping_loss / compaction, 1.0, 0.01);
+  EXPECT_LT(std::abs(testing::residual(*ground)), 0.01 * compaction);
+  // The second load meets nothing above the rut, then the line, then the curve.
+  for (int i = 0; i < 150; ++i) tool.move(*ground, {0.0, 0.0, -speed}, 0.0, dt);
+  EXPECT_NEAR(tool.sums.force.z() / (kArea * bekker(options, 0.1, 0.025 - 0.5 * speed * dt)), 1.0, 1e-9);
+}
+
+TEST(ScmGround, a_plate_that_slides_meets_janosis_curve_under_mohr_coulombs_limit) {
+  ScmOptions options = small_bed();
+  options.janosi_k = 1.5e-3;  // fully mobilized before the plate's edge reaches other nodes
+  const auto ground = make_scm_ground(options);
+  DrivenSurface tool = plate();
+  tool.attach(*ground, 10.0);
+  for (int i = 0; i < 100; ++i) tool.move(*ground, {0.0, 0.0, -0.1}, 0.0, 1e-3);
+  const double dt = 1e-3, speed = 0.045, p = bekker(options, kWidth, 0.01);
+  const double limit =
+      kArea * (options.mohr_cohesion + p * std::tan(options.mohr_friction_angle * M_PI / 180.0));
+  const Vec3 way(0.6, -0.8, 0.0);
+  for (int i = 0; i < 100; ++i) {
+    tool.move(*ground, speed * way, 0.0, dt);
+    const double share = speed * dt / options.janosi_k;  // mean of 1 − exp(−j/K) over the interval
+    const double expected = 1.0 - std::exp(-share * i) * -std::expm1(-share) / share;
+    EXPECT_NEAR((tool.sums.tangential / -limit - expected * way).norm(), 0.0, 1e-6) << i;
+    EXPECT_NEAR(tool.sums.normal.z() / (kArea * p), 1.0, 1e-9);
+  }
+  EXPECT_LT(std::abs(testing::residual(*ground)), 0.01 * ground->state().energies.surface_work);
+}
+
+TEST(ScmGround, gives_the_momentum_that_it_takes_and_hands_out_no_energy) {
+  const auto ground = make_scm_ground(small_bed());
+  DrivenSurface tool{testing::wheel(0.15, 0.1, 60, 4), {0.25, 0.03, 0.151}};
+  tool.attach(*ground, 0.8);
+  Vec3 received = Vec3::Zero();
+  double lost = 0.0;
+  for (int i = 0; i < 400; ++i) {
+    const double down = 0.1 * std::cos(0.03 * i);
+    tool.move(*ground, {0.5, 0.05 * std::sin(0.01 * i), -down}, 4.0, 1e-3, 2);
+    Vec3 nodal = Vec3::Zero();
+    for (const Vec3& f : tool.forces.force) nodal += f;
+    EXPECT_LT((nodal - tool.sums.force).norm(), 1e-9 * (1.0 + nodal.norm()));
+    received += 1e-3 * nodal;
+    EXPECT_GE(tool.sums.normal.z(), 0.0);
+    EXPECT_GE(ground->state().energies.normal_damping_loss, lost - 1e-9);
+    lost = ground->state().energies.normal_damping_loss;
+  }
+  EXPECT_GT(received.norm(), 1.0);
+  EXPECT_LT((received + ground->state().surface_impulse).norm(), 1e-10 * received.norm());
+}
+
+TEST(ScmGround, continues_bit_for_bit_from_what_it_saved) {
+  const auto ground = make_scm_ground(small_bed()), again = make_scm_ground(small_bed());
+  DrivenSurface tool{testing::wheel(0.15, 0.1, 60, 4), {0.3, 0.0, 0.151}};
+  tool.attach(*ground, 0.8);
+  const auto drive = [](Terrain& on, DrivenSurface& with, int from, int to) {
+    for (int i = from; i < to; ++i) with.move(on, {0.5, 0.02, -0.1 * std::cos(0.03 * i)}, 4.5, 1e-3, 2);
+  };
+  drive(*ground, tool, 0, 150);
+  Archive archive;
+  ground->save(archive);
+  again->restore(archive);
+  DrivenSurface other = tool;
+  drive(*ground, tool, 150, 250);
+  drive(*again, other, 150, 250);
+  EXPECT_EQ(tool.sums.force, other.sums.force);
+  EXPECT_EQ(tool.forces.force, other.forces.force);
+  EXPECT_EQ(ground->height_field().height, again->height_field().height);
+  const TerrainEnergies a = ground->state().energies, b = again->state().energies;
+  EXPECT_EQ(a.losses(), b.losses());
+  EXPECT_EQ(a.stored(), b.stored());
+}
+
+TEST(ScmGround, says_what_is_wrong_with_its_options) {
+  const auto told = [](const auto& change) {
+    ScmOptions options = small_bed();
+    options.scenario = "mine.json";
+    change(options);
+    try {
+      make_scm_ground(options);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(told([](ScmOptions& o) { o.bekker_k_phi = 0.0; }),
+            "mine.json: key 'terrain.bekker_k_phi': is 0, expected a finite number above 0");
+  EXPECT_EQ(told([](ScmOptions& o) { o.janosi_k = -1.0; }),
+            "mine.json: key 'terrain.janosi_k': is -1, expected a finite number above 0");
+  EXPECT_EQ(told([](ScmOptions& o) { o.patch_width = 0.01, o.bekker_k_c = -1e6; }),
+            "mine.json: key 'terrain.bekker_k_c': is -1e+06, expected k_c/b + k_phi above 0 with b = "
+            "terrain.patch_width");
+  EXPECT_EQ(told([](ScmOptions& o) { o.grid_spacing = 1e-5; }),
+            "mine.json: key 'terrain.grid_spacing': is 1e-05: 1 m x 0.4 m have 4e+09 nodes, expected at most "
+            "1e+08");
+  EXPECT_NE(told([](ScmOptions& o) { o.mohr_friction_angle = 90.0; }).find("from 0 to 80 degrees"),
+            std::string::npos);
+  EXPECT_NE(told([](ScmOptions& o) { o.rebound_damping = NAN; }).find("rebound_damping"), std::string::npos);
+}
+
+TEST(ScmGround, stops_when_a_tire_leaves_it_and_refuses_one_that_starts_in_it) {
+  const auto ground = make_scm_ground(small_bed());
+  DrivenSurface tool = plate();
+  tool.attach(*ground, 0.8);
+  tool.position = Vec3(0.95, 0.0, 0.0);
+  const SurfaceState state = tool.state({0.0, 0.0, -1.0});
+  const Outcome outcome = ground->advance({&state, 1}, 1e-3, 1, {&tool.forces, 1}, {&tool.sums, 1});
+  EXPECT_FALSE(outcome.ok);
+  EXPECT_NE(outcome.message("terrain").find("was left by a tire"), std::string::npos);
+  tool.position = Vec3(0.5, 0.0, -0.01);
+  EXPECT_THROW(tool.attach(*make_scm_ground(small_bed()), 0.8), Error);
+}
+
+}  // namespace
+}  // namespace furrow::terrain::scm

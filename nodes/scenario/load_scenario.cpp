@@ -22,6 +22,7 @@
 #include "protocol/files/text_file.hpp"
 #include "protocol/host.hpp"
 #include "rigs/rigs.hpp"
+#include "terrain/terrain_spec.hpp"
 #include "tire/tires.hpp"
 
 namespace furrow::scenario {
@@ -93,6 +94,15 @@ std::filesystem::path named_scenario(const std::filesystem::path& name) {
   return std::filesystem::is_regular_file(shipped, error) ? shipped : name;
 }
 
+/// The engine that the scenario will have once all settings are made.
+std::string engine_to_be(json document, const std::string& file, const Settings& settings) {
+  for (const auto& [key, text] : settings)
+    if (key == "terrain.engine") set_value(document, key, text, file);
+  const json terrain = document.value("terrain", json());
+  const json engine = terrain.is_object() ? terrain.value("engine", json()) : json();
+  return engine.is_string() ? engine.get<std::string>() : terrain::CommonOptions().engine;
+}
+
 json read_document(const std::string& file, const Settings& settings) {
   json document = parse_json(read_text_file(file, "a scenario in JSON"), file);
   if (!document.is_object())
@@ -100,13 +110,13 @@ json read_document(const std::string& file, const Settings& settings) {
   if (document.contains("scenario"))
     throw input_error(file, "", "is a study, expected a scenario ('furrow sweep' takes studies)");
   // What is said later wins: a soil of the command line replaces what the file says of its soil.
-  const std::string soil = "terrain.material";
+  const std::string soil = "terrain.material", engine = engine_to_be(document, file, settings);
   if (std::none_of(settings.begin(), settings.end(), [&](const auto& one) { return one.first == soil; }))
-    apply_soil_material(document, file);
+    apply_soil_material(document, file, engine);
   for (const auto& [key, text] : settings) {
     if (key.starts_with("tires.") && !document.contains("tires")) fill_rig_tires(document, file);
     set_value(document, key, text, file);
-    if (key == soil) override_soil_material(document, file);
+    if (key == soil) override_soil_material(document, file, engine);
   }
   if (document.contains("format_version") && document["format_version"].is_number_integer() &&
       document["format_version"] > kFormatVersion)

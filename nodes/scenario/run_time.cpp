@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "nodes/scenario/grain_loads.hpp"
 #include "nodes/scenario/wheel_geometry.hpp"
 #include "protocol/core/assert.hpp"
 #include "terrain/dem/beds/bed_cache.hpp"
@@ -100,7 +101,10 @@ RunTime run_time(const Scenario& s, const Calibration& machine) {
     t.bed_is_kept = settled == 0.0;
     t.bed = settled * grain / std::clamp(o.settle_threads, 1, t.cores);
     if (o.activity) t.awake = awake_share(s, tires, o.length);
-    const double terrain = s.terrain_substeps * t.awake * terrain::dem::expected_grains(o) * grain;
+    const GrainLoads loads = grain_loads(s);
+    t.refined = loads.refined;
+    const double terrain =
+        s.terrain_substeps * loads.parts * t.awake * terrain::dem::expected_grains(o) * grain;
     t.terrain = terrain / std::min(t.threads, t.cores);
     all += terrain;
   }

@@ -2,7 +2,8 @@
 //
 // A step takes as long as its slowest node, and not less than all processor time of the step over the cores:
 //   T = max(max tires, terrain/threads, (Σ tires + terrain + messages)/cores) + latency.
-// The terrain's is that of the grains awake: those within kAwake tire radii of an axle, where strips may sleep.
+// The terrain's is that of the grains awake: those within kAwake tire radii of an axle, where strips may sleep. Where
+// contacts are expected to be too hard for its step it is taken in parts (grain_loads.hpp).
 #pragma once
 
 #include "nodes/scenario/calibration.hpp"
@@ -18,6 +19,7 @@ struct RunTime {
   double tire = 0.0;         // of it: the slowest tire, s
   double terrain = 0.0;      // of it: the terrain on its threads, s
   double awake = 1.0;        // mean share of the grains that is stepped
+  double refined = 0.0;      // share of the time in which the terrain's steps are taken in parts
   int threads = 1;           // of the terrain
   int cores = 1;
 

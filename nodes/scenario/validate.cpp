@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "nodes/scenario/estimate.hpp"
+#include "nodes/scenario/grain_loads.hpp"
 #include "nodes/scenario/rank_table.hpp"
 #include "nodes/scenario/wheel_geometry.hpp"
 #include "nodes/scenario/wheel_scales.hpp"
@@ -21,8 +22,9 @@ nlohmann::ordered_json number(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
-nlohmann::ordered_json scales_json(const WheelScales& w) {
+nlohmann::ordered_json scales_json(const WheelScales& w, const std::string& name) {
   nlohmann::ordered_json json;
+  if (!name.empty()) json["name"] = name;
   json["load_N"] = w.load;
   json["froude_number"] = number(w.froude);
   if (!w.grains) return json;
@@ -70,8 +72,15 @@ nlohmann::ordered_json time_json(const RunTime& t) {
           {"slowest_tire_s", number(t.tire)},
           {"terrain_s", number(t.terrain)},
           {"awake_share", number(t.awake)},
+          {"refined_share", number(t.refined)},
           {"terrain_threads", t.threads},
           {"cores", t.cores}};
+}
+
+std::vector<Bound> all_bounds(const Scenario& s) {
+  std::vector<Bound> bounds = scale_bounds(s);
+  if (const auto hard = too_hard(s, grain_loads(s))) bounds.push_back(*hard);
+  return bounds;
 }
 
 /// "about 2 min".
@@ -88,6 +97,10 @@ std::string time_text(const RunTime& t) {
   text += fmt::format("run {}; of a step of {} ms the slowest tire takes {}, the terrain {}", duration(t.run),
                       digits(1e3 * t.step), digits(1e3 * t.tire), digits(1e3 * t.terrain));
   if (t.awake < 1.0) text += fmt::format(" with {:.0f} % of its grains awake", 100.0 * t.awake);
+  if (t.refined >= 0.005)
+    text += fmt::format(
+        "; it takes its steps in parts for about {:.0f} % of the time, where contacts are too hard for them",
+        100.0 * t.refined);
   return text;
 }
 
@@ -112,14 +125,17 @@ nlohmann::ordered_json validation_report(const Scenario& s, const RunTime* time)
   json["memory_MB"] = std::round(e.memory / kMegabyte);
   json["disk_MB"] = std::round(e.disk / kMegabyte);
   if (time) json["time"] = time_json(*time);
-  for (const rigs::WheelDescription& wheel : describe_rig(s).wheels)
+  const rigs::RigDescription rig = describe_rig(s);
+  const std::vector<WheelScales> scales = wheel_scales(s);
+  for (const rigs::WheelDescription& wheel : rig.wheels)
     json["axle_path_m"].push_back({wheel.from, wheel.to});
   for (const tire::TireDescription& tire : describe_tires(s)) json["tire_mass_kg"].push_back(tire.mass.mass);
-  for (const WheelScales& wheel : wheel_scales(s)) json["wheels"].push_back(scales_json(wheel));
+  for (std::size_t k = 0; k < scales.size(); ++k)
+    json["wheels"].push_back(scales_json(scales[k], rig.wheels[k].name));
   for (const RankEntry& rank : rank_table(s))
     json["ranks"].push_back({{"rank", rank.rank}, {"node", rank.node}, {"does", rank.does}});
   json["bound_by"] = nlohmann::ordered_json::array();
-  for (const Bound& bound : scale_bounds(s))
+  for (const Bound& bound : all_bounds(s))
     json["bound_by"].push_back({{"key", bound.key}, {"what", bound.what}});
   json["warnings"] = s.warnings;
   return json;
@@ -143,6 +159,7 @@ std::string validation_text(const Scenario& s, const RunTime* time) {
   const rigs::RigDescription rig = describe_rig(s);
   const std::vector<WheelScales> scales = wheel_scales(s);
   for (std::size_t k = 0; k < tires.size(); ++k) {
+    if (!rig.wheels[k].name.empty()) line("wheel", rig.wheels[k].name);
     line("tire", fmt::format("{}, {}, radius {:g} m", s.tires[k]->options().file.filename().string(),
                              tires[k].details, tires[k].radius));
     const MassProperties& mass = tires[k].mass;
@@ -153,7 +170,7 @@ std::string validation_text(const Scenario& s, const RunTime* time) {
   line("memory", fmt::format("about {:.0f} MB in all", e.memory / kMegabyte));
   line("disk", fmt::format("about {:.0f} MB of results", e.disk / kMegabyte));
   if (time) line("time", time_text(*time));
-  for (const Bound& bound : scale_bounds(s)) line("bound by", bound.key + ": " + bound.what);
+  for (const Bound& bound : all_bounds(s)) line("bound by", bound.key + ": " + bound.what);
   return text + "ranks\n" + rank_table_text(s);
 }
 

@@ -1,6 +1,7 @@
 // What the loader makes of a scenario: defaults from the schema, settings, digests, starting places.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include <nlohmann/json.hpp>
@@ -228,6 +229,30 @@ TEST(Scenario, mistakes_in_a_soil_file_are_named_with_that_file) {
   EXPECT_EQ(complaint(R"({"format_version": 2, "terrain": {}})"),
             ": key 'format_version': is 2: the file is newer than this program, expected at most 1");
   EXPECT_EQ(complaint(R"({"format_version": 1})"), ": key 'terrain': is missing, expected an object { }");
+}
+
+TEST(Scenario, each_engine_takes_from_a_soil_file_what_is_its_own) {
+  const testing::ScenarioFile soil(
+      R"({"format_version": 1, "terrain": {"rolling_friction": 0.2, "bekker_n": 0.5}})");
+  const testing::ScenarioFile grains(testing::kSmallest);
+  const std::string name = '"' + soil.path().string() + '"';
+  for (const std::string engine : {"dem", "scm"}) {
+    // Wherever the engine is chosen among the settings.
+    for (const bool first : {true, false}) {
+      std::vector<std::pair<std::string, std::string>> settings{{"terrain.material", name}};
+      settings.insert(first ? settings.begin() : settings.end(), {"terrain.engine", engine});
+      const scenario::Scenario s = grains.load(settings);
+      EXPECT_TRUE(s.warnings.empty()) << engine << first;
+      const nlohmann::json terrain = nlohmann::json::parse(s.completed)["terrain"];
+      EXPECT_EQ(terrain.value("rolling_friction", 0.2), 0.2);
+      EXPECT_EQ(terrain.value("bekker_n", 0.5), 0.5);
+      EXPECT_EQ(terrain.contains("bekker_n"), engine == "scm");
+      EXPECT_EQ(terrain.contains("rolling_friction"), engine == "dem");
+    }
+  }
+  const testing::ScenarioFile other(R"({"format_version": 1, "terrain": {"bekker_n": 0.5}})");
+  EXPECT_EQ(grains.complaint({{"terrain.material", '"' + other.path().string() + '"'}}, other.path()),
+            ": key 'terrain': has keys of other engines alone (bekker_n), expected some of engine 'dem'");
 }
 
 TEST(Scenario, mistakes_are_named_with_what_is_expected) {

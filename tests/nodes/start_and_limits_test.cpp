@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 
 #include "nodes/launch/child_process.hpp"
@@ -127,6 +128,16 @@ TEST(OutOfMemory, says_what_is_needed_and_what_there_is) {
   EXPECT_NE(std::string(error.what()).find("out of memory: needs about 1200"), std::string::npos)
       << error.what();
   EXPECT_NE(std::string(error.what()).find(", limit "), std::string::npos) << error.what();
+}
+
+TEST(NoThreadDeathTest, an_end_by_openmp_is_told_with_the_code_of_limits) {
+  const auto end = [](int status) {
+    std::atexit([] { std::fputs("ended slowly\n", stderr); });
+    launch::end_where_no_thread_starts("no room for threads\n");
+    std::exit(status);
+  };
+  EXPECT_EXIT(end(EXIT_FAILURE), testing::ExitedWithCode(6), "^no room for threads\n$");
+  EXPECT_EXIT(end(3), testing::ExitedWithCode(3), "^ended slowly\n$");
 }
 
 TEST(RequireMemory, refuses_what_surely_does_not_fit) {

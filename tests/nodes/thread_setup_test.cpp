@@ -5,6 +5,7 @@
 #include <omp.h>
 #include <sched.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -131,6 +132,17 @@ TEST(ThreadPlan, a_terrain_pinned_to_one_core_is_warned_about) {
   EXPECT_TRUE(plans[1].note.empty());
   EXPECT_EQ(plan_all(host)[2].threads, 1);
   EXPECT_FALSE(plan_all(host)[2].note.empty());
+}
+
+TEST(ThreadPlan, a_run_on_the_one_core_that_it_was_started_on_hears_nothing_of_the_launcher) {
+  launch::HostView host = machine(8);
+  for (HostNode& node : host.nodes) node.cores = {3};
+  for (const launch::ThreadPlan& plan : plan_all(host)) EXPECT_EQ(plan.note, "");
+  EXPECT_NE(plan_all(host, 4)[2].note.find("terrain runs 4 threads on 1 cores; fewer are faster"),
+            std::string::npos)
+      << plan_all(host, 4)[2].note;
+  host.nodes = {host.nodes.back()};  // alone on its machine: srun gave it that core
+  EXPECT_NE(plan_all(host)[0].note.find("--cpus-per-task"), std::string::npos);
 }
 
 // In a thread of its own: OpenMP gives it a team of its own, and this test's settings go with it.

@@ -112,6 +112,8 @@ TEST(VehicleScenario, starts_clear_of_the_wall_and_says_when_the_bin_is_too_shor
   document["tire"] = {{"rigid", true}};
   const scenario::Scenario s = load(document);
   const std::vector<rigs::WheelDescription> wheels = scenario::describe_rig(s).wheels;
+  EXPECT_EQ(wheels[0].name, "front_left");
+  EXPECT_EQ(wheels[3].name, "rear_right");
   EXPECT_NEAR(wheels[2].from - wheels[2].along, 0.02, 1e-6);
   EXPECT_NEAR(wheels[0].to - wheels[0].from, 2.0, 1e-3);
   EXPECT_NEAR(json::parse(s.completed)["rig"]["start"].get<double>(), wheels[2].from + 1.653, 0.01);

@@ -1,0 +1,121 @@
+#include "nodes/scenario/grain_loads.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "protocol/core/assert.hpp"
+#include "protocol/files/digits.hpp"
+#include "terrain/dem/grain_sizes.hpp"
+#include "terrain/dem/refinement/step_refinement.hpp"
+#include "terrain/dem/solver_setup.hpp"
+
+namespace furrow::scenario {
+namespace {
+
+namespace dem = terrain::dem;
+
+constexpr double kCount = 0.6;         // A, see the header
+constexpr double kLargest = 8.0;       // the largest force of a run over the mean one
+constexpr double kSoundOverlap = 0.2;  // of the diameter: what advice aims at
+
+/// F = K δ^{3/2} − F_c.
+struct Contact {
+  double stiffness = 0.0, cohesion = 0.0;  // K, N/m^1.5; F_c, N
+
+  explicit Contact(const dem::ContactCoefficients& c) : stiffness(c.stiffness), cohesion(c.cohesion_force) {}
+  double force(double overlap) const { return std::max(0.0, stiffness * std::pow(overlap, 1.5) - cohesion); }
+  double overlap(double force) const { return std::pow((force + cohesion) / stiffness, 2.0 / 3.0); }
+};
+
+/// A wheel's grains.
+struct Pressed {
+  double force = 0.0;   // p d², N
+  double grains = 0.0;  // n
+  Contact pair, tire;
+};
+
+std::vector<Pressed> pressed_grains(const Scenario& s, const dem::DemOptions& o) {
+  const dem::GrainProperties grain = dem::grain_properties(o.radius, o.density);
+  dem::LawSettings law = dem::law_settings(o);
+  law.step = s.terrain_step();
+  const ContactMaterial material = dem::grain_material(o);
+  const Contact pair(dem::mix(material, material, dem::Partner::grain, grain, law));
+  const std::vector<WheelScales> scales = wheel_scales(s);
+  std::vector<Pressed> all;
+  for (std::size_t k = 0; k < scales.size(); ++k) {
+    FURROW_ASSERT(scales[k].grains.has_value(), k);
+    const WheelScales::OnGrains& g = *scales[k].grains;
+    all.push_back(
+        {4.0 * g.pressure * o.radius * o.radius, g.grains_wide * g.grains_long, pair,
+         Contact(dem::mix(material, s.tires[k]->shape().material, dem::Partner::surface, grain, law))});
+  }
+  return all;
+}
+
+/// Share of the time in which a contact is deeper than `overlap`, m.
+double share_beyond(const std::vector<Pressed>& wheels, double overlap) {
+  double count = 0.0;
+  for (const Pressed& wheel : wheels)
+    count += kCount * wheel.grains *
+             std::exp(-std::min(wheel.pair.force(overlap), wheel.tire.force(overlap)) / wheel.force);
+  return 1.0 - std::exp(-count);
+}
+
+void add_refinement(const Scenario& s, const dem::DemOptions& o, const std::vector<Pressed>& wheels,
+                    GrainLoads& to) {
+  dem::StepRefinement refinement(o);
+  refinement.set_step(s.terrain_step());
+  const double deepest = 2.0 * dem::kDeepestShare * dem::largest_radius(o);
+  for (int level = 0; level < dem::kFinestLevel && refinement.limit(level) < deepest; ++level) {
+    const double share = share_beyond(wheels, refinement.limit(level));
+    if (level == 0) to.refined = share;
+    to.parts += std::ldexp(share, level);
+  }
+}
+
+}  // namespace
+
+GrainLoads grain_loads(const Scenario& s) {
+  GrainLoads loads;
+  const dem::DemOptions* const keys = s.terrain->grains();
+  if (!keys || keys->allow_unstable_step) return loads;
+  const dem::DemOptions o = dem::with_context(*keys, s.terrain_context());
+  const std::vector<Pressed> wheels = pressed_grains(s, o);
+  for (const Pressed& wheel : wheels)
+    for (const bool on_tire : {false, true}) {
+      const Contact& contact = on_tire ? wheel.tire : wheel.pair;
+      const double overlap = 0.5 * contact.overlap(kLargest * wheel.force) / o.radius;
+      if (overlap > loads.overlap) loads.overlap = overlap, loads.on_tire = on_tire;
+    }
+  add_refinement(s, o, wheels, loads);
+  return loads;
+}
+
+std::optional<Bound> too_hard(const Scenario& s, const GrainLoads& loads) {
+  if (!(loads.overlap > dem::kDeepestShare)) return std::nullopt;
+  const std::string what = fmt::format(
+      "the deepest contact between {} is expected to overlap by {:.0f} % of a grain's diameter, and a run "
+      "ends above {:.0f} %: ",
+      loads.on_tire ? "a grain and a tire" : "two grains", 100.0 * loads.overlap, 100.0 * dem::kDeepestShare);
+  // Under a given force Hertz's overlap goes with the modulus as E^(−2/3).
+  const double stiffer = std::pow(loads.overlap / kSoundOverlap, 1.5);
+  if (loads.on_tire)
+    return Bound{"tire.file",
+                 what + fmt::format("expected {} times the contact.young_modulus of the tire's file",
+                                    digits(stiffer))};
+  dem::DemOptions other = dem::with_context(*s.terrain->grains(), s.terrain_context());
+  const bool hertz = dem::law_from(other.law) == dem::LawKind::mindlin;
+  double& stiffness = hertz ? other.young_modulus : other.normal_stiffness;
+  stiffness *= stiffer;
+  return Bound{
+      hertz ? "terrain.young_modulus" : "terrain.normal_stiffness",
+      what + fmt::format("expected about {:.2g} {}, which needs a step of the terrain of at most {:.2g} s",
+                         stiffness, hertz ? "Pa" : "N/m^1.5",
+                         dem::stable_at(other, dem::stated_overlap(other)).step)};
+}
+
+}  // namespace furrow::scenario

@@ -1,0 +1,47 @@
+// How hard wheels press grains together, before any grain exists: what makes the terrain take its steps in parts, and
+// what ends a run (terrain/dem/refinement/).
+//
+// A wheel's mean pressure p (wheel_scales.hpp) puts f̄ ≈ p d² on a grain of diameter d. Forces between grains are about
+// exponentially spread [Radjai et al. 1996, doi:10.1103/PhysRevLett.77.274], so that of the n grains in the contacts
+// of all wheels so many are pressed by more than x f̄ at an instant:
+//   λ(x) = A Σ n e^{−x},   x(δ) = (K δ^{3/2} − F_c)/(p d²), the smaller one of grain–grain and grain–tire,
+// and 1 − e^{−λ} is the share of the time in which a contact is deeper than δ. A holds what lies below the contact, and
+// that larger parts return only after 100 calm steps.
+//
+// A = 0.6 and the largest force of a run, kLargest = 8 f̄, compared with runs at x_δ, where one part per step stops
+// being stable, and x_30, where overlaps are 30 % of the diameter (E in MPa):
+//
+//   run                                          n    x_δ    refined here, in the run   x_30   in the run
+//   hmmwv_straight, E 24.9, step 1e-4          220    1.8    1.00, 0.92 until it failed  7.4    failed after 1.6 s
+//   hmmwv_straight, E 100, step 5e-5           220    5.5    0.41, 0.76                 19.5    largest seen 0.09 d
+//   rover_small                                 53    3.6    0.59, 0.21                 13.3    largest seen 0.13 d
+//   hmmwv_small                                 95    4.7    0.42, 0.28                  9.0    largest seen 0.22 d
+//   drawbar_pull_small, r 15 mm, step 1e-4      33   10.1    0, 0                        9.3
+//   drawbar_pull_small                          74   none    0, 0                        9.3    largest seen 0.21 d
+//   drawbar_pull_small, E 6.2                   74   none    0, 0                        2.0    failed after 0.2 s
+//
+// So the share is right within a factor of three. It grows with the speed of the treads, which is left out: the driver
+// of a vehicle decides it. In hmmwv_straight 0.97 of the steps were refined at 7 m/s.
+#pragma once
+
+#include <optional>
+
+#include "nodes/scenario/scenario.hpp"
+#include "nodes/scenario/wheel_scales.hpp"
+
+namespace furrow::scenario {
+
+struct GrainLoads {
+  double overlap = 0.0;  // the largest in a run of some seconds, of a mean grain's diameter, -
+  bool on_tire = false;  // it is that of a grain and a tire
+  double refined = 0.0;  // share of the time in which the terrain's steps are taken in parts, -
+  double parts = 1.0;    // of one of its steps, on average
+};
+
+/// Of no grains, and where an unstable step is allowed: no overlap, whole steps.
+GrainLoads grain_loads(const Scenario& scenario);
+
+/// The key that moves a largest overlap which would end the run, with the figure; none where it is below that.
+std::optional<Bound> too_hard(const Scenario& scenario, const GrainLoads& loads);
+
+}  // namespace furrow::scenario

@@ -27,6 +27,9 @@ int main(int argc, char** argv) {
   if (!as_rank) std::signal(SIGXFSZ, SIG_IGN);
   try {
     furrow::launch::end_where_memory_runs_out(furrow::launch::kOutOfMemory);
+    if (!as_rank)  // a rank has words of its own, after MPI has begun, which fails with the same status
+      furrow::launch::end_where_no_thread_starts(std::string("furrow: error: ") + furrow::launch::kNoThread +
+                                                 "\n");
     furrow::launch::require_stack(argv);
     // Threads that spin while they wait make a short bed slow as soon as the machine has something else to do.
     const std::string command = argc > 1 ? argv[1] : "";

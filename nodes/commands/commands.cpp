@@ -321,7 +321,7 @@ void CommandLine::add_runs() {
   run.add_flag("--no-plots", typed_.no_plots, "make no plots; 'furrow report' makes them later");
   run.add_option(
       "--seeds", typed_.seeds,
-      "beds: run as many, with run.seed, run.seed + 1, …, and write their means and 95 % intervals; "
+      "beds, 2 to 1000: run as many, with run.seed, run.seed + 1, …, and write their means and 95 % intervals; "
       "the same command continues them");
   run.add_option("--jobs", typed_.jobs,
                  "with --seeds: beds at once, each with its share of the cores (default: 1)");

@@ -47,14 +47,13 @@ class RankReporter {
   void stage(launch::RankLine::Kind kind) const {
     if (supervised_) send({kind, rank_, {}, ExitCode::done, {}});
   }
-  /// Memory may run out where nothing can be said any more.
-  void prepare_last_words(const Error& words) const {
+  /// Memory or threads may run out where nothing can be said any more.
+  void prepare_last_words(void (&end_where)(const std::string&, int), const Error& words) const {
     if (supervised_)
-      launch::end_where_memory_runs_out(
-          launch::encode({launch::RankLine::Kind::error, rank_, words.what(), words.code(), {}}),
-          STDOUT_FILENO);
+      end_where(launch::encode({launch::RankLine::Kind::error, rank_, words.what(), words.code(), {}}),
+                STDOUT_FILENO);
     else
-      launch::end_where_memory_runs_out(std::string("furrow: error: ") + words.what() + "\n");
+      end_where(std::string("furrow: error: ") + words.what() + "\n", STDERR_FILENO);
   }
   void note(const std::string& text) {
     if (supervised_)
@@ -251,7 +250,8 @@ ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
     return ExitCode::done;
   }
   const scenario::Scenario& scenario = *task.scenario;
-  reporter.prepare_last_words(scenario::out_of_memory(scenario.memory.all));
+  reporter.prepare_last_words(launch::end_where_memory_runs_out,
+                              scenario::out_of_memory(scenario.memory.all));
   if (!reporter.supervised() && reporter.rank() == 0)
     for (const auto* warnings : {&scenario.warnings, &std::as_const(task.plan).warnings})
       for (const std::string& warning : *warnings) print_warning(warning);
@@ -264,6 +264,8 @@ ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
     if (launched_rank() == 0) reporter.error(error);
     return error.code();
   }
+  // After the session of MPI has begun: its end is not waited for then, and its failures are not taken for these.
+  reporter.prepare_last_words(launch::end_where_no_thread_starts, limit_error(launch::kNoThread));
   reporter.stage(launch::RankLine::Kind::started);
   return run_this_node(*transport, scenario, arguments.resume ? &task.plan.point : nullptr, arguments,
                        reporter, held);

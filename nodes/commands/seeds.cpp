@@ -49,6 +49,9 @@ std::string figure_text(const Json& wheel, const char* words, const char* figure
 }
 
 std::string wheel_text(const Json& wheel, int beds, const scenario::Scenario& scenario) {
+  if (number(wheel, "drawbar_pull_N.mean") == 0.0 && number(wheel, "drawbar_pull_N.sd") == 0.0)
+    return fmt::format(
+        "furrow: {} beds: the tire did not touch the terrain in the averaging window: nothing was measured\n", beds);
   std::vector<std::string> parts;
   for (const std::string& part : {figure_text(wheel, "drawbar pull", "drawbar_pull_N", 1.0, "N"),
                                   figure_text(wheel, "sinkage", "sinkage_m", 1e3, "mm"),

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <climits>
+#include <cstdlib>
 #include <exception>
 #include <new>
 
@@ -33,22 +34,45 @@ std::string seconds_of_processor_time(rlim_t& seconds) {
   return seconds == RLIM_INFINITY ? std::string() : fmt::format("{} s", seconds);
 }
 
-std::array<char, 4096> last_line;  // said where memory has run out
-std::size_t last_line_length = 0;
-int last_descriptor = STDERR_FILENO;
+constexpr useconds_t kTimeForNews =
+    300'000;  // µs; mpirun may drop the last words of a rank that ends at once
+
+/// A line that is kept ready for where none can be made.
+class LastWords {
+ public:
+  void keep(const std::string& line, int descriptor) {
+    length_ = line.copy(line_.data(), line_.size());
+    descriptor_ = descriptor;
+  }
+  bool kept() const { return length_ > 0; }
+  [[noreturn]] void say_and_end() const {
+    if (write(descriptor_, line_.data(), length_) > 0 && descriptor_ == STDOUT_FILENO) usleep(kTimeForNews);
+    _exit(static_cast<int>(ExitCode::limit));
+  }
+
+ private:
+  std::array<char, 4096> line_{};
+  std::size_t length_ = 0;
+  int descriptor_ = STDERR_FILENO;
+};
+
+LastWords where_memory_ran_out, where_no_thread_starts;
 std::terminate_handler usual_end = nullptr;
 
 [[noreturn]] void end_program() {
   if (const std::exception_ptr cause = std::current_exception()) try {
       std::rethrow_exception(cause);
     } catch (const std::bad_alloc&) {
-      const ssize_t written = write(last_descriptor, last_line.data(), last_line_length);
-      (void)written;
-      _exit(static_cast<int>(ExitCode::limit));
+      where_memory_ran_out.say_and_end();
     } catch (...) {
     }
   if (usual_end) usual_end();
   std::abort();
+}
+
+/// Called by exit(): of all that use it here, OpenMP alone gives this status.
+void look_at_end(int status, void* /*unused*/) {
+  if (status == EXIT_FAILURE && where_no_thread_starts.kept()) where_no_thread_starts.say_and_end();
 }
 
 }  // namespace
@@ -108,9 +132,13 @@ bool reader_is_gone() {
 }
 
 void end_where_memory_runs_out(const std::string& line, int descriptor) {
-  last_line_length = line.copy(last_line.data(), last_line.size());
-  last_descriptor = descriptor;
+  where_memory_ran_out.keep(line, descriptor);
   if (std::get_terminate() != end_program) usual_end = std::set_terminate(end_program);
+}
+
+void end_where_no_thread_starts(const std::string& line, int descriptor) {
+  where_no_thread_starts.keep(line, descriptor);
+  on_exit(look_at_end, nullptr);  // the last that was asked for is called first
 }
 
 }  // namespace furrow::launch

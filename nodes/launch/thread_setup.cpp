@@ -67,11 +67,13 @@ bool no_core_is_shared(const HostView& host) {
   return true;
 }
 
+/// Of ranks that the launcher pinned. Several on one core were started there on purpose, for example by a sweep.
 std::string pinning_note(const HostView& host, std::size_t node, int wanted) {
   FURROW_ASSERT(in_range(node, host.nodes.size()), node, host.nodes.size());
   const std::vector<int>& cores = host.nodes[node].cores;
   const bool wants_more = wanted > 1 || host.nodes[node].node.role == Role::terrain;
-  if (cores.size() > 1 || host.machine_cores < 2 || !wants_more) return {};
+  const bool together = host.nodes.size() > 1 && all_share_the_same_cores(host);
+  if (cores.size() > 1 || host.machine_cores < 2 || !wants_more || together) return {};
   return fmt::format(
       "{} is pinned to core {} of {}{}; start mpirun with --bind-to none, or srun with more "
       "--cpus-per-task",

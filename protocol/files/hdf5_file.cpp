@@ -96,10 +96,10 @@ void Hdf5Writer::write_text(hid_t object, const std::string& name, const std::st
   write_attribute(object, name, type, text.c_str());
 }
 
-void Hdf5Writer::attribute_of(const std::string& dataset, const std::string& name, const std::string& text) {
-  const Handle set(H5Dopen2(handle_, dataset.c_str(), H5P_DEFAULT), H5Dclose);
-  check(set.ok(), "cannot find dataset '" + dataset + "'");
-  write_text(set, name, text);
+void Hdf5Writer::attribute_of(const std::string& object, const std::string& name, const std::string& text) {
+  const Handle found(H5Oopen(handle_, object.c_str(), H5P_DEFAULT), H5Oclose);
+  check(found.ok(), "cannot find '" + object + "'");
+  write_text(found, name, text);
 }
 
 // The format of netCDF-4 knows a dimension without a variable by the name of its scale, which begins with this text and

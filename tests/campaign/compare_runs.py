@@ -205,7 +205,7 @@ def differences(a, b, leave_out=()):
     """Everything in which two folders of results differ, as lines of text; empty when they hold the same.
     @param leave_out patterns of further files that differ by intent"""
     a, b = pathlib.Path(a), pathlib.Path(b)
-    missing = [f"{folder} is no folder" for folder in (a, b) if not folder.is_dir()]
+    missing = [f"{folder} is not a folder" for folder in (a, b) if not folder.is_dir()]
     if missing:
         return missing
     a_files, b_files = files_of(a), files_of(b)

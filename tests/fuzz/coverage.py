@@ -4,7 +4,7 @@
 usage: coverage.py --out DIR [--build DIR] [--table FILE]
 
 DIR is what run_targets.py filled. Every target reads its corpus once more, from a build of the preset fuzz; the table says
-how many lines of each file are code, and how many of them were run by any target.
+how many lines of each file are code, and how many of them were run by any target. Files that no target has are named beside it.
 """
 import argparse
 import json
@@ -28,8 +28,10 @@ rigs/drawbar_spec.cpp rigs/rigs.cpp
 terrain/dem/beds/bed_cache.cpp terrain/dem/beds/bed_csv.cpp terrain/dem/beds/bed_format_4.cpp terrain/dem/beds/bed_positions_h5.cpp
 terrain/dem/dem_spec.cpp terrain/dem/grain_solver_state.cpp terrain/dem/solver_state_check.cpp terrain/soil/soil_estimate.cpp
 terrain/terrains.cpp
-tire/ancf/shell_spec.cpp tire/pressure_schedule.cpp tire/read_tire_file.cpp tire/tire_file.cpp tire/tire_file_chrono.cpp
-tire/tire_file_reader.cpp tire/tire_profile.cpp tire/tires.cpp
+tire/ancf/shell_spec.cpp tire/planar/planar_spec.cpp tire/pressure_schedule.cpp tire/read_tire_file.cpp tire/ring/ring_spec.cpp
+tire/tire_file.cpp tire/tire_file_chrono.cpp tire/tire_file_reader.cpp tire/tire_profile.cpp tire/tires.cpp
+vehicle/driver/csv_file.cpp vehicle/driver/read_driver.cpp vehicle/driver/read_points.cpp vehicle/spec/driveline_rules.cpp
+vehicle/spec/read_vehicle.cpp vehicle/spec/spec_reader.cpp vehicle/spec/spec_rules.cpp vehicle/spec/value_rules.cpp
 """.split()
 
 
@@ -53,7 +55,11 @@ def main():
     parser.add_argument("--table", type=pathlib.Path, default=ROOT / "tests/fuzz/coverage.csv")
     options = parser.parse_args()
     options.out, options.build = options.out.resolve(), options.build.resolve()
+    if gone := [reader for reader in READERS if not (ROOT / reader).is_file()]:
+        raise SystemExit(f"coverage.py: READERS names what does not exist: {', '.join(gone)}")
     targets = [target for target in TARGETS if (options.build / f"fuzz_{target}").exists()]
+    if not targets:
+        raise SystemExit(f"coverage.py: {options.build} holds no target, expected cmake --preset fuzz && ninja -C build-fuzz fuzz")
     if len(targets) < len(TARGETS):
         print(f"coverage.py: not built: {', '.join(sorted(set(TARGETS) - set(targets)))}", file=sys.stderr)
     with tempfile.TemporaryDirectory() as name:
@@ -66,9 +72,11 @@ def main():
         shown = subprocess.run(["llvm-cov", "export", "-summary-only", f"-instr-profile={merged}", programs[0], *objects,
                                 *(str(ROOT / reader) for reader in READERS)], check=True, capture_output=True, text=True).stdout
     lines = ["file,lines,covered,percent"]
-    for file in sorted(json.loads(shown)["data"][0]["files"], key=lambda file: file["filename"]):
-        of = file["summary"]["lines"]
-        lines.append(f"{os.path.relpath(file['filename'], ROOT)},{of['count']},{of['covered']},{of['percent']:.0f}")
+    files = {os.path.relpath(file["filename"], ROOT): file["summary"]["lines"] for file in json.loads(shown)["data"][0]["files"]}
+    for name, of in sorted(files.items()):
+        lines.append(f"{name},{of['count']},{of['covered']},{of['percent']:.0f}")
+    if absent := sorted(set(READERS) - set(files)):
+        print(f"coverage.py: in no target: {', '.join(absent)}", file=sys.stderr)
     options.table.write_text("\n".join(lines) + "\n")
     print(options.table.read_text(), end="")
 

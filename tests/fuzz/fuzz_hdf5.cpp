@@ -1,6 +1,8 @@
 // HDF5 files as a stranger could make them, with every feature of the library that matters to a reader, some of them cut
 // short; for the reader of datasets, of archives and of positions. Half of the files are frames of grains whose
 // numbers, types and shapes differ a little from what they should be, as a bed that a user brings.
+#include <algorithm>
+
 #include <fuzzer/FuzzedDataProvider.h>
 
 #include <hdf5.h>

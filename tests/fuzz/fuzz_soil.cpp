@@ -10,9 +10,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto file = fuzz::input_file("soil.json", data, size);
     scenario::read_soil_material(file);
     nlohmann::json document{{"terrain", {{"material", file.string()}, {"friction", 0.5}}}};
-    scenario::apply_soil_material(document, file.parent_path() / "scenario.json");
+    scenario::apply_soil_material(document, file.parent_path() / "scenario.json", "dem");
     if (document["terrain"]["friction"] != 0.5) __builtin_trap();  // what the scenario states itself
-    scenario::override_soil_material(document, file.parent_path() / "scenario.json");
+    scenario::override_soil_material(document, file.parent_path() / "scenario.json", "dem");
+    scenario::override_soil_material(document, file.parent_path() / "scenario.json", "scm");
   } catch (const Error& error) {
     if (std::string(error.what()).empty()) __builtin_trap();
   }

@@ -57,7 +57,7 @@ VEHICLE_SUMMARY = {"scenario": "car", "terrain_engine": "dem", "law": "mindlin",
                    "wheels": [{"vertical_load_N": 1.0, "lateral_m": 0.5 - k % 2, "tire_coordinates": 10} for k in range(4)],
                    "ranks": [{"rank": 1, "node": "tire 0", "kind": "ancf", "threads": 1, "cpu_s": 1.0, "compute_s": 1.0, "wait_s": 0.1}]}
 VEHICLE = ["time_s", "x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad", "distance_m", "speed_m_s", "throttle", "brake", "steering",
-           "gear", "shifting", "engine_speed_rpm", "power_W", "wheel_power_W", "soil_power_W", "target_speed_m_per_s",
+           "gear", "shifting", "engine_speed_rpm", "turbine_speed_rpm", "power_W", "wheel_power_W", "soil_power_W", "target_speed_m_per_s",
            "path_distance_m", "cross_track_error_m", "heading_error_rad", "drive_work_J"]
 VEHICLE_WHEEL = ["time_s", "slip", "sinkage_m", "sinkage_in_rut_m", "force_z_N", "iso_force_x_N", "iso_force_y_N", "iso_force_z_N",
                  "tractive_effort_N", "terrain_resistance_N", "spindle_torque_Nm", "speed_m_per_s", "spin_rad_per_s", "position_m",

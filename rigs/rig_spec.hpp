@@ -38,6 +38,7 @@ struct RigFile {
 };
 
 struct WheelDescription {
+  std::string name;             // that a vehicle's file gives it: "front_left"; empty: it has none
   double lateral = 0.0;         // y of the mid-plane, m
   double from = 0.0, to = 0.0;  // x of the axle at start and end of the run, m
   double along = 0.0,

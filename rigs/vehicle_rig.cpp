@@ -266,11 +266,12 @@ Outcome VehicleRig::advance(std::span<const Wrench> wrenches, double duration, i
     sums[k].from = car_->rim(k).position;
   }
   VehicleRow& row = record_.row;
-  row.shifting = row.engine_speed = row.engine_torque = 0.0;
+  row.shifting = row.engine_speed = row.turbine_speed = row.engine_torque = 0.0;
   for (int i = 0; i < substeps; ++i)
     if (Outcome outcome = step(wrenches, duration / substeps, sums); !outcome.ok) return outcome;
   row.shifting /= substeps;
-  row.engine_speed *= 30.0 / std::numbers::pi / substeps;  // 1/min
+  for (double* speed : {&row.engine_speed, &row.turbine_speed})
+    *speed *= 30.0 / std::numbers::pi / substeps;  // 1/min
   row.engine_torque /= substeps;
   row.engine_power = (car_->drive().work(car_->system()) - drive_work) / duration;
   row.soil_power = (tire_work - record_.accounts.tire_work) / duration;
@@ -302,6 +303,8 @@ Outcome VehicleRig::step(std::span<const Wrench> wrenches, double h, std::vector
     row.engine_speed += system.shaft(drive.shaft(plan_.vehicle.driveline.engine->shaft)).state.speed;
     row.engine_torque += drive.engine()->torque(system);
   }
+  if (const auto& converter = plan_.vehicle.driveline.converter)
+    row.turbine_speed += system.shaft(drive.shaft(converter->out)).state.speed;
   if (drive.gearbox() && drive.gearbox()->shifting()) row.shifting += 1.0;
   return {};
 }

@@ -44,6 +44,7 @@ struct VehicleRow {
   double gear = 0.0;                          // −1 reverse, 0 neutral, 1, 2, …
   double shifting = 0.0;                      // share of the time
   double engine_speed = 0.0;                  // of the crank, 1/min
+  double turbine_speed = 0.0;                 // of the converter, 1/min
   double engine_torque = 0.0;                 // N m
   double engine_power = 0.0;                  // of engine and motors, W
   double wheel_power = 0.0;                   // of drive and brakes at the wheels, W
@@ -79,6 +80,7 @@ void visit_fields(Visit&& visit, FieldsOf<VehicleRow> auto& r) {
   visit(instant("gear"), r.gear);
   visit(mean("shifting"), r.shifting);
   visit(mean("engine_speed_rpm", "1/min"), r.engine_speed);
+  visit(mean("turbine_speed_rpm", "1/min"), r.turbine_speed);
   visit(mean("engine_torque_Nm", "N m"), r.engine_torque);
   visit(mean("power_W", "W"), r.engine_power);
   visit(mean("wheel_power_W", "W"), r.wheel_power);

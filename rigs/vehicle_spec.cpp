@@ -37,6 +37,13 @@ std::filesystem::path vehicle_file(const json& section, const ReadContext& conte
   return find_file(section["vehicle"].get<std::string>(), context.key("vehicle"), context.file);
 }
 
+/// Of axle and side, as one word for keys and labels: "front_left".
+std::string wheel_name(const vehicle::VehicleSpec& vehicle, std::size_t wheel) {
+  std::string name = vehicle.axles[wheel / 2].name + "_" + vehicle::kSideNames[wheel % 2];
+  std::replace(name.begin(), name.end(), ' ', '_');
+  return name;
+}
+
 /// A driver's file, or its content within the scenario, which may leave its version out.
 std::optional<vehicle::DriverSpec> read_driver_of(const json& driver, const ReadContext& context) {
   const std::string key = context.key("driver");
@@ -210,6 +217,7 @@ WheelDescription VehicleRigSpec::wheel(std::size_t k, const WheelSize& tire, dou
   const bool steered = steers() && plan_.vehicle.axles[k / 2].steering;
   const double angle = std::abs(psi) + (steered ? lock_ : std::abs(place.toe));
   WheelDescription d;
+  d.name = wheel_name(plan_.vehicle, k);
   d.lateral = plan_.options.lateral + at.y();
   d.from = plan_.options.start + at.x();
   d.to = d.from + std::cos(psi) * travel(duration);

@@ -157,7 +157,7 @@ def main():
             continue
         try:
             if not may_write(out, f"{name}.png"):
-                print(f"report: no {name}.png: a file of that name stands there that furrow did not write", file=sys.stderr)
+                print(f"report: no {name}.png: furrow did not write the file of that name in this folder", file=sys.stderr)
                 matplotlib.pyplot.close(figure)
                 continue
             figure.savefig(out / f"{name}.png", dpi=130)

@@ -8,6 +8,7 @@
 #include "nodes/output/frames.hpp"
 #include "nodes/output/xdmf.hpp"
 #include "nodes/scenario/rank_table.hpp"
+#include "nodes/scenario/wheel_geometry.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/files/hdf5_file.hpp"
 #include "protocol/files/text_file.hpp"
@@ -74,6 +75,13 @@ void put_table(Hdf5Writer& file, const Table& table) {
   for (const Column& column : table.columns) file.lay_along(group + column.name, {time});
 }
 
+/// The tables of the wheels are the first ones, in the order of the rig's.
+void put_wheel_names(Hdf5Writer& file, std::span<const Table> tables, const rigs::RigDescription& rig) {
+  for (std::size_t k = 0; k < rig.wheels.size(); ++k)
+    if (!rig.wheels[k].name.empty())
+      file.attribute_of("series/" + tables[k].subject, "name", rig.wheels[k].name);
+}
+
 }  // namespace
 
 std::string table_file(const std::string& subject, int wheels) {
@@ -138,13 +146,14 @@ void Results::add(int table, std::span<const double> line) {
 }
 
 void Results::write_hdf5(std::span<const FinalReport> reports) const {
-  // series/<subject>/<column>: as the subject's CSV file, same names. terrain/height_before, height_after: (nx, ny) m,
-  // NaN where no grain is, over terrain/x_m (nx), terrain/y_m (ny); terrain/height_*_grid: x and y of the first cell's
-  // centre and the cell's size, m.
+  // series/<subject>/<column>: as the subject's CSV file, same names; attribute `name` of a wheel's group: what the
+  // vehicle's file calls it. terrain/height_before, height_after: (nx, ny) m, NaN where no grain is, over terrain/x_m
+  // (nx), terrain/y_m (ny); terrain/height_*_grid: x and y of the first cell's centre and the cell's size, m.
   Hdf5Writer file(directory_ / "results.h5");
   file.attribute("scenario", scenario_.name);
   file.attribute("scenario_digest", scenario_.digest);
   for (const Table& table : tables_) put_table(file, table);
+  if (!scenario_.tires.empty()) put_wheel_names(file, tables_, scenario::describe_rig(scenario_));
   if (!reports.empty()) {
     const FinalReport& terrain = reports[scenario::terrain_rank(scenario_)];
     put_height_axes(file, terrain.height_after);

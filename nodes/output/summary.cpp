@@ -254,6 +254,7 @@ Json wheel_summary(const WheelInput& in) {
   json["slip"] = wheel.slip ? Json(*wheel.slip) : Json(nullptr);
   json["travel_sign"] = wheel.travel_sign;
   json["wheel"] = in.wheel;
+  if (!wheel.name.empty()) json["name"] = wheel.name;
   json["lateral_m"] = wheel.lateral;
   json["tire_radius_m"] = in.card().tire_radius;
   json["tread_width_m"] = in.card().tire_width;

@@ -26,22 +26,22 @@ CHANGES = ("grains", "tires", "carrier", "under_way")
 
 
 def account(run, name):
-    """accounts.energy or accounts.momentum of the summary."""
-    accounts = run.summary.get("accounts")
+    """accounts.energy or accounts.momentum of the summary, of a failed run of what it left."""
+    accounts = run.told.get("accounts")
     if not accounts:
-        raise Missing("summary.json has no accounts")
-    where = "summary.json: key 'accounts'"
+        raise Missing(f"{run.told_in} has no accounts")
+    where = f"{run.told_in}: key 'accounts'"
     check_types(accounts, where, objects=("energy", "momentum"))
     found = accounts.get(name)
     if not found:
-        raise Missing(f"summary.json has no account of {name}")
+        raise Missing(f"{run.told_in} has no account of {name}")
     check_types(found, f"{where}: key '{name}'", numbers=("residual_share", "turnover", "largest", "bound"), flags=("closes",))
     return found
 
 
-def entries(found):
+def entries(found, file):
     """(label, value, colour) of what is large enough for a bar; the residual always."""
-    where = "summary.json: key 'accounts': key 'energy'"
+    where = f"{file}: key 'accounts': key 'energy'"
     check_types(found, where, numbers=("residual",), objects=("work", "stored", "lost"))
     least = LEAST_SHARE * abs(found.get("turnover") or 0.0)
     rows = []
@@ -98,13 +98,13 @@ def bars(axis, rows, unit):
 
 def energy(run):
     found = account(run, "energy")
-    rows = entries(found)
+    rows = entries(found, run.told_in)
     figure, (left, right) = plt.subplots(1, 2, figsize=(13, 5.6))
     figure.suptitle(run.title, fontsize=11.5, x=0.01, ha="left", fontweight="bold")
     over_time(run, left)
     bars(right, rows, "J")
     right.set_xlabel("over the whole run, J")
-    right.set_title("Energy by mechanism, each booked by itself\n" + verdict(found, "what is turned over"))
+    right.set_title("Energy by mechanism, each from its own sums\n" + verdict(found, "what is turned over"))
     return figure
 
 
@@ -120,7 +120,7 @@ def momentum(run):
             if vector is None:
                 continue
             if not (isinstance(vector, list) and len(vector) == 3 and all(isinstance(v, (int, float)) for v in vector)):
-                raise Damaged(f"summary.json: key 'accounts': key 'momentum': key '{key}': expected 3 numbers")
+                raise Damaged(f"{run.told_in}: key 'accounts': key 'momentum': key '{key}': expected 3 numbers")
             rows.append((label, float(vector[i]), RED if key == "residual" else PURPLE if key in CHANGES else BLUE))
         if not rows:
             raise Missing("the account of momentum is empty")

@@ -141,9 +141,10 @@ def forces(run):
 
 def unknowns(run, node):
     """What a node computes, as far as the summary tells."""
-    if node == "terrain" and run.number("grains"):
-        return f", {run.number('grains'):,.0f} grains"
-    wheels = run.summary.get("wheels") or [run.summary]
+    grains = run.told.get("grains")
+    if node == "terrain" and grains:
+        return f", {grains:,.0f} grains"
+    wheels = run.told.get("wheels") or [run.told]
     number = node.removeprefix("tire ")
     if node.startswith("tire ") and number.isdigit() and int(number) < len(wheels):
         found = wheels[int(number)].get("tire_coordinates") if isinstance(wheels[int(number)], dict) else None
@@ -153,9 +154,9 @@ def unknowns(run, node):
 
 
 def ranks(run):
-    table = run.summary.get("ranks")
+    table = run.told.get("ranks")
     if not table:
-        raise Missing("summary.json has no table of ranks")
+        raise Missing(f"{run.told_in} has no table of ranks")
     figure, axis = plt.subplots(figsize=(9, 1.8 + 0.55 * len(table)))
     names = [f"rank {r['rank']}: {r['node']}" + (f" ({r['kind']})" if r.get("kind") else "") + unknowns(run, r["node"])
              + f", {r['threads']} thread{'s' if r['threads'] != 1 else ''}" for r in table]
@@ -177,7 +178,7 @@ def ranks(run):
     axis.grid(axis="y", visible=False)
     axis.set_xlim(0.0, 1.3 * longest)
     axis.set_xlabel("wall time of the stepping loop, s")
-    per_second = run.number("wall_s_per_simulated_s")
+    per_second = run.told.get("wall_s_per_simulated_s")
     axis.set_title(f"{run.title}\nWho computes and who waits"
                    + (f" · {per_second:.1f} s of wall time per simulated second" if per_second else ""))
     axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), ncol=3)

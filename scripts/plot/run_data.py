@@ -1,4 +1,5 @@
 """What a run directory holds, read as far as it exists."""
+import functools
 import json
 import os
 import pathlib
@@ -112,7 +113,7 @@ class Run:
         if not directory.is_dir():
             raise OSError("is not a directory")
         self.directory = directory
-        self.summary = self._summary()
+        self.summary = self._summary("summary.json")
         self.scenario = self._json("scenario.json")
         self.soil_estimate = self._json("soil_estimate.json")
         self.series = self._read_series()
@@ -121,16 +122,32 @@ class Run:
         path = self.directory / name
         return read_object(path) if path.exists() else {}
 
-    def _summary(self):
+    @functools.cached_property
+    def failed(self):
+        """What a run that has failed left in place of its summary; empty for any other."""
+        return {} if self.summary else self._summary("summary_failed.json")
+
+    @property
+    def told(self):
+        """The summary, of a failed run what it left."""
+        return self.summary or self.failed
+
+    @property
+    def told_in(self):
+        """The file that holds it."""
+        return "summary_failed.json" if self.failed else "summary.json"
+
+    def _summary(self, name):
         """Of several wheels, wheel 0's keys stand beside those of the run, as they do of a single one."""
-        name = "summary.json"
+        if not (self.directory / name).exists():
+            return {}
         summary = self._json(name)
         check_types(summary, name, lists=("wheels",))
         wheels = summary.get("wheels") or [{}]
         if not isinstance(wheels[0], dict):
             raise Damaged(f"{name}: key 'wheels.0': expected an object")
         summary = {**wheels[0], **summary}
-        check_types(summary, name, texts=("scenario", "terrain_engine", "law"), numbers=NUMBERS, objects=OBJECTS,
+        check_types(summary, name, texts=("scenario", "terrain_engine", "law"), numbers=NUMBERS, objects=OBJECTS + ("failed",),
                     lists=("net_terrain_force_N", "ranks"))
         pull = summary.get("drawbar_pull_N") or {}
         check_types(pull, name + ": key 'drawbar_pull_N'", numbers=("mean", "sem", "from_s", "to_s"), flags=("steady",),
@@ -215,6 +232,14 @@ class Run:
                 raise Damaged("scenario.json: key 'rig.wheels': expected objects")
             check_types(wheel, "scenario.json: key 'rig.wheels'", numbers=("lateral",))
         return wheels
+
+    @property
+    def wheel_names(self):
+        """What a vehicle's file calls its wheels, "front_left"; empty where the summary does not tell."""
+        entries = self.told.get("wheels") or []
+        names = [entry.get("name") for entry in entries if isinstance(entry, dict)]
+        told = len(names) == len(entries) and all(isinstance(name, str) for name in names)
+        return [printable(name) for name in names] if told else []
 
     @property
     def measured(self):

@@ -53,9 +53,11 @@ def engine(axis, v):
         axis.set_title("No engine: motors in the wheels or none")
         return
     axis.plot(v.time, v["engine_speed_rpm"], color=PURPLE, label="engine")
+    if "turbine_speed_rpm" in v and v["turbine_speed_rpm"].any():
+        axis.plot(v.time, v["turbine_speed_rpm"], color=ORANGE, label="turbine")
     axis.set_ylabel("1/min")
     axis.set_ylim(bottom=0.0)
-    axis.set_title("Engine speed, and gear (right)")
+    axis.set_title("Speed of engine and converter's turbine, and gear (right)")
     gear = axis.twinx()
     gear.step(v.time, v["gear"], color=GREEN, where="post", lw=1.2, label="gear")
     gear.set_ylim(min(v["gear"].min(), 0.0) - 0.1, max(v["gear"].max(), 2.0) + 1.0)

@@ -92,7 +92,7 @@ class VehicleRun:
             raise Damaged("timeseries_vehicle.csv: column 'time_s' does not rise")
 
     def _name(self):
-        """Axles after their place along the vehicle."""
+        """Wheels after the vehicle's file, if the summary tells them; else after their axles' places along the vehicle."""
         count = len(self.wheels) // 2
         order = sorted(range(count), key=lambda a: -self.wheels[2 * a]["position_m"][0])
         names = ROLES.get(count) or [f"axle {k + 1}" for k in range(count)]
@@ -100,6 +100,9 @@ class VehicleRun:
         self.order = order  # numbers, from the front
         for name, axle in zip(names, order):
             self.axles[axle] = name
+        told = self.run.wheel_names
+        if len(told) == len(self.wheels):
+            self.axles = [name.removesuffix("_left").replace("_", " ") for name in told[::2]]
         for wheel in self.wheels:
             wheel.name = f"{self.axles[wheel.axle]} {wheel.side}"
 
@@ -118,7 +121,7 @@ class VehicleRun:
     @property
     def hard_ground(self):
         terrain = self.run.scenario.get("terrain")
-        return (self.run.summary.get("terrain_engine") or (isinstance(terrain, dict) and terrain.get("engine"))) == "rigid"
+        return (self.run.told.get("terrain_engine") or (isinstance(terrain, dict) and terrain.get("engine"))) == "rigid"
 
     def of_axle(self, axle):
         return [wheel for wheel in self.wheels if wheel.axle == axle]
@@ -135,7 +138,7 @@ class VehicleRun:
     @functools.cached_property
     def loads(self):
         """Weight on each wheel at rest, N. A run without a summary has their mean over the last half instead."""
-        entries = self.run.summary.get("wheels") or []
+        entries = self.run.told.get("wheels") or []
         loads = [entry.get("vertical_load_N") for entry in entries if isinstance(entry, dict)]
         if len(loads) == len(self.wheels) and all(isinstance(load, (int, float)) and load > 0 for load in loads):
             return [float(load) for load in loads]
@@ -186,7 +189,7 @@ class VehicleRun:
             tires, time = self.tire_frames(instants[0])
             origin, rotation = self.pose(time)
             return [tuple((0.5 * (vertex.min(0) + vertex.max(0)) - origin) @ rotation[:, :2]) for vertex, _ in tires]
-        entries = self.run.summary.get("wheels") or []
+        entries = self.run.told.get("wheels") or []
         lateral = [entry.get("lateral_m") for entry in entries if isinstance(entry, dict)]
         if len(lateral) != len(self.wheels) or not all(isinstance(y, (int, float)) for y in lateral):
             raise Missing("there are no frames and no summary.json: where the wheels are is not known")

@@ -134,7 +134,7 @@ def touch_place(v, axle):
 
 
 def comparison_box(axis, v):
-    """Means of the axles, as `furrow events` tells them."""
+    """Means of the axles, as `furrow events` prints them."""
     try:
         found = axles.compare(v)
     except Missing:

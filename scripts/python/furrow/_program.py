@@ -26,10 +26,10 @@ KEPT = 40  # last lines of the program, for a message when it gives none of its 
 
 def program() -> str:
     """The program that is run: what FURROW names, else this checkout's scripts/furrow, which builds it if needed, else
-    `furrow` on PATH. Raises FileNotFoundError."""
+    the installed tree's bin/furrow, else `furrow` on PATH. Raises FileNotFoundError."""
     named = os.environ.get("FURROW")
-    checkout = ROOT / "scripts" / "furrow"
-    found = named or (str(checkout) if os.access(checkout, os.X_OK) else shutil.which("furrow"))
+    places = (ROOT / "scripts" / "furrow", ROOT.parent.parent / "bin" / "furrow")
+    found = named or next((str(place) for place in places if os.access(place, os.X_OK)), shutil.which("furrow"))
     if not found:
         raise FileNotFoundError("furrow is not found: set FURROW to the program")
     return found

@@ -68,7 +68,7 @@ def sweep(study: File | Content, *, out: File | None = None, jobs: int = 1, prog
     """Runs a study and opens it. The same call continues one that was interrupted, and adds runs to one that grew.
 
     study   a file, the name of a shipped one ("study_slip"), or the study itself as a dict:
-            {"scenario": "first_look", "grid": {"rig.slip": [0.1, 0.3]}}; its results stand in results/study unless `out` says
+            {"scenario": "first_look", "grid": {"rig.slip": [0.1, 0.3]}}; its results are in results/study unless `out` says
     jobs    runs at once
 
     Raises a FurrowError if a run of it failed; the folder of the error can be opened.

@@ -12,14 +12,14 @@ Opened = Run | Study | Soil | Press | Kinematics
 
 
 def open(directory: str | os.PathLike[str]) -> Opened:
-    """Opens what any command of furrow left: a Run, Study, Soil, Press or Kinematics. Runs may have failed or still go on.
+    """Opens what any command of furrow left: a Run, Study, Soil, Press or Kinematics. Runs may have failed or not have ended.
 
     Raises FileNotFoundError when there is no such folder, Damaged (a ValueError) for a file that does not hold what it
     should, ValueError for a folder without results.
     """
     folder = pathlib.Path(directory)
     if not folder.is_dir():
-        raise FileNotFoundError(f"{folder}: is no folder")
+        raise FileNotFoundError(f"{folder}: is not a folder")
     kinds: tuple[tuple[str, type[Opened]], ...] = (
         ("soil.json", Soil), ("sweep.json", Study), ("press.csv", Press), ("kinematics.csv", Kinematics))
     for name, kind in kinds:

@@ -33,7 +33,7 @@ VEHICLE = (("Speed", ("speed_m_s", "target_speed_m_per_s")),
            ("Acceleration", ("acceleration_m_per_s2", "lateral_acceleration_m_per_s2")),
            ("Yaw rate", ("yaw_rate_rad_per_s",)),
            ("Power", ("power_W", "wheel_power_W", "soil_power_W")),
-           ("Engine speed", ("engine_speed_rpm",)),
+           ("Engine speed", ("engine_speed_rpm", "turbine_speed_rpm")),
            ("Engine torque", ("engine_torque_Nm",)),
            ("Gear", ("gear",)),
            ("Distance from the path", ("cross_track_error_m",)),
@@ -75,11 +75,11 @@ def plain(table, groups, window, errors=None):
     return items
 
 
-def over_wheels(tables, window):
-    """One plot per column with a line per wheel."""
+def over_wheels(tables, window, names=()):
+    """One plot per column with a line per wheel. `names` of all wheels, or none."""
     items = []
     for name in WHEELS:
-        lines = [table.line(name, f"wheel {k}") for k, table in list(tables.items())[:MOST_WHEELS]
+        lines = [table.line(name, names[k] if k < len(names) else f"wheel {k}") for k, table in list(tables.items())[:MOST_WHEELS]
                  if name in table.columns and np.nanmax(np.abs(table.columns[name]), initial=0.0) > NOISE]
         if lines:
             words, unit, _ = naming(name)

@@ -1,8 +1,10 @@
 """The page of a run: the answer in words, its curves, rut, accounts, ranks, scenario and provenance."""
 import re
 
+from plot import events
 from plot.digits import digits
 from plot.run_data import Missing, printable
+from plot.vehicle_run import VehicleRun
 
 from . import blocks, curves, ground, scenario
 from .names import is_number, naming
@@ -27,11 +29,6 @@ ACCOUNTS = (("Energy that does not close", ("residual_J", "terrain_residual_J", 
             ("Momentum that does not close", ("momentum_residual_x_Ns", "momentum_residual_y_Ns", "momentum_residual_z_Ns")))
 
 CHANGING = 0.05  # m/s²: a mean acceleration beyond it is no steady drive
-
-
-def failed_summary(run):
-    """What a failed run left, or nothing."""
-    return run._json("summary_failed.json") if not run.summary and (run.directory / "summary_failed.json").is_file() else {}
 
 
 def window_of(run):
@@ -130,7 +127,8 @@ def wheels_table(run):
     if len(wheels) < 2 or not names:
         return []
     columns = ["wheel"] + [", ".join(filter(None, naming(name)[:2])) for name in names]
-    rows = [[str(k)] + [blocks.quantity(name, wheel.get(name))[0] for name in names] for k, wheel in enumerate(wheels)]
+    who = [name.replace("_", " ") for name in run.wheel_names] or [str(k) for k in range(len(wheels))]
+    rows = [[who[k]] + [blocks.quantity(name, wheel.get(name))[0] for name in names] for k, wheel in enumerate(wheels)]
     return [blocks.table(columns, rows, note="Means over the averaging window.")]
 
 
@@ -159,7 +157,7 @@ def expected_table(run):
 
 
 def answer(run):
-    failed = failed_summary(run).get("failed")
+    failed = run.failed.get("failed")
     made = []
     if isinstance(failed, dict):
         made.append(blocks.text(f"The run failed at t = {failed.get('time_s')} s: {failed.get('error')}.", "bad"))
@@ -200,7 +198,7 @@ def series(run, arrays):
     else:
         table = next(iter(tables.values()))
         more = f" The first {curves.MOST_WHEELS} of {len(names)} wheels are drawn." if len(names) > len(tables) else ""
-        made.append(blocks.charts(curves.over_wheels(tables, window), table.note + more))
+        made.append(blocks.charts(curves.over_wheels(tables, window, [name.replace("_", " ") for name in run.wheel_names]), table.note + more))
     made.append(curves.explorer(table, window))
     shaded = "Shaded: the averaging window. " if window else ""
     made.insert(0, blocks.text(shaded + "Drag across a plot to zoom, double-click to see all. Click a name in the legend to hide its curve.", "note"))
@@ -217,6 +215,15 @@ def vehicle_series(run, arrays):
     return {"id": "vehicle", "title": "Vehicle", "blocks": list(filter(None, made))}
 
 
+def happened(run):
+    """The events of `furrow events`."""
+    found = events.events(VehicleRun(run))
+    rows = [[f"{e.time:.3f}", e.what, e.subject, f"{events.significant(float(e.value))} {e.unit}".rstrip(), e.threshold] for e in found]
+    return {"id": "events", "title": "Events", "blocks": [
+        blocks.table(["time, s", "what", "of", "value", "threshold"], rows,
+                     note="From the time series alone, as 'furrow events' lists them with the means of the axles.")]}
+
+
 def energy_rows(energy):
     rows = []
     for group in ("work", "stored", "lost"):
@@ -228,7 +235,7 @@ def energy_rows(energy):
 
 def accounts(run, arrays):
     made = []
-    found = (run.summary or failed_summary(run)).get("accounts") or {}
+    found = run.told.get("accounts") or {}
     for what in ("energy", "momentum"):
         account = found.get(what)
         if isinstance(account, dict) and isinstance(account.get("closes"), bool):
@@ -259,7 +266,7 @@ def rut(run, arrays):
 
 def ranks(run):
     rows, lines = [], []
-    found = [rank for rank in run.summary.get("ranks") or [] if isinstance(rank, dict)]
+    found = [rank for rank in run.told.get("ranks") or [] if isinstance(rank, dict)]
     if not found:
         raise Missing("the summary names no ranks")
     keys = [key for key in found[0] if key not in ("rank", "node", "busy_share")]
@@ -275,7 +282,7 @@ def ranks(run):
 
 
 def provenance(run):
-    summary = run.summary or failed_summary(run)
+    summary = run.told
     rows = [[key.replace("_", " "), digits(summary[key]) if isinstance(summary[key], float) else str(summary[key])]
             for key in PROVENANCE if summary.get(key) is not None]
     if run.scenario.get("completed_by"):
@@ -292,7 +299,7 @@ def provenance(run):
 
 def badges(run):
     pull = run.summary.get("drawbar_pull_N") or {}
-    if failed_summary(run):
+    if run.failed:
         return [{"text": "failed", "kind": "bad"}]
     if not run.summary:
         return [{"text": "not finished", "kind": "warn"}]
@@ -302,11 +309,12 @@ def badges(run):
 
 
 def fill(page, arrays, run, sections):
-    page["title"] = run.title if run.summary else str((failed_summary(run).get("scenario")) or run.directory.name)
+    page["title"] = run.title if run.summary else str(run.failed.get("scenario") or run.directory.name)
     page["badges"] = badges(run)
     sections(page, [
         ("result", lambda: answer(run)),
         ("curves of the vehicle", lambda: vehicle_series(run, arrays) if (run.directory / "timeseries_vehicle.csv").is_file() else None),
+        ("events", lambda: happened(run) if run.has_vehicle else None),
         ("curves", lambda: series(run, arrays)),
         ("rut", lambda: rut(run, arrays)),
         ("accounts", lambda: accounts(run, arrays)),

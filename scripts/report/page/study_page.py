@@ -86,7 +86,10 @@ def beds(sweep, arrays):
         items.append(blocks.chart(what.capitalize(), "bed", "", unit, [line(arrays, "a bed, its own standard error", at, values, errors, 1.0)],
                                   levels=[{"y": mean, "half": half if math.isfinite(half) else None, "label": "mean over beds, 95 %"}]))
     words = blocks.text("The interval covers the scatter between beds: another set of beds would give a mean within it in 95 of 100 cases.", "note")
-    return {"id": "beds", "title": "Result", "blocks": [blocks.cards(cards), words, blocks.charts(items)]}
+    made = [blocks.cards(cards), words, blocks.charts(items)]
+    if unsteady := sum(map(studies.unsteady, sweep.rows)):
+        made.insert(0, blocks.text(f"The pull is not steady on {unsteady} of {len(sweep.rows)} beds: the means are over these beds too.", "warn"))
+    return {"id": "beds", "title": "Result", "blocks": made}
 
 
 def rows_of(sweep):

@@ -74,7 +74,7 @@ def write(folder, runs, may_write):
     returns an empty list."""
     try:
         if not may_write(folder, NAME):
-            print(f"report: no {NAME}: a file of that name stands there that furrow did not write", file=sys.stderr)
+            print(f"report: no {NAME}: furrow did not write the file of that name in this folder", file=sys.stderr)
             return []
         write_page(runs, folder / NAME)
     except PROBLEMS as error:

@@ -1,6 +1,7 @@
 // What the rig reports against the wrench it was given: pull, torque, lateral force.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "protocol/core/constants.hpp"

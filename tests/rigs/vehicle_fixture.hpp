@@ -1,6 +1,7 @@
 // Vehicle rigs on simple tires: a linear spring and damper upward, and along the ground a force that follows the slip.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <memory>

@@ -1,6 +1,7 @@
 // A vehicle as a rig: it stands as its trim says, stays where it is braked, and drives as its engine can.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -105,6 +106,8 @@ TEST(VehicleRig, accelerates_as_engine_and_converter_say) {
   EXPECT_NEAR(acceleration, (of_vehicle(*rig, "speed_m_s") - speed) / time, 0.02 * acceleration);
   EXPECT_EQ(of_vehicle(*rig, "gear"), 1.0);
   EXPECT_NEAR(of_vehicle(*rig, "throttle"), 0.4, 1e-12);
+  const double turbine_speed = of_vehicle(*rig, "turbine_speed_rpm") * std::numbers::pi / 30.0;
+  EXPECT_NEAR(turbine_speed, spin() / ratio, 0.01 * turbine_speed);
 }
 
 TEST(VehicleRig, shifts_by_itself_and_holds_the_gear_that_its_driver_asks_for) {

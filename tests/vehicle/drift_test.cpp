@@ -1,6 +1,7 @@
 // Constraint drift over a million steps of a spatial mechanism with closed loop, imposed motion and damper.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/verification/record.hpp"

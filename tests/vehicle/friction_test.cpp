@@ -1,4 +1,6 @@
 // Brakes and clutches: holding and slipping as a set, against closed forms, alike at every step.
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "protocol/core/constants.hpp"

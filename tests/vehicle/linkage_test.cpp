@@ -1,6 +1,7 @@
 // Linkages: reactions and motor torques against statics, imposed motions against kinematics.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "protocol/core/constants.hpp"

@@ -1,6 +1,7 @@
 // Pendulum and double pendulum against the closed form (elliptic integral) and the equations of motion.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 
 #include "protocol/core/constants.hpp"

@@ -1,6 +1,7 @@
 // Spatial rotation: free bodies and the heavy symmetric top.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "vehicle/multibody/system.hpp"

@@ -1,6 +1,8 @@
 // The static trim: axle loads against hand statics, the drawn height, modes against closed forms.
 #include "vehicle/analysis/trim.hpp"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>

@@ -7,7 +7,8 @@ Writes two tables beside the study: budget_runs.csv, a line a run, and budget.cs
 of its 95 % interval (Student), and its difference from the reference. Variants of one soil have the soil's own reference,
 all others `base`. Where a variant runs on the very beds of its reference (it changes no key of the terrain but those that leave
 the bed alone) the difference is taken bed by bed, otherwise between the means (Welch). Finished runs are used again as long as
-this build of the program would make them from the same scenario; --table makes the tables of what there is.
+this build of the program would make them from the same scenario. The tables are written when all variants are done; --table
+makes them of what there is.
 """
 import argparse
 import json
@@ -26,7 +27,8 @@ from plot.student import student  # noqa: E402
 STUDY = pathlib.Path(__file__).with_suffix(".json")
 COLUMNS = ("drawbar_pull_N.mean", "drawbar_pull_N.sem", "drawbar_pull_N.n_eff", "drawbar_pull_N.steady", "sinkage_m", "sinkage_sem_m",
            "rut_depth_m", "tractive_effort_N", "terrain_resistance_N", "tire_deflection_m", "bed_clearance_m", "vertical_load_N",
-           "accounts.energy.residual_share", "grains", "active_share_mean", "scenario_digest", "state_hash", "settle_wall_s", "wall_s")
+           "accounts.energy.turnover", "accounts.energy.residual_share", "accounts.energy.sample_error", "accounts.momentum.largest",
+           "accounts.momentum.residual_share", "grains", "active_share_mean", "scenario_digest", "state_hash", "settle_wall_s", "wall_s")
 FIGURES = {"pull_N": ("drawbar_pull_N.mean", 1.0), "sinkage_mm": ("sinkage_m", 1e3), "rut_mm": ("rut_depth_m", 1e3),
            "tractive_effort_N": ("tractive_effort_N", 1.0), "resistance_N": ("terrain_resistance_N", 1.0)}
 SAME_BED = {"terrain.substeps", "terrain.activity"}  # of the terrain's keys
@@ -126,9 +128,7 @@ def main():
                     failed.append(f"{variant}, seed {seed}")
                 continue
             folders[variant, seed] = out
-            if chosen:
-                write_tables(study, folders)
-    if folders:
+    if folders and (arguments.table or len(folders) == study["seeds"] * len(study["cases"])):
         write_tables(study, folders)
     if failed:
         sys.exit(f"failed: {'; '.join(failed)}")

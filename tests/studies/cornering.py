@@ -12,6 +12,7 @@ travelled, fitted from 0.2 s on; the interval is the difference from a fit that 
     FURROW_ROLLING_MESH=60x12 FURROW_ROLLING_CSV=tests/studies/revolutions.csv build/tests_nodes_rolling --gtest_filter='*ten*'
     /usr/bin/python3 tests/studies/cornering.py
 """
+import argparse
 import json
 import math
 import pathlib
@@ -249,6 +250,7 @@ def draw(rows):
 
 
 def main():
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
     rows = sweep_rows()
     if not rows:
         sys.exit(f"no finished sweep under {RESULTS}")

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """Charts of the studies' CSV files, beside them: step_size.png, tire_step.png, rigid_ground.png, budget.png."""
+import argparse
 import pathlib
 import re
 import sys
@@ -126,8 +127,19 @@ def save(figure, name):
     figure.savefig(HERE / f"{name}.png", dpi=110)
 
 
-if __name__ == "__main__":
-    for name, draw in (("step_size", step_size), ("tire_step", tire_step), ("rigid_ground", rigid_ground),
-                       ("budget", budget)):
+CHARTS = {"step_size": step_size, "tire_step": tire_step, "rigid_ground": rigid_ground, "budget": budget}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("charts", nargs="*", help=f"of {', '.join(CHARTS)}; all without")
+    chosen = parser.parse_args().charts or list(CHARTS)
+    if unknown := set(chosen) - set(CHARTS):
+        parser.error(f"'{min(unknown)}' is no chart, expected of: {', '.join(CHARTS)}")
+    for name in chosen:
         if (HERE / f"{name}.csv").exists():
-            draw()
+            CHARTS[name]()
+
+
+if __name__ == "__main__":
+    main()

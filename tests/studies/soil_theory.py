@@ -3,9 +3,10 @@
 soil with the strength that soil_speed.csv holds (0.1 m/s), and what the simulated tire does. Writes soil_theory.csv.
 
 The equations at the head of terrain/soil/bekker_wong.hpp are integrated here a second time, by other means; the script stops
-where the program differs by more than 1e-3. Figures of the simulation: the pull and the sinkage of pooled.csv, tractive effort
-and resistance of the case `base` of behaviour.csv, whose pull is not steady.
+where the program differs by more than 1e-3. Figures of the simulation: means of five beds in budget.csv with half of their 95 %
+intervals.
 """
+import argparse
 import json
 import math
 import pathlib
@@ -19,7 +20,8 @@ import provenance
 HERE = pathlib.Path(__file__).resolve().parent
 WHEEL = {"tire_radius_m": 0.4673, "tread_width_m": 0.2504983721447331, "slip": 0.3}
 C1, C2 = 0.4, 0.2  # of the angle of the largest pressure, as RigidWheel has them
-COLUMNS = ["quantity", "unit", "theory", "standard_error", "simulated", "source"]
+LOAD = 4607.77  # N, of rigs/drawbar_pull_small.json
+COLUMNS = ["quantity", "unit", "theory", "standard_error", "simulated", "half_width_95", "source"]
 
 
 def strength():
@@ -77,22 +79,28 @@ def by_quadrature(soil, load):
 
 
 def main():
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
     soil, errors = strength()
-    base = next(row for row in provenance.read_table(HERE / "behaviour.csv") if row["case"] == "base")
-    pooled = {row["what"]: row for row in provenance.read_table(HERE / "pooled.csv")}
-    load = float(base["vertical_load_N"])
-    theory, again = by_the_program(soil, errors, load), by_quadrature(soil, load)
+    beds = {row["variant"]: row for row in provenance.read_table(HERE / "budget.csv")}
+    theory, again = by_the_program(soil, errors, LOAD), by_quadrature(soil, LOAD)
     for key, value in again.items():
         if not math.isclose(theory[key], value, rel_tol=1e-3):
             raise SystemExit(f"{key}: the program says {theory[key]:.6g}, its equations {value:.6g}")
-    lines = [("drawbar pull", "N", theory["drawbar_pull_N"], theory["drawbar_pull_standard_error_N"], pooled["pull, bed 113 mm"]["mean"], "pooled.csv"),
-             ("sinkage", "mm", 1e3 * theory["sinkage_m"], None, pooled["sinkage, bed 113 mm"]["mean"], "pooled.csv"),
-             ("sinkage, bed twice as deep", "mm", None, None, pooled["sinkage, bed 226 mm"]["mean"], "pooled.csv"),
-             ("thrust, tractive effort", "N", theory["thrust_N"], None, base["tractive_effort_N"], "behaviour.csv, base"),
-             ("resistance", "N", theory["compaction_resistance_N"], None, base["terrain_resistance_N"], "behaviour.csv, base"),
-             ("largest pressure", "kPa", 1e-3 * theory["largest_pressure_Pa"], None, None, "")]
-    digits = lambda value: "" if value is None else f"{float(value):.4g}"  # noqa: E731
-    rows = [dict(zip(COLUMNS, (what, unit, digits(a), digits(e), digits(b), source))) for what, unit, a, e, b, source in lines]
+    def line(what, unit, key, scale, figure, variant="base", error=None):
+        beds_of = beds[variant]
+        return dict(zip(COLUMNS, (what, unit, digits(theory[key], scale) if key else "", digits(error), beds_of[figure],
+                                  beds_of[f"{figure}_half_95"], f"budget.csv, {variant}")))
+
+    def digits(value, scale=1.0):
+        return "" if value is None else f"{scale * value:.4g}"
+
+    rows = [line("drawbar pull", "N", "drawbar_pull_N", 1.0, "pull_N", error=theory["drawbar_pull_standard_error_N"]),
+            line("sinkage", "mm", "sinkage_m", 1e3, "sinkage_mm"),
+            line("sinkage, bed twice as deep", "mm", None, 1.0, "sinkage_mm", "depth 226 mm"),
+            line("thrust, tractive effort", "N", "thrust_N", 1.0, "tractive_effort_N"),
+            line("resistance", "N", "compaction_resistance_N", 1.0, "resistance_N"),
+            line("resistance, bed twice as deep", "N", None, 1.0, "resistance_N", "depth 226 mm"),
+            {**dict.fromkeys(COLUMNS, ""), "quantity": "largest pressure", "unit": "kPa", "theory": digits(theory["largest_pressure_Pa"], 1e-3)}]
     provenance.write_table(HERE / "soil_theory.csv", COLUMNS, rows, provenance.made_here())
     print(*rows, sep="\n")
 

@@ -45,12 +45,23 @@ mypy                                      checks the types of scripts/python, fo
 LIST
 }
 
+docs_packages() { cat <<'LIST'
+python3-sphinx                            scripts/docs.sh: the site
+python3-myst-parser                       its pages are Markdown
+furo                                      its looks
+doxygen                                   reads the headers
+python3-breathe                           puts them into the site
+libjs-katex                               formulas without the network
+LIST
+}
+
 usage() { cat <<'HELP'
-usage: scripts/setup.sh [--liggghts] [--vtk] [--python] [-y]
+usage: scripts/setup.sh [--liggghts] [--vtk] [--python] [--docs] [-y]
 Installs the missing Debian packages, after saying which and how large, and asking.
   --liggghts  also LIGGGHTS (optional: distributed terrain, comparisons of tests/peers)
   --vtk       also the VTK that reads XDMF (needed by one test only; large)
   --python    also what the Python package of scripts/python needs
+  --docs      also what builds the documentation site (scripts/docs.sh)
   -y, --yes   do not ask; nor is asked where CI is set, or as root without a terminal
   --check     install nothing; exit 0 if nothing is missing, 1 if something is
 HELP
@@ -65,6 +76,7 @@ while (($#)); do
     --liggghts) lists+=(liggghts) ;;
     --vtk) lists+=(vtk) ;;
     --python) lists+=(python) ;;
+    --docs) lists+=(docs) ;;
     -y|--yes) assume_yes=true ;;
     --check) check_only=true ;;
     -h|--help) usage; exit 0 ;;

@@ -1,6 +1,10 @@
-# furrow_options: what every target of the project is compiled with.
+# furrow_interface: what whoever includes the headers must be compiled with, also outside of this project.
+# furrow_options: what every target of the project is compiled with beyond that.
+add_library(furrow_interface INTERFACE)
 add_library(furrow_options INTERFACE)
-target_include_directories(furrow_options INTERFACE ${CMAKE_SOURCE_DIR})
+target_link_libraries(furrow_options INTERFACE furrow_interface)
+target_include_directories(furrow_interface INTERFACE $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}>)
+target_compile_features(furrow_interface INTERFACE cxx_std_20)
 target_compile_options(furrow_options INTERFACE -Wall -Wextra -Wpedantic -fno-math-errno -fno-trapping-math)
 # GCC 12 warns of overlaps and overflows inside std::string and std::vector where there are none (GCC bug 105651 and
 # the like), and of uninitialized vectors inside its own AVX-512 header (GCC bug 105593); the sanitizers look for real ones.
@@ -8,12 +12,12 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LES
   target_compile_options(furrow_options INTERFACE -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow
     -Wno-stringop-overread -Wno-maybe-uninitialized -Wno-uninitialized)
 endif()
-target_compile_definitions(furrow_options INTERFACE EIGEN_DONT_PARALLELIZE)
+target_compile_definitions(furrow_interface INTERFACE EIGEN_DONT_PARALLELIZE)
 # Eigen's alignment, and with it the layout of every class that holds an Eigen type, follows the instruction
 # set. It is pinned so that objects built with and without -march=native can be linked together.
 # So is the alignment of what it allocates: it decides whether memory is freed by free() or by Eigen's own means.
-target_compile_definitions(furrow_options INTERFACE EIGEN_MAX_STATIC_ALIGN_BYTES=16 EIGEN_MAX_ALIGN_BYTES=64)
-target_link_libraries(furrow_options INTERFACE Eigen3::Eigen fmt::fmt OpenMP::OpenMP_CXX Threads::Threads)
+target_compile_definitions(furrow_interface INTERFACE EIGEN_MAX_STATIC_ALIGN_BYTES=16 EIGEN_MAX_ALIGN_BYTES=64)
+target_link_libraries(furrow_interface INTERFACE Eigen3::Eigen fmt::fmt OpenMP::OpenMP_CXX Threads::Threads)
 if(FURROW_NATIVE)
   target_compile_options(furrow_options INTERFACE -march=native)
 elseif(NOT FURROW_LEVEL STREQUAL "any")
@@ -34,8 +38,8 @@ if(FURROW_FUZZ)
   target_link_options(furrow_options INTERFACE -fsanitize=address,undefined -fprofile-instr-generate)
 endif()
 
-# Precompiled headers save a third of the build. Sources include what they use all the same: the audit preset
-# builds without.
+# Precompiled headers save a third of the build. Sources include what they use all the same:
+# scripts/check_headers.py checks it.
 if(FURROW_PCH)
   set(_headers <Eigen/Core> <Eigen/Geometry> <algorithm> <filesystem> <functional> <memory> <span> <string> <vector>
     <fmt/format.h> <nlohmann/json.hpp>)

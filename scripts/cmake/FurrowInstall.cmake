@@ -1,5 +1,7 @@
 # What `cmake --install` puts where: a tree that may be moved, and hold builds for several instruction sets beside each
-# other (scripts/install.sh). The program finds share/furrow/ from where it stands.
+# other (scripts/install.sh). The program finds share/furrow/ from its own place. The component `program` is all that runs;
+# FurrowLibraries.cmake adds the component `libraries`.
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME program)
 if(FURROW_NATIVE)
   set(_level native)
 else()
@@ -12,6 +14,35 @@ foreach(_folder rigs tire/data terrain/data vehicle/data)
   install(DIRECTORY ${CMAKE_SOURCE_DIR}/${_folder}/ DESTINATION share/furrow/${_folder} FILES_MATCHING PATTERN "*.json"
     PATTERN "*.csv")
 endforeach()
-install(DIRECTORY ${CMAKE_SOURCE_DIR}/scripts/plot DESTINATION share/furrow/scripts FILES_MATCHING PATTERN "*.py")
-install(PROGRAMS ${CMAKE_SOURCE_DIR}/scripts/report.py DESTINATION share/furrow/scripts)
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/scripts/plot DESTINATION share/furrow/scripts FILES_MATCHING PATTERN "*.py"
+  PATTERN __pycache__ EXCLUDE)
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/scripts/report/page ${CMAKE_SOURCE_DIR}/scripts/report/bundle
+  DESTINATION share/furrow/scripts/report PATTERN __pycache__ EXCLUDE)
+install(PROGRAMS ${CMAKE_SOURCE_DIR}/scripts/report.py ${CMAKE_SOURCE_DIR}/scripts/events.py DESTINATION share/furrow/scripts)
+# The Python package, and a link to it from where Debian's Python looks if the prefix is /usr.
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/scripts/python/furrow DESTINATION share/furrow/scripts/python
+  FILES_MATCHING PATTERN "*.py" PATTERN py.typed PATTERN __pycache__ EXCLUDE)
+file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/package)
+file(CREATE_LINK ../../../share/furrow/scripts/python/furrow ${CMAKE_BINARY_DIR}/package/furrow SYMBOLIC)
+install(FILES ${CMAKE_BINARY_DIR}/package/furrow DESTINATION lib/python3/dist-packages)
 set_target_properties(furrow PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)  # where this system has its libraries
+
+# Completion scripts and the manual page, made from the help of the program that is installed. A build for another
+# processor cannot print its help: then those of an earlier level stay, or there are none.
+find_program(FURROW_PYTHON NAMES python3 HINTS /usr/bin DOC "makes completion scripts and the manual page")
+mark_as_advanced(FURROW_PYTHON)
+function(furrow_install_made script argument target)
+  install(CODE "
+    execute_process(COMMAND ${FURROW_PYTHON} -B ${CMAKE_SOURCE_DIR}/scripts/docs/${script} ${argument} --program $<TARGET_FILE:furrow>
+      OUTPUT_VARIABLE made RESULT_VARIABLE failed ERROR_QUIET)
+    if(failed)
+      message(STATUS \"Not made: ${target}\")
+    else()
+      message(STATUS \"Installing: \$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${target}\")
+      file(WRITE \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${target}\" \"\${made}\")
+    endif()")
+endfunction()
+furrow_install_made(completion.py bash share/bash-completion/completions/furrow)
+furrow_install_made(completion.py zsh share/zsh/vendor-completions/_furrow)
+furrow_install_made(completion.py fish share/fish/vendor_completions.d/furrow.fish)
+furrow_install_made(manual.py "" share/man/man1/furrow.1)

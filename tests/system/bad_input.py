@@ -17,6 +17,8 @@ def text(**sections):
     return json.dumps(changed(**sections))
 
 
+EMPIRICAL = json.dumps({**changed(terrain=None), "terrain": {"engine": "scm"}})
+
 # (name, file text or bytes, flags of `furrow run`, what the error line must hold)
 SCENARIOS = [
     ("unknown_key", text(rig={"slipp": 0.3}), [], "key 'rig.slipp': is unknown, expected 'rig.slip'?"),
@@ -36,7 +38,7 @@ SCENARIOS = [
     ("fraction_for_whole", text(terrain={"layers": 2.5}), [], "key 'terrain.layers': is 2.5, expected a whole number"),
     ("section_is_number", text(rig=3), [], "key 'rig': is 3, expected an object"),
     ("unknown_law", text(terrain={"law": "hertz"}), [], "key 'terrain.law': is 'hertz', expected 'mindlin' or 'hertz_tanh'"),
-    ("engine_of_later", text(terrain={"engine": "liggghts"}), [], "'liggghts' is not available in this version, expected 'dem' or 'rigid'"),
+    ("engine_of_later", text(terrain={"engine": "liggghts"}), [], "'liggghts' is not available in this version, expected 'dem', 'rigid' or 'scm'"),
     ("two_terrain_ranks", text(terrain={"ranks": 2}), [], "key 'terrain.ranks': is 2, expected 1"),
     ("vehicle", text(vehicle={"file": "hmmwv"}, rig=None), [], "key 'vehicle': is no section, expected rig.vehicle beside rig.type 'vehicle'"),
     ("newer_format", text(format_version=2), [], "key 'format_version': is 2: the file is newer than this program"),
@@ -61,6 +63,15 @@ SCENARIOS = [
     ("bad_threads", text(run={"threads": "many"}), [], "key 'run.threads': is 'many', expected a whole number, 1 to 1024 or 'auto'"),
     ("unknown_generator", text(terrain={"bed_generator": "hex"}), [], "key 'terrain.bed_generator': is 'hex', expected 'poisson' or 'lattice'"),
     ("negative_compaction", text(terrain={"compaction_pressure": -5}), [], "key 'terrain.compaction_pressure': is -5 Pa, expected a number, 0 to"),
+    ("soil_of_others", text(terrain={"material": "lete_sand.json"}), [], "key 'terrain': has keys of other engines alone (bekker_k_c,"),
+    ("soft_plate", EMPIRICAL.replace('"scm"', '"scm", "bekker_k_phi": 0'), [], "key 'terrain.bekker_k_phi': is 0 N/m^(n+2), expected a number"),
+    ("negative_modulus", EMPIRICAL.replace('"scm"', '"scm", "bekker_k_c": -9e4, "patch_width": 0.01'), [],
+     "key 'terrain.bekker_k_c': is -90000, expected k_c/b + k_phi above 0 with b = terrain.patch_width"),
+    ("friction_angle_in_percent", EMPIRICAL.replace('"scm"', '"scm", "mohr_friction_angle": 95'), [],
+     "key 'terrain.mohr_friction_angle': is 95 deg, expected a number, 0 to 80"),
+    ("grid_too_fine", EMPIRICAL.replace('"scm"', '"scm", "grid_spacing": 0.001, "length": 200, "width": 50'), [],
+     "key 'terrain.grid_spacing': is 0.001: 200 m x 50 m have 1e+10 nodes, expected at most 1e+08"),
+    ("grains_key_of_soil", EMPIRICAL.replace('"scm"', '"scm", "radius": 0.01'), [], "key 'terrain.radius': is a key of engine 'dem'"),
     ("missing_soil", text(terrain={"material": "moon.json"}), [], "key 'terrain.material': 'moon.json' does not exist, expected a file at one of"),
     ("spread_too_wide", text(terrain={"size_spread": 0.9}), [], "key 'terrain.size_spread': is 0.9, expected a number, 0 to 0.6"),
     ("spread_with_hertz_tanh", text(terrain={"size_spread": 0.2, "law": "coulomb"}), [], "key 'terrain.size_spread': is 0.2 with law 'hertz_tanh'"),

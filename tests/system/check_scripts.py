@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""scripts/check_includes.py and scripts/check_docs.py on small trees: what they must notice."""
+"""scripts/check_includes.py, check_headers.py and check_docs.py on small trees: what they must notice."""
 import json
 import pathlib
 import subprocess
@@ -53,6 +53,30 @@ class Includes(Check):
         self.assertIn("circle of includes", told)
         told = self.told(tests__dummies__held_hub_dot_hpp='#include "nodes/scenario/b.hpp"', nodes__scenario__b_dot_hpp="")
         self.assertIn("rigs includes nodes/scenario/b.hpp", told)
+
+
+class Headers(Check):
+    script = "check_headers.py"
+    LIST = "set(_headers <vector> <algorithm>\n <nlohmann/json.hpp>)\n target_precompile_headers(x <gtest/gtest.h>)"
+
+    def said(self, headers=LIST, **files):
+        return self.told(scripts__cmake__FurrowCompiler_dot_cmake=headers, **files)
+
+    def test_a_name_needs_its_header(self):
+        self.assertIn("tire/a.cpp:2: uses std::vector without #include <vector>", self.said(tire__a_dot_cpp="\nstd::vector<int> a;"))
+        self.assertIn("uses std::ranges::sort without", self.said(tire__a_dot_cpp="std::ranges::sort(a);"))
+        self.assertIn("uses TEST without #include <gtest/gtest.h>", self.said(tests__a_dot_cpp="TEST(A, b) {}"))
+        self.assertEqual(self.said(tire__a_dot_cpp="#include <vector>\nstd::vector<int> a;"), "")
+        self.assertEqual(self.said(tire__a_dot_cpp="// std::vector\nconst char* a = \"std::vector\"; std::string b;"), "")
+
+    def test_a_header_of_the_project_brings_what_it_includes(self):
+        uses = '#include "tire/b.hpp"\nnlohmann::json a;'
+        self.assertEqual(self.said(tire__a_dot_cpp=uses, tire__b_dot_hpp='#include "tire/c.hpp"',
+                                   tire__c_dot_hpp="#include <nlohmann/json_fwd.hpp>"), "")
+        self.assertIn("without #include <nlohmann/json.hpp>", self.said(tire__a_dot_cpp=uses, tire__b_dot_hpp=""))
+
+    def test_a_precompiled_header_of_unknown_names(self):
+        self.assertIn("precompiles <map>", self.said("set(_headers <map>)"))
 
 
 class Docs(Check):

@@ -89,8 +89,8 @@ class Commands(SystemTest):
                 self.assertLess(report["grains"], 300_000)
                 self.assertGreater(report["wheels"][0]["contact_length_in_grains"], 2)
         self.assertAlmostEqual(reports["lab"]["wheels"][0]["load_N"], 24.5)
-        self.assertIn("// kind of rig: drawbar pulls", (self.folder / "truck.json").read_text())
-        self.assertIn("// grain radius", (self.folder / "truck.json").read_text())
+        self.assertIn("// Kind of rig. drawbar: pulls", (self.folder / "truck.json").read_text())
+        self.assertIn("// Grain radius", (self.folder / "truck.json").read_text())
 
     def test_new_leaves_no_file_where_it_fails_and_none_of_yours_is_touched(self):
         for options, said in ((["--tire", "no_such.json"], "'no_such.json' does not exist"), (["--soil", "no_such.json"], "no_such.json"),

@@ -162,6 +162,12 @@ class Limits(EnvironmentTest):
         self.assertRegex(self.one_error(done, 6), r"out of memory: needs about \d+\.\d GB, limit 0.3 GB \(ulimit -v\)")
         self.assertEqual(survivors(self.folder), [])
 
+    def test_threads_that_cannot_be_started_are_no_rank_that_does_not_answer(self):
+        # Of the 500 stacks of 8 MB a few fit.
+        done = limited("-v 600000", "run", self.path, "--threads", "500", *SHORT, "--out", "out", cwd=self.folder)
+        self.assertIn("threads could not be started (ulimit -u, ulimit -v, or no memory), expected ", self.one_error(done, 6))
+        self.assertEqual(survivors(self.folder), [])
+
     def test_plots_that_would_wait_forever_for_memory_are_not_begun(self):
         done = limited("-v 450000", "run", self.path, *SHORT[:-1], "--out", "out", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)

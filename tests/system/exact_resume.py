@@ -11,7 +11,7 @@ from checkpoint_runs import CheckpointTest, steps, summary
 from program import ROOT, main
 
 sys.path.insert(0, str(ROOT / "tests" / "campaign"))
-from scenarios import SINGLE  # noqa: E402
+from scenarios import SHELL, SINGLE  # noqa: E402
 
 
 def kept(name):
@@ -80,6 +80,19 @@ class SeveralWheels(Exact, CheckpointTest):
     LOADED = 6
 
 
+class EmpiricalSoil(Exact, CheckpointTest):
+    """A flexible tire presses, shears and lets rebound the nodes of the soil."""
+    SCENARIO = {
+        "format_version": 1,
+        "rig": {"type": "drawbar", "slip": 0.3, "angular_speed": 4.28, "ramp": 0.01, "carrier_mass": 450, "touchdown_damping": 0},
+        "tire": SHELL,
+        "terrain": {"engine": "scm", "material": "dry_sand.json", "length": 1.4, "width": 0.5, "grid_spacing": 0.02},
+        "run": {"step": 2e-4, "end": 0.06, "average_from": 0.02, "peer_timeout": 20},
+        "output": {"series_interval": 1e-3, "frame_interval": 0.01},
+        "checkpoint": {"interval": 0.01, "keep": 1000},
+    }
+
+
 class Vehicle(Exact, CheckpointTest):
     """It lands, shifts and turns its wheels at the checkpoints."""
     SCENARIO = {
@@ -95,6 +108,28 @@ class Vehicle(Exact, CheckpointTest):
     }
     WHEELS = 4
     LOADED = 5
+
+    def test_after_a_stop_of_each_kind_of_rank(self):
+        for rank, name in ((0, "rig"), (1, "tire 0"), (4, "tire 3"), (5, "terrain")):
+            with self.subTest(name):
+                shutil.rmtree(self.run_folder, ignore_errors=True)
+                self.mark.unlink(missing_ok=True)
+                done = self.run_with_fault("step", rank, 257, "stop", flags=["--set", "run.peer_timeout=5"])
+                self.assertRegex(done.stderr, rf"furrow: error: .*waited 5 s for .*{name} does not answer")
+                self.resume()
+                self.same_as_whole(leave_out=["scenario.json", "checkpoints/*/manifest.json"])  # they hold the key
+
+    def test_after_a_signal(self):
+        process = self.start_waiting("step", 0, 257)
+        process.terminate()
+        while "stopping" not in process.stderr.readline():
+            pass
+        self.mark.unlink()
+        _, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 75, err)
+        self.assertIn(steps(self.run_folder)[-1], range(257, 277))
+        self.resume()
+        self.same_as_whole()
 
 
 class BeforeTheWall(CheckpointTest):

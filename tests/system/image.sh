@@ -27,7 +27,7 @@ printf 'FROM scratch\nADD debian.tar /\n' >"$work/base/Containerfile"
 buildah bud --isolation chroot "${store[@]}" -t debian12 "$work/base" >"$work/log" 2>&1 || { tail -20 "$work/log" >&2; exit 1; }
 
 say 'the image'
-cmake --install "$build" --prefix "$work/image/opt/furrow" >"$work/log"
+cmake --install "$build" --component program --prefix "$work/image/opt/furrow" >"$work/log"
 buildah bud --isolation chroot "${store[@]}" --build-arg BASE=localhost/debian12 -t furrow \
   -f "$root/scripts/cluster/Containerfile" "$work/image" >"$work/log" 2>&1 || { tail -30 "$work/log" >&2; exit 1; }
 container=$(buildah from "${store[@]}" localhost/furrow)

@@ -1,12 +1,13 @@
 #!/usr/bin/python3
 """The installed tree: it runs from wherever it is moved to, and takes the build for this processor."""
+import importlib.util
 import os
 import pathlib
 import shutil
 import subprocess
 import unittest
 
-from program import PROGRAM, SystemTest, main, write_scenario
+from program import PROGRAM, ROOT, SystemTest, main, write_scenario
 
 BUILD = pathlib.Path(PROGRAM).parent
 
@@ -34,6 +35,19 @@ class Install(SystemTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertTrue(list((self.folder / "out").glob("*.png")) or "no plots" in done.stderr, done.stderr)
         self.assertTrue((self.tree / "share/furrow/rigs/scenario.schema.json").exists())
+        if importlib.util.find_spec("matplotlib") and importlib.util.find_spec("h5py"):
+            made = self.run_installed("report", "out")
+            self.assertEqual(made.returncode, 0, made.stderr)
+            self.assertTrue((self.folder / "out" / "report.html").exists())
+        done = self.run_installed("events", "out")
+        self.assertNotIn("expected the script", done.stderr)
+
+    def test_completion_scripts_and_the_manual_page_come_with_it(self):
+        for name in ("bash-completion/completions/furrow", "zsh/vendor-completions/_furrow",
+                     "fish/vendor_completions.d/furrow.fish", "man/man1/furrow.1"):
+            text = (self.tree / "share" / name).read_text()
+            self.assertIn("bit-identical to an uninterrupted run" if "man" in name or "fish" in name else "resume", text.replace("\\-", "-"))
+            self.assertNotIn(str(ROOT), text)
 
     def test_a_batch_script_names_the_command_that_suits_every_node(self):
         done = self.run_installed("ranks", "--slurm", write_scenario(self.folder))

@@ -192,6 +192,23 @@ class Page(SystemTest):
         self.assertIn("failed at t = 0.2 s: too hard", " ".join(block["text"] for block in blocks_of(about, "text")))
         self.assertIn("playback: there are no frames", " ".join(about["left_out"]))
 
+    def test_accounts_and_ranks_of_a_failed_run_are_shown(self):
+        (self.run_folder / "summary.json").unlink()
+        energy = {"closes": True, "residual_share": 1e-4, "turnover": 100.0, "residual": 0.01, "work": {"drive_work": 90.0}}
+        (self.run_folder / "summary_failed.json").write_text(json.dumps({
+            "scenario": "known", "failed": {"error": "too hard", "time_s": 0.2}, "accounts": {"energy": energy},
+            "ranks": [{"rank": 0, "node": "rig", "threads": 1, "compute_s": 1.0, "wait_s": 3.0, "cpu_s": 1.0, "busy_share": 0.25}]}))
+        done = furrow("report", self.run_folder, cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        names = {pathlib.Path(name).name for name in done.stdout.splitlines()}
+        self.assertLessEqual({"energy.png", "ranks.png", "report.html"}, names, done.stderr)
+        self.assertIn("no momentum.png: summary_failed.json has no account of momentum", done.stderr)
+        about, _ = document(self.run_folder / "report.html")
+        words = " ".join(block["text"] for block in blocks_of(about, "text"))
+        self.assertIn("The account of energy closes. 0.0100 % of what was turned over", words)
+        self.assertIn("Rank 0 · rig sets the pace", words)
+        self.assertIn("failed at t = 0.2 s: too hard", words)
+
     def test_several_runs_beside_each_other(self):
         other = self.folder / "other"
         known_run(other)
@@ -224,7 +241,7 @@ class Page(SystemTest):
         (self.run_folder / ".furrow-run").write_text("furrow-run 1\nsummary.json\n")
         (self.run_folder / "report.html").write_text("mine")
         done = furrow("report", self.run_folder, cwd=self.folder)
-        self.assertIn("no report.html: a file of that name stands there that furrow did not write", done.stderr)
+        self.assertIn("no report.html: furrow did not write the file of that name in this folder", done.stderr)
         self.assertEqual((self.run_folder / "report.html").read_text(), "mine")
 
 

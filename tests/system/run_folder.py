@@ -78,7 +78,7 @@ class Overwrite(SystemTest):
         (self.out / "forces.png").write_text("mine")
         done = furrow("report", "out", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("no forces.png: a file of that name stands there", done.stderr)
+        self.assertIn("no forces.png: furrow did not write the file of that name", done.stderr)
         self.assertEqual((self.out / "forces.png").read_text(), "mine")
 
     def test_a_runs_own_scenario_can_be_run_over_its_folder(self):

@@ -104,6 +104,12 @@ class Soil(WithCache):
         self.assertNotIn("±", told)
         self.assertTrue(0 < soil["friction_angle_deg"] < 60, soil)
         self.assertGreater(soil["janosi_K_m"], 0)
+        self.assertEqual([soil["terrain"][key] for key in ("bekker_k_c", "bekker_k_phi", "bekker_n", "janosi_k")],
+                         [soil[key] for key in ("k_c", "k_phi", "n", "janosi_K_m")])
+        (self.work / "mine.json").write_text(json.dumps({"format_version": 1, "terrain": soil["terrain"]}))
+        empirical = write_scenario(self.work, changed(terrain=None) | {"terrain": {"engine": "scm", "material": "mine.json"}}, "scm.json")
+        done = furrow("validate", empirical, cwd=self.work)
+        self.assertEqual(done.returncode, 0, done.stderr)
         for test in ("plate", "shear", "cone"):
             self.assertEqual(soil[test]["speed_m_s"], 0.3)
             self.assertGreater(soil[test]["box"]["grains"], 50)

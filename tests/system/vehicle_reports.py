@@ -9,6 +9,7 @@ import h5py
 import numpy as np
 
 from program import ROOT, SystemTest, furrow, main
+from report_page import document
 
 sys.path.insert(0, str(ROOT / "scripts"))
 
@@ -208,6 +209,25 @@ class Report(SystemTest):
             self.assertEqual((folder / name).read_bytes()[:4], b"\x89PNG")
         self.assertIn("no path.png: the driver follows no path", done.stderr)
         self.assertNotIn("Error", done.stderr)
+
+    def test_the_page_shows_the_events_and_the_names_of_the_wheels(self):
+        folder = self.folder / "run"
+        write_run(folder)
+        summary = json.loads((folder / "summary.json").read_text())
+        for wheel, name in zip(summary["wheels"], ("first_left", "first_right", "second_left", "second_right")):
+            wheel["name"] = name
+        (folder / "summary.json").write_text(json.dumps(summary))
+        told = json.loads(furrow("events", folder, "--json", cwd=self.folder).stdout)["events"]
+        done = furrow("report", folder, cwd=self.folder, timeout=600)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        about, _ = document(folder / "report.html")
+        events, = (section["blocks"][0] for section in about["sections"] if section["id"] == "events")
+        self.assertEqual(events["columns"], ["time, s", "what", "of", "value", "threshold"])
+        self.assertEqual([[row[0], row[1], row[2], row[4]] for row in events["rows"]],
+                         [[f"{e['time_s']:.3f}", e["event"], e["of"], e["threshold"]] for e in told])
+        self.assertIn("first right", {row[2] for row in events["rows"]})
+        tables = [block for section in about["sections"] for block in section["blocks"] if block["type"] == "table"]
+        self.assertIn("second left", [row[0] for table in tables if table["columns"][0] == "wheel" for row in table["rows"]])
 
 
 class Statistics(unittest.TestCase):

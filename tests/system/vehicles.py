@@ -4,6 +4,8 @@ is wrong is told in one line."""
 import csv
 import json
 
+import h5py
+
 from program import ROOT, SystemTest, furrow, main
 
 QUICK = ["--set", "tire.rigid=true", "--set", "output.frame_interval=0", "--no-plots"]
@@ -37,6 +39,12 @@ class Vehicles(SystemTest):
         self.assertEqual(vehicle[drives]["throttle"], 1)
         self.assertGreater(vehicle[drives]["acceleration_m_per_s2"], 1.0)
         self.assertGreater(vehicle[drives]["power_W"], vehicle[drives]["wheel_power_W"])
+        self.assertGreater(vehicle[drives]["turbine_speed_rpm"], 0.0)
+        self.assertLess(vehicle[drives]["turbine_speed_rpm"], vehicle[drives]["engine_speed_rpm"])
+        names = ["front_left", "front_right", "rear_left", "rear_right"]
+        self.assertEqual([wheel["name"] for wheel in summary["wheels"]], names)
+        with h5py.File(self.folder / "out" / "results.h5") as file:
+            self.assertEqual([file[f"series/wheel{k}"].attrs["name"].decode() for k in range(4)], names)
         told = summary["vehicle"]
         self.assertAlmostEqual(told["mass_kg"] * 9.81 / sum(wheel["vertical_load_N"] for wheel in summary["wheels"]), 1.0, delta=1e-3)
         self.assertEqual(told["distance_m"], summary["subjects"]["vehicle"]["distance_m"])

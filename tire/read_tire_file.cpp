@@ -1,5 +1,7 @@
 #include "tire/read_tire_file.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>

@@ -1,6 +1,7 @@
 // HDF5 files of strangers: no memory beyond the file's size, no other file, no program; one message that names the file.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <fstream>

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <vector>
 
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_text.hpp"

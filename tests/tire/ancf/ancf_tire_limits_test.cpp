@@ -1,8 +1,11 @@
 // What a tire does at the edges of its range: changing and missing pressure, the rim, forces that are not finite.
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "small_tire.hpp"
 

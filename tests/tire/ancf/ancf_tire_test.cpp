@@ -1,7 +1,10 @@
 // The layered tire as a whole: rigid-body limits, free flight, restart, failure.
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "small_tire.hpp"
 

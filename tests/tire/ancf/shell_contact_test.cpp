@@ -2,7 +2,9 @@
 // equilibrium.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "small_tire.hpp"
 

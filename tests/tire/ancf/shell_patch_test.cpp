@@ -1,8 +1,10 @@
 // Patch tests on a distorted mesh and a cantilever; references: the exact states themselves, plate and beam
 // theory.
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "shell_patch.hpp"
 

@@ -1,6 +1,7 @@
 // Flexible rings for tests, about the size of a light truck's tire.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 

@@ -1,6 +1,7 @@
 // Strips as beams: extension, bending, twist, the elastica, and a strip rolled up into a circle.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 

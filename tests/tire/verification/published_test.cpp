@@ -3,6 +3,7 @@
 //   Des. 40, doi:10.1016/j.finel.2003.11.001 (Abaqus S4R; consistent units, none stated).
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>

@@ -160,7 +160,8 @@ ExitCode run_this_node(Transport& transport, const scenario::Scenario& scenario,
       transport.announce_failure(error.code(), error.what());
       throw;
     }
-    const launch::ThreadPlan plan = launch::plan_threads(transport, scenario.run.threads);
+    const launch::ThreadPlan plan = launch::plan_threads(
+        transport, scenario.run.threads, scenario.terrain->estimate(scenario.terrain_context()).grains);
     launch::apply(plan);
     if (!plan.note.empty()) reporter.note(plan.note);
     context.threads = plan.threads;

@@ -231,6 +231,8 @@ class GrainSolver {
   void bound_overlaps(double dt);
   /// After strips were sorted again: what was listed by one may be listed by another.
   void spread_bounds(const Resorted& range);
+  /// Σ |F| of a strip, N: now, or by its last sample where it is not evaluated; a saved state keeps no other.
+  double measured_force(int k) const;
   bool sample_now() const { return params_.activity && until_sample_ == 0; }
   /// Takes samples of the contact forces of the strips that this step evaluated. Those of sleeping strips stay: nothing
   /// moves there.

@@ -195,15 +195,15 @@ ResumePlan plan_resume(const fs::path& run,
   const std::int64_t reached = std::max(ended, manifest.step);
   if (steps < reached)
     throw input_error(run.string(), "run.end",
-                      fmt::format("is {} s, but the run has come to {} s, expected that or later",
+                      fmt::format("is {} s, but the run has reached {} s, expected that or later",
                                   number_text(plan.scenario.run.end),
                                   number_text(static_cast<double>(reached) * plan.scenario.run.step)));
   if (manifest.build != build_id())
     plan.warnings.push_back(run.string() + ": the checkpoint is of another build of furrow (" +
-                            manifest.version + "): the run goes on, but not bit for bit");
+                            manifest.version + "): the run continues, but not bit for bit");
   else if (manifest.cpu != cpu_model())
     plan.warnings.push_back(run.string() + ": the checkpoint is of another processor (" + manifest.cpu +
-                            "): the run goes on, perhaps not bit for bit");
+                            "): the run continues, perhaps not bit for bit");
   return plan;
 }
 

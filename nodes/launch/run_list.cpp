@@ -142,8 +142,8 @@ RunList RunList::read(const fs::path& folder) {
     if (!begun || !is_inside(line))
       throw input_error(
           file.string() + ":" + place_in_text(text, from), "",
-          begun ? "is no name of a file below its folder, expected one: the list is damaged"
-                : "is no list of a run's files, expected '" + head().substr(0, head().size() - 1) + "'");
+          begun ? "is not the name of a file below its folder, expected one: the list is damaged"
+                : "is not a list of a run's files, expected '" + head().substr(0, head().size() - 1) + "'");
     forms.push_back(line);
   }
   return RunList(std::move(forms));

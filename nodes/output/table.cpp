@@ -73,7 +73,7 @@ TableWriter::TableWriter(const std::filesystem::path& file, const Table& table)
 TableWriter::TableWriter(const std::filesystem::path& file, const checkpoint::SeriesMark& mark, Table& table)
     : file_(file), subject_(table.subject), stream_(std::fopen(file.c_str(), "rb+")) {
   if (!stream_)
-    throw io_error(file_.string(), std::string("cannot be opened to go on with it: ") + std::strerror(errno));
+    throw io_error(file_.string(), std::string("cannot be opened to continue it: ") + std::strerror(errno));
   std::error_code error;
   const std::uintmax_t there = std::filesystem::file_size(file, error);
   const bool all = !error && std::cmp_less_equal(mark.bytes, there);
@@ -100,7 +100,7 @@ void TableWriter::take_order(std::string_view header, const Table& table) {
     const auto place = table.find(name);
     if (!place)
       throw io_error(file_.string(),
-                     fmt::format("has a column '{}' that this program does not write: go on with the program "
+                     fmt::format("has a column '{}' that this program does not write: continue with the program "
                                  "that began the run",
                                  name));
     if (std::find(order_.begin(), order_.end(), *place) != order_.end())
@@ -111,7 +111,7 @@ void TableWriter::take_order(std::string_view header, const Table& table) {
     if (std::find(order_.begin(), order_.end(), i) == order_.end())
       throw io_error(
           file_.string(),
-          fmt::format("lacks the column '{}' that this program writes: go on with the program that "
+          fmt::format("lacks the column '{}' that this program writes: continue with the program that "
                       "began the run",
                       table.columns[i].name));
 }

@@ -70,7 +70,7 @@ def read_dataset(file, name):
     if not isinstance(group, h5py.Dataset):
         raise Damaged(f"{what} is a group, expected numbers")
     if group.external or group.is_virtual:
-        raise Damaged(f"{what} stands in another file, expected the numbers themselves in this file")
+        raise Damaged(f"{what} is stored in another file, expected the numbers themselves in this file")
     if group.dtype.kind not in "iuf":
         raise Damaged(f"{what} holds no plain numbers")
     stored = group.id.get_storage_size()

@@ -210,7 +210,7 @@ TEST(Dummies, what_a_tire_does_not_take_from_the_scenario_is_told) {
   options.pressure.knots = {{0.0, 2e5}};
   s.tires = {kTire.read(wheel_file(), options)};
   EXPECT_EQ(checked(s),
-            "scenario.json: key 'tire.pressure': is set aside: it says nothing to a spring wheel tire\n");
+            "scenario.json: key 'tire.pressure': is ignored: a spring wheel tire does not use it\n");
 }
 
 TEST(Dummies, a_terrain_without_contact_tangents_refuses_tires_that_ask_for_them) {

@@ -78,7 +78,7 @@ TEST(TerrainKeys, an_engine_chosen_on_the_command_line_sets_keys_of_others_aside
   EXPECT_EQ(s.terrain->describe().engine, "rigid");
   ASSERT_EQ(s.warnings.size(), 1U);
   EXPECT_TRUE(s.warnings[0].ends_with(
-      "key 'terrain.engine': is 'rigid'; keys of other engines are set aside: length, radius"))
+      "key 'terrain.engine': is 'rigid'; keys of other engines are ignored: length, radius"))
       << s.warnings[0];
   const json section = json::parse(s.completed)["terrain"];
   EXPECT_EQ(section["friction"], 0.5);
@@ -146,7 +146,7 @@ TEST(RigKeys, a_key_of_another_type_is_refused_or_set_aside_as_those_of_engines_
   document = given;
   EXPECT_EQ(set_aside(document, {{"rig.type", "drawbar"}}),
             std::vector<std::string>{
-                "mine.json: key 'rig.type': is 'drawbar'; keys of other types are set aside: slip"});
+                "mine.json: key 'rig.type': is 'drawbar'; keys of other types are ignored: slip"});
   EXPECT_EQ(document["rig"], json({{"speed", 3.0}}));
   document["rig"]["type"] = "trolley";
   EXPECT_TRUE(set_aside(document, {}).empty());

@@ -93,7 +93,7 @@ class QueuedAgainBySlurm(ClusterTest):
     def test_tasks_without_mpi_are_refused(self):
         done = self.srun("run", self.path, "--out", self.run_folder, mpi="none")
         self.assertNotEqual(done.returncode, 0)
-        self.assertIn("srun: started 3 tasks that know nothing of MPI, expected srun --mpi=pmix", done.stderr)
+        self.assertIn("srun: started 3 tasks without MPI, expected srun --mpi=pmix", done.stderr)
         self.assertFalse(self.run_folder.exists())
 
     def test_a_job_that_never_comes_to_a_checkpoint_ends(self):

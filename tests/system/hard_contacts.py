@@ -77,7 +77,7 @@ class Failed(SystemTest):
                                r"grain's diameter, the deepest by .* m \(\d+ %\) between .* at \(.*\) m; expected stiffer grains \(about .* Pa in "
                                r"terrain.young_modulus, which needs a step of at most .* s\), or less load or speed; a smaller step does not help")
         self.assertNotIn("furrow resume", told)
-        self.assertIn("it would fail at the same step; start again with furrow run", told)
+        self.assertIn("a resumed run would fail at the same step; start again with furrow run", told)
         self.assertFalse((run / "summary.json").exists())
         found = summary(run, "summary_failed.json")
         self.assertEqual(found["failed"]["exit_code"], 3)

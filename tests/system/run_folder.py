@@ -238,7 +238,7 @@ class Killed(CheckpointTest):
                 _, err = other.communicate(timeout=60)
                 self.assertEqual(other.returncode, 2, err)
                 waits, error = err.splitlines()
-                self.assertRegex(waits, r"^furrow: .*out is taken by a run that is not over: process \d+ .*; waiting for up to 10 s")
+                self.assertRegex(waits, r"^furrow: .*out is in use by a run that has not ended: process \d+ .*; waiting for up to 10 s")
                 self.assertRegex(error, rf"^furrow: error: .*out: .*process {os.getpid()} \(")
 
 

@@ -23,7 +23,7 @@ struct RunArguments {
   bool overwrite = false;
   bool profile = false;
   bool plots = true;    // at the end
-  bool resume = false;  // goes on with the run in `out`; `scenario` is not used
+  bool resume = false;  // continues the run in `out`; `scenario` is not used
   int seeds = 0;        // beds; 0: the scenario's own alone
   int jobs = 1;         // beds at once
 };

@@ -116,7 +116,7 @@ bool told_by_another(Transport& transport, const Error& error, bool supervised) 
   return false;
 }
 
-/// Another run may have had the folder until now, and gone on from where this one meant to.
+/// Another run may have had the folder until now, and continued from where this one meant to.
 void require_same_start(const std::filesystem::path& run, const checkpoint::ResumePoint& resume) {
   if (checkpoint::last_checkpoint(run).manifest.step != resume.manifest.step)
     throw input_error(run.string(), "",

@@ -27,7 +27,7 @@
 namespace furrow::commands {
 namespace {
 
-constexpr const char* kDone = "summary.json";  // stands in the folder if and only if the run is done
+constexpr const char* kDone = "summary.json";  // is in the folder if and only if the run is done
 
 std::vector<std::string> rank_arguments(const RunArguments& arguments,
                                         const std::filesystem::path& directory) {
@@ -55,7 +55,7 @@ void tell_result(const scenario::Scenario& scenario, const std::filesystem::path
     launch::say(fmt::format("furrow: plots: {} and {} more\n", made.front().string(), made.size() - 1));
 }
 
-/// What can be done with a run that did not come to its end. Physics that failed fails again where nothing is changed.
+/// What can be done with a run that did not finish. Physics that failed fails again where nothing is changed.
 void tell_how_to_continue(const std::filesystem::path& directory, const launch::LaunchResult& result,
                           const scenario::Scenario& scenario) {
   const std::string folder = scenario::shell_quoted(directory.string());

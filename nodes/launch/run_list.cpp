@@ -60,7 +60,7 @@ void append(const fs::path& folder, const std::string& text) {
   off_t size = std::max<off_t>(lseek(handle, 0, SEEK_END), 0);
   const off_t from = std::max<off_t>(size - static_cast<off_t>(end.size()), 0);
   const ssize_t count = pread(handle, end.data(), end.size(), from);
-  // A line that was cut short by a full disk or a kill is no name.
+  // A line that was cut short by a full disk or a kill is not a name.
   const std::size_t line =
       std::string_view(end.data(), static_cast<std::size_t>(std::max<ssize_t>(count, 0))).rfind('\n');
   const off_t whole = line == std::string_view::npos ? 0 : from + static_cast<off_t>(line) + 1;

@@ -170,7 +170,7 @@ class Supervisor {
 void Supervisor::start() {
   const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
   // When this process is killed the ranks save their state and stop: mpirun hands USR1 on at once, and TERM after two
-  // seconds in which they would go on.
+  // seconds in which they would continue.
   child_ = start_child({.command = launcher_command(launch_),
                         .in = nothing,
                         .out = out_.write,

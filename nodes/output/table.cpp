@@ -53,7 +53,7 @@ std::vector<Column> merged_columns(std::vector<Column> base, std::span<const Col
     const std::string_view after = column.after;
     auto place = std::find_if(base.begin(), base.end(), [&](const Column& c) { return after == c.name; });
     if (place != base.end()) ++place;
-    // Those that follow the same column stand in the order in which they were added.
+    // Those that follow the same column are in the order in which they were added.
     while (place != base.end() && after == place->after) ++place;
     base.insert(place, column);
   }

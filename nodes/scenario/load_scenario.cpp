@@ -251,7 +251,7 @@ constexpr int kDigestVersion = 2;
 /// it.
 std::string digest_of(json completed, const Scenario& s) {
   for (const std::string& key : harmless_keys()) erase(completed, key);
-  erase(completed, std::string("terrain.") + kSoilKey);  // its values stand in the other keys
+  erase(completed, std::string("terrain.") + kSoilKey);  // its values are in the other keys
   // Files count by what they hold, wherever they stand.
   for (const rigs::RigFile& file : s.rig->files()) completed["rig"].erase(file.key);
   for (const terrain::TerrainFile& file : s.terrain->files()) completed["terrain"].erase(file.key);

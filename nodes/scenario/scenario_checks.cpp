@@ -218,7 +218,7 @@ void Checks::start() {
   }
 }
 
-/// Wheels do not feel each other: one that stands in another would push the same grains twice.
+/// Wheels do not feel each other: one that is in another would push the same grains twice.
 void Checks::overlaps() {
   const std::vector<rigs::WheelDescription> wheels = describe().wheels;
   for (std::size_t k = 1; k < tires_.size(); ++k)

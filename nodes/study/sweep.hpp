@@ -1,11 +1,11 @@
 // The runs of a study, one after another or several at once, each `furrow run` or `furrow resume` in a process of its
-// own. What is finished stays: a sweep that was interrupted goes on where it was.
+// own. What is finished stays: a sweep that was interrupted continues where it was.
 //
 //   <folder>/sweep.csv     one line per run: its keys, how it went, its results; of one that failed the means of what
 //                          there is
 //   <folder>/sweep.json    the study, for the plots
 //   <folder>/runs/<digest> the folder of each run, named after its scenario's digest; <digest>.log: what it said. Runs
-//                          that the study names stand in <folder>/<name> instead
+//                          that the study names are in <folder>/<name> instead
 //   <folder>/beds/         of passes: the bed that each begins on
 #pragma once
 

@@ -57,7 +57,7 @@ def check_types(content, name, texts=(), numbers=(), objects=(), flags=(), lists
 
 
 def read_dataset(file, name):
-    """All numbers of an HDF5 dataset. Nothing that the file says of itself is believed: they must stand in this very
+    """All numbers of an HDF5 dataset. Nothing that the file says of itself is believed: they must be in this very
     file, and be no larger than what is stored of them."""
     what = f"{pathlib.Path(file.filename).name}: the dataset '{name}'"
     group = file
@@ -166,7 +166,7 @@ class Run:
             return {}
         lines = path.read_text(encoding="utf-8").splitlines()
         names = lines[0].split(",") if lines else []
-        # A run that still goes on may be half-way through its last line.
+        # A run that still continues may be half-way through its last line.
         rows = [line.split(",") for line in lines[1:] if line.count(",") == len(names) - 1]
         if not rows:
             return {}

@@ -29,7 +29,7 @@ using nlohmann::json;
 
 constexpr double kStep = 1e-3;  // communication step, s
 
-// The lines that would stand in tire/tires.cpp, terrain/terrains.cpp and rigs/rigs.cpp.
+// The lines that would be in tire/tires.cpp, terrain/terrains.cpp and rigs/rigs.cpp.
 constexpr tire::TireModel kTire{"spring_wheel", tire::read_spring_wheel};
 constexpr rigs::RigKind kRig{"held_hub", key_list<rigs::HeldHubOptions>(), rigs::read_held_hub};
 constexpr terrain::TerrainEntry kTerrain{"spring_mat", key_list<terrain::SpringMatOptions>(),
@@ -270,7 +270,7 @@ TEST(Dummies, wheel_says_all_of_its_diagnostics_has_its_outside_outside_and_a_ma
 }
 
 TEST(Dummies, key_is_a_field_and_an_entry_of_the_schema) {
-  // The entry as it would stand in rigs/scenario.schema.json.
+  // The entry as it would be in rigs/scenario.schema.json.
   const scenario::Schema schema(json::parse(R"({"type": "object", "properties": {"terrain": {
       "type": "object", "additionalProperties": false, "default": {}, "properties": {"mat_stiffness": {
         "type": "number", "exclusiveMinimum": 0, "default": 1e7, "unit": "N/m³",

@@ -108,7 +108,7 @@ TEST(TerrainKeys, completed_scenarios_of_earlier_versions_are_read) {
     EXPECT_EQ(value, json::parse(s.completed)["terrain"][key]) << key;
 }
 
-/// A key may move from one engine to another; runs that have it go on.
+/// A key may move from one engine to another; runs that have it continue.
 TEST(TerrainKeys, completed_scenarios_of_runs_say_so_and_may_hold_keys_of_other_engines) {
   json document = json::parse(ScenarioFile(testing::kSmallest).load({{"terrain.engine", "rigid"}}).completed);
   EXPECT_TRUE(document["completed_by"].get<std::string>().starts_with("furrow "));

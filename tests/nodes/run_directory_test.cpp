@@ -1,5 +1,5 @@
 // The folder of a run: one run at a time has it, nothing but what furrow wrote is ever removed from it, and results to be
-// overwritten survive a run that never came to be.
+// overwritten survive a run that never started.
 #include "nodes/launch/run_directory.hpp"
 
 #include <sys/wait.h>

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Checkpoints and `furrow resume`: the run that goes on is bit for bit the one that was not interrupted."""
+"""Checkpoints and `furrow resume`: the run that continues is bit for bit the one that was not interrupted."""
 import json
 import pathlib
 import shutil

@@ -47,7 +47,7 @@ class ClusterTest(CheckpointTest):
         wait_for(lambda: "stopping" in said.read_text(), 20, "the signal comes")
         self.mark.unlink()
         self.cluster.wait_for_state(number, lambda job: job["Restarts"] == "1" and job["JobState"] in ("PENDING", "RUNNING"), 60)
-        time.sleep(3)  # Slurm refuses what it began in the same second; by itself it lets two minutes pass
+        time.sleep(3)  # Slurm refuses what it began in the same second; on its own it lets two minutes pass
         wait_for(lambda: self.cluster.call("scontrol", "update", f"JobId={number}", "StartTime=now", check=False).returncode == 0,
                  30, "the job need not wait for two minutes")
         self.cluster.wait_for_state(number, lambda job: job["JobState"] == "COMPLETED", 240)

@@ -11,7 +11,7 @@ import unittest
 from checkpoint_runs import FAULTY, INTERVAL, RANKS, STEPS, CheckpointTest, steps, summary
 from program import furrow, main, start
 
-# (point, rank, which time, step at which the run goes on at the latest)
+# (point, rank, which time, step at which the run continues at the latest)
 KILLS = [
     ("step", "rig", 250, 200),
     ("step", "tire", 250, 200),

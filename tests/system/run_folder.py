@@ -210,7 +210,7 @@ class Gone(CheckpointTest):
 
 
 class Killed(CheckpointTest):
-    """kill -9 of `furrow` itself, and somebody who goes on at once."""
+    """kill -9 of `furrow` itself, and somebody who continues at once."""
     SCENARIO = {**RUN, "run": {**RUN["run"], "end": 0.16}, "checkpoint": {"interval": 0.004, "keep": 2}}
 
     def test_again_and_again_without_a_pause(self):

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""`furrow sweep`: a table of runs that goes on where it was interrupted, and passes over one bed."""
+"""`furrow sweep`: a table of runs that continues where it was interrupted, and passes over one bed."""
 import csv
 import json
 import os

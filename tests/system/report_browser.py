@@ -59,6 +59,7 @@ requestAnimationFrame(look);
 """
 MOST_BYTES = 15e6  # of a page
 MOST_STEP = 0.5  # s, of a slider step, drawn without a graphics card
+MOST_STALL = 3.0  # s, while frames play and other programs use the cores
 
 
 def browser():
@@ -87,10 +88,10 @@ def opened(driver, page_file, patience=120):
     return ready
 
 
-def measured(folder, frames, grains):
+def measured(folder, frames, grains, shake=0.0):
     """Figures of the page of a run of so many frames and grains."""
     run = pathlib.Path(folder) / "run"
-    report_page.known_run(run, count=frames, grains=grains)
+    report_page.known_run(run, count=frames, grains=grains, shake=shake)
     begin = time.monotonic()
     page.write(run, [Run(run)], lambda *_: True)
     made = time.monotonic() - begin
@@ -116,12 +117,12 @@ class Long(SystemTest):
         self.assertEqual(figures["complaints"], [])
         self.assertLessEqual(figures["page_MB"], MOST_BYTES / 1e6, figures)
         self.assertLess(figures["slider_step_s"]["median"], MOST_STEP, figures)
-        self.assertLess(figures["longest_stall_while_playing_s"], 4 * MOST_STEP, figures)
+        self.assertLess(figures["longest_stall_while_playing_s"], MOST_STALL, figures)
 
     def test_a_run_of_1000_frames_stays_small_and_responsive(self):
-        figures = measured(self.folder, frames=1000, grains=3000)
+        figures = measured(self.folder, frames=1000, grains=12000, shake=report_page.RADIUS)  # frames of 18 MB
         self.check(figures)
-        self.assertGreater(figures["frames_shown"], 300, figures)
+        self.assertGreaterEqual(figures["frames_shown"], 60, figures)
         self.assertLess(figures["playback_ready_s"], 30, figures)
 
     def test_a_slider_step_with_25000_grains(self):
@@ -207,9 +208,9 @@ def measure(file):
     version = subprocess.run(["chromium", "--version"], text=True, capture_output=True).stdout.strip()
     figures = {"format_version": 1, "commit": commit, "command": "tests/system/report_browser.py --measure FILE.json", "browser": version,
                "cores": os.cpu_count(), "machine": platform.machine(), "pages": []}
-    for frames, grains in ((12, 25000), (1000, 3000)):
+    for frames, grains, shake in ((12, 25000, 0.0), (1000, 12000, report_page.RADIUS)):
         with tempfile.TemporaryDirectory(prefix="furrow page ") as folder:
-            figures["pages"].append(measured(folder, frames, grains))
+            figures["pages"].append(measured(folder, frames, grains, shake))
     file.write_text(json.dumps(figures, indent=2) + "\n")
 
 

@@ -129,11 +129,13 @@ ExitCode report_command(const Typed& typed) {
     const std::string theory = terrain::soil::write_soil_estimate(typed.directory, typed.soil);
     launch::say("furrow: " + theory + "\n");
   }
+  if (!typed.vtk.empty()) {  // first: a folder that is refused must not wait for the plots
+    launch::say("furrow: writing the frames to " + typed.vtk + "\n");
+    if (const ExitCode code = write_vtk(typed.directory, typed.vtk); code != ExitCode::done) return code;
+  }
   launch::say("furrow: plotting " + typed.directory + "\n");
   for (const auto& plot : make_report(report)) std::cout << plot.string() << "\n";
-  if (typed.vtk.empty()) return ExitCode::done;
-  launch::say("furrow: writing the frames to " + typed.vtk + "\n");
-  return write_vtk(typed.directory, typed.vtk);
+  return ExitCode::done;
 }
 
 ExitCode run_command(const Typed& typed, int argc, char** argv) {

@@ -72,7 +72,7 @@ ExitCode write_vtk(const std::filesystem::path& run, const std::filesystem::path
                                         .address_space = kAddressSpace,
                                         .quiet = false,
                                         .deadline = std::nullopt});
-  std::cout << finished.output;
+  std::cout << finished.output << std::flush;
   const int code = WIFEXITED(finished.status) ? WEXITSTATUS(finished.status) : -1;
   for (const ExitCode said : {ExitCode::done, ExitCode::bad_input, ExitCode::io})
     if (code == static_cast<int>(said)) return said;

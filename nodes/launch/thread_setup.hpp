@@ -54,7 +54,7 @@ ThreadPlan plan_threads(const Transport& transport, int terrain_threads, std::in
 void apply(const ThreadPlan& plan);
 
 /// OpenMP threads that spin while they wait take the cores of other ranks. How they wait is read from the
-/// environment before main begins, so unless OMP_WAIT_POLICY is set already, this sets it and starts the program anew.
+/// environment before main begins, so unless OMP_WAIT_POLICY is set already, this sets it and starts the program again.
 void wait_passively(char** argv);
 
 /// The variables that wait_passively sets, as NAME=value: for a supervisor to set them for the ranks it starts.

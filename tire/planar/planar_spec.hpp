@@ -1,5 +1,5 @@
 // The planar finite-element tire as an entry of the table of models: its file, what a scenario changes of it, what it
-// says of itself. Runs of the program do not move it yet: it is pressed (furrow press), or rolls held rigid (tire.rigid).
+// says of itself.
 #pragma once
 
 #include <memory>

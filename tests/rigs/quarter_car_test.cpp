@@ -153,7 +153,8 @@ TEST(QuarterCar, a_restored_rig_continues_bit_for_bit) {
   go(*other, 150, 400);
   EXPECT_EQ(one->rim(0).position, other->rim(0).position);
   EXPECT_EQ(one->rim(0).angular_velocity, other->rim(0).angular_velocity);
-  for (const Column& column : one->subjects().front().columns)
+  const auto subjects = one->subjects();
+  for (const Column& column : subjects.front().columns)
     EXPECT_EQ(measured(*one, column.name), measured(*other, column.name)) << column.name;
   EXPECT_EQ(one->accounts().damper_loss, other->accounts().damper_loss);
 }

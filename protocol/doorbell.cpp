@@ -22,7 +22,7 @@ std::uint32_t* word_of(std::atomic<std::uint32_t>& value) { return reinterpret_c
 }  // namespace
 
 // Both sides write one word and then read the other's, in one order for all: either the sender sees that the owner
-// sleeps, or the kernel sees that the count has changed and lets the owner go on.
+// sleeps, or the kernel sees that the count has changed and lets the owner continue.
 void Doorbell::ring() noexcept {
   rings_.fetch_add(1);
   if (asleep_.load() != 0) syscall(SYS_futex, word_of(rings_), FUTEX_WAKE, INT_MAX, nullptr, nullptr, 0);

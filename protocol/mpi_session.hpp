@@ -14,7 +14,7 @@ class MpiSession {
   MpiSession(const MpiSession&) = delete;
   MpiSession& operator=(const MpiSession&) = delete;
 
-  /// True when a receiver fetches large messages from the sender's memory by itself: Open MPI between processes of one
+  /// True when a receiver fetches large messages from the sender's memory on its own: Open MPI between processes of one
   /// machine, where the system allows it. Otherwise a message moves only while its sender is inside MPI too.
   bool receivers_pull() const { return receivers_pull_; }
 

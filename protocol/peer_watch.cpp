@@ -103,7 +103,7 @@ void PeerWatch::tell_wait() {
 
 void PeerWatch::end_wait() {
   waits_for_ = -1;
-  if (told_) tell(-1);
+  if (told_ && !failed()) tell(-1);  // after a failure the others must still know whom this node waited for
   told_ = false;
 }
 

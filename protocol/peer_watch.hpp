@@ -37,7 +37,7 @@ class PeerWatch {
   /// This node's own waiting; the others are told only of a wait that lasts.
   void begin_wait(int node);
   void tell_wait();
-  void end_wait();
+  void end_wait();  // tells nobody once a node has failed
 
   /// "rig waited 60 s for terrain (terrain report), which waits for tire 0: tire 0 does not answer; …"
   /// After this the node is about to fail: it tells nobody that its wait has ended.

@@ -1,5 +1,5 @@
 // What carries bytes between nodes, which are numbered rig, tires, terrain (its leader first). Two implementations:
-// queues between threads, and MPI. All that the two have in common stands in node_transport.hpp.
+// queues between threads, and MPI. All that the two have in common is in node_transport.hpp.
 #pragma once
 
 #include <cstddef>

@@ -33,7 +33,7 @@ class RollingTire {
   // One step is push(), roll() and follow(), in this order.
   /// The ground answers to the tire where it stands. @throws Error(physics)
   void push();
-  /// The tire moves on, by itself for those who time it. @throws Error(physics)
+  /// The tire moves on, on its own for those who time it. @throws Error(physics)
   void roll();
   /// The carriage moves on, with a vertical damper c, N s/m.
   void follow(double damper);

@@ -17,7 +17,7 @@ namespace furrow::rigs {
 /// Every field is the scenario key `rig.<name>`.
 struct VehicleRigOptions {
   std::string vehicle;    // a vehicle's file
-  nlohmann::json driver;  // a driver's file, or what stands in one; null: nobody drives, the brakes hold
+  nlohmann::json driver;  // a driver's file, or what is in one; null: nobody drives, the brakes hold
   double start =
       0.0;  // x of the vehicle's origin at t = 0, m; where the scenario does not say it, it is filled in
   double lateral = 0.0;          // y of the vehicle's origin at t = 0, m

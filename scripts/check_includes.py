@@ -36,7 +36,7 @@ PHYSICS = ("tire", "terrain", "terrain/surface", "vehicle", "rigs")
 LARGEST_FOLDER = 45  # sources
 # Top-level folders that hold no room.
 NO_ROOMS = {"tests", "scripts"}
-# Dummies of models: the room that each would stand in, and the unit with the table that would list it.
+# Dummies of models: the room that each would be in, and the unit with the table that would list it.
 DUMMIES = {
     "tests/dummies/spring_wheel": ("tire", "tire/tires"),
     "tests/dummies/spring_mat": ("terrain", "terrain/terrains"),

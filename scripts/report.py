@@ -2,10 +2,10 @@
 """Plots of a run, of soil tests, of a pressed tire, of a vehicle's suspensions or of a study: PNG files in the run
 directory, and report.html, a page with all of it; their names, without the folder, as a JSON list on stdout.
 
-usage: report.py DIR [--out FOLDER] [--only NAME]...
+usage: report.py DIR [--out FOLDER] [--only NAME]... [--quiet]
        report.py DIR DIR... --out FOLDER    one report.html that compares the runs
 
-Every plot is made from what the directory holds; a plot whose data are missing is left out with a word on stderr.
+Every plot is made from what the directory holds; a plot whose data are missing is left out, and a message on stderr says so.
 Exit codes: 0 at least one plot was written, 5 a file could not be read or written.
 """
 import argparse
@@ -28,6 +28,8 @@ from plot import (accounts, charts, ground, kinematics, press, scene, soil, swee
 from plot.digits import with_error  # noqa: E402
 from plot.run_data import Damaged, Missing, Run, printable  # noqa: E402
 
+
+quiet = False  # set by --quiet
 
 
 @functools.lru_cache(maxsize=1)
@@ -86,25 +88,31 @@ def may_write(folder, name):
     return True
 
 
+def note(text):
+    """A message that is no error: --quiet leaves it out."""
+    if not quiet:
+        print(f"report: {text}", file=sys.stderr)
+
+
 def words(run):
     """What a reader must know of the result besides the plots."""
     for what, found in (run.summary.get("accounts") or {}).items():
         if isinstance(found, dict) and found.get("closes") is False:
-            print(f"report: the account of {printable(what)} DOES NOT CLOSE: see accounts of summary.json", file=sys.stderr)
+            note(f"the account of {printable(what)} DOES NOT CLOSE: see accounts of summary.json")
     pull = run.summary.get("drawbar_pull_N") or {}
     if pull.get("mean") is None:
         return
     if not run.measured:
-        print("report: the tire did not touch the terrain in the averaging window: nothing was measured", file=sys.stderr)
+        note("the tire did not touch the terrain in the averaging window: nothing was measured")
         return
     if run.window is None:
         raise Damaged("summary.json: key 'drawbar_pull_N': lacks from_s and to_s, the window of the mean")
-    print(f"report: drawbar pull {with_error(pull['mean'], pull.get('sem'))} N (standard error of this run) "
-          f"from {run.window[0]:.3g} to {run.window[1]:.3g} s", file=sys.stderr)
+    note(f"drawbar pull {with_error(pull['mean'], pull.get('sem'))} N (standard error of this run) "
+         f"from {run.window[0]:.3g} to {run.window[1]:.3g} s")
     if not pull.get("steady", False):
         reasons = "; ".join(map(printable, pull.get("unsteady_because") or
                                 ["the averaging window is not long or even enough"]))
-        print(f"report: this pull is NOT STEADY: {reasons}", file=sys.stderr)
+        note(f"this pull is NOT STEADY: {reasons}")
 
 
 def main():
@@ -113,7 +121,10 @@ def main():
     parser.add_argument("others", type=pathlib.Path, nargs="*", help="further runs: one page that compares all of them")
     parser.add_argument("--out", type=pathlib.Path, help="folder for the plots (default: the run directory)")
     parser.add_argument("--only", action="append", choices=PLOTS | VEHICLE_PLOTS | SOIL_PLOTS | PRESS_PLOTS | KINEMATICS_PLOTS | SWEEP_PLOTS | BEDS_PLOTS, help="this plot only; may be repeated")
+    parser.add_argument("--quiet", action="store_true", help="print errors only")
     arguments = parser.parse_args()
+    global quiet
+    quiet = arguments.quiet
     if arguments.others:
         import page
         return page.compare([arguments.directory, *arguments.others], arguments.out or pathlib.Path("."), may_write)
@@ -141,7 +152,7 @@ def main():
         try:
             figure = plots[name](run)
         except Missing as reason:
-            print(f"report: no {name}.png: {reason}", file=sys.stderr)
+            note(f"no {name}.png: {reason}")
             continue
         except Damaged as error:
             print(f"report: no {name}.png: {printable(error)}", file=sys.stderr)

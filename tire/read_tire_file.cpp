@@ -116,7 +116,7 @@ TireFile read_own(JsonReader& reader) {
   return f;
 }
 
-/// Where a template's name stands in the file, its name, and what reads it.
+/// Where a template's name is in the file, its name, and what reads it.
 struct Template {
   const char* key;
   const char* name;

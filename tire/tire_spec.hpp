@@ -82,7 +82,7 @@ struct TireShape {
   double tread_width = 0.0;  // m
 };
 
-/// How a model computes, and under which gravity; what is not given is as the model takes it by itself.
+/// How a model computes, and under which gravity; what is not given is as the model takes it on its own.
 struct TireContext {
   int threads = 1;
   std::optional<double> tolerance = {};  // of the solver's residual, relative

@@ -111,7 +111,7 @@ CheckpointManifest read_manifest(const fs::path& file) {
   Json json = read_json_if_whole(file);
   if (!json.is_object()) throw io_error(file.string(), "is not valid JSON: the checkpoint is damaged");
   try {
-    if (json.value("kind", "") != kKind) throw io_error(file.string(), "is no checkpoint of furrow");
+    if (json.value("kind", "") != kKind) throw io_error(file.string(), "is not a checkpoint of furrow");
     const Json& format = json.at("format_version");
     if (format > kFormatVersion)
       throw io_error(file.string(),

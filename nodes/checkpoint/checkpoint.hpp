@@ -35,7 +35,7 @@ struct CheckpointManifest {
   double write_s = 0.0;           // wall time that the run stood still for it, until this was written
 };
 
-/// Where a run goes on.
+/// Where a run continues.
 struct ResumePoint {
   std::filesystem::path folder;  // of the checkpoint
   CheckpointManifest manifest;

@@ -83,7 +83,7 @@ ResumePoint newest_whole(const fs::path& run, std::vector<std::string>& problems
   throw Error(ExitCode::io, text + run.string() + ": no checkpoint is whole, nothing can be continued");
 }
 
-/// Counts the checkpoint's steps in those of the run that goes on, which are an equal part of them.
+/// Counts the checkpoint's steps in those of the run that continues, which are an equal part of them.
 /// @throws Error(bad_input) when they are not
 void count_in_steps_of(double step, double before, const fs::path& run, CheckpointManifest& manifest) {
   const auto ratio = static_cast<std::int64_t>(std::llround(before / step));
@@ -125,7 +125,7 @@ bool only_finer(const json& changed) {
   return any;
 }
 
-/// What to expect of a run that failed and goes on with nothing changed. @param failed summary_failed.json
+/// What to expect of a run that failed and continues with nothing changed. @param failed summary_failed.json
 std::string failure_ahead(const fs::path& run, const nlohmann::ordered_json& failed) {
   const auto text = value_at(failed, "failed.error"), time = value_at(failed, "failed.time_s");
   return fmt::format("{}: failed at t = {} s and will fail again, as nothing is changed: {}", run.string(),
@@ -133,7 +133,7 @@ std::string failure_ahead(const fs::path& run, const nlohmann::ordered_json& fai
                      text.is_string() ? text.get<std::string>() : "");
 }
 
-/// Compares the scenario of the plan's checkpoint to that which goes on, and takes what is changed into the plan.
+/// Compares the scenario of the plan's checkpoint to that which continues, and takes what is changed into the plan.
 /// @param failed summary_failed.json @throws Error(bad_input), Error(io) for a scenario that no version completed
 void take_changes(const fs::path& run, const nlohmann::ordered_json& failed, ResumePlan& plan) try {
   ResumePoint& point = plan.point;
@@ -195,15 +195,15 @@ ResumePlan plan_resume(const fs::path& run,
   const std::int64_t reached = std::max(ended, manifest.step);
   if (steps < reached)
     throw input_error(run.string(), "run.end",
-                      fmt::format("is {} s, but the run has come to {} s, expected that or later",
+                      fmt::format("is {} s, but the run has reached {} s, expected that or later",
                                   number_text(plan.scenario.run.end),
                                   number_text(static_cast<double>(reached) * plan.scenario.run.step)));
   if (manifest.build != build_id())
     plan.warnings.push_back(run.string() + ": the checkpoint is of another build of furrow (" +
-                            manifest.version + "): the run goes on, but not bit for bit");
+                            manifest.version + "): the run continues, but not bit for bit");
   else if (manifest.cpu != cpu_model())
     plan.warnings.push_back(run.string() + ": the checkpoint is of another processor (" + manifest.cpu +
-                            "): the run goes on, perhaps not bit for bit");
+                            "): the run continues, perhaps not bit for bit");
   return plan;
 }
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "nodes/commands/commands.hpp"
+#include "nodes/launch/messages.hpp"
 #include "nodes/scenario/starter.hpp"
 #include "protocol/files/data_files.hpp"
 #include "protocol/files/json_text.hpp"
@@ -109,9 +110,9 @@ ExitCode new_command(const NewArguments& arguments) {
                                  .rigid = arguments.rigid,
                                  .load = arguments.load.value_or(0.0)});
   std::cout << file.string() << "\n";
-  std::cerr << fmt::format(
+  launch::say(fmt::format(
       "furrow: '{}' is written; check it with 'furrow validate {}', run it with 'furrow run {}'\n",
-      file.string(), file.string(), file.string());
+      file.string(), file.string(), file.string()));
   return ExitCode::done;
 }
 

@@ -15,6 +15,7 @@
 
 #include "nodes/commands/bench.hpp"
 #include "nodes/commands/options.hpp"
+#include "nodes/launch/messages.hpp"
 #include "nodes/launch/progress.hpp"
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
@@ -37,7 +38,7 @@ namespace {
 
 /// What the user typed, as CLI11 fills it in.
 struct Typed {
-  std::string scenario, out, threads, key, directory, soil, until;
+  std::string scenario, out, threads, key, directory, soil, until, vtk;
   std::vector<std::string> settings, others;
   bool overwrite = false, profile = false, json = false, no_plots = false, slurm = false;
   std::optional<int> seeds, jobs;
@@ -51,14 +52,15 @@ Error usage_error(const std::string& what) { return input_error("command line", 
 void add_settings(CLI::App& command, Typed& typed) {
   command
       .add_option("--set", typed.settings,
-                  "key=value: set a scenario key by its dotted path; may be repeated")
+                  "Set a scenario key by its dotted path, as key=value. The option may be repeated.")
       ->take_all()
       ->allow_extra_args(false);
-  command.add_option("--threads", typed.threads, "threads of the terrain: a number or auto (run.threads)");
+  command.add_option("--threads", typed.threads,
+                     "Compute the terrain with this number of threads, or with 'auto' (run.threads).");
 }
 
 void add_scenario(CLI::App& command, Typed& typed) {
-  command.add_option("SCENARIO", typed.scenario, "scenario file (JSON)")->required();
+  command.add_option("SCENARIO", typed.scenario, "Read this scenario file (JSON).")->required();
   add_settings(command, typed);
 }
 
@@ -97,7 +99,8 @@ ExitCode validate_command(Typed& typed) {
   return ExitCode::done;
 }
 
-ExitCode ranks_command(Typed& typed, const SlurmArguments& slurm, const std::vector<std::string>& command_line) {
+ExitCode ranks_command(Typed& typed, const SlurmArguments& slurm,
+                       const std::vector<std::string>& command_line) {
   const scenario::Scenario scenario = load(typed);
   if (typed.slurm) {
     std::cout << slurm_script(scenario, slurm, settings_of(typed));
@@ -118,13 +121,19 @@ ExitCode report_command(const Typed& typed) {
                       "is missing, expected the folder of the page that compares several runs");
   if (!typed.others.empty() && !typed.soil.empty())
     throw input_error("command line", "--soil", "is given with several runs, expected one");
+  if (!typed.others.empty() && !typed.vtk.empty())
+    throw input_error("command line", "--vtk", "is given with several runs, expected one");
   if (!typed.soil.empty()) {
     if (launch::has_run_list(typed.directory))
       launch::add_to_run_list(typed.directory, {"soil_estimate.json"});
     const std::string theory = terrain::soil::write_soil_estimate(typed.directory, typed.soil);
-    std::cerr << "furrow: " << theory << "\n";
+    launch::say("furrow: " + theory + "\n");
   }
-  std::cerr << "furrow: plotting " << typed.directory << "\n";
+  if (!typed.vtk.empty()) {  // first: a folder that is refused must not wait for the plots
+    launch::say("furrow: writing the frames to " + typed.vtk + "\n");
+    if (const ExitCode code = write_vtk(typed.directory, typed.vtk); code != ExitCode::done) return code;
+  }
+  launch::say("furrow: plotting " + typed.directory + "\n");
   for (const auto& plot : make_report(report)) std::cout << plot.string() << "\n";
   return ExitCode::done;
 }
@@ -161,6 +170,20 @@ ExitCode bench_command(std::string (*run)(const Bench&, const ProgressCall&), co
   display.clear();
   std::cout << json;
   return ExitCode::done;
+}
+
+/// Commands that say more than their result, and those below them, take --quiet.
+void add_quiet(CLI::App& app) {
+  const auto all = [](const CLI::App*) { return true; };
+  for (CLI::App* command : app.get_subcommands(all)) {
+    const std::string name = command->get_name();
+    if (!command->get_subcommands(all).empty())
+      add_quiet(*command);
+    else if (name != "list" && name != "explain" && name != "events")
+      command->add_flag_callback(
+          "--quiet", launch::silence_messages,
+          "Print errors only on standard error; what goes to standard output stays the same.");
+  }
 }
 
 /// The command whose help says more, with a blank after it.
@@ -211,13 +234,14 @@ void print_lines(const char* kind, const std::string& text) {
 class CommandLine {
  public:
   CommandLine(int argc, char** argv) : argc_(argc), argv_(argv) {
-    app_.set_version_flag("--version", "furrow " FURROW_VERSION);
+    app_.set_help_flag("-h,--help", "Print this help and exit.");
+    app_.set_version_flag("--version", "furrow " FURROW_VERSION, "Print the version and exit.");
     app_.require_subcommand(1);
     app_.footer(
         "Examples:\n"
-        "  furrow run first_look.json                        a wheel on soil, in seconds\n"
-        "  furrow new mine --tire my_tire.json               a scenario to begin with\n"
-        "  furrow run mine.json --set rig.slip=0.2 --seeds 5 pull and sinkage with their intervals\n\n"
+        "  furrow run first_look.json                        Run a wheel on soil, in seconds.\n"
+        "  furrow new mine --tire my_tire.json               Write a scenario of your own.\n"
+        "  furrow run mine.json --set rig.slip=0.2 --seeds 5 Get pull and sinkage with intervals.\n\n"
         "Exit codes: 0 done, 2 bad input, 3 the physics failed, 4 a rank was lost, 5 input/output, "
         "6 memory or another limit ran out, 75 stopped by a signal.");
     add_group("Begin", &CommandLine::add_beginnings);
@@ -227,6 +251,7 @@ class CommandLine {
     add_group("Test tires, soils and vehicles", &CommandLine::add_vehicles);
     add_group("Compare and look", &CommandLine::add_studies);
     add_group("Measure this machine", &CommandLine::add_benches);
+    add_quiet(app_);
   }
 
   ExitCode execute() {
@@ -290,152 +315,185 @@ class CommandLine {
 };
 
 void CommandLine::add_beginnings() {
-  CLI::App& list = add("list", "list the scenarios, studies, tires, soils and vehicles that come with Furrow",
-                       [this] { return list_command(typed_.key, typed_.json); });
-  list.add_option("KIND", typed_.key, "scenarios, studies, tires, soils or vehicles (default: all)");
-  list.add_flag("--json", typed_.json, "print JSON");
+  CLI::App& list =
+      add("list", "List the scenarios, studies, tires, soils and vehicles that come with Furrow.",
+          [this] { return list_command(typed_.key, typed_.json); });
+  list.add_option("KIND", typed_.key,
+                  "List this kind only: scenarios, studies, tires, soils or vehicles (default: all).");
+  list.add_flag("--json", typed_.json, "Print JSON.");
 
-  CLI::App& starter =
-      add("new", "write a scenario to begin with, with a comment for every key; prints its name",
-          [this] { return new_command(new_); });
-  starter.add_option("NAME", new_.name, "file to write; .json is added")->required();
-  CLI::Option* tire = starter.add_option("--tire", new_.tire, "tire file (default: the layered HMMWV tire)");
-  starter.add_option("--soil", new_.soil, "soil file (default: cohesive grains)");
-  starter.add_flag("--rigid", new_.rigid, "the tires keep their shape (tire.rigid)");
+  CLI::App& starter = add(
+      "new", "Write a scenario of your own to start from, with a comment for every key, and print its name.",
+      [this] { return new_command(new_); });
+  starter.add_option("NAME", new_.name, "Write to this file; .json is added where it is missing.")
+      ->required();
+  CLI::Option* tire =
+      starter.add_option("--tire", new_.tire, "Use this tire file (default: the layered HMMWV tire).");
+  starter.add_option("--soil", new_.soil, "Use this soil file (default: cohesive grains).");
+  starter.add_flag("--rigid", new_.rigid, "Make the tires rigid (tire.rigid).");
   CLI::Option* load =
-      starter.add_option("--load", new_.load, "load on the wheel, N (default: by the tire's size)")
+      starter.add_option("--load", new_.load, "Set the load on the wheel, N (default: by the tire's size).")
           ->check(CLI::PositiveNumber);
-  starter.add_option("--vehicle", new_.vehicle, "vehicle file: a whole vehicle in place of one wheel")
+  starter
+      .add_option("--vehicle", new_.vehicle, "Use this vehicle file: a whole vehicle in place of one wheel.")
       ->excludes(tire)
       ->excludes(load);
 }
 
 void CommandLine::add_runs() {
-  CLI::App& run = add("run", "run a scenario; prints the folder that holds the results",
+  CLI::App& run = add("run", "Run a scenario and print the folder that holds the results.",
                       [this] { return run_command(typed_, argc_, argv_); });
   add_scenario(run, typed_);
-  run.add_option("--out", typed_.out, "new folder for the results (default: results/<scenario>-NNN here)");
-  run.add_flag("--overwrite", typed_.overwrite, "let --out replace the results of an earlier run");
+  run.add_option("--out", typed_.out,
+                 "Write the results to this new folder (default: results/<scenario>-NNN).");
+  run.add_flag("--overwrite", typed_.overwrite,
+               "Replace the results of an earlier run in the folder of --out.");
   run.add_flag("--profile", typed_.profile,
-               "also write profile.json: where the time of each step goes (Chrome trace)");
-  run.add_flag("--no-plots", typed_.no_plots, "make no plots; 'furrow report' makes them later");
+               "Write profile.json too: where the time of each step goes (Chrome trace).");
+  run.add_flag("--no-plots", typed_.no_plots, "Make no plots; 'furrow report' makes them later.");
+  run.add_option("--seeds", typed_.seeds,
+                 "Run on this number of beds, 2 to 1000, with run.seed, run.seed + 1, …, and write means and "
+                 "95 % intervals. "
+                 "The same command continues interrupted ones.");
   run.add_option(
-      "--seeds", typed_.seeds,
-      "beds, 2 to 1000: run as many, with run.seed, run.seed + 1, …, and write their means and 95 % intervals; "
-      "the same command continues them");
-  run.add_option("--jobs", typed_.jobs,
-                 "with --seeds: beds at once, each with its share of the cores (default: 1)");
+      "--jobs", typed_.jobs,
+      "Run this number of beds at once, each with its share of the cores (default: 1). It needs --seeds.");
 
   CLI::App& resume = add("resume",
-                         "continue a run from its last checkpoint; the result is bit-identical to an "
-                         "uninterrupted run",
+                         "Continue a run from its last checkpoint. The result is bit-identical to that of an "
+                         "uninterrupted run.",
                          [this] { return resume_command(typed_, argc_, argv_); });
-  resume.add_option("DIR", typed_.directory, "folder of the run")->required();
-  resume.add_option("--until", typed_.until, "new end of the run, s (run.end)");
+  resume.add_option("DIR", typed_.directory, "Continue the run in this folder.")->required();
+  resume.add_option("--until", typed_.until, "Run until this simulated time, s (run.end).");
   add_settings(resume, typed_);
-  resume.add_flag("--profile", typed_.profile, "also write profile.json, of the steps from here on");
-  resume.add_flag("--no-plots", typed_.no_plots, "make no plots; 'furrow report' makes them later");
+  resume.add_flag("--profile", typed_.profile, "Write profile.json too, of the steps from here on.");
+  resume.add_flag("--no-plots", typed_.no_plots, "Make no plots; 'furrow report' makes them later.");
 }
 
 void CommandLine::add_questions() {
   CLI::App& validate = add("validate",
-                           "check a scenario and estimate what a run of it will need, or check a vehicle and "
-                           "tell how it stands",
+                           "Check a scenario and estimate what a run of it will need, or check a vehicle and "
+                           "print its state at rest.",
                            [this] { return validate_command(typed_); });
   add_scenario(validate, typed_);
-  validate.get_option("SCENARIO")->description("scenario file, or vehicle file (JSON)");
-  validate.add_flag("--json", typed_.json, "print JSON");
+  validate.get_option("SCENARIO")->description("Check this scenario file or vehicle file (JSON).");
+  validate.add_flag("--json", typed_.json, "Print JSON.");
 
-  CLI::App& ranks = add("ranks",
-                        "list which MPI rank does what, and how to start the ranks by hand; or print a batch script",
-                        [this] { return ranks_command(typed_, slurm_, {argv_, argv_ + argc_}); });
+  CLI::App& ranks = add(
+      "ranks", "List which MPI rank does what, and how to start the ranks by hand; or print a batch script.",
+      [this] {
+        return ranks_command(typed_, slurm_, {argv_, argv_ + argc_});
+      });
   add_scenario(ranks, typed_);
   add_slurm_options(ranks, typed_.slurm, slurm_);
 
-  add("explain", "explain a scenario key; without KEY, list all keys", [this] {
-    std::cout << scenario::explain(typed_.key);
-    return ExitCode::done;
-  }).add_option("KEY", typed_.key, "dotted path, for example terrain.cohesion");
+  add("explain", "Explain a scenario key, or list all keys.",
+      [this] {
+        std::cout << scenario::explain(typed_.key);
+        return ExitCode::done;
+      })
+      .add_option(
+          "KEY", typed_.key,
+          "Explain the key of this dotted path, for example terrain.cohesion (default: list all keys).");
 }
 
 void CommandLine::add_virtual_tests() {
-  add_scenario(add("bed", "prepare and settle the bed of a scenario and keep it for later runs; prints JSON",
-                   [this] { return bed_command(load(typed_)); }),
-               typed_);
+  add_scenario(
+      add("bed", "Settle the bed of a scenario, keep it for later runs, and print its statistics as JSON.",
+          [this] { return bed_command(load(typed_)); }),
+      typed_);
 
   CLI::App& soil = add("soil",
-                       "run virtual soil tests on a scenario's grains: plate sinkage, direct shear, "
-                       "cone, angle of repose; prints JSON",
+                       "Run virtual soil tests on a scenario's grains (plate sinkage, direct shear, "
+                       "cone, angle of repose) and print the results as JSON.",
                        [this] { return soil_command(load(typed_), soil_); });
   add_scenario(soil, typed_);
   add_soil_options(soil, soil_);
 
-  CLI::App& press =
-      add("press", "press the tire of a scenario on a plate or a cleat, statically; prints the folder",
-          [this] { return press_command(load(typed_), press_); });
+  CLI::App& press = add(
+      "press",
+      "Press the tire of a scenario on a plate or a cleat, statically, and print the folder of the results.",
+      [this] { return press_command(load(typed_), press_); });
   add_scenario(press, typed_);
   add_press_options(press, press_);
 }
 
 void CommandLine::add_vehicles() {
-  CLI::App& kc =
-      add("kc",
-          "move the suspensions of a vehicle: camber, toe, roll centre, rates and more against travel and "
-          "steering; prints the folder",
-          [this] {
-            kinematics_.plots = !typed_.no_plots;
-            return kinematics_command(kinematics_);
-          });
-  kc.add_option("VEHICLE", kinematics_.vehicle, "vehicle file (JSON), as given or in vehicle/data/")
+  CLI::App& kc = add("kc",
+                     "Move the suspensions of a vehicle, tabulate camber, toe, roll centre, rates and more "
+                     "against travel and "
+                     "steering, and print the folder of the results.",
+                     [this] {
+                       kinematics_.plots = !typed_.no_plots;
+                       return kinematics_command(kinematics_);
+                     });
+  kc.add_option("VEHICLE", kinematics_.vehicle,
+                "Read this vehicle file (JSON), as given or in vehicle/data/.")
       ->required();
-  CLI::Option* out = kc.add_option("--out", kinematics_.out,
-                                   "new folder for the results (default: results/<vehicle>-kc-NNN here)");
-  kc.add_flag("--overwrite", kinematics_.overwrite, "let --out replace the results of an earlier run");
-  kc.add_option("--travel", kinematics_.travel,
-                "travel of the wheels up and down, m (default: a fifth of the smallest tire's radius)");
-  kc.add_option("--points", kinematics_.points, "points of each motion")->capture_default_str();
-  kc.add_flag("--no-plots", typed_.no_plots, "make no plots; 'furrow report' makes them later");
+  CLI::Option* out = kc.add_option(
+      "--out", kinematics_.out, "Write the results to this new folder (default: results/<vehicle>-kc-NNN).");
+  kc.add_flag("--overwrite", kinematics_.overwrite,
+              "Replace the results of an earlier run in the folder of --out.");
+  kc.add_option(
+      "--travel", kinematics_.travel,
+      "Move the wheels up and down by this travel, m (default: a fifth of the smallest tire's radius).");
+  kc.add_option("--points", kinematics_.points, "Compute this number of points of each motion.")
+      ->capture_default_str();
+  kc.add_flag("--no-plots", typed_.no_plots, "Make no plots; 'furrow report' makes them later.");
   CLI::Option* csv =
-      kc.add_flag("--csv", kinematics_.csv, "print the table and make no folder")->excludes(out);
-  kc.add_flag("--json", kinematics_.json, "print table and figures as JSON and make no folder")
+      kc.add_flag("--csv", kinematics_.csv, "Print the table as CSV and make no folder.")->excludes(out);
+  kc.add_flag("--json", kinematics_.json, "Print table and figures as JSON and make no folder.")
       ->excludes(out)
       ->excludes(csv);
 }
 
 void CommandLine::add_studies() {
-  CLI::App& sweep = add("sweep", "run a parameter study; resumes where it left off",
+  CLI::App& sweep = add("sweep", "Run a parameter study, or continue an interrupted one.",
                         [this] { return sweep_command(sweep_); });
-  sweep.add_option("STUDY", sweep_.study, "study file (JSON)")->required();
-  sweep.add_option("--out", sweep_.out, "folder of the study (default: results/<study> here)");
-  sweep.add_option("--jobs", sweep_.jobs, "runs at once, each with its share of the cores")
+  sweep.add_option("STUDY", sweep_.study, "Read this study file (JSON).")->required();
+  sweep.add_option("--out", sweep_.out, "Keep the study in this folder (default: results/<study>).");
+  sweep
+      .add_option("--jobs", sweep_.jobs, "Run this number of runs at once, each with its share of the cores.")
       ->capture_default_str();
 
-  CLI::App& report = add("report",
-                         "show a finished run: PNG files and report.html, a page with plots and 3-D playback",
-                         [this] { return report_command(typed_); });
-  report.add_option("DIR", typed_.directory, "folder of the run, or of soil tests")->required();
-  report.add_option("OTHERS", typed_.others, "folders of further runs: one page compares all of them");
-  report.add_option("--out", typed_.out, "folder for the files (default: DIR); required with several runs");
-  report.add_option("--soil", typed_.soil,
-                    "soil.json of 'furrow soil': add what soil theory expects to the run's result");
+  CLI::App& report =
+      add("report", "Plot a finished run: PNG files and report.html, a page with plots and 3-D playback.",
+          [this] { return report_command(typed_); });
+  report
+      .add_option("DIR", typed_.directory,
+                  "Read the results in this folder: of a run, of its beds, of a study or of tests.")
+      ->required();
+  report.add_option("OTHERS", typed_.others,
+                    "Compare the run of DIR with the runs in these folders, on one page.");
+  report.add_option("--out", typed_.out,
+                    "Write the files to this folder (default: DIR). It is required with several runs.");
+  report.add_option(
+      "--soil", typed_.soil,
+      "Read this soil.json of 'furrow soil', and add what soil theory expects to the run's result.");
+  report.add_option(
+      "--vtk", typed_.vtk,
+      "Write the frames of the run, tires and grains, as VTP files for ParaView and VTK to this new folder.");
 
-  CLI::App& events = add("events", "tell what happened in a vehicle's run, and compare its axles", [this] {
-    events_.directory = typed_.directory;
-    return events_command(events_);
-  });
-  events.add_option("DIR", typed_.directory, "folder of the run")->required();
-  events.add_option("--from", events_.from, "beginning of the means, s (default: where they are steady)");
-  events.add_option("--to", events_.to, "their end, s (default: the end of the run)");
-  events.add_flag("--json", events_.json, "print JSON");
+  CLI::App& events =
+      add("events", "List what happened in a vehicle's run and when, and compare its axles.", [this] {
+        events_.directory = typed_.directory;
+        return events_command(events_);
+      });
+  events.add_option("DIR", typed_.directory, "Read the run in this folder.")->required();
+  events.add_option("--from", events_.from,
+                    "Begin the means at this time, s (default: where they are steady).");
+  events.add_option("--to", events_.to, "End the means at this time, s (default: the end of the run).");
+  events.add_flag("--json", events_.json, "Print JSON.");
 }
 
 void CommandLine::add_benches() {
-  CLI::App& bench = *app_.add_subcommand("bench", "measure how fast this machine is; prints JSON");
+  CLI::App& bench = *app_.add_subcommand("bench", "Measure how fast this machine is, and print JSON.");
   bench.require_subcommand(1);
-  add_grain_bench(add(bench, "grains", "step a settled bed, every grain in every step",
-                      [this] { return bench_command(bench_grains, grains_); }),
-                  grains_);
-  add_tire_bench(add(bench, "tire", "roll a loaded tire on hard ground; times the parts of a step",
+  add_grain_bench(
+      add(bench, "grains", "Time the steps of a settled bed, with every grain integrated in every step.",
+          [this] { return bench_command(bench_grains, grains_); }),
+      grains_);
+  add_tire_bench(add(bench, "tire", "Time the parts of a step of a loaded tire that rolls on hard ground.",
                      [this] { return bench_command(bench_tire, tire_); }),
                  tire_);
 }
@@ -443,7 +501,9 @@ void CommandLine::add_benches() {
 }  // namespace
 
 void print_error(const std::string& text) { print_lines("error", text); }
-void print_warning(const std::string& text) { print_lines("warning", text); }
+void print_warning(const std::string& text) {
+  if (!launch::messages_are_silenced()) print_lines("warning", text);
+}
 
 bool runs_as_rank(int argc, char** argv) {
   const std::string command = argc > 1 ? argv[1] : "";

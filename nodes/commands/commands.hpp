@@ -23,7 +23,7 @@ struct RunArguments {
   bool overwrite = false;
   bool profile = false;
   bool plots = true;    // at the end
-  bool resume = false;  // goes on with the run in `out`; `scenario` is not used
+  bool resume = false;  // continues the run in `out`; `scenario` is not used
   int seeds = 0;        // beds; 0: the scenario's own alone
   int jobs = 1;         // beds at once
 };
@@ -55,13 +55,16 @@ std::string slurm_script(const scenario::Scenario& scenario, const SlurmArgument
 struct ReportArguments {
   std::vector<std::filesystem::path> runs;  // one: its plots and page; several: a page that compares them
   std::filesystem::path out = {};           // folder of what is made; empty: that of the run
-  bool quiet = false;                       // no messages, and no longer than a minute
+  bool unasked = false;                     // by another command: no messages, and no longer than a minute
 };
 
 /// `furrow report`: makes the plots and the page of a run, or the page of several (report.cpp). @throws Error
 std::vector<std::filesystem::path> make_report(const ReportArguments& report);
 /// The same after a command whose results stand without plots: what goes wrong is a warning.
 std::vector<std::filesystem::path> make_report_or_warn(const std::filesystem::path& run);
+/// `furrow report --vtk`: writes the frames of a run as VTP files into a new folder, and prints the names of the lists of
+/// these files (report.cpp). @returns how it ended; the script has said what was wrong. @throws Error
+ExitCode write_vtk(const std::filesystem::path& run, const std::filesystem::path& folder);
 
 struct EventsArguments {
   std::filesystem::path directory;

@@ -17,6 +17,7 @@
 #include "nodes/commands/commands.hpp"
 #include "nodes/launch/held_folder.hpp"
 #include "nodes/launch/limits.hpp"
+#include "nodes/launch/messages.hpp"
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
 #include "nodes/launch/supervisor_lines.hpp"
@@ -70,7 +71,7 @@ class RankReporter {
     }
     display_.clear();
     if (error.code() == ExitCode::stopped)
-      display_.say(std::string("furrow: ") + error.what());
+      display_.say_error(std::string("furrow: ") + error.what());
     else
       print_error(error.what());
   }
@@ -115,7 +116,7 @@ bool told_by_another(Transport& transport, const Error& error, bool supervised) 
   return false;
 }
 
-/// Another run may have had the folder until now, and gone on from where this one meant to.
+/// Another run may have had the folder until now, and continued from where this one meant to.
 void require_same_start(const std::filesystem::path& run, const checkpoint::ResumePoint& resume) {
   if (checkpoint::last_checkpoint(run).manifest.step != resume.manifest.step)
     throw input_error(run.string(), "",
@@ -160,7 +161,8 @@ ExitCode run_this_node(Transport& transport, const scenario::Scenario& scenario,
       transport.announce_failure(error.code(), error.what());
       throw;
     }
-    const launch::ThreadPlan plan = launch::plan_threads(transport, scenario.run.threads);
+    const launch::ThreadPlan plan = launch::plan_threads(
+        transport, scenario.run.threads, scenario.terrain->estimate(scenario.terrain_context()).grains);
     launch::apply(plan);
     if (!plan.note.empty()) reporter.note(plan.note);
     context.threads = plan.threads;
@@ -171,7 +173,7 @@ ExitCode run_this_node(Transport& transport, const scenario::Scenario& scenario,
     context.progress = [&](const launch::Progress& progress) { reporter.show(progress); };
     const ExitCode code = ranks::run_node(scenario, transport, context);
     reporter.clear();
-    if (made && code == ExitCode::done) std::cerr << result_text(made->path(), scenario);
+    if (made && code == ExitCode::done) launch::say(result_text(made->path(), scenario));
     if (made) std::cout << made->path().string() << std::endl;
     return code;
   } catch (const PeerFailure& failure) {
@@ -213,8 +215,8 @@ void read_task(const RunArguments& arguments, Task& task) try {
 
 /// A run that is over leaves nothing to do: told as `furrow resume` tells it without a launcher.
 void tell_finished(const checkpoint::ResumePlan& plan, const RunArguments& arguments) {
-  std::cerr << fmt::format("furrow: {} has come to its end at {:g} s, there is nothing to do\n",
-                           arguments.out.string(), plan.ended);
+  launch::say(fmt::format("furrow: {} is finished: it ended at {:g} s; there is nothing to do\n",
+                          arguments.out.string(), plan.ended));
   std::cout << arguments.out.string() << std::endl;
 }
 

@@ -2,6 +2,7 @@
 #include <sys/wait.h>
 
 #include <chrono>
+#include <iostream>
 #include <optional>
 
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 
 #include "nodes/commands/commands.hpp"
 #include "nodes/commands/python_script.hpp"
+#include "nodes/launch/messages.hpp"
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
 #include "nodes/scenario/rank_table.hpp"
@@ -32,9 +34,10 @@ std::vector<std::filesystem::path> make_report(const ReportArguments& report) {
                       .folders = report.runs,
                       .what = "plots",
                       .address_space = kAddressSpace,
-                      .quiet = report.quiet,
-                      .deadline = report.quiet ? std::optional(Clock::now() + kPatience) : std::nullopt};
+                      .quiet = report.unasked,
+                      .deadline = report.unasked ? std::optional(Clock::now() + kPatience) : std::nullopt};
   if (!report.out.empty()) script.arguments = {"--out", report.out.string()};
+  if (launch::messages_are_silenced()) script.arguments.emplace_back("--quiet");
   const Finished finished = run_python(script);
   const auto list = nlohmann::json::parse(finished.output, nullptr, false);
   if (finished.too_late)
@@ -43,9 +46,9 @@ std::vector<std::filesystem::path> make_report(const ReportArguments& report) {
                                kPatience.count(), scenario::shell_path(run.string())));
   if (!WIFEXITED(finished.status) || WEXITSTATUS(finished.status) != 0 || !list.is_array())
     throw io_error(run.string(), launch::stop_signalled() ? "the plots were interrupted"
-                                 : report.quiet ? fmt::format("made no plots; 'furrow report {}' says why",
-                                                              scenario::shell_path(run.string()))
-                                                : "made no plots, expected the results of a run");
+                                 : report.unasked ? fmt::format("made no plots; 'furrow report {}' says why",
+                                                                scenario::shell_path(run.string()))
+                                                  : "made no plots, expected the results of a run");
   std::vector<std::filesystem::path> plots;
   for (const auto& name : list)
     plots.push_back((report.out.empty() ? run : report.out) / name.get<std::string>());
@@ -54,11 +57,27 @@ std::vector<std::filesystem::path> make_report(const ReportArguments& report) {
 
 std::vector<std::filesystem::path> make_report_or_warn(const std::filesystem::path& run) {
   try {
-    return make_report({.runs = {run}, .quiet = true});
+    return make_report({.runs = {run}, .unasked = true});
   } catch (const Error& error) {
     print_warning(std::string("no plots: ") + error.what());
     return {};
   }
+}
+
+ExitCode write_vtk(const std::filesystem::path& run, const std::filesystem::path& folder) {
+  const Finished finished = run_python({.name = "frames_vtk.py",
+                                        .arguments = {"--out", folder.string()},
+                                        .folders = {run},
+                                        .what = "VTP files",
+                                        .address_space = kAddressSpace,
+                                        .quiet = false,
+                                        .deadline = std::nullopt});
+  std::cout << finished.output << std::flush;
+  const int code = WIFEXITED(finished.status) ? WEXITSTATUS(finished.status) : -1;
+  for (const ExitCode said : {ExitCode::done, ExitCode::bad_input, ExitCode::io})
+    if (code == static_cast<int>(said)) return said;
+  throw io_error(run.string(), launch::stop_signalled() ? "writing VTP files was interrupted"
+                                                        : "made no VTP files, expected the frames of a run");
 }
 
 }  // namespace furrow::commands

@@ -12,6 +12,7 @@
 #include "nodes/checkpoint/resume.hpp"
 #include "nodes/commands/commands.hpp"
 #include "nodes/launch/limits.hpp"
+#include "nodes/launch/messages.hpp"
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
 #include "nodes/launch/start_watch.hpp"
@@ -26,7 +27,7 @@
 namespace furrow::commands {
 namespace {
 
-constexpr const char* kDone = "summary.json";  // stands in the folder if and only if the run is done
+constexpr const char* kDone = "summary.json";  // is in the folder if and only if the run is done
 
 std::vector<std::string> rank_arguments(const RunArguments& arguments,
                                         const std::filesystem::path& directory) {
@@ -40,7 +41,7 @@ std::vector<std::string> rank_arguments(const RunArguments& arguments,
 }
 
 void tell_result(const scenario::Scenario& scenario, const std::filesystem::path& directory, bool plots) {
-  std::fputs(result_text(directory, scenario).c_str(), stderr);
+  launch::say(result_text(directory, scenario));
   if (!plots) return;
   const auto made = make_report_or_warn(directory);
   if (made.empty()) return;
@@ -48,27 +49,27 @@ void tell_result(const scenario::Scenario& scenario, const std::filesystem::path
     return file.extension() == ".html";
   });
   if (page != made.end())
-    std::fprintf(stderr, "furrow: %s shows all of it in a browser; %zu plots are beside it\n", page->c_str(),
-                 made.size() - 1);
+    launch::say(fmt::format("furrow: open {} in a browser to see the whole run; {} plots are beside it\n",
+                            page->string(), made.size() - 1));
   else
-    std::fprintf(stderr, "furrow: plots: %s and %zu more\n", made.front().c_str(), made.size() - 1);
+    launch::say(fmt::format("furrow: plots: {} and {} more\n", made.front().string(), made.size() - 1));
 }
 
-/// What can be done with a run that did not come to its end. Physics that failed fails again where nothing is changed.
+/// What can be done with a run that did not finish. Physics that failed fails again where nothing is changed.
 void tell_how_to_continue(const std::filesystem::path& directory, const launch::LaunchResult& result,
                           const scenario::Scenario& scenario) {
   const std::string folder = scenario::shell_quoted(directory.string());
   const bool physics = result.code == ExitCode::physics;
   if (physics && result.error.find(kNoStepHelps) != std::string::npos)
-    std::fputs("furrow: continued, it would fail at the same step; start again with furrow run\n", stderr);
+    std::fputs("furrow: a resumed run would fail at the same step; start again with furrow run\n", stderr);
   else if (checkpoint::list_checkpoints(directory).empty())
     std::fprintf(stderr, "furrow: there is no checkpoint yet; start again with furrow run%s\n",
                  physics ? ", perhaps with a smaller run.step" : "");
   else if (physics)
     std::fprintf(
         stderr,
-        "furrow: continued as it is, it would fail at the same step; to continue from the last checkpoint "
-        "with a smaller one: furrow resume %s --set run.step=%s\n",
+        "furrow: a resumed run would fail at the same step; to continue from the last checkpoint "
+        "with a smaller step: furrow resume %s --set run.step=%s\n",
         folder.c_str(), number_text(0.5 * scenario.run.step).c_str());
   else
     std::fprintf(stderr, "furrow: to continue from the last checkpoint: furrow resume %s\n", folder.c_str());
@@ -121,7 +122,7 @@ ExitCode supervise_run(const scenario::Scenario& scenario, launch::RunDirectory&
     return result.code == ExitCode::done ? ExitCode::io : result.code;
   }
   if (result.code != ExitCode::done && written(directory.path() / kDone) > done_before) {
-    print_warning("the run had come to its end when this happened: " + result.error);
+    print_warning("the run had finished before this happened: " + result.error);
     result.code = ExitCode::done;
   }
   const bool nothing_done = result.code == ExitCode::limit && result.started == 0;
@@ -154,8 +155,8 @@ void refuse_tasks_without_mpi() {
   const char* task = std::getenv("SLURM_PROCID");
   const Error error = input_error(
       "srun", "",
-      fmt::format("started {} tasks that know nothing of MPI, expected srun --mpi=pmix, or furrow run "
-                  "without srun: it starts its ranks by itself",
+      fmt::format("started {} tasks without MPI, expected srun --mpi=pmix, or furrow run "
+                  "without srun, which starts its own ranks",
                   tasks));
   if (task && std::atoi(task) > 0 && first_rank_speaks()) std::exit(static_cast<int>(error.code()));
   throw error;
@@ -178,7 +179,7 @@ ExitCode run_supervised(const RunArguments& arguments) {
   require_launch(scenario);
   launch::RunDirectory directory(scenario.name, arguments.out, arguments.overwrite, arguments.scenario);
   launch::catch_stop_signals();
-  std::fprintf(stderr, "furrow: %s, results in %s\n", scenario.name.c_str(), directory.path().c_str());
+  launch::say(fmt::format("furrow: {}, results in {}\n", scenario.name, directory.path().string()));
   return supervise_run(scenario, directory, arguments);
 }
 
@@ -189,15 +190,15 @@ ExitCode resume_supervised(const RunArguments& arguments) {
   for (const auto* warnings : {&plan.scenario.warnings, &plan.warnings})
     for (const std::string& warning : *warnings) print_warning(warning);
   if (plan.finished) {
-    std::fprintf(stderr, "furrow: %s has come to its end at %g s, there is nothing to do\n",
-                 directory.path().c_str(), plan.ended);
+    launch::say(fmt::format("furrow: {} is finished: it ended at {:g} s; there is nothing to do\n",
+                            directory.path().string(), plan.ended));
     std::cout << directory.path().string() << "\n";
     return ExitCode::done;
   }
   require_launch(plan.scenario);
   launch::catch_stop_signals();
-  std::fprintf(stderr, "furrow: continuing %s from t = %g s, results in %s\n", plan.scenario.name.c_str(),
-               plan.point.manifest.time, directory.path().c_str());
+  launch::say(fmt::format("furrow: continuing {} from t = {:g} s, results in {}\n", plan.scenario.name,
+                          plan.point.manifest.time, directory.path().string()));
   return supervise_run(plan.scenario, directory, arguments);
 }
 

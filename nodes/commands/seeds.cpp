@@ -8,6 +8,7 @@
 
 #include "nodes/checkpoint/run_summary.hpp"
 #include "nodes/commands/commands.hpp"
+#include "nodes/launch/messages.hpp"
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
 #include "nodes/scenario/load_scenario.hpp"
@@ -98,8 +99,8 @@ ExitCode run_beds_in(launch::RunDirectory& directory, const scenario::Scenario& 
   study::begin_beds(folder, scenario.digest, arguments.overwrite);
   launch::remove_unfinished(folder);
   launch::catch_stop_signals();
-  std::fprintf(stderr, "furrow: %s on %d beds, results in %s\n", scenario.name.c_str(), arguments.seeds,
-               folder.c_str());
+  launch::say(
+      fmt::format("furrow: {} on {} beds, results in {}\n", scenario.name, arguments.seeds, folder.string()));
   const ExitCode code = sweep.run(directory.lock());
   if (code == ExitCode::stopped) {
     std::fprintf(stderr, "furrow: stopped by a signal; to continue, run the same command with --out %s\n",
@@ -108,11 +109,11 @@ ExitCode run_beds_in(launch::RunDirectory& directory, const scenario::Scenario& 
   }
   const Json summary = study::summary_of_beds(scenario, sweep.outcomes());
   study::write_summary_of_beds(folder, summary);
-  std::fputs(beds_text(summary, scenario).c_str(), stderr);
+  launch::say(beds_text(summary, scenario));
   if (arguments.plots) make_report_or_warn(folder);
   if (code != ExitCode::done)
     print_error((folder / "summary_failed.json").string() +
-                ": not every bed came to its end: " + value_at(summary, "failed.error").get<std::string>());
+                ": not every bed finished: " + value_at(summary, "failed.error").get<std::string>());
   return code;
 }
 

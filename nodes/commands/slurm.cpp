@@ -83,7 +83,8 @@ std::string rank_lines(const scenario::Scenario& scenario, const SlurmArguments&
     const int node = entry.rank / layout.each;
     std::string threads = "-";
     if (job.cores_per_node > 0) {
-      const launch::HostView host = host_view(layout, node, tires, job.cores_per_node);
+      launch::HostView host = host_view(layout, node, tires, job.cores_per_node);
+      host.grains = scenario.terrain->estimate(scenario.terrain_context()).grains;
       const auto place = static_cast<std::size_t>(entry.rank - node * layout.each);
       threads = std::to_string(launch::plan_threads(host, place, scenario.run.threads).threads);
     }

@@ -1,9 +1,11 @@
 // `furrow soil`: virtual soil tests on a scenario's grains.
 #include <algorithm>
-#include <cstdio>
 #include <iostream>
 
+#include <fmt/format.h>
+
 #include "nodes/commands/commands.hpp"
+#include "nodes/launch/messages.hpp"
 #include "nodes/launch/progress.hpp"
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
@@ -53,7 +55,7 @@ ProgressCall shown_on(launch::ProgressDisplay& display) {
   return [&display, begin = wall_clock()](const std::string& what, double share) {
     if (launch::stop_signalled()) throw Error(ExitCode::stopped, "stopped by a signal during the soil tests");
     launch::Progress progress{.phase = what, .share = share};
-    if (share > 0.0) progress.eta = (wall_clock() - begin) * (1.0 - share) / share;
+    if (share > 0.0) progress.eta = (wall_clock() - begin) * (1.0 - share) / share;  // of all tests
     display.show(progress);
   };
 }
@@ -70,8 +72,8 @@ ExitCode soil_command(const scenario::Scenario& scenario, const SoilArguments& a
                       .what());
   launch::RunDirectory directory(scenario.name + "-soil", arguments.out, arguments.overwrite);
   launch::catch_stop_signals();
-  std::fprintf(stderr, "furrow: soil tests of %s, results in %s\n", scenario.name.c_str(),
-               directory.path().c_str());
+  launch::say(
+      fmt::format("furrow: soil tests of {}, results in {}\n", scenario.name, directory.path().string()));
   try {
     launch::ProgressDisplay display;
     const double begin = wall_clock();
@@ -85,7 +87,7 @@ ExitCode soil_command(const scenario::Scenario& scenario, const SoilArguments& a
     write_whole_file(directory.path() / "scenario.json", scenario.completed + "\n");
     terrain::soil::write_soil_tables(directory.path(), run);
     write_whole_file(directory.path() / "soil.json", soil.dump(2) + "\n");
-    std::fputs(terrain::soil::soil_text(soil).c_str(), stderr);
+    launch::say(terrain::soil::soil_text(soil));
     std::cout << soil.dump(2) << "\n";
   } catch (...) {
     directory.discard();

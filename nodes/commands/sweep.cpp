@@ -31,7 +31,7 @@ ExitCode sweep_command(const SweepArguments& arguments) {
   }
   if (code != ExitCode::done && code != ExitCode::stopped)
     print_error((folder / "sweep.csv").string() +
-                ": not every run came to its end; the first that failed has exit code " +
+                ": not every run finished; the first that failed has exit code " +
                 std::to_string(static_cast<int>(code)));
   std::cout << folder.string() << "\n";
   return code;

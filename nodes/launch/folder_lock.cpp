@@ -18,6 +18,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "nodes/launch/messages.hpp"
 #include "nodes/launch/run_list.hpp"
 #include "protocol/core/clock.hpp"
 #include "protocol/core/error.hpp"
@@ -74,7 +75,7 @@ std::string processes_with(const struct stat& file) {
 Error taken(const fs::path& folder, const std::string& key, const struct stat& list) {
   return input_error(
       folder.string(), key,
-      fmt::format("is taken by a run that is not over: {}; expected another folder, or that they end first",
+      fmt::format("is in use by a run that has not ended: {}; expected another folder, or that they end first",
                   processes_with(list)));
 }
 
@@ -100,8 +101,8 @@ FolderLock::FolderLock(const fs::path& folder, const std::string& key, Mode mode
     if (replaced) continue;
     if (mode == Mode::together || wall_clock() - begin > patience) throw taken(folder, key, list);
     if (!told)
-      std::fprintf(stderr, "furrow: %s is taken by a run that is not over: %s; waiting for up to %.0f s\n",
-                   folder.c_str(), processes_with(list).c_str(), patience);
+      say(fmt::format("furrow: {} is in use by a run that has not ended: {}; waiting for up to {:.0f} s\n",
+                      folder.string(), processes_with(list), patience));
     told = true;
     usleep(kPause);
   }
@@ -113,8 +114,8 @@ bool FolderLock::try_to_take(int operation) const {
     if (errno == EINTR) continue;
     if (errno == EWOULDBLOCK) return false;
     if (operation == LOCK_EX)
-      std::fprintf(stderr, "furrow: warning: %s cannot be locked (%s): see to it that no other run uses it\n",
-                   folder_.c_str(), std::strerror(errno));
+      say(fmt::format("furrow: warning: {} cannot be locked ({}): make sure that no other run uses it\n",
+                      folder_.string(), std::strerror(errno)));
     break;
   }
   return true;

@@ -15,7 +15,7 @@ class HeldFolder {
   /// @throws Error(io) when it has no list
   explicit HeldFolder(const std::filesystem::path& folder);
 
-  /// To be called before anything is written by name: what was moved or removed must not be made anew.
+  /// To be called before anything is written by name: what was moved or removed must not be made again.
   /// @throws Error(io) when the folder was moved, removed or emptied, or one in it that was there before
   void check();
 

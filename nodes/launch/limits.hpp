@@ -11,7 +11,7 @@ inline constexpr long kStack = 1 << 20;
 /// Open files that the launcher of a few ranks needs; a shell gives 1024.
 inline constexpr long kFiles = 64;
 
-/// A smaller stack is made larger where the system allows it, for which the program starts anew: threads take theirs
+/// A smaller stack is made larger where the system allows it, for which the program starts again: threads take theirs
 /// from what the limit was in the beginning. @throws Error(limit) where it does not
 void require_stack(char** argv);
 

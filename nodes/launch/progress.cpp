@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "nodes/launch/messages.hpp"
 #include "protocol/core/clock.hpp"
 #include "protocol/files/digits.hpp"
 
@@ -50,18 +51,34 @@ std::string progress_text(const Progress& p) {
   return text;
 }
 
+double share_in(std::string_view line) {
+  double time = 0.0, end = 0.0;
+  const bool read = std::sscanf(std::string(line).c_str(), "furrow: t %lf of %lf s", &time, &end) == 2;
+  return read && end > 0.0 ? std::clamp(time / end, 0.0, 1.0) : NAN;
+}
+
+double PhaseClock::time_left(const std::string& phase, double share, double now) {
+  if (phase != phase_) phase_ = phase, begin_ = now, begin_share_ = share;
+  const double done = share - begin_share_;
+  return done > 0.0 ? (now - begin_) * (1.0 - share) / done : -1.0;
+}
+
 ProgressDisplay::ProgressDisplay() {
   const char* terminal = std::getenv("TERM");
   terminal_ = isatty(STDERR_FILENO) == 1 && terminal && std::strcmp(terminal, "dumb") != 0;
 }
 
 void ProgressDisplay::show(const Progress& progress) {
+  if (messages_are_silenced()) return;
   const double now = wall_clock();
+  const double left = clock_.time_left(progress.phase, progress.share, now);
   const bool new_phase = progress.phase != phase_;
   if (!new_phase && now - last_ < (terminal_ ? kTerminalInterval : kPlainInterval)) return;
   last_ = now;
   phase_ = progress.phase;
-  std::string text = "furrow: " + progress_text(progress);
+  Progress shown = progress;
+  if (shown.eta < 0.0 && shown.phase != "running") shown.eta = left;
+  std::string text = "furrow: " + progress_text(shown);
   if (!terminal_) {
     std::fprintf(stderr, "%s\n", text.c_str());
     return;
@@ -74,6 +91,10 @@ void ProgressDisplay::show(const Progress& progress) {
 }
 
 void ProgressDisplay::say(const std::string& text) {
+  if (!messages_are_silenced()) say_error(text);
+}
+
+void ProgressDisplay::say_error(const std::string& text) {
   clear();
   std::fprintf(stderr, "%s\n", text.c_str());
   std::fflush(stderr);

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 
 namespace furrow::launch {
 
@@ -23,7 +24,23 @@ using ProgressSink = std::function<void(const Progress&)>;
 /// "t 0.512 of 1.5 s   pull 1432 N   sinkage 31 mm   1.40 m/s   1:23 left".
 std::string progress_text(const Progress& progress);
 
-/// Draws on standard error: one live line on a terminal, otherwise a line every few seconds.
+/// Share of the run that a line of progress_text() tells; NaN: it is no such line, or not of the phase "running".
+double share_in(std::string_view line);
+
+/// Estimates how long a phase still takes that states its share alone: what was done since it began, scaled.
+class PhaseClock {
+ public:
+  /// @param now wall time, s @returns s; -1 where nothing has been done since the phase began
+  double time_left(const std::string& phase, double share, double now);
+
+ private:
+  std::string phase_;
+  double begin_ = 0.0;        // wall time, s
+  double begin_share_ = 0.0;  // of the phase, at that time
+};
+
+/// Draws on standard error: one live line on a terminal, otherwise a line every few seconds. Where messages are
+/// silenced (messages.hpp) it draws nothing.
 class ProgressDisplay {
  public:
   ProgressDisplay();
@@ -34,7 +51,9 @@ class ProgressDisplay {
   void show(const Progress& progress);
   /// A line that stays.
   void say(const std::string& text);
-  /// Takes the live line away.
+  /// A line that stays even where messages are silenced.
+  void say_error(const std::string& text);
+  /// Removes the live line.
   void clear();
 
  private:
@@ -42,6 +61,7 @@ class ProgressDisplay {
   bool drawn_ = false;
   double last_ = -1e300;  // wall time of the last line, s
   std::string phase_;
+  PhaseClock clock_;
 };
 
 }  // namespace furrow::launch

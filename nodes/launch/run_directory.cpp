@@ -82,7 +82,7 @@ RunDirectory::RunDirectory(const std::string& scenario, const fs::path& out, boo
     }
     std::error_code error;
     if (!made && !fs::is_directory(path_, error))
-      throw input_error(out.string(), "--out", "exists and is no folder, expected a new folder");
+      throw input_error(out.string(), "--out", "exists and is not a folder, expected a new folder");
     if (!made && !overwrite)
       throw input_error(out.string(), "--out", "exists already, expected a new folder or --overwrite");
     if (made)
@@ -114,7 +114,7 @@ RunDirectory::RunDirectory(OfStudy, const fs::path& folder) : path_(way_to(folde
       std::error_code error;
       if (!fs::is_directory(path_, error))
         throw input_error(folder.string(), "--out",
-                          "exists and is no folder, expected a new one or that of a study");
+                          "exists and is not a folder, expected a new one or that of a study");
       if (!has_run_list(path_) && !fs::is_empty(path_, error))
         throw no_list(
             folder, "--out",
@@ -305,7 +305,7 @@ void require_run_directory(const fs::path& folder) {
   if (!fs::exists(folder, error))
     throw input_error(folder.string(), "", "does not exist, expected the folder of a run");
   if (!fs::is_directory(folder, error))
-    throw input_error(folder.string(), "", "is no folder, expected the folder of a run");
+    throw input_error(folder.string(), "", "is not a folder, expected the folder of a run");
   if (!is_run(folder))
     throw input_error(folder.string(), "", "holds no run, expected scenario.json or run.log in it");
 }

@@ -11,7 +11,7 @@
 namespace furrow::launch {
 
 /// Makes the folder of a run, with the list of what is written into it (run_list.hpp), and takes it away again if the
-/// run never came to be. Results of an earlier run that are to be overwritten are set aside in .furrow-before until it
+/// run never started. Results of an earlier run that are to be overwritten are set aside in .furrow-before until it
 /// is known that the new one runs. One run at a time has the folder.
 class RunDirectory {
  public:
@@ -20,10 +20,10 @@ class RunDirectory {
   /// @throws Error(bad_input) when `out` exists and may not be overwritten, is another's, or cannot be made
   RunDirectory(const std::string& scenario, const std::filesystem::path& out, bool overwrite,
                const std::filesystem::path& reads = {});
-  /// The folder of a run that goes on.
+  /// The folder of a run that continues.
   /// @throws Error(bad_input) when it holds none, cannot be written, or others have it
   explicit RunDirectory(const std::filesystem::path& existing);
-  /// The folder of a study, which goes on where there is one. @throws Error(bad_input)
+  /// The folder of a study, which continues where there is one. @throws Error(bad_input)
   static RunDirectory of_study(const std::filesystem::path& folder);
 
   /// Gives the folder free and removes what was set aside.
@@ -40,7 +40,7 @@ class RunDirectory {
   /// Before the ranks begin: they hold the folder too from then on.
   FolderLock& lock() { return lock_; }
 
-  /// The run never came to be: unless it was to go on, removes its results and the folders that the constructor made,
+  /// The run never started: unless it was to continue, removes its results and the folders that the constructor made,
   /// puts back what was set aside.
   void discard();
 

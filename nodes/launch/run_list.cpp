@@ -60,7 +60,7 @@ void append(const fs::path& folder, const std::string& text) {
   off_t size = std::max<off_t>(lseek(handle, 0, SEEK_END), 0);
   const off_t from = std::max<off_t>(size - static_cast<off_t>(end.size()), 0);
   const ssize_t count = pread(handle, end.data(), end.size(), from);
-  // A line that was cut short by a full disk or a kill is no name.
+  // A line that was cut short by a full disk or a kill is not a name.
   const std::size_t line =
       std::string_view(end.data(), static_cast<std::size_t>(std::max<ssize_t>(count, 0))).rfind('\n');
   const off_t whole = line == std::string_view::npos ? 0 : from + static_cast<off_t>(line) + 1;
@@ -142,8 +142,8 @@ RunList RunList::read(const fs::path& folder) {
     if (!begun || !is_inside(line))
       throw input_error(
           file.string() + ":" + place_in_text(text, from), "",
-          begun ? "is no name of a file below its folder, expected one: the list is damaged"
-                : "is no list of a run's files, expected '" + head().substr(0, head().size() - 1) + "'");
+          begun ? "is not the name of a file below its folder, expected one: the list is damaged"
+                : "is not a list of a run's files, expected '" + head().substr(0, head().size() - 1) + "'");
     forms.push_back(line);
   }
   return RunList(std::move(forms));

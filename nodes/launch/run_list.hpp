@@ -35,7 +35,7 @@ class RunList {
   /// become.
   bool holds(std::string_view name) const;
 
-  /// What stands in a folder of that which is in the list, by its path in there; a folder after all that is in it.
+  /// What is in a folder of that which is in the list, by its path in there; a folder after all that is in it.
   struct Found {
     std::vector<std::string> files, folders;
   };
@@ -50,7 +50,7 @@ class RunList {
 /// Whether the folder has a list.
 bool has_run_list(const std::filesystem::path& folder);
 
-/// Begins the folder's list anew; the names before are forgotten. @throws Error(io)
+/// Begins the folder's list again; the names before are forgotten. @throws Error(io)
 void begin_run_list(const std::filesystem::path& folder, const std::vector<std::string>& forms);
 
 /// Adds those that are not in the list yet, to a list of its own if the folder has none.
@@ -58,7 +58,7 @@ void begin_run_list(const std::filesystem::path& folder, const std::vector<std::
 /// @throws Error(io)
 void add_to_run_list(const std::filesystem::path& folder, const std::vector<std::string>& forms);
 
-/// Removes what is in the list and stands in the folder below `inside`, and folders that are empty then. Errors are
+/// Removes what is in the list and is in the folder below `inside`, and folders that are empty then. Errors are
 /// ignored.
 void remove_listed(const std::filesystem::path& folder, const RunList& list, const std::string& inside = "");
 

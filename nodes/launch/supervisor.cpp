@@ -170,7 +170,7 @@ class Supervisor {
 void Supervisor::start() {
   const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
   // When this process is killed the ranks save their state and stop: mpirun hands USR1 on at once, and TERM after two
-  // seconds in which they would go on.
+  // seconds in which they would continue.
   child_ = start_child({.command = launcher_command(launch_),
                         .in = nothing,
                         .out = out_.write,
@@ -330,7 +330,7 @@ std::filesystem::path find_mpirun() {
   if (const char* wanted = std::getenv("FURROW_MPIRUN"); wanted && *wanted) {
     if (access(wanted, X_OK) == 0) return wanted;
     throw io_error(wanted,
-                   "is no program that can be run, but FURROW_MPIRUN names it; expected Open MPI's mpirun");
+                   "is not a program that can be run, but FURROW_MPIRUN names it; expected Open MPI's mpirun");
   }
   if (access(FURROW_MPIEXEC, X_OK) == 0) return FURROW_MPIEXEC;
   if (const auto found = on_path("mpirun")) return *found;

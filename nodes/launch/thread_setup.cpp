@@ -15,10 +15,11 @@
 
 #include <fmt/format.h>
 
+#include "nodes/scenario/terrain_threads.hpp"
+#include "protocol/core/assert.hpp"
+
 #if defined(__SSE2__)
 #include <immintrin.h>
-
-#include "protocol/core/assert.hpp"
 #endif
 
 namespace furrow::launch {
@@ -48,8 +49,8 @@ Demand demand(const HostView& host, int cores, int terrain_threads) {
   if (terrain_threads > 0) {
     d.terrain_threads = terrain_threads;
   } else if (d.terrain_ranks > 0) {
-    const int left = (cores - d.rig_cores - d.tires) / d.terrain_ranks;
-    d.terrain_threads = std::clamp(left, 1, kMaxAutoThreads);
+    d.terrain_threads =
+        scenario::auto_terrain_threads(cores, d.rig_cores + d.tires, d.terrain_ranks, host.grains);
   }
   return d;
 }
@@ -88,7 +89,7 @@ ThreadPlan plan_within_own_cores(const HostView& host, std::size_t node, int ter
   ThreadPlan plan;
   const int own = static_cast<int>(self.cores.size());
   if (self.node.role == Role::terrain)
-    plan.threads = terrain_threads > 0 ? terrain_threads : std::min(own, kMaxAutoThreads);
+    plan.threads = terrain_threads > 0 ? terrain_threads : std::min(own, scenario::kMaxAutoThreads);
   plan.disjoint = no_core_is_shared(host) && plan.threads <= own;
   if (plan.disjoint) plan.cores.assign(self.cores.begin(), self.cores.begin() + plan.threads);
   return plan;
@@ -185,8 +186,9 @@ ThreadPlan plan_threads(const HostView& host, std::size_t node, int terrain_thre
   return plan;
 }
 
-ThreadPlan plan_threads(const Transport& transport, int terrain_threads) {
+ThreadPlan plan_threads(const Transport& transport, int terrain_threads, std::int64_t grains) {
   HostView host;
+  host.grains = grains;
   host.nodes = transport.host_nodes();
   host.machine_cores = machine_cores();
   host.cpu_limit = cpu_limit();

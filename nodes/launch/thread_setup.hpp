@@ -4,17 +4,18 @@
 //     wait_passively(argv);                                   // before anything else
 //     …
 //     auto transport = make_mpi_transport(…);
-//     const ThreadPlan plan = plan_threads(*transport, scenario.run.threads);
+//     const ThreadPlan plan = plan_threads(*transport, scenario.run.threads, grains);
 //     apply(plan);
 //     run_node(scenario, *transport, {.threads = plan.threads, …});
 //
-// Rules. The terrain gets the cores that the others leave; a tire computes on one thread; the rig, which hardly
+// Rules. The terrain gets the cores that the others leave, with many grains those of the others too where they leave few; a tire computes on one thread; the rig, which hardly
 // computes, has a core of its own only where there are many. When the cores suffice each thread is bound to its own;
 // when they do not, or when the machine is busy with something else, nothing is bound and the system balances.
 // Results do not depend on any of this.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,7 @@ struct HostView {
   int machine_cores = 1;        // physical cores, allowed or not
   double cpu_limit = 0.0;       // CPUs that the control group grants; 0: no limit
   double load = 0.0;            // runnable tasks of others: load average of the last minute
+  std::int64_t grains = 0;      // that the terrain is expected to have; 0: not known
 };
 
 struct ThreadPlan {
@@ -38,23 +40,21 @@ struct ThreadPlan {
   std::string note;        // advice for the user, or empty
 };
 
-/// Most threads that the terrain takes by itself: a barrier over more costs more than it brings.
-inline constexpr int kMaxAutoThreads = 32;
-
 /// @param node             which of host.nodes
 /// @param terrain_threads  what the user wants for the terrain; 0: decide here
 /// @pre node < host.nodes.size(), terrain_threads ≥ 0
 ThreadPlan plan_threads(const HostView& host, std::size_t node, int terrain_threads);
 
 /// Looks at this machine and plans for the transport's own node.
-ThreadPlan plan_threads(const Transport& transport, int terrain_threads);
+/// @param grains  that the terrain is expected to have; 0: not known
+ThreadPlan plan_threads(const Transport& transport, int terrain_threads, std::int64_t grains);
 
 /// Sets the thread count, binding, BLAS threads (one) and, in every thread, denormals to zero. A binding that the
 /// user chose by OMP_PROC_BIND, OMP_PLACES or GOMP_CPU_AFFINITY is left alone.
 void apply(const ThreadPlan& plan);
 
 /// OpenMP threads that spin while they wait take the cores of other ranks. How they wait is read from the
-/// environment before main begins, so unless OMP_WAIT_POLICY is set already, this sets it and starts the program anew.
+/// environment before main begins, so unless OMP_WAIT_POLICY is set already, this sets it and starts the program again.
 void wait_passively(char** argv);
 
 /// The variables that wait_passively sets, as NAME=value: for a supervisor to set them for the ranks it starts.

@@ -196,7 +196,7 @@ TireAccount Accounts::account_of(const Reports& r, std::size_t k) const {
   a.added_momentum = added.mass * rim.velocity;
   a.added_gravity_impulse = added.mass * r.time * r.gravity;
   a.rim_velocity = rim.velocity;
-  // The wrench on its way makes the added mass follow the tire's own motion, which goes on with the rim's velocity of
+  // The wrench on its way makes the added mass follow the tire's own motion, which continues with the rim's velocity of
   // one step before.
   const Vec3 before = first ? rim.velocity : now_.tires[k].rim_velocity;
   a.sent_to_rig = step_ * tire.wrench.force + added.mass * (rim.velocity - before);

@@ -133,7 +133,7 @@ struct EnergyAccount {
   WorkAccount work;
   StoredAccount stored;
   LostAccount lost;
-  double terrain_residual = 0.0, tire_residual = 0.0, rig_residual = 0.0;  // of each by itself, J
+  double terrain_residual = 0.0, tire_residual = 0.0, rig_residual = 0.0;  // of each on its own, J
   double sample_error = 0.0;                                               // of the terrain's losses, J
 
   double residual() const;  // work − stored − lost, J

@@ -66,8 +66,8 @@ std::string table_file(const std::string& subject, int wheels);
 class Results {
  public:
   /// Adds all that the ranks write to the existing run directory's list; opens the files of all tables there; writes
-  /// scenario.json. Where a run goes on, what was
-  /// written after its checkpoint is removed, and the index made anew.
+  /// scenario.json. Where a run continues, what was
+  /// written after its checkpoint is removed, and the index made again.
   /// @param tables without lines; those of the wheels come first, that of the accounts last
   /// @param resume null: the run begins
   /// @throws Error(io)

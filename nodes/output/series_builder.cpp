@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
-/// Takes away what each interval measures anew, so that a column that is forgotten shows.
+/// Clears what each interval measures, so that a column that is forgotten shows.
 void forget_interval(WheelRow& row) {
   visit_fields(
       [](const Column& column, double& value) {

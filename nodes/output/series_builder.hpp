@@ -68,7 +68,7 @@ class SeriesBuilder {
   void measure_instants(const StepReports& r);
 
   double radius_, ground_, step_;
-  WheelRow row_;  // of the last interval: what is cumulative or largest goes on from it
+  WheelRow row_;  // of the last interval: what is cumulative or largest continues from it
   LineBuilder lines_;
   std::vector<double> values_;  // of row_
   Memory memory_;

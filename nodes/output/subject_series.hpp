@@ -1,4 +1,4 @@
-// The table of one subject while a run goes on: what every wheel has, if it is a wheel, and what the rig adds.
+// The table of one subject while a run continues: what every wheel has, if it is a wheel, and what the rig adds.
 #pragma once
 
 #include <optional>

@@ -53,7 +53,7 @@ std::vector<Column> merged_columns(std::vector<Column> base, std::span<const Col
     const std::string_view after = column.after;
     auto place = std::find_if(base.begin(), base.end(), [&](const Column& c) { return after == c.name; });
     if (place != base.end()) ++place;
-    // Those that follow the same column stand in the order in which they were added.
+    // Those that follow the same column are in the order in which they were added.
     while (place != base.end() && after == place->after) ++place;
     base.insert(place, column);
   }
@@ -73,7 +73,7 @@ TableWriter::TableWriter(const std::filesystem::path& file, const Table& table)
 TableWriter::TableWriter(const std::filesystem::path& file, const checkpoint::SeriesMark& mark, Table& table)
     : file_(file), subject_(table.subject), stream_(std::fopen(file.c_str(), "rb+")) {
   if (!stream_)
-    throw io_error(file_.string(), std::string("cannot be opened to go on with it: ") + std::strerror(errno));
+    throw io_error(file_.string(), std::string("cannot be opened to continue it: ") + std::strerror(errno));
   std::error_code error;
   const std::uintmax_t there = std::filesystem::file_size(file, error);
   const bool all = !error && std::cmp_less_equal(mark.bytes, there);
@@ -100,7 +100,7 @@ void TableWriter::take_order(std::string_view header, const Table& table) {
     const auto place = table.find(name);
     if (!place)
       throw io_error(file_.string(),
-                     fmt::format("has a column '{}' that this program does not write: go on with the program "
+                     fmt::format("has a column '{}' that this program does not write: continue with the program "
                                  "that began the run",
                                  name));
     if (std::find(order_.begin(), order_.end(), *place) != order_.end())
@@ -111,7 +111,7 @@ void TableWriter::take_order(std::string_view header, const Table& table) {
     if (std::find(order_.begin(), order_.end(), i) == order_.end())
       throw io_error(
           file_.string(),
-          fmt::format("lacks the column '{}' that this program writes: go on with the program that "
+          fmt::format("lacks the column '{}' that this program writes: continue with the program that "
                       "began the run",
                       table.columns[i].name));
 }

@@ -1,5 +1,5 @@
 // A table of results: one subject (a wheel, a body, the vehicle), its columns, and the lines written so far. The same
-// columns serve the CSV file, the HDF5 file and the way back from a file that a run goes on with.
+// columns serve the CSV file, the HDF5 file and the way back from a file that a run continues with.
 #pragma once
 
 #include <cstdint>

@@ -51,7 +51,7 @@ CheckpointPart CheckpointWriter::write_part(std::int64_t step) const {
     std::filesystem::create_directory(folder.parent_path(), ignored);
     std::filesystem::create_directory(folder, ignored);
     if (!std::filesystem::is_directory(std::filesystem::symlink_status(folder, ignored)))
-      throw io_error(folder.string(), "is no folder, expected one for the parts of the checkpoint");
+      throw io_error(folder.string(), "is not a folder, expected one for the parts of the checkpoint");
     fault_point("checkpoint.write");
     write_archive(folder / part.file, archive);
     part.checksum = checkpoint::part_checksum(folder / part.file);
@@ -130,7 +130,7 @@ void CheckpointWriter::complete(CheckpointPart own, bool needed) {
   const std::string text = fmt::format("the checkpoint at t = {:.6g} s could not be written: {}",
                                        static_cast<double>(step) * scenario_.run.step, problem);
   if (needed) throw Error(ExitCode::io, text);
-  if (context_.note) context_.note("warning: " + text + "; the run goes on");
+  if (context_.note) context_.note("warning: " + text + "; the run continues");
 }
 
 void save_cost(Archive& archive, const NodeCost& cost) {

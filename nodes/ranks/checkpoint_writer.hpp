@@ -25,7 +25,7 @@ class CheckpointWriter {
                    std::function<NodeCost()> cost);
 
   /// All ranks call it at the same step. One that cannot be written leaves those before it in place: the user is told
-  /// and the run goes on.
+  /// and the run continues.
   /// @param needed the run ends with it: Error(io) instead
   void write(std::int64_t step, bool needed);
 

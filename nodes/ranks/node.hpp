@@ -52,7 +52,7 @@ class Node {
   virtual void save(Archive& archive) const = 0;
   virtual void restore(const Archive& archive) = 0;
 
-  /// What is no state but must be known to go on: kept in checkpoints beside save().
+  /// What is no state but must be known to continue: kept in checkpoints beside save().
   virtual void save_setup(Archive&) const {}
   /// The rig's: flushes the tables to the disk and says where they stand.
   virtual std::vector<checkpoint::SeriesMark> mark_series() { return {}; }

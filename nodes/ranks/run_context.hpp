@@ -19,7 +19,7 @@ struct RunContext {
   std::function<bool()> stop_requested;             // a signal asked for a stop
   launch::ProgressSink progress;                    // called by the rig's node
   std::function<void(const std::string&)> note;     // tells the user something
-  const checkpoint::ResumePoint* resume = nullptr;  // where the run goes on; null: it begins
+  const checkpoint::ResumePoint* resume = nullptr;  // where the run continues; null: it begins
   const Archive* saved = nullptr;                   // this node's part of that checkpoint; run_node reads it
 };
 

@@ -55,7 +55,7 @@ void set_value(json& document, const std::string& key, const std::string& text, 
   const std::vector<std::string> parts = split(key);
   if (std::find(parts.begin(), parts.end(), "") != parts.end() || parts.size() >= kMaxDepth ||
       excerpt(key, kMaxKey) != key)
-    throw input_error(file, excerpt(key), "is no key, expected --set section.key=value");
+    throw input_error(file, excerpt(key), "is not a key, expected --set section.key=value");
   const json value = parse_value(text, file, key);
   json* at = &document;
   for (const std::string& part : parts) {
@@ -124,7 +124,7 @@ json read_document(const std::string& file, const Settings& settings) {
                       fmt::format("is {}: the file is newer than this program, expected at most {}",
                                   value_text(document["format_version"]), kFormatVersion));
   if (document.contains("vehicle"))
-    throw input_error(file, "vehicle", "is no section, expected rig.vehicle beside rig.type 'vehicle'");
+    throw input_error(file, "vehicle", "is not a section, expected rig.vehicle beside rig.type 'vehicle'");
   return document;
 }
 
@@ -251,7 +251,7 @@ constexpr int kDigestVersion = 2;
 /// it.
 std::string digest_of(json completed, const Scenario& s) {
   for (const std::string& key : harmless_keys()) erase(completed, key);
-  erase(completed, std::string("terrain.") + kSoilKey);  // its values stand in the other keys
+  erase(completed, std::string("terrain.") + kSoilKey);  // its values are in the other keys
   // Files count by what they hold, wherever they stand.
   for (const rigs::RigFile& file : s.rig->files()) completed["rig"].erase(file.key);
   for (const terrain::TerrainFile& file : s.terrain->files()) completed["terrain"].erase(file.key);
@@ -274,7 +274,7 @@ void make_movable(json& document, const Scenario& s) {
     const std::filesystem::path beside = s.file.parent_path() / name.get<std::string>();
     if (!std::filesystem::is_regular_file(beside, error)) return;
     const std::string whole = std::filesystem::absolute(beside, error).lexically_normal().string();
-    require_utf8(whole, s.file.string(), key, "stands in a folder with a name");
+    require_utf8(whole, s.file.string(), key, "is in a folder with a name");
     name = whole;
   };
   for (const terrain::TerrainFile& file : s.terrain->files())

@@ -100,7 +100,7 @@ std::vector<std::string> set_aside_keys(json& document, const Schema& schema,
     if (!stated.empty())
       warnings.emplace_back(
           input_error(file.string(), chooser,
-                      fmt::format("is '{}'; keys of other {}s are set aside: {}", chosen_model(document, of),
+                      fmt::format("is '{}'; keys of other {}s are ignored: {}", chosen_model(document, of),
                                   of.chooser, fmt::join(stated, ", ")))
               .what());
   }

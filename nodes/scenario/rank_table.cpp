@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "nodes/scenario/terrain_threads.hpp"
 #include "nodes/scenario/wheel_geometry.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/messages.hpp"
@@ -24,6 +25,8 @@ std::vector<RankEntry> rank_table(const Scenario& s) {
          fmt::format("{}, {}; 1 thread", s.tires[k]->options().file.filename().string(), tires[k].name)});
   const std::string threads = s.run.threads > 0
                                   ? fmt::format("{} thread{}", s.run.threads, s.run.threads > 1 ? "s" : "")
+                              : s.terrain->estimate(s.terrain_context()).grains >= kManyGrains
+                                  ? "as many threads as there are cores left, or cores where these are few"
                                   : "as many threads as there are cores left";
   const std::string what = s.terrain->describe().name;
   for (int i = 0; i < s.terrain_ranks; ++i)

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "nodes/scenario/grain_loads.hpp"
+#include "nodes/scenario/terrain_threads.hpp"
 #include "nodes/scenario/wheel_geometry.hpp"
 #include "protocol/core/assert.hpp"
 #include "terrain/dem/beds/bed_cache.hpp"
@@ -29,10 +30,9 @@ constexpr double kMeshExponent = 1.1;  // of the time of a tire's step with its 
 constexpr double kRigidTire = 5e-5;    // of a step: moving the surface, s
 constexpr double kMessages =
     8e-5;  // for each tire, in its rank and in the rig's: to send, receive and write, s
-constexpr double kVertex = 8e-8;     // of a tire, in the terrain: finding its contacts, messages, s
-constexpr double kLatency = 5e-5;    // until a message is noticed, s
-constexpr int kMaxAutoThreads = 32;  // as launch/thread_setup.hpp has it
-constexpr int kPlaces = 9;           // along the axles' paths at which the awake share is looked at
+constexpr double kVertex = 8e-8;   // of a tire, in the terrain: finding its contacts, messages, s
+constexpr double kLatency = 5e-5;  // until a message is noticed, s
+constexpr int kPlaces = 9;         // along the axles' paths at which the awake share is looked at
 
 /// Mean share of a bin's length that lies near an axle.
 double awake_share(const Scenario& s, const std::vector<tire::TireDescription>& tires, double length) {
@@ -82,7 +82,10 @@ RunTime run_time(const Scenario& s, const Calibration& machine) {
   t.cores = machine.cores;
   const std::vector<tire::TireDescription> tires = describe_tires(s);
   const int count = static_cast<int>(tires.size());
-  t.threads = s.run.threads > 0 ? s.run.threads : std::clamp(t.cores - count, 1, kMaxAutoThreads);
+  t.threads = s.run.threads;
+  if (t.threads == 0)
+    t.threads = auto_terrain_threads(t.cores, count, s.terrain_ranks,
+                                     s.terrain->estimate(s.terrain_context()).grains);
   double all = kMessages * (1.0 + count), surfaces = 0.0;
   for (const tire::TireDescription& tire : tires) {
     const double mesh = static_cast<double>(tire.coordinates) / machine.tire_coordinates;

@@ -93,7 +93,7 @@ void Checks::times() {
 void Checks::whole_steps(const char* key, double given, std::int64_t steps) {
   const double taken = static_cast<double>(steps) * s_.run.step;
   if (std::abs(taken - given) > kRounding * given)
-    warn(key, fmt::format("is {} s, which is no whole number of steps of {} s: {} s is taken", number_text(given),
+    warn(key, fmt::format("is {} s, not a whole number of steps of {} s: {} s is used", number_text(given),
                           number_text(s_.run.step), number_text(short_decimal(taken))));
 }
 
@@ -146,7 +146,7 @@ void Checks::tire_options(std::size_t wheel) {
                             terrain_.name, terrain_.engine));
   for (const std::string& key : tire::idle_keys(tire))
     warn(s_.tire_key(wheel, key),
-         fmt::format("is set aside: it says nothing to a {} tire", tires_[wheel].name));
+         fmt::format("is ignored: a {} tire does not use it", tires_[wheel].name));
 }
 
 void Checks::room() {
@@ -218,7 +218,7 @@ void Checks::start() {
   }
 }
 
-/// Wheels do not feel each other: one that stands in another would push the same grains twice.
+/// Wheels do not feel each other: one that is in another would push the same grains twice.
 void Checks::overlaps() {
   const std::vector<rigs::WheelDescription> wheels = describe().wheels;
   for (std::size_t k = 1; k < tires_.size(); ++k)

@@ -4,7 +4,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 #include <csignal>
-#include <cstdio>
 #include <cstring>
 
 #include <algorithm>
@@ -19,7 +18,6 @@
 #include "nodes/checkpoint/checkpoint.hpp"
 #include "nodes/checkpoint/run_summary.hpp"
 #include "nodes/launch/child_process.hpp"
-#include "nodes/launch/progress.hpp"
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/run_list.hpp"
 #include "nodes/launch/signals.hpp"
@@ -27,6 +25,7 @@
 #include "nodes/scenario/memory_check.hpp"
 #include "nodes/study/pass_bed.hpp"
 #include "protocol/core/assert.hpp"
+#include "protocol/core/clock.hpp"
 #include "protocol/files/digits.hpp"
 #include "protocol/files/text_file.hpp"
 #include "protocol/host.hpp"
@@ -39,8 +38,10 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using checkpoint::read_summary, checkpoint::read_failed_summary, checkpoint::value_at;
 
-constexpr int kPoll = 100000;     // µs
-constexpr double kDeepRut = 0.4;  // of the bed's depth: a tire this deep feels the floor
+constexpr int kPoll = 100000;              // µs
+constexpr double kDeepRut = 0.4;           // of the bed's depth: a tire this deep feels the floor
+constexpr double kLook = 2.0;              // s between looks at how far the runs are
+constexpr std::streamoff kLogTail = 4096;  // bytes of a log that hold a line of progress
 
 std::string cell(const Json& value) {
   if (value.is_null()) return "";
@@ -63,6 +64,17 @@ std::string last_error(const fs::path& log, int status) {
   return found.empty() ? "it left no message in " + log.string() : found;
 }
 
+/// How much of a run its log tells to be done, 0…1: by the last line of progress near its end.
+double share_in_log(const fs::path& log) {
+  std::ifstream in(log, std::ios::binary | std::ios::ate);
+  const std::streamoff size = in ? static_cast<std::streamoff>(in.tellg()) : 0;
+  in.seekg(std::max(std::streamoff{0}, size - kLogTail));
+  double share = 0.0;
+  for (std::string line; std::getline(in, line);)
+    if (const double told = launch::share_in(line); std::isfinite(told)) share = told;
+  return share;
+}
+
 /// As many shares of the cores this process may use, as even as they come; all of them where there are too few.
 std::vector<cpu_set_t> core_shares(int jobs) {
   FURROW_ASSERT(jobs > 0, jobs);
@@ -81,7 +93,7 @@ bool readable(const fs::path& bed) try {
   terrain::dem::read_bed(bed);
   return true;
 } catch (const Error&) {
-  return false;  // absent or damaged: made anew
+  return false;  // absent or damaged: made again
 }
 
 std::string state_name(int state) {
@@ -155,11 +167,32 @@ std::vector<std::string> Sweep::command(const Run& run) const {
   return list;
 }
 
-void Sweep::tell(const Run& run, const std::string& what) const {
+void Sweep::tell(const Run& run, const std::string& what) { display_.say(line_of(run, what)); }
+void Sweep::tell_failure(const Run& run, const std::string& what) { display_.say_error(line_of(run, what)); }
+
+std::string Sweep::line_of(const Run& run, const std::string& what) const {
   const auto number = static_cast<std::size_t>(&run - runs_.data()) + 1;
   std::string keys = text_of(run.keys);
   if (run.pass > 0) keys += fmt::format("{}pass {}", keys.empty() ? "" : ", ", run.pass);
-  std::fprintf(stderr, "furrow: run %zu of %zu (%s) %s\n", number, runs_.size(), keys.c_str(), what.c_str());
+  return fmt::format("furrow: run {} of {} ({}) {}", number, runs_.size(), keys, what);
+}
+
+/// How much of the study is done, and for how long it will take: runs count alike.
+void Sweep::show_progress() {
+  const double now = wall_clock();
+  if (now - looked_ < kLook) return;
+  looked_ = now;
+  double share = 0.0;
+  std::size_t done = 0;
+  for (Run& run : runs_) {
+    if (run.state == State::done || run.state == State::failed) run.done = 1.0, ++done;
+    if (run.state == State::running) run.done = std::max(run.done, share_in_log(log_of(run)));
+    share += run.done / static_cast<double>(runs_.size());
+  }
+  if (begin_ == 0.0) begin_ = now, begin_share_ = share;
+  launch::Progress progress{.phase = fmt::format("{} of {} runs done,", done, runs_.size()), .share = share};
+  if (share > begin_share_) progress.eta = (now - begin_) * (1.0 - share) / (share - begin_share_);
+  display_.show(progress);
 }
 
 /// The next run to start; null when none can be now.
@@ -191,13 +224,12 @@ bool Sweep::prepare_bed(Run& run) try {
   if (!readable(bed)) {
     launch::add_to_run_list(options_.folder, {"beds/", "beds/" + bed.filename().string()});
     fs::create_directory(bed.parent_path(), error);
-    launch::ProgressDisplay display;
     const auto progress = [&](const std::string& what, double share) {
-      if (launch::stop_signalled()) throw Error(ExitCode::stopped, "stopped by a signal while the bed lay");
-      display.show({.phase = what, .share = share});
+      if (launch::stop_signalled())
+        throw Error(ExitCode::stopped, "stopped by a signal while the bed rested");
+      display_.show({.phase = what, .share = share});
     };
     const terrain::dem::RestResult rest = make_pass_bed(folder_of(before), study_.rest, progress, bed);
-    display.clear();
     tell(run, fmt::format(
                   "begins on the bed after {:.2g} s: {}, net force {:.1e} of the contact forces, {:.2g} mm/s",
                   rest.time, rest.settled ? "settled" : "NOT settled", rest.force_ratio, 1e3 * rest.speed));
@@ -219,7 +251,7 @@ void Sweep::fail(Run& run, const Error& error) {
   run.state = State::failed;
   run.exit_code = static_cast<int>(error.code());
   run.problem = error.what();
-  tell(run, fmt::format("FAILED with exit code {}: {}", run.exit_code, run.problem));
+  tell_failure(run, fmt::format("FAILED with exit code {}: {}", run.exit_code, run.problem));
   write_table();
 }
 
@@ -247,7 +279,7 @@ void Sweep::start(Run& run, std::size_t share) {
   close(log);
   run.share = share;
   run.state = State::running;
-  tell(run, list[1] == "resume" ? "goes on" : "begins");
+  tell(run, list[1] == "resume" ? "continues" : "begins");
 }
 
 void Sweep::poll(Run& run) {
@@ -288,8 +320,8 @@ void Sweep::poll(Run& run) {
               "changed meanwhile; remove it to run it again"
             : last_error(log_of(run), status);
     if (run.exit_code == 0) run.exit_code = static_cast<int>(ExitCode::bad_input);
-    tell(run, fmt::format("FAILED with exit code {}: {}; see {}", run.exit_code, run.problem,
-                          log_of(run).string()));
+    tell_failure(run, fmt::format("FAILED with exit code {}: {}; see {}", run.exit_code, run.problem,
+                                  log_of(run).string()));
   }
   write_table();
 }
@@ -301,7 +333,7 @@ void Sweep::stop_all() {
     if (run.process > 0) kill(run.process, SIGTERM);
 }
 
-/// What was moved or removed must not be made anew. Its runs notice by themselves, too.
+/// What was moved or removed must not be made again. Its runs notice it, too.
 void Sweep::require_folder(const launch::FolderLock& lock) {
   if (lock.stands()) return;
   for (Run& run : runs_) {
@@ -352,10 +384,14 @@ ExitCode Sweep::run(const launch::FolderLock& lock) {
       if (run.process <= 0) taken[run.share] = false;
       running = true;
     }
-    if (running) usleep(kPoll);
+    if (running) {
+      show_progress();
+      usleep(kPoll);
+    }
     stop_all();
     pause_all();
   }
+  display_.clear();
   write_table();
   return outcome();
 }

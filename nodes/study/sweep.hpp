@@ -1,11 +1,11 @@
 // The runs of a study, one after another or several at once, each `furrow run` or `furrow resume` in a process of its
-// own. What is finished stays: a sweep that was interrupted goes on where it was.
+// own. What is finished stays: a sweep that was interrupted continues where it was.
 //
 //   <folder>/sweep.csv     one line per run: its keys, how it went, its results; of one that failed the means of what
 //                          there is
 //   <folder>/sweep.json    the study, for the plots
 //   <folder>/runs/<digest> the folder of each run, named after its scenario's digest; <digest>.log: what it said. Runs
-//                          that the study names stand in <folder>/<name> instead
+//                          that the study names are in <folder>/<name> instead
 //   <folder>/beds/         of passes: the bed that each begins on
 #pragma once
 
@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "nodes/launch/folder_lock.hpp"
+#include "nodes/launch/progress.hpp"
 #include "nodes/study/study.hpp"
 #include "protocol/core/error.hpp"
 
@@ -60,6 +61,7 @@ class Sweep {
     int exit_code = 0;
     pid_t process = -1;
     std::size_t share = 0;  // of the cores
+    double done = 0.0;      // share of the run that is done, 0…1, as its log tells
   };
 
   void load(Run& run);
@@ -75,7 +77,10 @@ class Sweep {
   void require_folder(const launch::FolderLock& lock);
   void pause_all();
   void fail(Run& run, const Error& error);
-  void tell(const Run& run, const std::string& what) const;
+  void tell(const Run& run, const std::string& what);
+  void tell_failure(const Run& run, const std::string& what);
+  std::string line_of(const Run& run, const std::string& what) const;
+  void show_progress();
   void write_table() const;
   ExitCode outcome() const;
 
@@ -84,6 +89,10 @@ class Sweep {
   std::vector<Run> runs_;
   std::vector<cpu_set_t> shares_;
   int told_stops_ = 0;
+  launch::ProgressDisplay display_;
+  double begin_ = 0.0;        // wall time at which the first run was started here, s
+  double begin_share_ = 0.0;  // of the study, done then
+  double looked_ = 0.0;       // wall time of the last look at the logs, s
 };
 
 }  // namespace furrow::study

@@ -81,7 +81,7 @@ void check_label(const Label& label, const std::filesystem::path& path, const Ar
   throw io_error(path.string(),
                  fmt::format("is {} of version {}, which is {} than this program's {}{}", kind.words,
                              label.version, newer ? "newer" : "older", newer ? kind.version : kind.oldest,
-                             newer ? "" : ", expected one made by this version: make it anew"));
+                             newer ? "" : ", expected one made by this version: make it again"));
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ class Hdf5Writer {
 enum class Hdf5Type { float64, float32, int64, int32, uint64, uint8, other };
 
 /// Files of other programs as well as ours. Nothing that a file says of itself is believed: a dataset is read when it
-/// is of plain numbers that stand in this very file, and no larger than what is stored of it. So no file can take more
+/// is of plain numbers that are in this very file, and no larger than what is stored of it. So no file can take more
 /// memory than it has bytes (compressed: kMaxRatio times as much), make another file be read, or run a program.
 class Hdf5Reader {
  public:

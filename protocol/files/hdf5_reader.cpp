@@ -141,7 +141,7 @@ class Hdf5Reader::Set {
     file_.check(set_.ok(), "lacks the dataset " + quoted(name_));
     file_.check(made_.ok(), "the dataset " + quoted(name_) + " is damaged");
     file_.check(H5Pget_layout(made_) != H5D_VIRTUAL, refusal(name_, "is made of other datasets"));
-    file_.check(H5Pget_external_count(made_) == 0, refusal(name_, "stands in another file"));
+    file_.check(H5Pget_external_count(made_) == 0, refusal(name_, "is stored in another file"));
     return H5Dget_space(set_);
   }
   hsize_t chunk_bytes(hsize_t each) const {

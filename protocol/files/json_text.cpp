@@ -177,7 +177,7 @@ template nlohmann::ordered_json parse_json(const std::string&, const std::string
 template <class Json>
 Json load_json(const std::filesystem::path& file, const std::string& expected) {
   Json document = parse_json<Json>(read_text_file(file, expected), file.string());
-  if (!document.is_object()) throw input_error(file.string(), "", "is no object, expected " + expected);
+  if (!document.is_object()) throw input_error(file.string(), "", "is not an object, expected " + expected);
   return document;
 }
 template nlohmann::json load_json(const std::filesystem::path&, const std::string&);

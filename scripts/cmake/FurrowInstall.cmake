@@ -18,7 +18,8 @@ install(DIRECTORY ${CMAKE_SOURCE_DIR}/scripts/plot DESTINATION share/furrow/scri
   PATTERN __pycache__ EXCLUDE)
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/scripts/report/page ${CMAKE_SOURCE_DIR}/scripts/report/bundle
   DESTINATION share/furrow/scripts/report PATTERN __pycache__ EXCLUDE)
-install(PROGRAMS ${CMAKE_SOURCE_DIR}/scripts/report.py ${CMAKE_SOURCE_DIR}/scripts/events.py DESTINATION share/furrow/scripts)
+install(PROGRAMS ${CMAKE_SOURCE_DIR}/scripts/report.py ${CMAKE_SOURCE_DIR}/scripts/events.py
+  ${CMAKE_SOURCE_DIR}/scripts/frames_vtk.py DESTINATION share/furrow/scripts)
 # The Python package, and a link to it from where Debian's Python looks if the prefix is /usr.
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/scripts/python/furrow DESTINATION share/furrow/scripts/python
   FILES_MATCHING PATTERN "*.py" PATTERN py.typed PATTERN __pycache__ EXCLUDE)

@@ -18,7 +18,7 @@ import help_text
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 # What an argument or the value of an option is, beyond the words that its description lists.
 KINDS = {"SCENARIO": "list:scenarios", "STUDY": "list:studies", "VEHICLE": "list:vehicles", "--tire": "list:tires",
-         "--soil": "list:soils", "--vehicle": "list:vehicles", "DIR": "folder", "OTHERS": "folder", "--out": "folder",
+         "--soil": "list:soils", "--vehicle": "list:vehicles", "DIR": "folder", "OTHERS": "folder", "--out": "folder", "--vtk": "folder",
          "KEY": "key", "--set": "setting", "--profile": "file", "--bed": "file", "--save-bed": "file"}
 
 

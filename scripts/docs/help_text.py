@@ -23,8 +23,8 @@ class Entry:
 
     @property
     def words(self):
-        """The values that the description lists: of 'contact law: mindlin or hertz_tanh' these two."""
-        match = re.match(r"(?:[^:]*: )?((?:\w+, )*\w+ or \w+)(?:;| \(|$)", self.text)
+        """The values that the description lists: of 'Choose the contact law: mindlin or hertz_tanh.' these two."""
+        match = re.match(r"(?:[^:]*: )?((?:\w+, )*\w+ or \w+)(?:;| \(|\.|$)", self.text)
         return re.split(r", | or ", match[1]) if match and self.kind == "TEXT" else []
 
 

@@ -191,7 +191,7 @@ def option_rows(entries):
 
 
 def command_text(command, level):
-    text = f"\n{'#' * level} furrow {command.name}\n\n{cell(command.purpose[:1].upper() + command.purpose[1:])}.\n\n"
+    text = f"\n{'#' * level} furrow {command.name}\n\n{cell(command.purpose)}\n\n"
     text += f"```\n{command.usage}\n```\n\n"
     head = ["argument or option", "value", "default", "meaning"]
     rows = list(option_rows(command.arguments + [option for option in command.options if "--help" not in option.names]))

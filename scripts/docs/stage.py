@@ -22,7 +22,7 @@ FENCE = re.compile(r"\s*(```|~~~|:::)")
 
 
 def place(page):
-    """Where a page of the repository stands in the site."""
+    """Where a page of the repository is in the site."""
     return page.relative_to(HOME) if page.is_relative_to(HOME) else page
 
 

@@ -169,7 +169,7 @@ def box_blur(image, half):
 
 
 def occlusion(buffers, sizes, depth_scale):
-    """How much of the sky is hidden by what stands in front nearby, 0…1, from the depth buffer alone."""
+    """How much of the sky is hidden by what is in front nearby, 0…1, from the depth buffer alone."""
     camera = buffers.camera
     depth = buffers.depth.reshape(camera.height, camera.width)
     far = np.isfinite(depth)

@@ -57,7 +57,7 @@ def check_types(content, name, texts=(), numbers=(), objects=(), flags=(), lists
 
 
 def read_dataset(file, name):
-    """All numbers of an HDF5 dataset. Nothing that the file says of itself is believed: they must stand in this very
+    """All numbers of an HDF5 dataset. Nothing that the file says of itself is believed: they must be in this very
     file, and be no larger than what is stored of them."""
     what = f"{pathlib.Path(file.filename).name}: the dataset '{name}'"
     group = file
@@ -70,7 +70,7 @@ def read_dataset(file, name):
     if not isinstance(group, h5py.Dataset):
         raise Damaged(f"{what} is a group, expected numbers")
     if group.external or group.is_virtual:
-        raise Damaged(f"{what} stands in another file, expected the numbers themselves in this file")
+        raise Damaged(f"{what} is stored in another file, expected the numbers themselves in this file")
     if group.dtype.kind not in "iuf":
         raise Damaged(f"{what} holds no plain numbers")
     stored = group.id.get_storage_size()
@@ -166,7 +166,7 @@ class Run:
             return {}
         lines = path.read_text(encoding="utf-8").splitlines()
         names = lines[0].split(",") if lines else []
-        # A run that still goes on may be half-way through its last line.
+        # A run that still continues may be half-way through its last line.
         rows = [line.split(",") for line in lines[1:] if line.count(",") == len(names) - 1]
         if not rows:
             return {}

@@ -77,7 +77,7 @@ class VehicleRun:
         self._name()
 
     def _cut(self):
-        """To the lines that all tables have: those of a run that still goes on may differ by one."""
+        """To the lines that all tables have: those of a run that still continues may differ by one."""
         tables = [self.columns, *(wheel.columns for wheel in self.wheels)]
         for columns in tables:
             if "time_s" not in columns:

@@ -12,7 +12,7 @@ namespace furrow::terrain::dem {
 struct DemOptions : TerrainContext {
   std::string scenario = "scenario";  // what messages name: the scenario's file
   bool periodic_x = false;  // grains that leave at one end of the bin come back at the other; no end walls
-  bool piece = false;       // of a tiled bed: its layers go on across its periodic sides, with no gap
+  bool piece = false;       // of a tiled bed: its layers continue across its periodic sides, with no gap
   std::string law = "mindlin";  // mindlin | hertz_tanh
   std::string material;         // soil file whose values the other keys hold already; empty: none
   // Bed.

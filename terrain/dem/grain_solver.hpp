@@ -3,7 +3,7 @@
 //
 // Data flow of one step. Strips (strips.hpp) are grouped into chunks, one thread to a chunk. A chunk walks along its
 // strips; each strip filters its pairs by distance, evaluates the law on the touching ones, its walls and tires. Forces
-// stand in scratch memory of the thread that reaches one strip ahead: after strip k has been evaluated nothing is
+// are in scratch memory of the thread that reaches one strip ahead: after strip k has been evaluated nothing is
 // missing for its grains, so they are moved at once, while they are still in the cache. Positions, velocities and
 // spins thus come from memory once per step, forces never. Only the first strip of a chunk waits for what the chunk
 // before pushes on it: those are moved in a second short pass. No thread writes another's grain and every sum has an
@@ -132,7 +132,7 @@ class GrainSolver {
   Grains& grains() { return grains_; }
   const Grains& grains() const { return grains_; }
   const Strips& strips() const { return strips_; }
-  /// How often the neighbour list was made anew since reset_accounts(), by the share of grains in it.
+  /// How often the neighbour list was made again since reset_accounts(), by the share of grains in it.
   double rebuilds() const;
   SurfaceContacts& surfaces() { return surfaces_; }
   const SurfaceContacts& surfaces() const { return surfaces_; }
@@ -231,6 +231,8 @@ class GrainSolver {
   void bound_overlaps(double dt);
   /// After strips were sorted again: what was listed by one may be listed by another.
   void spread_bounds(const Resorted& range);
+  /// Σ |F| of a strip, N: now, or by its last sample where it is not evaluated; a saved state keeps no other.
+  double measured_force(int k) const;
   bool sample_now() const { return params_.activity && until_sample_ == 0; }
   /// Takes samples of the contact forces of the strips that this step evaluated. Those of sleeping strips stay: nothing
   /// moves there.

@@ -67,6 +67,11 @@ std::int32_t GrainSolver::grains_awake(const Strip& strip) const {
   return awake;
 }
 
+double GrainSolver::measured_force(int k) const {
+  if (activity_.evaluated(k)) return strips_[k].contact.contact_force;
+  return in_range(k, samples_.size()) ? samples_[k].force : 0.0;
+}
+
 void GrainSolver::take_samples() {
   samples_.resize(strips_.count());
   double force = 0.0;
@@ -94,7 +99,7 @@ void GrainSolver::reduce(const StepPart& part, Wanted wanted) {
     const MotionTotals& m = strips_[k].motion;
     power += c.power;
     work += m.step_work;
-    contact_force += c.contact_force;
+    if (wanted.forces) contact_force += measured_force(k);
     net_force += m.net_force;
     add(wall, load(c.wall_force));
     a.elastic += c.elastic;

@@ -53,7 +53,7 @@ class Check {
     require(n_ >= 0 && n_ <= kMaxGrains, "count", [&] { return fmt::format("is {}", n_); });
     const auto n = static_cast<std::size_t>(n_);
     for (const double x : archive_.get<double>("position", 4 * n))
-      require(std::abs(x) < kFar, "position", [&] { return "holds what is no position"; });
+      require(std::abs(x) < kFar, "position", [&] { return "holds a value that is not a position"; });
     for (const std::int32_t id : archive_.get<std::int32_t>("id", n))
       require(id >= 0 && id < n_, "id", [&] { return fmt::format("names grain {} of {}", id, n_); });
   }
@@ -76,7 +76,7 @@ class Check {
     for (std::size_t k = 0; k + 1 < samples.size(); k += 2) {
       force("samples/strips", samples[k]);
       require(samples[k + 1] >= 0.0 && samples[k + 1] < 1e15, "samples/strips",
-              [&] { return "holds what is no number of contacts"; });
+              [&] { return "holds a value that is not a number of contacts"; });
     }
   }
 

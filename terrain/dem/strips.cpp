@@ -216,7 +216,7 @@ Resorted Strips::rebuild_all(Grains& grains, int threads) {
   double top = 0.0;
   for (int g = 0; g < grains.count; ++g) top = std::max(top, grains.position[g].z);
   nz_ = static_cast<int>(std::clamp(top * inverse_z_, 0.0, kMaxCellsZ - 1.0)) + 1;
-  if (strips_.back().last != grains.count) {  // grains were placed anew: all in the first strip
+  if (strips_.back().last != grains.count) {  // grains were placed again: all in the first strip
     ++changes_;
     for (Strip& strip : strips_) {
       strip = {};

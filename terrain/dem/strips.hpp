@@ -1,17 +1,17 @@
 // Who may touch whom: the bin cut into strips across x, each with the list of its pairs.
 //
 // Grains are sorted by strip, within a strip by cell (y, then z). A strip is at least as wide as two grains may be
-// apart to be listed, so that a grain's partners stand in its own strip or in the two beside it. The pair (i, j) is
+// apart to be listed, so that a grain's partners are in its own strip or in the two beside it. The pair (i, j) is
 // listed once, by the strip of the lower index: j is in the same strip or in the next.
 //
-// Lists are made anew only where grains moved. Every strip adds up how far its fastest grain went per step
+// Lists are made again only where grains moved. Every strip adds up how far its fastest grain went per step
 // (`travel`); when that exceeds half the skin since the strip was sorted, the strip and its two neighbours are sorted
 // again among themselves and the lists that name their grains are rebuilt. The rest of the bed keeps its lists.
 // Cells are a skin wider than the reach of a list, so that grains which drifted by half a skin still find each other
 // in neighbouring cells. Which strips are rebuilt, and the order of every list, does not depend on threads.
 //
 // Where grains may sleep, strips that are wide enough are cut across into parcels (parcel.hpp), alike in all strips. A
-// grain's partners stand in its own parcel or in the eight around it.
+// grain's partners are in its own parcel or in the eight around it.
 #pragma once
 
 #include <cstdint>

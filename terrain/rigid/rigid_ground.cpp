@@ -17,7 +17,7 @@
 namespace furrow::terrain {
 namespace {
 
-// How deep a surface may stand in the ground when it is attached, m: static contact, not a misplaced tire.
+// How deep a surface may be in the ground when it is attached, m: static contact, not a misplaced tire.
 constexpr double kMaxStartDepth = 5e-3;
 // The plane has no end; one cell of this size stands for it in pictures of heights, m.
 constexpr double kFieldCell = 10.0;
@@ -249,7 +249,7 @@ void RigidGround::rub(GroundSurface& surface, const GroundLaw& law, double dt) {
   for (std::size_t vertex = 0; vertex < surface.shear.size(); ++vertex) {
     const double before = surface.area_before[vertex], now = surface.area[vertex];
     const GroundShear left{surface.shear[vertex], before};
-    if (now > before) surface.shear[vertex] *= before / now;  // what touches anew is not yet sheared
+    if (now > before) surface.shear[vertex] *= before / now;  // what has just touched is not yet sheared
     const GroundShear begin{surface.shear[vertex], now};
     double grip = 0.0;
     // On a profile shear and friction lie in the plane that the vertex's normal force stands on: x' and y.

@@ -17,7 +17,7 @@
 namespace furrow::terrain::scm {
 namespace {
 
-// How deep a surface may stand in the ground when it is attached, m: static contact, not a misplaced tire.
+// How deep a surface may be in the ground when it is attached, m: static contact, not a misplaced tire.
 constexpr double kMaxStartDepth = 5e-3;
 constexpr double kMostNodes = 1e8;
 constexpr double kDegree = std::numbers::pi / 180.0;  // rad

@@ -144,7 +144,7 @@ std::string write_soil_estimate(const std::filesystem::path& run, const std::fil
     if (sinkage.is_number() && clearance.is_number())
       if (const double depth = sinkage.get<double>() + clearance.get<double>(); e.sinkage > depth)
         text +=
-            fmt::format("; deeper than the bed of {:.0f} mm, of which the theory knows nothing", 1e3 * depth);
+            fmt::format("; deeper than the bed of {:.0f} mm, which the theory does not model", 1e3 * depth);
   }
   for (int k = 0; k <= 16; ++k) {
     const WheelEstimate at = soil::rigid_wheel(s, wheel, 0.05 * k);

@@ -36,7 +36,7 @@ struct SurfaceContactForce {
   SurfaceContactTangent tangent;   // read only where tangents are wanted
 };
 
-/// A surface as it stands in one substep.
+/// A surface as it is in one substep.
 struct SurfaceNow {
   std::span<const std::array<int, 3>> triangles;
   std::span<const Vec3> position;  // m

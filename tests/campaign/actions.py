@@ -10,7 +10,7 @@ import processes
 from case import DOCUMENTED, Deviation
 
 ALL = {}
-GONE = "gone"  # returned by an action after which the run starts anew
+GONE = "gone"  # returned by an action after which the run starts again
 
 
 def action(function):
@@ -197,7 +197,7 @@ def read_only(case):
 
 @action
 def removed(case):
-    """The folder is gone: that is told, nothing is continued, and the run starts anew."""
+    """The folder is gone: that is told, nothing is continued, and the run starts again."""
     started, alive = begin(case)
     had_begun = alive and case.out.exists()
     before = os.open(case.out, os.O_DIRECTORY) if had_begun else None
@@ -245,7 +245,7 @@ def clock(case):
 
 @action
 def second_user(case):
-    """Somebody else continues or overwrites the folder while it is written: refused, and the first one goes on."""
+    """Somebody else continues or overwrites the folder while it is written: refused, and the first one continues."""
     started, alive = begin(case)
     if alive and case.out.exists():
         words = case.rng.choice([case.again, case.anew])

@@ -29,7 +29,7 @@ using nlohmann::json;
 
 constexpr double kStep = 1e-3;  // communication step, s
 
-// The lines that would stand in tire/tires.cpp, terrain/terrains.cpp and rigs/rigs.cpp.
+// The lines that would be in tire/tires.cpp, terrain/terrains.cpp and rigs/rigs.cpp.
 constexpr tire::TireModel kTire{"spring_wheel", tire::read_spring_wheel};
 constexpr rigs::RigKind kRig{"held_hub", key_list<rigs::HeldHubOptions>(), rigs::read_held_hub};
 constexpr terrain::TerrainEntry kTerrain{"spring_mat", key_list<terrain::SpringMatOptions>(),
@@ -210,7 +210,7 @@ TEST(Dummies, what_a_tire_does_not_take_from_the_scenario_is_told) {
   options.pressure.knots = {{0.0, 2e5}};
   s.tires = {kTire.read(wheel_file(), options)};
   EXPECT_EQ(checked(s),
-            "scenario.json: key 'tire.pressure': is set aside: it says nothing to a spring wheel tire\n");
+            "scenario.json: key 'tire.pressure': is ignored: a spring wheel tire does not use it\n");
 }
 
 TEST(Dummies, a_terrain_without_contact_tangents_refuses_tires_that_ask_for_them) {
@@ -270,7 +270,7 @@ TEST(Dummies, wheel_says_all_of_its_diagnostics_has_its_outside_outside_and_a_ma
 }
 
 TEST(Dummies, key_is_a_field_and_an_entry_of_the_schema) {
-  // The entry as it would stand in rigs/scenario.schema.json.
+  // The entry as it would be in rigs/scenario.schema.json.
   const scenario::Schema schema(json::parse(R"({"type": "object", "properties": {"terrain": {
       "type": "object", "additionalProperties": false, "default": {}, "properties": {"mat_stiffness": {
         "type": "number", "exclusiveMinimum": 0, "default": 1e7, "unit": "N/m³",

@@ -23,11 +23,11 @@ import time
 import seeds
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-TARGETS = ["scenario", "grammar", "tire", "bed", "hdf5", "states", "checkpoint", "run_list", "study", "soil", "summary"]
+TARGETS = ["scenario", "grammar", "tire", "bed", "hdf5", "states", "checkpoint", "run_list", "study", "soil", "summary", "vehicle"]
 LONGEST = 20  # s that an input may take
 MEMORY = 3000  # MB that a target may have
 INTERRUPTED = 72  # libFuzzer's exit code
-TRIES = 5  # to go on after a finding, within the seconds of a call
+TRIES = 5  # to continue after a finding, within the seconds of a call
 
 
 def environment(folder):

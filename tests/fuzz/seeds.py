@@ -46,6 +46,15 @@ def checkpoints(root):
              "before": {"run": {"threads": 2}}, "failed": SUMMARY}]
 
 
+def vehicles(root):
+    drivers = [document["rig"]["driver"] for document in documents(root, "rigs/hmmwv_*.json", "rigs/rover_small.json")
+               if isinstance(document.get("rig", {}).get("driver"), dict)]
+    tables = ["time_s,throttle,brake,steering,gear\n0,0,1,0,1\n1,0.5,0,-0.2,2\n", "x_m,y_m\n0,0\n5,0\n10,1\n", "time_s,speed_m_s\n0,1\n2,3\n"]
+    drivers += [{"speed": {"target": "points.csv"}}, {"inputs": "points.csv"}, {"speed": {"target": 2.0}, "path": {"kind": "waypoints", "points": "points.csv"}}]
+    return [{"vehicle": vehicle, "driver": {"format_version": 1, **drivers[k % len(drivers)]}, "csv": tables[k % len(tables)]}
+            for k, vehicle in enumerate(3 * documents(root, "vehicle/data/[bhr]*.json"))]
+
+
 def texts(target, root):
     """JSON documents, or texts, or nothing where a target makes its files of random bytes."""
     if target == "bed":
@@ -60,6 +69,7 @@ def texts(target, root):
         "summary": lambda: [{"summary": SUMMARY, "scenario": SMALL, "soil": SOIL, "path": "segments.0.to_step"},
                             {"summary": {"wheels": [SUMMARY], "format_version": 1}, "scenario": {}, "soil": {**SOIL, "quick": True}}],
         "checkpoint": lambda: checkpoints(root),
+        "vehicle": lambda: vehicles(root),
     }
     return [json.dumps(document) for document in found[target]()] if target in found else []
 

@@ -1,4 +1,4 @@
-// Checkpoints on disk: whole or refused; series and frames go on where they were.
+// Checkpoints on disk: whole or refused; series and frames continue where they were.
 #include <gtest/gtest.h>
 
 #include <cstdint>

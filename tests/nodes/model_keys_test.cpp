@@ -78,7 +78,7 @@ TEST(TerrainKeys, an_engine_chosen_on_the_command_line_sets_keys_of_others_aside
   EXPECT_EQ(s.terrain->describe().engine, "rigid");
   ASSERT_EQ(s.warnings.size(), 1U);
   EXPECT_TRUE(s.warnings[0].ends_with(
-      "key 'terrain.engine': is 'rigid'; keys of other engines are set aside: length, radius"))
+      "key 'terrain.engine': is 'rigid'; keys of other engines are ignored: length, radius"))
       << s.warnings[0];
   const json section = json::parse(s.completed)["terrain"];
   EXPECT_EQ(section["friction"], 0.5);
@@ -101,14 +101,14 @@ TEST(TerrainKeys, completed_scenarios_of_earlier_versions_are_read) {
   document["terrain"]["length"] = 4.0;
   const scenario::Scenario s = ScenarioFile(document.dump()).load();
   ASSERT_EQ(s.warnings.size(), 1U);
-  EXPECT_NE(s.warnings[0].find("set aside: length"), std::string::npos) << s.warnings[0];
+  EXPECT_NE(s.warnings[0].find("are ignored: length"), std::string::npos) << s.warnings[0];
   EXPECT_EQ(ScenarioFile(s.completed).load().digest, s.digest);
   scenario::remove_foreign_keys(document);
   for (const auto& [key, value] : document["terrain"].items())
     EXPECT_EQ(value, json::parse(s.completed)["terrain"][key]) << key;
 }
 
-/// A key may move from one engine to another; runs that have it go on.
+/// A key may move from one engine to another; runs that have it continue.
 TEST(TerrainKeys, completed_scenarios_of_runs_say_so_and_may_hold_keys_of_other_engines) {
   json document = json::parse(ScenarioFile(testing::kSmallest).load({{"terrain.engine", "rigid"}}).completed);
   EXPECT_TRUE(document["completed_by"].get<std::string>().starts_with("furrow "));
@@ -146,7 +146,7 @@ TEST(RigKeys, a_key_of_another_type_is_refused_or_set_aside_as_those_of_engines_
   document = given;
   EXPECT_EQ(set_aside(document, {{"rig.type", "drawbar"}}),
             std::vector<std::string>{
-                "mine.json: key 'rig.type': is 'drawbar'; keys of other types are set aside: slip"});
+                "mine.json: key 'rig.type': is 'drawbar'; keys of other types are ignored: slip"});
   EXPECT_EQ(document["rig"], json({{"speed", 3.0}}));
   document["rig"]["type"] = "trolley";
   EXPECT_TRUE(set_aside(document, {}).empty());
@@ -163,7 +163,7 @@ TEST(ModelKeys, a_scenario_that_is_refused_is_not_told_what_was_set_aside) {
   const std::string told = with_terrain(R"({"radius": 0.01, "length": 4})")
                                .complaint({{"terrain.engine", "rigid"}, {"run.end", "1e-9"}});
   EXPECT_NE(told.find("run.end"), std::string::npos) << told;
-  EXPECT_EQ(told.find("set aside"), std::string::npos) << told;
+  EXPECT_EQ(told.find("are ignored"), std::string::npos) << told;
 }
 
 TEST(TerrainKeys, tools_that_need_grains_say_why_and_which_engine_has_them) {

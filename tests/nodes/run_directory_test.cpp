@@ -1,5 +1,5 @@
 // The folder of a run: one run at a time has it, nothing but what furrow wrote is ever removed from it, and results to be
-// overwritten survive a run that never came to be.
+// overwritten survive a run that never started.
 #include "nodes/launch/run_directory.hpp"
 
 #include <sys/wait.h>
@@ -103,11 +103,11 @@ TEST(RunList, one_that_was_tampered_with_or_is_of_another_version_is_refused) {
   };
   for (const char* name : {"../victim", "/etc/passwd", "frames/../../victim", "a\tb", ""})
     EXPECT_NE(
-        refusal(std::string("furrow-run 1\n") + name + "\n").find("is no name of a file below its folder"),
+        refusal(std::string("furrow-run 1\n") + name + "\n").find("is not the name of a file below its folder"),
         std::string::npos)
         << name;
   EXPECT_NE(refusal("furrow-run 2\na\n").find("is of version '2', expected 1"), std::string::npos);
-  EXPECT_NE(refusal("summary.json\n").find("is no list of a run's files"), std::string::npos);
+  EXPECT_NE(refusal("summary.json\n").find("is not a list of a run's files"), std::string::npos);
   EXPECT_EQ(refusal(""), "") << "killed before its first line";
 }
 
@@ -149,7 +149,7 @@ TEST_F(RunFolderTest, one_run_at_a_time_has_it_until_its_last_process_ends) {
   }();
   while (error_of([&] { const launch::HeldFolder rank(run_); }) != "") usleep(1000);
   const std::string told = error_of([&] { FolderLock(run_, "--out", FolderLock::Mode::alone, 0.2); });
-  EXPECT_NE(told.find("is taken by a run that is not over: process " + std::to_string(child) + " ("),
+  EXPECT_NE(told.find("is in use by a run that has not ended: process " + std::to_string(child) + " ("),
             std::string::npos)
       << told;
   std::optional<launch::HeldFolder> rank;

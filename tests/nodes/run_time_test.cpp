@@ -123,7 +123,7 @@ TEST(RunTime, a_report_tells_it_where_it_is_known) {
   EXPECT_NE(scenario::validation_text(s, &t).find("\ntime         about "), std::string::npos);
 }
 
-/// What was kept is taken, whatever it says; what is damaged is measured anew and kept.
+/// What was kept is taken, whatever it says; what is damaged is measured again and kept.
 TEST(Calibration, is_kept_and_made_anew_when_damaged) {
   const testing::TemporaryFolder folder;
   const char* const set = std::getenv("XDG_CACHE_HOME");

@@ -1,5 +1,5 @@
 // Schema and options hold together: every key of a section is read by a field with the same default and unit, and every
-// field that is a key stands in the schema.
+// field that is a key is in the schema.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -107,6 +107,22 @@ TEST(Progress, tells_time_pull_sinkage_speed_and_what_is_left) {
             "t 0.500 of 2 s   sinkage 7.12 mm   1.40 m/s   gear 2   1:23 left");
   EXPECT_EQ(launch::progress_text({"settling the bed", 0.42, 0.0, 1.5, 0.0, 0.0, 0.0, -1.0}),
             "settling the bed 42 %");
+  EXPECT_EQ(launch::progress_text({"settling the bed", 0.42, 0.0, 1.5, 0.0, 0.0, 0.0, 65.0}),
+            "settling the bed 42 %   1:05 left");
+}
+
+TEST(Progress, share_is_read_back_from_a_line_of_a_log) {
+  EXPECT_DOUBLE_EQ(launch::share_in("furrow: t 0.500 of 2 s   pull 1432 N"), 0.25);
+  for (const char* other : {"furrow: settling the bed 42 %", "t 0.5 of 2 s", "furrow: t 0.5 of 0 s", ""})
+    EXPECT_TRUE(std::isnan(launch::share_in(other))) << other;
+}
+
+TEST(Progress, time_left_of_a_phase_is_its_time_until_now_scaled) {
+  launch::PhaseClock clock;
+  EXPECT_EQ(clock.time_left("settling", 0.2, 100.0), -1.0) << "nothing is done yet";
+  EXPECT_DOUBLE_EQ(clock.time_left("settling", 0.4, 110.0), 30.0);
+  EXPECT_EQ(clock.time_left("joining", 0.4, 120.0), -1.0) << "another phase begins";
+  EXPECT_DOUBLE_EQ(clock.time_left("joining", 0.7, 123.0), 3.0);
 }
 
 }  // namespace

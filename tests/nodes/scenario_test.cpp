@@ -304,11 +304,11 @@ TEST(Scenario, times_that_are_no_whole_steps_are_told) {
     ASSERT_EQ(told.size(), 1U) << key;
     EXPECT_NE(told[0].find(std::string("key '") + key + "': " + expected), std::string::npos) << told[0];
   };
-  only("output.series_interval", "3.3e-4", "is 0.00033 s, which is no whole number of steps of 4e-5 s: 0.00032 s is taken");
-  only("output.series_interval", "1e-9", "is 1e-9 s, which is no whole number of steps of 4e-5 s: 4e-5 s is taken");
-  only("output.frame_interval", "0.03001", "is 0.03001 s, which is no whole number of steps of 4e-5 s: 0.03 s is taken");
-  only("checkpoint.interval", "0.10001", "is 0.10001 s, which is no whole number of steps of 4e-5 s: 0.1 s is taken");
-  only("run.end", "1.50003", "is 1.50003 s, which is no whole number of steps of 4e-5 s: 1.50004 s is taken");
+  only("output.series_interval", "3.3e-4", "is 0.00033 s, not a whole number of steps of 4e-5 s: 0.00032 s is used");
+  only("output.series_interval", "1e-9", "is 1e-9 s, not a whole number of steps of 4e-5 s: 4e-5 s is used");
+  only("output.frame_interval", "0.03001", "is 0.03001 s, not a whole number of steps of 4e-5 s: 0.03 s is used");
+  only("checkpoint.interval", "0.10001", "is 0.10001 s, not a whole number of steps of 4e-5 s: 0.1 s is used");
+  only("run.end", "1.50003", "is 1.50003 s, not a whole number of steps of 4e-5 s: 1.50004 s is used");
   EXPECT_TRUE(warnings("output.series_interval", "0.0012").empty());
   EXPECT_TRUE(warnings("output.frame_interval", "0").empty());
   EXPECT_TRUE(warnings("run.end", "1.50004").empty());
@@ -351,9 +351,9 @@ TEST(Scenario, settings_cannot_nest_without_end) {
   const testing::ScenarioFile file(testing::kSmallest);
   std::string key = "a";
   for (int k = 0; k < 200000; ++k) key += ".a";
-  EXPECT_NE(file.complaint({{key, "1"}}).find("': is no key, expected --set section.key=value"), std::string::npos);
+  EXPECT_NE(file.complaint({{key, "1"}}).find("': is not a key, expected --set section.key=value"), std::string::npos);
   EXPECT_LT(file.complaint({{key, "1"}}).size(), 200U);
-  EXPECT_NE(file.complaint({{"rig.slip\n", "1"}}).find("key 'rig.slip\\n': is no key"), std::string::npos);
+  EXPECT_NE(file.complaint({{"rig.slip\n", "1"}}).find("key 'rig.slip\\n': is not a key"), std::string::npos);
   EXPECT_NE(file.complaint({{"tire.pressure", std::string(100000, '[') + std::string(100000, ']')}}).find("nested deeper"),
             std::string::npos);
 }

@@ -1,5 +1,6 @@
 // Who gets which cores: the plan is a pure function of the machine; applying it is checked on this machine.
 #include "nodes/launch/thread_setup.hpp"
+#include "nodes/scenario/terrain_threads.hpp"
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -64,6 +65,22 @@ TEST(ThreadPlan, two_cores_are_left_to_the_system) {
   }
 }
 
+// Measured on two cores with six ranks: faster with many grains, slower with few.
+TEST(ThreadPlan, a_terrain_of_many_grains_shares_the_cores_of_many_tires) {
+  auto host = machine(2, 4);
+  host.grains = 67'000;
+  EXPECT_EQ(plan_all(host).back().threads, 1);
+  host.grains = 1'140'000;
+  EXPECT_EQ(plan_all(host).back().threads, 2);
+  EXPECT_EQ(plan_all(host, 1).back().threads, 1);  // what the user wants
+  host = machine(2, 1);
+  host.grains = 1'140'000;
+  EXPECT_EQ(plan_all(host).back().threads, 1);  // the tire leaves it half
+  host = machine(16, 4);
+  host.grains = 1'140'000;
+  EXPECT_EQ(plan_all(host).back().threads, 11);  // the others leave enough
+}
+
 TEST(ThreadPlan, four_cores_leave_three_to_the_terrain_and_the_rig_sits_with_the_tire) {
   const auto plans = plan_all(machine(4));
   EXPECT_EQ(threads_of(plans), (std::vector<int>{1, 1, 3}));
@@ -85,7 +102,7 @@ TEST(ThreadPlan, four_tires_on_two_cores_are_left_to_the_system) {
 }
 
 TEST(ThreadPlan, the_terrain_takes_no_more_than_pays_by_itself) {
-  EXPECT_EQ(plan_all(machine(128)).back().threads, launch::kMaxAutoThreads);
+  EXPECT_EQ(plan_all(machine(128)).back().threads, scenario::kMaxAutoThreads);
   EXPECT_EQ(plan_all(machine(128), 100).back().threads, 100);
 }
 

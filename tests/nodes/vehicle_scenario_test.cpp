@@ -83,7 +83,7 @@ TEST(VehicleScenario, completed_text_is_a_scenario_that_gives_the_same_digest_fr
   EXPECT_NE(load(document).digest, s.digest);
 }
 
-/// Files count by what they hold: the driver's stands in the completed scenario, the vehicle's is named in full.
+/// Files count by what they hold: the driver's is in the completed scenario, the vehicle's is named in full.
 TEST(VehicleScenario, files_beside_the_scenario_are_found_and_decide_the_results) {
   json document = hmmwv();
   document["rig"]["vehicle"] = "mine.json";

@@ -1,7 +1,7 @@
 // The engine's law `mindlin` with each of its differences from LIGGGHTS's `hertz` + `tangential history` on a switch.
 //
 // Included ahead of the engine's own sources when they are compiled for the comparison (CMakeLists.txt): there it
-// stands in the place of MindlinLaw, all else is the engine as it is. Coefficients::velocity_scale, which mindlin does
+// is in the place of MindlinLaw, all else is the engine as it is. Coefficients::velocity_scale, which mindlin does
 // not use, holds the sum of the switches; 0 is the engine's law itself, kAll that of LIGGGHTS 3.8.
 #pragma once
 

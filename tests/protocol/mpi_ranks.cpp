@@ -176,7 +176,7 @@ void settling(Transport& t) {
   say("%s: settled\n", to_string(t.self()).c_str());
 }
 
-/// The rig itself is stopped while it waits, for longer than its time-out, and goes on waiting afterwards.
+/// The rig itself is stopped while it waits, for longer than its time-out, and continues waiting afterwards.
 void waiting_one_is_stopped(Transport& t) {
   if (t.self() == kRig) {
     t.set_peer_timeout(2.0);

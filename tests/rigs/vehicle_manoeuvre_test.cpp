@@ -87,7 +87,7 @@ TEST(LaneChange, preview_stays_in_its_lanes_where_pure_pursuit_leaves_them) {
   EXPECT_LT(figure(*pursuit, "lane_margin_least_m"), -0.1);
 }
 
-// With the higher centre of mass it leans until wheels on the inner side carry nothing; what was found goes on after a restart.
+// With the higher centre of mass it leans until wheels on the inner side carry nothing; what was found continues after a restart.
 TEST(WheelLift, is_noticed_and_kept) {
   const json driver = {{"inputs", {{"steering", json::array({{0, 0}, {0.5, 0}, {0.8, 1}})}, {"gear", 2}}}};
   rigs::VehicleRigPlan plan = vehicle_plan("hmmwv_tr.json", driver);

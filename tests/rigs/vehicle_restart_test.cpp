@@ -1,4 +1,4 @@
-// A vehicle that is restored goes on bit for bit: in the air, during a shift, while its brakes hold, on a path.
+// A vehicle that is restored continues bit for bit: in the air, during a shift, while its brakes hold, on a path.
 #include <gtest/gtest.h>
 
 #include "rigs/rut_trace.hpp"

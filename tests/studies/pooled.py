@@ -22,7 +22,7 @@ sys.path.insert(0, str(HERE.parents[1] / "scripts"))
 import provenance  # noqa: E402
 from plot.student import half_interval, student  # noqa: E402
 
-# Runs of the pool: table, case or settings, seed. What the run changes besides stands in the table itself.
+# Runs of the pool: table, case or settings, seed. What the run changes besides is in the table itself.
 POOL = [("behaviour", "base", 1), ("behaviour", "seed_2", 2), ("behaviour", "seed_3", 3), ("behaviour", "half_step", 1),
         ("behaviour", "mirrored", 1),
         *(("activity", f"seed_{seed}_{sleep}", seed) for seed in (1, 2, 3) for sleep in ("on", "off")),

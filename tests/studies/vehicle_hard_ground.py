@@ -145,7 +145,7 @@ def braking(runs):
 
 
 def energy(runs):
-    """Where the energy of whole runs went, each entry by itself; what the accounts leave over."""
+    """Where the energy of whole runs went, each entry on its own; what the accounts leave over."""
     for case in ("acceleration", "braking_from_15", "flexible_tires"):
         if case not in runs.folders:
             continue

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Checkpoints and `furrow resume`: the run that goes on is bit for bit the one that was not interrupted."""
+"""Checkpoints and `furrow resume`: the run that continues is bit for bit the one that was not interrupted."""
 import json
 import pathlib
 import shutil
@@ -100,7 +100,7 @@ class Resume(CheckpointTest):
 
     def test_an_earlier_end_is_refused(self):
         self.copy_of_whole()
-        self.assertIn("key 'run.end': is 0.06 s, but the run has come to 0.1 s", self.resume("--until", "0.06", code=2).stderr)
+        self.assertIn("key 'run.end': is 0.06 s, but the run has reached 0.1 s", self.resume("--until", "0.06", code=2).stderr)
 
     def test_nothing_goes_on_without_its_checkpoint(self):
         run = self.copy_of_whole()

@@ -47,7 +47,7 @@ class ClusterTest(CheckpointTest):
         wait_for(lambda: "stopping" in said.read_text(), 20, "the signal comes")
         self.mark.unlink()
         self.cluster.wait_for_state(number, lambda job: job["Restarts"] == "1" and job["JobState"] in ("PENDING", "RUNNING"), 60)
-        time.sleep(3)  # Slurm refuses what it began in the same second; by itself it lets two minutes pass
+        time.sleep(3)  # Slurm refuses what it began in the same second; on its own it lets two minutes pass
         wait_for(lambda: self.cluster.call("scontrol", "update", f"JobId={number}", "StartTime=now", check=False).returncode == 0,
                  30, "the job need not wait for two minutes")
         self.cluster.wait_for_state(number, lambda job: job["JobState"] == "COMPLETED", 240)
@@ -93,7 +93,7 @@ class QueuedAgainBySlurm(ClusterTest):
     def test_tasks_without_mpi_are_refused(self):
         done = self.srun("run", self.path, "--out", self.run_folder, mpi="none")
         self.assertNotEqual(done.returncode, 0)
-        self.assertIn("srun: started 3 tasks that know nothing of MPI, expected srun --mpi=pmix", done.stderr)
+        self.assertIn("srun: started 3 tasks without MPI, expected srun --mpi=pmix", done.stderr)
         self.assertFalse(self.run_folder.exists())
 
     def test_a_job_that_never_comes_to_a_checkpoint_ends(self):

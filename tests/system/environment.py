@@ -268,7 +268,7 @@ class Names(EnvironmentTest):
         done = subprocess.run([os.fsencode(PROGRAM), b"run", folder + b"/s.json", *(word.encode() for word in SHORT), b"--out", b"out"],
                               cwd=self.folder, capture_output=True)
         self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn(b"key 'tire.file': stands in a folder with a name that is not UTF-8", done.stderr)
+        self.assertIn(b"key 'tire.file': is in a folder with a name that is not UTF-8", done.stderr)
 
     def test_of_plots_do_not_depend_on_the_users_python(self):
         self.assertEqual(furrow("run", self.path, *SHORT, "--out", "out", cwd=self.folder).returncode, 0)

@@ -156,7 +156,7 @@ class BeforeTheWall(CheckpointTest):
             position = [float(line["position_m"]) for line in csv.DictReader(file)]
         self.assertAlmostEqual(5.5 - position[-1] - 0.4673 - 1.21, 0.0, delta=2e-3)
         done = self.program("resume", self.whole, "--no-plots")
-        self.assertRegex(done.stderr, r"has come to its end at 0\.\d+ s, there is nothing to do")
+        self.assertRegex(done.stderr, r"is finished: it ended at 0\.\d+ s; there is nothing to do")
 
     def test_from_every_checkpoint_around_the_end(self):
         all_steps = steps(self.whole)

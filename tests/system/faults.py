@@ -11,7 +11,7 @@ import unittest
 from checkpoint_runs import FAULTY, INTERVAL, RANKS, STEPS, CheckpointTest, steps, summary
 from program import furrow, main, start
 
-# (point, rank, which time, step at which the run goes on at the latest)
+# (point, rank, which time, step at which the run continues at the latest)
 KILLS = [
     ("step", "rig", 250, 200),
     ("step", "tire", 250, 200),
@@ -48,7 +48,7 @@ class Killed(CheckpointTest):
 
     def test_a_rank_after_all_results(self):
         done = self.run_with_fault("done", RANKS["rig"], 1, "kill", code=0)
-        self.assertIn("furrow: warning: the run had come to its end when this happened: rank 0 (rig) was lost", done.stderr)
+        self.assertIn("furrow: warning: the run had finished before this happened: rank 0 (rig) was lost", done.stderr)
         self.assertFalse((self.run_folder / "summary_failed.json").exists())
         self.same_as_whole()
 
@@ -191,7 +191,7 @@ class Folder(CheckpointTest):
         for other in others:
             _, err = other.communicate(timeout=30)
             self.assertEqual(other.returncode, 2, err)
-            self.assertIn("is taken by a run that is not over", err)
+            self.assertIn("is in use by a run that has not ended", err)
         self.mark.unlink()
         _, err = process.communicate(timeout=30)
         self.assertEqual(process.returncode, 0, err)

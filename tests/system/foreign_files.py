@@ -62,7 +62,7 @@ class Beds(SystemTest):
     def test_external_storage(self):
         with self.made() as file:
             file.create_dataset("position", shape=(1, 3), dtype="f8", external=[("/etc/passwd", 0, 24)])
-        self.refused("'position' stands in another file")
+        self.refused("'position' is stored in another file")
 
     def test_external_link(self):
         with h5py.File(self.folder / "other.h5", "w") as file:
@@ -176,7 +176,7 @@ class Reports(SystemTest):
         tell(lambda file, name: file.create_dataset(name, shape=(10 ** 6, 10 ** 6), dtype="f8", chunks=(1, 1024)),
              "results.h5: the dataset 'terrain/height_before' is said to have 1000000000000 numbers, but 0 bytes are stored")
         tell(lambda file, name: file.create_dataset(name, shape=(1, 3), dtype="f8", external=[("/etc/passwd", 0, 24)]),
-             "results.h5: the dataset 'terrain/height_before' stands in another file")
+             "results.h5: the dataset 'terrain/height_before' is stored in another file")
         tell(lambda file, name: file.__setitem__(name, h5py.SoftLink("/x")), "results.h5: the dataset 'terrain/height_before' is a link")
         tell(lambda file, name: file.__setitem__(name, ["a", "b"]), "results.h5: the dataset 'terrain/height_before' holds no plain numbers")
         tell(lambda file, name: file.__setitem__(name, [1.0, 2.0]), "results.h5 holds no height field")

@@ -79,7 +79,7 @@ mount -t tmpfs -o mode=1777,size=50% tmpfs "$system/tmp"
 git -c safe.directory='*' clone --quiet --no-hardlinks -- "$repository" "$system$checkout"
 commit=$(git -c safe.directory='*' -C "$system$checkout" rev-parse --short HEAD)
 
-# 2. The commands: what stands in the README's code block behind the mark.
+# 2. The commands: what is in the README's code block behind the mark.
 readme_command() {
   awk -v mark="<!-- command: $1 -->" '$0 == mark {found = 1; next} found && /^```/ {if (inside) exit; inside = 1; next}
     inside {print}' "$system$checkout/README.md"

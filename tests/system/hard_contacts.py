@@ -48,7 +48,7 @@ class SmallWheel(SystemTest):
         self.assertTrue(0.0 < found["substeps_refined_share"] <= 1.0)
         self.assertGreaterEqual(found["substeps_most_parts"], 2)
         self.assertIn(f"the terrain took {found['substeps_added']} more substeps", done.stderr)
-        # It goes on bit for bit while it is refined, whatever the threads.
+        # It continues bit for bit while it is refined, whatever the threads.
         again = self.folder / "again"
         for arguments in (("run", self.path, "--threads", "1", "--out", again, "--set", "run.end=0.0845", "--set", "run.average_from=0.06"),
                           ("resume", again, "--until", "0.12")):
@@ -77,7 +77,7 @@ class Failed(SystemTest):
                                r"grain's diameter, the deepest by .* m \(\d+ %\) between .* at \(.*\) m; expected stiffer grains \(about .* Pa in "
                                r"terrain.young_modulus, which needs a step of at most .* s\), or less load or speed; a smaller step does not help")
         self.assertNotIn("furrow resume", told)
-        self.assertIn("it would fail at the same step; start again with furrow run", told)
+        self.assertIn("a resumed run would fail at the same step; start again with furrow run", told)
         self.assertFalse((run / "summary.json").exists())
         found = summary(run, "summary_failed.json")
         self.assertEqual(found["failed"]["exit_code"], 3)
@@ -97,7 +97,7 @@ class Failed(SystemTest):
             done = furrow("resume", run, "--set", setting, cwd=self.folder)
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(f"key '{key}': is ", done.stderr)
-        # Up to before the failure, where it has a checkpoint: it goes on with half the step and ends.
+        # Up to before the failure, where it has a checkpoint: it continues with half the step and ends.
         stopped = summary(run, "summary_failed.json")["failed"]["time_s"]
         last = max(int(entry.name) for entry in (run / "checkpoints").iterdir()) * 1e-4
         self.assertLess(last, stopped)

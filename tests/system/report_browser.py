@@ -1,16 +1,27 @@
 #!/usr/bin/python3
 """report.html in a headless Chromium, opened as a file: nothing is logged, all frames play, plots answer the pointer, the
-themes change. Skipped (77) without chromium, chromium-driver and python3-selenium."""
+themes change, and long runs stay small and responsive. Skipped (77) without chromium, chromium-driver and
+python3-selenium.
+
+usage: report_browser.py [TEST]...
+       report_browser.py --measure FILE.json    times of slider steps with 25,000 grains and of a run of 1,000 frames
+"""
 import json
+import os
+import pathlib
+import platform
 import shutil
+import statistics
+import subprocess
 import sys
+import tempfile
 import time
 import unittest
 
 import report_page
 from report_page import page
 from plot.run_data import Run
-from program import SystemTest
+from program import ROOT, SystemTest
 
 FLAGS = ("--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
          "--window-size=1200,1000", "--disable-dev-shm-usage", "--disable-background-networking", "--disable-component-update")
@@ -31,6 +42,24 @@ for (let frame = 0; frame <= Number(slider.max); frame++) {
 }
 return JSON.stringify({seconds, pictures, words: holder.querySelector('.time').textContent});
 """
+# Plays the frames for some seconds; the longest time between two pictures, in which the page answers nobody.
+STALL = """
+const [seconds, done] = arguments, begin = performance.now();
+let last = begin, longest = 0;
+document.querySelector('.playback input[type=range]').value = 0;
+document.querySelector('.playback input[type=range]').dispatchEvent(new Event('input'));
+document.querySelector('.timeline button').click();
+const look = (now) => {
+  longest = Math.max(longest, now - last);
+  last = now;
+  if (now - begin < 1000 * seconds) requestAnimationFrame(look);
+  else { document.querySelector('.timeline button').click(); done(longest / 1000); }
+};
+requestAnimationFrame(look);
+"""
+MOST_BYTES = 15e6  # of a page
+MOST_STEP = 0.5  # s, of a slider step, drawn without a graphics card
+MOST_STALL = 3.0  # s, while frames play and other programs use the cores
 
 
 def browser():
@@ -42,6 +71,64 @@ def browser():
         options.add_argument(flag)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
     return webdriver.Chrome(options=options, service=Service(shutil.which("chromedriver")))
+
+
+def opened(driver, page_file, patience=120):
+    """Seconds until the page is ready, and until its playback is."""
+    begin = time.monotonic()
+    driver.get(page_file.as_uri())
+    ready = []
+    for script in ("document.documentElement.dataset.ready === 'yes'", "document.querySelector('.playback').dataset.ready === 'yes'"):
+        while not driver.execute_script(f"return {script}"):
+            if time.monotonic() - begin > patience:
+                raise AssertionError(f"not within {patience} s: {script}")
+            time.sleep(0.05)
+        ready.append(time.monotonic() - begin)
+        driver.execute_script("document.querySelector('.playback').scrollIntoView()")
+    return ready
+
+
+def measured(folder, frames, grains, shake=0.0):
+    """Figures of the page of a run of so many frames and grains."""
+    run = pathlib.Path(folder) / "run"
+    report_page.known_run(run, count=frames, grains=grains, shake=shake)
+    begin = time.monotonic()
+    page.write(run, [Run(run)], lambda *_: True)
+    made = time.monotonic() - begin
+    driver = browser()
+    try:
+        driver.set_script_timeout(120)
+        ready, playback = opened(driver, run / "report.html")
+        played = json.loads(driver.execute_script(PLAY))
+        stall = driver.execute_async_script(STALL, 3)
+        renderer = driver.execute_script("const gl = document.createElement('canvas').getContext('webgl2'), about = gl.getExtension("
+                                         "'WEBGL_debug_renderer_info'); return about ? gl.getParameter(about.UNMASKED_RENDERER_WEBGL) : ''")
+        complaints = [line["message"] for line in driver.get_log("browser") if line["level"] != "INFO"]
+    finally:
+        driver.quit()
+    return {"frames": frames, "frames_shown": len(played["seconds"]), "grains": grains, "page_MB": round((run / "report.html").stat().st_size / 1e6, 2),
+            "make_page_s": round(made, 2), "page_ready_s": round(ready, 2), "playback_ready_s": round(playback, 2),
+            "slider_step_s": {"median": round(statistics.median(played["seconds"]), 3), "largest": round(max(played["seconds"]), 3)},
+            "longest_stall_while_playing_s": round(stall, 3), "renderer": renderer, "complaints": complaints}
+
+
+class Long(SystemTest):
+    def check(self, figures):
+        self.assertEqual(figures["complaints"], [])
+        self.assertLessEqual(figures["page_MB"], MOST_BYTES / 1e6, figures)
+        self.assertLess(figures["slider_step_s"]["median"], MOST_STEP, figures)
+        self.assertLess(figures["longest_stall_while_playing_s"], MOST_STALL, figures)
+
+    def test_a_run_of_1000_frames_stays_small_and_responsive(self):
+        figures = measured(self.folder, frames=1000, grains=12000, shake=report_page.RADIUS)  # frames of 18 MB
+        self.check(figures)
+        self.assertGreaterEqual(figures["frames_shown"], 60, figures)
+        self.assertLess(figures["playback_ready_s"], 30, figures)
+
+    def test_a_slider_step_with_25000_grains(self):
+        figures = measured(self.folder, frames=12, grains=25000)
+        self.check(figures)
+        self.assertEqual(figures["frames_shown"], 12)
 
 
 class InBrowser(SystemTest):
@@ -115,6 +202,18 @@ class InBrowser(SystemTest):
         self.assertLess(self.ask(rows), every)
 
 
+def measure(file):
+    """Writes the figures of both long pages, with where they come from."""
+    commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], text=True, capture_output=True).stdout.strip()
+    version = subprocess.run(["chromium", "--version"], text=True, capture_output=True).stdout.strip()
+    figures = {"format_version": 1, "commit": commit, "command": "tests/system/report_browser.py --measure FILE.json", "browser": version,
+               "cores": os.cpu_count(), "machine": platform.machine(), "pages": []}
+    for frames, grains, shake in ((12, 25000, 0.0), (1000, 12000, report_page.RADIUS)):
+        with tempfile.TemporaryDirectory(prefix="furrow page ") as folder:
+            figures["pages"].append(measured(folder, frames, grains, shake))
+    file.write_text(json.dumps(figures, indent=2) + "\n")
+
+
 def main():
     try:
         import selenium  # noqa: F401
@@ -122,6 +221,8 @@ def main():
         sys.exit(77)
     if not (shutil.which("chromium") and shutil.which("chromedriver")):
         sys.exit(77)
+    if sys.argv[1:2] == ["--measure"]:
+        return measure(pathlib.Path(sys.argv[2]))
     unittest.main(verbosity=2)
 
 

@@ -57,8 +57,9 @@ def wheel(turned, shift, dent):
     return points + shift, np.array(triangle)
 
 
-def known_run(folder, count=FRAMES, grains=GRAINS):
-    """A run of known contents; the positions of its grains by frame."""
+def known_run(folder, count=FRAMES, grains=GRAINS, shake=0.0):
+    """A run of known contents; the positions of its grains by frame. `shake`: how far every grain moves at random between
+    frames, m, which no packing makes small."""
     (folder / "frames").mkdir(parents=True)
     (folder / "scenario.json").write_text(json.dumps({
         "description": "</script><img src=x onerror=alert(1)>", "rig": {"slip": 0.2}, "run": {"end": 1.5, "average_from": 0.1},
@@ -76,6 +77,8 @@ def known_run(folder, count=FRAMES, grains=GRAINS):
     for k in range(count):
         position[:grains // 3, 2] -= 0.004  # a third sinks
         position[-1, 0] += 1e-4  # and one creeps
+        if shake:
+            position[:, :2] += chance.normal(0.0, shake, (grains, 2))
         kept.append(position.astype("f4"))
         with h5py.File(folder / "frames" / f"terrain_{k:06d}.h5", "w") as file:
             file.attrs["time_s"] = STEP * k
@@ -236,6 +239,29 @@ class Page(SystemTest):
             pages.append((study / "report.html").read_bytes())
         self.assertIn(b"0.021", pages[0])
         self.assertEqual(*pages)
+
+    def test_frames_as_vtp_files(self):
+        out = self.folder / "vtk"
+        done = furrow("report", self.run_folder, "--vtk", out, cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stdout.splitlines()[:2], [str(out / "tire0.pvd"), str(out / "terrain.pvd")])
+        self.assertEqual(len(list(out.glob("*.vtp"))), 2 * FRAMES)
+        listed = re.findall(r'timestep="([^"]+)" file="([^"]+)"', (out / "terrain.pvd").read_text())
+        self.assertEqual([name for _, name in listed], [f"terrain_{k:06d}.vtp" for k in range(FRAMES)])
+        np.testing.assert_allclose([float(time) for time, _ in listed], STEP * np.arange(FRAMES))
+        packed = re.search(r'Name="position" NumberOfComponents="3" format="binary">([^<]+)<', (out / listed[-1][1]).read_text())[1]
+        head = np.frombuffer(base64.b64decode(packed[:44]), "<u8")  # 32 bytes: blocks, bytes, rest, bytes compressed
+        np.testing.assert_array_equal(np.frombuffer(zlib.decompress(base64.b64decode(packed[44:])), "<f4").reshape(-1, 3), self.positions[-1])
+        self.assertEqual(list(head[:3]), [1, self.positions[-1].nbytes, 0])
+        again = furrow("report", self.run_folder, "--vtk", out, "--quiet", cwd=self.folder)
+        self.assertEqual(again.returncode, 2)
+        self.assertEqual(again.stderr, f"furrow: error: command line: key '--vtk': {out} exists and is not an empty folder, expected a new one\n")
+        for frame in (self.run_folder / "frames").iterdir():
+            frame.unlink()
+        none = furrow("report", self.run_folder, "--vtk", self.folder / "none", cwd=self.folder)
+        self.assertEqual(none.returncode, 2, none.stderr)
+        self.assertIn("has no frames, expected a run with output.frame_interval above 0", none.stderr)
+        self.assertFalse((self.folder / "none").exists())
 
     def test_a_page_of_ones_own_stays(self):
         (self.run_folder / ".furrow-run").write_text("furrow-run 1\nsummary.json\n")

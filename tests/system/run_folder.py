@@ -210,7 +210,7 @@ class Gone(CheckpointTest):
 
 
 class Killed(CheckpointTest):
-    """kill -9 of `furrow` itself, and somebody who goes on at once."""
+    """kill -9 of `furrow` itself, and somebody who continues at once."""
     SCENARIO = {**RUN, "run": {**RUN["run"], "end": 0.16}, "checkpoint": {"interval": 0.004, "keep": 2}}
 
     def test_again_and_again_without_a_pause(self):
@@ -238,7 +238,7 @@ class Killed(CheckpointTest):
                 _, err = other.communicate(timeout=60)
                 self.assertEqual(other.returncode, 2, err)
                 waits, error = err.splitlines()
-                self.assertRegex(waits, r"^furrow: .*out is taken by a run that is not over: process \d+ .*; waiting for up to 10 s")
+                self.assertRegex(waits, r"^furrow: .*out is in use by a run that has not ended: process \d+ .*; waiting for up to 10 s")
                 self.assertRegex(error, rf"^furrow: error: .*out: .*process {os.getpid()} \(")
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""`furrow sweep`: a table of runs that goes on where it was interrupted, and passes over one bed."""
+"""`furrow sweep`: a table of runs that continues where it was interrupted, and passes over one bed."""
 import csv
 import json
 import os
@@ -69,7 +69,7 @@ class Sweep(SystemTest):
         rows = self.table()
         self.assertEqual([row["state"] for row in rows], ["done", "failed", "done"], done.stderr)
         self.assertEqual(done.stderr.count("furrow: error: "), 1, done.stderr)
-        self.assertIn("sweep.csv: not every run came to its end; the first that failed has exit code", done.stderr)
+        self.assertIn("sweep.csv: not every run finished; the first that failed has exit code", done.stderr)
         self.assertEqual(done.returncode, 3, done.stderr)
         self.assertEqual(rows[1]["exit_code"], "3")
         self.assertIn("was lost", rows[1]["problem"])
@@ -87,7 +87,7 @@ class Sweep(SystemTest):
         self.assertEqual(survivors(self.folder), [])
         done = furrow("sweep", study, cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("run 1 of 2 (rig.slip=0.1) goes on", done.stderr)
+        self.assertIn("run 1 of 2 (rig.slip=0.1) continues", done.stderr)
         self.assertEqual([row["state"] for row in self.table()], ["done", "done"])
         folders = [self.folder / "results" / "study" / row["folder"] for row in self.table()]
         self.assertEqual([len(json.loads((run / "summary.json").read_text())["segments"]) for run in folders], [2, 1])

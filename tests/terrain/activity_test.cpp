@@ -182,6 +182,25 @@ TEST(Activity, mean_contact_force_has_the_same_bits_after_a_restart_between_two_
   EXPECT_EQ(hash_of(solver), hash_of(again));
 }
 
+// Strips that sleep beside sleepers are not evaluated: what they count must be in the saved state.
+TEST(Activity, sums_have_the_same_bits_after_a_restart_of_a_bed_that_sleeps) {
+  const DemOptions options = bed_options(5e3);
+  GrainSolver solver = bed(options, settled(options), true);
+  for (int k = 0; k < 4000; ++k) solver.step(options.step);
+  ASSERT_EQ(solver.accounts().active, 0);
+  Archive saved;
+  solver.save(saved);
+  GrainSolver again(solver.params());
+  again.set_coefficients(solver.coefficients());
+  again.restore(saved);
+  for (int k = 0; k < 2 * kSampleSteps; ++k) {
+    solver.step(options.step), again.step(options.step);
+    ASSERT_EQ(solver.accounts().contact_force, again.accounts().contact_force) << k;
+  }
+  EXPECT_GT(again.accounts().contact_force, 0.0);
+  EXPECT_EQ(hash_of(solver), hash_of(again));
+}
+
 TEST(Activity, pressed_sleeping_bed_pushes_back_like_one_that_is_all_awake) {
   for (double cohesion : {0.0, 40e3}) {
     const DemOptions options = bed_options(cohesion);

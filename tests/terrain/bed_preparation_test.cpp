@@ -185,7 +185,7 @@ TEST_F(Beds, falling_grains_are_not_at_rest) {
   EXPECT_FALSE(settle(solver, options_, {}, 0.1).settled);
 }
 
-/// No side is left: grains lean on those that stand at the other side, as if the bed went on.
+/// No side is left: grains lean on those that stand at the other side, as if the bed continued.
 TEST_F(Beds, periodic_sides_hold_each_other) {
   const PreparedBed walled = prepare_bed(options_, {});
   const BedStatistics between_walls = statistics_of(walled);

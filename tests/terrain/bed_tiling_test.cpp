@@ -160,7 +160,7 @@ TEST_F(Tiled, nobody_is_squeezed_in_where_pieces_are_joined_or_cut) {
   }
 }
 
-/// Columns are no copies of each other that a wheel would meet again; only in the band of a seam may one go on.
+/// Columns are no copies of each other that a wheel would meet again; only in the band of a seam may one continue.
 /// Between walls they are mirrored or turned, elsewhere moved across too.
 TEST_F(Tiled, no_column_is_one_before_it_again) {
   options_.length = 1.8;

@@ -145,7 +145,7 @@ TEST(EnergyAccounts, a_contact_that_sticks_loses_by_tangential_damping_alone) {
   GrainSolver s = few.make({{0.1, 0.0, resting_height(few), 0.0}});
   set_velocity(s, 0, Vec3(kSpeed, 0, 0));
   s.reset_accounts();
-  const double expected = mass_of(few) * kSpeed * kSpeed / 7.0;  // ½ (2/7 m) v²: the rest goes on rolling
+  const double expected = mass_of(few) * kSpeed * kSpeed / 7.0;  // ½ (2/7 m) v²: the rest continues rolling
   double most = 0.0;
   for (int k = 0; k < 25000; ++k) {
     ASSERT_EQ(s.step(2e-6), -1);

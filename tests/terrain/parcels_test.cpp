@@ -300,7 +300,7 @@ TEST(Parcels, grain_that_is_sorted_into_another_sleeping_parcel_is_counted_once)
   const int columns = static_cast<int>(few.options.width / (2.6 * radius)), across = parcels_across(columns);
   ASSERT_GT(across, 1);
   const double side = -0.5 * few.options.width + few.options.width / columns * (3 * columns / across);
-  // One drifts over the side of its parcel by less than what makes a list anew, another will be thrown.
+  // One drifts over the side of its parcel by less than what makes a list again, another will be thrown.
   GrainSolver s = few.make({{0.3, side - 3e-7, z, 0.0}, {0.3, 1.0, z, 0.0}});
   const double speed = 0.4 * kSleepMeanSpeed * std::sqrt(kStandardGravity * radius);
   set_velocity(s, 0, Vec3(0.0, speed, 0.0));

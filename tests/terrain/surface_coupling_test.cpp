@@ -116,7 +116,7 @@ TEST(SurfaceCoupling, four_blocks_on_one_bed_each_feel_their_own_weight) {
     EXPECT_LT(std::abs(scene.blocks[k].velocity.z()), 1e-3) << "block " << k;
   }
 
-  // What the grains received is what the blocks received; both sides' momentum accounts close by themselves.
+  // What the grains received is what the blocks received; both sides' momentum accounts close on their own.
   const TerrainState after = scene.terrain->state();
   Vec3 received = Vec3::Zero();
   for (const Block& block : scene.blocks) received += block.impulse;

@@ -181,7 +181,7 @@ TEST_F(TireFileTest, files_that_are_not_json_objects_are_refused) {
   EXPECT_TRUE(complaint("{\"radius\": NaN}").starts_with("1:12: is not valid JSON"));
   EXPECT_NE(complaint("{\"radius\": 1e400}").find("key 'radius': is a number too large"), std::string::npos);
   EXPECT_EQ(complaint("\xff\xfe\""), "1:1: byte 0xff is not UTF-8, expected a tire file in JSON in UTF-8");
-  EXPECT_EQ(complaint("[1, 2]"), "is no object, expected a tire file in JSON");
+  EXPECT_EQ(complaint("[1, 2]"), "is not an object, expected a tire file in JSON");
   EXPECT_EQ(complaint("{\"radius\": 1, \"radius\": 2}"), "key 'radius': is given twice, expected once");
   EXPECT_THROW(read_tire_file(folder_), Error);
   EXPECT_THROW(read_tire_file(folder_ / "none.json"), Error);

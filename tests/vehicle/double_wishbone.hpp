@@ -1,4 +1,4 @@
-// The kinematics of a double wishbone by itself: five points of the upright, found by Newton's method from nothing but
+// The kinematics of a double wishbone on its own: five points of the upright, found by Newton's method from nothing but
 // distances. The wheel is lifted and the tie rod moved in small steps, so that the posture stays the drawn one's neighbour.
 #pragma once
 

@@ -157,7 +157,7 @@ Field inflate(const ShellCarcass& shell, const ShellMesh& mesh, InflationReport&
   const std::string way_out = "try a lower pressure or stiffer layers";
   if (report.steps < kRampSteps)
     throw physics_error(fmt::format(
-        "tire inflation to {:g} Pa did not converge: it came to {:.3g} Pa, residual {:.3g} of the pressure force after "
+        "tire inflation to {:g} Pa did not converge: it reached {:.3g} Pa, residual {:.3g} of the pressure force after "
         "{} steps; {}",
         shell.pressure(), shell.pressure() * report.steps / kRampSteps, report.residual, report.steps, way_out));
   if (!(report.residual < kAccepted))

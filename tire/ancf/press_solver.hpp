@@ -32,7 +32,7 @@ class PressSolver {
   /// Largest radius of the inflated tire: where deflection starts, m.
   double start_radius() const { return start_radius_; }
   /// Moves the obstacle to a deflection and finds equilibrium; `each_step` is called before each step of creep and may
-  /// throw. @throws Error(physics) when there is none, or when the tire would stand in its rim.
+  /// throw. @throws Error(physics) when there is none, or when the tire would be in its rim.
   PressPoint press(double deflection, const std::function<void()>& each_step = {});
   /// Π at the last point, J; its derivative by the deflection is the force.
   double potential() const { return potential_; }

@@ -117,7 +117,7 @@ void SectorFactor::build_sector(int sector) {
       factor_.add_node(contact_made_[(sector * kDoubleLanes + lane) * layout_.rows + j], sector, lane, j);
 }
 
-/// Makes the factor anew in the sectors marked. Without its geometric part the tangent is positive definite.
+/// Makes the factor again in the sectors marked. Without its geometric part the tangent is positive definite.
 bool SectorFactor::renew(const std::vector<char>& which, const Step& step) {
   ++renewals_;
   excess_ = 0;

@@ -99,7 +99,7 @@ void ShellIntegrator::set_bead(const RimState& rim) {
     }
 }
 
-/// Free nodes go on with their velocities and a share of the last change of these.
+/// Free nodes continue with their velocities and a share of the last change of these.
 void ShellIntegrator::predict(double h, double share) {
   const std::size_t first = layout_.free_begin(), last = first + layout_.free_size();
   for (std::size_t k = first; k < last; ++k) q_new_[k] = q_[k] + h * (v_[k] + share * (v_[k] - v_before_[k]));

@@ -14,7 +14,7 @@
 
 namespace furrow::tire {
 
-/// Which κ stands in (1): λ/2, or λ as printed.
+/// Which κ is in (1): λ/2, or λ as printed.
 enum class PlanarLaw { printed, consistent };
 
 struct PlanarMaterial {

@@ -41,7 +41,7 @@ class RingSolver {
   const RingContact& contact() const { return contact_; }
   /// Equilibrium with the axle in this place, from the present state.
   RingReport solve(const AxlePlace& axle);
-  /// Back to a state that was found before; its corners are found anew. @pre of as many segments
+  /// Back to a state that was found before; its corners are found again. @pre of as many segments
   void restart(const RingField& state, const std::vector<char>& closed_segments);
 
   const RingField& state() const { return q_; }

@@ -9,7 +9,7 @@
 //                        only opposes s. It ends early when s passes 0.
 //   end                  the new gear holds; what is left of s goes at once, inelastically.
 //
-// T = 0 is the last line alone. What the slip takes is on the gearbox's own account. Nothing is assembled anew; the
+// T = 0 is the last line alone. What the slip takes is on the gearbox's own account. Nothing is assembled again; the
 // rank of the constraints is looked at whenever a gear takes hold.
 #pragma once
 

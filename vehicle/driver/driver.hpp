@@ -92,7 +92,7 @@ class Driver {
   virtual DriverInputs drive(const DriverView& view) = 0;
   /// Of the last call.
   virtual const DriverRecord& record() const = 0;
-  /// All that the next call depends on: a driver restored goes on bit for bit.
+  /// All that the next call depends on: a driver restored continues bit for bit.
   virtual void save(Archive& archive) const = 0;
   virtual void restore(const Archive& archive) = 0;
 };

@@ -1,7 +1,7 @@
 // A path in the horizontal plane: cubic curves from knot to knot that have the knots' directions, so that the
 // direction is continuous. With the chord d between two knots and the angle θ between their directions, the curve's
 // tangents there are 2d/(1 + cos θ/2) long: the curve then meets the middle of a piece of a circle as well, and departs
-// from the circle by less than 1e-3 θ⁶ of its radius. Behind its last knot the path goes on straight.
+// from the circle by less than 1e-3 θ⁶ of its radius. Behind its last knot the path continues straight.
 #pragma once
 
 #include <vector>

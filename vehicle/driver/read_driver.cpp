@@ -201,7 +201,7 @@ void check_parts(const DriverSpec& spec, const JsonReader& reader) {
   const InputSpec& i = spec.inputs;
   if (!spec.speed && !spec.path && i.throttle.empty() && i.brake.empty() && i.steering.empty() &&
       i.gear.empty())
-    reader.fail("", "tells the driver nothing, expected 'inputs', 'speed' or 'path'");
+    reader.fail("", "gives the driver nothing to do, expected 'inputs', 'speed' or 'path'");
 }
 
 }  // namespace

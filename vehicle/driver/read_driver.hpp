@@ -13,7 +13,7 @@ namespace furrow::vehicle {
 
 /// @throws Error(bad_input) naming file, key or line, and what was expected
 DriverSpec read_driver(const std::filesystem::path& file);
-/// @param file for messages, and for what it names @param key under which the document stands in it, for messages
+/// @param file for messages, and for what it names @param key under which the document is in it, for messages
 DriverSpec read_driver(const nlohmann::json& document, const std::string& file, const std::string& key = "");
 
 }  // namespace furrow::vehicle

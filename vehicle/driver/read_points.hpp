@@ -14,7 +14,7 @@
 
 namespace furrow::vehicle {
 
-/// What may stand in such a list.
+/// What may be in such a list.
 struct PointRule {
   const char* first;   // column and name of the first value: "time_s", which rises, or "x_m"
   const char* second;  // of the second: "throttle"

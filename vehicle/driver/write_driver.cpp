@@ -36,7 +36,7 @@ void put_keys(const T& values, json& object) {
       values);
 }
 
-/// A number below zero stands for what the vehicle gives by itself; a file says so by leaving the key out.
+/// A number below zero stands for what the vehicle gives on its own; a file says so by leaving the key out.
 void remove_open(json& object, std::initializer_list<const char*> keys) {
   for (const char* key : keys)
     if (object.contains(key) && object[key] < 0.0) object.erase(key);

@@ -1,4 +1,4 @@
-// A driver as a JSON document that holds all of it: what came from CSV files stands in it as lists of points.
+// A driver as a JSON document that holds all of it: what came from CSV files is in it as lists of points.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -71,7 +71,7 @@ class System {
   int add_rate_law(const RateRow& row, RateLaw law);
   /// One law for several rows, which it takes in this order.
   std::vector<int> add_rate_law(const std::vector<RateRow>& rows, RateLaw law);
-  /// From the next step on. Nothing is assembled anew: see recheck_rank().
+  /// From the next step on. Nothing is assembled again: see recheck_rank().
   void set_rate_control(int row, const RateControl& control) { rates_.set_control(row, control); }
   void set_rate_factor(int row, int term, double factor);
   void set_shaft_speed(int shaft, double speed) { rates_.set_speed(shaft, speed); }

@@ -45,7 +45,7 @@ class Study:
 
     @property
     def runs(self) -> list[Run]:
-        """All runs that have come to their end."""
+        """All runs that have ended."""
         return [self.run(index) for index, state in enumerate(self.table["state"]) if state == "done"]
 
     def points(self, x: str, y: str, error: str = "", mean_over: str = "", **only: Any) -> pd.DataFrame:

@@ -70,10 +70,15 @@ def write_kind(folder: pathlib.Path, kind: str, frames: Iterable[Frame]) -> None
              "</VTKFile>", ""]))
 
 
+def write_kinds(folder: pathlib.Path, kinds: Mapping[str, Iterable[Frame]]) -> pathlib.Path:
+    """The frames of {"tire0": …, "terrain": …}."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for kind, frames in kinds.items():
+        write_kind(folder, kind, frames)
+    return folder
+
+
 def write_run(run: Run, folder: pathlib.Path) -> pathlib.Path:
     """All frames of a run."""
-    folder.mkdir(parents=True, exist_ok=True)
-    for wheel in range(max(1, sum(name.startswith("wheel") for name in run.subjects))):
-        write_kind(folder, f"tire{wheel}", run.tire(wheel))
-    write_kind(folder, "terrain", run.grains)
-    return folder
+    wheels = range(max(1, sum(name.startswith("wheel") for name in run.subjects)))
+    return write_kinds(folder, {**{f"tire{wheel}": run.tire(wheel) for wheel in wheels}, "terrain": run.grains})

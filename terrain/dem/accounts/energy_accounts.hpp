@@ -44,7 +44,7 @@ class EnergyAccounts {
   /// @pre every > 0
   explicit EnergyAccounts(int every = kLossSampleSteps) : every_(every) { FURROW_ASSERT(every > 0, every); }
 
-  /// Begins anew. @param stored by the contacts of each strip now
+  /// Begins again. @param stored by the contacts of each strip now
   void begin(std::vector<Stored> stored, double rotation);
   /// Whether the coming step is a sample.
   bool due() const { return state_.until == 0; }

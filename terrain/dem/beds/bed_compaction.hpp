@@ -11,7 +11,7 @@ namespace furrow::terrain::dem {
 /// Presses a frictionless lid that fills the bin on the settled grains: the load grows to
 /// `compaction_pressure` × area, stays until the lid rests, and goes again. Side walls are without friction as while
 /// settling, so that the pressure reaches the floor. Returns the positions, by grain id; contacts are to be settled
-/// anew. @throws Error(physics) when a grain is lost. @pre compaction_pressure > 0, some grains
+/// again. @throws Error(physics) when a grain is lost. @pre compaction_pressure > 0, some grains
 std::vector<Quad> compacted_positions(GrainSolver& solver, const DemOptions& options,
                                       const ProgressCall& progress);
 

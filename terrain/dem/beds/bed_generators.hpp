@@ -16,7 +16,7 @@ inline constexpr double kLatticeSpacing = 2.3;
 inline constexpr double kLatticeJitter = 0.14;
 
 /// One layer of a square lattice, each point moved by up to ±kLatticeJitter r along x and y; every other layer is
-/// shifted by half a spacing along both. z = 0. `around`: goes on across periodic sides of the bin, without a gap at them.
+/// shifted by half a spacing along both. z = 0. `around`: continues across periodic sides of the bin, without a gap at them.
 std::vector<Quad> lattice_layer(const Bin& bin, double radius, std::uint64_t seed, bool shifted,
                                 bool around = false);
 
@@ -24,7 +24,7 @@ std::vector<Quad> lattice_layer(const Bin& bin, double radius, std::uint64_t see
 /// @throws Error(bad_input) listing the valid generators, or what is wrong with the file and in which line.
 std::vector<Quad> starting_positions(const DemOptions& options, const ProgressCall& progress);
 
-/// The grains of a user's `file` must stand in the bin and not in each other; radii that it does not give become
+/// The grains of a user's `file` must be in the bin and not in each other; radii that it does not give become
 /// `radius`. Lines are counted as if none were blank. @throws Error(bad_input) naming file and line, or grain
 void check_positions(const DemOptions& options, const std::filesystem::path& file, std::vector<Quad>& grains,
                      const ProgressCall& progress = {});

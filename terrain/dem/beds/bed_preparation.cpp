@@ -60,7 +60,7 @@ bool from_cache(const std::filesystem::path& file, const DemOptions& options, Ar
     return true;
   } catch (const Error& error) {
     if (error.code() != ExitCode::io && error.code() != ExitCode::bad_input) throw;
-    return false;  // absent or damaged: made anew
+    return false;  // absent or damaged: made again
   }
 }
 

@@ -26,7 +26,7 @@ struct Column {
   std::vector<bool> stays;
 };
 
-/// Where grain p of the piece stands in column `number`, seen from the column's beginning and the middle of the piece.
+/// Where grain p of the piece is in column `number`, seen from the column's beginning and the middle of the piece.
 Quad moved(Quad p, const Tiling& tiling, const Bin& of_piece, int number) {
   if (number % 2 == 1) p.x = tiling.length - p.x;
   if (number % 4 == 1 || number % 4 == 2) p.y = -p.y;
@@ -52,7 +52,7 @@ Column column_of(const std::vector<Quad>& piece, const DemOptions& o, const Tili
     for (const Quad& grain : piece) {
       Quad p = moved(grain, tiling, of_piece, number);
       p.y += (across + 0.5) * tiling.width - 0.5 * o.width;
-      // Along x the column goes on beyond its ends, as the piece does.
+      // Along x the column continues beyond its ends, as the piece does.
       for (const double image : {-tiling.length, 0.0, tiling.length}) {
         Quad at = p;
         at.x += column.from + image;

@@ -11,8 +11,8 @@
 //
 // What this costs are seams between columns, where two packings do not fit. There both are taken to reach kSeamBand radii
 // into each other, and most_compatible() says which grains stay: those that stay overlap no more than grains of the piece
-// do. At walls which the piece has not met grains that would stand in the wall are left out. The whole then settles once
-// more, from these positions with contacts anew, which closes what gaps there are.
+// do. At walls which the piece has not met grains that would be in the wall are left out. The whole then settles once
+// more, from these positions with new contacts, which closes what gaps there are.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
 // The deepest contacts of a bed as it stands now, before the forces of the coming step are taken: what decides how
-// finely the bed must be stepped, and what is told where no step can hold it. Found anew from positions, in the few
+// finely the bed must be stepped, and what is told where no step can hold it. Found again from positions, in the few
 // strips where the overlaps of the last step leave them possible; nothing is kept.
 #pragma once
 

@@ -153,7 +153,7 @@ TEST_F(ForeignHdf5, nothing_is_read_from_other_files) {
     put(out, {3}, H5T_NATIVE_DOUBLE, made);
   });
   EXPECT_EQ(complaint(),
-            "the dataset 'x' stands in another file, expected the numbers themselves in this file");
+            "the dataset 'x' is stored in another file, expected the numbers themselves in this file");
 
   const std::filesystem::path other = folder_.path() / "other.h5";
   {

@@ -52,7 +52,7 @@ def compared(path):
 
 
 class Number:
-    """As it stands in the file."""
+    """As it is in the file."""
 
     def __init__(self, text):
         self.text = text

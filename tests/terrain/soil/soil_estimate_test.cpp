@@ -1,4 +1,4 @@
-// Soil theory beside a run: what stands in summary.json and soil.json is not believed.
+// Soil theory beside a run: what is in summary.json and soil.json is not believed.
 #include <gtest/gtest.h>
 
 #include <fstream>

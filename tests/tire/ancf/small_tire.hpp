@@ -56,7 +56,7 @@ inline std::pair<Vec3, Vec3> momenta(const tire::AncfTire& tire) {
   return {linear, angular};
 }
 
-/// Rolls 120 intervals, saves, and goes on for 80 with the tire and with `other`, restored: the same bits.
+/// Rolls 120 intervals, saves, and continues for 80 with the tire and with `other`, restored: the same bits.
 /// @param prepare called with a tire and the interval's number before each interval
 template <class Prepare>
 void expect_restart_bit_for_bit(tire::AncfTire& tire, tire::AncfTire& other, Prepare prepare) {

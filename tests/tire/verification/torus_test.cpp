@@ -119,7 +119,7 @@ TEST(Inflated, growth_converges_with_the_mesh) {
 TEST(Inflated, crown_of_the_lumped_tire_carries_the_pressure_by_its_hoop_stiffness) {
   //   N_hoop/R + N_meridian κ − M_meridian'' = p          balance of forces along the normal (Flugge 1973, ch. 2, 5)
   //   (R/R₀)² = 1 + 2 (N_hoop − ν N_meridian)/(E h)       Hooke, S = C E; E, ν of the tread's single layer
-  // and by themselves a free ring: growth p R²/(E h) = 7.2 mm.
+  // and on their own a free ring: growth p R²/(E h) = 7.2 mm.
   for (const int width : {24, 48}) {
     const InflatedCarcass ring(small_file("hmmwv_lumped.json", 180, width));
     const ShellPatch column(ring_patch_mesh(ring.mesh, true), tire::shell_layers(ring.file, ring.file.tread));

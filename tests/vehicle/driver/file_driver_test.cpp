@@ -1,4 +1,4 @@
-// Drivers as a whole: open loops, and how they go on after they were saved.
+// Drivers as a whole: open loops, and how they continue after they were saved.
 #include "vehicle/driver/file_driver.hpp"
 
 #include <algorithm>

@@ -111,8 +111,8 @@ TEST_F(DriverFile, says_the_same_in_json_and_csv) {
 
 TEST_F(DriverFile, that_is_wrong_is_refused_by_key) {
   const std::vector<std::pair<std::string, std::string>> cases = {
-      {"", "tells the driver nothing, expected 'inputs', 'speed' or 'path'"},
-      {R"(, "inputs": {})", "tells the driver nothing"},
+      {"", "gives the driver nothing to do, expected 'inputs', 'speed' or 'path'"},
+      {R"(, "inputs": {})", "gives the driver nothing to do"},
       {R"(, "sped": {"target": 4})", "key 'sped': is unknown, expected 'speed'?"},
       {R"(, "inputs": {"throttel": 1})", "key 'inputs.throttel': is unknown, expected 'throttle'?"},
       {R"(, "inputs": {"throttle": 1.2})",

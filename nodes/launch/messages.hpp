@@ -1,0 +1,16 @@
+// What a command says on standard error besides errors. --quiet silences it: errors, and how to continue after one, are
+// always said.
+#pragma once
+
+#include <string>
+
+namespace furrow::launch {
+
+/// --quiet: from here on this process says nothing but errors.
+void silence_messages();
+bool messages_are_silenced();
+
+/// Writes `text`, whole lines, unless messages are silenced.
+void say(const std::string& text);
+
+}  // namespace furrow::launch

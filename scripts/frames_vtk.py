@@ -1,0 +1,65 @@
+#!/usr/bin/python3
+"""The frames of a run as VTP files, for any VTK or ParaView; the names of the lists (PVD) on stdout.
+
+usage: frames_vtk.py --out FOLDER DIR
+
+FOLDER, which must be new or empty, then holds tire<k>_<index>.vtp, terrain_<index>.vtp and <kind>.pvd, which lists the
+files of a kind by time. scripts/python/paraview_run.py shows such a folder in ParaView.
+Exit codes: 0 files were written, 2 FOLDER is not new or the run has no frames, 5 a file could not be read or written.
+"""
+import argparse
+import importlib
+import pathlib
+import sys
+import types
+
+PACKAGE = pathlib.Path(__file__).resolve().parent / "python" / "furrow"
+
+
+def module(name):
+    """A module of the package `furrow`, without its __init__: that needs pandas and xarray, and frames do not."""
+    if "furrow" not in sys.modules:
+        sys.modules["furrow"] = package = types.ModuleType("furrow")
+        package.__path__ = [str(PACKAGE)]
+    return importlib.import_module(f"furrow.{name}")
+
+
+def kinds_of(directory):
+    """{"tire0": frames, …, "terrain": frames} of what the folder holds."""
+    frames, run = module("frames"), module("_scripts").run_data.Run(directory)
+    found, wheel = {}, 0
+    while files := run.frames(f"tire{wheel}"):
+        found[f"tire{wheel}"] = frames.Frames(frames.TireFrame, files)
+        wheel += 1
+    if files := run.frames("terrain"):
+        found["terrain"] = frames.Frames(frames.GrainFrame, files)
+    return found
+
+
+def fail(what, code):
+    print(f"furrow: error: {what}", file=sys.stderr)
+    return code
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Frames of a run as VTP files.")
+    parser.add_argument("directory", type=pathlib.Path)
+    parser.add_argument("--out", type=pathlib.Path, required=True, help="new folder for the files")
+    arguments = parser.parse_args()
+    out = arguments.out
+    try:
+        if out.exists() and (not out.is_dir() or any(out.iterdir())):
+            return fail(f"command line: key '--vtk': {out} exists and is not an empty folder, expected a new one", 2)
+        kinds = kinds_of(arguments.directory)
+        if not kinds:
+            return fail(f"{arguments.directory}: has no frames, expected a run with output.frame_interval above 0", 2)
+        module("vtk").write_kinds(out, kinds)
+    except (OSError, RuntimeError, ValueError) as error:  # h5py's errors for a damaged file are among them
+        return fail(f"{arguments.directory}: {error}", 5)
+    for kind in kinds:
+        print(out / f"{kind}.pvd")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

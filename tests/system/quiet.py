@@ -1,0 +1,91 @@
+#!/usr/bin/python3
+"""`--quiet`, which means the same of every command: nothing but errors on standard error, the same result on standard
+output."""
+import json
+
+from program import ROOT, SystemTest, changed, furrow, main, write_scenario
+
+PRESSED = changed(rig={"slip": 0.1, "ramp": 0.1}, tire={"file": "hmmwv_lumped.json", "rigid": False, "elements_circumference": 30, "elements_width": 6})
+WITH_QUIET = ("run", "resume", "sweep", "bed", "soil", "press", "kc", "report", "validate", "ranks", "new")
+TIMES = ("wall_s", "settle_wall_s", "from_cache", "ms", "_per_s", "_ms")  # keys whose values differ from time to time
+
+
+def without_times(value):
+    if isinstance(value, dict):
+        return {key: without_times(held) for key, held in value.items()
+                if not key.endswith(TIMES) and key not in ("parts_ms", "ms_per_step", "ns_per_contact")}
+    return value
+
+
+class Quiet(SystemTest):
+    def setUp(self):
+        super().setUp()
+        self.env = {"XDG_CACHE_HOME": str(self.folder / "cache")}
+
+    def both(self, *arguments, says=True):
+        """What it prints without and with --quiet."""
+        loud = furrow(*arguments, cwd=self.folder, env=self.env)
+        self.assertEqual(loud.returncode, 0, loud.stderr)
+        if says:
+            self.assertNotEqual(loud.stderr, "", "it has something to say")
+        quiet = furrow(*arguments, "--quiet", cwd=self.folder, env=self.env)
+        self.assertEqual((quiet.returncode, quiet.stderr), (0, ""))
+        return loud.stdout, quiet.stdout
+
+    def test_every_command_that_tells_more_than_its_result_has_it(self):
+        for command in (*WITH_QUIET, "bench grains", "bench tire"):
+            done = furrow(*command.split(), "--help", cwd=self.folder)
+            self.assertIn("Print errors only on standard error", " ".join(done.stdout.split()), command)
+
+    def test_a_run_its_continuation_and_its_report(self):
+        path = write_scenario(self.folder)
+        loud, quiet = self.both("run", path)
+        self.assertEqual((loud, quiet), ("results/small-001\n", "results/small-002\n"))
+        self.both("resume", "results/small-001")
+        self.assertEqual(len(set(self.both("report", "results/small-001"))), 1)
+        done = furrow("resume", "results/small-001", "--until", "0.06", "--quiet", cwd=self.folder, env=self.env)
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "results/small-001\n", ""))
+
+    def test_several_beds_and_a_study(self):
+        write_scenario(self.folder)
+        self.both("run", "small.json", "--seeds", "2", "--out", "beds", "--no-plots")
+        (self.folder / "study.json").write_text(json.dumps({"format_version": 1, "scenario": "small.json", "grid": {"rig.slip": [0.1, 0.2]}}))
+        done = furrow("sweep", "study.json", "--quiet", cwd=self.folder, env=self.env)
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "results/study\n", ""))
+
+    def test_a_bed(self):
+        path = write_scenario(self.folder)
+        loud, quiet = map(json.loads, self.both("bed", path))
+        self.assertEqual(without_times(loud), without_times(quiet))
+
+    def test_soil_tests(self):
+        loud, quiet = map(json.loads, self.both("soil", write_scenario(self.folder), "--quick", "--only", "repose"))
+        self.assertEqual(loud["repose"], quiet["repose"])
+
+    def test_pressing(self):
+        self.assertEqual(self.both("press", write_scenario(self.folder, PRESSED), "--points", "2"),
+                         ("results/small-press-001\n", "results/small-press-002\n"))
+
+    def test_suspensions(self):
+        self.assertEqual(self.both("kc", ROOT / "vehicle" / "data" / "rover.json", "--points", "3", "--no-plots", says=False),
+                         ("results/rover-kc-001\n", "results/rover-kc-002\n"))
+
+    def test_benchmarks(self):
+        loud, quiet = map(json.loads, self.both("bench", "tire", "--elements-circumference", "24", "--elements-width", "6", "--warm", "0.02",
+                                                "--steps", "60", "--step", "1e-4"))
+        self.assertEqual(loud["state_hash"], quiet["state_hash"])
+
+    def test_errors_and_how_to_continue_are_said(self):
+        done = furrow("run", "none.json", "--quiet", cwd=self.folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertTrue(done.stderr.startswith("furrow: error: "), done.stderr)
+        failing = changed(run={"step": 5e-4}, terrain={"allow_unstable_step": True, "young_modulus": 1e10}, output={"series_interval": 1e-3})
+        done = furrow("run", write_scenario(self.folder, failing), "--quiet", cwd=self.folder, env=self.env)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertTrue(done.stderr.startswith("furrow: error: "), done.stderr)
+        self.assertNotIn("warning", done.stderr)
+        self.assertRegex(done.stderr, "start again with furrow run|furrow resume")
+
+
+if __name__ == "__main__":
+    main()

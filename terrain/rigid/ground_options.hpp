@@ -16,8 +16,8 @@ struct GroundOptions : TerrainContext {
   double friction_velocity_scale = 5.0;  // c in F_t = μ N tanh(c |v_t|), s/m
   double ground_stiffness = 4e8;  // N/m³: 0.6 mm under 240 kPa; 4e5 N/m on a vertex that carries 10 cm²
   double ground_shear_stiffness = 1e8;  // N/m³: a tread of 1 MPa shear modulus, 10 mm thick
-  ProfilePoints profile;                // z at x; empty: the plane z = 0
   double ground_damping = 2.5e4;        // N s/m³: holds such a vertex of 2.8 g on its own up to H = 4e-5 s
+  ProfilePoints profile;                // z at x; empty: the plane z = 0
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<GroundOptions> auto& s) {

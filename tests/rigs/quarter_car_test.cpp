@@ -1,4 +1,5 @@
 // The quarter car: transfer function against the linear model's closed form, accounts, masses, exact continuation.
+#include <algorithm>
 #include <gtest/gtest.h>
 
 #include <array>

@@ -2,6 +2,7 @@
 // has the energy that it says.
 #include "terrain/rigid/ground_profile.hpp"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -12,7 +12,7 @@
 
 #include <memory>
 
-#include "tire/planar/planar_spec.hpp"
+#include "tire/planar/planar_file.hpp"
 
 namespace furrow::tire {
 

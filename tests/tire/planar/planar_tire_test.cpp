@@ -1,4 +1,5 @@
 // The planar tire under the interface of tires: momentum, energy, the static test as a peer, exact continuation.
+#include "tire/planar/planar_spec.hpp"
 #include "tire/planar/planar_tire.hpp"
 
 #include <gtest/gtest.h>

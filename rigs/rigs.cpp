@@ -7,6 +7,7 @@
 #include "protocol/files/json_fields.hpp"
 #include "protocol/files/json_text.hpp"
 #include "rigs/drawbar_spec.hpp"
+#include "rigs/quarter_car_spec.hpp"
 #include "rigs/vehicle_spec.hpp"
 
 namespace furrow::rigs {
@@ -14,6 +15,7 @@ namespace {
 
 constexpr auto kKinds = std::to_array<RigKind>({
     {"drawbar", {drawbar_fields, changed_fields<DrawbarRigOptions>}, read_drawbar},
+    {"quarter_car", key_list<QuarterCarOptions>(), read_quarter_car},
     {"vehicle", key_list<VehicleRigOptions>(), read_vehicle_rig, tires_of_vehicle},
 });
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "protocol/core/fields.hpp"
+#include "terrain/rigid/ground_profile.hpp"
 #include "terrain/terrain_spec.hpp"
 
 namespace furrow::terrain {
@@ -16,6 +17,7 @@ struct GroundOptions : TerrainContext {
   double ground_stiffness = 4e8;  // N/m³: 0.6 mm under 240 kPa; 4e5 N/m on a vertex that carries 10 cm²
   double ground_shear_stiffness = 1e8;  // N/m³: a tread of 1 MPa shear modulus, 10 mm thick
   double ground_damping = 2.5e4;        // N s/m³: holds such a vertex of 2.8 g on its own up to H = 4e-5 s
+  ProfilePoints profile;                // z at x; empty: the plane z = 0
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<GroundOptions> auto& s) {
@@ -24,6 +26,7 @@ void visit_fields(Visit&& visit, FieldsOf<GroundOptions> auto& s) {
   visit(Field{"ground_stiffness", "N/m³", role::key}, s.ground_stiffness);
   visit(Field{"ground_shear_stiffness", "N/m³", role::key}, s.ground_shear_stiffness);
   visit(Field{"ground_damping", "N s/m³", role::key}, s.ground_damping);
+  visit(Field{"profile", "m", role::key}, s.profile);
 }
 
 }  // namespace furrow::terrain

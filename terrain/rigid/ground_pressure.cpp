@@ -1,6 +1,8 @@
 #include "terrain/rigid/ground_pressure.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "protocol/core/assert.hpp"
 
@@ -8,6 +10,10 @@ namespace furrow::terrain {
 namespace {
 
 using Weights = std::array<double, 3>;
+
+constexpr int kParts = 8;  // of a side of a triangle where the ground is not level
+static_assert(kParts * kParts <= std::tuple_size_v<ProfilePointList>);
+constexpr double kUpright = 1e-6;  // cosine of the normal's angle below which a triangle counts as upright
 
 /// The part of a triangle below z = 0 as a polygon in barycentric coordinates; returns its corners.
 int clip_below(const std::array<Vec3, 3>& x, std::array<Weights, 4>& corner) {
@@ -57,6 +63,41 @@ int ground_points(const std::array<Vec3, 3>& x, std::array<GroundPoint, kMaxGrou
       }
     }
   }
+  return count;
+}
+
+int profile_points(const GroundProfile& profile, const std::array<Vec3, 3>& x, ProfilePointList& out) {
+  const auto [left, right] = std::minmax({x[0].x(), x[1].x(), x[2].x()});
+  const double lowest = std::min({x[0].z(), x[1].z(), x[2].z()});
+  const double deep = profile.highest(left, right) - lowest;
+  if (!(deep > 0.0)) return 0;
+  const Vec3 normal = (x[1] - x[0]).cross(x[2] - x[0]);
+  const double area = 0.5 * normal.norm();
+  if (!(std::hypot(normal.x(), normal.z()) > kUpright * 2.0 * area)) return 0;
+  if (std::abs(normal.z()) > kUpright * 2.0 * area && profile.level(left, right, deep)) {
+    const Vec3 down(0.0, 0.0, profile.height(left));
+    std::array<GroundPoint, kMaxGroundPoints> points;
+    const int count = ground_points({x[0] - down, x[1] - down, x[2] - down}, points);
+    for (int i = 0; i < count; ++i) {
+      out[i] = points[i];
+      out[i].area *= 2.0 * area / std::abs(normal.z());
+    }
+    return count;
+  }
+  int count = 0;
+  GroundPoint point;
+  point.level = false;
+  point.area = area / (kParts * kParts);
+  for (int i = 0; i < kParts; ++i)
+    for (int j = 0; i + j < kParts; ++j)
+      for (const double middle : {1.0 / 3.0, 2.0 / 3.0}) {  // of the part that stands, and of the one that hangs
+        const double a = (i + middle) / kParts, b = (j + middle) / kParts;
+        if (a + b >= 1.0) continue;
+        point.weight = {1.0 - a - b, a, b};
+        const Vec3 at = point.weight[0] * x[0] + a * x[1] + b * x[2];
+        point.depth = profile.depth(at.x(), at.z());
+        if (point.depth > 0.0) out[count++] = point;
+      }
   return count;
 }
 

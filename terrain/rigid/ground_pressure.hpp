@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "protocol/core/vec.hpp"
+#include "terrain/rigid/ground_profile.hpp"
 #include "terrain/surface/surface_forces.hpp"
 
 namespace furrow::terrain {
@@ -28,15 +29,22 @@ struct GroundLaw {
 /// A part of a triangle below the plane: one integration point.
 struct GroundPoint {
   std::array<double, 3> weight{};  // barycentric
-  double area = 0.0;               // projected, m²
+  double area = 0.0;               // projected, m²; on a profile: of the triangle itself
   double depth = 0.0;              // g ≥ 0, m
+  bool level = true;               // of a profile: the ground is level around it
 };
 
 /// Most integration points of one triangle.
 inline constexpr int kMaxGroundPoints = 6;
 
+using ProfilePointList = std::array<GroundPoint, 64>;
+
 /// Integration points of the part of triangle x with z < 0; returns how many.
 int ground_points(const std::array<Vec3, 3>& x, std::array<GroundPoint, kMaxGroundPoints>& out);
+
+/// Integration points of the part of triangle x in the ground: as above where that is level, else the middles of 64
+/// equal parts of the triangle. Triangles that stand along x, such as the sides of a wheel, press nothing. Returns how many.
+int profile_points(const GroundProfile& profile, const std::array<Vec3, 3>& x, ProfilePointList& out);
 
 /// Normal force on the surface at one point that moves with velocity v; appends it to `contacts` unless there is none.
 /// @returns it, N

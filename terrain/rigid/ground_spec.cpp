@@ -1,5 +1,6 @@
 #include "terrain/rigid/ground_spec.hpp"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "protocol/files/json_fields.hpp"
@@ -15,13 +16,15 @@ class GroundSpec final : public TerrainSpec {
   TerrainDescription describe() const override {
     TerrainDescription d;
     d.engine = "rigid";
-    d.name = "rigid ground";
+    d.name = options_.profile.empty() ? "rigid ground" : "rigid ground with a profile";
     d.gives_tangents = true;
     return d;
   }
   TerrainEstimate estimate(const TerrainContext&) const override {
     TerrainEstimate e;
-    e.text = "rigid plane z = 0";
+    e.text = options_.profile.empty()
+                 ? "rigid plane z = 0"
+                 : fmt::format("rigid profile of {} points", options_.profile.size());
     e.stable_reason = "no grains";
     return e;
   }
@@ -41,6 +44,7 @@ std::unique_ptr<TerrainSpec> read_ground_spec(const nlohmann::json& section, con
   GroundOptions options;
   options.scenario = context.file;
   read_fields(section, options);
+  check_profile(options.profile, context.file, context.key("profile"));
   return make_ground_spec(options);
 }
 

@@ -10,6 +10,7 @@
 #include "terrain/rigid/ground_accounts.hpp"
 #include "terrain/rigid/ground_friction.hpp"
 #include "terrain/rigid/ground_pressure.hpp"
+#include "terrain/rigid/ground_profile.hpp"
 #include "terrain/surface/surface_check.hpp"
 #include "terrain/surface/surface_forces.hpp"
 
@@ -20,6 +21,9 @@ namespace {
 constexpr double kMaxStartDepth = 5e-3;
 // The plane has no end; one cell of this size stands for it in pictures of heights, m.
 constexpr double kFieldCell = 10.0;
+// A profile has so many cells from its first corner to its last, and half of them on either side, of this size at least.
+constexpr int kFieldCells = 200;
+constexpr double kLeastFieldCell = 0.01;  // m
 
 /// One attached surface and the buffers of its substeps.
 struct GroundSurface {
@@ -32,6 +36,7 @@ struct GroundSurface {
   std::vector<Vec3> shear;          // of the layer under each vertex, m
   std::vector<double> load, area;   // of each vertex in the running substep, N, m²
   std::vector<double> area_before;  // in the one before, m²
+  std::vector<Vec3> push;           // of each vertex on a profile: its normal force in the running substep, N
   std::vector<SurfaceContactForce> contacts;
   std::vector<std::pair<int, int>>
       corner;  // of each vertex: one of its triangles, and which corner it is there
@@ -46,6 +51,13 @@ Vec3 weighted(const std::array<double, 3>& weight, const std::vector<Vec3>& valu
   return weight[0] * values[at[0]] + weight[1] * values[at[1]] + weight[2] * values[at[2]];
 }
 
+/// Unit normal of a triangle, outwards, without its part along y: what a profile presses on per area.
+Vec3 flat_normal(const std::array<Vec3, 3>& x) {
+  const Vec3 normal = (x[1] - x[0]).cross(x[2] - x[0]);
+  const double size = normal.norm();
+  return size > 0.0 ? Vec3(normal.x() / size, 0.0, normal.z() / size) : Vec3::Zero();
+}
+
 void require(const std::string& file, const char* key, double value) {
   if (!(value >= 0.0) || !std::isfinite(value))
     throw input_error(file, std::string("terrain.") + key,
@@ -54,7 +66,8 @@ void require(const std::string& file, const char* key, double value) {
 
 class RigidGround final : public Terrain {
  public:
-  explicit RigidGround(const GroundOptions& options) : options_(options) {
+  explicit RigidGround(const GroundOptions& options)
+      : options_(options), profile_(options.profile), plane_(options.profile.empty()) {
     require(options.scenario, "ground_stiffness", options.ground_stiffness);
     require(options.scenario, "ground_damping", options.ground_damping);
     require(options.scenario, "ground_shear_stiffness", options.ground_shear_stiffness);
@@ -63,8 +76,10 @@ class RigidGround final : public Terrain {
   }
 
   double prepare(const ProgressCall&) override { return 0.0; }
-  double top_height(double, double, double, double) const override { return 0.0; }
-  double mean_height(double, double, double, double) const override { return 0.0; }
+  double top_height(double from, double to, double, double) const override {
+    return profile_.highest(from, to);
+  }
+  double mean_height(double from, double to, double, double) const override { return profile_.mean(from, to); }
   double floor_height() const override { return 0.0; }
   HeightField height_field() const override;
   void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) override;
@@ -86,10 +101,14 @@ class RigidGround final : public Terrain {
 
   void add_surface(const SurfaceMesh& mesh, const ContactMaterial& material, std::vector<Vec3> last);
   void press(GroundSurface& surface, double dt);
+  void press_profile(GroundSurface& surface, const GroundLaw& law, double dt);
   void rub(GroundSurface& surface, const GroundLaw& law, double dt);
   void measure(GroundSurface& surface) const;
+  double measure_profile(const GroundSurface& surface) const;
 
   GroundOptions options_;
+  GroundProfile profile_;
+  bool plane_;  // there is no profile
   std::vector<GroundSurface> surfaces_;
   Vec3 surface_impulse_ = Vec3::Zero();  // by surfaces on the ground, N s
   double surface_work_ = 0.0;            // by the ground on surfaces, J
@@ -102,6 +121,12 @@ HeightField RigidGround::height_field() const {
   field.x0 = 0.5 * kFieldCell;
   field.nx = field.ny = 1;
   field.height = {0.0};
+  if (plane_) return field;
+  field.cell = std::max(kLeastFieldCell, (profile_.last() - profile_.first()) / kFieldCells);
+  field.x0 = profile_.first() - 0.5 * kFieldCells * field.cell;
+  field.nx = 2 * kFieldCells;
+  field.height.clear();
+  for (int k = 0; k < field.nx; ++k) field.height.push_back(profile_.height(field.x0 + k * field.cell));
   return field;
 }
 
@@ -118,6 +143,7 @@ void RigidGround::add_surface(const SurfaceMesh& mesh, const ContactMaterial& ma
                         .load = std::vector<double>(mesh.vertex_count, 0.0),
                         .area = std::vector<double>(mesh.vertex_count, 0.0),
                         .area_before = std::vector<double>(mesh.vertex_count, 0.0),
+                        .push = std::vector<Vec3>(mesh.vertex_count, Vec3::Zero()),
                         .contacts = {},
                         .corner = std::vector<std::pair<int, int>>(mesh.vertex_count, {-1, 0}),
                         .sum = NodalForceSum(mesh.vertex_count, options_.contact_tangents)};
@@ -131,11 +157,12 @@ void RigidGround::add_surface(const SurfaceMesh& mesh, const ContactMaterial& ma
 void RigidGround::attach(const SurfaceMesh& mesh, const ContactMaterial& material,
                          const SurfaceState& start) {
   check_surface(mesh, start, static_cast<int>(surfaces_.size()));
-  double lowest = 0.0;
-  for (const Vec3& x : start.position) lowest = std::min(lowest, x.z());
-  if (lowest < -kMaxStartDepth)
+  double deepest = 0.0;
+  for (const Vec3& x : start.position)
+    deepest = std::max(deepest, plane_ ? -x.z() : profile_.depth(x.x(), x.z()));
+  if (deepest > kMaxStartDepth)
     throw input_error("surface " + std::to_string(surfaces_.size()), "",
-                      "starts " + std::to_string(-lowest) + " m below the ground, expected at most " +
+                      "starts " + std::to_string(deepest) + " m below the ground, expected at most " +
                           std::to_string(kMaxStartDepth) + " m");
   add_surface(mesh, material, start.position);
 }
@@ -151,6 +178,10 @@ void RigidGround::press(GroundSurface& surface, double dt) {
   surface.area.swap(surface.area_before);
   std::fill(surface.load.begin(), surface.load.end(), 0.0);
   std::fill(surface.area.begin(), surface.area.end(), 0.0);
+  if (!plane_) {
+    press_profile(surface, law, dt);
+    return;
+  }
   std::array<GroundPoint, kMaxGroundPoints> points;
   const auto& x = surface.position;
   for (int t = 0; t < static_cast<int>(surface.mesh.triangles.size()); ++t) {
@@ -174,6 +205,45 @@ void RigidGround::press(GroundSurface& surface, double dt) {
   rub(surface, law, dt);
 }
 
+/// The same on a profile: the pressure acts along the surface's normal in x and z.
+void RigidGround::press_profile(GroundSurface& surface, const GroundLaw& law, double dt) {
+  std::fill(surface.push.begin(), surface.push.end(), Vec3::Zero());
+  ProfilePointList points;
+  const auto& x = surface.position;
+  for (int t = 0; t < static_cast<int>(surface.mesh.triangles.size()); ++t) {
+    const auto& v = surface.mesh.triangles[t];
+    const std::array<Vec3, 3> corner{x[v[0]], x[v[1]], x[v[2]]};
+    const Vec3 normal = flat_normal(corner);
+    const int count = profile_points(profile_, corner, points);
+    for (int i = 0; i < count; ++i) {
+      const GroundPoint& at = points[i];
+      const Vec3 velocity = weighted(at.weight, surface.velocity, v);
+      const double rate = normal.dot(velocity);  // into the ground, m/s
+      const double pressure = std::max(0.0, law.stiffness * at.depth + law.damping * rate);
+      losses_.normal_damping += (pressure - law.stiffness * at.depth) * at.area * rate * dt;
+      if (!(pressure > 0.0)) continue;
+      const double length = normal.norm();
+      SurfaceContactForce contact;
+      contact.triangle = t;
+      contact.weight = at.weight;
+      contact.point = weighted(at.weight, x, v);
+      contact.normal = -pressure * at.area * normal;
+      contact.tangent = {normal / length, law.stiffness * at.area * length, 0.0,
+                         law.damping * at.area * length, 0.0};
+      surface.contacts.push_back(contact);
+      for (int k = 0; k < 3; ++k) {
+        surface.push[v[k]] += at.weight[k] * contact.normal;
+        surface.area[v[k]] += at.weight[k] * at.area * length;
+      }
+    }
+  }
+  for (std::size_t k = 0; k < surface.push.size(); ++k) surface.load[k] = surface.push[k].norm();
+  surface.contact_count = static_cast<std::int64_t>(surface.contacts.size());
+  surface.floor_force = 0.0;
+  for (const auto& one : surface.contacts) surface.floor_force += one.normal.z();
+  rub(surface, law, dt);
+}
+
 /// Friction of the vertices that bear load, after press().
 void RigidGround::rub(GroundSurface& surface, const GroundLaw& law, double dt) {
   for (std::size_t vertex = 0; vertex < surface.shear.size(); ++vertex) {
@@ -182,11 +252,18 @@ void RigidGround::rub(GroundSurface& surface, const GroundLaw& law, double dt) {
     if (now > before) surface.shear[vertex] *= before / now;  // what has just touched is not yet sheared
     const GroundShear begin{surface.shear[vertex], now};
     double grip = 0.0;
-    const Vec3 force = slide(law, surface.load[vertex], surface.area[vertex], surface.velocity[vertex], dt,
-                             surface.shear[vertex], &grip);
+    // On a profile shear and friction lie in the plane that the vertex's normal force stands on: x' and y.
+    Vec3 along = Vec3::UnitX(), velocity = surface.velocity[vertex], normal = Vec3::UnitZ();
+    if (!plane_ && surface.load[vertex] > 0.0) {
+      normal = surface.push[vertex] / surface.load[vertex];
+      along = Vec3(normal.z(), 0.0, -normal.x());
+      velocity = Vec3(along.dot(velocity), velocity.y(), 0.0);
+    }
+    Vec3 force = slide(law, surface.load[vertex], surface.area[vertex], velocity, dt, surface.shear[vertex],
+                       &grip);
     if (before > 0.0 || now > 0.0)
-      add_shear_losses(law, left, begin, {surface.shear[vertex], now}, force, surface.velocity[vertex], dt,
-                       losses_);
+      add_shear_losses(law, left, begin, {surface.shear[vertex], now}, force, velocity, dt, losses_);
+    if (!plane_) force = force.x() * along + Vec3(0.0, force.y(), 0.0);
     if (force.isZero(0.0) && !(options_.contact_tangents && grip > 0.0)) continue;
     SurfaceContactForce contact;
     const auto [triangle, corner] = surface.corner[vertex];
@@ -195,7 +272,7 @@ void RigidGround::rub(GroundSurface& surface, const GroundLaw& law, double dt) {
     contact.point = surface.position[vertex];
     contact.tangential = force;
     const double held = grip * surface.area[vertex];
-    contact.tangent = {Vec3::UnitZ(), 0.0, law.shear_stiffness * held, 0.0, law.damping * held};
+    contact.tangent = {normal, 0.0, law.shear_stiffness * held, 0.0, law.damping * held};
     surface.contacts.push_back(contact);
   }
 }
@@ -207,6 +284,10 @@ void RigidGround::measure(GroundSurface& surface) const {
   for (std::size_t v = 0; v < surface.shear.size(); ++v)
     surface.sheared +=
         0.5 * options_.ground_shear_stiffness * surface.area[v] * surface.shear[v].squaredNorm();
+  if (!plane_) {
+    surface.pressed = measure_profile(surface);
+    return;
+  }
   const auto& x = surface.last;
   for (const auto& v : surface.mesh.triangles) {
     if (x[v[0]].z() >= 0.0 && x[v[1]].z() >= 0.0 && x[v[2]].z() >= 0.0) continue;
@@ -214,6 +295,25 @@ void RigidGround::measure(GroundSurface& surface) const {
     for (int i = 0; i < count; ++i)
       surface.pressed += 0.5 * options_.ground_stiffness * points[i].depth * points[i].depth * points[i].area;
   }
+}
+
+/// (1) of ground_profile.hpp.
+double RigidGround::measure_profile(const GroundSurface& surface) const {
+  double energy = 0.0;
+  ProfilePointList points;
+  const auto& x = surface.last;
+  for (const auto& v : surface.mesh.triangles) {
+    const std::array<Vec3, 3> corner{x[v[0]], x[v[1]], x[v[2]]};
+    const double down = -flat_normal(corner).z();
+    const int count = profile_points(profile_, corner, points);
+    for (int i = 0; i < count; ++i) {
+      const GroundPoint& at = points[i];
+      const Vec3 point = weighted(at.weight, x, v);
+      const double column = at.level ? 0.5 * at.depth * at.depth : profile_.column(point.x(), point.z());
+      energy += options_.ground_stiffness * column * down * at.area;
+    }
+  }
+  return energy;
 }
 
 Outcome RigidGround::advance(std::span<const SurfaceState> targets, double duration, int substeps,

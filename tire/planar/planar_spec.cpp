@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -12,8 +12,9 @@
 
 #include "protocol/core/error.hpp"
 #include "tire/cylinder.hpp"
+#include "tire/planar/planar_carcass.hpp"
 #include "tire/planar/planar_press.hpp"
-#include "tire/planar/planar_tangent.hpp"
+#include "tire/planar/planar_tire.hpp"
 #include "tire/tire_file_reader.hpp"
 
 namespace furrow::tire {
@@ -21,6 +22,7 @@ namespace {
 
 constexpr int kLeastAround = 12, kMostAround = 2000, kMostRings = 200;
 constexpr double kBytesPerElement = 3000.0;  // of the static test's factor
+constexpr double kSavedBytes = 32.0;          // of a node
 constexpr double kLargestPoisson = 0.499;    // beyond, the step limit vanishes
 constexpr std::array<std::string_view, 2> kLaw{"printed", "consistent"}, kVolume{"averaged", "element"},
     kIntegrator{"runge_kutta_4", "semi_implicit_euler"};
@@ -75,8 +77,10 @@ class PlanarSpec final : public TireSpec {
   PlanarSpec(PlanarFile file, const TireOptions& options) : TireSpec(options), file_(std::move(file)) {}
 
   TireDescription describe() const override;
-  std::unique_ptr<Tire> make(const TireContext&) const override {
-    throw input_error(file_.path, "model", std::string("is 'planar', ") + kNoMotion);
+  std::unique_ptr<Tire> make(const TireContext& context) const override {
+    if (const std::string refused = not_in_motion(); !refused.empty())
+      throw input_error(file_.path, "integrator", refused);
+    return make_planar_tire(file_, shape(), context.gravity);
   }
   TireShape shape() const override {
     TireShape shape =
@@ -90,20 +94,14 @@ class PlanarSpec final : public TireSpec {
   }
 
  private:
-  static constexpr const char* kNoMotion =
-      "which runs do not move in this version: it can be pressed (furrow press); for a run expected another "
-      "model, or "
-      "tire.rigid true";
-
-  /// Of the tire without its disc: a cylinder with a hole.
-  MassProperties mass() const {
-    const PlanarParams& p = file_.params;
-    const double outer = p.size.radius * p.size.radius, inner = p.size.rim_radius * p.size.rim_radius;
-    const double mass = p.tire.density * std::numbers::pi * (outer - inner) * p.options.width;
-    const double spin = 0.5 * mass * (outer + inner);
-    const double diametral = 0.5 * spin + mass * p.options.width * p.options.width / 12.0;
-    return {mass, Vec3(diametral, spin, diametral).asDiagonal()};
+  /// Why runs cannot move this tire; empty: they can.
+  std::string not_in_motion() const {
+    if (file_.params.integrator == PlanarIntegrator::semi_implicit_euler) return {};
+    return "is 'runge_kutta_4', which runs do not take in this version: expected 'semi_implicit_euler', or tire.rigid "
+           "true";
   }
+  /// Of the tire without its disc.
+  MassProperties mass() const { return planar_mass(file_.params); }
 
   PlanarFile file_;
 };
@@ -111,22 +109,24 @@ class PlanarSpec final : public TireSpec {
 TireDescription PlanarSpec::describe() const {
   const PlanarParams& p = file_.params;
   const PlanarMesh mesh = planar_wheel(p.size);
-  const double limit = step_limit(planar_elements(mesh, p), mesh.position);
+  const PlanarCarcass carcass(p);
+  const double limit = carcass.step_limit();
   TireDescription d;
   d.kind = "planar";
   d.name = "planar finite-element tire";
-  d.details = fmt::format("{} triangles, {} x {} of them the tire, {} coordinates, steps up to {:.3g} s",
-                          mesh.elements(), p.size.around, 2 * p.size.rings, 2 * mesh.nodes(), limit);
+  d.details = fmt::format("{} x {} triangles, {} coordinates, explicit steps of at most {:.3g} s",
+                          p.size.around, 2 * p.size.rings, 2 * carcass.mesh().nodes(), p.step_share * limit);
   d.radius = p.size.radius;
   d.width = d.tread_width = p.options.width;
-  d.coordinates = 2 * mesh.nodes();
+  d.coordinates = 2 * carcass.mesh().nodes();
   d.vertices = 2 * p.size.around + 2;
   d.facets = p.size.around;
   d.mass = mass();
   d.memory = kBytesPerElement * mesh.elements();
-  d.static_only = kNoMotion;
+  d.saved_bytes = kSavedBytes * carcass.mesh().nodes();
+  if (const std::string refused = not_in_motion(); !refused.empty()) d.static_only = "whose key 'integrator' " + refused;
   d.takes = {"friction", "elements_circumference"};
-  d.model = {{"elements", static_cast<double>(mesh.elements())}, {"step_limit_s", limit}};
+  d.model = {{"elements", static_cast<double>(carcass.mesh().elements())}, {"step_limit_s", limit}};
   return d;
 }
 

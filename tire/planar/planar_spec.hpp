@@ -1,5 +1,5 @@
 // The planar finite-element tire as an entry of the table of models: its file, what a scenario changes of it, what it
-// says of itself. Runs of the program do not move it yet: it is pressed (furrow press), or rolls held rigid (tire.rigid).
+// says of itself.
 #pragma once
 
 #include <memory>
@@ -7,16 +7,10 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "tire/planar/planar_wheel.hpp"
+#include "tire/planar/planar_file.hpp"
 #include "tire/tire_spec.hpp"
 
 namespace furrow::tire {
-
-struct PlanarFile {
-  std::string path;
-  PlanarParams params;
-  ContactMaterial contact;
-};
 
 /// @throws Error(bad_input) naming file and key
 PlanarFile read_planar_file(const nlohmann::json& file, const std::string& path);

@@ -1,0 +1,204 @@
+// Hard ground with a profile: closed forms of depth and column, the plane's forces on level parts, and that its contact
+// has the energy that it says.
+#include "terrain/rigid/ground_profile.hpp"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "protocol/core/error.hpp"
+#include "terrain/rigid/rigid_ground.hpp"
+#include "tests/terrain/surface_meshes.hpp"
+
+namespace furrow::terrain {
+namespace {
+
+const ProfilePoints kCurb{{1.0, 0.0}, {1.0, 0.2}};
+
+std::string complaint(const ProfilePoints& points) {
+  try {
+    check_profile(points, "s.json", "terrain.profile");
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::bad_input);
+    return error.what();
+  }
+  return "";
+}
+
+TEST(GroundProfile, heights_and_means_of_a_curb) {
+  const GroundProfile curb(kCurb);
+  EXPECT_EQ(curb.height(0.5), 0.0);
+  EXPECT_EQ(curb.height(1.0), 0.2);
+  EXPECT_EQ(curb.height(7.0), 0.2);
+  EXPECT_EQ(curb.highest(0.0, 0.9), 0.0);
+  EXPECT_EQ(curb.highest(0.0, 1.1), 0.2);
+  EXPECT_NEAR(curb.mean(0.0, 4.0), 0.15, 1e-15);
+  EXPECT_EQ(curb.mean(2.0, 2.0), 0.2);
+  EXPECT_EQ(GroundProfile({}).height(3.0), 0.0);
+  const GroundProfile ramp({{0.0, 0.0}, {2.0, 1.0}, {3.0, 1.0}});
+  EXPECT_NEAR(ramp.height(0.5), 0.25, 1e-15);
+  EXPECT_NEAR(ramp.mean(0.0, 3.0), 2.0 / 3.0, 1e-15);
+}
+
+TEST(GroundProfile, depth_is_the_distance_to_the_nearest_side) {
+  const GroundProfile curb(kCurb);
+  EXPECT_EQ(curb.depth(0.5, 0.1), 0.0);
+  EXPECT_NEAR(curb.depth(0.5, -0.03), 0.03, 1e-15);
+  EXPECT_NEAR(curb.depth(1.01, 0.1), 0.01, 1e-15);
+  EXPECT_NEAR(curb.depth(1.05, 0.19), 0.01, 1e-15);
+  EXPECT_NEAR(curb.depth(9.0, 0.15), 0.05, 1e-15);
+  EXPECT_NEAR(curb.depth(1.03, -0.04), 0.05, 1e-15);  // to the foot of the face
+  EXPECT_NEAR(GroundProfile({{0.0, 0.0}, {2.0, 1.0}}).depth(1.0, 0.4), 0.1 * 2.0 / std::sqrt(5.0), 1e-15);
+}
+
+TEST(GroundProfile, the_column_under_a_corner_is_its_integral_of_depth) {
+  const GroundProfile curb(kCurb);
+  EXPECT_NEAR(curb.column(0.2, -0.03), 0.5 * 9e-4, 1e-15);
+  // Depth min(a, t) at a from the face, t below the top: t²/2 where t ≤ a, else a²/2 + a (t − a).
+  EXPECT_NEAR(curb.column(1.05, 0.16), 0.5 * 16e-4, 1e-15);
+  EXPECT_NEAR(curb.column(1.02, 0.15), 2e-4 + 0.02 * 0.03, 0.02 * 8e-4);
+}
+
+TEST(GroundProfile, level_stretches_are_known_with_what_is_near_them) {
+  const GroundProfile curb(kCurb);
+  EXPECT_TRUE(curb.level(0.0, 0.9, 0.05));
+  EXPECT_FALSE(curb.level(0.0, 0.9, 0.15));
+  EXPECT_TRUE(curb.level(1.2, 1.3, 0.1));
+  EXPECT_FALSE(curb.level(1.2, 1.3, 0.25));
+  EXPECT_TRUE(GroundProfile({}).level(-1.0, 1.0, 1.0));
+  EXPECT_FALSE(GroundProfile({{0.0, 0.0}, {2.0, 1.0}}).level(0.9, 1.1, 0.0));
+  EXPECT_TRUE(GroundProfile({{0.0, 0.5}, {2.0, 0.5}}).level(0.9, 3.0, 1.0));
+}
+
+TEST(GroundProfile, bad_points_are_refused_by_their_number) {
+  EXPECT_EQ(complaint(kCurb), "");
+  EXPECT_EQ(complaint({{0, 0}, {-1, 0}}),
+            "s.json: key 'terrain.profile.1.0': is -1 m, expected 0 m, as in the entry before, or more");
+  EXPECT_EQ(complaint({{0, 0}, {1, 2}, {1, 2}}),
+            "s.json: key 'terrain.profile.2': is [1, 2] m as the entry before, expected another point");
+  EXPECT_NE(complaint({{0, 0}, {0, 1}, {0, 0.5}}).find("a third time, expected two entries at most"),
+            std::string::npos);
+}
+
+SurfaceState placed(const testing::Surface& surface, const Vec3& shift, const Vec3& velocity) {
+  SurfaceState state;
+  for (const Vec3& x : surface.vertex) state.position.push_back(shift + x), state.velocity.push_back(velocity);
+  return state;
+}
+
+struct Push {
+  NodalForces forces;
+  ContactSums sums;
+};
+
+Push push(Terrain& ground, const SurfaceState& start, double duration) {
+  Push result;
+  const Outcome status = ground.advance({&start, 1}, duration, 1, {&result.forces, 1}, {&result.sums, 1});
+  EXPECT_TRUE(status.ok) << status.message("terrain");
+  return result;
+}
+
+ContactMaterial rubber(double friction) {
+  ContactMaterial material;
+  material.friction = friction;
+  return material;
+}
+
+TEST(GroundProfile, a_wheel_on_its_level_part_is_pressed_as_on_the_plane) {
+  const testing::Surface wheel = testing::wheel(0.4, 0.2, 60, 3);
+  GroundOptions plane, curb;
+  curb.profile = {{2.0, 0.3}, {2.0, 0.5}};
+  const Vec3 up(0.0, 0.0, 0.3);
+  const auto a = make_rigid_ground(plane), b = make_rigid_ground(curb);
+  const Vec3 velocity(0.5, 0.1, -0.01);
+  const SurfaceState low = placed(wheel, {0.3, 0.0, 0.398}, velocity), high = placed(wheel, Vec3(0.3, 0.0, 0.398) + up, velocity);
+  a->attach(wheel.mesh, rubber(0.8), low);
+  b->attach(wheel.mesh, rubber(0.8), high);
+  const Push on_plane = push(*a, low, 1e-5), on_curb = push(*b, high, 1e-5);
+  // Damping goes with the speed along facets that stand at up to 6°.
+  EXPECT_NEAR(on_curb.sums.force.z() / on_plane.sums.force.z(), 1.0, 2e-3);
+  EXPECT_NEAR((on_curb.sums.force.x() - on_plane.sums.force.x()) / on_plane.sums.force.z(), 0.0, 2e-3);
+  EXPECT_NEAR(b->state().elastic_energy / a->state().elastic_energy, 1.0, 1e-9);
+}
+
+/// A block whose lower right edge is led around the curb's edge and back.
+TEST(GroundProfile, contact_without_friction_and_damping_gives_back_what_it_took) {
+  GroundOptions options;
+  options.profile = kCurb;
+  options.ground_damping = 0.0;
+  options.ground_stiffness = 1e7;
+  testing::Surface wheel = testing::wheel(0.4, 0.2, 60, 1);
+  const auto ground = make_rigid_ground(options);
+  const auto at = [](double phase) {  // the wheel's centre: in contact with face, edge and top in turn
+    const double angle = 2.0 * M_PI * phase;
+    return Vec3(0.75 + 0.03 * (1.0 - std::cos(angle)), 0.0, 0.52 - 0.03 * std::sin(angle));
+  };
+  const int steps = 4000;
+  SurfaceState state = placed(wheel, at(0.0), Vec3::Zero());
+  ground->attach(wheel.mesh, rubber(0.0), state);
+  const double duration = 1e-3;
+  double work = 0.0, taken = 0.0, most = 0.0, worst = 0.0;
+  const double first = ground->state().elastic_energy;
+  for (int k = 0; k < steps; ++k) {
+    const Vec3 velocity = (at((k + 1.0) / steps) - at(double(k) / steps)) / duration;
+    const Push one = push(*ground, placed(wheel, at(double(k) / steps), velocity), duration);
+    const double step = -one.sums.force.dot(velocity) * duration;
+    work += step, taken += std::abs(step);
+    const double stored = ground->state().elastic_energy - first;
+    most = std::max(most, stored), worst = std::max(worst, std::abs(work - stored));
+  }
+  EXPECT_GT(most, 1.0);
+  EXPECT_LT(std::abs(work), 0.005 * taken);
+  EXPECT_LT(worst, 0.02 * most);
+  EXPECT_NEAR(ground->state().dissipation, 0.0, 1e-9);
+}
+
+TEST(GroundProfile, friction_lies_along_the_face_that_is_touched) {
+  GroundOptions options;
+  options.profile = kCurb;
+  const testing::Surface block = testing::box({-0.1, -0.05, 0.0}, {0.0, 0.05, 0.1});
+  const auto ground = make_rigid_ground(options);
+  const SurfaceState start = placed(block, {1.0004, 0.0, 0.05}, Vec3(0.0, 0.0, 3.0));
+  ground->attach(block.mesh, rubber(0.5), start);
+  Push one;
+  SurfaceState now = start;
+  for (int k = 0; k < 100; ++k) {
+    one = push(*ground, now, 1e-4);
+    for (Vec3& x : now.position) x += 1e-4 * now.velocity[0];
+  }
+  EXPECT_LT(one.sums.force.x(), 0.0);
+  EXPECT_NEAR(one.sums.force.z() / one.sums.force.x(), 0.5, 1e-3);  // μ tanh(c v) of the normal force, downwards
+}
+
+TEST(GroundProfile, a_restored_ground_continues_bit_for_bit) {
+  GroundOptions options;
+  options.profile = kCurb;
+  const testing::Surface wheel = testing::wheel(0.4, 0.2, 60, 1);
+  const auto one = make_rigid_ground(options);
+  SurfaceState state = placed(wheel, {0.62, 0.0, 0.3995}, Vec3(0.4, 0.1, 0.02));
+  one->attach(wheel.mesh, rubber(0.5), state);
+  const auto go = [&](Terrain& ground, int count) {
+    Push last;
+    for (int k = 0; k < count; ++k) {
+      last = push(ground, state, 1e-4);
+      for (Vec3& x : state.position) x += 1e-4 * state.velocity[0];
+    }
+    return last;
+  };
+  go(*one, 100);
+  Archive archive;
+  one->save(archive);
+  const auto other = make_rigid_ground(options);
+  other->restore(archive);
+  const SurfaceState kept = state;
+  const Push a = go(*one, 100);
+  state = kept;
+  const Push b = go(*other, 100);
+  EXPECT_EQ(a.sums.force, b.sums.force);
+  EXPECT_EQ(one->state().dissipation, other->state().dissipation);
+  EXPECT_EQ(one->state().elastic_energy, other->state().elastic_energy);
+}
+
+}  // namespace
+}  // namespace furrow::terrain

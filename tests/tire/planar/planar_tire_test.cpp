@@ -1,0 +1,255 @@
+// The planar tire under the interface of tires: momentum, energy, the static test as a peer, exact continuation.
+#include "tire/planar/planar_spec.hpp"
+#include "tire/planar/planar_tire.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "protocol/core/error.hpp"
+#include "protocol/core/mean_turn.hpp"
+#include "tests/tire/planar/planar_examples.hpp"
+#include "tire/outward.hpp"
+#include "tire/planar/planar_carcass.hpp"
+#include "tire/planar/planar_static.hpp"
+#include "tire/tires.hpp"
+
+namespace furrow::tire {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kStep = 1e-4;  // s
+
+TireOptions options(int around = 36) {
+  TireOptions o;
+  o.file = TIRE_DATA "/aligator_planar.json";
+  o.elements_circumference = around;
+  return o;
+}
+
+PlanarFile file(int around = 36) {
+  const std::string path = TIRE_DATA "/aligator_planar.json";
+  PlanarFile f = read_planar_file(json::parse(std::ifstream(path)), path);
+  f.params.size.rings = f.params.size.rings * around / f.params.size.around;
+  f.params.size.around = around;
+  return f;
+}
+
+RimState rim_at(double t, double toe = 0.0) {
+  RimState rim;
+  rim.position = Vec3(3.0 * t + 0.4 * t * t, 0.2 * t, 0.5 - 0.05 * t);
+  rim.velocity = Vec3(3.0 + 0.8 * t, 0.2, -0.05);
+  const Quat plane(Eigen::AngleAxisd(toe, Vec3::UnitZ()));
+  rim.orientation = plane * Quat(Eigen::AngleAxisd(6.0 * t + t * t, Vec3::UnitY()));
+  rim.angular_velocity = plane * Vec3(0.0, 6.0 + 2.0 * t, 0.0);
+  return rim;
+}
+
+/// Forces that come and go on the lower half of the tread, on both sides unlike, and on the middle of a side.
+NodalForces loads(const SurfaceState& surface, const RimState& rim, double t) {
+  NodalForces f;
+  const int last = static_cast<int>(surface.position.size()) - 2;
+  for (int v = 0; v < last; ++v) {
+    if (surface.position[v].z() > rim.position.z() - 0.45) continue;
+    f.vertex.push_back(v);
+    f.force.push_back(Vec3(80.0 * std::sin(50.0 * t + v), 30.0, (v % 2 ? 400.0 : 300.0) * (1.0 + std::sin(90.0 * t))));
+  }
+  f.vertex.push_back(last);
+  f.force.push_back(Vec3(5.0, -3.0, 7.0));
+  return f;
+}
+
+struct Ride {
+  double worst_force = 0.0;                   // of Δ momentum − impulses over the largest impulse
+  double work = 0.0, residual = 0.0;          // J
+  TireDiagnostics first, last;
+
+  explicit Ride(double step, double toe = 0.0, double end = 0.1) {
+    const auto tire = make_tire(options());
+    const RimState start = rim_at(0.0, toe);
+    RimTrajectory rim(start);
+    tire->place(start);
+    first = tire->diagnostics();
+    SurfaceState before, after;
+    double rim_work = 0.0, terrain_work = 0.0;
+    const int steps = static_cast<int>(std::lround(end / step));
+    for (int k = 0; k < steps; ++k) {
+      rim.extend(rim_at(k * step, toe), step);
+      tire->surface(before);
+      const NodalForces f = loads(before, rim.start(), k * step);
+      const Vec3 momentum = tire->diagnostics().momentum;
+      const Outcome outcome = tire->advance(rim, f, 1);
+      EXPECT_TRUE(outcome.ok) << outcome.message("tire");
+      tire->surface(after);
+      const Wrench spindle = tire->spindle_wrench();
+      Vec3 impulse = step * (tire->mass_properties().mass * tire->gravity() - spindle.force);
+      double size = impulse.norm();
+      for (std::size_t i = 0; i < f.vertex.size(); ++i) {
+        impulse += step * f.force[i], size += step * f.force[i].norm();
+        terrain_work += f.force[i].dot(after.position[f.vertex[i]] - before.position[f.vertex[i]]);
+      }
+      const double off = (tire->diagnostics().momentum - momentum - impulse).norm() / size;
+      worst_force = std::max(worst_force, off);
+      rim_work -= spindle.force.dot(rim.end().position - rim.start().position) +
+                  spindle.moment.dot(mean_turn(rim.start().orientation, rim.end().orientation));
+    }
+    last = tire->diagnostics();
+    work = std::abs(rim_work) + std::abs(terrain_work);
+    residual = rim_work + terrain_work - (last.stored() - first.stored()) - last.losses();
+  }
+};
+
+TEST(PlanarTire, momentum_changes_by_ground_gravity_and_spindle_to_round_off) {
+  EXPECT_LT(Ride(kStep).worst_force, 1e-11);
+  EXPECT_LT(Ride(kStep, 0.1).worst_force, 1e-11);  // with a slip angle
+}
+
+TEST(PlanarTire, the_account_of_energy_closes) {
+  const Ride ride(kStep);
+  EXPECT_GT(ride.last.elastic_energy, 0.5);
+  EXPECT_GT(ride.last.dissipation, 0.1);
+  EXPECT_LT(std::abs(ride.residual), 2e-3 * ride.work) << ride.work;
+  EXPECT_LT(std::abs(ride.residual), 0.03 * ride.last.dissipation) << ride.last.dissipation;
+  const Ride turned(kStep, 0.1);
+  EXPECT_NEAR(turned.residual / turned.work, 0.0, 2e-3);
+}
+
+TEST(PlanarTire, a_free_wheel_that_spins_keeps_its_angular_momentum_and_needs_no_wrench) {
+  PlanarFile f = file();
+  f.params.tire.viscosity = 5e3;
+  TireShape shape = read_tire(options())->shape();
+  const auto tire = make_planar_tire(f, shape, Vec3::Zero());
+  RimState rim;
+  rim.angular_velocity = Vec3(0.0, 4.0, 0.0);
+  RimTrajectory motion(rim);
+  tire->place(rim);
+  for (int k = 0; k < 3000; ++k) {
+    motion.extend(rim, kStep);
+    ASSERT_TRUE(tire->advance(motion, {}, 1).ok);
+    rim.orientation = motion.end().orientation;
+  }
+  // Settled in the growth by centrifugal forces: a rigid motion, without force, moment or loss.
+  const Wrench w = tire->spindle_wrench();
+  EXPECT_LT(w.force.norm(), 1e-6);
+  EXPECT_LT(w.moment.norm(), 0.02);
+}
+
+TEST(PlanarTire, pressed_slowly_it_comes_to_the_static_test) {
+  PlanarFile f = file(36);
+  f.params.tire.viscosity = 2e3;
+  f.params.disc.young_modulus = 1e11;  // of the peer, as hard as a rim
+  f.params.friction = 0.0;
+  PlanarStatic peer(f.params, PlanarGround::plate(f.params.size.radius));
+  const double deflection = 0.03;
+  ASSERT_TRUE(peer.move_to({0.0, f.params.size.radius - deflection}).converged);
+  PlanarCarcass carcass(f.params);
+  PlanarContact contact(carcass.mesh(), PlanarGround::plate(f.params.size.radius),
+                        {f.params.contact_stiffness * f.params.options.width, 0.0});
+  carcass.place(0.0, 0.0, {});
+  const double h = 0.5 * carcass.step_limit(), down = 0.2, speed = deflection / down;
+  PlanarSums sums;
+  PlanarField load(carcass.mesh().position.size());
+  double force = 0.0;
+  const int lowering = static_cast<int>(down / h), steps = 3 * lowering;
+  for (int k = 0; k < steps; ++k) {
+    PlanarState state{carcass.position(), carcass.velocity()};
+    const double height = f.params.size.radius - deflection * std::min(1.0, double(k) / lowering);
+    for (double& z : state.x.z) z += height;
+    for (std::size_t n = 0; n < load.size(); ++n) load.x[n] = load.z[n] = 0.0;
+    contact.load(state, carcass.mass(), h, load);
+    force = contact.force_z();
+    ASSERT_TRUE(carcass.step(h, {{0.0, k < lowering ? -speed : 0.0}, 0.0}, load, {}, sums));
+  }
+  EXPECT_NEAR(force / peer.force(), 1.0, 1e-3);
+}
+
+TEST(PlanarTire, a_restored_tire_continues_bit_for_bit) {
+  const auto one = make_tire(options()), other = make_tire(options());
+  RimTrajectory rim(rim_at(0.0, 0.05));
+  one->place(rim.end());
+  const auto go = [&](Tire& tire, RimTrajectory& motion, int from, int to) {
+    SurfaceState surface;
+    for (int k = from; k < to; ++k) {
+      motion.extend(rim_at(k * kStep, 0.05), kStep);
+      tire.surface(surface);
+      ASSERT_TRUE(tire.advance(motion, loads(surface, motion.start(), k * kStep), 2).ok);
+    }
+  };
+  go(*one, rim, 0, 333);
+  Archive archive;
+  one->save(archive);
+  other->restore(archive);
+  RimTrajectory copy = rim;
+  go(*one, rim, 333, 700);
+  go(*other, copy, 333, 700);
+  SurfaceState a, b;
+  one->surface(a), other->surface(b);
+  EXPECT_EQ(a.position, b.position);
+  EXPECT_EQ(a.velocity, b.velocity);
+  EXPECT_EQ(one->spindle_wrench().force, other->spindle_wrench().force);
+  EXPECT_EQ(one->spindle_wrench().moment, other->spindle_wrench().moment);
+  EXPECT_EQ(one->diagnostics().losses(), other->diagnostics().losses());
+  EXPECT_EQ(one->figures().of("explicit_steps"), other->figures().of("explicit_steps"));
+}
+
+TEST(PlanarTire, its_surface_is_the_shape_that_it_was_described_with) {
+  for (const int around : {24, 37}) {
+    const auto spec = read_tire(options(around));
+    const auto tire = spec->make();
+    const TireDescription d = spec->describe();
+    EXPECT_EQ(d.vertices, tire->mesh().vertex_count);
+    EXPECT_EQ(d.coordinates, tire->coordinates());
+    EXPECT_EQ(d.mass.mass, tire->mass_properties().mass);
+    EXPECT_EQ(d.static_only, "");
+    EXPECT_EQ(d.facets, around);
+    tire->place(RimState());
+    SurfaceState s;
+    tire->surface(s);
+    const TireShape shape = spec->shape();
+    for (std::size_t v = 0; v < shape.vertex.size(); ++v) EXPECT_LT((s.position[v] - shape.vertex[v]).norm(), 1e-12);
+    EXPECT_NO_THROW(require_outward(tire->mesh(), s.position, Vec3::Zero(), "tire.json"));
+    EXPECT_GT(tire->material().area_density, 0.1);
+  }
+}
+
+TEST(PlanarTire, what_cannot_go_on_says_so) {
+  const auto tire = make_tire(options());
+  RimState rim;
+  RimTrajectory motion(rim);
+  tire->place(rim);
+  motion.extend(rim, kStep);
+  NodalForces f;
+  f.vertex = {3}, f.force = {Vec3(0.0, 0.0, std::numeric_limits<double>::quiet_NaN())};
+  EXPECT_NE(tire->advance(motion, f, 1).message("tire 0").find("force that is not finite"), std::string::npos);
+  // Fifty tons on one node drive it to the rim, or through its triangles.
+  f.vertex = {36, 37}, f.force.assign(2, Vec3(0.0, 0.0, 2.5e5));
+  Outcome outcome;
+  for (int k = 0; k < 2000 && outcome.ok; ++k) {
+    outcome = tire->advance(motion, f, 1);
+    motion.extend(rim, kStep);
+  }
+  EXPECT_FALSE(outcome.ok);
+  EXPECT_NE(outcome.message("tire 0").find("try"), std::string::npos) << outcome.message("tire 0");
+}
+
+TEST(PlanarTire, runs_refuse_another_integrator_by_name) {
+  PlanarFile f = file();
+  json text = json::parse(std::ifstream(f.path));
+  text["integrator"] = "runge_kutta_4";
+  const auto spec = read_planar(text, options());
+  EXPECT_NE(spec->describe().static_only.find("expected 'semi_implicit_euler'"), std::string::npos);
+  try {
+    spec->make();
+    ADD_FAILURE() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::bad_input);
+    EXPECT_NE(std::string(error.what()).find("key 'integrator': is 'runge_kutta_4'"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace furrow::tire

@@ -46,7 +46,7 @@ class Install(SystemTest):
         for name in ("bash-completion/completions/furrow", "zsh/vendor-completions/_furrow",
                      "fish/vendor_completions.d/furrow.fish", "man/man1/furrow.1"):
             text = (self.tree / "share" / name).read_text()
-            self.assertIn("bit-identical to an uninterrupted run" if "man" in name or "fish" in name else "resume", text.replace("\\-", "-"))
+            self.assertIn("bit-identical to that of an uninterrupted run" if "man" in name or "fish" in name else "resume", text.replace("\\-", "-"))
             self.assertNotIn(str(ROOT), text)
 
     def test_a_batch_script_names_the_command_that_suits_every_node(self):

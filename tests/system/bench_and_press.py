@@ -147,18 +147,16 @@ class Press(SystemTest):
         self.assertIn("key '--deflection': is 0.19 m, expected at most 0.1608 m", done.stderr)
         self.assertFalse((self.folder / "other").exists())
 
-    def test_static_tires_do_not_run(self):
-        for file, words in (("hmmwv_ring.json", "is a flexible ring, which has no motion of its own"),
-                            ("aligator_planar.json", "is a planar finite-element tire, which runs do not move")):
-            path = self.folder / "static.json"
-            path.write_text(json.dumps({**SCENARIO, "tire": {"file": file}}))
-            for command in ("validate", "run"):
-                done = furrow(command, path, cwd=self.folder)
-                self.assertEqual(done.returncode, 2, done.stderr)
-                self.assertIn(f"key 'tire.file': {words}", done.stderr)
-                self.assertEqual(sorted(file.name for file in self.folder.iterdir()), ["static.json"])
-            done = furrow("validate", path, "--set", "tire.rigid=true", cwd=self.folder)
-            self.assertEqual(done.returncode, 0, done.stderr)
+    def test_a_static_tire_does_not_run(self):
+        path = self.folder / "static.json"
+        path.write_text(json.dumps({**SCENARIO, "tire": {"file": "hmmwv_ring.json"}}))
+        for command in ("validate", "run"):
+            done = furrow(command, path, cwd=self.folder)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn("key 'tire.file': is a flexible ring, which has no motion of its own", done.stderr)
+            self.assertEqual(sorted(file.name for file in self.folder.iterdir()), ["static.json"])
+        done = furrow("validate", path, "--set", "tire.rigid=true", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_bad_input(self):
         for more, word in ((("--on", "sand"), "--on"), (("--deflection", "-1"), "--deflection"), (("--load", "inf"), "--load"),

@@ -64,8 +64,8 @@ std::map<std::string, std::vector<std::int64_t>> kinds_in(const std::filesystem:
 /// Those that all kinds have, rising.
 std::vector<std::int64_t> common_numbers(const std::map<std::string, std::vector<std::int64_t>>& kinds) {
   std::vector<std::int64_t> common = kinds.begin()->second;
-  for (const auto& [kind, numbers] : kinds)
-    std::erase_if(common, [&](std::int64_t index) { return !std::ranges::binary_search(numbers, index); });
+  for (const auto& kind : kinds)
+    std::erase_if(common, [&](std::int64_t index) { return !std::ranges::binary_search(kind.second, index); });
   return common;
 }
 

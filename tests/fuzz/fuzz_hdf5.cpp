@@ -192,7 +192,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       attempt([&] { reader.text(name); });
     }
   });
-  constexpr ArchiveKind kBed{"bed", "a bed of furrow", 5, 4, "", true};
+  constexpr ArchiveKind kBed{"bed", "a bed of furrow", 5, 4, ""};
   attempt([&] { terrain::dem::read_positions_h5(file); });
   attempt([&] { read_archive(file); });
   attempt([&] { read_archive(file, kBed); });

@@ -97,7 +97,7 @@ def table(counts):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--out", type=pathlib.Path, required=True)
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build-fuzz")
+    parser.add_argument("--build", type=lambda name: pathlib.Path(name).resolve(), default=ROOT / "build-fuzz")
     parser.add_argument("--seconds", type=float, default=600, help="of each target, now")
     parser.add_argument("--total", type=float, default=3600, help="of the processor, of each target, in all")
     parser.add_argument("--only", nargs="*", default=TARGETS, choices=TARGETS)

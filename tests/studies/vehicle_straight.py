@@ -2,9 +2,10 @@
 """The HMMWV at full size across the soil: tables and a picture of the runs of vehicle_straight.json.
 
     /usr/bin/python3 tests/studies/run_study.py tests/studies/vehicle_straight.json
-    /usr/bin/python3 tests/studies/vehicle_straight.py
+    /usr/bin/python3 tests/studies/vehicle_straight.py [CASE]
 
-Writes beside this script, from the series and the summary of every finished case alone:
+Writes beside this script, from the series and the summary of every finished case alone; of one CASE, whose name then stands
+in the names of the files:
   vehicle_straight_events.csv  what happened and when, with the threshold that decides it, as `furrow events`
   vehicle_straight_axles.csv   the axles beside each other over a stretch that is steady enough
   vehicle_straight_gear.csv    the balance of a change of gear
@@ -130,13 +131,16 @@ def picture(v, path):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("--results", type=pathlib.Path, default=ROOT / "results" / "studies" / STUDY.stem, help="folder of the cases")
+    cases = list(json.loads(STUDY.read_text())["cases"])
+    parser.add_argument("case", nargs="?", choices=cases, help="the only case of the tables; all by default")
     arguments = parser.parse_args()
-    folders = [arguments.results / case for case in json.loads(STUDY.read_text())["cases"]]
+    stem = f"{STUDY.stem}_{arguments.case}" if arguments.case else STUDY.stem
+    folders = [arguments.results / case for case in ([arguments.case] if arguments.case else cases)]
     folders = [folder for folder in folders if (folder / "summary.json").exists()]
     if not folders:
         raise SystemExit(f"{arguments.results}: holds no finished case, expected those of run_study.py {STUDY.name}")
     origin = provenance.origin_of_runs(folders)
-    origin["command"] = pathlib.Path(__file__).name
+    origin["command"] = " ".join([pathlib.Path(__file__).name, *([arguments.case] if arguments.case else [])])
     tables = {"events": [], "axles": [], "gear": [], "nodes": [], "series": []}
     for folder in folders:
         v = VehicleRun(Run(folder))
@@ -148,10 +152,10 @@ def main():
         series = thinned(v)
         tables["series"] += [{"case": folder.name, **{name: short(values[k]) for name, values in series.items()}} for k in range(len(series["time_s"]))]
         if folder == folders[0]:
-            picture(v, STUDY.with_suffix(".png"))
+            picture(v, STUDY.with_name(f"{stem}.png"))
     for name, rows in tables.items():
         columns = list(dict.fromkeys(key for row in rows for key in row))
-        provenance.write_table(STUDY.with_name(f"{STUDY.stem}_{name}.csv"), columns, rows, origin)
+        provenance.write_table(STUDY.with_name(f"{stem}_{name}.csv"), columns, rows, origin)
 
 
 if __name__ == "__main__":

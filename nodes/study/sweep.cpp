@@ -363,6 +363,7 @@ ExitCode Sweep::run(const launch::FolderLock& lock) {
   launch::catch_pause();
   Json told{{"format_version", 1},   {"study", study_.name},      {"passes", study_.passes},
             {"rest_s", study_.rest}, {"results", study_.results}, {"plot", study_.plot}};
+  if (!study_.description.empty()) told["description"] = study_.description;
   if (!study_.names.empty()) told["beds"] = {{"scenario_digest", runs_.front().digest}};
   write_whole_file(options_.folder / "sweep.json", told.dump(2) + "\n");
   write_table();

@@ -52,7 +52,7 @@ std::string cell(const Json& value) {
   return quoted + "\"";
 }
 
-/// Why a run ended: what its user was told, the last error in the log.
+/// Why a run ended: the last error in its log.
 std::string last_error(const fs::path& log, int status) {
   if (WIFSIGNALED(status))
     return fmt::format("killed by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
@@ -64,7 +64,7 @@ std::string last_error(const fs::path& log, int status) {
   return found.empty() ? "it left no message in " + log.string() : found;
 }
 
-/// How much of a run its log tells to be done, 0…1: by the last line of progress near its end.
+/// Share of a run that is done by its log, 0…1: that of the last line of progress near its end.
 double share_in_log(const fs::path& log) {
   std::ifstream in(log, std::ios::binary | std::ios::ate);
   const std::streamoff size = in ? static_cast<std::streamoff>(in.tellg()) : 0;

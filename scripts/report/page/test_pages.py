@@ -14,7 +14,7 @@ SOIL = (("k_c", "k_c", "kN/mⁿ⁺¹", 1e-3), ("k_phi", "k_φ", "kN/mⁿ⁺²", 
         ("final_cohesion_Pa", "cohesion at the end", "kPa", 1e-3), ("final_friction_angle_deg", "friction angle at the end", "°", 1.0),
         ("cone_index_Pa", "cone index", "kPa", 1e-3), ("repose_angle_deg", "angle of repose", "°", 1.0),
         ("repose_angle_without_cohesion_deg", "angle of repose without cohesion", "°", 1.0))
-# Tables of soil tests: file, title, keys that tell its runs apart, x, y.
+# Tables of soil tests: file, title, keys that distinguish its runs, x, y.
 TESTS = (("plate.csv", "Plate sinkage", ("width_m", "seed"), "sinkage_m", "pressure_Pa"),
          ("shear.csv", "Direct shear", ("nominal_normal_stress_Pa", "seed"), "travel_m", "shear_stress_Pa"),
          ("cone.csv", "Cone penetration", ("seed",), "depth_m", "pressure_Pa"),

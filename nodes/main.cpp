@@ -23,7 +23,7 @@ int fail(const furrow::Error& error, bool as_rank) {
 
 int main(int argc, char** argv) {
   const bool as_rank = furrow::commands::runs_as_rank(argc, argv);
-  // A file that outgrows the limit of file sizes is told; a rank is lost of it, and its supervisor tells that.
+  // Reports a file that exceeds the limit of file sizes. A rank is killed by it, and its supervisor reports that.
   if (!as_rank) std::signal(SIGXFSZ, SIG_IGN);
   try {
     furrow::launch::end_where_memory_runs_out(furrow::launch::kOutOfMemory);

@@ -62,7 +62,7 @@ std::vector<NodeCard> handshake(Transport& transport, const NodeCard& own) {
   try {
     check(cards, nodes, transport.tire_count());
   } catch (const Error& error) {
-    // All nodes find the same; it is the rig's to tell.
+    // All nodes find the same; the rig reports it.
     if (transport.self() == nodes.front()) throw;
     throw PeerFailure(error.code(), nodes.front(), error.what());
   }

@@ -15,7 +15,7 @@ struct MemoryLimit {
 /// Of the address space of one process (ulimit -v).
 MemoryLimit address_space_limit();
 
-/// Of all processes together, whoever uses how much of it now: memory and swap of this machine, or of the control
+/// Of all processes together, however much of it is in use: memory and swap of this machine, or of the control
 /// group (version 2 or 1) that this process belongs to, whichever is less.
 /// @param root  where /proc and /sys are
 MemoryLimit memory_limit(const std::filesystem::path& root = "/");

@@ -7,7 +7,7 @@
 //   terrain → tire k  TerrainForces   nodal forces over the last interval
 //   terrain → rig     TerrainReport   sums of the same forces, and the terrain's own measurements
 //
-// The ranks of a terrain tell each other what they need by messages of the kind `group` (protocol/transport_group.hpp).
+// The ranks of a terrain exchange what they need by messages of the kind `group` (protocol/transport_group.hpp).
 // What a message holds is said once, in the list of fields beside each struct: it is packed and saved by that list.
 #pragma once
 
@@ -221,7 +221,7 @@ struct SurfaceMotion {
   static constexpr MessageKind kKind = MessageKind::surface_motion;
   StepHeader header;
   SurfaceState surface;
-  Order order = Order::go_on;      // due now: terrain hears of it through the tires
+  Order order = Order::go_on;      // due now: the terrain gets it through the tires
   std::int64_t ends_at = kNotYet;  // as the rig said, at least n + 1
 };
 template <class Visit>

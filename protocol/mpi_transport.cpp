@@ -76,7 +76,7 @@ Error wrong_count(int needed, int tires, int terrain_ranks, const std::string& f
 
 std::unique_ptr<Transport> make_mpi_transport(int* argc, char*** argv, int tire_count, int terrain_ranks) {
   // MPI ends with the process, not with the transport: a launcher ends all ranks as soon as one has ended with an
-  // error, so none may end before the one that tells the user has done so.
+  // error, so none may end before the one that informs the user has done so.
   const std::string found = launcher_text(launcher_variables());  // MPI sets them too once it has begun
   static MpiSession session(argc, argv);
   if (const int needed = 1 + tire_count + terrain_ranks; world_size() != needed)

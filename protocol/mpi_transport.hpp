@@ -8,7 +8,7 @@
 
 namespace furrow {
 
-/// The variables of the environment by which mpirun, srun and the like tell a process its rank: of
+/// The variables of the environment by which mpirun, srun and the like give a process its rank: of
 /// OMPI_COMM_WORLD_RANK, PMIX_RANK and PMI_RANK those that are set and not empty. They may be left over from a shell that
 /// a launcher started.
 std::vector<std::string> launcher_variables();

@@ -103,7 +103,7 @@ void MpiWire::complete(std::deque<PendingSend>& sends) {
 void MpiWire::progress() {
   rung_ = doorbells_.own_count();
   // Open MPI's probe first looks at what it has taken in, and only then takes in what has come: a message is found by
-  // the second look. Without that, whoever was rung would sleep on beside a message that is there.
+  // the second look. Without it the receiver would continue to sleep although a message is there.
   for (int look = 0; look < kLooks; ++look) {
     int from = 0, tag = 0;
     Bytes payload;

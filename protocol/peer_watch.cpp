@@ -81,7 +81,7 @@ void PeerWatch::heartbeat() {
 
 void PeerWatch::announce_failure(ExitCode code, const std::string& text) {
   FURROW_ASSERT(code != ExitCode::done, static_cast<int>(code), text);
-  if (failed()) return;  // one failure is told once, by the node that had it
+  if (failed()) return;  // a failure is reported once, by the node that had it
   announced_ = true;
   ByteWriter writer;
   writer(Control::failure);

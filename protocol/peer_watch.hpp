@@ -2,7 +2,7 @@
 //
 // Heartbeats pass along chains of waiting. While the terrain settles its bed, the rig waits for the terrain and the
 // tire for the rig; the rig is alive, but blocked. So a node that hears a heartbeat from the peer it waits for passes
-// it on, each heartbeat of each origin once; a node that waits for itself in the end is told nothing, so a circle of
+// it on, each heartbeat of each origin once; a node that waits for itself in the end gets none, so a circle of
 // waiting nodes does time out.
 #pragma once
 
@@ -34,13 +34,13 @@ class PeerWatch {
     return peers_[node].heard;
   }
 
-  /// This node's own waiting; the others are told only of a wait that lasts.
+  /// This node's own waiting; the others are informed only of a wait that lasts.
   void begin_wait(int node);
   void tell_wait();
-  void end_wait();  // tells nobody once a node has failed
+  void end_wait();  // informs nobody after a node has failed
 
   /// "rig waited 60 s for terrain (terrain report), which waits for tire 0: tire 0 does not answer; …"
-  /// After this the node is about to fail: it tells nobody that its wait has ended.
+  /// After this the node is about to fail: it does not report that its wait has ended.
   Error lost(int from, const std::string& what, double timeout);
 
   Address address(int node) const;

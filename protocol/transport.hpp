@@ -15,8 +15,8 @@
 
 namespace furrow {
 
-/// Thrown out of any transport call when another node failed or was lost. The failing node has already told the
-/// user, so whoever catches this ends quietly with `code`.
+/// Thrown out of any transport call when another node failed or was lost. The failing node has already informed the
+/// user, so the code that catches this ends quietly with `code`.
 class PeerFailure : public Error {
  public:
   PeerFailure(ExitCode code, Address who, const std::string& text) : Error(code, text), who_(who) {}

@@ -1,9 +1,10 @@
-// What a vehicle's run tells besides its tables: wheels that lose the ground, how near it keeps to its path, changes of
-// gear. Nothing that moves depends on it.
+// What a vehicle's run reports besides its tables: wheels that lose the ground, how near it keeps to its path, changes
+// of gear. Nothing that moves depends on it.
 //
-// A wheel is lifted while it carries less than 1 % of its load at rest, until it carries 5 % again, for at least 10 ms, and
-// after it has once carried half of it. Path errors are those of the axle that the law looks at. The margin in the lanes of
-// a lane change is what is left between their limits and the rectangle of the vehicle's width from axle to axle.
+// A wheel is lifted while it carries less than 1 % of its load at rest, until it carries 5 % again, for at least 10 ms,
+// and after it has once carried half of it. Path errors are those of the axle that the law looks at. The margin in the
+// lanes of a lane change is what is left between their limits and the rectangle of the vehicle's width from axle to
+// axle.
 #pragma once
 
 #include <optional>

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks that sources include what they use of the precompiled headers, without which a build would fail.
 
-A source that uses a name of such a header (scripts/cmake/FurrowCompiler.cmake lists them) must include the header: by itself,
+A source that uses a name of such a header (scripts/cmake/FurrowCompiler.cmake lists them) must include the header itself,
 through headers of this project, or through one that is documented to bring it (BRINGS).
 
 usage: scripts/check_headers.py [--root FOLDER]

@@ -3,7 +3,7 @@
 
 A unit is a header together with its source. Rooms are the folders of FLOORS, lowest first; a file belongs to the longest entry
 that begins its path. A room may include itself, rooms of lower floors, and nothing else; of tests nothing. MPI is the
-business of protocol/ alone. The dummies of tests/dummies/ follow the rules of the room that they would stand in.
+business of protocol/ alone. The dummies of tests/dummies/ follow the rules of the room that they would belong to.
 
 usage: scripts/check_includes.py [--summary] [--root FOLDER]
 Prints every offending include as FILE:LINE and exits with 1 if there is one.

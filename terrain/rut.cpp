@@ -112,7 +112,8 @@ Rut measure_rut(const HeightField& before, const HeightField& after, const RutOp
     ++count;
   }
   if (count == 0) {
-    rut.missing = "there are no grains where the tread went";
+    const bool unchanged = before.height == after.height;  // hard ground with a profile
+    rut.missing = unchanged ? "the ground keeps no rut" : "there are no grains where the tread went";
     return rut;
   }
   rut.measured = true;

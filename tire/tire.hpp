@@ -27,7 +27,7 @@ class Tire {
   virtual Vec3 gravity() const = 0;        // that it was made for, W, m/s²
   virtual int coordinates() const = 0;     // unknowns
 
-  /// Gauge pressure from now on, Pa. A rigid tire does not mind.
+  /// Gauge pressure from now on, Pa. Ignored by rigid tires.
   virtual void set_pressure(double pressure) = 0;
 
   /// Puts the tire on the rim, inflated, with the velocity field of a rigid body moving with the rim.

@@ -1,4 +1,4 @@
-// Which steps get a frame, and its number. Numbers go on where a run that is continued left off, also when the interval
+// Which steps get a frame, and its number. Numbers of a continued run follow those before it, also when the interval
 // is another one from there on.
 #pragma once
 

@@ -1,4 +1,4 @@
-// When checkpoints fall due by wall time: soon after a run begins, so that one of minutes has one to go on from, then
+// When checkpoints are due by wall time: soon after a run begins, so that a run of minutes can be continued, then
 // after twice the time each, until their interval is reached. No result depends on it.
 #pragma once
 

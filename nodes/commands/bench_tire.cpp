@@ -24,7 +24,7 @@ namespace {
 constexpr double kTouchdown = 20e3;      // N s/m, vertical damper of the carriage during the touch-down
 constexpr double kTouchdownShare = 0.8;  // of the time before the timed steps
 
-/// Processor time of this thread: what a step costs whoever else uses the machine.
+/// Processor time of this thread: the cost of a step, whatever else runs on the machine.
 double processor_time() {
   timespec t;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);

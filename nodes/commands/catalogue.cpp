@@ -36,13 +36,22 @@ constexpr Kind kKinds[] = {
     {"vehicles", "vehicle/data", "rig.vehicle of a scenario", [](const Json&) { return true; }},
 };
 
-/// The first sentence of what a file says of itself.
+/// The first sentence of a text, without its full stop. An initial, as in "J. Y. Wong", ends none.
+std::string first_sentence(const std::string& text) {
+  const auto is_initial = [&text](std::size_t letter) {
+    return text[letter] >= 'A' && text[letter] <= 'Z' && (letter == 0 || text[letter - 1] == ' ');
+  };
+  std::size_t end = text.find(". ");
+  while (end != std::string::npos && end > 0 && is_initial(end - 1)) end = text.find(". ", end + 1);
+  const std::string first = text.substr(0, end);
+  return first.ends_with('.') ? first.substr(0, first.size() - 1) : first;
+}
+
+/// What a file says of itself in one sentence.
 std::string line_of(const Json& file) {
   for (const char* key : {"description", "name"}) {
     if (!file.contains(key) || !file[key].is_string()) continue;
-    const std::string text = file[key];
-    const std::string first = text.substr(0, text.find(". "));
-    return first.ends_with('.') ? first.substr(0, first.size() - 1) : first;
+    return first_sentence(file[key]);
   }
   return {};
 }

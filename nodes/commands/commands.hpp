@@ -42,7 +42,7 @@ ExitCode resume_supervised(const RunArguments& arguments);
 ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv);
 
 /// Whether this command line runs as a rank of MPI: run and resume do where a launcher's variables are set. All other
-/// commands pay no regard to them.
+/// commands ignore them.
 bool runs_as_rank(int argc, char** argv);
 
 /// mpirun ends all ranks as soon as one has failed, even the one that is about to say why: the others wait here.
@@ -121,7 +121,7 @@ ExitCode new_command(const NewArguments& arguments);
 /// `furrow bed` (commands_bed.cpp). @throws Error
 ExitCode bed_command(const scenario::Scenario& scenario);
 
-/// What the end of a run tells people, from summary.json (commands_result.cpp).
+/// The text that ends a run, from summary.json (commands_result.cpp).
 std::string result_text(const std::filesystem::path& run, const scenario::Scenario& scenario);
 
 /// Whether a result is what the scenario is known to give; empty where it says nothing. Means over `beds` are expected

@@ -1,4 +1,4 @@
-// `furrow events`: what happened in a vehicle's run, told by scripts/events.py.
+// `furrow events`: the events of a vehicle's run, listed by scripts/events.py.
 #include <sys/wait.h>
 
 #include <iostream>

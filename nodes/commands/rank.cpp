@@ -94,14 +94,14 @@ class RankReporter {
   launch::ProgressDisplay display_;
 };
 
-/// A mistake in the scenario is found by every rank; the first on each machine tells it.
+/// Every rank finds a mistake in the scenario; the first on each machine reports it.
 bool first_on_machine() {
   for (const char* variable : {"OMPI_COMM_WORLD_LOCAL_RANK", "MPI_LOCALRANKID", "SLURM_LOCALID"})
     if (const char* value = std::getenv(variable)) return std::atoi(value) == 0;
   return launched_rank() == 0;
 }
 
-/// True when a node before this one failed of the very same, and tells it. A supervisor hears all and tells one.
+/// True when a node before this one has the same failure and reports it. A supervisor gets all and reports one.
 bool told_by_another(Transport& transport, const Error& error, bool supervised) {
   const Address self = transport.self();
   if (supervised || self == Address{Role::rig, 0}) return false;
@@ -123,7 +123,7 @@ void require_same_start(const std::filesystem::path& run, const checkpoint::Resu
                       "was continued by another run until now, expected furrow resume once more");
 }
 
-/// The rig's rank makes the folder, unless a supervisor has, and tells the others.
+/// The rig's rank creates the folder, unless a supervisor has, and sends its name to the others.
 std::filesystem::path agree_on_directory(Transport& transport, const scenario::Scenario& scenario,
                                          const checkpoint::ResumePoint* resume, const RunArguments& arguments,
                                          const RankReporter& reporter,
@@ -178,7 +178,7 @@ ExitCode run_this_node(Transport& transport, const scenario::Scenario& scenario,
     return code;
   } catch (const PeerFailure& failure) {
     if (made && failure.code() == ExitCode::bad_input) made->discard();
-    return failure.code();  // whoever failed has told the user
+    return failure.code();  // the rank that failed has informed the user
   } catch (const Error& error) {
     if (made && error.code() == ExitCode::bad_input) made->discard();
     if (!told_by_another(transport, error, reporter.supervised())) reporter.error(error);
@@ -213,7 +213,7 @@ void read_task(const RunArguments& arguments, Task& task) try {
   throw scenario::out_of_memory();
 }
 
-/// A run that is over leaves nothing to do: told as `furrow resume` tells it without a launcher.
+/// A finished run leaves nothing to do: the message is that of `furrow resume` without a launcher.
 void tell_finished(const checkpoint::ResumePlan& plan, const RunArguments& arguments) {
   launch::say(fmt::format("furrow: {} is finished: it ended at {:g} s; there is nothing to do\n",
                           arguments.out.string(), plan.ended));

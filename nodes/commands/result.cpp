@@ -108,7 +108,7 @@ std::string accounts_line(const json& summary) {
   return text;
 }
 
-/// What is told of tables that are not a wheel's: of a vehicle how far it went and what that took.
+/// Lines on tables that are not a wheel's: of a vehicle its distance and its power.
 std::string subject_lines(const json& summary, double average_from) {
   std::string text;
   const json subjects = summary.value("subjects", json::object());

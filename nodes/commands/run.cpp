@@ -1,4 +1,4 @@
-// `furrow run` and `furrow resume` outside MPI: check first, then have the ranks started and watched, then tell the
+// `furrow run` and `furrow resume` outside MPI: check first, then have the ranks started and watched, then show the
 // result.
 #include <algorithm>
 #include <cstdio>
@@ -95,7 +95,7 @@ void write_failure(const std::filesystem::path& file, const scenario::Scenario& 
   try {
     write_whole_file(file, json.dump(2) + "\n");
   } catch (const Error&) {
-    // The failure itself is told; that the disk is full as well is in its text, or comes with the next command.
+    // The failure itself is reported. A full disk is named in its text or by the next command.
   }
 }
 

@@ -16,7 +16,7 @@ namespace furrow::commands {
 namespace {
 
 constexpr int kWarning =
-    360;  // s before its end that Slurm tells the job: a checkpoint and Slurm's own delays
+    360;  // s before its end that Slurm signals the job: a checkpoint and Slurm's own delays
 constexpr int kMostRestarts = 3;         // of a job that never came to its first checkpoint
 constexpr double kMemoryMargin = 1.3;    // of the estimate
 constexpr double kMemoryOfRank = 256e6;  // bytes beside it, of libraries and files
@@ -147,7 +147,7 @@ if [[ ${{SLURM_RESTART_COUNT:-0}} -gt 0 ]]; then
   fi
 fi
 
-# Signalled, furrow saves its state and ends with 75. Either Slurm then queues the job again by itself …
+# On the signal furrow saves its state and ends with 75. Either Slurm then queues the job again …
 if scontrol show config 2>/dev/null | grep -Eq '^RequeueExit *= *([0-9]+,)*75(,|$)'; then
   exec "${{start[@]}}"
 fi

@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kCannotRun = 127;
 
-/// Whether mpirun, srun and the like set this to tell a rank what it is; not what users choose for all their runs.
+/// Whether mpirun, srun and the like set this for a rank; not what users choose for all their runs.
 bool is_of_launcher(std::string_view variable) {
   constexpr std::array kBeginnings{"OMPI_COMM_WORLD_",
                                    "OMPI_UNIVERSE_",
@@ -99,7 +99,7 @@ pid_t start_child(Child child) {
     throw limit_error(child.command.front() + ": cannot be started: " + std::strerror(errno) +
                       " (ulimit -u, ulimit -v, or no memory)");
   if (process == 0) become(child, arguments, parent);
-  if (child.own_group) setpgid(process, process);  // whoever of the two comes first
+  if (child.own_group) setpgid(process, process);  // the first of the two processes does it
   return process;
 }
 

@@ -34,7 +34,7 @@ struct Child {
   std::function<void()> prepare = {};  // called in the child before the program begins
 };
 
-/// Takes out of the environment what mpirun, srun and the like tell the processes that they start: a program that is
+/// Takes out of the environment what mpirun, srun and the like set for the processes that they start: a program that is
 /// started with a launcher of its own, or that is no rank, must not find it.
 void forget_launcher();
 

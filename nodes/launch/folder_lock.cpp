@@ -93,7 +93,7 @@ FolderLock::FolderLock(const fs::path& folder, const std::string& key, Mode mode
     struct stat list {};
     fstat(handle_, &list);
     const bool own = try_to_take(mode == Mode::alone ? LOCK_EX : LOCK_SH);
-    const bool replaced = own && !stands();  // whoever had it took it away when it ended
+    const bool replaced = own && !stands();  // the process that had it removed it when it ended
     if (own && !replaced) return;
     close(std::exchange(handle_, -1));
     if (replaced && !fs::exists(folder))

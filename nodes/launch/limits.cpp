@@ -22,7 +22,7 @@ namespace {
 
 constexpr long kFilesPerRank = 4;  // of mpirun
 
-// Of a limit of processor time. Against it the kernel counts whole ticks, more than the time that it tells afterwards
+// Of a limit of processor time. Against it the kernel counts whole ticks, more than the time that it reports afterwards
 // where many want a core.
 constexpr double kSurely = 0.5;
 

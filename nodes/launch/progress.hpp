@@ -24,7 +24,7 @@ using ProgressSink = std::function<void(const Progress&)>;
 /// "t 0.512 of 1.5 s   pull 1432 N   sinkage 31 mm   1.40 m/s   1:23 left".
 std::string progress_text(const Progress& progress);
 
-/// Share of the run that a line of progress_text() tells; NaN: it is no such line, or not of the phase "running".
+/// Share of the run in a line of progress_text(); NaN: it is no such line, or not of the phase "running".
 double share_in(std::string_view line);
 
 /// Estimates how long a phase still takes that states its share alone: what was done since it began, scaled.

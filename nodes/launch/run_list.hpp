@@ -7,7 +7,7 @@
 //   frames/tire0_%06d.h5      all files of these names, printed as printf does: a hundred thousand frames are one line
 //
 // Files in the making (new_file.hpp) belong to the name that they are to get. One process writes the list at a time:
-// whoever makes or takes the folder, then the rig's rank before any rank writes, then whoever makes plots.
+// the process that makes or takes the folder, then the rig's rank before any rank writes, then the one that plots.
 #pragma once
 
 #include <cstdint>

@@ -29,7 +29,7 @@ namespace furrow::launch {
 namespace {
 
 constexpr double kStopPatience =
-    300.0;  // s from the wish to stop until mpirun is told to end: time for a checkpoint
+    300.0;  // s from the request to stop until mpirun is terminated: time for a checkpoint
 constexpr double kStartPatience = 20.0;  // s that a wish to stop waits for ranks that are still starting
 constexpr double kKillPatience = 5.0;    // s from that until it is killed
 constexpr double kDrainPatience = 1.0;   // s to read what is left once mpirun has ended
@@ -159,7 +159,7 @@ class Supervisor {
   Lines out_lines_, err_lines_;
   LauncherText launcher_, other_;  // standard error, and what is no rank's line of standard output
   StartWatch start_;
-  std::optional<RankLine> error_;  // the first; one that tells a cause replaces one that tells of a loss
+  std::optional<RankLine> error_;  // the first; one with a cause replaces one that reports a loss
   pid_t child_ = -1;
   bool reaped_ = false, late_ = false;
   int status_ = 0;

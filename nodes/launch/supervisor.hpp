@@ -1,5 +1,5 @@
 // `furrow run` outside MPI: starts mpirun, watches it, shows what the ranks say, passes on a wish to stop,
-// and tells in one message what went wrong. Nothing that it started survives it.
+// and reports in one message what went wrong. No process that it started survives it.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// What ranks tell their supervisor: one line of JSON each on standard output, which mpirun carries, behind a
+// What ranks report to their supervisor: one line of JSON each on standard output, which mpirun carries, behind a
 // mark that nothing else prints.
 #pragma once
 
@@ -25,12 +25,12 @@ std::string encode(const RankLine& line);
 /// Nothing for a line that is not ours.
 std::optional<RankLine> decode(std::string_view line);
 
-/// The environment variable that tells a rank that a supervisor listens, and which process that is.
+/// The environment variable by which a rank knows that a supervisor listens, and which process that is.
 inline constexpr const char* kSupervisedVariable = "FURROW_SUPERVISED";
 
 /// This process as supervisor: "host:4711".
 std::string supervisor_name();
-/// False when the variable names a process of this machine that is gone: it was killed before it could be heard.
+/// False when the variable names a process of this machine that is gone: it was killed before it could report.
 bool supervisor_lives();
 
 }  // namespace furrow::launch

@@ -1,6 +1,6 @@
-// Momentum and energy of a whole run: what every part of it holds, what it was given and what it lost, each from its own
-// state, impulses and mechanisms. No entry is the difference of others, so that what they leave over can tell that one of
-// them is wrong. Signs, mechanisms and bounds: nodes/output/README.md, Accounts.
+// Momentum and energy of a whole run: what every part of it holds, what it was given and what it lost, each from its
+// own state, impulses and mechanisms. No entry is the difference of others, so that what they leave over can show that
+// one of them is wrong. Signs, mechanisms and bounds: nodes/output/README.md, Accounts.
 #pragma once
 
 #include <span>

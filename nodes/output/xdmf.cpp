@@ -45,7 +45,7 @@ std::optional<Frame> read_frame(const std::filesystem::path& run, const FrameNam
   }
 }
 
-/// {kind: numbers of its frames that the names of files tell, rising}; kinds of which none can be read are left out.
+/// {kind: numbers of its frames, from the names of files, rising}; kinds of which none can be read are left out.
 std::map<std::string, std::vector<std::int64_t>> kinds_in(const std::filesystem::path& run) {
   std::map<std::string, std::vector<std::int64_t>> kinds;
   std::error_code error;

@@ -46,7 +46,7 @@ CheckpointPart CheckpointWriter::write_part(std::int64_t step) const {
     node_.save_setup(archive);
     save_cost(archive, cost_());
     const std::filesystem::path folder = checkpoint::unfinished_checkpoint(context_.directory, step);
-    // The run's own folder is never made: it was moved or removed. What cannot be made is told by the file in it.
+    // The run's own folder is never created here: it was moved or removed. The error then names the file in it.
     std::error_code ignored;
     std::filesystem::create_directory(folder.parent_path(), ignored);
     std::filesystem::create_directory(folder, ignored);

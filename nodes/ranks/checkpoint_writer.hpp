@@ -19,12 +19,12 @@ void visit_fields(Visit&& visit, FieldsOf<NodeCost> auto& s) {
 
 class CheckpointWriter {
  public:
-  /// @param cost tells what this node used until now
+  /// @param cost returns what this node has used until now
   CheckpointWriter(const scenario::Scenario& scenario, Node& node, Transport& transport,
                    const RunContext& context, std::span<const NodeCard> cards,
                    std::function<NodeCost()> cost);
 
-  /// All ranks call it at the same step. One that cannot be written leaves those before it in place: the user is told
+  /// All ranks call it at the same step. One that cannot be written leaves those before it in place: the user is warned
   /// and the run continues.
   /// @param needed the run ends with it: Error(io) instead
   void write(std::int64_t step, bool needed);

@@ -3,9 +3,9 @@
 //   set_up;  for n = 0 … N:  synchronize(n);  if n < N: advance
 //
 // synchronize sends everything before it receives anything, so that no order of ranks can deadlock. The rig orders
-// checkpoints and stops: at t_n it tells the tires, at t_{n+1} they tell the terrain, and all save at t_{n+2}, before
-// they synchronize there. Between the steps nothing is in flight, so that the nodes' states are all there is. In the
-// same way it tells the step at which a run is complete before its planned end; who knows it keeps it in checkpoints.
+// checkpoints and stops: at t_n it informs the tires, at t_{n+1} they inform the terrain, and all save at t_{n+2},
+// before they synchronize there. Between the steps nothing is in flight, so that the nodes' states are all there is. In
+// the same way it announces the step at which a run is complete before its planned end; nodes that know it save it.
 #pragma once
 
 #include <memory>

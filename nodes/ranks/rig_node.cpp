@@ -147,7 +147,7 @@ class RigNode : public Node {
                       rig_->findings()},
                      {code, text});
     } catch (...) {
-      // The failure itself is told; what else went wrong with the disk is not worth hiding it.
+      // The failure itself is reported. A further error of the disk must not hide it.
     }
   }
 
@@ -188,7 +188,7 @@ class RigNode : public Node {
     return places;
   }
 
-  /// @param step at which all can end when they hear of it now
+  /// @param step at which all nodes can end if they are informed now
   void watch_walls(std::int64_t step) {
     if (!walls_ || ends_at_ != kNotYet) return;
     const std::optional<output::EndReason> reason = walls_->near(wheel_places());

@@ -18,7 +18,7 @@ struct RunContext {
   bool profile = false;                             // record the time of steps
   std::function<bool()> stop_requested;             // a signal asked for a stop
   launch::ProgressSink progress;                    // called by the rig's node
-  std::function<void(const std::string&)> note;     // tells the user something
+  std::function<void(const std::string&)> note;     // shows the user a note
   const checkpoint::ResumePoint* resume = nullptr;  // where the run continues; null: it begins
   const Archive* saved = nullptr;                   // this node's part of that checkpoint; run_node reads it
 };

@@ -1,6 +1,6 @@
-// What the leader of a terrain of several ranks tells those that follow it, so that all of them call the same verbs of the
-// terrain in the same order: prepare, measure, attach, advance, frame. Saving and ending follow the run loop, which is
-// every rank's own.
+// The orders that the leader of a terrain of several ranks sends to the others, so that all of them call the same verbs
+// of the terrain in the same order: prepare, measure, attach, advance, frame. Saving and ending follow the run loop,
+// which is every rank's own.
 #pragma once
 
 #include <span>
@@ -59,7 +59,7 @@ void visit_fields(Visit&& visit, FieldsOf<AdvanceOrder> auto& s) {
   visit(Field{"targets", ""}, s.targets);
 }
 
-/// The leader gives an order, the others receive it. A terrain of one rank (no group) has nobody to tell.
+/// The leader gives an order, the others receive it. A terrain of one rank (no group) sends none.
 template <class M>
 void share(RankGroup* group, M& order);
 

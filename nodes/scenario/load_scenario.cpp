@@ -44,7 +44,7 @@ std::vector<std::string> split(const std::string& key) {
   return parts;
 }
 
-/// Results tell names, in JSON. `what`: "has a name"
+/// Results hold names, in JSON. `what`: "has a name"
 void require_utf8(const std::string& name, const std::string& file, const std::string& key, const char* what) {
   if (find_invalid_utf8(name) != std::string::npos)
     throw input_error(file, key, std::string(what) + " that is not UTF-8, expected one that is: results keep it");

@@ -6,7 +6,7 @@
 
 namespace furrow::scenario {
 
-/// @throws Error(limit) when the terrain's rank surely does not fit into what this machine gives one process, however
+/// @throws Error(limit) when the terrain's rank cannot fit into what this machine gives one process, however
 /// little else is running. Where it is not sure there is at most a warning (scenario_checks.cpp).
 void require_memory(const Scenario& scenario);
 

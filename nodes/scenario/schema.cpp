@@ -24,7 +24,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double kMaxWhole = 9007199254740992.0;  // 2^53
-constexpr std::size_t kMaxProblems = 20;          // that are told at once
+constexpr std::size_t kMaxProblems = 20;          // that are reported at once
 
 std::string joined(const std::string& path, const std::string& name) {
   return path.empty() ? name : path + "." + name;

@@ -282,7 +282,7 @@ void write(const std::filesystem::path& file, const StarterOptions& o) {
                             ? (1.0 - kSlip) * tread_speed(scales) * (kEnd - kMoveFrom) * time_scale(scales)
                             : 8.0 * scales.radius;
   for (int pass = 0; pass < 2;
-       ++pass) {  // what the soil makes of the first bed tells how deep the second must be
+       ++pass) {  // the sinkage on the first bed decides the depth of the second
     document["rig"] = rig_section(o, scales);
     document["terrain"] = terrain_section(o, scales, travel);
     document["run"] = run_section(o, scales);

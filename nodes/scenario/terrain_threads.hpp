@@ -8,7 +8,7 @@
 
 namespace furrow::scenario {
 
-/// Most threads that the terrain takes by itself: a barrier over more costs more than it brings.
+/// Most threads that the terrain takes by default: a barrier over more costs more than they save.
 inline constexpr int kMaxAutoThreads = 32;
 
 /// From so many grains on the terrain takes the cores of the other ranks too: its steps are long then against the time

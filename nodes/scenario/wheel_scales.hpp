@@ -1,5 +1,5 @@
 // How large a wheel is beside its grains, its bed and its walls, and how fast beside gravity and pressure, before any
-// model is made: what tells a result from an artefact of the bin. Estimates, for `furrow validate` alone.
+// model is made: figures that separate a result from an artefact of the bin. Estimates, for `furrow validate` alone.
 //
 // Sinkage z of a rigid wheel (R, b, W) on a strip footing's bearing capacity [Terzaghi 1943; N_γ of Vesić 1973]:
 //   W = b ℓ (c N_c + γ z N_q + ½ γ min(b, ℓ) N_γ),   ℓ = √(2 R z), the contact in front of the axle

@@ -30,6 +30,10 @@ Json load_document(const std::filesystem::path& file) {
   return document;
 }
 
+bool given_text(const Json& document, const char* key) {
+  return document.contains(key) && document[key].is_string();
+}
+
 /// All combinations of the values in `grid`, none of whose keys is in `common`.
 std::vector<Json> grid(Reader& reader, const Json& common) {
   std::vector<Json> runs{Json::object()};
@@ -133,6 +137,7 @@ Study load_study(const std::filesystem::path& file) {
   Study study;
   study.file = file;
   study.name = file.stem().string();
+  if (given_text(document, "description")) study.description = document["description"];
   study.scenario = find_file(reader.text("scenario"), "scenario", file);
   study.common = reader.object_or_empty("set");
   const auto given = [&](const char* key) { return reader.given(key); };

@@ -23,6 +23,7 @@ namespace furrow::study {
 struct Study {
   std::filesystem::path file;
   std::string name;                          // file name without extension
+  std::string description;                   // empty: none
   std::filesystem::path scenario;            // resolved
   nlohmann::ordered_json common;             // keys and values for all runs
   std::vector<nlohmann::ordered_json> runs;  // keys and values of each

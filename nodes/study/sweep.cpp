@@ -52,7 +52,7 @@ std::string cell(const Json& value) {
   return quoted + "\"";
 }
 
-/// Why a run ended: what its user was told, the last error in the log.
+/// Why a run ended: the last error in its log.
 std::string last_error(const fs::path& log, int status) {
   if (WIFSIGNALED(status))
     return fmt::format("killed by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
@@ -64,7 +64,7 @@ std::string last_error(const fs::path& log, int status) {
   return found.empty() ? "it left no message in " + log.string() : found;
 }
 
-/// How much of a run its log tells to be done, 0…1: by the last line of progress near its end.
+/// Share of a run that is done by its log, 0…1: that of the last line of progress near its end.
 double share_in_log(const fs::path& log) {
   std::ifstream in(log, std::ios::binary | std::ios::ate);
   const std::streamoff size = in ? static_cast<std::streamoff>(in.tellg()) : 0;
@@ -363,6 +363,7 @@ ExitCode Sweep::run(const launch::FolderLock& lock) {
   launch::catch_pause();
   Json told{{"format_version", 1},   {"study", study_.name},      {"passes", study_.passes},
             {"rest_s", study_.rest}, {"results", study_.results}, {"plot", study_.plot}};
+  if (!study_.description.empty()) told["description"] = study_.description;
   if (!study_.names.empty()) told["beds"] = {{"scenario_digest", runs_.front().digest}};
   write_whole_file(options_.folder / "sweep.json", told.dump(2) + "\n");
   write_table();

@@ -61,7 +61,7 @@ class Sweep {
     int exit_code = 0;
     pid_t process = -1;
     std::size_t share = 0;  // of the cores
-    double done = 0.0;      // share of the run that is done, 0…1, as its log tells
+    double done = 0.0;      // share of the run that is done, 0…1, by its log
   };
 
   void load(Run& run);

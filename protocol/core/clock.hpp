@@ -1,4 +1,4 @@
-// The clock that tells how long things take.
+// The clock that measures durations.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// Progress of loops whose rounds may take nanoseconds or seconds: told, and stopped, within a tenth of a second.
+// Progress of loops whose rounds may take nanoseconds or seconds: reported, and stopped, within a tenth of a second.
 #pragma once
 
 #include "protocol/core/clock.hpp"

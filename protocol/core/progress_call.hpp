@@ -1,4 +1,4 @@
-// How long work tells where it stands, and may be stopped.
+// How long work reports its progress and may be stopped.
 #pragma once
 
 #include <functional>

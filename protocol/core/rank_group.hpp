@@ -1,4 +1,4 @@
-// The ranks that compute one model together, as that model sees them: which of them it is, and what they tell each
+// The ranks that compute one model together, as that model sees them: which of them it is, and what they send each
 // other. How they do it stands elsewhere (protocol/transport_group.hpp); a model that brings a parallel library of its
 // own hands it the communicator.
 //

@@ -11,7 +11,7 @@
 namespace furrow {
 namespace {
 
-// The datasets that told what the beds of earlier versions are.
+// The datasets that identify the beds of earlier versions.
 constexpr char kOldVersion[] = "format_version";
 constexpr char kOldChecksum[] = "checksum";
 constexpr char kOldKind[] = "bed";

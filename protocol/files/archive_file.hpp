@@ -36,7 +36,7 @@ void write_archive(const std::filesystem::path& file, const Archive& archive,
 Archive read_archive(const std::filesystem::path& file, const ArchiveKind& kind = kSavedState,
                      std::int64_t* version = nullptr, const std::function<void()>& each = {});
 
-/// Whether an HDF5 file is of this kind, or so damaged that it cannot be told.
+/// Whether an HDF5 file is of this kind, or too damaged to decide.
 bool may_be_archive(const std::filesystem::path& file, const ArchiveKind& kind);
 
 }  // namespace furrow

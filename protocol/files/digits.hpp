@@ -1,4 +1,4 @@
-// Numbers in sentences: as many digits as matter, whatever the scale of what is told.
+// Numbers in sentences: as many digits as matter, whatever their scale.
 #pragma once
 
 #include <string>

@@ -37,7 +37,7 @@ class Hdf5Writer {
   void attribute(const std::string& name, std::int64_t value);
   void attribute(const std::string& name, const std::string& text);
 
-  /// What other programs are told of a dataset or a group, for example its `units`. @pre it or a dataset in it was put
+  /// Describes a dataset or a group to other programs, for example its `units`. @pre it or a dataset in it was put
   void attribute_of(const std::string& object, const std::string& name, const std::string& text);
   /// An axis without numbers of its own: a dimension of netCDF, which other datasets may lie along.
   void put_axis(const std::string& name, hsize_t length);

@@ -136,7 +136,7 @@ class Hdf5Reader::Set {
  private:
   static constexpr hsize_t kSmallChunk = 1 << 20;
 
-  /// Its space, unless other files had to be opened to tell it.
+  /// Its space, unless other files had to be opened to know it.
   hid_t opened_space() const {
     file_.check(set_.ok(), "lacks the dataset " + quoted(name_));
     file_.check(made_.ok(), "the dataset " + quoted(name_) + " is damaged");

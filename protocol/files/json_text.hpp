@@ -1,5 +1,5 @@
 // Reads JSON that people wrote: takes comments (// and /* */), says where a mistake stands, and takes neither duplicate
-// keys, nor numbers that no double can hold, nor nesting that would exhaust the stack of whoever walks through it, nor
+// keys, nor numbers that no double can hold, nor nesting that would exhaust the stack of its readers, nor
 // objects of so many keys that nobody wrote them.
 #pragma once
 

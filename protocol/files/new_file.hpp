@@ -1,5 +1,5 @@
-// A file in the making. It is written under a name that nobody can guess, which is made anew and never followed when it
-// is a link, then flushed to the disk and renamed: it appears whole or not at all.
+// A file in the making. It is written under a name that nobody can guess, which is created again and never followed
+// when it is a link, then flushed to the disk and renamed: it appears whole or not at all.
 #pragma once
 
 #include <filesystem>

@@ -99,7 +99,7 @@ std::string read_text_file(const std::filesystem::path& file, const std::string&
   errno = 0;
   std::ifstream in(file, std::ios::binary);
   std::string text;
-  // What comes counts, not the size that the system tells: files grow, and those of the kernel have none.
+  // What is read counts, not the size that the system reports: files grow, and those of the kernel have none.
   const bool good = in && read_blocks(in, [&](const char* block, std::size_t count) {
                       text.append(block, count);
                       return text.size() <= kMaxText;

@@ -1,4 +1,4 @@
-# furrow_interface: what whoever includes the headers must be compiled with, also outside of this project.
+# furrow_interface: flags of every program that includes the headers, also outside of this project.
 # furrow_options: what every target of the project is compiled with beyond that.
 add_library(furrow_interface INTERFACE)
 add_library(furrow_options INTERFACE)
@@ -31,7 +31,7 @@ if(FURROW_SANITIZE)
   target_link_options(furrow_options INTERFACE -fsanitize=address,undefined)
 endif()
 
-# libFuzzer's targets need libraries that tell it where it has been, and coverage can be told afterwards (tests/fuzz).
+# libFuzzer's targets need instrumented libraries, and their coverage can be measured afterwards (tests/fuzz).
 if(FURROW_FUZZ)
   target_compile_options(furrow_options INTERFACE -gline-tables-only -O1 -fno-omit-frame-pointer -fsanitize=fuzzer-no-link,address,undefined
     -fno-sanitize-recover=undefined -fprofile-instr-generate -fcoverage-mapping)

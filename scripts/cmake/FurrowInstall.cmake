@@ -10,6 +10,14 @@ endif()
 install(TARGETS furrow RUNTIME DESTINATION libexec/furrow/${_level})
 install(PROGRAMS ${CMAKE_SOURCE_DIR}/scripts/cluster/furrow DESTINATION bin)
 install(FILES ${CMAKE_SOURCE_DIR}/LICENSE ${CMAKE_SOURCE_DIR}/README.md DESTINATION share/furrow)
+# The pages that messages and README.md name, under their paths in the checkout.
+file(GLOB_RECURSE _pages RELATIVE ${CMAKE_SOURCE_DIR} CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/nodes/*.md ${CMAKE_SOURCE_DIR}/rigs/*.md
+  ${CMAKE_SOURCE_DIR}/vehicle/*.md ${CMAKE_SOURCE_DIR}/tire/*.md ${CMAKE_SOURCE_DIR}/terrain/*.md ${CMAKE_SOURCE_DIR}/protocol/*.md
+  ${CMAKE_SOURCE_DIR}/tests/*.md ${CMAKE_SOURCE_DIR}/scripts/*.md)
+foreach(_page GLOSSARY.md CONTRIBUTING.md CHANGELOG.md ${_pages})
+  get_filename_component(_folder ${_page} DIRECTORY)
+  install(FILES ${CMAKE_SOURCE_DIR}/${_page} DESTINATION share/furrow/${_folder})
+endforeach()
 foreach(_folder rigs tire/data terrain/data vehicle/data)
   install(DIRECTORY ${CMAKE_SOURCE_DIR}/${_folder}/ DESTINATION share/furrow/${_folder} FILES_MATCHING PATTERN "*.json"
     PATTERN "*.csv")

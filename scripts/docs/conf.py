@@ -13,7 +13,7 @@ author = "The Furrow authors"
 copyright = author
 version = release = re.search(r"project\(furrow VERSION ([\d.]+)", (HERE.parents[1] / "CMakeLists.txt").read_text())[1]
 
-extensions = ["myst_parser", "breathe", "katex_math"]
+extensions = ["myst_parser", "breathe", "katex_math", "furo_whole"]
 source_suffix = {".md": "markdown"}
 root_doc = "index"
 nitpicky = False

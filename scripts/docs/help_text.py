@@ -105,7 +105,7 @@ def parse(name, text):
 
 
 def ask(program, name=""):
-    """The command with all below it, as the program tells them."""
+    """The command with all below it, from the help of the program."""
     done = subprocess.run([program, *name.split(), "--help"], capture_output=True, text=True, check=True, timeout=60)
     made = parse(name, done.stdout)
     made.groups = {heading: [ask(program, command.name) for command in group] for heading, group in made.groups.items()}

@@ -140,7 +140,7 @@ def forces(run):
 
 
 def unknowns(run, node):
-    """What a node computes, as far as the summary tells."""
+    """What a node computes, as far as the summary says."""
     grains = run.told.get("grains")
     if node == "terrain" and grains:
         return f", {grains:,.0f} grains"

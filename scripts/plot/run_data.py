@@ -235,7 +235,7 @@ class Run:
 
     @property
     def wheel_names(self):
-        """What a vehicle's file calls its wheels, "front_left"; empty where the summary does not tell."""
+        """What a vehicle's file calls its wheels, "front_left"; empty where the summary has none."""
         entries = self.told.get("wheels") or []
         names = [entry.get("name") for entry in entries if isinstance(entry, dict)]
         told = len(names) == len(entries) and all(isinstance(name, str) for name in names)

@@ -19,7 +19,7 @@ class Sweep:
     def __init__(self, directory):
         self.directory = directory
         self.values = read_object(directory / "sweep.json")
-        check_types(self.values, "sweep.json", texts=("study",), objects=("plot", "beds"), lists=("results",))
+        check_types(self.values, "sweep.json", texts=("study", "description"), objects=("plot", "beds"), lists=("results",))
         with open(directory / "sweep.csv", newline="", encoding="utf-8") as file:
             rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
         self.rows = [row for row in rows if row["state"] == "done"]
@@ -46,15 +46,19 @@ def mean_and_interval(values):
     return float(np.mean(values)), half_interval(values)
 
 
+def keys_of(sweep):
+    """The keys of the scenario that the runs differ in."""
+    names = [name for name in next(iter(sweep.rows + sweep.failed), {}) if name]
+    last = max((k for k, name in enumerate(names) if name in ("exit_code", "pass")), default=len(names))
+    results = set(sweep.values.get("results", []))
+    return [name for name in names[last + 1:] if name not in results and name != "problem"]
+
+
 def varied(sweep):
     """The keys that the runs differ in, without those that points are means over."""
     if not sweep.rows:
         raise Missing("no run is done")
-    names = list(sweep.rows[0])
-    first = names.index("pass") if "pass" in names else names.index("exit_code")
-    over = sweep.plot.get("mean_over")
-    results = set(sweep.values.get("results", []))
-    return [name for name in names[first + 1:] if name not in results and name not in ("problem", over)]
+    return [name for name in keys_of(sweep) if name != sweep.plot.get("mean_over")]
 
 
 def unsteady(row):

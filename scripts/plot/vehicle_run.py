@@ -92,7 +92,7 @@ class VehicleRun:
             raise Damaged("timeseries_vehicle.csv: column 'time_s' does not rise")
 
     def _name(self):
-        """Wheels after the vehicle's file, if the summary tells them; else after their axles' places along the vehicle."""
+        """Wheels after the vehicle's file, if the summary names them, else after the axles' places."""
         count = len(self.wheels) // 2
         order = sorted(range(count), key=lambda a: -self.wheels[2 * a]["position_m"][0])
         names = ROLES.get(count) or [f"axle {k + 1}" for k in range(count)]

@@ -56,7 +56,7 @@ def marks(v):
 
 
 def mark_events(axis, v, words=False):
-    together = []  # words of events that are too near each other to be told apart
+    together = []  # words of events that are too near each other to be distinguished
     for time, what in marks(v):
         axis.axvline(time, color=GREY, lw=0.8, ls=":")
         if together and time - together[-1][0] < NEAR * v.time[-1]:

@@ -178,7 +178,7 @@ json repose_json(const SoilRun& run) {
   return j;
 }
 
-/// The keys of engine scm that the plate and the shear tests tell; none of a test that was not made or says no soil.
+/// The keys of engine scm from the plate and the shear tests; none of a test that was not made or gives no soil.
 void add_empirical(const SoilParameters& p, json& terrain) {
   if (p.n.samples > 0 && p.k_phi.value > 0.0 && p.n.value > 0.0) {
     terrain["bekker_k_c"] = p.k_c.value;

@@ -20,7 +20,7 @@ constexpr double kFadeTo = 0.5;      // overlap from which the nearest point alo
 constexpr double kSamePoint = 1e-9;  // candidates nearer than this to each other are one
 constexpr double kSkinShare = 0.5;   // skin / reach
 
-/// Plane n·x = offset of a triangle; n = 0 for one without area, which its neighbours' edges stand in for.
+/// Plane n·x = offset of a triangle; n = 0 for one without area, which its neighbours' edges replace.
 struct TrianglePlane {
   Vec3 normal = Vec3::Zero();
   double offset = 0.0;  // m

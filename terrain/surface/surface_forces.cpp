@@ -7,7 +7,7 @@
 namespace furrow::terrain {
 namespace {
 
-// A force that points at the mean vertex has no moment to compare with; this share of |x||f| stands in.
+// A force that points at the mean vertex has no moment to compare with; this share of |x||f| replaces it.
 constexpr double kArmFloor = 1e-3;
 
 }  // namespace

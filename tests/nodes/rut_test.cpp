@@ -113,6 +113,11 @@ TEST(Rut, is_not_measured_without_grains_or_before_the_wheel_has_left_one) {
   EXPECT_FALSE(terrain::measure_rut(before, before, options).measured);
   EXPECT_EQ(terrain::measure_rut(before, before, options).missing,
             "the axle travelled 0.5 m, and the rut is measured 0.3 to 0.55 m behind it");
+  options = forward();
+  options.lateral = 10.0;  // where there are no cells
+  EXPECT_EQ(terrain::measure_rut(before, pressed(before, 0.5, 2.0), options).missing,
+            "there are no grains where the tread went");
+  EXPECT_EQ(terrain::measure_rut(before, before, options).missing, "the ground keeps no rut");
 }
 
 /// The rut of a wheel of 58 mm was looked for 0.3 m behind its axle, where it never went.

@@ -72,6 +72,7 @@ class Commands(SystemTest):
             there = {path.name for path in (ROOT / folder).glob("*.json") if not path.name.endswith(".schema.json")}
             self.assertEqual(set(listed[kind]["files"]), there)
         self.assertNotIn("", [line for kind in listed.values() for line in kind["files"].values()], "each says what it is")
+        self.assertTrue(listed["soils"]["files"]["dry_sand.json"].endswith("Wiley 2008"), "an initial ends no sentence")
         self.assertEqual(list(json.loads(self.output("list", "soils", "--json"))), ["soils"])
         self.assertIn("first_look.json", self.output("list", "scenarios"))
         done = furrow("list", "wheels", cwd=self.folder)

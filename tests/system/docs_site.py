@@ -47,6 +47,10 @@ class Site(SystemTest):
             self.assertIn(site / f"{page.stem}.html", pages)
         self.assertIn("katex.min.js", (site / "theory.html").read_text(), "formulas are drawn")
         self.assertTrue((site / "_static" / "katex" / "fonts").is_dir())
+        self.assertNotRegex((site / "_static" / "scripts" / "furo.js").read_text(), r"(?m)^import ", "a plain script of one piece")
+        for sheet in site.rglob("*.css"):
+            self.assertNotRegex(sheet.read_text(), r"""(@import\s+|url\()\s*["']?(/|https?:)""", sheet)
+        self.assertIn("prefers-color-scheme: dark", (site / "_static" / "styles" / "furo.css").read_text())
 
     def problems(self, pages, path):
         page = pages[path]

@@ -57,6 +57,14 @@ class Package(SystemTest):
         self.assertIn("sliding_loss_J", run.accounts.columns)
         self.assertRaisesRegex(furrow.Missing, "no table of 'vehicle', expected one of: wheel0, accounts", lambda: run.vehicle)
 
+    def test_packages_that_are_missing_are_named_at_once(self):
+        done = subprocess.run([sys.executable, "-c", "import importlib.util as u\nfind = u.find_spec\n"
+                               "u.find_spec = lambda name, *more: None if name in ('pandas', 'xarray') else find(name, *more)\nimport furrow"],
+                              text=True, capture_output=True, env={**os.environ, "PYTHONPATH": str(ROOT / "scripts" / "python")})
+        self.assertEqual(done.returncode, 1)
+        self.assertTrue(done.stderr.endswith("ImportError: the package 'furrow' needs what is not installed: "
+                                             "apt install python3-pandas python3-xarray\n"), done.stderr)
+
     def test_frames_are_found_by_index_and_time(self):
         tire, grains = self.run_.tire(), self.run_.grains
         self.assertEqual(len(tire), 3)

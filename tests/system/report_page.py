@@ -18,6 +18,7 @@ sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "scripts" / "report")]
 import page  # noqa: E402
 from page import frames  # noqa: E402
 from page.blobs import Arrays, thin  # noqa: E402
+from plot.press import Press  # noqa: E402
 from plot.run_data import Run  # noqa: E402
 from plot.sweep import Sweep  # noqa: E402
 
@@ -237,8 +238,47 @@ class Page(SystemTest):
             (study / "sweep.csv").write_text(f"folder,state,exit_code,rig.slip,sinkage_m,wall_s\nruns/1,done,0,0.2,0.021,{wall}\n")
             self.assertEqual(page.write(study, [Sweep(study)], lambda *_: True), ["report.html"])
             pages.append((study / "report.html").read_bytes())
-        self.assertIn(b"0.021", pages[0])
         self.assertEqual(*pages)
+        about, _ = document(study / "report.html")
+        (table,) = blocks_of(about, "table")
+        self.assertEqual(table["columns"][3:], ["rig.slip", "sinkage, mm"])
+        self.assertEqual(table["rows"], [["runs/1", "done", "0", "0.2", "21"]])
+
+    def test_the_page_of_a_study_says_what_it_is_about_and_its_keys_have_units(self):
+        study = self.folder / "study"
+        study.mkdir()
+        (study / "sweep.json").write_text(json.dumps({
+            "study": "slips", "description": "Two soils.", "results": ["drawbar_pull_N.mean", "drawbar_pull_N.sem", "drawbar_pull_N.steady"],
+            "plot": {"x": "rig.slip", "y": "drawbar_pull_N.mean", "error": "drawbar_pull_N.sem", "lines": "terrain.cohesion"}}))
+        (study / "sweep.csv").write_text("folder,state,exit_code,rig.slip,terrain.cohesion,drawbar_pull_N.mean,drawbar_pull_N.sem,drawbar_pull_N.steady\n"
+                                         "runs/1,done,0,0.2,40000.0,120,4,true\nruns/2,done,0,0.3,40000.0,130,5,false\n")
+        page.write(study, [Sweep(study)], lambda *_: True)
+        about, _ = document(study / "report.html")
+        self.assertEqual([block["text"] for block in blocks_of(about, "text")],
+                         ["Two soils.", "1 of 2 points include a run whose pull is not steady: such a point is not to be quoted."])
+        (charts,) = blocks_of(about, "charts")
+        self.assertEqual(charts["note"], "Whiskers: standard error of each run.")
+        self.assertEqual([line["label"] for line in charts["charts"][0]["lines"]], ["terrain.cohesion = 40000 Pa"])
+        (table,) = blocks_of(about, "table")
+        self.assertEqual(table["columns"][3:], ["rig.slip", "terrain.cohesion, Pa", "drawbar pull, N", "drawbar pull standard error, N",
+                                                "drawbar pull steady"])
+        self.assertEqual(table["rows"][0][4:], ["40000", "120", "4", "true"])
+
+    def test_all_values_of_a_pressed_tire_have_units(self):
+        folder = self.folder / "press"
+        folder.mkdir()
+        (folder / "summary.json").write_text(json.dumps({"obstacle": "plate", "load_N": 4600.0, "deflection_m": 0.0128, "pressure_Pa": 2e5,
+                                                         "statically_stable": True}))
+        (folder / "press.csv").write_text("deflection_m,force_N,unloading\n0,0,0\n0.01,3000,0\n0.02,7000,0\n0.01,2990,1\n0,0,1\n")
+        page.write(folder, [Press(folder)], lambda *_: True)
+        about, part = document(folder / "report.html")
+        rows = blocks_of(about, "table")[-1]["rows"]
+        for row in (["load", "4600", "N"], ["deflection", "12.8", "mm"], ["pressure", "200", "kPa"], ["statically stable", "yes", ""]):
+            self.assertIn(row, rows)
+        loading, unloading = blocks_of(about, "charts")[0]["charts"][0]["lines"]
+        self.assertEqual(len(unloading["dash"]), 2, "it mostly lies on the curve of loading")
+        np.testing.assert_allclose(array(about, part("numbers"), unloading["x"]), [0, 10])
+        np.testing.assert_allclose(array(about, part("numbers"), loading["y"]), [0, 3, 7], rtol=1e-4)
 
     def test_frames_as_vtp_files(self):
         out = self.folder / "vtk"

@@ -63,7 +63,7 @@ class SectorFactor {
   bool prepare(const Step& step, int attempt);
   /// x = A⁻¹ rhs on the free rows, in world axes of a rim turned by `turn`; padding of x is zero there.
   void solve(const Mat3& turn, const Field& rhs, Field& x) { factor_.solve(turn, rhs, x, params_.threads); }
-  /// A step has taken `count` iterations: more than one tell of an old factor.
+  /// A step has taken `count` iterations: more than one indicates an old factor.
   void note_iterations(int count);
 
   std::int64_t renewals() const { return renewals_; }  // whole or in part

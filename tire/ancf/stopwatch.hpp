@@ -1,4 +1,4 @@
-// Processor time of this thread: what the work costs, whoever else uses the machine.
+// Processor time of this thread: the cost of work, whatever else runs on the machine.
 #pragma once
 
 #include <ctime>

@@ -1,4 +1,4 @@
-// The tire of a planar wheel on a rim that moves as it is told: an annulus of triangles whose inner nodes are held.
+// The tire of a planar wheel on a rim with a given motion: an annulus of triangles whose inner nodes are held.
 //
 // Positions r and velocities u of the nodes count from the rim's centre, in axes that do not turn with the rim: x
 // forward, z up in the wheel's plane. A step h in which the centre has the velocity V', after V in the step before,

@@ -1,5 +1,5 @@
-// Kinematics of the suspensions: the chassis is held, wheels are lifted and steered, and what the wheels do is told in the
-// chassis' frame. Derivatives d/dz are exact, from the constraints' Jacobian.
+// Kinematics of the suspensions: the chassis is held, wheels are lifted and steered, and the motion of the wheels is
+// given in the chassis' frame. Derivatives d/dz are exact, from the constraints' Jacobian.
 //
 //   roll centre      height above the ground of the point about which the body rolls, y_c dy_c/dz for opposite travel
 //   brake slope      dx_c/dz of the contact point with the wheel locked to its carrier, positive where braking force keeps

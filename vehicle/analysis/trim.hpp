@@ -90,7 +90,7 @@ void visit_fields(Visit&& visit, FieldsOf<Trim> auto& s) {
   visit(Field{"modes", ""}, s.modes);
 }
 
-/// Puts the vehicle at rest on the plane z = `ground` and tells how it stands there.
+/// Puts the vehicle at rest on the plane z = `ground` and returns its posture.
 /// @pre one tire for each wheel; their masses were added. @throws Error(physics) when there is no equilibrium
 Trim trim(Vehicle& vehicle, std::span<const TireCurve> tires, double ground = 0.0);
 

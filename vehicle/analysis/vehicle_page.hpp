@@ -49,8 +49,8 @@ void visit_fields(Visit&& visit, FieldsOf<VehiclePage> auto& s) {
 /// Of all its bodies, kg. @throws Error(bad_input) naming the vehicle's file when it cannot be built
 double mass_without_tires(const VehicleSpec& spec);
 
-/// Builds the vehicle and lets it stand. Of a vehicle with a tire that does not deflect only those vibrations are told
-/// that do not depend on how hard the ground below it is.
+/// Builds the vehicle and lets it stand. Of a vehicle with a tire that does not deflect only those vibrations are
+/// listed that do not depend on how hard the ground below it is.
 /// @pre one tire for each wheel. @throws Error(bad_input) naming the vehicle's file when it cannot be built or stand
 VehiclePage vehicle_page(const VehicleSpec& spec, std::span<const StandingTire> tires);
 

@@ -6,7 +6,7 @@
 //
 // Rule at R = 1: K(1) is finite, so both branches end there in torques of opposite sign. Within 1 − w < R < 1 + w the
 // impeller's torque is therefore a straight line in R on each side, from its value at R = 1 ∓ w (for the present u_i)
-// to zero at R = 1; w = 0.02 unless told otherwise. The fluid takes power everywhere, as long as T R ≤ 1.
+// to zero at R = 1; w = 0.02 by default. The fluid takes power everywhere, as long as T R ≤ 1.
 //
 // An impeller at rest or turning backwards is driven by a turbine that turns forward, and free otherwise.
 #pragma once

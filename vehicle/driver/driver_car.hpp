@@ -18,7 +18,7 @@ namespace furrow::vehicle {
 
 /// Index of the rearmost axle.
 int rear_axle(const VehicleSpec& spec);
-/// Middle of the rear axle as drawn, in the vehicle's frame, m: what drivers are told the place of.
+/// Middle of the rear axle as drawn, in the vehicle's frame, m: whose place drivers get.
 Vec3 rear_axle_middle(const VehicleSpec& spec);
 /// Whether the steering wheel does anything.
 bool can_steer(const VehicleSpec& spec);

@@ -5,7 +5,7 @@
 //   throttle = u,  brake = −u F/B
 //
 // so that u F is the force wanted, whichever pedal gives it. A mass m without resistance then obeys
-// ë + (F k_p/m) ė + (F k_i/m) e = 0. Unless told otherwise k_p = 2 ζ ω m/F and k_i = ω² m/F with ω = 0.5 rad/s and
+// ë + (F k_p/m) ė + (F k_i/m) e = 0. By default k_p = 2 ζ ω m/F and k_i = ω² m/F with ω = 0.5 rad/s and
 // ζ = 1, critical damping.
 //
 // Anti-windup by conditional integration [Åström & Hägglund 2006, §3.5]: I stays what it is while u is at a bound and

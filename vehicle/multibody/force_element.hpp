@@ -34,7 +34,7 @@ struct ForceElement {
   double last_force = 0.0;  // mean over the last step, N or N m
 };
 
-/// Energies of a force element whose law tells them (System::track_energy).
+/// Energies of a force element whose law gives them (System::track_energy).
 struct ElementEnergy {
   double stored = 0.0;      // of the elastic part now, J
   double elastic = 0.0;     // work that the elastic part has done since the start, J

@@ -53,7 +53,7 @@ class System {
   /// Acts on the distance between two points, W, m. @pre the points differ
   int add_line_element(const std::string& name, int a, int b, const Vec3& point_a, const Vec3& point_b,
                        ForceLaw law);
-  /// Keeps the energies of an element whose law tells its elastic part.
+  /// Keeps the energies of an element whose law gives its elastic part.
   void track_energy(int element);
   /// In the free coordinate of a joint; the force is the law's, or what set_actuator() says where there is none.
   int add_joint_actuator(const std::string& name, int joint, ActuatorLaw law = nullptr);

@@ -170,7 +170,7 @@ class ShaftGraph {
       join_differential(spec_.differentials[i], fmt::format("differentials[{}]", i));
   }
 
-  /// Two shafts of one carrier, unless told otherwise.
+  /// Two shafts of one carrier by default.
   std::pair<int, int> pair(const std::string& part, const std::string& in, const std::string& out,
                            bool same_carrier = true) {
     if (in == out) reader_.fail(part + ".out", "is '" + out + "', the shaft of in, expected another one");

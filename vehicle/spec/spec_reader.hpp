@@ -1,6 +1,6 @@
 // Reads the structs of files of vehicles and drivers by their lists of fields: one key per field, required unless it is
-// optional or may be missing, and checks each by check_spec(), which whoever calls read_spec() declares for each struct.
-// Complaints are JsonReader's: file, key, what was expected.
+// optional or may be missing, and checks each by check_spec(), which the caller of read_spec() declares for each
+// struct. Complaints are JsonReader's: file, key, what was expected.
 #pragma once
 
 #include <optional>

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from types import ModuleType
 
+from . import _needs  # noqa: F401  first: it names the packages that are missing
 from ._scripts import Damaged, Missing
 from .commands import press, resume, run, soil, sweep
 from .errors import BadInput, FurrowError, InputOutputError, LimitReached, PhysicsFailed, RankLost, Stopped

@@ -48,6 +48,20 @@ def half_95(sem, count):
     return student(max(int(count) - 1, 1)) * sem
 
 
+def values_table(pairs):
+    """A table of names such as `wall_s`, their values and units."""
+    rows = []
+    for name, value in pairs:
+        words, unit, factor = naming(name)
+        if isinstance(value, bool):
+            rows.append([words, "yes" if value else "no", ""])
+        elif isinstance(value, float) or (isinstance(value, int) and unit):
+            rows.append([words, f"{value * factor:.6g}", unit])
+        else:
+            rows.append([words, str(value), ""])
+    return table(["", "", ""], rows)
+
+
 def quantity(name, value, half=None):
     """(value, unit) as texts in the unit that `name` is shown in."""
     if not is_number(value):

@@ -70,7 +70,10 @@ def plain(table, groups, window, errors=None):
         names = [name for name in names if name in table.columns and np.nanmax(np.abs(table.columns[name]), initial=0.0) > NOISE]
         if names:
             levels = [level for name in names for level in (errors or {}).get(name, ())]
-            items.append(blocks.chart(title, "time", "s", naming(names[0])[1], [table.line(name) for name in names], window, levels))
+            if title == "Drawbar pull" and "drawbar_pull_N" not in names:
+                title = "Tractive effort and terrain resistance"
+            items.append({**blocks.chart(title, "time", "s", naming(names[0])[1], [table.line(name) for name in names], window, levels),
+                          "whole": names == ["gear"]})
             limit_slip(items[-1], names[0], table)
     return items
 

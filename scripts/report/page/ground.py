@@ -1,7 +1,20 @@
 """The ground before and after a run, as the page shows it."""
 import numpy as np
 
+from . import blocks
+
 MOST_CELLS = 60000
+
+
+def unchanged(run, arrays):
+    """Of hard ground, which no wheel changes: the plot of its height along the path, without a line where it is level.
+    None where the ground changes."""
+    before, after = run.heights()
+    if before.z.shape != after.z.shape or not np.array_equal(before.z, after.z, equal_nan=True):
+        return None
+    along = after.z[:, after.z.shape[1] // 2]
+    lines = [{"label": "height", "x": arrays.add(after.x, exact=True), "y": arrays.add(1e3 * along), "style": "line"}] if np.ptp(along) > 0 else []
+    return {**blocks.chart("Height of the ground along the path", "x", "m", "mm", lines), "wide": True}
 
 
 def rut(run, arrays):

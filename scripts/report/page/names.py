@@ -10,17 +10,23 @@ ENDINGS = (("_kg_m_per_s", "kg m/s", 1.0), ("_rad_per_s", "rad/s", 1.0), ("_m_pe
 LONG = {"position_m", "distance_m", "path_distance_m", "x_m", "y_m", "z_m", "axle_height_m", "lateral_m", "cross_track_error_m",
         "tire_radius_m", "surface_height_m", "effective_rolling_radius_m", "loaded_radius_m", "tread_width_m",
         "axle_height", "travel_x_m"}  # in m, not in mm
+# Names whose own words would be hard to understand.
+WORDS = {"simulated_s": "simulated time", "wall_s": "wall time", "settle_wall_s": "wall time for the bed",
+         "wall_s_per_simulated_s": "wall time per simulated second", "cpu_s": "processor time", "compute_s": "computing",
+         "communicate_s": "communicating", "wait_s": "waiting", "step_s": "step", "cpu": "processor", "z_m": "height",
+         "contacts_tire": "contacts of the tire", "active_share": "share of grains awake", "active_share_mean": "share of grains awake, mean",
+         "sinkage_kinematic_m": "kinematic sinkage"}
 
 
 def naming(name):
     """(words, unit, factor by which values are multiplied)."""
     for ending, unit, factor in ENDINGS:
         if name.endswith(ending) and len(name) > len(ending):
-            words = name[:-len(ending)]
+            words = WORDS.get(name, name[:-len(ending)].replace("_", " ").replace(".", " "))
             if name in LONG:
                 unit, factor = "m", 1.0
-            return words.replace("_", " ").replace(".", " "), unit, factor
-    return name.replace("_", " "), "", 1.0
+            return words, unit, factor
+    return WORDS.get(name, name.replace("_", " ")), "", 1.0
 
 
 def is_number(value):

@@ -5,6 +5,7 @@ from plot.run_data import Missing
 
 from . import blocks
 from .frames import pack
+from .names import is_number
 
 
 def chassis(run, times, arrays):
@@ -14,6 +15,13 @@ def chassis(run, times, arrays):
     if not table or any(name not in table for name in names):
         return None
     return arrays.add(np.stack([np.interp(times, table["time_s"], table[name]) for name in names], 1), exact=True)
+
+
+def profile(run):
+    """The profile of hard ground, [[x, z], …] in m; empty without one."""
+    terrain = run.scenario.get("terrain")
+    points = terrain.get("profile") if isinstance(terrain, dict) else None
+    return points if isinstance(points, list) and all(isinstance(point, list) and len(point) == 2 and all(map(is_number, point)) for point in points) else []
 
 
 def meshes(packing, arrays):
@@ -51,7 +59,7 @@ def playback(run, arrays, budget):
     block = {"type": "playback", "times": packing.times, "tires": meshes(packing, arrays),
              "poses": arrays.add(np.array(packing.poses), exact=True) if packing.poses else None,
              "sign": run.travel_sign, "ground": float(run.number("surface_height_m", 0.0) or 0.0),
-             "chassis": chassis(run, packing.times, arrays), "bed": None}
+             "profile": profile(run), "chassis": chassis(run, packing.times, arrays), "bed": None}
     if bed := packing.bed:
         block["bed"] = {"grains": len(bed.shown), "radius": arrays.add(bed.radius), "speeds": packing.speeds,
                         "low": [float(v) for v in bed.low], "scale": [float(v) for v in bed.scale], "cell": float(bed.cell),

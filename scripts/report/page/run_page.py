@@ -14,6 +14,7 @@ CARDS = (("sinkage_m", "sinkage_sem_m", "sinkage_n_eff", "sinkage"),
          ("rut_depth_m", "rut_depth_sem_m", "rut_depth_n_eff", "rut depth"),
          ("drawbar_coefficient", None, None, "pull over load"),
          ("vertical_load_N", None, None, "load"),
+         ("tire_deflection_m", None, None, "tire deflection"),
          ("drive_torque_Nm", None, None, "drive torque"),
          ("tractive_efficiency", None, None, "tractive efficiency"))
 EXPECTED = (("drawbar_pull", "drawbar_pull_N", "drawbar pull"), ("sinkage", "sinkage_m", "sinkage"), ("rut_depth", "rut_depth_m", "rut depth"))
@@ -89,8 +90,9 @@ def answer_cards(run):
         value, unit = blocks.quantity("drawbar_pull_N", pull["mean"], half)
         items.append(blocks.card("drawbar pull", value, unit, "95 %" if half is not None else "", "good" if pull.get("steady") else "warn",
                                  "steady" if pull.get("steady") else "not steady"))
+    hard = run.told.get("terrain_engine") == "rigid"  # ground into which nothing sinks
     for key, sem, count, name in CARDS:
-        if not is_number(summary.get(key)):
+        if not is_number(summary.get(key)) or (hard and key == "sinkage_m"):
             continue
         half = blocks.half_95(summary.get(sem), summary.get(count)) if sem else None
         value, unit = blocks.quantity(key, summary[key], half)
@@ -111,7 +113,7 @@ def vehicle_answer(run):
             speed, load = values.get("speed_m_s"), values.get("wheel_power_W")
             if is_number(speed):
                 made.append(blocks.text(f"In the averaging window the {subject} drives at {digits(speed)} m/s on average"
-                                        + (f"; {digits(load)} W reach its wheels." if is_number(load) else "."), "lead"))
+                                        + (f"; {digits(1e-3 * load)} kW reach its wheels." if is_number(load) else "."), "lead"))
             change = values.get("acceleration_m_per_s2")
             if is_number(change) and abs(change) > CHANGING:
                 made.append(blocks.text(f"The {subject} is not in a steady state: on average its speed changes by {digits(change)} m/s each second. "
@@ -126,7 +128,7 @@ def wheels_table(run):
     names = [name for name in OF_WHEELS if any(is_number(wheel.get(name)) for wheel in wheels)]
     if len(wheels) < 2 or not names:
         return []
-    columns = ["wheel"] + [", ".join(filter(None, naming(name)[:2])) for name in names]
+    columns = ["wheel"] + [", ".join(filter(None, (words, unit.replace(" ", "\u00a0")))) for words, unit, _ in map(naming, names)]
     who = [name.replace("_", " ") for name in run.wheel_names] or [str(k) for k in range(len(wheels))]
     rows = [[who[k]] + [blocks.quantity(name, wheel.get(name))[0] for name in names] for k, wheel in enumerate(wheels)]
     return [blocks.table(columns, rows, note="Means over the averaging window.")]
@@ -166,6 +168,10 @@ def answer(run):
         made.append(blocks.text("This run has no summary: it is still going on, or it was stopped before its end.", "warn"))
     made += pull_answer(run)
     if len(run.summary.get("wheels") or []) < 2 and (items := answer_cards(run)):
+        if not run.summary.get("drawbar_pull_N"):
+            window = window_of(run)
+            span = f" from {window[0]:.3g} to {window[1]:.3g} s" if window else ""
+            made.append(blocks.text(f"The figures are means over the averaging window{span}. This rig measures no drawbar pull.", "lead"))
         made.append(blocks.cards(items))
     made += vehicle_answer(run) + wheels_table(run) + expected_table(run)
     for what, found in (run.summary.get("accounts") or {}).items():
@@ -194,7 +200,8 @@ def series(run, arrays):
         if is_number(pull.get("mean")) and run.measured:
             half = blocks.half_95(pull.get("sem"), pull.get("n_eff"))
             levels["drawbar_pull_N"] = [{"y": pull["mean"], "half": half, "label": "mean and 95 % interval"}]
-        made.append(blocks.charts(curves.plain(table, curves.WHEEL, window, levels), table.note))
+        shown = [group for group in curves.WHEEL if run.told.get("grains") or group[1] != ("active_share",)]
+        made.append(blocks.charts(curves.plain(table, shown, window, levels), table.note))
     else:
         table = next(iter(tables.values()))
         more = f" The first {curves.MOST_WHEELS} of {len(names)} wheels are drawn." if len(names) > len(tables) else ""
@@ -259,6 +266,8 @@ def accounts(run, arrays):
 
 
 def rut(run, arrays):
+    if not run.told.get("grains") and (profile := ground.unchanged(run, arrays)):
+        return {"id": "rut", "title": "Ground", "blocks": [blocks.charts([profile])]} if profile["lines"] else None
     return {"id": "rut", "title": "Rut", "blocks": [
         blocks.text("Height of the surface after the run, against that before it. Move over the map for values, click for cross-sections.", "note"),
         ground.rut(run, arrays)]}
@@ -278,23 +287,22 @@ def ranks(run):
     busiest = max(rows, key=lambda row: row[1])
     words = f"Rank {busiest[0]} sets the pace: it computes {100 * busiest[1]:.0f} % of the time. The others wait for it the rest of the time."
     return {"id": "ranks", "title": "Ranks", "blocks": [blocks.text(words), blocks.bars(rows, "Share of the wall time in which a rank computes."),
-                                                        blocks.table(["rank"] + [key.replace("_", " ") for key in keys], lines)]}
+                                                        blocks.table(["rank"] + [", ".join(filter(None, naming(key)[:2])) for key in keys], lines)]}
 
 
 def provenance(run):
     summary = run.told
-    rows = [[key.replace("_", " "), digits(summary[key]) if isinstance(summary[key], float) else str(summary[key])]
-            for key in PROVENANCE if summary.get(key) is not None]
+    rows = [(key, summary[key]) for key in PROVENANCE if isinstance(summary.get(key), (str, int, float))]
     if run.scenario.get("completed_by"):
-        rows.append(["scenario completed by", str(run.scenario["completed_by"])])
+        rows.append(("scenario completed by", str(run.scenario["completed_by"])))
     segments = [s for s in summary.get("segments") or [] if isinstance(s, dict)]
     for segment in segments if len(segments) > 1 else []:
-        rows.append(["segment", f"steps {segment.get('from_step')} to {segment.get('to_step')}, {segment.get('threads')} threads, "
-                     f"{segment.get('wall_s')} s"])
+        rows.append(("segment", f"steps {segment.get('from_step')} to {segment.get('to_step')}, {segment.get('threads')} threads, "
+                     f"{segment.get('wall_s')} s"))
     if not rows:
         raise Missing("there is no summary")
-    rows.append(["folder", run.directory.name])
-    return {"id": "provenance", "title": "Provenance", "blocks": [blocks.table(["", ""], rows)]}
+    rows.append(("folder", run.directory.name))
+    return {"id": "provenance", "title": "Provenance", "blocks": [blocks.values_table(rows)]}
 
 
 def badges(run):

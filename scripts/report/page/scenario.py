@@ -21,6 +21,15 @@ def resolved(schema, root):
     return schema if isinstance(schema, dict) else {}
 
 
+def unit_of(key):
+    """The unit of a key such as `terrain.cohesion`; empty without one."""
+    root = read_object(SCHEMA) if SCHEMA.is_file() else {}
+    found = resolved(root, root)
+    for part in key.split("."):
+        found = resolved((found.get("items") or {}) if part.isdigit() else (found.get("properties") or {}).get(part, {}), root)
+    return str(found.get("unit", "")).replace("-", "")  # "-": of a number without one
+
+
 def flat(value, schema, root, path):
     """(key, value, schema of the key) for every key of a scenario."""
     schema = resolved(schema, root)

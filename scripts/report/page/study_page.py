@@ -9,6 +9,7 @@ from plot.run_data import Missing
 
 from . import blocks
 from .names import naming
+from .scenario import unit_of
 
 PASSES = (("drawbar_pull_N.mean", "drawbar_pull_N.sem", "Drawbar pull"), ("sinkage_m", None, "Sinkage"), ("rut_depth_m", None, "Rut depth"),
           ("tractive_efficiency", None, "Tractive efficiency"))
@@ -16,10 +17,21 @@ MOST_ROWS = 2000
 WALL_TIMES = {"wall_s"}  # sweep.csv has them; without them a study that was interrupted has the page of one that was not
 
 
-def named(key):
-    """Naming of a column such as `drawbar_pull_N.mean`."""
-    words, unit, factor = naming(key.removesuffix(".mean").removesuffix(".sem"))
-    return words, unit, factor
+# What the parts of a result with an error are.
+PARTS = {".mean": "", ".sem": " standard error", ".steady": " steady", ".n_eff": " independent values"}
+
+
+def named(key, keys=()):
+    """(words, unit, factor) of a column: of a key of the scenario such as `rig.slip`, or of a result such as `drawbar_pull_N.mean`."""
+    if key in keys:
+        return key, unit_of(key), 1.0
+    part = next((part for part in PARTS if key.endswith(part)), "")
+    words, unit, factor = naming(key.removesuffix(part))
+    if part in (".steady", ".n_eff"):
+        unit, factor = "", 1.0
+    if words.endswith(" sem"):
+        words = words.removesuffix("sem") + "standard error"
+    return words + PARTS.get(part, ""), unit, factor
 
 
 def line(arrays, label, x, y, half, factor):
@@ -30,25 +42,36 @@ def line(arrays, label, x, y, half, factor):
     return made
 
 
+def whiskers(plot):
+    if plot.get("mean_over"):
+        return f"Points: means over {plot['mean_over']}. Whiskers: their 95 % intervals."
+    return "Whiskers: standard error of each run." if plot.get("error") else ""
+
+
 def curve(sweep, arrays):
     """y over x as the study's plot says."""
     plot = sweep.plot
     if not plot.get("x") or not plot.get("y") or not sweep.rows:
         raise Missing("the study asks for no plot" if sweep.rows else "no run is done")
     words, unit, factor = named(plot["y"])
-    x_words, x_unit, x_factor = named(plot["x"])
+    keys = studies.keys_of(sweep)
+    x_words, x_unit, x_factor = named(plot["x"], keys)
     groups = {}
     for row in sweep.rows:
         groups.setdefault(row.get(plot.get("lines", ""), ""), []).append(row)
-    lines, unsteady = [], 0
+    lines, unsteady, points = [], 0, 0
     for label, rows in groups.items():
         x, y, half, which = studies.points(rows, plot["x"], plot["y"], plot.get("error", ""), plot.get("mean_over"))
         unsteady += int(np.asarray(which, bool).sum())
-        lines.append(line(arrays, f"{plot['lines']} = {label}" if label else words, x_factor * x, y, half, factor))
+        points += len(x)
+        value = f"{cell(label)} {unit_of(plot['lines'])}".rstrip() if label else ""
+        lines.append(line(arrays, f"{plot['lines']} = {value}" if label else words, x_factor * x, y, half, factor))
     made = [blocks.charts([{**blocks.chart(words.capitalize(), x_words, x_unit, unit, lines), "wide": True}],
-                          "Whiskers" + studies.bar_meaning(plot).replace("bars:", "show").rstrip() if plot.get("error") or plot.get("mean_over") else "")]
+                          whiskers(plot))]
+    if description := sweep.values.get("description"):
+        made.insert(0, blocks.text(str(description), "lead"))
     if unsteady:
-        made.append(blocks.text(f"{unsteady} of the points include a run whose pull is not steady.", "warn"))
+        made.append(blocks.text(f"{unsteady} of {points} points include a run whose pull is not steady: such a point is not to be quoted.", "warn"))
     return {"id": "curve", "title": "Result", "blocks": made}
 
 
@@ -98,15 +121,19 @@ def rows_of(sweep):
     if not rows:
         raise Missing("no run is done")
     columns = [name for name in rows[0] if name and name not in WALL_TIMES and any(row.get(name) for row in rows)]
-    cells = [[cell(row.get(name)) for name in columns] for row in rows[:MOST_ROWS]]
+    named_columns = [named(name, studies.keys_of(sweep)) for name in columns]
+    cells = [[cell(row.get(name), factor) for name, (_, _, factor) in zip(columns, named_columns)] for row in rows[:MOST_ROWS]]
     failed = [k for k, row in enumerate(rows[:MOST_ROWS]) if row["state"] == "failed"]
-    return {"id": "runs", "title": "Runs", "blocks": [blocks.table([name.replace("_", " ") for name in columns], cells, marked=failed,
+    return {"id": "runs", "title": "Runs", "blocks": [blocks.table([", ".join(filter(None, (words, unit.replace(" ", "\u00a0"))))
+                                                                    for words, unit, _ in named_columns], cells, marked=failed,
                                                                    note="Highlighted: failed." if failed else "")]}
 
 
-def cell(text):
-    value = studies.number(text)
-    return f"{value:.4g}" if math.isfinite(value) and "." in text else str(text or "")
+def cell(text, factor=1.0):
+    value = factor * studies.number(text)
+    if not math.isfinite(value) or (factor == 1.0 and "." not in text):
+        return str(text or "")
+    return f"{value:.4g}" if abs(value) < 1e4 else f"{value:.6g}"
 
 
 def fill(page, arrays, sweep, sections):

@@ -14,7 +14,7 @@ SOIL = (("k_c", "k_c", "kN/mⁿ⁺¹", 1e-3), ("k_phi", "k_φ", "kN/mⁿ⁺²", 
         ("final_cohesion_Pa", "cohesion at the end", "kPa", 1e-3), ("final_friction_angle_deg", "friction angle at the end", "°", 1.0),
         ("cone_index_Pa", "cone index", "kPa", 1e-3), ("repose_angle_deg", "angle of repose", "°", 1.0),
         ("repose_angle_without_cohesion_deg", "angle of repose without cohesion", "°", 1.0))
-# Tables of soil tests: file, title, keys that tell its runs apart, x, y.
+# Tables of soil tests: file, title, keys that distinguish its runs, x, y.
 TESTS = (("plate.csv", "Plate sinkage", ("width_m", "seed"), "sinkage_m", "pressure_Pa"),
          ("shear.csv", "Direct shear", ("nominal_normal_stress_Pa", "seed"), "travel_m", "shear_stress_Pa"),
          ("cone.csv", "Cone penetration", ("seed",), "depth_m", "pressure_Pa"),
@@ -66,8 +66,8 @@ def kept_scenario(directory):
 
 
 def provenance(values):
-    rows = [[key.replace("_", " "), str(value)] for key, value in values.items() if isinstance(value, (str, int, float)) or value is True]
-    return {"id": "provenance", "title": "All values", "blocks": [blocks.table(["", ""], rows)]}
+    kept = [(key, value) for key, value in values.items() if isinstance(value, (str, int, float))]
+    return {"id": "provenance", "title": "All values", "blocks": [blocks.values_table(kept)]}
 
 
 def soil(page, arrays, run, sections):
@@ -100,8 +100,12 @@ def press_answer(run):
 def press_curves(run, arrays):
     table = run.table("press.csv")
     back = table["unloading"] > 0
-    lines = [line(arrays, name, 1e3 * table["deflection_m"][which], 1e-3 * table["force_N"][which], "points")
-             for name, which in (("loading", ~back), ("unloading", back)) if which.any()]
+    order = np.argsort(table["deflection_m"], kind="stable")
+    lines = []
+    for name, which, dash in (("loading", ~back, None), ("unloading", back, [6, 6])):
+        if which.any():
+            rising = order[which[order]]
+            lines.append({**line(arrays, name, 1e3 * table["deflection_m"][rising], 1e-3 * table["force_N"][rising], "points"), "dash": dash})
     return {"id": "series", "title": "Load and deflection",
             "blocks": [blocks.charts([{**blocks.chart("Force", "deflection", "mm", "kN", lines), "wide": True}])]}
 

@@ -5,6 +5,7 @@ import { digits, el } from "./data.js";
 
 const sync = uPlot.sync("time");
 const COUNTED = new Set(["run", "bed", "pass"]); // values of x that are whole numbers
+const WHOLE = [1, 2, 5, 10, 20, 50, 100, 500, 1000]; // steps between ticks of whole numbers
 const drawn = new Set(); // plots that exist, to be drawn again in another theme
 
 /** One common x for lines that have their own; missing values are gaps that are spanned. */
@@ -93,15 +94,15 @@ function options(chart, arrays, width) {
   const base = {
     width, height: chart.wide ? 380 : 240, ms: 1, scales: {
       x: { time: false, range: points ? (u, low, high) => pad(low, high, 0.06) : undefined },
-      y: { range: chart.clip ?? ((u, low, high) => pad(Math.min(low ?? Infinity, ...wanted), Math.max(high ?? -Infinity, ...wanted), 0.06)) },
+      y: { range: chart.clip ?? (chart.whole ? (u, low, high) => [low - 0.5, high + 0.5] : (u, low, high) => pad(Math.min(low ?? Infinity, ...wanted), Math.max(high ?? -Infinity, ...wanted), 0.06)) },
     },
-    axes: [{ ...axis(chart.x, chart.x_unit), ...(COUNTED.has(chart.x) ? { incrs: [1, 2, 5, 10, 20, 50, 100, 500, 1000] } : {}) }, { ...axis("", ""), label: undefined, size: 58, values: (u, ticks) => ticks.map((v) => shortTick(v)) }],
+    axes: [{ ...axis(chart.x, chart.x_unit), ...(COUNTED.has(chart.x) ? { incrs: WHOLE } : {}) }, { ...axis("", ""), label: undefined, size: 58, values: (u, ticks) => ticks.map((v) => shortTick(v)), ...(chart.whole ? { incrs: WHOLE } : {}) }],
     cursor: { drag: { x: true, y: false }, sync: time ? { key: sync.key, scales: ["x", null] } : undefined },
     legend: { live: true },
     series: [
       { label: chart.x, value: (u, v) => (v == null ? "–" : `${digits(v)} ${chart.x_unit}`) },
       ...chart.lines.map((line, k) => ({
-        label: line.label, stroke: () => curve(k), width: 1.5, spanGaps: true,
+        label: line.label, stroke: () => curve(k), width: 1.5, dash: line.dash, spanGaps: true,
         paths: line.style === "points" && chart.lines.length > 1 && arrays.get(line.x).length === 1 ? () => null : undefined,
         points: { show: line.style === "points", size: 8, fill: () => curve(k) },
         value: (u, v) => (v == null ? "–" : `${digits(v)} ${chart.unit}`.trim()),
@@ -117,7 +118,7 @@ function options(chart, arrays, width) {
 
 function shortTick(value) {
   const size = Math.abs(value);
-  if (size >= 1e5 || (size > 0 && size < 1e-3)) return value.toExponential(1).replace("e+", "e").replace(".0e", "e");
+  if (size >= 1e6 || (size > 0 && size < 1e-3)) return value.toExponential(1).replace("e+", "e").replace(".0e", "e");
   return String(Number(value.toPrecision(6)));
 }
 

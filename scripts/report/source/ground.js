@@ -82,6 +82,8 @@ export function scatter(block, arrays) {
     context.fillRect(a - 4, b - 4, 8, 8);
   }
   const words = el("div", { class: "reading" }, "Move over the points.");
+  const size = `Drawn to scale, along the travel from left to right. The outermost points are ${digits(high[0] - low[0])} mm apart along it and ` +
+    `${digits(high[1] - low[1])} mm across.`;
   canvas.addEventListener("pointermove", (event) => {
     const box = canvas.getBoundingClientRect();
     const at = [((event.clientX - box.left) / box.width) * canvas.width, ((event.clientY - box.top) / box.height) * canvas.height];
@@ -92,5 +94,6 @@ export function scatter(block, arrays) {
     }
     words.textContent = `along ${digits(x[best])} mm, across ${digits(y[best])} mm: ${digits(values[best])} ${block.unit}`;
   });
-  return el("div", { class: "ground" }, canvas, bar("viridis", "0", `${digits(most)} ${block.unit}`, block.label), words);
+  return el("div", { class: "ground" }, canvas, bar("viridis", "0", `${digits(most)} ${block.unit}`, block.label),
+    el("p", { class: "note" }, size), words);
 }

@@ -7,7 +7,7 @@ import "uplot/dist/uPlot.min.css";
 import "./style.css";
 
 const MAKERS = {
-  text: (block) => el("p", { class: `text ${block.kind}` }, block.text),
+  text: (block) => el("p", { class: `text ${block.kind}` }, ...commands(block.text)),
   cards: (block) => el("div", { class: "cards" }, ...block.cards.map(card)),
   table,
   bars: (block) => el("div", { class: "bars" }, ...block.rows.map(bar), block.note ? el("p", { class: "note" }, block.note) : null),
@@ -22,6 +22,9 @@ const MAKERS = {
 
 const draw = (block, arrays) => MAKERS[block.type](block, arrays);
 
+/** A sentence whose commands in quotes, such as 'furrow run NAME', are set as code. */
+const commands = (words) => words.split(/'(furrow [^']*)'/).map((part, k) => (k % 2 ? el("code", {}, part) : part));
+
 function card(one) {
   return el("div", { class: `card ${one.kind}` }, el("span", { class: "name" }, one.name),
     el("span", { class: "value" }, one.value, " ", el("small", {}, one.unit)),
@@ -35,7 +38,7 @@ function bar(row) {
 function table(block) {
   const marked = new Set(block.marked);
   const numeric = block.columns.map((_, c) => block.rows.length > 0 && block.rows.every((row) => /^[−+\-\d.,\s±e…–]*$/.test(row[c] ?? "")));
-  const rows = block.rows.map((row, k) => el("tr", { class: marked.has(k) ? "marked" : "" }, ...row.map((cell, c) => el("td", { class: numeric[c] ? "number" : "" }, cell))));
+  const rows = block.rows.map((row, k) => el("tr", { class: marked.has(k) ? "marked" : "" }, ...row.map((cell, c) => el("td", { class: numeric[c] ? "number" : c === 0 && cell.length < 32 ? "name" : "" }, cell))));
   const head = block.columns.some(Boolean) ? el("thead", {}, el("tr", {}, ...block.columns.map((name) => el("th", {}, name)))) : null;
   const body = el("tbody", {}, ...rows);
   const made = el("div", { class: "table" }, el("table", {}, head, body));

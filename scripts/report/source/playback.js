@@ -4,7 +4,7 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { css, dark } from "./colours.js";
 import { digits, el } from "./data.js";
 import { Grains } from "./grains.js";
-import { body, euler, flat, paint, Surface, Tire } from "./shapes.js";
+import { body, euler, hardGround, paint, Surface, Tire } from "./shapes.js";
 import { unpack } from "./unpack.js";
 
 const NUMBERS = 14; // of a pose: R, t, largest force, largest speed
@@ -87,7 +87,7 @@ class Player {
     const all = [...centres, ...ends], range = (k, pick) => pick(...all.map((p) => p[k]));
     this.from = [0, 1, 2].map((k) => range(k, Math.min));
     this.to = [0, 1, 2].map((k) => range(k, Math.max));
-    if (!this.bed) this.scene.add(flat(this.block.ground, this.from, this.to, this.radius));
+    if (!this.bed) this.scene.add(hardGround(this.block.ground, this.block.profile || [], this.from, this.to, this.radius));
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener("change", () => this.later());
     this.theme();
@@ -111,7 +111,7 @@ class Player {
     const size = 2.2 * this.radius + 0.75 * spread, sign = this.block.sign || 1, [x, y, z] = this.centre();
     const directions = { corner: [sign * 2.1, -2.6, 1.55], side: [0, -3.6, 0.35], front: [sign * 3.6, 0, 0.5], top: [0, -0.01, 3.9], behind: [-sign * 2.8, -1.7, 1.5] };
     this.controls.target.set(x, y, z - 0.35 * this.radius);
-    this.camera.position.copy(this.controls.target).add(new Vector3(...directions[which]).multiplyScalar(size * 1.05));
+    this.camera.position.copy(this.controls.target).add(new Vector3(...directions[which]).multiplyScalar(size * 0.85));
     this.controls.update();
     this.later();
   }

@@ -1,5 +1,5 @@
-// Tires, the surface of the bed, flat ground, and the schematic body of a vehicle.
-import { BufferAttribute, BufferGeometry, BoxGeometry, DoubleSide, EdgesGeometry, Euler, GridHelper, Group, LineBasicMaterial, LineSegments, Mesh,
+// Tires, the surface of the bed, hard ground, and the schematic body of a vehicle.
+import { BufferAttribute, BufferGeometry, BoxGeometry, DoubleSide, EdgesGeometry, Euler, Group, LineBasicMaterial, LineSegments, Mesh,
   MeshLambertMaterial } from "three";
 import { colour } from "./colours.js";
 import { tirePositions } from "./unpack.js";
@@ -119,13 +119,34 @@ export class Surface {
   }
 }
 
-/** Flat ground as a grid of squares 0.1 m wide, or of a size that suits the wheels. */
-export function flat(height, from, to, radius) {
-  const step = 10 ** Math.round(Math.log10(radius / 4)), length = Math.ceil((Math.max(to[0] - from[0], to[1] - from[1]) + 6 * radius) / step) * step;
-  const grid = new GridHelper(length, Math.min(Math.round(length / step), 400), 0x777777, 0x999999);
-  grid.rotation.x = Math.PI / 2;
-  grid.position.set((from[0] + to[0]) / 2, (from[1] + to[1]) / 2, height);
-  return grid;
+const MOST_LINES = 120; // of a grid, in each direction
+
+/** Height of a profile [[x, z], …] at x: straight between the entries, level outside; at an upright face the upper end. */
+function heightAt(profile, x) {
+  const next = profile.findIndex(([at]) => at > x);
+  if (next < 0) return profile.at(-1)[1];
+  if (next === 0) return profile[0][1];
+  const [[a, low], [b, high]] = profile.slice(next - 1, next + 1);
+  return low + ((high - low) * (x - a)) / (b - a);
+}
+
+/** Hard ground as a grid around the path of the wheels, with the upright faces of its profile; without a profile at one height. */
+export function hardGround(level, profile, from, to, radius) {
+  const reach = 3 * radius, [x0, x1] = [from[0] - reach, to[0] + reach], [y0, y1] = [from[1] - reach, to[1] + reach];
+  let step = 10 ** Math.round(Math.log10(radius / 4));
+  while (Math.max(x1 - x0, y1 - y0) / step > MOST_LINES) step *= 2;
+  const height = (x) => (profile.length ? heightAt(profile, x) : level);
+  const along = [{ x: x0, z: height(x0) }]; // the profile from end to end: its own points, and one at each line across
+  const inside = profile.filter(([x]) => x > x0 && x < x1).map(([x, z]) => ({ x, z }));
+  for (let x = Math.ceil(x0 / step) * step; x < x1; x += step) inside.push({ x, z: height(x) });
+  along.push(...inside.sort((a, b) => a.x - b.x), { x: x1, z: height(x1) });
+  const points = [];
+  for (const { x, z } of along) points.push(x, y0, z, x, y1, z);
+  for (let y = y0; y <= y1 + 1e-9; y += step)
+    for (let k = 0; k + 1 < along.length; k++) points.push(along[k].x, y, along[k].z, along[k + 1].x, y, along[k + 1].z);
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(Float32Array.from(points), 3));
+  return new LineSegments(geometry, new LineBasicMaterial({ color: 0x8a8f96 }));
 }
 
 /** A schematic body: a box between the wheels, in the frame of the chassis. The model's chassis has no shape. */

@@ -22,7 +22,7 @@ void write_bed(const std::filesystem::path& file, const Archive& archive, const 
 /// 4; and what `progress` throws
 Archive read_bed(const std::filesystem::path& file, const ProgressCall& progress = {});
 
-/// Whether an HDF5 file is a settled bed of furrow, or too damaged to tell.
+/// Whether an HDF5 file is a settled bed of furrow, or too damaged to decide.
 bool may_be_bed(const std::filesystem::path& file);
 
 }  // namespace furrow::terrain::dem

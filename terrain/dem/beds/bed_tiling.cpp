@@ -35,7 +35,7 @@ Quad moved(Quad p, const Tiling& tiling, const Bin& of_piece, int number) {
   return p;
 }
 
-/// Whether a grain is free of those walls of the bin that the piece knows nothing of.
+/// Whether a grain is free of those walls of the bin that the piece does not have.
 bool free_of_walls(const Quad& p, const Bin& bin, const Bin& of_piece) {
   for (int wall = 0; wall < kFloor; ++wall)
     if (bin.has_wall(wall) && !of_piece.has_wall(wall) && bin.distance(wall, p) < p.w) return false;

@@ -1,6 +1,6 @@
 // The deepest contacts of a bed as it stands now, before the forces of the coming step are taken: what decides how
-// finely the bed must be stepped, and what is told where no step can hold it. Found again from positions, in the few
-// strips where the overlaps of the last step leave them possible; nothing is kept.
+// finely the bed must be stepped, and what is reported where no step can integrate it. Found again from positions, in
+// the few strips where the overlaps of the last step leave them possible; nothing is kept.
 #pragma once
 
 #include <cstdint>

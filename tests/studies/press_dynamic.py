@@ -2,15 +2,14 @@
 """The static press beside the tire in motion: both shell tires are lowered slowly onto hard ground by a damper and stand there
 until they rest; nothing of `furrow press` takes part. Writes press_dynamic.csv beside this script.
 
-usage: press_dynamic.py [--meshes 60x12 …] [--only TIRE]
+usage: press_dynamic.py [--meshes 60x12 …] [--only TIRE …]
 
 A line is one tire, pressure, mesh and load. Dynamic: the axle's height at the end of a run under that load, without friction,
-on grounds of two stiffnesses κ (pressure per depth); linear in 1/κ, the height is taken at the κ of the press, 4e9 N/m³. On
-meshes other than the coarsest one κ is run, and the coarsest mesh's change with 1/κ is taken. The deflection is counted from
-the height at which the inflated tire would touch: radius and growth by inflation. `rest_N` is how much the ground's force
-still differs from the load. `half_speed_mm` is the deflection when the tire is lowered half as fast, less the other. Static:
-deflection of `furrow press --load` on the same mesh. `force_error` is the static force at the dynamic deflection over the load,
-less one.
+on ground of the stiffness (pressure per depth) of the plate of the press; the deflection is counted from the height at which
+the inflated tire would touch, radius and growth by inflation. `rest_N` is the mean force of the ground over the last 10 ms
+less the load, `moved_um` how far the axle moved in that time. `half_speed_mm` is the deflection when the tire is lowered half
+as fast, less the other. Static: deflection of `furrow press --load` on the same mesh. `force_error` is the static force at
+the dynamic deflection over the load, less one.
 """
 import argparse
 import csv
@@ -28,24 +27,24 @@ RESULTS = ROOT / "results" / "studies" / "press_dynamic"
 TIRES = ("hmmwv_lumped.json", "hmmwv_layered.json")
 LOADS = {200e3: (2000.0, 4561.65), 70e3: (1000.0, 2500.0)}  # Pa: N
 MESHES = ("60x12", "90x24", "120x32")
-STIFFNESS = (4e8, 1e9)  # N/m³, of the ground
-PRESS = 4e9  # N/m³, of the plate of furrow press
-SPEED, END = 0.2, 0.5  # m/s, s
+STIFFNESS = 4e9  # N/m³, of the plate of furrow press
+SPEED, END = 0.4, 0.3  # m/s, s
+STEP = 2e-5  # s; forces of a ground as stiff come one step late
 
 
 def furrow(*arguments):
     subprocess.run([provenance.program(), *map(str, arguments)], check=True)
 
 
-def scenario(tire, pressure, mesh, load, stiffness, speed):
+def scenario(tire, pressure, mesh, load, speed):
     around, across = map(int, mesh.split("x"))
     end = END * SPEED / speed
     return {
         "format_version": 1,
         "rig": {"type": "drawbar", "load": load, "slip": 0, "move_from": 2 * end, "lowering_speed": speed},
         "tire": {"file": tire, "rigid": False, "pressure": pressure, "elements_circumference": around, "elements_width": across},
-        "terrain": {"engine": "rigid", "ground_stiffness": stiffness, "friction": 0},
-        "run": {"step": 1e-4, "end": end, "average_from": 0.8 * end},
+        "terrain": {"engine": "rigid", "ground_stiffness": STIFFNESS, "friction": 0},
+        "run": {"step": STEP, "end": end, "average_from": 0.8 * end},
         "output": {"series_interval": 2e-3, "frame_interval": 0},
     }
 
@@ -63,19 +62,20 @@ def folder_of(name, made, *command):
     return folder
 
 
-def stood(tire, pressure, mesh, load, stiffness, speed=SPEED):
-    """Height of the axle, m, and force of the ground less the load, N, at the end."""
-    name = f"{pathlib.Path(tire).stem}_{pressure / 1e3:.0f}_{mesh}_{load:.0f}_{stiffness:.0e}_{speed:g}"
-    folder = folder_of(name, scenario(tire, pressure, mesh, load, stiffness, speed), "run", "--no-plots")
+def stood(tire, pressure, mesh, load, speed=SPEED):
+    """Height of the axle, m, mean force of the ground less the load, N, and way of the axle, m, of the last 10 ms."""
+    name = f"{pathlib.Path(tire).stem}_{pressure / 1e3:.0f}_{mesh}_{load:.0f}_{speed:g}"
+    folder = folder_of(name, scenario(tire, pressure, mesh, load, speed), "run", "--no-plots")
     with open(folder / "timeseries.csv", newline="") as file:
-        last = list(csv.DictReader(file))[-5:]
-    return float(last[-1]["axle_height_m"]), np.mean([float(line["force_z_N"]) for line in last]) - load
+        last = list(csv.DictReader(file))[-6:]
+    heights = [float(line["axle_height_m"]) for line in last]
+    return heights[-1], np.mean([float(line["force_z_N"]) for line in last]) - load, heights[-1] - heights[0]
 
 
 def pressed(tire, pressure, mesh, load):
     """The summary of the press and its curve (deflection, m; force, N)."""
     name = f"{pathlib.Path(tire).stem}_{pressure / 1e3:.0f}_{mesh}_{load:.0f}_press"
-    made = scenario(tire, pressure, mesh, load, STIFFNESS[-1], SPEED)
+    made = scenario(tire, pressure, mesh, load, SPEED)
     folder = folder_of(name, made, "press", "--load", load, "--deflection", 0.016 if pressure > 1e5 else 0.02, "--points", 16)
     with open(folder / "press.csv", newline="") as file:
         curve = [(float(line["deflection_m"]), float(line["force_N"])) for line in csv.DictReader(file) if line["unloading"] == "0"]
@@ -94,22 +94,19 @@ def main():
     for tire in arguments.only:
         for pressure, loads in LOADS.items():
             for load in loads:
-                soft, hard = (stood(tire, pressure, MESHES[0], load, stiffness)[0] for stiffness in STIFFNESS)
-                per_softness = (soft - hard) / (1 / STIFFNESS[0] - 1 / STIFFNESS[1])
-                correction = per_softness * (1 / PRESS - 1 / STIFFNESS[1])
                 for mesh in arguments.meshes:
-                    height, rest = stood(tire, pressure, mesh, load, STIFFNESS[1])
+                    height, rest, moved = stood(tire, pressure, mesh, load)
                     summary, curve, touching = pressed(tire, pressure, mesh, load)
-                    dynamic = touching - height - correction
+                    dynamic = touching - height
                     row = {"tire": tire, "pressure_kPa": pressure / 1e3, "mesh": mesh, "load_N": load, "rest_N": f"{rest:.2g}",
+                           "moved_um": f"{1e6 * moved:.2g}",
                            "dynamic_mm": f"{1e3 * dynamic:.4g}", "static_mm": f"{1e3 * summary['deflection_m']:.4g}",
-                           "of_the_ground_mm": f"{-1e3 * correction:.3g}",
                            "force_error": f"{np.interp(dynamic, curve[:, 0], curve[:, 1]) / load - 1:.4f}", "half_speed_mm": "",
                            "failed_factorizations": summary["failed_factorizations"], "statically_stable": summary["statically_stable"],
                            "runout_mm": f"{1e3 * summary['runout_m']:.3g}",
                            "loading_unloading": f"{summary['loading_unloading_difference']:.2g}"}
-                    if mesh == MESHES[0]:
-                        slower = stood(tire, pressure, mesh, load, STIFFNESS[1], SPEED / 2)[0]
+                    if mesh == MESHES[0] and load == loads[-1]:
+                        slower = stood(tire, pressure, mesh, load, SPEED / 2)[0]
                         row["half_speed_mm"] = f"{1e3 * (height - slower):.2g}"
                     rows.append(row)
                     print(" ".join(f"{key}={value}" for key, value in row.items()), flush=True)

@@ -28,7 +28,7 @@ TIRES = ("hmmwv_lumped.json", "hmmwv_layered.json")
 LOADS = {200e3: (2000.0, 4561.65), 70e3: (1000.0, 2500.0)}  # Pa: N
 MESHES = ("60x12", "90x24", "120x32")
 STIFFNESS = 4e9  # N/m³, of the plate of furrow press
-SPEED, END = 0.4, 0.3  # m/s, s
+SPEED, END = 0.15, 0.45  # m/s, s: nearly critical damping of the load on the tire
 STEP = 2e-5  # s; forces of a ground as stiff come one step late
 
 

@@ -15,6 +15,7 @@ import json
 import pathlib
 import sys
 
+import h5py
 import matplotlib
 
 matplotlib.use("Agg")
@@ -53,6 +54,26 @@ def linear(times, road, body_mass, wheel_mass, stiffness, damping):
     return np.array(lines)
 
 
+def draw_wheel(axis, run, profile, edge):
+    """The rim of the deformed tire in several frames, over the ground."""
+    shown, last = [], None
+    for file in sorted((run / "frames").glob("tire0_*.h5")):
+        with h5py.File(file) as frame:
+            at = frame["position"][()]
+        rim = at[at[:, 1] > 1e-6]  # of the two sides of the extruded tire, one: the tread and the centre
+        middle = rim.mean(axis=0)
+        rim = rim[np.hypot(rim[:, 0] - middle[0], rim[:, 2] - middle[2]) > 0.1]
+        if not edge - 1.2 < middle[0] < edge + 0.9 or (last is not None and middle[0] - last < 0.38):
+            continue
+        last = middle[0]
+        around = np.argsort(np.arctan2(rim[:, 2] - middle[2], rim[:, 0] - middle[0]))
+        shown.append(rim[np.append(around, around[0])])
+    for k, rim in enumerate(shown):
+        axis.plot(rim[:, 0] - edge, rim[:, 2], color=plt.cm.viridis(k / max(1, len(shown) - 1)), lw=1.2)
+    axis.plot([-2.0, *(profile[:, 0] - edge), 2.0], [profile[0, 1], *profile[:, 1], profile[-1, 1]], color="0.3", lw=2)
+    axis.set(xlabel="from the edge, m", ylabel="height, m", xlim=(-1.75, 1.45), aspect="equal", title="deformed tire")
+
+
 def stretches(times, flags):
     """Time during which the flag is set, s."""
     return float(np.sum(np.diff(times)[flags[:-1]])) if len(times) > 1 else 0.0
@@ -68,7 +89,7 @@ def main():
     rig = scenario["rig"]
     edge, height = scenario["terrain"]["profile"][1]
     time, x = series["time_s"], series["position_m"]
-    load = summary["wheels"][0]["load_N"] if "wheels" in summary else summary["load_N"]
+    load = summary["vertical_load_N"]
     before = int(np.searchsorted(x, edge - REST - 0.522))
     axle = series["axle_height_m"] - series["axle_height_m"][before]
     body = series["body_height_m"] - series["body_height_m"][before]
@@ -107,7 +128,8 @@ def main():
         for what, unit, value in figures:
             writer.writerow((what, unit, f"{value:.4g}"))
             print(f"{what}: {value:.4g} {unit}")
-    figure, axes = plt.subplots(1, 2, figsize=(14, 4.8), layout="constrained")
+    figure, (*axes, wheel) = plt.subplots(1, 3, figsize=(17, 4.8), layout="constrained", width_ratios=(1, 1, 1.4))
+    draw_wheel(wheel, run, np.array(scenario["terrain"]["profile"]), edge)
     for axis, mine, theirs, factor in ((axes[0], axle, simple[:, 0], 1e3), (axes[1], force, simple[:, 2], 1e-3)):
         axis.plot(time[near], factor * mine[near], color=style.SKY, label="planar finite elements")
         axis.plot(time[near], factor * theirs[near], "--", color=style.ORANGE, label="spring and damper")

@@ -74,9 +74,10 @@ def read_json(path):
     return json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
 
 
-def record_run(folder):
-    """Notes in the folder of a run which program has made it, just now."""
-    record = {"build": build_of(program()), "commit": commit()}
+def record_run(folder, made_at=None):
+    """Notes in the folder of a run which program has made it, just now. `made_at`: the commit, of the present files if None; a
+    script that writes its table between runs names the one at its start, for its table makes the checkout dirty."""
+    record = {"build": build_of(program()), "commit": made_at or commit()}
     if "compiler" not in read_json(folder / "summary.json"):  # of `furrow press`
         record |= {"compiler": compiler_of(program()), "cpu": processor()}
     (folder / RECORD).write_text(json.dumps(record) + "\n", encoding="utf-8")

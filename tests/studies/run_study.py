@@ -46,7 +46,7 @@ def stale_because(scenario, out):
     return None
 
 
-def run_case(name, scenario, out):
+def run_case(name, scenario, out, made_at=None):
     """Returns whether the run was done."""
     (out / RECORD).unlink(missing_ok=True)
     begin = time.time()
@@ -56,7 +56,7 @@ def run_case(name, scenario, out):
     if done.returncode != 0:
         print(done.stderr[-2000:], file=sys.stderr)
         return False
-    provenance.record_run(out)
+    provenance.record_run(out, made_at)
     return True
 
 
@@ -89,7 +89,7 @@ def main():
     results = arguments.results / arguments.study.stem
     results.mkdir(parents=True, exist_ok=True)
 
-    done, failed = {}, []
+    done, failed, made_at = {}, [], provenance.commit()
     for name, case in study["cases"].items():
         out, scenario = results / name, scenario_of(study, case)
         chosen = not arguments.only or name in arguments.only
@@ -100,7 +100,7 @@ def main():
             continue
         if stale and (out / "summary.json").exists():
             print(f"{name}: run again: {stale}", file=sys.stderr)
-        if (stale or (chosen and arguments.force)) and not run_case(name, scenario, out):
+        if (stale or (chosen and arguments.force)) and not run_case(name, scenario, out, made_at):
             failed.append(name)
             continue
         done[name] = out

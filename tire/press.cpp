@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -14,6 +15,7 @@ namespace {
 
 constexpr double kLoadTolerance = 1e-3;  // of the footprint's load
 constexpr int kMaxTrials = 12;
+constexpr double kOnePath = 1e-3;  // loading and unloading that differ by less are one path
 constexpr double kEdgePressure = 0.02;  // of the largest: where the footprint ends
 
 /// Deflection that carries the load, between two points of the curve; the solver is left there.
@@ -27,6 +29,21 @@ PressPoint find_load(const std::function<PressPoint(double)>& press, PressPoint 
     (now.force < load ? low : high) = now;
   }
   return now;
+}
+
+/// The tangent of the inflated tire that is not pressed is positive definite.
+bool stable_unpressed(const PressResults& results) { return results.loading.front().failed_factorizations == 0; }
+
+/// Largest difference between loading and unloading, of the largest force.
+double path_difference(const PressResults& results) {
+  double difference = 0.0, largest = 0.0;
+  for (const PressPoint& point : results.loading) largest = std::max(largest, point.force);
+  const std::size_t n = results.unloading.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    largest = std::max(largest, results.unloading[k].force);
+    difference = std::max(difference, std::abs(results.unloading[k].force - results.loading[n - 1 - k].force));
+  }
+  return largest > 0.0 ? difference / largest : 0.0;
 }
 
 struct Extent {
@@ -60,6 +77,22 @@ void measure_press(const PressOptions& options, const PressModel& model,
   for (int k = options.points + 1; k <= total; ++k) results.unloading.push_back(at(k));
 }
 
+std::string press_caution(const PressResults& results) {
+  const double difference = path_difference(results);
+  const std::string end =
+      difference > kOnePath ? fmt::format("loading and unloading differ by {:.2g} % of the largest force", 100.0 * difference)
+                            : std::string("loading and unloading agree");
+  if (!stable_unpressed(results))
+    return "this tire wrinkles under its pressure: the equilibrium was reached by creep and need not be the only one; " + end;
+  const auto failed = [](const PressPoint& point) { return point.failed_factorizations > 0; };
+  if (const auto first = std::ranges::find_if(results.loading, failed);
+      first != results.loading.end() || std::ranges::any_of(results.unloading, failed))
+    return fmt::format("this tire buckles while it is pressed{}: its equilibria were reached by creep and need not be the only "
+                       "ones; {}",
+                       first != results.loading.end() ? fmt::format(", first on the way to {:.3g} m", first->deflection) : "", end);
+  return difference > kOnePath ? end + ": there is more than one equilibrium" : "";
+}
+
 nlohmann::ordered_json press_json(const PressOptions& options, const PressResults& results) {
   nlohmann::ordered_json j;
   const bool profile = !options.obstacle.profile.empty(), cleat = !profile && options.obstacle.height > 0.0;
@@ -77,6 +110,7 @@ nlohmann::ordered_json press_json(const PressOptions& options, const PressResult
   j["spin_inertia_kg_m2"] = results.mass.inertia(1, 1);
   j["inflation_growth_m"] = if_any(results.inflation_growth);
   j["runout_m"] = results.runout;
+  j["director_runout_rad"] = results.director_runout;
   j["load_N"] = options.load;
   const PressPoint& p = results.at_load;
   const bool reached = std::abs(p.force - options.load) <= kLoadTolerance * options.load;
@@ -91,24 +125,19 @@ nlohmann::ordered_json press_json(const PressOptions& options, const PressResult
   j["deflection_m"] = if_reached(p.deflection);
   j["secant_stiffness_N_per_m"] = if_reached(p.force / p.deflection);
   j["tangent_stiffness_N_per_m"] = if_reached(tangent);
-  double difference = 0.0, residual = 0.0, largest = 0.0;
+  double residual = 0.0;
   int steps = 0, failed = 0;
-  const auto count = [&](const PressPoint& point) {
-    residual = std::max(residual, point.residual), largest = std::max(largest, point.force);
-    steps += point.creep_steps, failed += point.failed_factorizations;
-  };
-  for (const PressPoint& point : results.loading) count(point);
-  const std::size_t n = results.unloading.size();
-  for (std::size_t k = 0; k < n; ++k) {
-    count(results.unloading[k]);
-    difference =
-        std::max(difference, std::abs(results.unloading[k].force - results.loading[n - 1 - k].force));
-  }
-  j["loading_unloading_difference"] = largest > 0.0 ? difference / largest : 0.0;
+  for (const auto* path : {&results.loading, &results.unloading})
+    for (const PressPoint& point : *path) {
+      residual = std::max(residual, point.residual);
+      steps += point.creep_steps, failed += point.failed_factorizations;
+    }
+  j["loading_unloading_difference"] = path_difference(results);
   j["max_residual"] = residual;
   j["creep_steps"] = steps;
   j["failed_factorizations"] = failed;
-  j["statically_stable"] = results.loading.front().failed_factorizations == 0;  // inflated and not pressed
+  j["statically_stable"] = stable_unpressed(results);
+  j["stable_while_pressed"] = failed == results.loading.front().failed_factorizations;
   double area = 0.0, force = 0.0, highest = 0.0;
   for (const PressSample& s : results.footprint) highest = std::max(highest, s.pressure);
   // A patch on plate or cleat holds the middle of it.

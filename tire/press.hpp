@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -31,6 +32,7 @@ struct PressResults {
   std::optional<double> pressure;          // gauge, Pa; where the model has one
   MassProperties mass;                     // of the whole tire about its centre
   double runout = 0.0;                     // of the tire at rest before it is pressed: its wrinkles, m
+  double director_runout = 0.0;            // likewise of the angle between directors and axle, rad
 };
 
 /// The curve, loading and unloading, and the footprint under the load, for whatever model presses.
@@ -51,6 +53,9 @@ class StaticTest {
   /// @throws Error(physics) when there is no equilibrium
   virtual PressResults press(const PressOptions& options, const ProgressCall& progress) const = 0;
 };
+
+/// What a reader of the curve must know of its equilibria, for a warning; empty: nothing.
+std::string press_caution(const PressResults& results);
 
 /// summary.json without what names the run.
 nlohmann::ordered_json press_json(const PressOptions& options, const PressResults& results);

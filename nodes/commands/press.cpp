@@ -85,11 +85,8 @@ ExitCode press_command(const scenario::Scenario& scenario, const PressArguments&
     write_whole_file(directory.path() / "scenario.json", scenario.completed + "\n");
     tire::write_press_tables(directory.path(), results);
     write_whole_file(directory.path() / "summary.json", summary.dump(2) + "\n");
-    if (!summary["statically_stable"].get<bool>())
-      print_warning(
-          "this tire wrinkles under its pressure: the equilibrium was reached by creep and need not be the "
-          "only one; see loading_unloading_difference in summary.json and tire/README.md, \"Static "
-          "pressing\"");
+    if (const std::string caution = tire::press_caution(results); !caution.empty())
+      print_warning(caution + "; see summary.json and tire/README.md, \"Static pressing\"");
     if (summary["deflection_m"].is_null())
       print_warning(fmt::format(
           "the load of {:g} N was not reached: the largest force is {:.4g} N; no stiffness is given, and the "

@@ -77,7 +77,9 @@ class Press(SystemTest):
         summary = json.loads((out / "summary.json").read_text())
         self.assertLess(summary["loading_unloading_difference"], 1e-5)
         self.assertLessEqual(summary["max_residual"], 1e-6)
-        self.assertTrue(summary["statically_stable"])
+        self.assertTrue(summary["statically_stable"] and summary["stable_while_pressed"])
+        self.assertLess(max(summary["runout_m"], summary["director_runout_rad"]), 1e-6)
+        self.assertNotIn("equilibri", done.stderr)
         patch = summary["footprint"]
         self.assertAlmostEqual(patch["force_N"], 2000, delta=2)
         self.assertAlmostEqual(patch["mean_pressure_Pa"] * patch["area_m2"], 2000, delta=20)
@@ -87,6 +89,19 @@ class Press(SystemTest):
         self.assertEqual(len(lines), 1 + 5 + 4)
         forces = [float(line.split(",")[1]) for line in lines[1:6]]
         self.assertEqual(forces, sorted(forces))
+
+    def test_what_wrinkles_and_what_buckles_on_the_way_is_named(self):
+        done = self.press("--set", "tire.file=hmmwv_layered.json", "--set", "tire.elements_circumference=60", "--set", "tire.elements_width=12")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("furrow: warning: this tire wrinkles under its pressure", done.stderr)
+        done = furrow("press", self.folder / "pressed.json", "--out", self.folder / "out", "--overwrite", "--deflection", "0.02",
+                      "--points", "5", "--load", "1000", "--set", "tire.pressure=70000", "--set", "tire.elements_circumference=60",
+                      "--set", "tire.elements_width=12", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stderr, r"furrow: warning: this tire buckles while it is pressed, first on the way to 0\.\d+ m")
+        summary = json.loads((self.folder / "out/summary.json").read_text())
+        self.assertEqual((summary["statically_stable"], summary["stable_while_pressed"]), (True, False))
+        self.assertLess(summary["director_runout_rad"], 1e-6)
 
     def test_cleat_is_softer_than_a_plate(self):
         done = self.press("--on", "cleat", "--cleat-width", "0.004", "--load", "1e5")

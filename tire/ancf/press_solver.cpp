@@ -308,6 +308,20 @@ double PressSolver::runout() const {
   return most;
 }
 
+double PressSolver::director_runout() const {
+  double most = 0.0;
+  for (int j = 1; j + 1 < layout_.rows; ++j) {
+    double low = 1e300, high = -1e300;
+    for (int i = 0; i < layout_.columns; ++i) {
+      const Vec3 director = layout_.get(q_, i, j, 3);
+      const double angle = std::acos(std::clamp(director.y() / director.norm(), -1.0, 1.0));
+      low = std::min(low, angle), high = std::max(high, angle);
+    }
+    most = std::max(most, high - low);
+  }
+  return most;
+}
+
 std::vector<PressSample> PressSolver::footprint() const {
   std::vector<PressSample> samples;
   contact_points([&](int, int, const std::array<double, 4>&, const Vec3& x, double area) {

@@ -38,6 +38,9 @@ class PressSolver {
   double potential() const { return potential_; }
   /// Largest difference of radius around a row of nodes, m: of the tire not pressed, the height of its wrinkles.
   double runout() const;
+  /// Largest difference of the angle between a director and the axle around a row of nodes, rad: wrinkles that turn the
+  /// shell's thickness and leave its radius.
+  double director_runout() const;
   std::vector<PressSample> footprint() const;
   const Field& q() const { return q_; }
 

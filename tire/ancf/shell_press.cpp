@@ -36,7 +36,10 @@ PressResults press_tire(const TireFile& file, const PressOptions& options, const
     }
   };
   model.footprint = [&] { return solver.footprint(); };
-  model.unpressed = [&] { results.runout = solver.runout(); };
+  model.unpressed = [&] {
+    results.runout = solver.runout();
+    results.director_runout = solver.director_runout();
+  };
   measure_press(
       options, model, [&](double share) { done = share; }, results);
   return results;

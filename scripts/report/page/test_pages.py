@@ -77,6 +77,16 @@ def soil(page, arrays, run, sections):
                     ("scenario", lambda: kept_scenario(run.directory)), ("all values", lambda: provenance(run.values))])
 
 
+def stability(values):
+    """(sentence, tone) on the equilibria of a press; older results say nothing of the way."""
+    if not values["statically_stable"]:
+        return "The tire wrinkles under its pressure before it is pressed: its equilibria need not be the only ones.", "warn"
+    if values.get("stable_while_pressed") is False:
+        return "The inflated tire is stable, and buckles while it is pressed: its equilibria need not be the only ones.", "warn"
+    return ("The tire is statically stable along the whole curve." if values.get("stable_while_pressed") else
+            "The inflated tire is statically stable before it is pressed."), "good"
+
+
 def press_answer(run):
     values, items = run.values, []
     for key in ("load_N", "deflection_m", "secant_stiffness_N_per_m", "tangent_stiffness_N_per_m", "pressure_Pa"):
@@ -91,9 +101,7 @@ def press_answer(run):
     if is_number(values.get("deflection_m")) and is_number(values.get("load_N")):
         made.insert(0, blocks.text(f"Under {values['load_N']:.4g} N the tire deflects by {1e3 * values['deflection_m']:.4g} mm.", "lead"))
     if isinstance(values.get("statically_stable"), bool):
-        stable = values["statically_stable"]
-        made.append(blocks.text("The tire is statically stable along the whole curve." if stable else
-                                "The tire is not statically stable along the whole curve.", "good" if stable else "warn"))
+        made.append(blocks.text(*stability(values)))
     return {"id": "answer", "title": "Result", "blocks": made}
 
 

@@ -56,10 +56,18 @@ TEST(PressSolver, unloads_along_the_loading_path) {
   }
 }
 
+TEST(PressSolver, an_axisymmetric_tire_has_no_runout) {
+  const auto solver = solver_of(small_file("hmmwv_lumped.json", 30, 6), {});
+  EXPECT_EQ(solver->press(0.0).failed_factorizations, 0);
+  EXPECT_LT(solver->runout(), 1e-12);
+  EXPECT_LT(solver->director_runout(), 1e-7);  // acos of what rounding leaves
+}
+
 TEST(PressSolver, a_wrinkled_tire_comes_to_a_stable_rest) {
   const auto solver = solver_of(small_file("hmmwv_layered.json", 60, 12), {});
   EXPECT_GT(solver->press(0.0).failed_factorizations, 0);  // 200 kPa: the axisymmetric shape is not stable
   EXPECT_GT(solver->runout(), 1e-4);
+  EXPECT_GT(solver->director_runout(), 1e-3);
   double last = 0.0;
   for (int k = 1; k <= 2; ++k) {
     const tire::PressPoint point = solver->press(0.003 * k);

@@ -6,11 +6,13 @@
 #include <fmt/format.h>
 
 #include "nodes/commands/commands.hpp"
+#include "nodes/launch/messages.hpp"
 #include "nodes/launch/progress.hpp"
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
 #include "nodes/scenario/scenario.hpp"
 #include "protocol/core/clock.hpp"
+#include "protocol/files/digits.hpp"
 #include "protocol/files/text_file.hpp"
 #include "tire/press.hpp"
 
@@ -60,6 +62,20 @@ std::unique_ptr<tire::StaticTest> static_test(const scenario::Scenario& scenario
                                 tire.describe().name));
 }
 
+/// The answer in a line, from the summary; empty where the load was not reached.
+std::string result_line(const nlohmann::ordered_json& summary) {
+  if (summary["deflection_m"].is_null()) return "";
+  const auto in = [](const nlohmann::ordered_json& value, double unit) {
+    return digits(value.get<double>() / unit);
+  };
+  const auto& footprint = summary["footprint"];
+  return fmt::format(
+      "furrow: a load of {} N deflects the tire by {} mm: secant stiffness {} kN/m, footprint {} mm long{}\n",
+      in(summary["load_N"], 1.0), in(summary["deflection_m"], 1e-3),
+      in(summary["secant_stiffness_N_per_m"], 1e3), in(footprint["length_m"], 1e-3),
+      footprint["width_m"].is_number() ? fmt::format(", {} mm wide", in(footprint["width_m"], 1e-3)) : "");
+}
+
 }  // namespace
 
 ExitCode press_command(const scenario::Scenario& scenario, const PressArguments& arguments) {
@@ -93,6 +109,7 @@ ExitCode press_command(const scenario::Scenario& scenario, const PressArguments&
           "footprint is that of this force; press further (--deflection) or ask for less (--load); see "
           "tire/README.md, \"Static pressing\"",
           options.load, results.at_load.force));
+    launch::say(result_line(summary));
     std::cout << directory.path().string() << std::endl;
   } catch (...) {
     directory.discard();

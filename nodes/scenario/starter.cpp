@@ -29,9 +29,9 @@ constexpr double kRadius = 0.4673, kLoad = 4608.0;                        // m, 
 constexpr double kCohesion = 80e3, kModulus = 2.49e7, kPressure = 155e3;  // Pa
 // In tire radii.
 constexpr double kGrain = 1.0 / 45.0, kAhead = 2.2, kBehind = 1.2, kBeside = 0.4;
-constexpr double kAcross = 12.0,
+constexpr double kAcross = 11.0,
                  kAlong = 14.0;  // grain radii in a tread's width, at least, and in a contact's length
-constexpr int kLayers = 14, kMostLayers = 80;
+constexpr int kLayers = 14, kMostLayers = 120;
 constexpr double kDepth = 8.5;        // sinkages
 constexpr double kTreadSpeed = 0.93;  // √(g R)
 constexpr double kLowering = 0.18;    // √(g R)
@@ -278,6 +278,7 @@ void write(const std::filesystem::path& file, const StarterOptions& o) {
   scales = scales_of(checked(file, document));
 
   if (const Json tire = tire_section(o, scales); !tire.empty()) document["tire"] = tire;
+  scales = scales_of(checked(file, document));  // the mesh decides how wide the tread is
   const double travel = o.vehicle.empty()
                             ? (1.0 - kSlip) * tread_speed(scales) * (kEnd - kMoveFrom) * time_scale(scales)
                             : 8.0 * scales.radius;

@@ -190,7 +190,9 @@ void Sweep::show_progress() {
     share += run.done / static_cast<double>(runs_.size());
   }
   if (begin_ == 0.0) begin_ = now, begin_share_ = share;
-  launch::Progress progress{.phase = fmt::format("{} of {} runs done,", done, runs_.size()), .share = share};
+  const bool under_way = share > 0.0 && share < 1.0;  // then the share follows
+  launch::Progress progress{
+      .phase = fmt::format("{} of {} runs done{}", done, runs_.size(), under_way ? "," : ""), .share = share};
   if (share > begin_share_) progress.eta = (now - begin_) * (1.0 - share) / (share - begin_share_);
   display_.show(progress);
 }

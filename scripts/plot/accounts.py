@@ -125,6 +125,6 @@ def momentum(run):
         if not rows:
             raise Missing("the account of momentum is empty")
         bars(axis, rows, "N s")
-        axis.set_xlabel("N s")
+        axis.set_xlabel("momentum, N s")
         axis.set_title(name)
     return figure

@@ -106,7 +106,7 @@ def forces(run):
     if run.number("vertical_load_N"):
         top.axhline(run.number("vertical_load_N"), color=RED, ls="--", lw=1.2,
                     label=f"load (weight carried) {digits(run.number('vertical_load_N'))} N")
-    top.set_ylabel("N")
+    top.set_ylabel("force, N")
     settled_limits(top, run, vertical)
     top.set_title("Vertical force on the tire by the ground: positive up")
 
@@ -119,7 +119,7 @@ def forces(run):
     middle.axhline(0.0, color="black", lw=0.8)
     if shown:
         settled_limits(middle, run, *[values for values, _, _ in shown])
-    middle.set_ylabel("N")
+    middle.set_ylabel("force, N")
     middle.set_title("Forces on the tire along the direction of travel: positive forward")
 
     noisy(bottom, time, run.column("spindle_torque_Nm"), PURPLE, "drive torque on the spindle")
@@ -129,7 +129,7 @@ def forces(run):
         if mean is not None:
             bottom.plot(time, mean, color=GREEN, ls="--", lw=1.2, label="tractive effort × undeformed radius")
     settled_limits(bottom, run, run.series["spindle_torque_Nm"])
-    bottom.set_ylabel("N m")
+    bottom.set_ylabel("torque, N m")
     bottom.set_title("Spindle torque: positive when it drives the wheel forward")
     bottom.set_xlabel("time, s")
     bottom.set_xlim(0.0, time[-1])
@@ -179,7 +179,7 @@ def ranks(run):
     axis.set_xlim(0.0, 1.3 * longest)
     axis.set_xlabel("wall time of the stepping loop, s")
     per_second = run.told.get("wall_s_per_simulated_s")
-    axis.set_title(f"{run.title}\nWho computes and who waits"
+    axis.set_title(f"{run.title}\nTime that each rank computes and waits"
                    + (f" · {per_second:.1f} s of wall time per simulated second" if per_second else ""))
     axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), ncol=3)
     return figure

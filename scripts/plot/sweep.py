@@ -162,7 +162,7 @@ def passes(sweep):
         middle.errorbar(of_pass, sinkage, yerr=bars(bar), marker="o", capsize=4, color=colour, label="sinkage" if i == 0 else None)
         middle.plot(of_pass, clearance, "s--", color=colour, alpha=0.5, label="tire to floor" if i == 0 else None)
     left.set_ylabel("drawbar pull, N" + (bar_meaning(sweep.plot) if over else " (bars: standard error)"))
-    middle.set_ylabel("mm")
+    middle.set_ylabel("depth, mm")
     middle.legend(fontsize=8)
     if any(groups):
         left.legend(fontsize=8)
@@ -209,8 +209,8 @@ def profiles(sweep, axis):
         middle = (x > x[0] + 0.35 * (x[-1] - x[0])) & (x < x[0] + 0.65 * (x[-1] - x[0]))
         return np.nanmean(change[middle], axis=0)
     rut_lines(sweep, axis, lambda x, y: 1e3 * y, across)
-    axis.set_xlabel("across, mm (mean over the middle 30 % of the bed)")
-    axis.set_ylabel("surface against undisturbed, mm")
+    axis.set_xlabel("y across the bed, mm (mean over the middle 30 % of its length)")
+    axis.set_ylabel("height above the undisturbed surface, mm")
     axis.legend(fontsize=8)
 
 
@@ -222,8 +222,8 @@ def rut_along(sweep):
         tread = np.abs(y - summary["lateral_m"]) < 0.25 * summary["tread_width_m"]
         return np.nanmean(change[:, tread], axis=1)
     rut_lines(sweep, axis, lambda x, y: x, along)
-    axis.set_xlabel("along, m")
-    axis.set_ylabel("surface against undisturbed, mm")
+    axis.set_xlabel("x along the bed, m")
+    axis.set_ylabel("height above the undisturbed surface, mm")
     axis.set_title(f"{sweep.title()} · middle half of the tread", loc="left", fontweight="bold")
     axis.legend(fontsize=8)
     return figure

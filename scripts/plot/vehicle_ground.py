@@ -51,7 +51,7 @@ def top_view(figure, axis, v, field, depth):
         colour = AXLES[v.order.index(wheel.axle) % len(AXLES)]
         axis.plot(x, y, color=colour, lw=0.9, ls=":")
         axis.plot(x[-1], y[-1], "o", color=colour, mec="black", ms=6,
-                  label=f"{v.axles[wheel.axle]} wheels at the end, dotted: their way" if wheel.side == "left" else None)
+                  label=f"{v.axles[wheel.axle]} wheels at the end; dotted: their path" if wheel.side == "left" else None)
     axis.set_xlabel("x, m")
     axis.set_ylabel("y, m (left of +x)")
     axis.set_title("Seen from above (medians over 3 × 3 cells)", pad=24)
@@ -99,7 +99,7 @@ def along(axis, v, field, depth):
         axis.axvline(place, color="black", lw=0.8, ls=":")
         axis.annotate(what, (place, 0.0), xycoords=("data", "axes fraction"), rotation=90, fontsize=7.5, xytext=(-1, 3),
                       textcoords="offset points", va="bottom", ha="right")
-    axis.set_xlabel("along the way of the front wheels from their place at the start, m")
+    axis.set_xlabel("distance along the path of the front wheels from their start, m")
     axis.set_ylabel("height change, mm")
     axis.set_title(f"Along the way of the front wheels, means over {0.5 * radius:.2g} m")
     axis.margins(y=0.2)

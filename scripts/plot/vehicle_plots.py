@@ -16,13 +16,13 @@ HEATS = {"drive_work_J": "engine and motors give", "converter_heat_J": "converte
 def place(axis, v):
     axis.plot(v.time, v["x_m"] - v["x_m"][0], color=BLUE, label="x − x at the start")
     axis.plot(v.time, v["y_m"] - v["y_m"][0], color=ORANGE, label="y − y at the start")
-    axis.set_ylabel("m")
-    axis.set_title("Way of the vehicle's origin")
+    axis.set_ylabel("distance, m")
+    axis.set_title("Displacement of the vehicle's origin")
 
 
 def height(axis, v):
     axis.plot(v.time, 1e3 * (v["z_m"] - v.wheels[0].surface), color=BLUE, label="origin above the undisturbed surface")
-    axis.set_ylabel("mm")
+    axis.set_ylabel("height, mm")
     axis.set_title("Height")
 
 
@@ -37,14 +37,14 @@ def speeds(axis, v):
     if "target_speed_m_per_s" in v and v["target_speed_m_per_s"].any():
         axis.plot(v.time, v["target_speed_m_per_s"], color=GREEN, ls="--", lw=1.0, label="target")
     limits(axis, v, [v["speed_m_s"], *curves])
-    axis.set_ylabel("m/s")
+    axis.set_ylabel("speed, m/s")
     axis.set_title("Speed, and circumferential speed of the wheels (mean of 50 ms)")
 
 
 def angles(axis, v):
     axis.plot(v.time, np.degrees(v["pitch_rad"]), color=BLUE, label="pitch, nose down positive")
     axis.plot(v.time, np.degrees(v["roll_rad"]), color=ORANGE, label="roll, right side down positive")
-    axis.set_ylabel("°")
+    axis.set_ylabel("angle, °")
     axis.set_title("Pitch and roll")
 
 
@@ -55,7 +55,7 @@ def engine(axis, v):
     axis.plot(v.time, v["engine_speed_rpm"], color=PURPLE, label="engine")
     if "turbine_speed_rpm" in v and v["turbine_speed_rpm"].any():
         axis.plot(v.time, v["turbine_speed_rpm"], color=ORANGE, label="turbine")
-    axis.set_ylabel("1/min")
+    axis.set_ylabel("speed, 1/min")
     axis.set_ylim(bottom=0.0)
     axis.set_title("Speed of engine and converter's turbine, and gear (right)")
     gear = axis.twinx()
@@ -70,7 +70,7 @@ def inputs(axis, v):
     for name, colour in (("throttle", GREEN), ("brake", RED), ("steering", BLUE)):
         axis.plot(v.time, v[name], color=colour, label=name + (", left positive" if name == "steering" else ""))
     axis.set_ylim(min(-0.05, 1.1 * v["steering"].min()), 1.1)
-    axis.set_ylabel("–")
+    axis.set_ylabel("input, –")
     axis.set_title("The driver's inputs")
 
 
@@ -82,7 +82,7 @@ def powers(axis, v):
         axis.plot(v.time, values, color=colour, label=label)
         curves.append(values)
     limits(axis, v, curves)
-    axis.set_ylabel("kW")
+    axis.set_ylabel("power, kW")
     axis.set_title("Power (mean of 50 ms)")
 
 
@@ -92,7 +92,7 @@ def heats(axis, v):
         if name in v and np.abs(v[name]).max() > 1e-3 * largest:
             axis.plot(v.time, 1e-3 * v[name], color=colour, label=label)
     axis.set_ylabel("kJ since the start")
-    axis.set_title("Work of the drive, and heat of what takes it on the way")
+    axis.set_title("Work of the drive, and heat of the parts that dissipate it")
 
 
 def vehicle(v):
@@ -140,7 +140,7 @@ def path(v):
                                       (heading, np.degrees(v["heading_error_rad"]), "°", "Error of the heading")):
         axis.plot(v["path_distance_m"], values, color=BLUE)
         axis.axhline(0.0, color="black", lw=0.6)
-        axis.set_ylabel(unit)
+        axis.set_ylabel(f"error, {unit}")
         axis.set_title(f"{title} (largest {np.abs(values).max():.3g} {unit}, rms {np.sqrt(np.mean(values ** 2)):.3g} {unit})")
     heading.set_xlabel("distance along the path, m")
     return figure

@@ -44,7 +44,7 @@ def wheel_forces(v):
     finish(axes, v, titles)
     for row, found in zip(axes, curves):
         limits(row[0], v, found)
-        row[0].set_ylabel("N")
+        row[0].set_ylabel("force, N")
     mark_events(axes[3][0], v, words=True)
     steadiness(axes[0][-1], v)
     return figure
@@ -54,8 +54,9 @@ def wheel_motion(v):
     titles = ["spin; grey: speed over undeformed radius", "slip: 1 − v/(ω R), where the wheel is not slow",
               "sinkage below the undisturbed surface; dotted: below the rut",
               "height of the wheel's centre above the undisturbed surface", "suspension travel, upward from the drawn position"]
+    labels = ["spin, rad/s", "slip, –", "sinkage, mm", "height, mm", "travel, mm"]
     if v.hard_ground:
-        titles[2] = "deflection of the tire at its lowest point"
+        titles[2], labels[2] = "deflection of the tire at its lowest point", "deflection, mm"
     figure, axes = grid(v, 5, len(v.axles), 12.5, sharey="row")
     curves = [[], [], [], [], []]
     _, slow = events.drive_off(v)
@@ -74,9 +75,9 @@ def wheel_motion(v):
             if inside.any() and not v.hard_ground:
                 axes[2][column].plot(v.time, np.where(inside, 1e3 * wheel["sinkage_in_rut_m"], np.nan), ":", color=colour)
     finish(axes, v, titles)
-    for row, found, unit, zero in zip(axes, curves, ("rad/s", "–", "mm", "mm", "mm"), (True, True, True, False, True)):
+    for row, found, label, zero in zip(axes, curves, labels, (True, True, True, False, True)):
         limits(row[0], v, found, zero)
-        row[0].set_ylabel(unit)
+        row[0].set_ylabel(label)
     low, high = axes[1][0].get_ylim()
     axes[1][0].set_ylim(max(low, -1.0), min(high, 1.05))
     axes[2][0].invert_yaxis()
@@ -97,7 +98,7 @@ def front_and_rear(v):
              ("terrain_resistance_N", "resistance of the axle's wheels, N", 1.0, True),
              ("sinkage_m", "sinkage below the undisturbed surface, mm", 1e3, False)]
     figure, axes = plt.subplots(2, 2, figsize=(13, 7.6), sharex=True)
-    figure.suptitle(f"{v.title}\nAxles against the place that they roll over: one above the other is the same soil", fontsize=11,
+    figure.suptitle(f"{v.title}\nMeans of each axle over its place on the bed: values above each other are for the same soil", fontsize=11,
                     x=0.01, ha="left", fontweight="bold")
     begin = events.first(v.time >= quiet_time(v)) or 0
     for axis, (column, title, factor, total) in zip(axes.flat, shown):

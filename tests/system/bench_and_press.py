@@ -71,6 +71,7 @@ class Press(SystemTest):
 
     def test_plate(self):
         done = self.press("--load", "2000")
+        self.assertRegex(done.stderr, r"a load of 2000 N deflects the tire by [\d.]+ mm: secant stiffness \d+ kN/m, footprint \d[\d.]* mm long, [\d.]+ mm wide")
         self.assertEqual(done.returncode, 0, done.stderr)
         out = self.folder / "out"
         self.assertEqual(done.stdout.strip(), str(out))

@@ -17,6 +17,14 @@ def text(**sections):
     return json.dumps(changed(**sections))
 
 
+def curb(rig=(), profile=None):
+    """A quarter car on a planar tire over a curb, with keys of its own."""
+    return json.dumps({"format_version": 1, "rig": {"type": "quarter_car", "speed": 4.0, "body_mass": 1290, **dict(rig)},
+                       "tire": {"file": "aligator_planar.json"},
+                       "terrain": {"engine": "rigid", "profile": [[6, 0], [6, 0.2]] if profile is None else profile},
+                       "run": {"step": 4e-5, "end": 2.6, "average_from": 2.3}})
+
+
 EMPIRICAL = json.dumps({**changed(terrain=None), "terrain": {"engine": "scm"}})
 
 # (name, file text or bytes, flags of `furrow run`, what the error line must hold)
@@ -106,6 +114,22 @@ SCENARIOS = [
     ("unknown_flag", json.dumps(SMALL), ["--fast"], "--fast"),
     ("missing_flag_value", json.dumps(SMALL), ["--out"], "--out"),
     ("two_scenarios", json.dumps(SMALL), ["other.json"], "other.json"),
+    ("profile_that_goes_back", curb(profile=[[1, 0], [0, 1]]), [], "key 'terrain.profile.1.0': is 0 m, expected 1 m, as in the entry before, or more"),
+    ("empty_profile", curb(profile=[]), [], "key 'terrain.profile': is [], expected a list of 1 to 100000 [x, z] in m or null"),
+    ("profile_of_three_numbers", curb(profile=[[0, 0, 1]]), [], "key 'terrain.profile.0': is [0.0,0.0,1.0], expected a list of 2 entries"),
+    ("profile_as_text", curb(profile="road.csv"), [], "key 'terrain.profile': is 'road.csv', expected a list of 1 to 100000 [x, z] in m or null"),
+    ("profile_of_three_heights", curb(profile=[[0, 0], [0, 0.1], [0, 0.2]]), [], "key 'terrain.profile.2.0': is 0 m a third time, expected two entries at most"),
+    ("profile_with_a_text", curb(profile=[[0, "high"]]), [], "key 'terrain.profile.0.1': is 'high', expected a number"),
+    ("profile_on_grains", text(terrain={"profile": [[0, 0]]}), [], "key 'terrain.profile': is a key of engine 'rigid', but terrain.engine is 'dem'"),
+    ("negative_body_mass", curb({"body_mass": -1}), [], "key 'rig.body_mass': is -1 kg, expected a number, above 0"),
+    ("load_beside_body_mass", curb({"load": 100}), [], "key 'rig.load': is given beside 'rig.body_mass', expected one of the two"),
+    ("slip_of_a_quarter_car", curb({"slip": 0.2}), [], "key 'rig.slip': is a key of type 'drawbar', but rig.type is 'quarter_car'"),
+    ("wheels_of_a_quarter_car", curb({"wheels": [{}, {}]}), [], "key 'rig.wheels': is a key of type 'drawbar', but rig.type is 'quarter_car'"),
+    ("camber_of_a_quarter_car", curb({"camber_angle": 0.1}), [], "key 'rig.camber_angle': is a key of type 'drawbar', but rig.type is 'quarter_car'"),
+    ("negative_suspension", curb({"suspension_stiffness": -1}), [], "key 'rig.suspension_stiffness': is -1 N/m, expected a number, 0 to"),
+    ("negative_unsprung_mass", curb({"unsprung_mass": -2}), [], "key 'rig.unsprung_mass': is -2 kg, expected a number, above 0"),
+    ("backward_quarter_car", curb({"speed": -1}), [], "key 'rig.speed': is -1 m/s, expected a number, 0 to"),
+    ("body_mass_of_a_drawbar_rig", text(rig={"body_mass": 300}), [], "key 'rig.body_mass': is a key of type 'quarter_car', but rig.type is 'drawbar'"),
 ]
 
 

@@ -2,7 +2,9 @@
 """The static press beside the tire in motion: both shell tires are lowered slowly onto hard ground by a damper and stand there
 until they rest; nothing of `furrow press` takes part. Writes press_dynamic.csv beside this script.
 
-usage: press_dynamic.py [--meshes 60x12 …] [--only TIRE …]
+usage: press_dynamic.py [--meshes 60x12 …] [--only TIRE …] [--finished]
+
+With --finished nothing is computed: the table holds the lines whose runs this build has made.
 
 A line is one tire, pressure, mesh and load. Dynamic: the axle's height at the end of a run under that load, without friction,
 on ground of the stiffness (pressure per depth) of the plate of the press; the deflection is counted from the height at which
@@ -49,11 +51,20 @@ def scenario(tire, pressure, mesh, load, speed):
     }
 
 
+class Unfinished(Exception):
+    pass
+
+
+only_finished = False
+
+
 def folder_of(name, made, *command):
     """Of the results, made unless this build made them already from the same scenario."""
     folder, stamp = RESULTS / name, RESULTS / f"{name}.stamp"
     key = json.dumps([provenance.build_of(provenance.program()), made, command])
     if not (folder / "summary.json").exists() or not stamp.exists() or stamp.read_text() != key:
+        if only_finished:
+            raise Unfinished
         RESULTS.mkdir(parents=True, exist_ok=True)
         file = RESULTS / f"{name}.json"
         file.write_text(json.dumps(made))
@@ -87,16 +98,22 @@ def pressed(tire, pressure, mesh, load):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("--meshes", nargs="+", choices=MESHES, default=MESHES)
+    parser.add_argument("--finished", action="store_true", help="only lines whose runs are there")
     parser.add_argument("--only", choices=TIRES, nargs="+", default=TIRES, metavar="TIRE")
     arguments = parser.parse_args()
+    global only_finished
+    only_finished = arguments.finished
     origin = provenance.made_here()
     rows = []
     for tire in arguments.only:
         for pressure, loads in LOADS.items():
             for load in loads:
                 for mesh in arguments.meshes:
-                    height, rest, moved = stood(tire, pressure, mesh, load)
-                    summary, curve, touching = pressed(tire, pressure, mesh, load)
+                    try:
+                        height, rest, moved = stood(tire, pressure, mesh, load)
+                        summary, curve, touching = pressed(tire, pressure, mesh, load)
+                    except Unfinished:
+                        continue
                     dynamic = touching - height
                     row = {"tire": tire, "pressure_kPa": pressure / 1e3, "mesh": mesh, "load_N": load, "rest_N": f"{rest:.2g}",
                            "moved_um": f"{1e6 * moved:.2g}",
@@ -110,7 +127,7 @@ def main():
                         row["half_speed_mm"] = f"{1e3 * (height - slower):.2g}"
                     rows.append(row)
                     print(" ".join(f"{key}={value}" for key, value in row.items()), flush=True)
-    provenance.write_table(HERE / "press_dynamic.csv", list(rows[0]), rows, origin)
+                    provenance.write_table(HERE / "press_dynamic.csv", list(row), rows, origin)
 
 
 if __name__ == "__main__":

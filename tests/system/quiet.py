@@ -39,9 +39,9 @@ class Quiet(SystemTest):
 
     def test_a_run_its_continuation_and_its_report(self):
         path = write_scenario(self.folder)
-        loud, quiet = self.both("run", path)
+        loud, quiet = self.both("run", path, "--no-plots")
         self.assertEqual((loud, quiet), ("results/small-001\n", "results/small-002\n"))
-        self.both("resume", "results/small-001")
+        self.both("resume", "results/small-001", "--no-plots")
         self.assertEqual(len(set(self.both("report", "results/small-001"))), 1)
         done = furrow("resume", "results/small-001", "--until", "0.06", "--quiet", cwd=self.folder, env=self.env)
         self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "results/small-001\n", ""))

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
@@ -44,16 +45,17 @@ struct WheelDescription {
   double along = 0.0,
          across = 0.0;     // half of what the wheel takes of the bin along x and y as it turns and leans, m
   double toe_angle = 0.0;  // largest over the run, about +z, rad
-  double camber_angle = 0.0;    // largest over the run, about the wheel's forward axis, rad
-  std::optional<double> slip;   // that the rig imposes or aims at, -; none where it has no such thing
-  double travel_sign = 1.0;     // +1 along +x, −1 along −x
-  double carried_mass = 0.0;    // without the tire, kg
-  double speed = 0.0;           // of the axle at full speed, m/s
-  double tread_speed = 0.0;     // of the tread against the axle at full speed, m/s
-  double lowering_time = 0.0;   // until the motions begin, s; 0: they begin at once
-  double lowering_speed = 0.0;  // at which the wheel is let down, m/s; 0: it falls
+  double camber_angle = 0.0;       // largest over the run, about the wheel's forward axis, rad
+  std::optional<double> slip;      // that the rig imposes or aims at, -; none where it has no such thing
+  double travel_sign = 1.0;        // +1 along +x, −1 along −x
+  double carried_mass = 0.0;       // without the tire, kg
+  double speed = 0.0;              // of the axle at full speed, m/s
+  double tread_speed = 0.0;        // of the tread against the axle at full speed, m/s
+  double lowering_time = 0.0;      // until the motions begin, s; 0: they begin at once
+  double lowering_speed = 0.0;     // at which the wheel is let down, m/s; 0: it falls
   bool stops_before_wall = false;  // the run ends where it comes near the wall ahead, before its planned end
-  std::string start_key;        // of the scenario, says where the axle starts
+  std::string start_key;           // of the scenario, says where the axle starts
+  double start_offset = 0.0;       // of the axle ahead of what that key places, m
 };
 
 struct RigDescription {
@@ -75,6 +77,8 @@ class RigSpec {
   /// With one size per wheel, for a run of `duration`, s.
   virtual RigDescription describe(std::span<const WheelSize> tires, double duration) const = 0;
   virtual std::unique_ptr<Rig> make() const = 0;
+  /// Keys, and what is allowed but odd about their values. @pre fill_starts
+  virtual std::vector<std::pair<std::string, std::string>> unlikely_values() const { return {}; }
 
   /// Puts the axles for which the scenario names no start each its own of `margins` clear of the wall behind them, in a
   /// bin from x = 0 to `length`, m; at x = 0 where there is no bin.

@@ -14,16 +14,24 @@
 #include "rigs/lowering.hpp"
 #include "rigs/vehicle_rig.hpp"
 #include "rigs/vehicle_start.hpp"
+#include "vehicle/analysis/kinematics.hpp"
 #include "vehicle/driver/driver_car.hpp"
+#include "vehicle/driver/path_shapes.hpp"
 #include "vehicle/driver/read_driver.hpp"
 #include "vehicle/driver/speed_control.hpp"
 #include "vehicle/driver/write_driver.hpp"
 #include "vehicle/spec/read_vehicle.hpp"
+#include "vehicle/spec/vehicle_magnitudes.hpp"
 
 namespace furrow::rigs {
 namespace {
 
 using nlohmann::json;
+
+constexpr double kFarFromPath = 3.0;  // wheelbases between a path and the rear axle, to warn of
+constexpr double kBendLength = 0.25;  // wheelbases over which a path's curvature is looked at
+constexpr double kTooTight = 1.02;    // of the tightest curve
+constexpr int kPlacesOfPiece = 8;     // of a path's piece, at which it is looked at
 
 bool says(const json& section, const char* name) {
   const auto entry = section.find(name);
@@ -63,6 +71,7 @@ class VehicleRigSpec final : public RigSpec {
     attempt([&] {
       const vehicle::Vehicle car(plan_.vehicle, plan_.gravity);
       bodies_ = car.system().body_count();
+      mass_ = car.mass();
       for (int k = 0; k < car.wheel_count(); ++k) {
         wheels_.emplace_back();
         wheels_.back().center = vehicle::spindle_of(car.wheel(k).corner->suspension).center;
@@ -80,6 +89,7 @@ class VehicleRigSpec final : public RigSpec {
   Vec3 gravity() const override { return plan_.gravity; }
   double stop_before_wall() const override { return std::max(0.0, plan_.options.stop_before_wall); }
   void complete(json& section) const override;
+  std::vector<std::pair<std::string, std::string>> unlikely_values() const override;
 
   bool start_given = true;
   bool drops = false;  // rig.drop_height is above zero
@@ -103,6 +113,7 @@ class VehicleRigSpec final : public RigSpec {
     }
   }
   void check_driver() const;
+  std::vector<std::string> oddities_of_path() const;
   void check_gears() const;
   Vec3 place_of(std::size_t wheel) const;
   double travel(double duration) const;
@@ -115,8 +126,9 @@ class VehicleRigSpec final : public RigSpec {
   ReadContext context_;
   std::vector<WheelPlace> wheels_;
   int bodies_ = 0;
+  double mass_ = 0.0;             // without tires, kg
   std::optional<double> length_;  // of the bin, m
-  double lock_ = 0.0;  // mean angle of the steered wheels at the steering's end, rad
+  vehicle::DriverCar driven_;     // what a driver knows of it, if there is one
 };
 
 void VehicleRigSpec::check_gears() const {
@@ -149,6 +161,19 @@ void VehicleRigSpec::check_driver() const {
   if (plan_.driver->path && !vehicle::can_steer(plan_.vehicle)) refuse("follows a path", "no steering");
   if (plan_.driver->speed && !vehicle::can_drive(plan_.vehicle))
     refuse("holds a speed", "neither engine nor motors");
+  const vehicle::InputSpec& inputs = plan_.driver->inputs;
+  const auto refuse_use = [&](const char* what, const vehicle::DriverPoints& points, const char* lacks) {
+    const auto used =
+        std::find_if(points.begin(), points.end(), [](const auto& point) { return point.second != 0.0; });
+    if (used == points.end()) return;
+    refuse(
+        fmt::format("gives {} {} at {} s", what, number_text(used->second), number_text(used->first)).c_str(),
+        lacks);
+  };
+  if (!vehicle::can_steer(plan_.vehicle)) refuse_use("steering", inputs.steering, "no steering");
+  if (!vehicle::can_drive(plan_.vehicle))
+    refuse_use("throttle", inputs.throttle, "neither engine nor motors");
+  if (!vehicle::can_brake(plan_.vehicle)) refuse_use("brake", inputs.brake, "no brakes");
 }
 
 /// With the tires' masses it can be seen how the vehicle stands.
@@ -172,7 +197,8 @@ void VehicleRigSpec::mount(std::span<const MountedTire> tires) {
       const vehicle::WheelTrim& at = trim.wheels[k];
       wheels_[k] = {at.center, at.load, at.camber, at.toe, tires[k].mass};
     }
-    if (plan_.driver) lock_ = vehicle::driver_car(plan_.vehicle, radii, plan_.tire_width, mass).steering_lock;
+    vehicle::check_locks(plan_.vehicle, radii);
+    if (plan_.driver) driven_ = vehicle::driver_car(plan_.vehicle, radii, plan_.tire_width, mass);
   });
   const double g = plan_.gravity.norm();
   VehicleRigOptions& o = plan_.options;
@@ -215,7 +241,7 @@ WheelDescription VehicleRigSpec::wheel(std::size_t k, const WheelSize& tire, dou
   const Vec3 at = place_of(k);
   const double psi = plan_.options.heading;
   const bool steered = steers() && plan_.vehicle.axles[k / 2].steering;
-  const double angle = std::abs(psi) + (steered ? lock_ : std::abs(place.toe));
+  const double angle = std::abs(psi) + (steered ? driven_.steering_lock : std::abs(place.toe));
   WheelDescription d;
   d.name = wheel_name(plan_.vehicle, k);
   d.lateral = plan_.options.lateral + at.y();
@@ -230,12 +256,13 @@ WheelDescription VehicleRigSpec::wheel(std::size_t k, const WheelSize& tire, dou
     d.stops_before_wall = std::abs(d.to - d.from) > std::abs(last - d.from);
     if (d.stops_before_wall) d.to = last;
   }
-  d.toe_angle = steered ? lock_ : place.toe;
+  d.toe_angle = steered ? driven_.steering_lock : place.toe;
   d.camber_angle = place.camber;
   d.travel_sign = std::cos(psi) < 0.0 ? -1.0 : 1.0;
   d.carried_mass = std::max(0.0, -place.load / plan_.gravity.z() - place.tire_mass);
   d.speed = d.tread_speed = top_speed();
   d.start_key = context_.key("start");
+  d.start_offset = at.x();
   return d;
 }
 
@@ -248,6 +275,47 @@ RigDescription VehicleRigSpec::describe(std::span<const WheelSize> tires, double
   d.speeds_up_key = context_.key("driver");
   for (std::size_t k = 0; k < wheels_.size(); ++k) d.wheels.push_back(wheel(k, tires[k], duration));
   return d;
+}
+
+std::vector<std::pair<std::string, std::string>> VehicleRigSpec::unlikely_values() const {
+  std::vector<std::pair<std::string, std::string>> odd;
+  for (const auto& [key, what] : vehicle::unlikely_values(plan_.vehicle, mass_))
+    odd.emplace_back(context_.key("vehicle"),
+                     fmt::format("is {}, whose key '{}' {}", file_.string(), key, what));
+  if (plan_.driver && plan_.driver->path)
+    for (const std::string& what : oddities_of_path()) odd.emplace_back(context_.key("driver"), what);
+  return odd;
+}
+
+/// A path that the vehicle cannot follow is followed as well as it can be; whoever wrote it may have meant another.
+std::vector<std::string> VehicleRigSpec::oddities_of_path() const {
+  std::vector<std::string> odd;
+  const vehicle::Path path = vehicle::make_path(*plan_.driver->path, driven_.width);
+  const double psi = plan_.options.heading, base = driven_.wheelbase;
+  const Vec3 rear = Eigen::AngleAxisd(psi, Vec3::UnitZ()) * vehicle::rear_axle_middle(plan_.vehicle);
+  const vehicle::Vec2 axle(plan_.options.start + rear.x(), plan_.options.lateral + rear.y());
+  const vehicle::PathPoint nearest = path.at(path.follow({}, axle));
+  const double off = (nearest.position - axle).norm();
+  if (off > kFarFromPath * base)
+    odd.emplace_back(
+        fmt::format("has a path that comes no nearer than {:.1f} m to where the rear axle starts, "
+                    "x = {:.2f} m, y = {:.2f} m",
+                    off, axle.x(), axle.y()));
+  else if (nearest.direction.dot(vehicle::Vec2(std::cos(psi), std::sin(psi))) < 0.0)
+    odd.emplace_back(
+        "has a path that leads backward where the vehicle starts: drivers drive forward and turn round");
+  const double tightest = base / std::tan(driven_.steering_lock);
+  double sharpest = 0.0;
+  for (int piece = 0; piece <= path.end().piece; ++piece)
+    for (int i = 0; i < kPlacesOfPiece; ++i)
+      sharpest = std::max(sharpest, std::abs(path.curvature({piece, static_cast<double>(i) / kPlacesOfPiece},
+                                                            0.0, kBendLength * base)));
+  if (sharpest * tightest > kTooTight)
+    odd.emplace_back(
+        fmt::format("has a path that bends with a radius of {:.2f} m, the vehicle {} turns with {:.2f} m at "
+                    "least",
+                    1.0 / sharpest, plan_.vehicle.name, tightest));
+  return odd;
 }
 
 /// The wheel that comes nearest to the wall behind the vehicle says where it starts.

@@ -54,7 +54,7 @@ class SchemaCheck {
                : "";
   }
   static std::string check_number(const json& node, double value, const std::string& path) {
-    const bool fits = value >= node.value("minimum", -1e300) &&
+    const bool fits = value >= node.value("minimum", -1e300) && value <= node.value("maximum", 1e300) &&
                       value > node.value("exclusiveMinimum", -1e300) &&
                       value < node.value("exclusiveMaximum", 1e300);
     return fits ? "" : path + ": is out of range";

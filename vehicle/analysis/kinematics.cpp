@@ -9,6 +9,7 @@
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/figures_json.hpp"
+#include "protocol/files/json_text.hpp"
 #include "vehicle/analysis/held_vehicle.hpp"
 #include "vehicle/analysis/wheel_angles.hpp"
 
@@ -44,9 +45,9 @@ class Bench {
       if (lifts_[k] >= 0) statics_.set_target(lifts_[k], k / 2 != axle ? 0.0 : k % 2 == kLeft ? left : right);
     if (steers(axle)) vehicle_.steering(axle)->put(steering);
     if (const Outcome outcome = statics_.close(); !outcome.ok)
-      throw physics_error(
-          outcome, "axle '" + vehicle_.spec().axles[axle].name + "'",
-          fmt::format(" at a travel of {:.3g} and {:.3g} m, steering {:.3g}", left, right, steering));
+      throw physics_error(outcome, "axle '" + vehicle_.spec().axles[axle].name + "'",
+                          fmt::format(" at a travel of {:.3g} and {:.3g} m", left, right) +
+                              (steering == 0.0 ? "" : fmt::format(", steering {:.3g}", steering)));
   }
 
   /// Displacements for a rate 1 of the left wheel and `right` of the right wheel.
@@ -196,6 +197,22 @@ void add_ackermann(KinematicsRow* rows, double line) {
   rows[kLeft].ackermann = rows[kRight].ackermann = (inner - outer) / (inner - ideal);
 }
 
+/// Key and value of how far a steering goes to the left.
+std::pair<const char*, double> end_of(const PitmanArmSpec& s) { return {"left_angle_deg", s.left_angle_deg}; }
+std::pair<const char*, double> end_of(const RackSpec& s) { return {"left_travel", s.left_travel}; }
+
+/// Of so many equal steps from straight ahead to one end of the steering, those that an axle can take.
+int steps_reached(const VehicleSpec& spec, std::span<const double> radii, int axle, double end, int steps) {
+  Bench bench(spec, radii);
+  int reached = 0;
+  try {
+    for (; reached < steps; ++reached) bench.take(axle, 0.0, 0.0, end * (reached + 1) / steps);
+  } catch (const Error& error) {
+    if (error.code() != ExitCode::physics) throw;
+  }
+  return reached;
+}
+
 class Sweep {
  public:
   Sweep(const VehicleSpec& spec, std::span<const double> radii, const KinematicsOptions& options)
@@ -259,6 +276,24 @@ std::vector<KinematicsRow> kinematics(const VehicleSpec& spec, std::span<const d
                                       const KinematicsOptions& options) {
   FURROW_ASSERT(options.points > 0, options.points);
   return Sweep(spec, radii, options).run();
+}
+
+void check_locks(const VehicleSpec& spec, std::span<const double> radii) {
+  constexpr int kSteps = 8, kFineSteps = 50;
+  for (std::size_t k = 0; k < spec.axles.size(); ++k) {
+    if (!spec.axles[k].steering) continue;
+    const int axle = static_cast<int>(k);
+    for (const double end : {-1.0, 1.0}) {
+      if (steps_reached(spec, radii, axle, end, kSteps) == kSteps) continue;
+      const int reached = steps_reached(spec, radii, axle, end, kFineSteps);
+      if (reached == kFineSteps) continue;
+      const auto [key, given] = std::visit([](const auto& s) { return end_of(s); }, *spec.axles[k].steering);
+      throw input_error(
+          spec.file, fmt::format("axles[{}].steering.{}", k, key),
+          fmt::format("is {}, expected at most {:.3g} in magnitude: the linkage of axle '{}' goes no further",
+                      number_text(given), std::abs(given) * reached / kFineSteps, spec.axles[k].name));
+    }
+  }
 }
 
 std::string kinematics_csv(std::span<const KinematicsRow> rows) {

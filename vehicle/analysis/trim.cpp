@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
+
+#include <fmt/format.h>
 
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
@@ -12,6 +15,8 @@
 namespace furrow::vehicle {
 namespace {
 
+// Of an axle's springs, of the weight: others do not carry a vehicle.
+constexpr double kLeastPush = 0.03, kMostPush = 20.0;
 constexpr double kFirstDeflection = 0.01;  // of the tires where the search begins, m
 
 struct Contact {
@@ -125,6 +130,32 @@ std::string mode_name(const Vehicle& vehicle, const Mode& mode) {
   return (up(most) * up(most + 1) >= 0.0 ? "hop " : "tramp ") + vehicle.spec().axles[most / 2].name;
 }
 
+/// What may keep a vehicle from coming to rest, as it is drawn, to follow that message; empty: nothing is seen.
+std::string fault_as_drawn(const Vehicle& vehicle, double weight) {
+  const System& system = vehicle.system();
+  Vec3 center = Vec3::Zero(), low = Vec3::Constant(1e300), high = -low;
+  for (int i = 0; i < system.body_count(); ++i)
+    center += system.body(i).mass * system.body(i).state.position / vehicle.mass();
+  for (int k = 0; k < vehicle.wheel_count(); ++k)
+    low = low.cwiseMin(vehicle.rim(k).position), high = high.cwiseMax(vehicle.rim(k).position);
+  if ((center.head<2>().array() < low.head<2>().array()).any() ||
+      (center.head<2>().array() > high.head<2>().array()).any())
+    return fmt::format("; its centre of mass, x = {:.2f} m, y = {:.2f} m, does not lie between its wheels",
+                       center.x() - vehicle.origin().x(), center.y() - vehicle.origin().y());
+  for (int axle = 0; axle < vehicle.wheel_count() / 2; ++axle) {
+    double push = 0.0;
+    for (const int k : {2 * axle, 2 * axle + 1})
+      if (vehicle.wheel(k).spring) {
+        const ForceElement& spring = system.element(*vehicle.wheel(k).spring);
+        push += spring.law(row_value(system, spring.row), 0.0, 0.0).force;
+      }
+    if (vehicle.wheel(2 * axle).spring && (push < kLeastPush * weight || push > kMostPush * weight))
+      return fmt::format("; it weighs {:.0f} N, and the springs of axle '{}' push with {:.3g} N as drawn",
+                         weight, vehicle.spec().axles[axle].name, push);
+  }
+  return "";
+}
+
 }  // namespace
 
 Trim trim(Vehicle& vehicle, std::span<const TireCurve> tires, double ground) {
@@ -141,8 +172,9 @@ Trim trim(Vehicle& vehicle, std::span<const TireCurve> tires, double ground) {
     }
   });
   const double weight = vehicle.mass() * vehicle.system().gravity().norm();
+  const std::string fault = fault_as_drawn(vehicle, weight);
   if (const Outcome outcome = statics.settle(weight); !outcome.ok)
-    throw physics_error(outcome, "vehicle '" + vehicle.spec().name + "'");
+    throw physics_error(outcome.message("vehicle '" + vehicle.spec().name + "'") + fault);
   Trim t;
   for (int k = 0; k < vehicle.wheel_count(); ++k) {
     t.wheels.push_back(wheel_trim(vehicle, k, tires[k], ground));

@@ -12,6 +12,7 @@
 #include "protocol/core/error.hpp"
 #include "protocol/files/digits.hpp"
 #include "protocol/files/figures_json.hpp"
+#include "vehicle/analysis/kinematics.hpp"
 #include "vehicle/analysis/tire_curve.hpp"
 
 namespace furrow::vehicle {
@@ -102,6 +103,7 @@ VehiclePage vehicle_page(const VehicleSpec& spec, std::span<const StandingTire> 
     for (std::size_t k = 0; k < tires.size(); ++k)
       page.loaded_radii.push_back(tires[k].radius - std::max(0.0, page.trim.wheels[k].deflection));
     check_travel(spec, page);
+    check_locks(spec, page.loaded_radii);
     return page;
   });
 }

@@ -103,6 +103,8 @@ bool can_steer(const VehicleSpec& spec) {
   return spec.driveline.skid_steer != 0.0 || foremost(spec, true) >= 0;
 }
 
+bool can_brake(const VehicleSpec& spec) { return brake_force(spec, 1.0) > 0.0; }
+
 bool can_drive(const VehicleSpec& spec) { return engine_force(spec, 1.0) + motor_force(spec, 1.0) > 0.0; }
 
 DriverCar driver_car(const VehicleSpec& spec, std::span<const double> radii, double tire_width, double mass) {

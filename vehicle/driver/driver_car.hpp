@@ -24,6 +24,8 @@ Vec3 rear_axle_middle(const VehicleSpec& spec);
 bool can_steer(const VehicleSpec& spec);
 /// Whether it drives: engine or motors that reach a wheel.
 bool can_drive(const VehicleSpec& spec);
+/// Whether a wheel has a brake.
+bool can_brake(const VehicleSpec& spec);
 
 /// @param radii of the tires, m, one for each wheel @param tire_width the widest tire's, m @param mass with tires, kg
 /// @post every member is above zero. @throws Error(physics) naming a suspension that cannot be steered

@@ -65,6 +65,8 @@ DriverPoints read_points(JsonReader& reader, const std::string& key, const Point
   const json& value = reader.object().at(key);
   if (value.is_array()) return read_list(reader, key, value, rule);
   if (value.is_string() && !(rule.word && value == rule.word)) {
+    if (const auto text = reader.text(key); text.find('.') == std::string::npos)
+      reader.fail(key, "is " + value_text(value) + ", expected " + forms);
     const auto file = find_file(reader.text(key), reader.full(key), reader.file());
     return read_points(
         CsvFile(file, fmt::format("a CSV file with the columns {} and {}", rule.first, rule.second),

@@ -106,6 +106,7 @@ class ShaftGraph {
     name_shafts();
     join_all();
     check_wheels();
+    check_outputs();
     for (std::size_t i = 0; i < names_.size(); ++i)
       if (!reaches_wheel_.contains(root(static_cast<int>(i))))
         reader_.fail(fmt::format("shafts[{}].name", i),
@@ -205,6 +206,29 @@ class ShaftGraph {
     }
     if (!independent({{first, d.share}, {second, 1.0 - d.share}, {box, -1.0}}))
       reader_.fail(key, "'" + d.name + "' closes a loop of gears, expected a train without loops");
+  }
+
+  /// An output that nothing takes on runs free and leaves no torque to the other one.
+  void check_outputs() const {
+    std::multiset<std::string> used;
+    const auto use = [&](const auto& part) { used.insert(part.in), used.insert(part.out); };
+    if (spec_.engine) used.insert(spec_.engine->shaft);
+    if (spec_.converter) use(*spec_.converter);
+    if (spec_.clutch) use(*spec_.clutch);
+    if (spec_.gearbox) use(*spec_.gearbox);
+    for (const GearSpec& gear : spec_.gears) use(gear);
+    for (const WheelShaftSpec& wheel : spec_.wheels) used.insert(wheel.shaft);
+    for (const DifferentialSpec& d : spec_.differentials) {
+      used.insert(d.box);
+      used.insert(d.outputs.begin(), d.outputs.end());
+    }
+    for (std::size_t i = 0; i < spec_.differentials.size(); ++i)
+      for (const std::string& output : spec_.differentials[i].outputs)
+        if (used.count(output) == 1)
+          reader_.fail(
+              fmt::format("differentials[{}].outputs", i),
+              "'" + output +
+                  "' drives nothing, expected a shaft that a wheel, a gear or a differential takes on");
   }
 
   void check_wheels() {

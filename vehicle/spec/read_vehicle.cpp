@@ -84,7 +84,7 @@ CornerSpec read_right(JsonReader& reader, const CornerSpec& left, const Vec3& or
 
 AxleSpec read_axle(JsonReader reader) {
   AxleSpec axle;
-  axle.name = reader.text("name");
+  detail::take(reader, "name", axle.name);
   detail::take(reader, "origin", axle.origin);
   axle.corners[kLeft] = read_left(reader, axle.origin);
   axle.corners[kRight] = read_right(reader, axle.corners[kLeft], axle.origin);
@@ -125,7 +125,7 @@ VehicleSpec read_vehicle(const nlohmann::json& document, const std::string& file
   for (const char* key : {"source", "$schema"}) reader.skip(key);
   VehicleSpec vehicle;
   vehicle.file = file;
-  vehicle.name = reader.text("name");
+  detail::take(reader, "name", vehicle.name);
   vehicle.chassis = read_spec<BodySpec>(reader.child("chassis"));
   const nlohmann::json& axles = reader.array("axles");
   if (axles.empty() || axles.size() > kMostAxles)

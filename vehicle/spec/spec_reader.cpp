@@ -5,6 +5,11 @@
 #include "protocol/files/json_text.hpp"
 
 namespace furrow::vehicle::detail {
+namespace {
+
+constexpr double kMostCoordinate = 100.0;  // m: the longest vehicles are half of it
+
+}  // namespace
 
 void take(JsonReader& reader, const std::string& key, double& value) { value = reader.number(key); }
 void take(JsonReader& reader, const std::string& key, bool& value) { value = reader.flag(key); }
@@ -17,6 +22,10 @@ void take(JsonReader& reader, const std::string& key, std::string& value) {
 void take(JsonReader& reader, const std::string& key, Vec3& value) {
   const std::vector<double> v = reader.numbers(key, 3);
   value = Vec3(v[0], v[1], v[2]);
+  if (const double most = value.cwiseAbs().maxCoeff(); most > kMostCoordinate)
+    reader.fail(key,
+                fmt::format("has {} among its coordinates, expected at most {} in magnitude: points are in m",
+                            number_text(most), number_text(kMostCoordinate)));
 }
 
 void take(JsonReader& reader, const std::string& key, Mat3& value) {

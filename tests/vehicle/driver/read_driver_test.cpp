@@ -129,6 +129,8 @@ TEST_F(DriverFile, that_is_wrong_is_refused_by_key) {
       {R"(, "inputs": {"steering": {}})",
        "key 'inputs.steering': is {}, expected a list of [time_s, steering], the name"},
       {R"(, "inputs": {"gear": 1.5})", "key 'inputs.gear': gear is 1.5, expected 'auto', -1 (reverse), 0"},
+      {R"(, "inputs": {"gear": "D"})",
+       "key 'inputs.gear': is 'D', expected a list of [time_s, gear], the name of a CSV file or 'auto', "},
       {R"(, "inputs": {"gear": -2})", "gear is -2, expected 'auto'"},
       {R"(, "inputs": {"gear": [[0, "drive"]]})", "key 'inputs.gear[0]': gear is 'drive', expected 'auto'"},
       {R"(, "inputs": "none.csv")", "key 'inputs': 'none.csv' does not exist"},

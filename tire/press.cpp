@@ -72,6 +72,7 @@ void measure_press(const PressOptions& options, const PressModel& model,
     if (reached || (k == options.points && results.footprint.empty())) {
       results.at_load = reached ? find_load(model.press, before, now, options.load) : now;
       results.footprint = model.footprint();
+      if (model.stiffness) results.stiffness = model.stiffness();
     }
   }
   for (int k = options.points + 1; k <= total; ++k) results.unloading.push_back(at(k));
@@ -125,6 +126,13 @@ nlohmann::ordered_json press_json(const PressOptions& options, const PressResult
   j["deflection_m"] = if_reached(p.deflection);
   j["secant_stiffness_N_per_m"] = if_reached(p.force / p.deflection);
   j["tangent_stiffness_N_per_m"] = if_reached(tangent);
+  const auto sticking = [&](int k) {
+    return results.stiffness ? if_reached((*results.stiffness)(k, k)) : nlohmann::ordered_json();
+  };
+  j["sticking_stiffness"] = {{"longitudinal_N_per_m", sticking(0)},
+                             {"lateral_N_per_m", sticking(1)},
+                             {"vertical_N_per_m", sticking(2)},
+                             {"torsional_Nm_per_rad", sticking(3)}};
   double residual = 0.0;
   int steps = 0, failed = 0;
   for (const auto* path : {&results.loading, &results.unloading})

@@ -21,12 +21,14 @@ struct PressOptions {
   int points = 10;           // of the curve up to it
   double load = 4561.65;     // of the footprint, N: 465 kg
   bool unload = true;        // the curve also back to zero
+  std::string deflection_from = "command line", deflection_key = "--deflection";  // for messages
 };
 
 struct PressResults {
   std::vector<PressPoint> loading, unloading;
   PressPoint at_load;  // of the footprint; at the largest deflection when the load is not reached
   std::vector<PressSample> footprint;
+  std::optional<GroundStiffness> stiffness;  // at the footprint's load; where the model has one
   std::optional<double> inflation_growth;  // of the largest radius, axisymmetric, m; where the model has one
   std::optional<double> footprint_width;   // m; where the model has no points across
   std::optional<double> pressure;          // gauge, Pa; where the model has one
@@ -41,6 +43,7 @@ struct PressModel {
   std::function<PressPoint(double deflection)> press;
   std::function<std::vector<PressSample>()> footprint;
   std::function<void()> unpressed;
+  std::function<GroundStiffness()> stiffness = {};  // of the last point; empty: the model has none
 };
 /// @param share called with the share of the curve that is done
 void measure_press(const PressOptions& options, const PressModel& model,

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <vector>
 
+#include <Eigen/Core>
+
 namespace furrow::tire {
 
 /// A flat plate, a flat-topped bar across the direction of travel with rounded edges, or a profile.
@@ -40,5 +42,9 @@ struct PressSample {
   double area = 0.0;        // m²
   double pressure = 0.0;    // Pa
 };
+
+/// How a pressed tire resists small motions of a ground to which it sticks wherever it touches: force and moment that move
+/// the ground, by its way x forward, y left, z up (m) and turn about the vertical through the axle (rad). N/m, N, N m/rad.
+using GroundStiffness = Eigen::Matrix4d;
 
 }  // namespace furrow::tire

@@ -4,6 +4,7 @@
 #include <array>
 #include <type_traits>
 
+#include "tire/modes.hpp"
 #include "tire/press.hpp"
 
 namespace furrow::tire {
@@ -15,6 +16,7 @@ constexpr std::array<std::string_view, 4> kOfEveryModel{"file", "rigid", "contac
 }  // namespace
 
 std::unique_ptr<StaticTest> TireSpec::static_test() const { return nullptr; }
+std::unique_ptr<ModalTest> TireSpec::modal_test() const { return nullptr; }
 
 std::vector<std::string> idle_keys(const TireSpec& tire) {
   const std::vector<std::string> takes = tire.describe().takes;

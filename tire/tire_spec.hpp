@@ -96,6 +96,7 @@ class TireSpec;
 /// What the scenario states of a tire although its model does not take it: names in TireOptions.
 std::vector<std::string> idle_keys(const TireSpec& tire);
 
+class ModalTest;
 class StaticTest;
 
 class TireSpec {
@@ -116,6 +117,8 @@ class TireSpec {
   virtual std::vector<std::pair<std::string, std::string>> unlikely_values() const { return {}; }
   /// Static pressing on an obstacle (press.hpp); null where the model has none.
   virtual std::unique_ptr<StaticTest> static_test() const;
+  /// Natural frequencies (modes.hpp); null where the model has none.
+  virtual std::unique_ptr<ModalTest> modal_test() const;
 
  private:
   TireOptions options_;

@@ -194,8 +194,8 @@ double PressSolver::evaluate() {
   return std::sqrt(total);
 }
 
-/// Factor of ∂²Π/∂q² + σ K_material at q_. @returns false when it is not positive definite
-bool PressSolver::factorize() {
+/// ∂²Π/∂q² + σ K_material at q_ without the contact's part.
+void PressSolver::assemble() {
   linear_->matrix.coeffs().setZero();
   for (int j = 0; j + 1 < layout_.rows; ++j)
     for (int b = 0; b < layout_.batches(); ++b) {
@@ -209,6 +209,11 @@ bool PressSolver::factorize() {
           for (int k = 0; k <= r; ++k)
             linear_->add(j * layout_.columns + b * kDoubleLanes + lane, r, k, linear_->tangent.k[r][k][lane]);
     }
+}
+
+/// Factor of ∂²Π/∂q² + σ K_material at q_. @returns false when it is not positive definite
+bool PressSolver::factorize() {
+  assemble();
   contact(true);
   linear_->llt.factorize(linear_->matrix);
   return linear_->llt.info() == Eigen::Success;
@@ -320,6 +325,52 @@ double PressSolver::director_runout() const {
     most = std::max(most, high - low);
   }
   return most;
+}
+
+/// C of a point; zero where it does not touch.
+Eigen::Matrix3d PressSolver::contact_matrix(const Vec3& x, double area, double tangential) const {
+  const PressObstacle::Profile top = obstacle_.at(x.x());
+  const double depth = top_ + top.height - x.z();
+  if (depth <= 0.0) return Eigen::Matrix3d::Zero();
+  const Vec3 normal(-top.slope, 0.0, 1.0), unit = normal.normalized();
+  Eigen::Matrix3d c =
+      normal * normal.transpose() + tangential * (Eigen::Matrix3d::Identity() - unit * unit.transpose());
+  c(0, 0) += depth * top.curvature;
+  return obstacle_.stiffness * area * c;
+}
+
+GroundStiffness PressSolver::ground_stiffness(double tangential) {
+  FURROW_ASSERT(viscosity_ == 0.0 && tangential >= 0.0, viscosity_, tangential);
+  using Motions = Eigen::Matrix<double, 3, 4>;
+  GroundStiffness direct = GroundStiffness::Zero();
+  std::array<Field, 4> pull;
+  for (Field& f : pull) f.assign(layout_.size(), 0.0);
+  assemble();
+  contact_points([&](int i, int j, const std::array<double, 4>& w, const Vec3& x, double area) {
+    const Eigen::Matrix3d c = contact_matrix(x, area, tangential);
+    Motions d = Motions::Zero();
+    d.leftCols<3>().setIdentity();
+    d.col(3) = Vec3(-x.y(), x.x(), 0.0);
+    direct += d.transpose() * c * d;
+    const Motions force = c * d;
+    for (int n = 0; n < 4; ++n) {
+      const int row = j + kRow[n], column = (i + kColumn[n]) % layout_.columns;
+      for (int k = 0; k < 4; ++k)
+        layout_.set(pull[k], column, row, 0, layout_.get(pull[k], column, row, 0) + w[n] * force.col(k));
+      for (int m = 0; m <= n; ++m)
+        for (int a = 0; a < 3; ++a)
+          for (int b = 0; b < 3; ++b)
+            if (6 * n + a >= 6 * m + b)
+              linear_->add(j * layout_.columns + i, 6 * n + a, 6 * m + b, w[n] * w[m] * c(a, b));
+    }
+  });
+  linear_->llt.factorize(linear_->matrix);
+  FURROW_ASSERT(linear_->llt.info() == Eigen::Success, tangential);
+  Eigen::MatrixXd right(linear_->matrix.rows(), 4);
+  for (int k = 0; k < 4; ++k) right.col(k) = linear_->gather(layout_, pull[k]);
+  const GroundStiffness stiffness = direct - right.transpose() * linear_->llt.solve(right);
+  factorize();  // as press() left it: the next point begins with it
+  return 0.5 * (stiffness + stiffness.transpose());
 }
 
 std::vector<PressSample> PressSolver::footprint() const {

@@ -11,6 +11,12 @@
 // σ = 0 is Newton's method. A layered tire need not be stable as a static body: where belts or sidewalls are compressed
 // they wrinkle, and ∂²Π/∂q² loses its definiteness on the way. There σ grows until the Cholesky factorization succeeds,
 // and falls again afterwards; only an equilibrium at which it succeeds with σ = 0, a stable one, is accepted.
+//
+// There the ground may be moved by d, as a rigid body, with the tire sticking to it: points in contact then resist with
+//   C = κ A (n nᵀ + bend) + s κ A (1 − n̂ n̂ᵀ)
+// their motion against the ground, w u − d, s a share of the normal stiffness, so that
+//   (K + Σ wᵀ C w) u = Σ wᵀ C d,   S = Σ dᵀ C d − (Σ wᵀ C d)ᵀ (K + Σ wᵀ C w)⁻¹ (Σ wᵀ C d)
+// is the stiffness that the ground feels.
 #pragma once
 
 #include <functional>
@@ -42,12 +48,16 @@ class PressSolver {
   /// shell's thickness and leave its radius.
   double director_runout() const;
   std::vector<PressSample> footprint() const;
+  /// S at the last point. @param tangential s above; 0: the ground slides. @pre press() has found an equilibrium
+  GroundStiffness ground_stiffness(double tangential = 1.0);
   const Field& q() const { return q_; }
 
  private:
   struct Linear;
   double evaluate();
   bool factorize();
+  void assemble();
+  Eigen::Matrix3d contact_matrix(const Vec3& x, double area, double tangential) const;
   double creep(double& norm);
   void contact(bool tangent);
   void move(const Field& from, const Eigen::VectorXd& change, double share);

@@ -36,6 +36,7 @@ PressResults press_tire(const TireFile& file, const PressOptions& options, const
     }
   };
   model.footprint = [&] { return solver.footprint(); };
+  model.stiffness = [&] { return solver.ground_stiffness(); };
   model.unpressed = [&] {
     results.runout = solver.runout();
     results.director_runout = solver.director_runout();

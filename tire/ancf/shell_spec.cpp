@@ -8,6 +8,7 @@
 
 #include "protocol/core/error.hpp"
 #include "tire/ancf/ancf_tire.hpp"
+#include "tire/ancf/shell_modes.hpp"
 #include "tire/ancf/shell_press.hpp"
 #include "tire/read_tire_file.hpp"
 #include "tire/tire_magnitudes.hpp"
@@ -64,6 +65,7 @@ class ShellSpec final : public TireSpec {
     return tire::unlikely_values(given_);
   }
   std::unique_ptr<StaticTest> static_test() const override { return std::make_unique<ShellPress>(file_); }
+  std::unique_ptr<ModalTest> modal_test() const override { return std::make_unique<ShellModes>(file_); }
 
  private:
   TireFile given_;  // as it stands

@@ -13,14 +13,14 @@ namespace {
 
 constexpr double kMinLoad = 1.0;  // N, below which the residual is relative to it
 
-void require_range(const PlanarParams& params, double deflection) {
+void require_range(const PlanarParams& params, const PressOptions& options) {
   const double most = kMostPlanarDeflection * (params.size.radius - params.size.rim_radius);
-  if (deflection > most)
+  if (options.deflection > most)
     throw input_error(
-        "command line", "--deflection",
+        options.deflection_from, options.deflection_key,
         fmt::format("is {:g} m, expected at most {:.4g} m, {:g} of the tire's height over its rim: its "
                     "triangles turn inside out beyond",
-                    deflection, most, kMostPlanarDeflection));
+                    options.deflection, most, kMostPlanarDeflection));
 }
 
 }  // namespace
@@ -59,7 +59,7 @@ std::vector<PressSample> planar_footprint(const PlanarStatic& wheel) {
 
 PressResults press_planar(const PlanarParams& params, const MassProperties& mass, const PressOptions& options,
                           const ProgressCall& progress) {
-  require_range(params, options.deflection);
+  require_range(params, options);
   PlanarStatic wheel(params, planar_ground(options.obstacle, params.size.radius));
   const double top = wheel.contact().ground().top();
   double done = 0.0;

@@ -13,6 +13,7 @@
 #include "protocol/core/error.hpp"
 #include "tire/cylinder.hpp"
 #include "tire/planar/planar_carcass.hpp"
+#include "tire/planar/planar_modes.hpp"
 #include "tire/planar/planar_press.hpp"
 #include "tire/planar/planar_tire.hpp"
 #include "tire/tire_file_reader.hpp"
@@ -92,6 +93,7 @@ class PlanarSpec final : public TireSpec {
   std::unique_ptr<StaticTest> static_test() const override {
     return std::make_unique<PlanarTest>(file_.params, mass());
   }
+  std::unique_ptr<ModalTest> modal_test() const override { return std::make_unique<PlanarModes>(file_.params); }
 
  private:
   /// Why runs cannot move this tire; empty: they can.

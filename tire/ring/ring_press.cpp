@@ -46,14 +46,14 @@ class Descent {
   std::vector<char> closed_;
 };
 
-void require_range(const RingMechanics& ring, double deflection) {
+void require_range(const RingMechanics& ring, const PressOptions& options) {
   const double most = kMostRingDeflection * ring.radius();
-  if (deflection > most)
+  if (options.deflection > most)
     throw input_error(
-        "command line", "--deflection",
+        options.deflection_from, options.deflection_key,
         fmt::format("is {:g} m, expected at most {:.4g} m, a quarter of the radius: a flexible ring is "
                     "not meant for more",
-                    deflection, most));
+                    options.deflection, most));
 }
 
 double lowest_radius(const RingSolver& solver) {
@@ -108,7 +108,7 @@ PressResults press_ring(const RingParams& params, double rim_radius, const MassP
                         const PressOptions& options, const ProgressCall& progress) {
   const RingGround ground = ring_ground(options.obstacle, params.radius);
   RingSolver solver(params, ground);
-  require_range(solver.ring(), options.deflection);
+  require_range(solver.ring(), options);
   Descent descent(solver, ground.top());
   double done = 0.0;
   PressModel model;

@@ -56,6 +56,39 @@ TEST(PressSolver, unloads_along_the_loading_path) {
   }
 }
 
+TEST(PressSolver, stiffness_against_a_sliding_ground_is_the_slope_of_the_curve) {
+  const auto solver = solver_of(small_file("hmmwv_lumped.json", 30, 6), {});
+  const double d = 0.008, step = 2e-6;  // m
+  const double before = solver->press(d - step).force, after = solver->press(d + step).force;
+  solver->press(d);
+  const tire::GroundStiffness s = solver->ground_stiffness(0.0);
+  EXPECT_NEAR(s(2, 2) / ((after - before) / (2.0 * step)), 1.0, 1e-3);
+  for (const int k : {0, 1, 3}) EXPECT_NEAR(s(k, k), 0.0, 1e-9 * s(2, 2)) << k;  // it slides
+}
+
+TEST(PressSolver, a_ground_that_the_tire_sticks_to_is_held_in_every_direction) {
+  const auto solver = solver_of(small_file("hmmwv_lumped.json", 30, 6), {});
+  const double force = solver->press(0.008).force;
+  const tire::GroundStiffness sliding = solver->ground_stiffness(0.0), s = solver->ground_stiffness();
+  EXPECT_GE(s(2, 2), sliding(2, 2) * (1.0 - 1e-9));
+  for (int k = 0; k < 4; ++k) {
+    EXPECT_GT(s(k, k), 0.0) << k;
+    for (int l = 0; l < k; ++l)  // the tire is its own mirror image from the side and from the front
+      EXPECT_NEAR(s(k, l), 0.0, 1e-6 * std::sqrt(s(k, k) * s(l, l))) << k << " " << l;
+  }
+  EXPECT_LT(s(1, 1), s(0, 0));  // a tire is softest sideways
+  // A layer so soft that the tire is rigid beside it: its springs side by side.
+  const double soft = 1e-6;
+  double area = 0.0, turning = 0.0;
+  for (const tire::PressSample& p : solver->footprint()) area += p.area, turning += p.area * (p.x * p.x + p.y * p.y);
+  const tire::GroundStiffness layer = solver->ground_stiffness(soft);
+  const double shear = soft * tire::PressObstacle{}.stiffness;  // N/m³
+  EXPECT_NEAR(layer(0, 0) / (shear * area), 1.0, 2e-2);
+  EXPECT_NEAR(layer(1, 1) / (shear * area), 1.0, 2e-2);
+  EXPECT_NEAR(layer(3, 3) / (shear * turning), 1.0, 2e-2);
+  EXPECT_EQ(solver->press(0.008).force, force);  // nothing has been disturbed
+}
+
 TEST(PressSolver, an_axisymmetric_tire_has_no_runout) {
   const auto solver = solver_of(small_file("hmmwv_lumped.json", 30, 6), {});
   EXPECT_EQ(solver->press(0.0).failed_factorizations, 0);

@@ -262,5 +262,64 @@ TEST(PlanarElements, disc_under_diametral_load_converges_to_the_closed_form) {
   EXPECT_LT(before, 1e-2);
 }
 
+/// Cells of two triangles each over the given length and height, its middle at the origin; nodes row by row from below.
+PlanarMesh strip(double length, double height, int along, int through) {
+  PlanarMesh m;
+  m.position = PlanarField((along + 1) * (through + 1));
+  for (int k = 0; k <= through; ++k)
+    for (int i = 0; i <= along; ++i) {
+      m.position.x[k * (along + 1) + i] = length * (static_cast<double>(i) / along - 0.5);
+      m.position.z[k * (along + 1) + i] = height * (static_cast<double>(k) / through - 0.5);
+    }
+  for (int k = 0; k < through; ++k)
+    for (int i = 0; i < along; ++i) {
+      const int a = k * (along + 1) + i, b = a + along + 1;
+      m.triangles.push_back({a, a + 1, b + 1}), m.triangles.push_back({a, b + 1, b});
+    }
+  m.part.assign(m.triangles.size(), 0);
+  return m;
+}
+
+/// How far a strip bends that linear stresses on its ends bend, beside M (1 − ν²)/(E I) of plane strain.
+double bending(double poisson_ratio, bool averaged, int size) {
+  const double length = 1.0, height = 0.2, e = 3e5, moment = 1.0;
+  const int along = 10 * size, through = 2 * size;
+  const PlanarMesh m = strip(length, height, along, through);
+  const PlanarElements elements(m, std::array{PlanarMaterial{1000.0, e, poisson_ratio, 0.0}},
+                                {.averaged = averaged});
+  const double inertia = height * height * height / 12.0, cell = height / through;
+  Eigen::VectorXd push = Eigen::VectorXd::Zero(2 * m.nodes());
+  for (int k = 0; k < through; ++k) {  // sides of the ends, with a stress that is linear between their nodes
+    const double below = height * (static_cast<double>(k) / through - 0.5) * moment / inertia,
+                 above = below + cell * moment / inertia;
+    const int low = k * (along + 1), high = low + along + 1;
+    for (const auto& [end, sign] : {std::pair{along, 1.0}, std::pair{0, -1.0}}) {
+      push[2 * (low + end)] += sign * cell * (2.0 * below + above) / 6.0;
+      push[2 * (high + end)] += sign * cell * (below + 2.0 * above) / 6.0;
+    }
+  }
+  // Held in the middle, x and z, and at the end of the middle line, z: without reactions.
+  const int middle = through / 2 * (along + 1), centre = middle + along / 2;
+  const Eigen::VectorXd u = linear_solution(elements, m, push, {2 * centre, 2 * centre + 1, 2 * middle + 1});
+  const double sagitta =
+      0.5 * u[2 * (middle + along) + 1];  // the other end, over the middle, were both ends free to turn
+  return -8.0 * sagitta / (length * length) /
+         (moment * (1.0 - poisson_ratio * poisson_ratio) / (e * inertia));
+}
+
+TEST(PlanarElements, averaged_volumes_take_the_locking_out_of_bending_near_incompressibility) {
+  // Pure bending in plane strain, [Timoshenko & Goodier, art. 21] with E/(1 − ν²).
+  // Pure bending in plane strain: a beam's, with E/(1 − ν²) [Timoshenko & Goodier, art. 21]. A mesh twice as fine is
+  // three to four times nearer to it, locked triangles are not.
+  for (const bool averaged : {false, true}) {
+    const double coarse = 1.0 - bending(0.3, averaged, 2), fine = 1.0 - bending(0.3, averaged, 4);
+    EXPECT_LT(fine, 0.06) << averaged;
+    EXPECT_LT(fine, coarse / 3.0) << averaged;
+  }
+  EXPECT_NEAR(bending(0.499, true, 4), 1.0, 0.05);
+  EXPECT_LT(1.0 - bending(0.499, true, 4), (1.0 - bending(0.499, true, 2)) / 3.0);
+  EXPECT_LT(bending(0.499, false, 4), 0.25);
+}
+
 }  // namespace
 }  // namespace furrow::tire

@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "tests/tire/verification/planar_cases.hpp"
 #include "tests/tire/verification/planar_curb.hpp"
@@ -49,6 +50,24 @@ TEST(Planar, compression_to_80_mm_is_the_stiffer_the_less_the_volume_can_change)
   EXPECT_LT(before * kDeflection, 1e5);
 }
 
+/// Straight line y = intercept + slope x of least squares, and the share of y's variance that it explains.
+struct Line {
+  double slope, intercept, r_squared;
+};
+Line fitted(const std::vector<double>& x, const std::vector<double>& y) {
+  const double n = static_cast<double>(x.size());
+  double sum_x = 0.0, sum_y = 0.0, xx = 0.0, xy = 0.0, residual = 0.0, total = 0.0;
+  for (std::size_t k = 0; k < x.size(); ++k)
+    sum_x += x[k], sum_y += y[k], xx += x[k] * x[k], xy += x[k] * y[k];
+  const double slope = (xy - sum_x * sum_y / n) / (xx - sum_x * sum_x / n),
+               intercept = (sum_y - slope * sum_x) / n;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const double off = y[k] - intercept - slope * x[k], from_mean = y[k] - sum_y / n;
+    residual += off * off, total += from_mean * from_mean;
+  }
+  return {slope, intercept, 1.0 - residual / total};
+}
+
 TEST(Planar, radial_stiffness_is_linear_in_the_modulus) {
   std::ofstream out =
       table("FURROW_PLANAR_MODULUS_CSV", "young_modulus_Pa,secant_N_per_m,regression_N_per_m");
@@ -56,17 +75,30 @@ TEST(Planar, radial_stiffness_is_linear_in_the_modulus) {
                            "secant at 80 mm beside that at 1e5 Pa in proportion", 0.08,
                            "linear [Stiavnicky 2010]");
   double first = 0.0;
+  std::vector<double> modulus, secant, regression;
   for (int k = 1; k <= 10; ++k) {
     tire::PlanarParams p = aligator();
     p.tire.young_modulus = 1e5 * k;
     const Compression c = compressed(p, kDeflection, 8);
     out << fmt::format("{:g},{:.8g},{:.8g}\n", p.tire.young_modulus, c.secant(), c.regression());
+    modulus.push_back(p.tire.young_modulus), secant.push_back(c.secant()),
+        regression.push_back(c.regression());
     if (k == 1) first = c.secant();
     line.add(c.secant(), k * first);
     if (k == 10) {  // 2.2 to 2.5e6 N/m in the source
       EXPECT_GT(c.secant(), 1.5e6);
       EXPECT_LT(c.secant(), 3.5e6);
     }
+  }
+  std::ofstream fit = table("FURROW_PLANAR_LINE_CSV", "stiffness_by,slope_m,intercept_N_per_m,r_squared");
+  for (const bool by_regression : {false, true}) {
+    const Line f = fitted(modulus, by_regression ? regression : secant);
+    fit << fmt::format("{},{:.6g},{:.6g},{:.6f}\n", by_regression ? "regression" : "ends", f.slope,
+                       f.intercept, f.r_squared);
+    verification::verify(
+        "planar tire: stiffness against modulus",
+        by_regression ? "R² of a straight line, by regression" : "R² of a straight line, by ends",
+        f.r_squared, 1.0, 1e-3, "linear [Stiavnicky 2010]");
   }
 }
 

@@ -45,6 +45,9 @@ def study():
     young = 1e-6 * column(table, "young_modulus_Pa")
     modulus.plot(young, 1e-6 * column(table, "secant_N_per_m"), "o-", color=COLOURS[0], label="end force / end deflection")
     modulus.plot(young, 1e-6 * column(table, "regression_N_per_m"), "s--", color=COLOURS[1], label="regression")
+    for colour, line in zip(COLOURS, rows("line")):
+        modulus.plot(young, 1e-6 * (float(line["intercept_N_per_m"]) + 1e6 * young * float(line["slope_m"])), ":", color=colour,
+                     label=f"straight line, R² = {float(line['r_squared']):.4f}")
     modulus.plot([1e-6 * PAPER], [1e-6 * MEASURED], "*", color=COLOURS[2], ms=12, label="source: measured, its mesh")
     modulus.set(xlabel="Young's modulus, MPa", ylabel="radial stiffness, MN/m", title="stiffness at 80 mm, ν = 0.45")
     for colour, (volume, table) in zip(COLOURS, groups(rows("mesh"), "volume").items()):

@@ -1,5 +1,5 @@
 // A message crosses as its fields in the order of its list.
-#include "protocol/byte_stream.hpp"
+#include "protocol/core/byte_stream.hpp"
 #include "protocol/transport.hpp"
 
 namespace furrow {

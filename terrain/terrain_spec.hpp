@@ -95,6 +95,9 @@ class TerrainSpec {
 
   /// What tools that need our grains (beds, soil tests, passes) work on; null: this terrain has none.
   virtual const dem::DemOptions* grains() const { return nullptr; }
+  /// What Terrain::save of engine dem would say of the grains, from the parts of all ranks.
+  /// @pre grains() is not null. @throws Error(io) when the parts do not hold together
+  virtual Archive grain_state(std::vector<Archive> parts, const TerrainContext& context) const;
 };
 
 }  // namespace furrow::terrain

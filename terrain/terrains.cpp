@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -10,6 +11,8 @@
 #include "terrain/dem/dem_options.hpp"
 #include "terrain/dem/dem_spec.hpp"
 #include "terrain/extra_terrains.hpp"
+#include "terrain/liggghts/liggghts_options.hpp"
+#include "terrain/liggghts/liggghts_spec.hpp"
 #include "terrain/rigid/ground_options.hpp"
 #include "terrain/rigid/ground_spec.hpp"
 #include "terrain/scm/scm_options.hpp"
@@ -21,6 +24,7 @@ namespace {
 constexpr auto kTerrains = std::to_array<TerrainEntry>({
     {"dem", key_list<dem::DemOptions>(), dem::read_dem_spec},
     {"rigid", key_list<GroundOptions>(), read_ground_spec},
+    {"liggghts", key_list<liggghts::LiggghtsOptions>(), liggghts::read_liggghts_spec},
     {"scm", key_list<scm::ScmOptions>(), scm::read_scm_spec},
 });
 
@@ -75,6 +79,10 @@ std::string engines_with_grains() {
   return names_of([](const TerrainEntry& entry) {
     return entry.read(nlohmann::json::object(), {})->grains() != nullptr;
   });
+}
+
+Archive TerrainSpec::grain_state(std::vector<Archive> parts, const TerrainContext&) const {
+  return std::move(parts.front());
 }
 
 std::shared_ptr<const TerrainSpec> default_terrain() {

@@ -142,7 +142,7 @@ class RigNode : public Node {
                       terrain_,
                       *accounts_,
                       time_,
-                      wall_clock() - wall_start_,
+                      wall_start_ > 0.0 ? wall_clock() - wall_start_ : 0.0,  // 0: it has not begun to step
                       end_reason_,
                       rig_->findings()},
                      {code, text});

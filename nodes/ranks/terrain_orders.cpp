@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "protocol/byte_stream.hpp"
+#include "protocol/core/byte_stream.hpp"
 #include "protocol/core/error.hpp"
 
 namespace furrow::ranks {

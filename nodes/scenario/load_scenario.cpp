@@ -45,9 +45,11 @@ std::vector<std::string> split(const std::string& key) {
 }
 
 /// Results hold names, in JSON. `what`: "has a name"
-void require_utf8(const std::string& name, const std::string& file, const std::string& key, const char* what) {
+void require_utf8(const std::string& name, const std::string& file, const std::string& key,
+                  const char* what) {
   if (find_invalid_utf8(name) != std::string::npos)
-    throw input_error(file, key, std::string(what) + " that is not UTF-8, expected one that is: results keep it");
+    throw input_error(file, key,
+                      std::string(what) + " that is not UTF-8, expected one that is: results keep it");
 }
 
 /// Puts the value of `--set key=value` into the document, making sections that it lacks.
@@ -109,6 +111,10 @@ json read_document(const std::string& file, const Settings& settings) {
     throw input_error(file, "", "is " + value_text(document) + ", expected an object { }");
   if (document.contains("scenario"))
     throw input_error(file, "", "is a study, expected a scenario ('furrow sweep' takes studies)");
+  if (document.contains("chassis") && document.contains("axles"))
+    throw input_error(
+        file, "",
+        "is a vehicle, expected a scenario, whose key rig.vehicle names it beside rig.type 'vehicle'");
   // What is said later wins: a soil of the command line replaces what the file says of its soil.
   const std::string soil = "terrain.material", engine = engine_to_be(document, file, settings);
   if (std::none_of(settings.begin(), settings.end(), [&](const auto& one) { return one.first == soil; }))
@@ -215,6 +221,7 @@ const std::vector<std::string>& harmless_keys() {
     constexpr unsigned kRoles = role::key | role::harmless;
     add("run", field_names<RunOptions>(kRoles));
     add("checkpoint", field_names<CheckpointOptions>(kRoles));
+    add("press", field_names<PressKeys>(kRoles));
     add("expected", field_names<ExpectedResult>(kRoles));
     add("terrain", terrain::terrain_keys(role::harmless));
     return all;
@@ -231,7 +238,7 @@ bool is_output(const std::string& key) { return key.starts_with("output."); }
 
 /// The expected result holds for the scenario as shipped; a setting that changes the physics makes it void.
 bool changes_results(const std::string& key) {
-  const bool section = key == "expected" || key == "checkpoint" || key == "output";
+  const bool section = key == "expected" || key == "press" || key == "checkpoint" || key == "output";
   return !section && !is_harmless(key) && !is_output(key);
 }
 
@@ -301,6 +308,7 @@ Scenario load_scenario(const std::filesystem::path& name, const Settings& settin
   take_run(document["run"], s);
   read_fields(document["output"], s.output);
   read_fields(document["checkpoint"], s.checkpoint);
+  if (document.contains("press")) read_fields(document["press"], s.press);
   std::vector<std::string> unusual;
   for (const Problem& problem : Schema::load().unusual(document))
     unusual.emplace_back(input_error(file.string(), problem.key, problem.what).what());

@@ -21,6 +21,16 @@ std::vector<std::string> Scenario::file_hashes() const {
   return hashes;
 }
 
+std::vector<InputFile> Scenario::input_files() const {
+  std::vector<InputFile> files;
+  for (std::size_t k = 0; k < tires.size(); ++k)
+    files.push_back({tire_key(k, "file"), tires[k]->options().file});
+  for (const terrain::TerrainFile& file : terrain->files())
+    files.push_back({"terrain." + file.key, file.path});
+  for (const rigs::RigFile& file : rig->files()) files.push_back({"rig." + file.key, file.path});
+  return files;
+}
+
 std::string Scenario::tire_key(std::size_t wheel, const std::string& name) const {
   FURROW_ASSERT(in_range(wheel, tires.size()), wheel, tires.size());
   return tires_listed ? fmt::format("tires.{}.{}", wheel, name) : "tire." + name;

@@ -67,6 +67,27 @@ void visit_fields(Visit&& visit, FieldsOf<CheckpointOptions> auto& s) {
   visit(Field{"at_end", "", role::key | role::harmless}, s.at_end);
 }
 
+/// `press.*`, optional: what `furrow press` takes where its options do not say it.
+struct PressKeys {
+  std::string on = "plate";  // plate | cleat
+  double deflection = 0.02;  // largest, m
+  int points = 10;           // of the curve up to it
+  double load = 4561.65;     // of the footprint, N
+  double cleat_height = 0.025, cleat_width = 0.025;  // m
+  double cleat_position = 0.0;                       // of its middle, forward of the axle, m
+};
+
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<PressKeys> auto& s) {
+  visit(Field{"on", "", role::key | role::harmless}, s.on);
+  visit(Field{"deflection", "m", role::key | role::harmless}, s.deflection);
+  visit(Field{"points", "", role::key | role::harmless}, s.points);
+  visit(Field{"load", "N", role::key | role::harmless}, s.load);
+  visit(Field{"cleat_height", "m", role::key | role::harmless}, s.cleat_height);
+  visit(Field{"cleat_width", "m", role::key | role::harmless}, s.cleat_width);
+  visit(Field{"cleat_position", "m", role::key | role::harmless}, s.cleat_position);
+}
+
 /// `expected.*`, optional: what the shipped scenarios print beside their result. A spread is of runs on one bed; the mean
 /// over n beds is expected within spread/√n. A spread of 0: nothing is expected of this figure.
 struct ExpectedResult {
@@ -95,6 +116,12 @@ struct MemoryNeed {
   double terrain = 0.0;  // a rank of the terrain
 };
 
+/// A file whose content decides results.
+struct InputFile {
+  std::string key;  // that names it: "tires.2.file"
+  std::filesystem::path path;
+};
+
 struct Scenario {
   std::filesystem::path file;
   std::string name;  // file name without extension
@@ -105,7 +132,7 @@ struct Scenario {
   int rig_substeps = 1;
   double drop_height = 0.0;                                  // of all tires above the ground at t = 0, m
   std::vector<std::shared_ptr<const tire::TireSpec>> tires;  // one per wheel
-  bool tires_listed = false;                                 // as entries of `tires`, not by one `tire` for all
+  bool tires_listed = false;  // as entries of `tires`, not by one `tire` for all
   int tire_substeps = 1;
   std::shared_ptr<const terrain::TerrainSpec> terrain = terrain::default_terrain();
   int terrain_ranks = 1;
@@ -114,6 +141,7 @@ struct Scenario {
   RunOptions run;
   OutputOptions output;
   CheckpointOptions checkpoint;
+  PressKeys press;
   ExpectedResult expected;
   MemoryNeed memory;
   std::vector<std::string> warnings;  // what looks wrong but is allowed
@@ -129,6 +157,8 @@ struct Scenario {
 
   /// Of what the tire files, the terrain's and the rig's files hold, in this order.
   std::vector<std::string> file_hashes() const;
+  /// Those files, in the same order.
+  std::vector<InputFile> input_files() const;
 };
 
 }  // namespace furrow::scenario

@@ -36,7 +36,8 @@ class Checks {
   /// Once: of several wheels on the same tire each has the same to say.
   void warn(const std::string& file, const std::string& key, const std::string& what) {
     const std::string text = input_error(file, key, what).what();
-    if (std::find(s_.warnings.begin(), s_.warnings.end(), text) == s_.warnings.end()) s_.warnings.push_back(text);
+    if (std::find(s_.warnings.begin(), s_.warnings.end(), text) == s_.warnings.end())
+      s_.warnings.push_back(text);
   }
 
   void times();
@@ -48,6 +49,7 @@ class Checks {
   void ranks();
   void bin();
   void start();
+  Error in_a_wall(const rigs::WheelDescription& wheel) const;
   void overlaps();
   void step();
   void machine();
@@ -117,10 +119,12 @@ void Checks::tires() {
   for (std::size_t k = 0; k < tires_.size(); ++k) {
     const double share = tires_[k].step_share, tau = tires_[k].damping_time;
     if (share > 0.0 && tau == 0.0)
-      warn(s_.tire_key(k, "structural_damping"),
-           fmt::format("is 0 s: contact forces come one step late and can feed a tire that damps nothing; expected at "
-                       "least {} s for a run.step of {} s",
-                       number_text(short_decimal(2.0 * s_.run.step / share)), number_text(s_.run.step)));
+      warn(
+          s_.tire_key(k, "structural_damping"),
+          fmt::format(
+              "is 0 s: contact forces come one step late and can feed a tire that damps nothing; expected at "
+              "least {} s for a run.step of {} s",
+              number_text(short_decimal(2.0 * s_.run.step / share)), number_text(s_.run.step)));
     else if (share > 0.0 && s_.run.step > share * tau)
       warn("run.step",
            fmt::format("{} s is more than {:g} of the tire's damping time of {} s: contact forces come one "
@@ -145,8 +149,7 @@ void Checks::tire_options(std::size_t wheel) {
                 fmt::format("is true, expected false: {} (terrain.engine '{}') gives no contact tangents",
                             terrain_.name, terrain_.engine));
   for (const std::string& key : tire::idle_keys(tire))
-    warn(s_.tire_key(wheel, key),
-         fmt::format("is ignored: a {} tire does not use it", tires_[wheel].name));
+    warn(s_.tire_key(wheel, key), fmt::format("is ignored: a {} tire does not use it", tires_[wheel].name));
 }
 
 void Checks::room() {
@@ -161,7 +164,7 @@ void Checks::room() {
       throw wrong("terrain.width",
                   fmt::format("is {} m, expected at least {:.2f} m: the tire is {:.2f} m wide{}",
                               number_text(terrain_.bounds->width), width, tire.width,
-                              off > 0.0 ? fmt::format(", {} m off the middle", number_text(off)) : ""));
+                              off > 0.0 ? fmt::format(", {:.3f} m off the middle", off) : ""));
     if (length > terrain_.bounds->length)
       throw wrong("terrain.length",
                   fmt::format("is {} m, expected at least {:.2f} m: the tire is {:.2f} m long",
@@ -174,10 +177,11 @@ void Checks::room() {
 
 void Checks::ranks() {
   if (s_.terrain_ranks <= terrain_.most_ranks) return;
-  throw wrong("terrain.ranks",
-              fmt::format("is {}, expected {}: engine '{}' runs on {}", s_.terrain_ranks,
-                          terrain_.most_ranks > 1 ? fmt::format("1 to {}", terrain_.most_ranks) : "1",
-                          terrain_.engine, terrain_.most_ranks > 1 ? "no more" : "one rank, on all of its cores"));
+  throw wrong(
+      "terrain.ranks",
+      fmt::format("is {}, expected {}: engine '{}' runs on {}", s_.terrain_ranks,
+                  terrain_.most_ranks > 1 ? fmt::format("1 to {}", terrain_.most_ranks) : "1",
+                  terrain_.engine, terrain_.most_ranks > 1 ? "no more" : "one rank, on all of its cores"));
 }
 
 void Checks::bin() {
@@ -190,11 +194,36 @@ void Checks::bin() {
                                    number_text(least)));
 }
 
+/// What is wrong with the start of a wheel that stands in a wall of the bin.
+Error Checks::in_a_wall(const rigs::WheelDescription& wheel) const {
+  const double length = terrain_.bounds->length;
+  double ahead = 0.0, behind = 0.0;  // of the ends of the tires from what the key places, m
+  for (const rigs::WheelDescription& other : describe().wheels) {
+    if (other.start_key != wheel.start_key) continue;
+    ahead = std::max(ahead, other.start_offset + other.along);
+    behind = std::max(behind, other.along - other.start_offset);
+  }
+  const double low = behind, high = length - ahead;
+  if (low > high)
+    return wrong(
+        "terrain.length",
+        fmt::format("is {} m, expected at least {:.2f} m: from the first to the last tire "
+                    "the rig is {:.2f} m long",
+                    number_text(length), ahead + behind + 2.0 * wall_margin(wheel.along), ahead + behind));
+  return wrong(
+      wheel.start_key,
+      fmt::format("is {} m, expected {:.3f} to {:.3f} m: the tire of {}radius {:.3f} m would stand in a wall "
+                  "of the bin",
+                  number_text(short_decimal(wheel.from - wheel.start_offset)), low, high,
+                  wheel.name.empty() ? "" : wheel.name + " with ", wheel.along));
+}
+
 void Checks::start() {
   std::vector<double> margins;
   for (const tire::TireDescription& tire : tires_) margins.push_back(wall_margin(tire.radius));
   rig_.fill_starts(wheel_sizes(tires_), s_.run.end,
                    terrain_.bounds ? std::optional(terrain_.bounds->length) : std::nullopt, margins);
+  for (const auto& [key, what] : rig_.unlikely_values()) warn(key, what);
   if (!terrain_.bounds) return;
   const double length = terrain_.bounds->length;
   for (const rigs::WheelDescription& wheel : describe().wheels) {
@@ -203,17 +232,13 @@ void Checks::start() {
       warn("run.end", fmt::format("the run will end before {} s, where a tire is {} m from the end wall "
                                   "(rig.stop_before_wall)",
                                   number_text(s_.run.end), number_text(rig_.stop_before_wall())));
-    if (wheel.from - radius < 0.0 || wheel.from + radius > length)
-      throw wrong(wheel.start_key,
-                  fmt::format("is {} m, expected {:.3f} to {:.3f} m: the tire of radius {} m would stand in "
-                              "a wall of the bin",
-                              number_text(wheel.from), radius, length - radius, number_text(radius)));
+    if (wheel.from - radius < 0.0 || wheel.from + radius > length) throw in_a_wall(wheel);
     if (wheel.to - radius < 0.0 || wheel.to + radius > length)
       throw wrong(
           "terrain.length",
           fmt::format("is {} m, but the axle travels from x = {:.3f} to {:.3f} m and the tire's radius "
-                      "is {} m: it would hit the end wall; expected at least {:.2f} m or a shorter run",
-                      number_text(length), wheel.from, wheel.to, number_text(radius),
+                      "is {:.3f} m: it would hit the end wall; expected at least {:.2f} m or a shorter run",
+                      number_text(length), wheel.from, wheel.to, radius,
                       std::abs(wheel.to - wheel.from) + 2.0 * (radius + wall_margin(radius))));
   }
 }
@@ -228,6 +253,13 @@ void Checks::overlaps() {
       if (std::abs(wheels[i].lateral - wheels[k].lateral) >= across) continue;
       const double from = wheels[k].from - wheels[i].from, to = wheels[k].to - wheels[i].to;
       if (std::min(std::abs(from), std::abs(to)) >= along && from * to > 0.0) continue;
+      if (wheels[k].start_key == wheels[i].start_key && !rig_.files().empty())  // which places both of them
+        throw wrong(
+            "rig." + rig_.files().front().key,
+            fmt::format(
+                "has the wheel {} in the way of {}, expected {:.2f} m between their axles or {:.2f} m "
+                "between their mid-planes",
+                wheels[k].name, wheels[i].name, along, across));
       throw wrong(
           wheels[k].start_key,
           fmt::format("puts this wheel in the way of wheel {}, expected {:.2f} m between their axles or "

@@ -177,11 +177,8 @@ void Schema::describe(const json& node, const json& value, const std::string& pa
   const bool listed = !node.contains("enum") ||
                       std::find(node["enum"].begin(), node["enum"].end(), value) != node["enum"].end();
   if (!has_allowed_type(node, value) || !listed || !in_range(node, value)) {
-    const bool later = node.contains("later") &&
-                       std::find(node["later"].begin(), node["later"].end(), value) != node["later"].end();
     const std::string shown = value.is_number() ? with_unit(value_text(value), node) : value_text(value);
-    out.push_back({path, (later ? shown + " is not available in this version" : "is " + shown) +
-                             ", expected " + expectation(node)});
+    out.push_back({path, "is " + shown + ", expected " + expectation(node)});
     return;
   }
   if (!value.is_object()) return;

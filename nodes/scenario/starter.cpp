@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <initializer_list>
+#include <optional>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 
 #include "nodes/scenario/load_scenario.hpp"
 #include "nodes/scenario/schema.hpp"
+#include "nodes/scenario/vehicle_tires.hpp"
 #include "nodes/scenario/wheel_geometry.hpp"
 #include "nodes/scenario/wheel_scales.hpp"
 #include "protocol/core/constants.hpp"
@@ -18,6 +20,8 @@
 #include "protocol/files/json_text.hpp"
 #include "protocol/files/text_file.hpp"
 #include "terrain/dem/dem_options.hpp"
+#include "vehicle/driver/driver_car.hpp"
+#include "vehicle/spec/read_vehicle.hpp"
 
 namespace furrow::scenario {
 namespace {
@@ -120,10 +124,15 @@ Json rig_section(const StarterOptions& o, const Scales& s) {
   if (!o.vehicle.empty()) {
     rig["type"] = "vehicle";
     rig["vehicle"] = o.vehicle;
-    rig["driver"]["inputs"]["throttle"] = {
-        {0, 0}, {rounded(kThrottleFrom * time), 0}, {rounded(kThrottleAt * time), kThrottle}};
-    rig["driver"]["inputs"]["brake"] = {
-        {0, 1}, {rounded(kThrottleFrom * time), 1}, {rounded(1.1 * kThrottleFrom * time), 0}};
+    // What is no vehicle is told once the scenario is read.
+    const auto car =
+        is_vehicle(o.vehicle) ? std::optional(vehicle::read_vehicle(find_vehicle(o.vehicle))) : std::nullopt;
+    if (!car || vehicle::can_drive(*car))
+      rig["driver"]["inputs"]["throttle"] = {
+          {0, 0}, {rounded(kThrottleFrom * time), 0}, {rounded(kThrottleAt * time), kThrottle}};
+    if (!car || vehicle::can_brake(*car))
+      rig["driver"]["inputs"]["brake"] = {
+          {0, 1}, {rounded(kThrottleFrom * time), 1}, {rounded(1.1 * kThrottleFrom * time), 0}};
     return rig;
   }
   rig["type"] = "drawbar";
@@ -282,8 +291,7 @@ void write(const std::filesystem::path& file, const StarterOptions& o) {
   const double travel = o.vehicle.empty()
                             ? (1.0 - kSlip) * tread_speed(scales) * (kEnd - kMoveFrom) * time_scale(scales)
                             : 8.0 * scales.radius;
-  for (int pass = 0; pass < 2;
-       ++pass) {  // the sinkage on the first bed decides the depth of the second
+  for (int pass = 0; pass < 2; ++pass) {  // the sinkage on the first bed decides the depth of the second
     document["rig"] = rig_section(o, scales);
     document["terrain"] = terrain_section(o, scales, travel);
     document["run"] = run_section(o, scales);

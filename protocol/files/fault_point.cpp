@@ -3,5 +3,6 @@
 namespace furrow {
 
 void fault_point(const char*) {}
+std::string fault_text(const char*) { return {}; }
 
 }  // namespace furrow

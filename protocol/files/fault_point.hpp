@@ -2,10 +2,15 @@
 // is the same program linked with tests/system/fault_injection.cpp in place of fault_point.cpp.
 #pragma once
 
+#include <string>
+
 namespace furrow {
 
 /// Names so far: "step", "frame", "checkpoint.write", "checkpoint.written", "checkpoint.manifest", "checkpoint.rename",
 /// "checkpoint.done", "results", "done".
 void fault_point(const char* name);
+
+/// What a test wants said at this point to a library that the program uses; empty: nothing. Names so far: "liggghts".
+std::string fault_text(const char* name);
 
 }  // namespace furrow

@@ -8,6 +8,10 @@ else()
   set(_level ${FURROW_LEVEL})
 endif()
 install(TARGETS furrow RUNTIME DESTINATION libexec/furrow/${_level})
+# Beside the program, where it is looked for. A component of its own: the Debian package does not pull in LIGGGHTS.
+if(TARGET furrow_liggghts)
+  install(TARGETS furrow_liggghts LIBRARY DESTINATION libexec/furrow/${_level} COMPONENT liggghts)
+endif()
 install(PROGRAMS ${CMAKE_SOURCE_DIR}/scripts/cluster/furrow DESTINATION bin)
 install(FILES ${CMAKE_SOURCE_DIR}/LICENSE ${CMAKE_SOURCE_DIR}/README.md DESTINATION share/furrow)
 # The pages that messages and README.md name, under their paths in the checkout.

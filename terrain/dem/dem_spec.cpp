@@ -2,8 +2,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "protocol/files/data_files.hpp"
-#include "protocol/files/json_fields.hpp"
 #include "terrain/dem/dem_terrain.hpp"
 
 namespace furrow::terrain::dem {
@@ -14,15 +12,9 @@ class DemSpec final : public TerrainSpec {
   explicit DemSpec(DemOptions options) : options_(std::move(options)) {}
 
   TerrainDescription describe() const override {
-    TerrainDescription d;
+    TerrainDescription d = describe_grains(options_);
     d.engine = "dem";
     d.name = "grains, law " + options_.law;
-    d.law = options_.law;
-    d.grain_radius = options_.radius;
-    d.gives_tangents = true;
-    d.unstable_step_allowed = options_.allow_unstable_step;
-    d.bounds = {options_.length, options_.width};
-    if (options_.undisturbed_height >= 0.0) d.undisturbed_height = options_.undisturbed_height;
     return d;
   }
   TerrainEstimate estimate(const TerrainContext& context) const override {
@@ -31,10 +23,7 @@ class DemSpec final : public TerrainSpec {
   std::unique_ptr<Terrain> make(const TerrainContext& context) const override {
     return make_dem_terrain(with_context(options_, context));
   }
-  std::vector<TerrainFile> files() const override {
-    if (options_.bed.empty()) return {};
-    return {{"bed", options_.bed}};
-  }
+  std::vector<TerrainFile> files() const override { return bed_files(options_); }
   const DemOptions* grains() const override { return &options_; }
 
  private:
@@ -43,11 +32,25 @@ class DemSpec final : public TerrainSpec {
 
 }  // namespace
 
+TerrainDescription describe_grains(const DemOptions& options) {
+  TerrainDescription d;
+  d.law = options.law;
+  d.grain_radius = options.radius;
+  d.gives_tangents = true;
+  d.unstable_step_allowed = options.allow_unstable_step;
+  d.bounds = {options.length, options.width};
+  if (options.undisturbed_height >= 0.0) d.undisturbed_height = options.undisturbed_height;
+  return d;
+}
+
+std::vector<TerrainFile> bed_files(const DemOptions& options) {
+  if (options.bed.empty()) return {};
+  return {{"bed", options.bed}};
+}
+
 std::unique_ptr<TerrainSpec> read_dem_spec(const nlohmann::json& section, const ReadContext& context) {
   DemOptions options;
-  options.scenario = context.file;
-  read_fields(section, options);
-  if (!options.bed.empty()) options.bed = find_file(options.bed, context.key("bed"), context.file).string();
+  read_grain_keys(section, context, options);
   return make_dem_spec(options);
 }
 

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 
+#include "protocol/files/data_files.hpp"
+#include "protocol/files/json_fields.hpp"
 #include "protocol/files/read_context.hpp"
 #include "terrain/dem/dem_options.hpp"
 
@@ -12,6 +15,17 @@ namespace furrow::terrain::dem {
 
 /// @pre the section was checked against the schema. @throws Error(bad_input) when the bed's file does not exist
 std::unique_ptr<TerrainSpec> read_dem_spec(const nlohmann::json& section, const ReadContext& context);
+
+/// What the keys say of any engine of these grains: all but its name.
+TerrainDescription describe_grains(const DemOptions& options);
+std::vector<TerrainFile> bed_files(const DemOptions& options);
+/// The keys of a section into `options`, whatever struct lists them, and the bed's file found.
+template <HasFields Options>
+void read_grain_keys(const nlohmann::json& section, const ReadContext& context, Options& options) {
+  options.scenario = context.file;
+  read_fields(section, options);
+  if (!options.bed.empty()) options.bed = find_file(options.bed, context.key("bed"), context.file).string();
+}
 
 /// The same for a program that has its options already.
 std::unique_ptr<TerrainSpec> make_dem_spec(const DemOptions& options);

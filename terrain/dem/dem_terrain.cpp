@@ -16,11 +16,11 @@
 #include "terrain/dem/beds/bed_height.hpp"
 #include "terrain/dem/beds/bed_preparation.hpp"
 #include "terrain/dem/grain_sizes.hpp"
-#include "terrain/dem/material_check.hpp"
 #include "terrain/dem/refinement/step_refinement.hpp"
 #include "terrain/dem/solver_setup.hpp"
 #include "terrain/dem/solver_state_check.hpp"
-#include "terrain/surface/surface_check.hpp"
+#include "terrain/dem/tires/bin_sides.hpp"
+#include "terrain/dem/tires/surface_start.hpp"
 
 namespace furrow::terrain {
 namespace {
@@ -65,14 +65,6 @@ void check(const DemOptions& o) {
                       fmt::format("{} is out of range, expected a positive number, s", o.step));
 }
 
-/// A bed settles under gravity straight down; a slope is tilted with its bed.
-DemOptions level(DemOptions o) {
-  const double strength = o.gravity.norm();
-  const bool standard = std::abs(strength - kStandardGravity) <= 1e-9 * kStandardGravity;
-  o.gravity = standard ? standard_gravity() : Vec3(0.0, 0.0, -strength);
-  return o;
-}
-
 class DemTerrain : public Terrain {
  public:
   DemTerrain(const DemOptions& options, std::function<void()> each_substep)
@@ -88,7 +80,7 @@ class DemTerrain : public Terrain {
 
   double prepare(const ProgressCall& progress) override {
     const double begin = wall_clock();
-    const dem::PreparedBed prepared = dem::prepare_bed(level(options_), progress);
+    const dem::PreparedBed prepared = dem::prepare_bed(dem::level(options_), progress);
     // A run from a cached bed and the run that settled it both start here, from the same archive.
     dem::restore_bed(solver_, prepared);
     solver_.set_threads(std::max(1, options_.threads));
@@ -112,15 +104,9 @@ class DemTerrain : public Terrain {
   }
 
   void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) override {
-    check_surface(mesh, start, solver_.surfaces().count());
-    dem::check_material(material, options_.law, solver_.surfaces().count());
-    for (const Vec3& x : start.position)
-      if (const char* wall = beyond(x, x))
-        throw input_error(options_.scenario, "terrain",
-                          fmt::format("the tire starts beyond {}: it has a point at ({:.4g}, {:.4g}, {:.4g}) "
-                                      "m; expected a larger bin or another start",
-                                      wall, x.x(), x.y(), x.z()));
-    solver_.surfaces().attach(mesh, material, surface_coefficients(material), start);
+    dem::check_surface_start(options_, solver_.params().bin, mesh, material, start,
+                             solver_.surfaces().count());
+    solver_.surfaces().attach(mesh, material, dem::surface_coefficients(options_, material, part_), start);
   }
 
   Outcome advance(std::span<const SurfaceState> targets, double duration, int substeps,
@@ -131,8 +117,7 @@ class DemTerrain : public Terrain {
     dem::SurfaceContacts& surfaces = solver_.surfaces();
     surfaces.set_targets(targets, duration);
     for (int k = 0; k < surfaces.count(); ++k) {
-      const SurfaceBox box = surfaces.swept_bounds(k);
-      if (const char* wall = beyond(box.lo, box.hi))
+      if (const char* wall = dem::side_crossed(solver_.params().bin, surfaces.swept_bounds(k)))
         return Outcome::failure("is too small", fmt::format("tire {} reached {} of the bin", k, wall));
     }
     if (surfaces.any()) surfaces.restrict_to(grain_box());
@@ -219,14 +204,6 @@ class DemTerrain : public Terrain {
   }
 
  private:
-  dem::ContactCoefficients surface_coefficients(const ContactMaterial& material) const {
-    dem::LawSettings law = dem::law_settings(options_);
-    law.step = part_;
-    law.rolling_friction = 0.0;  // a couple could not be handed to vertices
-    return dem::mix(dem::grain_material(options_), material, dem::Partner::surface, solver_.params().grain,
-                    law);
-  }
-
   void set_step(double dt) {
     FURROW_ASSERT(dt > 0.0, dt);
     dt_ = dt;
@@ -240,7 +217,8 @@ class DemTerrain : public Terrain {
     part_ = dt;
     solver_.set_coefficients(dem::run_coefficients(options_, dt));
     for (int k = 0; k < solver_.surfaces().count(); ++k)
-      solver_.surfaces().set_coefficients(k, surface_coefficients(solver_.surfaces().material(k)));
+      solver_.surfaces().set_coefficients(
+          k, dem::surface_coefficients(options_, solver_.surfaces().material(k), part_));
   }
 
   /// One step of dt_, in as many parts as its hardest contact needs.
@@ -260,17 +238,6 @@ class DemTerrain : public Terrain {
     refinement_.count(parts);
     time_ += dt_;
     return {};
-  }
-
-  /// The side of the bin that the box (lo, hi) crosses, or null. Surfaces may stand out of periodic sides; they have
-  /// no images, so one that acts there spans the whole side.
-  const char* beyond(const Vec3& lo, const Vec3& hi) const {
-    if (!options_.periodic_x && !(lo.x() >= 0.0)) return "the wall x = 0";
-    if (!options_.periodic_x && !(hi.x() <= options_.length)) return "the wall x = length";
-    if (!options_.periodic_y() && !(lo.y() >= -0.5 * options_.width)) return "the wall y = -width/2";
-    if (!options_.periodic_y() && !(hi.y() <= 0.5 * options_.width)) return "the wall y = width/2";
-    if (!(lo.z() >= 0.0)) return "the floor";
-    return nullptr;
   }
 
   /// All grains now, with room for what they may move in one interval.
@@ -300,7 +267,7 @@ class DemTerrain : public Terrain {
 
 }  // namespace
 
-std::unique_ptr<Terrain> make_dem_terrain(const DemOptions& options, std::function<void()> each_substep) {
+void check_dem_run(const DemOptions& options) {
   check(options);
   const dem::StableStep stable = dem::stable_at(options, dem::stated_overlap(options));
   if (options.step > stable.step && !options.allow_unstable_step)
@@ -308,6 +275,10 @@ std::unique_ptr<Terrain> make_dem_terrain(const DemOptions& options, std::functi
                       fmt::format("{} s is above the stable step {:.3g} s ({}); expected a smaller step, "
                                   "more terrain.substeps, or softer grains",
                                   options.step, stable.step, stable.reason));
+}
+
+std::unique_ptr<Terrain> make_dem_terrain(const DemOptions& options, std::function<void()> each_substep) {
+  check_dem_run(options);
   return std::make_unique<DemTerrain>(options, std::move(each_substep));
 }
 

@@ -30,7 +30,7 @@
 #include "terrain/dem/contact_mixing.hpp"
 #include "terrain/dem/pair_forces.hpp"
 #include "terrain/dem/strips.hpp"
-#include "terrain/dem/surface_contacts.hpp"
+#include "terrain/dem/tires/surface_contacts.hpp"
 #include "terrain/dem/wall_forces.hpp"
 
 namespace furrow::terrain::dem {
@@ -132,6 +132,7 @@ class GrainSolver {
   Grains& grains() { return grains_; }
   const Grains& grains() const { return grains_; }
   const Strips& strips() const { return strips_; }
+  Strips& strips() { return strips_; }  // to set what contacts remember
   /// How often the neighbour list was made again since reset_accounts(), by the share of grains in it.
   double rebuilds() const;
   SurfaceContacts& surfaces() { return surfaces_; }

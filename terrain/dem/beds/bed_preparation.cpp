@@ -1,5 +1,6 @@
 #include "terrain/dem/beds/bed_preparation.hpp"
 
+#include <cmath>
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -131,6 +132,13 @@ bool keep(const std::filesystem::path& file, const Archive& bed, const ProgressC
 }
 
 }  // namespace
+
+DemOptions level(DemOptions o) {
+  const double strength = o.gravity.norm();
+  const bool standard = std::abs(strength - kStandardGravity) <= 1e-9 * kStandardGravity;
+  o.gravity = standard ? standard_gravity() : Vec3(0.0, 0.0, -strength);
+  return o;
+}
 
 bool bed_is_settled_anew(const DemOptions& options) {
   return options.bed.empty() || is_positions_file(options.bed);

@@ -16,6 +16,9 @@ struct PreparedBed {
   std::filesystem::path file;  // that holds it: in the cache, or the user's; empty: none
 };
 
+/// A bed settles under gravity straight down; a slope is tilted with its bed.
+DemOptions level(DemOptions options);
+
 /// @throws Error(bad_input) for what options or the user's file have wrong, Error(physics) when a grain is lost.
 PreparedBed prepare_bed(const DemOptions& options, const ProgressCall& progress);
 

@@ -54,17 +54,34 @@ Outcome StepRefinement::choose(const GrainSolver& solver, bool begins) {
   if (hard.past > 0) return too_hard(hard);
   const int finest = static_cast<int>(limits_.size()) - 1;
   if (!(hard.overlap > limits_[state_.level])) return {};
-  if (hard.overlap > limits_[finest])
-    return Outcome::failure(
-        "needs a smaller step",
-        fmt::format(
-            "grains overlap by {:.3g} m, where {:.3g} s is the stable step ({}): {} parts of the step of "
-            "{:.3g} s are not enough; expected a smaller run.step or more terrain.substeps",
-            hard.overlap, stable_at(options_, hard.overlap).step, stable_at(options_, hard.overlap).reason,
-            1 << finest, step_));
+  if (hard.overlap > limits_[finest]) return too_deep(hard.overlap);
   while (state_.level < finest && std::max(hard.overlap, hard.coming) > limits_[state_.level]) ++state_.level;
   state_.calm = 0;
   return {};
+}
+
+Outcome StepRefinement::follow(const HardContacts& met) {
+  FURROW_ASSERT(step_ > 0.0, step_);
+  if (limits_.empty()) return {};
+  if (met.share > kDeepestShare) return too_hard(met);
+  const int finest = static_cast<int>(limits_.size()) - 1;
+  if (met.overlap > limits_[finest]) return too_deep(met.overlap);
+  const int before = state_.level;
+  while (state_.level < finest && met.overlap > kRelaxShare * limits_[state_.level]) ++state_.level;
+  const bool calm = state_.level > 0 && met.overlap <= kRelaxShare * kRelaxShare * limits_[state_.level - 1];
+  state_.calm = calm && state_.level == before ? state_.calm + 1 : 0;
+  if (state_.calm >= kRelaxSteps) --state_.level, state_.calm = 0;
+  return {};
+}
+
+Outcome StepRefinement::too_deep(double overlap) const {
+  const StableStep stable = stable_at(options_, overlap);
+  return Outcome::failure(
+      "needs a smaller step",
+      fmt::format(
+          "grains overlap by {:.3g} m, where {:.3g} s is the stable step ({}): {} parts of the step of "
+          "{:.3g} s are not enough; expected a smaller run.step or more terrain.substeps",
+          overlap, stable.step, stable.reason, 1 << (limits_.size() - 1), step_));
 }
 
 void StepRefinement::relax(const GrainSolver& solver) {

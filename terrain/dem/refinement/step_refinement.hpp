@@ -54,6 +54,10 @@ class StepRefinement {
   /// Before a part: chooses its length from the contacts as they stand. @param begins it is the first of its step
   /// @returns failure when a contact is deeper than any step can hold
   Outcome choose(const GrainSolver& solver, bool begins);
+  /// For an engine that learns of its contacts once they were evaluated: chooses the parts of the coming steps from the
+  /// hardest contact of those before. It refines sooner, at kRelaxShare of what a part bears, since it is late.
+  /// @returns failure when a contact was deeper than any step can hold
+  Outcome follow(const HardContacts& met);
   int level() const { return state_.level; }
   double since() const { return state_.since; }
   void took(double dt) { state_.since = dt; }
@@ -71,6 +75,7 @@ class StepRefinement {
  private:
   void relax(const GrainSolver& solver);
   Outcome too_hard(const HardContacts& hard) const;
+  Outcome too_deep(double overlap) const;
 
   DemOptions options_;
   double step_ = 0.0;           // s

@@ -1,4 +1,4 @@
-#include "terrain/dem/surface_contacts.hpp"
+#include "terrain/dem/tires/surface_contacts.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,36 +10,13 @@
 #include "protocol/core/error.hpp"
 #include "terrain/dem/contact_tangent.hpp"
 #include "terrain/dem/size_scale.hpp"
+#include "terrain/dem/tires/surface_touch.hpp"
 #include "terrain/surface/surface_check.hpp"
 
 namespace furrow::terrain::dem {
 namespace {
 
-constexpr double kSameNormal =
-    0.5;  // cosine: history passes between points whose normals differ by less than 60°
-
-Triple<double> triple(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
-Triple<double> triple(const Quad& q) { return {q.x, q.y, q.z}; }
-Vec3 vec(const Triple<double>& t) { return {t.x, t.y, t.z}; }
 void add(Quad& q, const Triple<double>& t) { q.x += t.x, q.y += t.y, q.z += t.z; }
-
-/// Spin of triangle (a, b, c) about unit n: half the circulation of the vertex velocities over the area, rad/s.
-double spin_about(const SurfaceCollider& surface, int triangle, const Vec3& n) {
-  FURROW_ASSERT(in_range(triangle, surface.mesh().triangles.size()), triangle,
-                surface.mesh().triangles.size());
-  const auto& t = surface.mesh().triangles[triangle];
-  const auto x = surface.positions(), v = surface.velocities();
-  const Vec3 ab = x[t[1]] - x[t[0]], ac = x[t[2]] - x[t[0]];
-  const Vec3 twice_area = ab.cross(ac);
-  const double area2 = twice_area.norm();
-  if (area2 == 0.0) return 0.0;
-  double circulation = 0.0;
-  for (int k = 0; k < 3; ++k) {
-    const int a = t[k], b = t[(k + 1) % 3];
-    circulation += 0.5 * (v[a] + v[b]).dot(x[b] - x[a]);
-  }
-  return circulation / area2 * (twice_area.dot(n) / area2);
-}
 
 const SurfaceHistory* nearest(const std::vector<SurfaceHistory>& history, std::size_t from, std::size_t to,
                               const Vec3& n) {
@@ -178,13 +155,7 @@ void SurfaceContacts::touch(const Grains& grains, SurfaceStrip& mine, int k, int
   for (int h = 0; h < count; ++h) {
     const SurfaceHit& hit = hits[h];
     const Triple<double> arm = triple(Vec3(hit.point - centre));
-    ContactMotion<double> motion;
-    motion.normal = triple(hit.normal);
-    motion.overlap = hit.overlap;
-    motion.root_overlap = std::sqrt(hit.overlap);
-    motion.velocity = v + cross(w, arm) - triple(surface.collider->velocity_at(hit));
-    motion.spin = 0.5 * (dot(w, motion.normal) + spin_about(*surface.collider, hit.triangle, hit.normal));
-    motion.roll = w;
+    const ContactMotion<double> motion = motion_at(*surface.collider, hit, arm, v, w);
     ContactHistory<double> history{{0, 0, 0}, 0.0, {0, 0, 0}};
     if (const SurfaceHistory* past = nearest(old, from - old.begin(), to - old.begin(), hit.normal)) {
       history = {triple(past->tangential), past->tangential.w, triple(past->rolling)};

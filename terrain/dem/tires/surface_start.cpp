@@ -1,0 +1,24 @@
+#include "terrain/dem/tires/surface_start.hpp"
+
+#include <fmt/format.h>
+
+#include "protocol/core/error.hpp"
+#include "terrain/dem/material_check.hpp"
+#include "terrain/dem/tires/bin_sides.hpp"
+#include "terrain/surface/surface_check.hpp"
+
+namespace furrow::terrain::dem {
+
+void check_surface_start(const DemOptions& options, const Bin& bin, const SurfaceMesh& mesh,
+                         const ContactMaterial& material, const SurfaceState& start, int index) {
+  check_surface(mesh, start, index);
+  check_material(material, options.law, index);
+  for (const Vec3& x : start.position)
+    if (const char* wall = side_crossed(bin, {x, x}))
+      throw input_error(options.scenario, "terrain",
+                        fmt::format("the tire starts beyond {}: it has a point at ({:.4g}, {:.4g}, {:.4g}) "
+                                    "m; expected a larger bin or another start",
+                                    wall, x.x(), x.y(), x.z()));
+}
+
+}  // namespace furrow::terrain::dem

@@ -1,0 +1,16 @@
+// What grains demand of a tire's surface before the first step.
+#pragma once
+
+#include "protocol/core/surface.hpp"
+#include "terrain/dem/bin.hpp"
+#include "terrain/dem/dem_options.hpp"
+
+namespace furrow::terrain::dem {
+
+/// @param index of the tire, for messages
+/// @throws Error(bad_input) when mesh and positions do not belong together, the law has no use for the material, or the
+/// surface starts beyond a side of the bin
+void check_surface_start(const DemOptions& options, const Bin& bin, const SurfaceMesh& mesh,
+                         const ContactMaterial& material, const SurfaceState& start, int index);
+
+}  // namespace furrow::terrain::dem

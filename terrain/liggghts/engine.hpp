@@ -1,0 +1,159 @@
+// What Furrow asks of a distributed engine of grains, and what the engine asks of Furrow. The engine stands in a library
+// of its own (plugin/), which is loaded while the program runs (engine_library.hpp): this header is all that both sides
+// share, beside the laws of contact.
+//
+// Each rank of the terrain has an Engine and owns the grains in its part of the bin. A grain that moves into another
+// part moves to its rank, with what it carries. All verbs but those that say "own" are called by all ranks alike.
+//
+// A step takes the forces where the grains stand, then kicks and drifts them:
+//   v ← v + kick (F/m + g),   ω ← ω + kick T/I,   x ← x + dt v.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "terrain/dem/accounts/contact_losses.hpp"
+#include "terrain/dem/bin.hpp"
+#include "terrain/dem/contact_mixing.hpp"
+
+namespace furrow::terrain::liggghts {
+
+/// Changes with this header: a library made for another number is refused.
+inline constexpr int kEngineVersion = 1;
+/// What the library offers: kMakeEngine makes an engine, kEngineVersionOf tells kEngineVersion.
+inline constexpr char kMakeEngine[] = "furrow_make_engine";
+inline constexpr char kEngineVersionOf[] = "furrow_engine_version";
+
+/// The history of a grain's contact with something that is no grain. It belongs to the grain and goes where it goes.
+struct Carried {
+  double partner = 0.0;                // a wall of dem/bin.hpp, or kWalls + the number of the tire
+  std::array<double, 3> normal{};      // of the step before; of tires only
+  std::array<double, 3> tangential{};  // spring force on the grain, N
+  double root_overlap = 0.0;           // √δ of the step before, √m; 0: apart
+  std::array<double, 3> rolling{};     // spring torque, N m
+};
+inline constexpr int kMostCarried = 64;  // by one grain
+
+/// The grains that a rank owns now, in the engine's order. Pointers hold until the next step.
+struct OwnGrains {
+  int count = 0;
+  const double (*position)[3] = nullptr;  // m
+  const double (*velocity)[3] = nullptr;  // m/s
+  const double (*spin)[3] = nullptr;      // rad/s
+  const double* radius = nullptr;         // m
+  const int* id = nullptr;
+  double (*force)[3] = nullptr;             // N, to be added to
+  double (*torque)[3] = nullptr;            // N m
+  std::vector<Carried>* carried = nullptr;  // of each grain
+};
+
+/// Sums over the pairs of grains that a rank evaluated in one step. A pair whose other grain belongs to another rank is
+/// evaluated by both and counts half.
+struct PairSums {
+  double elastic = 0.0;  // normal springs and cohesion, J
+  double contacts = 0.0;
+  double max_overlap = 0.0;            // m
+  double max_share = 0.0;              // largest overlap over the diameter of the smaller grain, -
+  std::array<double, 3> hardest_at{};  // a grain of that contact, m
+  dem::ContactSample sample;           // where it was asked for
+};
+
+/// Called once in each step on each rank: adds the forces of walls and tires.
+class StepWork {
+ public:
+  virtual ~StepWork() = default;
+  /// Whether the losses of this step are wanted.
+  virtual bool begin_step() = 0;
+  /// @param losses as begin_step said
+  virtual void add_forces(const OwnGrains& grains, bool losses) = 0;
+  /// The step's pairs, once all grains have moved.
+  virtual void end_step(const PairSums& pairs, bool losses) = 0;
+};
+
+struct NewGrain {
+  int id = 0;
+  double radius = 0.0;                    // m
+  std::array<double, 3> position{};       // m
+  std::array<double, 3> list_position{};  // where it stood when the lists were made, m
+  std::array<double, 3> velocity{};       // m/s
+  std::array<double, 3> spin{};           // rad/s
+};
+
+/// History of two touching grains, of the spring on grain i; i < j are numbers of grains.
+struct PairRecord {
+  std::int32_t i = 0, j = 0;
+  std::array<double, 3> tangential{};  // N
+  double root_overlap = 0.0;           // √m
+  std::array<double, 3> rolling{};     // N m
+};
+
+/// One number for two grains, or for a grain and a wall.
+inline std::uint64_t pair_key(std::int32_t i, std::int32_t j) {
+  return static_cast<std::uint64_t>(static_cast<std::uint32_t>(i)) << 32 | static_cast<std::uint32_t>(j);
+}
+
+/// Times are of the interval that the step belongs to.
+struct StepTimes {
+  double dt = 0.0;     // by which grains drift, s
+  double since = 0.0;  // since forces were last taken: histories grow for it, s
+  double kick = 0.0;   // s
+};
+
+struct EngineSetup {
+  std::optional<int> communicator;  // of the ranks, as MPI_Comm_f2c takes it; none: there is one rank
+  dem::Bin bin;
+  double top = 0.0;      // no grain stands higher at the beginning, m
+  double skin = 0.0;     // m
+  double largest = 0.0;  // radius, m
+  dem::LawKind law = dem::LawKind::mindlin;
+  bool rolling = false;
+  bool sizes = false;               // radii differ
+  dem::GrainProperties grain;       // of the reference radius
+  std::array<double, 3> gravity{};  // m/s²
+  std::vector<double> borders;      // between the ranks' parts along x, m; empty: parts of equal length
+};
+
+/// What LIGGGHTS says against something. Thrown on every rank, or on one alone: then the others wait for it for ever.
+class EngineError : public std::runtime_error {
+ public:
+  EngineError(const std::string& text, bool on_all) : std::runtime_error(text), on_all(on_all) {}
+  bool on_all;
+};
+
+class Engine {
+ public:
+  virtual ~Engine() = default;
+
+  /// Places grains. Each rank takes those in its part, in the order given. @param own_only  all are this rank's
+  virtual void place(std::span<const NewGrain> grains, bool own_only) = 0;
+  /// What touching grains remember; a rank looks at those that name a grain of its own. Before the first run.
+  virtual void remember(std::span<const PairRecord> records) = 0;
+  /// Makes the lists. @throws EngineError
+  virtual void begin(StepWork& work) = 0;
+
+  virtual void set_coefficients(const dem::ContactCoefficients& pair) = 0;
+  /// @throws EngineError
+  virtual void run(int steps, const StepTimes& times) = 0;
+
+  /// Gives the ranks other parts: grains move to their ranks with all that they carry. @throws EngineError
+  virtual void move_borders(std::span<const double> borders) = 0;
+
+  virtual OwnGrains own() = 0;
+  /// Where this rank's grains stood when the lists were made.
+  virtual std::vector<NewGrain> own_state() = 0;
+  virtual std::vector<PairRecord> own_pairs() = 0;
+  virtual int own_ghosts() const = 0;
+  virtual std::int64_t list_builds() const = 0;
+  /// For tests of what happens then: runs a line of LIGGGHTS' own language.
+  virtual void command(const std::string& line) = 0;
+};
+
+/// @throws EngineError
+using MakeEngine = Engine* (*)(const EngineSetup& setup);
+
+}  // namespace furrow::terrain::liggghts

@@ -1,0 +1,21 @@
+// Finds and loads the library that holds the engine. Only ranks of a terrain that uses it load it.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "terrain/liggghts/engine.hpp"
+
+namespace furrow::terrain::liggghts {
+
+/// Beside the program, or above it for programs of the tests; empty: nowhere.
+std::filesystem::path find_engine_library();
+
+/// @throws Error(bad_input) that says what to install when there is none
+void require_engine_library();
+
+/// @throws Error(bad_input) that says what to install when there is no such library, it cannot be loaded or is that of
+/// another version
+std::unique_ptr<Engine> make_engine(const EngineSetup& setup);
+
+}  // namespace furrow::terrain::liggghts

@@ -1,0 +1,32 @@
+// The keys of the section `terrain` with engine liggghts: those of dem but for what this engine always or never does.
+#pragma once
+
+#include <string_view>
+#include <utility>
+
+#include "terrain/dem/dem_options.hpp"
+
+namespace furrow::terrain::liggghts {
+
+struct LiggghtsOptions : dem::DemOptions {
+  LiggghtsOptions() {
+    precision = "double";
+    activity = false;
+  }
+};
+
+/// Resting grains never sleep, and every contact is computed in double precision.
+constexpr bool is_key_of_dem_only(std::string_view name) { return name == "activity" || name == "precision"; }
+
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<LiggghtsOptions> auto& s) {
+  using Base = std::conditional_t<std::is_const_v<std::remove_reference_t<decltype(s)>>,
+                                  const dem::DemOptions, dem::DemOptions>;
+  visit_fields(
+      [&](const Field& field, auto& value) {
+        if (!is_key_of_dem_only(field.name)) visit(field, value);
+      },
+      static_cast<Base&>(s));
+}
+
+}  // namespace furrow::terrain::liggghts

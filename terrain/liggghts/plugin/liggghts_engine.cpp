@@ -1,0 +1,199 @@
+// LIGGGHTS as an engine of grains: one instance on the ranks of the terrain, driven by its own commands.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include <mpi.h>
+
+#include <atom.h>
+#include <atom_vec.h>
+#include <comm.h>
+#include <domain.h>
+#include <force.h>
+#include <input.h>
+#include <irregular.h>
+#include <lammps.h>
+#include <modify.h>
+#include <neighbor.h>
+#include <update.h>
+
+#include "terrain/liggghts/engine.hpp"
+#include "terrain/liggghts/plugin/fix_furrow.hpp"
+#include "terrain/liggghts/plugin/pair_furrow.hpp"
+
+namespace {
+
+/// Modify::fix_map is private. An explicit instantiation may name it [C++ standard, 13.9.3, access checking].
+template <auto kMember>
+struct Opened {
+  friend auto fix_map_of() { return kMember; }
+};
+auto fix_map_of();
+template struct Opened<&LAMMPS_NS::Modify::fix_map>;
+
+}  // namespace
+
+namespace furrow::terrain::liggghts {
+namespace {
+
+using LAMMPS_NS::LAMMPS;
+
+constexpr double kMargin =
+    10.0;  // of the box around the bin, largest radii: nothing is deleted before it is reported
+
+std::string number(double v) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.17g", v);
+  return text;
+}
+
+class LiggghtsEngine final : public Engine {
+ public:
+  explicit LiggghtsEngine(const EngineSetup& setup) : setup_(setup) {
+    int initialized = 0;
+    MPI_Initialized(&initialized);
+    if (!initialized) MPI_Init(nullptr, nullptr);
+    MPI_Comm_dup(setup.communicator ? MPI_Comm_f2c(*setup.communicator) : MPI_COMM_SELF, &communicator_);
+    int ranks = 1;
+    MPI_Comm_size(communicator_, &ranks);
+    std::string words[] = {"liggghts", "-log", "none", "-screen", "none"};
+    char* argv[] = {words[0].data(), words[1].data(), words[2].data(), words[3].data(), words[4].data()};
+    lmp_ = std::make_unique<LAMMPS>(5, argv, communicator_);
+    (*lmp_->force->pair_map)["gran"] = [](LAMMPS* l) -> LAMMPS_NS::Pair* { return new PairFurrow(l); };
+    (*(lmp_->modify->*fix_map_of()))["furrow"] = [](LAMMPS* l, int n, char** words) -> LAMMPS_NS::Fix* {
+      return new FixFurrow(l, n, words);
+    };
+    const dem::Bin& bin = setup.bin;
+    const double room = kMargin * setup.largest, across = bin.periodic_y ? 0.0 : room;
+    for (const std::string& line :
+         {std::string("atom_style sphere"), std::string("atom_modify sort 0 0"),
+          std::string(bin.periodic_y ? "boundary f p fs" : "boundary f f fs"), std::string("newton off"),
+          std::string("communicate single vel yes"), std::string("units si"),
+          "processors " + std::to_string(ranks) + " 1 1",
+          "region bin block " + number(-room) + " " + number(bin.length + room) + " " +
+              number(-0.5 * bin.width - across) + " " + number(0.5 * bin.width + across) + " " +
+              number(-room) + " " + number(setup.top + room) + " units box",
+          std::string("create_box 1 bin"), "neighbor " + number(setup.skin) + " bin",
+          std::string("neigh_modify delay 0 every 1 check yes"), std::string("pair_style gran"),
+          std::string("pair_coeff * *"), std::string("fix furrow all furrow")})
+      command(line);
+    pair_ = static_cast<PairFurrow*>(lmp_->force->pair);
+    fix_ = static_cast<FixFurrow*>(lmp_->modify->fix[lmp_->modify->find_fix("furrow")]);
+    pair_->set_up(setup);
+    fix_->set_up(setup, *pair_);
+    if (!setup.borders.empty()) set_borders(setup.borders);
+  }
+  ~LiggghtsEngine() override {
+    lmp_.reset();
+    int finalized = 0;
+    MPI_Finalized(&finalized);
+    if (!finalized) MPI_Comm_free(&communicator_);
+  }
+
+  void place(std::span<const NewGrain> grains, bool own_only) override {
+    LAMMPS_NS::Atom& atom = *lmp_->atom;
+    const double lo = lmp_->domain->sublo[0], hi = lmp_->domain->subhi[0];
+    for (const NewGrain& grain : grains) {
+      double at[3] = {grain.list_position[0], grain.list_position[1], grain.list_position[2]};
+      if (!own_only && !(at[0] >= lo && at[0] < hi)) continue;
+      atom.avec->create_atom(1, at);
+      const int i = atom.nlocal - 1;
+      atom.tag[i] = grain.id + 1;
+      atom.radius[i] = grain.radius;
+      const double size = grain.radius / setup_.grain.radius;
+      atom.rmass[i] = setup_.grain.mass * size * size * size;
+      std::copy_n(grain.velocity.data(), 3, atom.v[i]);
+      std::copy_n(grain.spin.data(), 3, atom.omega[i]);
+      fix_->set_arrays(i);
+      if (grain.position != grain.list_position) moved_[grain.id + 1] = grain.position;
+    }
+  }
+
+  void remember(std::span<const PairRecord> records) override { pair_->remember(records); }
+
+  void begin(StepWork& work) override {
+    LAMMPS_NS::Atom& atom = *lmp_->atom;
+    LAMMPS_NS::bigint own = atom.nlocal;
+    MPI_Allreduce(&own, &atom.natoms, 1, MPI_LMP_BIGINT, MPI_SUM, communicator_);
+    fix_->set_work(work);
+    command("run 0 pre yes post no");
+    for (int i = 0; i < atom.nlocal; ++i)
+      if (const auto it = moved_.find(atom.tag[i]); it != moved_.end())
+        std::copy_n(it->second.data(), 3, atom.x[i]);
+    moved_ = {};
+  }
+
+  void set_coefficients(const dem::ContactCoefficients& pair) override { pair_->set_coefficients(pair); }
+
+  void run(int steps, const StepTimes& times) override {
+    lmp_->update->dt = times.dt;
+    pair_->set_since(times.since);
+    fix_->set_times(times);
+    command("run " + std::to_string(steps) + " pre no post no");
+  }
+
+  void move_borders(std::span<const double> borders) override {
+    lmp_->modify->setup_pre_exchange();
+    set_borders(borders);
+    LAMMPS_NS::Irregular(lmp_.get()).migrate_atoms();
+    command("run 0 pre yes post no");
+  }
+
+  OwnGrains own() override { return fix_->own(); }
+
+  std::vector<NewGrain> own_state() override {
+    const LAMMPS_NS::Atom& atom = *lmp_->atom;
+    std::vector<NewGrain> all(atom.nlocal);
+    for (int i = 0; i < atom.nlocal; ++i) {
+      NewGrain& g = all[i];
+      g.id = atom.tag[i] - 1;
+      g.radius = atom.radius[i];
+      std::copy_n(atom.x[i], 3, g.position.data());
+      std::copy_n(atom.v[i], 3, g.velocity.data());
+      std::copy_n(atom.omega[i], 3, g.spin.data());
+      g.list_position = fix_->list_position(i);
+    }
+    return all;
+  }
+  std::vector<PairRecord> own_pairs() override { return pair_->records(); }
+  int own_ghosts() const override { return lmp_->atom->nghost; }
+  std::int64_t list_builds() const override { return lmp_->neighbor->ncalls; }
+
+  void command(const std::string& line) override {
+    std::string text = line;
+    lmp_->input->one(text.data());
+  }
+
+ private:
+  void set_borders(std::span<const double> borders) {
+    LAMMPS_NS::Comm& comm = *lmp_->comm;
+    const LAMMPS_NS::Domain& domain = *lmp_->domain;
+    comm.uniform = 0;
+    for (std::size_t k = 0; k < borders.size(); ++k)
+      comm.xsplit[k + 1] = (borders[k] - domain.boxlo[0]) / (domain.boxhi[0] - domain.boxlo[0]);
+    lmp_->domain->set_local_box();
+  }
+
+  EngineSetup setup_;
+  MPI_Comm communicator_ = MPI_COMM_NULL;
+  std::unique_ptr<LAMMPS> lmp_;
+  PairFurrow* pair_ = nullptr;
+  FixFurrow* fix_ = nullptr;
+  std::unordered_map<int, std::array<double, 3>> moved_;  // by tag: since the lists were made
+};
+
+}  // namespace
+}  // namespace furrow::terrain::liggghts
+
+extern "C" {
+
+int furrow_engine_version() { return furrow::terrain::liggghts::kEngineVersion; }
+
+furrow::terrain::liggghts::Engine* furrow_make_engine(const furrow::terrain::liggghts::EngineSetup& setup) {
+  return new furrow::terrain::liggghts::LiggghtsEngine(setup);
+}
+}

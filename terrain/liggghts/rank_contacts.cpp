@@ -1,0 +1,314 @@
+#include "terrain/liggghts/rank_contacts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "protocol/core/archive_fields.hpp"
+#include "protocol/core/assert.hpp"
+#include "protocol/core/error.hpp"
+#include "terrain/dem/contact_tangent.hpp"
+#include "terrain/dem/grain_sizes.hpp"
+#include "terrain/dem/size_scale.hpp"
+#include "terrain/dem/tires/surface_touch.hpp"
+#include "terrain/surface/surface_check.hpp"
+
+namespace furrow::terrain::liggghts {
+namespace {
+
+using dem::ContactForce;
+using dem::ContactHistory;
+using dem::ContactMotion;
+using dem::Quad;
+using dem::Triple;
+
+Triple<double> triple(const double* v) { return {v[0], v[1], v[2]}; }
+Triple<double> triple(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
+std::array<double, 3> array(const Triple<double>& v) { return {v.x, v.y, v.z}; }
+void add(double* to, const Triple<double>& v) { to[0] += v.x, to[1] += v.y, to[2] += v.z; }
+
+ContactHistory<double> history_of(const Carried& c) {
+  return {triple(c.tangential), c.root_overlap, triple(c.rolling)};
+}
+
+Carried carried_of(int partner, const Triple<double>& normal, const ContactHistory<double>& h) {
+  return {static_cast<double>(partner), array(normal), array(h.tangential), h.root_overlap, array(h.rolling)};
+}
+
+}  // namespace
+
+RankContacts::RankContacts(const dem::DemOptions& options)
+    : options_(options), params_(dem::solver_params(options)), energies_(params_.sample_every) {
+  set_step(options.step);
+}
+
+EngineSetup RankContacts::setup() const {
+  EngineSetup s;
+  s.bin = params_.bin;
+  s.skin = params_.skin;
+  s.largest = params_.largest_radius();
+  s.law = params_.law;
+  s.rolling = params_.rolling;
+  s.sizes = params_.sizes();
+  s.grain = params_.grain;
+  s.gravity = {params_.gravity.x(), params_.gravity.y(), params_.gravity.z()};
+  return s;
+}
+
+void RankContacts::set_step(double dt) {
+  coefficients_ = dem::run_coefficients(options_, dt);
+  options_.step = dt;
+  for (Tire& tire : tires_) tire.coefficients = dem::surface_coefficients(options_, tire.material, dt);
+}
+
+void RankContacts::attach(const SurfaceMesh& mesh, const ContactMaterial& material,
+                          const SurfaceState& start) {
+  Tire tire;
+  tire.collider = std::make_unique<SurfaceCollider>(mesh, params_.largest_radius());
+  tire.sum = std::make_unique<NodalForceSum>(mesh.vertex_count, options_.contact_tangents);
+  tire.material = material;
+  tire.coefficients = dem::surface_coefficients(options_, material, options_.step);
+  tire.mass_share = dem::mass_share(params_.grain, material);
+  tire.start = tire.end = start.position;
+  tire.collider->set_motion(tire.start, tire.end, 1.0);
+  tires_.push_back(std::move(tire));
+}
+
+void RankContacts::begin_interval(std::span<const SurfaceState> targets, double duration, int steps,
+                                  const SurfaceBox& grains) {
+  FURROW_ASSERT(targets.size() == tires_.size() && steps > 0, targets.size(), tires_.size(), steps);
+  for (std::size_t k = 0; k < tires_.size(); ++k) {
+    Tire& tire = tires_[k];
+    tire.start.swap(tire.end);
+    for (std::size_t a = 0; a < tire.end.size(); ++a)
+      tire.end[a] = targets[k].position[a] + duration * targets[k].velocity[a];
+    tire.collider->set_motion(tire.start, tire.end, duration);
+    tire.collider->restrict_to(grains);
+  }
+  steps_ = steps;
+  step_ = 0;
+  lost_.reset();
+  interval_overlap_ = hardest_share_ = 0.0;
+}
+
+bool RankContacts::begin_step() {
+  const Vec3 r = Vec3::Constant(params_.largest_radius());
+  for (Tire& tire : tires_) {
+    tire.collider->move_to(static_cast<double>(step_) / steps_);
+    tire.near = tire.collider->bounds();
+    tire.near.lo -= r, tire.near.hi += r;
+    tire.forces.clear();
+  }
+  now_ = {};
+  on_grains_.setZero();
+  return energies_.due();
+}
+
+void RankContacts::add_forces(const OwnGrains& grains, bool losses) {
+  if (params_.law == dem::LawKind::hertz_tanh) {
+    params_.rolling ? add_forces_of<dem::HertzTanhLaw, true>(grains, losses)
+                    : add_forces_of<dem::HertzTanhLaw, false>(grains, losses);
+  } else {
+    params_.rolling ? add_forces_of<dem::MindlinLaw, true>(grains, losses)
+                    : add_forces_of<dem::MindlinLaw, false>(grains, losses);
+  }
+}
+
+template <class Law, bool kRolling>
+void RankContacts::add_forces_of(const OwnGrains& grains, bool losses) {
+  const dem::Bin& bin = params_.bin;
+  for (int g = 0; g < grains.count; ++g) {
+    const double* const x = grains.position[g];
+    const double r = grains.radius[g];
+    const Quad at{x[0], x[1], x[2], r};
+    if (!lost_ && !bin.holds(at)) lost_ = LostGrain{grains.id[g] - 1, {x[0], x[1], x[2]}};
+    std::vector<Carried>& mine = grains.carried[g];
+    bool wall = false;
+    for (int w = 0; w < dem::kWalls; ++w) wall |= bin.has_wall(w) && bin.distance(w, at) < r;
+    bool tire = false;
+    for (const Tire& t : tires_)
+      tire |= at.z < t.near.hi.z() && at.z > t.near.lo.z() && at.x > t.near.lo.x() && at.x < t.near.hi.x() &&
+              at.y > t.near.lo.y() && at.y < t.near.hi.y();
+    if (!wall && !tire && mine.empty()) continue;
+    past_.assign(mine.begin(), mine.end());
+    mine.clear();
+    taken_.assign(past_.size(), 0);
+    if (wall) touch_walls<Law, kRolling>(grains, g, losses);
+    if (tire)
+      for (int k = 0; k < tires(); ++k) touch_tire<Law, kRolling>(grains, g, k, losses);
+    if (!losses) continue;
+    for (std::size_t p = 0; p < past_.size(); ++p) {
+      if (taken_[p]) continue;
+      const int partner = static_cast<int>(past_[p].partner);
+      const auto c = partner < dem::kWalls ? of_wall(partner, r) : of_tire(tires_[partner - dem::kWalls], r);
+      now_.sample.power.opening += dem::held_by_springs(c, triple(past_[p].tangential), past_[p].root_overlap,
+                                                        triple(past_[p].rolling)) /
+                                   times_.since;
+    }
+  }
+  for (Tire& tire : tires_) tire.sum->add_substep(tire.forces, *tire.collider, times_.kick, times_.dt);
+}
+
+dem::ContactCoefficients RankContacts::of_wall(int wall, double radius) const {
+  const dem::ContactCoefficients& c = wall == dem::kFloor ? coefficients_.floor : coefficients_.side;
+  if (radius == params_.grain.radius) return c;
+  return dem::scaled(c, dem::surface_scale(radius / params_.grain.radius, 0.0));
+}
+
+dem::ContactCoefficients RankContacts::of_tire(const Tire& tire, double radius) const {
+  if (radius == params_.grain.radius) return tire.coefficients;
+  return dem::scaled(tire.coefficients, dem::surface_scale(radius / params_.grain.radius, tire.mass_share));
+}
+
+void RankContacts::note(double overlap, double radius, const double* at) {
+  now_.max_overlap = std::max(now_.max_overlap, overlap);
+  const double share = 0.5 * overlap / radius;
+  if (share <= hardest_share_) return;
+  hardest_share_ = share;
+  hardest_at_ = {at[0], at[1], at[2]};
+}
+
+template <class Law, bool kRolling>
+void RankContacts::touch_walls(const OwnGrains& grains, int g, bool losses) {
+  const double r = grains.radius[g];
+  const Quad at{grains.position[g][0], grains.position[g][1], grains.position[g][2], r};
+  const Triple<double> v = triple(grains.velocity[g]);
+  for (int wall = 0; wall < dem::kWalls; ++wall) {
+    if (!params_.bin.has_wall(wall)) continue;
+    const double distance = params_.bin.distance(wall, at);
+    ContactMotion<double> motion;
+    motion.overlap = r - distance;
+    if (!(motion.overlap > 0.0)) continue;
+    motion.normal = dem::Bin::normal(wall);
+    motion.roll = triple(grains.spin[g]);
+    const Triple<double> arm = -distance * motion.normal;
+    motion.root_overlap = std::sqrt(motion.overlap);
+    motion.velocity = v + cross(motion.roll, arm);
+    motion.spin = 0.5 * dot(motion.roll, motion.normal);
+    ContactHistory<double> history{{0, 0, 0}, 0.0, {0, 0, 0}};
+    for (std::size_t p = 0; p < past_.size(); ++p)
+      if (static_cast<int>(past_[p].partner) == wall) history = history_of(past_[p]), taken_[p] = 1;
+    const dem::ContactCoefficients c = of_wall(wall, r);
+    if (losses) add(now_.sample, dem::sample_of<Law, kRolling>(c, times_.since, motion, history));
+    const ContactForce<double> f = Law::template force<kRolling>(c, times_.since, motion, history);
+    if constexpr (Law::kHistory) grains.carried[g].push_back(carried_of(wall, motion.normal, history));
+    const Triple<double> force = f.normal * motion.normal + f.tangential;
+    add(grains.force[g], force);
+    add(grains.torque[g], cross(arm, f.tangential) + f.rolling);
+    now_.elastic += f.energy;
+    dem::add(now_.wall_force, dem::Double4{force.x, force.y, force.z, 0.0});
+    if (wall == dem::kFloor) now_.floor_force += force.z;
+    ++now_.contacts;
+    note(motion.overlap, r, grains.position[g]);
+  }
+}
+
+template <class Law, bool kRolling>
+void RankContacts::touch_tire(const OwnGrains& grains, int g, int k, bool losses) {
+  Tire& tire = tires_[k];
+  std::array<SurfaceHit, kMaxSurfaceHits> hits;
+  const double r = grains.radius[g];
+  const Vec3 centre(grains.position[g][0], grains.position[g][1], grains.position[g][2]);
+  const int count = tire.collider->hits(centre, r, hits);
+  if (count == 0) return;
+  const int partner = dem::kWalls + k;
+  const dem::ContactCoefficients c = of_tire(tire, r);
+  const Triple<double> v = triple(grains.velocity[g]), w = triple(grains.spin[g]);
+  for (int h = 0; h < count; ++h) {
+    const SurfaceHit& hit = hits[h];
+    const Triple<double> arm = dem::triple(Vec3(hit.point - centre));
+    const ContactMotion<double> motion = dem::motion_at(*tire.collider, hit, arm, v, w);
+    ContactHistory<double> history{{0, 0, 0}, 0.0, {0, 0, 0}};
+    double cosine = dem::kSameNormal;
+    int nearest = -1;
+    for (std::size_t p = 0; p < past_.size(); ++p) {
+      if (static_cast<int>(past_[p].partner) != partner) continue;
+      const double same = dot(triple(past_[p].normal), motion.normal);
+      if (same > cosine) cosine = same, nearest = static_cast<int>(p);
+    }
+    if (nearest >= 0) history = history_of(past_[nearest]), taken_[nearest] = 1;
+    if (losses) add(now_.sample, dem::sample_of<Law, kRolling>(c, times_.since, motion, history), hit.share);
+    const ContactForce<double> f = Law::template force<kRolling>(c, times_.since, motion, history);
+    if constexpr (Law::kHistory) grains.carried[g].push_back(carried_of(partner, motion.normal, history));
+    const Triple<double> push = (hit.share * f.normal) * motion.normal, drag = hit.share * f.tangential;
+    add(grains.force[g], push + drag);
+    add(grains.torque[g], cross(arm, push + drag) + hit.share * f.rolling);
+    tire.forces.push_back({hit.triangle, hit.weight, hit.point, -dem::vec(push), -dem::vec(drag), {}});
+    if (options_.contact_tangents)
+      tire.forces.back().tangent = dem::contact_tangent<Law>(c, motion, f, hit.share);
+    on_grains_ += dem::vec(push + drag);
+    now_.elastic += hit.share * f.energy;
+    ++now_.contacts;
+    note(hit.overlap, r, grains.position[g]);
+  }
+}
+
+void RankContacts::end_step(const PairSums& pairs, bool losses) {
+  const double dt = times_.kick;
+  sums_.elastic = pairs.elastic + now_.elastic;
+  sums_.wall_impulse += dt * Vec3(now_.wall_force.x, now_.wall_force.y, now_.wall_force.z);
+  sums_.surface_impulse += dt * on_grains_;
+  sums_.gravity_time += dt;
+  sums_.floor_force = now_.floor_force;
+  sums_.contacts = pairs.contacts + static_cast<double>(now_.contacts);
+  interval_overlap_ = std::max({interval_overlap_, pairs.max_overlap, now_.max_overlap});
+  if (pairs.max_share > hardest_share_) hardest_share_ = pairs.max_share, hardest_at_ = pairs.hardest_at;
+  if (losses) {
+    dem::ContactSample all = pairs.sample;
+    add(all, now_.sample);
+    energies_.sample(1, [&](int) { return &all; });
+  }
+  energies_.advance(dt, true, 0.0);
+  ++step_;
+}
+
+void RankContacts::end_interval(double duration, std::span<NodalForces> forces, std::span<ContactSums> sums) {
+  FURROW_ASSERT(forces.size() == tires_.size() && sums.size() == tires_.size(), forces.size(), sums.size());
+  for (std::size_t k = 0; k < tires_.size(); ++k) {
+    tires_[k].collider->move_to(1.0);
+    tires_[k].sum->finish(duration, forces[k], sums[k]);
+  }
+}
+
+void RankContacts::begin_accounts(const dem::Stored& stored, double elastic) {
+  sums_ = {};
+  sums_.elastic = elastic;
+  energies_.begin({stored}, 0.0);
+}
+
+void RankContacts::save(Archive& archive) const {
+  archive.put("tires/count", static_cast<std::int64_t>(tires_.size()));
+  for (std::size_t k = 0; k < tires_.size(); ++k) {
+    const Archive::Scope scope(archive, "tire" + std::to_string(k) + "/");
+    save_fields(archive, "mesh", tires_[k].collider->mesh());
+    save_value(archive, "position", tires_[k].end);
+    save_fields(archive, "material", tires_[k].material);
+  }
+  save_fields(archive, "sums", sums_);
+  energies_.save(archive);
+}
+
+void RankContacts::restore(const Archive& archive) {
+  const auto count = archive.get_int("tires/count");
+  if (count < 0 || (!tires_.empty() && static_cast<std::size_t>(count) != tires_.size()))
+    throw Error(ExitCode::io, "saved state holds " + std::to_string(count) + " tires, expected " +
+                                  std::to_string(tires_.size()));
+  tires_.clear();
+  for (std::int64_t k = 0; k < count; ++k) {
+    const Archive::Scope scope(archive, "tire" + std::to_string(k) + "/");
+    SurfaceMesh mesh;
+    SurfaceState start;
+    ContactMaterial material;
+    restore_fields(archive, "mesh", mesh);
+    restore_value(archive, "position", start.position, mesh.vertex_count);
+    restore_fields(archive, "material", material);
+    check_surface(mesh, start, static_cast<int>(k));
+    attach(mesh, material, start);
+  }
+  restore_fields(archive, "sums", sums_);
+  energies_.restore(archive, 1);
+}
+
+}  // namespace furrow::terrain::liggghts

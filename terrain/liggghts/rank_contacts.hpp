@@ -1,0 +1,131 @@
+// The walls and tires on the grains of one rank, and what that rank adds up: the work that Furrow does in each step of a
+// distributed engine (engine.hpp). The laws are those of terrain/dem; the histories are carried by the grains.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "protocol/core/archive.hpp"
+#include "protocol/core/terrain_state.hpp"
+#include "terrain/dem/accounts/energy_accounts.hpp"
+#include "terrain/dem/dem_options.hpp"
+#include "terrain/dem/parcel.hpp"
+#include "terrain/dem/solver_setup.hpp"
+#include "terrain/dem/wall_forces.hpp"
+#include "terrain/liggghts/engine.hpp"
+#include "terrain/surface/surface_collider.hpp"
+#include "terrain/surface/surface_forces.hpp"
+
+namespace furrow::terrain::liggghts {
+
+/// Of the grains of one rank; cumulative since the run began unless stated.
+struct RankSums {
+  double elastic = 0.0;                 // normal springs and cohesion, last step, J
+  Vec3 wall_impulse = Vec3::Zero();     // N s
+  Vec3 surface_impulse = Vec3::Zero();  // N s
+  double gravity_time = 0.0;            // for which the weight has acted, s
+  double floor_force = 0.0;             // last step, N
+  double contacts = 0.0;                // last step
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<RankSums> auto& s) {
+  visit(Field{"elastic", "J"}, s.elastic);
+  visit(Field{"wall_impulse", "N s"}, s.wall_impulse);
+  visit(Field{"surface_impulse", "N s"}, s.surface_impulse);
+  visit(Field{"gravity_time", "s"}, s.gravity_time);
+  visit(Field{"floor_force", "N"}, s.floor_force);
+  visit(Field{"contacts"}, s.contacts);
+}
+
+/// A grain that left the bin or is not finite.
+struct LostGrain {
+  int id = -1;
+  std::array<double, 3> position{};  // m
+};
+
+class RankContacts final : public StepWork {
+ public:
+  explicit RankContacts(const dem::DemOptions& options);
+
+  /// Contacts are evaluated for steps of `dt` from now on, s.
+  void set_step(double dt);
+
+  void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start);
+  int tires() const { return static_cast<int>(tires_.size()); }
+  SurfaceBox swept_bounds(int k) const { return tires_.at(k).collider->swept_bounds(); }
+
+  /// Declares the motion of the coming interval of `steps` steps; grains stand inside `grains`.
+  void begin_interval(std::span<const SurfaceState> targets, double duration, int steps,
+                      const SurfaceBox& grains);
+  /// Of the coming steps.
+  void set_times(const StepTimes& times) { times_ = times; }
+  bool begin_step() override;
+  void add_forces(const OwnGrains& grains, bool losses) override;
+  void end_step(const PairSums& pairs, bool losses) override;
+  /// This rank's share of the interval's means.
+  void end_interval(double duration, std::span<NodalForces> forces, std::span<ContactSums> sums);
+
+  /// The first grain that was lost in this interval.
+  const std::optional<LostGrain>& lost() const { return lost_; }
+  /// Of the interval's contacts: the largest overlap, and the largest share of a diameter with its place.
+  double interval_overlap() const { return interval_overlap_; }
+  double hardest_share() const { return hardest_share_; }
+  const std::array<double, 3>& hardest_at() const { return hardest_at_; }
+
+  const RankSums& sums() const { return sums_; }
+  const dem::EnergyAccounts& energies() const { return energies_; }
+  dem::EnergyAccounts& energies() { return energies_; }
+  const dem::GrainProperties& grain() const { return params_.grain; }
+  const dem::SolverParams& params() const { return params_; }
+  /// What an engine must know of these grains; ranks, borders and the height of the bed are left to the caller.
+  EngineSetup setup() const;
+  const dem::SolverCoefficients& coefficients() const { return coefficients_; }
+  /// Begins the accounts. @param stored by the contacts of this rank's grains now  @param elastic J
+  void begin_accounts(const dem::Stored& stored, double elastic);
+
+  void save(Archive& archive) const;
+  void restore(const Archive& archive);
+
+ private:
+  struct Tire {
+    std::unique_ptr<SurfaceCollider> collider;
+    std::unique_ptr<NodalForceSum> sum;
+    ContactMaterial material;
+    dem::ContactCoefficients coefficients;
+    double mass_share = 0.0;       // of surface_scale
+    std::vector<Vec3> start, end;  // m
+    SurfaceBox near;               // bounds now, grown by the largest radius
+    std::vector<SurfaceContactForce> forces;
+  };
+
+  template <class Law, bool kRolling>
+  void add_forces_of(const OwnGrains& grains, bool losses);
+  template <class Law, bool kRolling>
+  void touch_walls(const OwnGrains& grains, int g, bool losses);
+  template <class Law, bool kRolling>
+  void touch_tire(const OwnGrains& grains, int g, int k, bool losses);
+  dem::ContactCoefficients of_wall(int wall, double radius) const;
+  dem::ContactCoefficients of_tire(const Tire& tire, double radius) const;
+  void note(double overlap, double radius, const double* at);
+
+  dem::DemOptions options_;
+  dem::SolverParams params_;
+  dem::SolverCoefficients coefficients_;
+  std::vector<Tire> tires_;
+  StepTimes times_;
+  int steps_ = 1, step_ = 0;  // of the interval
+  dem::EnergyAccounts energies_;
+  RankSums sums_;
+  dem::ContactTotals now_;         // walls and tires, this step
+  Vec3 on_grains_ = Vec3::Zero();  // by tires, this step, N
+  std::optional<LostGrain> lost_;
+  double interval_overlap_ = 0.0, hardest_share_ = 0.0;
+  std::array<double, 3> hardest_at_{};
+  std::vector<Carried> past_;        // of the grain at hand, as it was before this step
+  std::vector<std::uint8_t> taken_;  // of those: a point has taken it over
+};
+
+}  // namespace furrow::terrain::liggghts

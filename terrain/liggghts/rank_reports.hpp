@@ -1,0 +1,60 @@
+// What the ranks of a terrain tell each other after an interval, as numbers in a fixed order.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "protocol/core/rank_group.hpp"
+#include "protocol/core/terrain_state.hpp"
+#include "terrain/liggghts/rank_contacts.hpp"
+
+namespace furrow::terrain::liggghts {
+
+/// What decides how an interval ended. All ranks receive that of all.
+struct IntervalReport {
+  double lost = -1.0;                  // number of a grain; −1: none
+  std::array<double, 3> lost_at{};     // m
+  double overlap = 0.0;                // largest, m
+  double share = 0.0;                  // largest overlap over a diameter, -
+  std::array<double, 3> hardest_at{};  // m
+};
+
+/// A rank's share of the terrain's state.
+struct StateReport {
+  double grains = 0.0, mass = 0.0;                              // Σ m, kg
+  double kinetic = 0.0, rotational = 0.0, height_moment = 0.0;  // J, J, Σ m h kg m
+  Vec3 momentum = Vec3::Zero();                                 // kg m/s
+  RankSums sums;
+  dem::Losses lost;     // J
+  dem::Stored stored;   // J
+  double error2 = 0.0;  // of the losses by sampling, J²
+  double list_builds = 0.0;
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<StateReport> auto& s) {
+  visit(Field{"grains"}, s.grains);
+  visit(Field{"mass", "kg"}, s.mass);
+  visit(Field{"kinetic", "J"}, s.kinetic);
+  visit(Field{"rotational", "J"}, s.rotational);
+  visit(Field{"height_moment", "kg m"}, s.height_moment);
+  visit(Field{"momentum", "kg m/s"}, s.momentum);
+  visit(Field{"sums", ""}, s.sums);
+  visit(Field{"lost", ""}, s.lost);
+  visit(Field{"stored", ""}, s.stored);
+  visit(Field{"error2", "J²"}, s.error2);
+  visit(Field{"list_builds"}, s.list_builds);
+}
+
+/// Of all ranks, on each of them; null: there is one.
+std::vector<IntervalReport> share_reports(RankGroup* group, const IntervalReport& own);
+
+/// Adds up what tires felt on all ranks, in the order of ranks. What it leaves counts on the leader.
+void add_up_forces(RankGroup* group, std::span<NodalForces> forces, std::span<ContactSums> sums);
+
+/// Highest tops of grains per cell over all ranks, on each of them.
+void merge_heights(RankGroup* group, HeightField& field);
+
+/// Of all ranks, in their order, on the leader; the own one elsewhere.
+std::vector<StateReport> gather_states(RankGroup* group, const StateReport& own);
+
+}  // namespace furrow::terrain::liggghts

@@ -1,0 +1,34 @@
+// A settled bed as a distributed engine takes it: from the solver of terrain/dem on the leader to all ranks.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "protocol/core/rank_group.hpp"
+#include "terrain/dem/grain_solver.hpp"
+#include "terrain/liggghts/engine.hpp"
+
+namespace furrow::terrain::liggghts {
+
+struct CarriedBy {
+  int grain = -1;  // its number
+  Carried contact;
+};
+
+struct StartingBed {
+  std::vector<NewGrain> grains;  // in the order of their numbers
+  std::vector<PairRecord> pairs;
+  std::vector<CarriedBy> walls;
+  double top = 0.0;  // no grain stands higher, m
+
+  std::int64_t size() const { return static_cast<std::int64_t>(grains.size()); }
+};
+
+StartingBed starting_bed(const dem::GrainSolver& solver);
+/// The other way round. @pre grains are in the order of their numbers, 0, 1, …
+void begin_from(dem::GrainSolver& solver, const StartingBed& bed);
+
+/// The leader's bed on all ranks; null: there is one.
+void share(RankGroup* group, StartingBed& bed);
+
+}  // namespace furrow::terrain::liggghts

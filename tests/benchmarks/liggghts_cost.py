@@ -1,0 +1,153 @@
+#!/usr/bin/python3
+"""What a step of the engine liggghts costs on the bed of the small rig, part by part, and on several ranks.
+
+usage: liggghts_cost.py [--steps 300] [--rounds 3] [--ranks 1 2 4] [--timed 1 2]     writes liggghts_cost.csv beside this script
+
+Nothing else may run meanwhile. For each number of ranks, in turn: stock LIGGGHTS (hertz, tangential history, walls), our pair
+style with motion and lists alone in one `run N`, the same with walls and accounts, the same with a `run 1` and the sums of a
+step for each step (tests/benchmarks/liggghts.cpp), and a whole run of Furrow with tire, protocol and accounts (the terrain's
+time of computing and communicating over its steps). Rows have the median over rounds and the range; `over_pairs` is the ratio
+to the pair style alone. Ranks that are not --timed share cores: of these only the counts mean anything, and no time is given.
+ghosts and bytes are of the rank that has most: position, velocity and spin of each ghost cross in every step.
+"""
+import argparse
+import csv
+import io
+import os
+import pathlib
+import re
+import statistics
+import subprocess
+import sys
+import tempfile
+
+import h5py
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+sys.path.insert(0, str(ROOT / "tests" / "studies"))
+import provenance  # noqa: E402
+
+RIG = str(ROOT / "rigs" / "drawbar_pull_small.json")
+STEP, RUN = 6e-5, 0.3  # s: of the rig; of the whole run, in which the wheel comes down and rolls
+GHOST_BYTES = 9 * 8
+ENVIRONMENT = dict(os.environ, FURROW_HOME=str(ROOT), OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+                   OMP_NUM_THREADS="1")
+STOCK = """
+processors {ranks} 1 1
+atom_style granular
+atom_modify map array
+boundary f f f
+newton off
+communicate single vel yes
+units si
+read_data {data}
+neighbor 0.002 bin
+neigh_modify delay 0
+fix m1 all property/global youngsModulus peratomtype 2.49e7
+fix m2 all property/global poissonsRatio peratomtype 0.3
+fix m3 all property/global coefficientRestitution peratomtypepair 1 0.2
+fix m4 all property/global coefficientFriction peratomtypepair 1 0.9
+pair_style gran model hertz tangential history
+pair_coeff * *
+timestep {step}
+fix gravity all gravity 9.81 vector 0 0 -1
+fix floor all wall/gran model hertz tangential history primitive type 1 zplane 0.0
+fix side1 all wall/gran model hertz tangential history primitive type 1 yplane -0.3
+fix side2 all wall/gran model hertz tangential history primitive type 1 yplane 0.3
+fix end1 all wall/gran model hertz tangential history primitive type 1 xplane 0.0
+fix end2 all wall/gran model hertz tangential history primitive type 1 xplane 3.0
+fix move all nve/sphere
+run 20
+run {steps}
+"""
+COLUMNS = ["part", "ranks", "grains", "steps", "rounds", "us_per_step", "lowest", "highest", "ns_per_grain_step", "over_pairs",
+           "grains_least", "grains_most", "ghosts_most", "bytes_per_step", "list_builds"]
+
+
+def mpirun(ranks, *words):
+    # One rank per core; more ranks than cores share them politely.
+    bound = ["--bind-to", "core"] if ranks <= (os.cpu_count() or 1) else ["--bind-to", "none", "--mca", "mpi_yield_when_idle", "1"]
+    # Open MPI 4.1's mpirun at times dies of a signal on its way out: what was printed counts.
+    done = subprocess.run(["mpirun", "--oversubscribe", *bound, "-np", str(ranks), *words], env=ENVIRONMENT,
+                          capture_output=True, text=True)
+    if done.returncode not in (0, 134):
+        sys.exit(f"{words[0]} ended with {done.returncode}: {done.stderr[-500:]}")
+    return done.stdout
+
+
+def parts(ranks, steps):
+    program = pathlib.Path(provenance.program()).parent / "bench_liggghts"
+    return list(csv.DictReader(io.StringIO(mpirun(ranks, str(program), RIG, str(steps), "1"))))
+
+
+def whole_run(ranks, out):
+    keys = ["terrain.engine=liggghts", f"terrain.ranks={ranks}", f"run.end={RUN}", f"run.average_from={RUN - 0.05}"]
+    words = [word for key in keys for word in ("--set", key)]
+    subprocess.run([provenance.program(), "run", RIG, *words, "--out", str(out), "--overwrite", "--no-plots"], check=True,
+                   env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    rows = [row for row in provenance.read_json(out / "summary.json")["ranks"] if row["node"].startswith("terrain")]
+    return 1e6 * max(row["compute_s"] + row["communicate_s"] for row in rows) / (RUN / STEP)
+
+
+def write_data(frame, file):
+    with h5py.File(frame) as bed, open(file, "w", encoding="utf-8") as out:
+        grains = list(zip(bed["position"][()], bed["radius"][()]))
+        out.write(f"bed\n\n{len(grains)} atoms\n1 atom types\n\n-0.1 3.1 xlo xhi\n-0.4 0.4 ylo yhi\n-0.1 1 zlo zhi\n\nAtoms\n\n")
+        for n, ((x, y, z), radius) in enumerate(grains, 1):
+            out.write(f"{n} 1 {2 * radius:.9g} 2500 {x:.9g} {y:.9g} {z:.9g}\n")
+
+
+def stock(ranks, steps, folder):
+    deck, log = folder / "deck.in", folder / "deck.log"
+    deck.write_text(STOCK.format(ranks=ranks, data=folder / "bed.data", step=STEP, steps=steps), encoding="utf-8")
+    mpirun(ranks, "liggghts", "-in", str(deck), "-log", str(log), "-screen", "none")
+    seconds, done, _ = re.findall(r"Loop time of (\S+) on \d+ procs for (\d+) steps with (\d+) atoms", log.read_text())[-1]
+    builds = re.findall(r"Neighbor list builds = (\d+)", log.read_text())[-1]
+    return {"us_per_step": 1e6 * float(seconds) / int(done), "list_builds": builds}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--steps", type=int, default=300)
+    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--ranks", type=int, nargs="+", default=[1, 2, 4])
+    parser.add_argument("--timed", type=int, nargs="+", default=[1, 2])
+    arguments = parser.parse_args()
+    made = provenance.made_here()
+    rows = []
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        whole_run(1, folder / "run")
+        write_data(folder / "run" / "frames" / "terrain_000000.h5", folder / "bed.data")
+        for ranks in arguments.ranks:
+            found = {}
+            rounds = arguments.rounds if ranks in arguments.timed else 1
+            for _ in range(rounds):
+                for row in parts(ranks, arguments.steps):
+                    found.setdefault(row["part"], []).append(row)
+                if ranks not in arguments.timed:
+                    continue
+                found.setdefault("whole_run", []).append({"us_per_step": whole_run(ranks, folder / "run")})
+                found.setdefault("stock_liggghts", []).append(stock(ranks, arguments.steps, folder))
+            alone = statistics.median(float(row["us_per_step"]) for row in found["pairs"])
+            grains = int(found["pairs"][0]["grains"])
+            for part, measured in found.items():
+                times = [float(row["us_per_step"]) for row in measured]
+                row = {column: measured[0].get(column, "") for column in COLUMNS} | {"part": part, "ranks": ranks, "grains": grains,
+                                                                                    "rounds": rounds}
+                row["steps"] = arguments.steps if part != "whole_run" else round(RUN / STEP)
+                median = statistics.median(times)
+                row |= {"us_per_step": f"{median:.0f}", "lowest": f"{min(times):.0f}", "highest": f"{max(times):.0f}",
+                        "ns_per_grain_step": f"{1e3 * median / grains:.0f}", "over_pairs": f"{median / alone:.3f}"}
+                if ranks not in arguments.timed:
+                    row |= dict.fromkeys(("us_per_step", "lowest", "highest", "ns_per_grain_step", "over_pairs"), "")
+                if row["ghosts_most"] != "":
+                    row["bytes_per_step"] = GHOST_BYTES * int(row["ghosts_most"])
+                rows.append(row)
+                print(row, flush=True)
+            provenance.write_table(HERE / "liggghts_cost.csv", COLUMNS, rows, made)
+
+
+if __name__ == "__main__":
+    main()

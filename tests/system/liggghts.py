@@ -1,0 +1,166 @@
+#!/usr/bin/python3
+"""Grains in LIGGGHTS: the same numbers as those of our own engine, on any number of ranks; exact resume; faults of the
+ranks and of LIGGGHTS itself; what is refused. Skipped where the engine was not built.
+
+The test tests_system_liggghts (label system) runs a part of it, cluster_liggghts (label cluster) the whole."""
+import pathlib
+import re
+import shutil
+import sys
+
+from checkpoint_runs import FAULTY, CheckpointTest, steps, summary, table
+from exact_resume import Exact, kept
+from program import changed, furrow, main, write_scenario
+
+LIBRARY = pathlib.Path(FAULTY).parent / "libfurrow_liggghts.so"
+
+
+def on_liggghts(scenario, ranks, **terrain):
+    """The scenario with the other engine."""
+    return {**scenario, "terrain": {**scenario["terrain"], "engine": "liggghts", "ranks": ranks, **terrain}}
+
+
+def on_dem(scenario):
+    terrain = {k: v for k, v in scenario["terrain"].items() if k not in ("engine", "ranks")}
+    return {**scenario, "terrain": {**terrain, "precision": "double", "activity": False}}
+
+
+class RigidTire(Exact, CheckpointTest):
+    """On two ranks; the wheel stands on their border."""
+    SCENARIO = on_liggghts(kept("rigid"), 2)
+    LOADED = 7
+    KILLED = (2, 3)
+
+
+class FlexibleTire(Exact, CheckpointTest):
+    SCENARIO = on_liggghts(kept("tangents"), 2)
+    LOADED = 6
+    KILLED = (3,)
+
+
+class SeveralWheels(Exact, CheckpointTest):
+    SCENARIO = on_liggghts(kept("wheels"), 2)
+    WHEELS = 2
+    KILLED = (3,)
+
+
+class SameNumbers(CheckpointTest):
+    """As those of engine dem in double precision without sleep. Chaos multiplies round-off: the comparison is of the
+    tenth of a second after which it is still small."""
+    SCENARIO = on_dem(kept("rigid"))
+    COLUMNS = ("force_x_N", "force_y_N", "force_z_N", "spindle_torque_Nm", "terrain_kinetic_energy_J",
+               "terrain_potential_energy_J", "terrain_elastic_energy_J", "soil_dissipation_J")
+
+    def differs_from_whole_by(self, scenario):
+        run = self.folder / "other"
+        self.program("run", write_scenario(self.folder, scenario, "other.json"), "--out", run, "--no-plots", "--overwrite")
+        ours, theirs = table(self.whole), table(run)
+        self.assertEqual(len(ours), len(theirs))
+        worst = 0.0
+        for column in self.COLUMNS:
+            scale = max(abs(float(row[column])) for row in ours)
+            self.assertGreater(scale, 0.0, column)
+            worst = max(worst, *(abs(float(a[column]) - float(b[column])) / scale for a, b in zip(ours, theirs)))
+        self.assertLess(summary(run)["transfer_force_residual"], 1e-12)
+        self.assertLess(summary(run)["accounts"]["momentum"]["residual_share"], 1e-11)
+        return worst
+
+    def test_on_1_2_3_and_4_ranks(self):
+        for ranks in (1, 2, 3, 4):
+            with self.subTest(ranks):
+                self.assertLess(self.differs_from_whole_by(on_liggghts(kept("rigid"), ranks)), 1e-9)
+
+
+class SameNumbersOfOtherSoils(SameNumbers):
+    """Sizes, rolling resistance, cohesion and periodic sides."""
+    TERRAIN = {"size_spread": 0.2, "rolling_friction": 0.1, "cohesion": 2e4, "sides": "periodic"}
+    SCENARIO = on_dem({**kept("rigid"), "terrain": {**kept("rigid")["terrain"], **TERRAIN}})
+
+    def test_on_1_2_3_and_4_ranks(self):
+        for ranks in (1, 3):
+            with self.subTest(ranks):
+                self.assertLess(self.differs_from_whole_by(on_liggghts(kept("rigid"), ranks, **self.TERRAIN)), 1e-9)
+
+
+class SameNumbersOfTheReportsLaw(SameNumbers):
+    TERRAIN = {"law": "hertz_tanh"}
+    SCENARIO = on_dem({**kept("rigid"), "terrain": {**kept("rigid")["terrain"], **TERRAIN}})
+
+    def test_on_1_2_3_and_4_ranks(self):
+        self.assertLess(self.differs_from_whole_by(on_liggghts(kept("rigid"), 2, **self.TERRAIN)), 1e-9)
+
+
+class Faults(CheckpointTest):
+    SCENARIO = on_liggghts(kept("rigid"), 2)
+    RANKS = {"terrain 0": 2, "terrain 1": 3}
+
+    def continues(self, **options):
+        self.resume()
+        self.same_as_whole(**options)
+
+    def again(self):
+        shutil.rmtree(self.run_folder, ignore_errors=True)
+        self.mark.unlink(missing_ok=True)
+
+    def test_ranks_killed_in_a_step_a_checkpoint_and_a_frame(self):
+        for point, count in (("step", 250), ("checkpoint.write", 3), ("frame", 5)):
+            for name, rank in self.RANKS.items():
+                with self.subTest(f"{name}, {point}"):
+                    self.again()
+                    done = self.run_with_fault(point, rank, count, "kill")
+                    self.assertIn(f"rank {rank} ({name}) was lost: killed by signal 9", done.stderr)
+                    self.continues()
+
+    def test_one_that_stops_ends_the_run(self):
+        for name, rank in self.RANKS.items():
+            with self.subTest(name):
+                self.again()
+                done = self.run_with_fault("step", rank, 250, "stop", flags=["--set", "run.peer_timeout=2"])
+                self.assertRegex(done.stderr, r"furrow: error: .*terrain 0 does not answer; .*one of terrain 1 to 1")
+                self.continues(leave_out=["scenario.json", "checkpoints/*/manifest.json"])
+
+    def test_a_command_that_liggghts_refuses_on_all_ranks(self):
+        done = self.run_with_fault("liggghts", "*", 250, "say fix nonsense all nonsense")
+        self.assertIn('LIGGGHTS failed: Invalid fix style: "nonsense"', done.stderr)
+        self.continues()
+
+    def test_a_file_that_one_rank_misses(self):
+        done = self.run_with_fault("liggghts", "*", 250, "say include no_such_file")
+        self.assertRegex(done.stderr, "terrain 0: LIGGGHTS failed on this rank: .*no_such_file")
+        self.continues()
+
+    def test_another_number_of_ranks_cannot_continue(self):
+        run = self.copy_of_whole()
+        shutil.rmtree(run / "checkpoints" / f"{steps(run)[-1]:012}")
+        done = self.program("resume", run, "--set", "terrain.ranks=3", "--no-plots", code=2)
+        self.assertIn("key 'terrain.ranks': is 3 but the run was computed with 2", done.stderr)
+
+
+class Refused(CheckpointTest):
+    SCENARIO = on_liggghts(changed(run={"step": 2e-4, "end": 0.01, "average_from": 0.0}), 1)
+
+    def test_keys_that_it_cannot_honour(self):
+        for key, value in (("activity", False), ("precision", "double"), ("ground_stiffness", 1e8)):
+            with self.subTest(key):
+                path = write_scenario(self.folder, on_liggghts(self.SCENARIO, 1, **{key: value}), "wrong.json")
+                done = self.program("run", path, "--out", self.run_folder, code=2)
+                self.assertIn(f"key 'terrain.{key}'", done.stderr)
+
+    def test_without_its_library(self):
+        program = self.folder / "alone" / "in" / "some" / "folder" / "furrow"
+        program.parent.mkdir(parents=True)
+        shutil.copy2(FAULTY, program)
+        done = furrow("run", self.path, "--out", self.run_folder, cwd=self.folder, program=str(program))
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertRegex(done.stderr, "key 'terrain.engine': 'liggghts' is not part of this program .*libliggghts-dev")
+        self.assertEqual(len(re.findall("error", done.stderr)), 1, done.stderr)
+
+
+if __name__ == "__main__":
+    if not LIBRARY.exists():
+        print(f"skipped: {LIBRARY.name} was not built")
+        sys.exit(77)
+    if sys.argv[1:] == ["--short"]:
+        sys.argv[1:] = ["SameNumbersOfTheReportsLaw", "RigidTire.test_from_a_checkpoint_whose_step_has_a_frame", "Refused",
+                        "Faults.test_a_command_that_liggghts_refuses_on_all_ranks", "Faults.test_a_file_that_one_rank_misses"]
+    main()

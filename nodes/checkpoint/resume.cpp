@@ -58,11 +58,12 @@ json changes(const fs::path& run, const json& before, const json& now, bool fail
 
 void check_files(const scenario::Scenario& scenario, const CheckpointManifest& manifest) {
   const std::vector<std::string> hashes = scenario.file_hashes();
-  for (std::size_t k = 0; k < scenario.tires.size() && k < manifest.file_hashes.size(); ++k)
+  const std::vector<scenario::InputFile> files = scenario.input_files();
+  FURROW_ASSERT(hashes.size() == files.size(), hashes.size(), files.size());
+  for (std::size_t k = 0; k < files.size() && k < manifest.file_hashes.size(); ++k)
     if (hashes[k] != manifest.file_hashes[k])
-      throw input_error(scenario.file.string(),
-                        scenario.tires.size() == 1 ? "tire.file" : fmt::format("tires.{}.file", k),
-                        "'" + scenario.tires[k]->options().file.string() +
+      throw input_error(scenario.file.string(), files[k].key,
+                        "'" + files[k].path.string() +
                             "' was changed since the run began, expected the file that it was computed with");
 }
 
@@ -94,9 +95,9 @@ void count_in_steps_of(double step, double before, const fs::path& run, Checkpoi
                     number_text(step), number_text(before)));
   const auto count = [&](std::int64_t& steps) {
     if (steps > kMostSteps / ratio)
-      throw input_error(run.string(), "run.step",
-                        fmt::format("is {} s, too many steps to be counted, expected more",
-                                    number_text(step)));
+      throw input_error(
+          run.string(), "run.step",
+          fmt::format("is {} s, too many steps to be counted, expected more", number_text(step)));
     steps *= ratio;
   };
   count(manifest.step), count(manifest.frames.every), count(manifest.frames.first_step);
@@ -147,8 +148,7 @@ void take_changes(const fs::path& run, const nlohmann::ordered_json& failed, Res
   if (physics && value_at(failed, "scenario_digest") == plan.scenario.digest)
     plan.warnings.push_back(failure_ahead(run, failed));
   if (changed.contains("run.step"))
-    count_in_steps_of(plan.scenario.run.step, before.at("run").at("step").get<double>(), run,
-                      point.manifest);
+    count_in_steps_of(plan.scenario.run.step, before.at("run").at("step").get<double>(), run, point.manifest);
 } catch (const json::exception& problem) {
   throw io_error(plan.point.folder.string(),
                  std::string("the scenario of the checkpoint is damaged: ") + problem.what());
@@ -190,8 +190,9 @@ ResumePlan plan_resume(const fs::path& run,
   take_changes(run, read_failed_summary(run), plan);
   check_files(plan.scenario, manifest);
   if (const terrain::TerrainDescription terrain = plan.scenario.terrain->describe(); !terrain.exact_restart)
-    plan.warnings.push_back(fmt::format("{}: the engine '{}' continues with the same physics, not with the same bits",
-                                        run.string(), terrain.engine));
+    plan.warnings.push_back(
+        fmt::format("{}: the engine '{}' continues with the same physics, not with the same bits",
+                    run.string(), terrain.engine));
   const std::int64_t reached = std::max(ended, manifest.step);
   if (steps < reached)
     throw input_error(run.string(), "run.end",

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,7 +10,7 @@ namespace furrow::commands {
 
 struct SlurmArguments {
   int nodes = 1;
-  int cores_per_node = 0;  // 0: whole nodes, whatever they have
+  int cores_per_node = 0;                // 0: whole nodes, whatever they have
   std::string partition, time, account;  // empty: as the cluster has it
   std::filesystem::path out;             // empty: results/<scenario>-job<number of the job>
 };
@@ -24,16 +25,29 @@ struct SoilArguments {
   std::vector<double> stresses;   // of the shear tests, Pa; empty: the usual ones
 };
 
+/// What is not given is as the section `press` of the scenario says.
 struct PressArguments {
   std::filesystem::path out;  // empty: a fresh folder under results/
   bool overwrite = false;
-  std::string obstacle = "plate";                    // plate | cleat | profile
-  std::filesystem::path profile;                     // CSV; empty: none
-  double deflection = 0.02;                          // largest, m
-  int points = 10;                                   // of the curve up to it
-  double load = 4561.65;                             // of the footprint, N
-  double cleat_height = 0.025, cleat_width = 0.025;  // m
-  double cleat_position = 0.0;                       // of its middle, forward of the axle, m
+  std::optional<std::string> on;                    // plate | cleat | profile
+  std::filesystem::path profile;                    // CSV; empty: none
+  std::optional<double> deflection;                 // largest, m
+  std::optional<int> points;                        // of the curve up to it
+  std::optional<double> load;                       // of the footprint, N
+  std::optional<double> cleat_height, cleat_width;  // m
+  std::optional<double> cleat_position;             // of its middle, forward of the axle, m
+};
+
+struct ModesArguments {
+  std::string tire;           // file, as given or in tire/data/
+  std::filesystem::path out;  // empty: a fresh folder under results/
+  bool overwrite = false;
+  bool plots = true;
+  bool csv = false, json = false;  // printed, in place of a folder
+  std::optional<int> orders;       // highest circumferential order; none: 8, or half of the elements around
+  int count = 3;                   // frequencies of each order
+  std::optional<double> pressure;  // gauge, Pa; none: the file's
+  std::optional<int> around, across;  // elements; none: the file's
 };
 
 }  // namespace furrow::commands

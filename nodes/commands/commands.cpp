@@ -134,8 +134,9 @@ ExitCode report_command(const Typed& typed) {
     if (const ExitCode code = write_vtk(typed.directory, typed.vtk); code != ExitCode::done) return code;
   }
   launch::say("furrow: plotting " + typed.directory + "\n");
-  for (const auto& plot : make_report(report)) std::cout << plot.string() << "\n";
-  return ExitCode::done;
+  const auto plots = make_report(report);
+  for (const auto& plot : plots) std::cout << plot.string() << "\n";
+  return plots.empty() ? ExitCode::io : ExitCode::done;
 }
 
 ExitCode run_command(const Typed& typed, int argc, char** argv) {
@@ -305,6 +306,7 @@ class CommandLine {
   Typed typed_;
   SoilArguments soil_;
   PressArguments press_;
+  ModesArguments modes_;
   KinematicsArguments kinematics_;
   NewArguments new_;
   EventsArguments events_;
@@ -416,6 +418,12 @@ void CommandLine::add_virtual_tests() {
       [this] { return press_command(load(typed_), press_); });
   add_scenario(press, typed_);
   add_press_options(press, press_);
+
+  add_modes_options(add("modes",
+                        "Compute the lowest natural frequencies of a tire on a rim at rest, by circumferential "
+                        "order, and print the folder of the results.",
+                        [this] { return modes_command(modes_); }),
+                    modes_);
 }
 
 void CommandLine::add_vehicles() {

@@ -58,7 +58,7 @@ struct ReportArguments {
   bool unasked = false;                     // by another command: no messages, and no longer than a minute
 };
 
-/// `furrow report`: makes the plots and the page of a run, or the page of several (report.cpp). @throws Error
+/// `furrow report`: plots and page of a run, or the page of several. @returns none if the script said why. @throws Error
 std::vector<std::filesystem::path> make_report(const ReportArguments& report);
 /// The same after a command whose results stand without plots: what goes wrong is a warning.
 std::vector<std::filesystem::path> make_report_or_warn(const std::filesystem::path& run);
@@ -89,6 +89,9 @@ ExitCode soil_command(const scenario::Scenario& scenario, const SoilArguments& a
 
 /// `furrow press` (commands_press.cpp). @throws Error
 ExitCode press_command(const scenario::Scenario& scenario, const PressArguments& arguments);
+
+/// `furrow modes` (modes.cpp). @throws Error
+ExitCode modes_command(const ModesArguments& arguments);
 
 struct KinematicsArguments {
   std::string vehicle;

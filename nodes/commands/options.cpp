@@ -69,27 +69,50 @@ void add_press_options(CLI::App& command, PressArguments& press) {
                      "Write the results to this new folder (default: results/<scenario>-press-NNN).");
   command.add_flag("--overwrite", press.overwrite,
                    "Replace the results of an earlier run in the folder of --out.");
-  command.add_option("--on", press.obstacle, "Choose the obstacle: plate, cleat or profile.")
-      ->capture_default_str();
-  command.add_option("--deflection", press.deflection, "Press up to this deflection, m.")
-      ->capture_default_str();
-  command.add_option("--points", press.points, "Compute this number of points of the load–deflection curve.")
-      ->capture_default_str();
-  command.add_option("--load", press.load, "Compute the footprint at this load, N.")->capture_default_str();
-  command.add_option("--cleat-height", press.cleat_height, "Set the height of the cleat, m.")
-      ->capture_default_str();
-  command
-      .add_option("--cleat-width", press.cleat_width,
-                  "Set the width of the cleat's top along the direction of travel, m.")
-      ->capture_default_str();
-  command
-      .add_option("--cleat-position", press.cleat_position,
-                  "Set the position of the cleat's middle, forward of the axle, m.")
-      ->capture_default_str();
+  command.add_option("--on", press.on, "Choose the obstacle: plate, cleat or profile (press.on).");
+  command.add_option("--deflection", press.deflection, "Press up to this deflection, m (press.deflection).");
+  command.add_option("--points", press.points,
+                     "Compute this number of points of the load–deflection curve (press.points).");
+  command.add_option("--load", press.load, "Compute the footprint at this load, N (press.load).");
+  command.add_option("--cleat-height", press.cleat_height,
+                     "Set the height of the cleat, m (press.cleat_height).");
+  command.add_option(
+      "--cleat-width", press.cleat_width,
+      "Set the width of the cleat's top along the direction of travel, m (press.cleat_width).");
+  command.add_option(
+      "--cleat-position", press.cleat_position,
+      "Set the position of the cleat's middle, forward of the axle, m (press.cleat_position).");
   command.add_option(
       "--profile", press.profile,
       "Read the ground's profile, seen from the axle, from this CSV file with columns x_m,z_m. It needs --on "
       "profile and a flexible ring or planar tire.");
+}
+
+void add_modes_options(CLI::App& command, ModesArguments& modes) {
+  command.add_option("TIRE", modes.tire, "Read this tire file (JSON), as given or in tire/data/.")
+      ->required();
+  CLI::Option* out = command.add_option(
+      "--out", modes.out, "Write the results to this new folder (default: results/<tire>-modes-NNN).");
+  command.add_flag("--overwrite", modes.overwrite,
+                   "Replace the results of an earlier run in the folder of --out.");
+  command.add_option(
+      "--orders", modes.orders,
+      "Compute circumferential orders from 0 to this one (default: 8, or half of the elements around).");
+  command.add_option("--count", modes.count, "Compute this number of frequencies of each order.")
+      ->capture_default_str();
+  command.add_option("--pressure", modes.pressure,
+                     "Set the inflation pressure (gauge), Pa (default: the file's).");
+  command.add_option("--elements-circumference", modes.around,
+                     "Set the number of elements around the tire (default: the file's).");
+  command.add_option("--elements-width", modes.across,
+                     "Set the number of elements across the tire (default: the file's).");
+  command.add_flag_callback(
+      "--no-plots", [&modes] { modes.plots = false; }, "Make no plots; 'furrow report' makes them later.");
+  CLI::Option* csv =
+      command.add_flag("--csv", modes.csv, "Print the frequencies as CSV and make no folder.")->excludes(out);
+  command.add_flag("--json", modes.json, "Print the frequencies as JSON and make no folder.")
+      ->excludes(out)
+      ->excludes(csv);
 }
 
 void add_soil_options(CLI::App& command, SoilArguments& soil) {

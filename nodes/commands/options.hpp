@@ -11,6 +11,7 @@ namespace furrow::commands {
 void add_grain_bench(CLI::App& command, GrainBench& bench);
 void add_tire_bench(CLI::App& command, TireBench& bench);
 void add_press_options(CLI::App& command, PressArguments& press);
+void add_modes_options(CLI::App& command, ModesArguments& modes);
 void add_soil_options(CLI::App& command, SoilArguments& soil);
 /// @param wanted whether a batch script is asked for: the options of the job need that
 void add_slurm_options(CLI::App& command, bool& wanted, SlurmArguments& job);

@@ -21,34 +21,37 @@ namespace {
 
 constexpr int kFormatVersion = 1;
 
-tire::PressOptions press_options(const PressArguments& arguments) {
+/// An option overrides the scenario's key; the schema has checked the latter.
+tire::PressOptions press_options(const scenario::Scenario& scenario, const PressArguments& arguments) {
   const auto require = [](bool ok, const char* key, const std::string& what) {
     if (!ok) throw input_error("command line", key, what);
   };
-  require(arguments.obstacle == "plate" || arguments.obstacle == "cleat" || arguments.obstacle == "profile",
-          "--on", "is '" + arguments.obstacle + "', expected plate, cleat or profile");
-  const bool profile = arguments.obstacle == "profile";
+  const scenario::PressKeys& keys = scenario.press;
+  const std::string on = arguments.on.value_or(keys.on);
+  require(on == "plate" || on == "cleat" || on == "profile", "--on",
+          "is '" + on + "', expected plate, cleat or profile");
+  const bool profile = on == "profile";
   require(!profile || !arguments.profile.empty(), "--profile",
           "is missing, expected a CSV file for --on profile");
   require(profile || arguments.profile.empty(), "--profile",
-          "is given for --on " + arguments.obstacle + ", expected it for --on profile alone");
-  require(arguments.deflection > 0.0 && arguments.deflection <= 0.2, "--deflection",
-          "expected above 0 up to 0.2 m");
-  require(arguments.points >= 1 && arguments.points <= 1000, "--points", "expected 1 to 1000");
-  require(arguments.load > 0.0 && std::isfinite(arguments.load), "--load", "expected above 0 N");
-  require(arguments.cleat_height > 0.0 && arguments.cleat_height <= 0.2, "--cleat-height",
-          "expected above 0 up to 0.2 m");
-  require(arguments.cleat_width > 0.0 && arguments.cleat_width <= 1.0, "--cleat-width",
-          "expected above 0 up to 1 m");
-  require(std::abs(arguments.cleat_position) <= 1.0, "--cleat-position", "expected -1 to 1 m");
+          "is given for --on " + on + ", expected it for --on profile alone");
   tire::PressOptions o;
-  if (arguments.obstacle == "cleat")
-    o.obstacle.height = arguments.cleat_height, o.obstacle.width = arguments.cleat_width,
-    o.obstacle.position = arguments.cleat_position;
-  if (!arguments.profile.empty()) o.obstacle.profile = tire::read_press_profile(arguments.profile);
-  o.deflection = arguments.deflection;
-  o.points = arguments.points;
-  o.load = arguments.load;
+  o.deflection = arguments.deflection.value_or(keys.deflection);
+  o.points = arguments.points.value_or(keys.points);
+  o.load = arguments.load.value_or(keys.load);
+  const double height = arguments.cleat_height.value_or(keys.cleat_height),
+               width = arguments.cleat_width.value_or(keys.cleat_width),
+               position = arguments.cleat_position.value_or(keys.cleat_position);
+  require(o.deflection > 0.0 && o.deflection <= 0.2, "--deflection", "expected above 0 up to 0.2 m");
+  require(o.points >= 1 && o.points <= 1000, "--points", "expected 1 to 1000");
+  require(o.load > 0.0 && std::isfinite(o.load), "--load", "expected above 0 N");
+  require(height > 0.0 && height <= 0.2, "--cleat-height", "expected above 0 up to 0.2 m");
+  require(width > 0.0 && width <= 1.0, "--cleat-width", "expected above 0 up to 1 m");
+  require(std::abs(position) <= 1.0, "--cleat-position", "expected -1 to 1 m");
+  if (on == "cleat") o.obstacle.height = height, o.obstacle.width = width, o.obstacle.position = position;
+  if (profile) o.obstacle.profile = tire::read_press_profile(arguments.profile);
+  if (!arguments.deflection)
+    o.deflection_from = scenario.file.string(), o.deflection_key = "press.deflection";
   return o;
 }
 
@@ -80,7 +83,7 @@ std::string result_line(const nlohmann::ordered_json& summary) {
 
 ExitCode press_command(const scenario::Scenario& scenario, const PressArguments& arguments) {
   const std::unique_ptr<tire::StaticTest> test = static_test(scenario);
-  const tire::PressOptions options = press_options(arguments);
+  const tire::PressOptions options = press_options(scenario, arguments);
   launch::RunDirectory directory(scenario.name + "-press", arguments.out, arguments.overwrite);
   launch::catch_stop_signals();
   try {

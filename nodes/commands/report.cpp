@@ -44,7 +44,9 @@ std::vector<std::filesystem::path> make_report(const ReportArguments& report) {
     throw io_error(run.string(),
                    fmt::format("the plots took more than {} s; 'furrow report {}' waits for them",
                                kPatience.count(), scenario::shell_path(run.string())));
-  if (!WIFEXITED(finished.status) || WEXITSTATUS(finished.status) != 0 || !list.is_array())
+  const int code = WIFEXITED(finished.status) ? WEXITSTATUS(finished.status) : -1;
+  if (code == static_cast<int>(ExitCode::io) && !report.unasked && !launch::stop_signalled()) return {};
+  if (code != 0 || !list.is_array())
     throw io_error(run.string(), launch::stop_signalled() ? "the plots were interrupted"
                                  : report.unasked ? fmt::format("made no plots; 'furrow report {}' says why",
                                                                 scenario::shell_path(run.string()))

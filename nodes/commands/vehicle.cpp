@@ -15,6 +15,7 @@
 #include "protocol/files/text_file.hpp"
 #include "vehicle/analysis/kinematics.hpp"
 #include "vehicle/spec/read_vehicle.hpp"
+#include "vehicle/spec/vehicle_magnitudes.hpp"
 
 namespace furrow::commands {
 namespace {
@@ -37,6 +38,8 @@ void check(const KinematicsArguments& arguments) {
 
 /// The vehicle on its tires; presses them where the cache does not know them.
 vehicle::VehiclePage stand(const vehicle::VehicleSpec& spec) {
+  for (const auto& [key, what] : vehicle::unlikely_values(spec, vehicle::mass_without_tires(spec)))
+    print_warning(input_error(spec.file, key, what).what());
   launch::catch_stop_signals();
   launch::ProgressDisplay display;
   const auto tires = scenario::tires_of(spec);

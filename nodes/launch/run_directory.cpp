@@ -23,6 +23,7 @@ constexpr const char* kAside = ".furrow-before";
 constexpr const char* kNoParents = "FURROW_MAKES_NO_PARENTS";
 constexpr const char* kStudy = "sweep.json";          // what the list of a study holds
 constexpr const char* kKinematics = "kinematics.csv";  // of `furrow kc`
+constexpr const char* kModes = "modes.csv";            // of `furrow modes`
 
 Error no_list(const fs::path& folder, const std::string& key, const std::string& why) {
   return input_error(folder.string(), key,
@@ -32,7 +33,8 @@ Error no_list(const fs::path& folder, const std::string& key, const std::string&
 bool is_run(const fs::path& folder) {
   std::error_code error;
   return fs::exists(folder / "run.log", error) || fs::exists(folder / "scenario.json", error) ||
-         fs::exists(folder / kStudy, error) || fs::exists(folder / kKinematics, error);
+         fs::exists(folder / kStudy, error) || fs::exists(folder / kKinematics, error) ||
+         fs::exists(folder / kModes, error);
 }
 
 /// Whether the run of this list wrote more than what there is before its first step.

@@ -1,5 +1,8 @@
 #include "nodes/study/pass_bed.hpp"
 
+#include <utility>
+#include <vector>
+
 #include "nodes/checkpoint/checkpoint.hpp"
 #include "nodes/checkpoint/resume.hpp"
 #include "nodes/checkpoint/run_summary.hpp"
@@ -18,7 +21,10 @@ terrain::dem::RestResult make_pass_bed(const std::filesystem::path& run, double 
   if (point.manifest.step != checkpoint::finished_at(run))
     throw input_error(run.string(), "", "has no checkpoint of its end, expected checkpoint.at_end");
   terrain::dem::RestResult result;
-  const Archive state = read_archive(point.folder / checkpoint::part_name({Role::terrain, 0}));
+  std::vector<Archive> parts;
+  for (int rank = 0; rank < scenario.terrain_ranks; ++rank)
+    parts.push_back(read_archive(point.folder / checkpoint::part_name({Role::terrain, rank})));
+  const Archive state = scenario.terrain->grain_state(std::move(parts), scenario.terrain_context());
   terrain::dem::write_bed(file, terrain::dem::bed_after_run(state, grains, rest, progress, result));
   return result;
 }

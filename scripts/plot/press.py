@@ -13,7 +13,7 @@ class Press(Soil):
     def __init__(self, directory):
         self.directory = directory
         self.values = read_object(directory / "summary.json")
-        check_types(self.values, "summary.json", texts=("scenario", "tire", "obstacle"), objects=("footprint",),
+        check_types(self.values, "summary.json", texts=("scenario", "tire", "obstacle"), objects=("footprint", "sticking_stiffness"),
                     numbers=("deflection_m", "load_N", "secant_stiffness_N_per_m"))
         check_types(self.values.get("footprint") or {}, "summary.json: key 'footprint'",
                     numbers=("force_N", "length_m", "width_m", "mean_pressure_Pa"))

@@ -207,10 +207,12 @@ class VehicleRun:
 
     @functools.cached_property
     def data(self):
-        """The vehicle's file, if it is one of those that are shipped; else an empty object."""
+        """The vehicle's file where the run has it from, or one of those that are shipped; else an empty object."""
         name = self.run.rig.get("vehicle")
-        path = DATA / pathlib.Path(str(name)).name
-        if not isinstance(name, str) or not path.is_file():
+        if not isinstance(name, str):
+            return {}
+        path = DATA / name  # a file of the user's own has its full name
+        if not path.is_file():
             return {}
         try:
             return read_object(path)

@@ -47,7 +47,9 @@ COLUMNS = ["time_s", "drawbar_pull_N", "drawbar_pull_raw_N", "slip", "sinkage_m"
 SOIL = {"format_version": 1, "scenario": "small", "quick": True, "grains": {"radius_m": 0.006, "cohesion_Pa": 0.0}, "n": 1.0, "k_c": 1.0,
         "k_phi": 1.0, "cohesion_Pa": 1.0, "friction_angle_deg": 30.0, "janosi_K_m": 0.01, "standard_error": {"n": 0.1}}
 PRESS = {"scenario": "small", "tire": "x", "obstacle": "plate", "deflection_m": 0.01, "load_N": 1e3, "secant_stiffness_N_per_m": 1e5,
+         "sticking_stiffness": {"lateral_N_per_m": 1e5},
          "footprint": {"force_N": 1e3, "length_m": 0.1, "width_m": 0.1, "mean_pressure_Pa": 1e5}}
+MODES = {"tire": "x", "details": "y", "pressure_Pa": 1e5, "mass_kg": 10.0, "stable": True}
 KINEMATICS = {"vehicle": "car", "at_rest": {"wheels": [{"name": "front left", "travel_m": 0.01}]}}
 
 
@@ -172,6 +174,14 @@ def make_press(chance, folder):
     (folder / "footprint.csv").write_text(csv(chance, ["x_m", "y_m", "pressure_Pa"]))
 
 
+def make_modes(chance, folder):
+    (folder / "summary.json").write_text(json.dumps(changed(chance, MODES)))
+    (folder / "modes.csv").write_text(csv(chance, ["order", "number", "frequency_Hz"]))
+    (folder / "section.csv").write_text(csv(chance, ["y_m", "radius_m", "y_to_m", "radius_to_m", "from", "to"]))
+    names = [f"{name}{part}" for name in ("tangential", "axial", "radial") for part in ("", "_imaginary")]
+    (folder / "shapes.csv").write_text(csv(chance, ["order", "number", "node", "y_m", "radius_m", *names]))
+
+
 def make_kinematics(chance, folder):
     (folder / "summary.json").write_text(json.dumps(changed(chance, KINEMATICS)))
     columns = ["steering", "travel_m", "camber_rad", "toe_rad", "steer_rad", "roll_center_m", "wheel_rate_N_per_m"]
@@ -186,7 +196,7 @@ def run_case(seed, k):
     chance = random.Random(f"{seed}:{k}")
     with tempfile.TemporaryDirectory(prefix="furrow report ") as name:
         folder = pathlib.Path(name)
-        make = chance.choices([make_run, make_vehicle, make_soil, make_press, make_kinematics], [8, 3, 1, 1, 1])[0]
+        make = chance.choices([make_run, make_vehicle, make_soil, make_press, make_kinematics, make_modes], [8, 3, 1, 1, 1, 1])[0]
         make(chance, folder)
         if chance.random() < 0.05:
             victim = chance.choice([path for path in folder.rglob("*") if path.is_file()])

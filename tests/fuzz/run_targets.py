@@ -1,15 +1,15 @@
 #!/usr/bin/python3
 """Runs the fuzzing targets one after another, on one core, and counts what they did.
 
-usage: run_targets.py --out DIR [--seconds S] [--total S] [--only TARGET ...] [--build DIR]
+usage: run_targets.py --out DIR [--seconds S] [--total S] [--only TARGET ...] [--patience S] [--build DIR] [--hours FILE]
+       run_targets.py --table [--hours FILE]
 
-Each target runs for S seconds more, unless it has had its total of processor time: on a busy machine that is less than what
-the clock says. DIR/<target>/ keeps corpus/, findings/ (inputs that ended in
-a crash, in silence, in too much time or memory) and log; DIR/counts.json what was done so far. Interrupted, it goes on where
-it was. `run_targets.py --out DIR --list` prints the table.
+Each target is built, and runs for S seconds more by the clock, unless it has had its total of processor time; on a busy
+machine that takes longer. DIR/<target>/ keeps corpus/, findings/ (inputs that ended in a crash, in silence, in too much time
+or memory) and log. What ran is added to FILE, tests/fuzz/hours.csv, every ten minutes; --table prints the totals of it. Interrupted, the same
+command goes on where it was. Several calls may run at a time, of different targets.
 """
 import argparse
-import json
 import os
 import pathlib
 import re
@@ -20,14 +20,16 @@ import subprocess
 import sys
 import time
 
+import hours
 import seeds
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 TARGETS = ["scenario", "grammar", "tire", "bed", "hdf5", "states", "checkpoint", "run_list", "study", "soil", "summary", "vehicle"]
-LONGEST = 20  # s that an input may take
+LONGEST = 20  # s by the clock that an input may take; more on a busy machine
 MEMORY = 3000  # MB that a target may have
 INTERRUPTED = 72  # libFuzzer's exit code
 TRIES = 5  # to continue after a finding, within the seconds of a call
+PART = 600  # s by the clock, after which what ran is counted
 
 
 def environment(folder):
@@ -40,10 +42,11 @@ def cpu_of_children():
     return used.ru_utime + used.ru_stime
 
 
-def run_once(program, folder, seconds):
-    """(seconds of the clock, of the processor, executions, edges, features, exit code)"""
-    command = [str(program), f"-max_total_time={int(seconds)}", f"-timeout={LONGEST}", f"-rss_limit_mb={MEMORY}", "-print_final_stats=1",
-               f"-artifact_prefix={folder}/findings/", "-reload=0", str(folder / "corpus")]
+def run_once(program, folder, seconds, patience):
+    """(seconds of the clock, exit code, what is to be counted)"""
+    found = len(list((folder / "findings").iterdir()))
+    command = [str(program), f"-max_total_time={int(seconds)}", f"-timeout={int(patience)}", f"-report_slow_units={int(patience)}",
+               f"-rss_limit_mb={MEMORY}", "-print_final_stats=1", f"-artifact_prefix={folder}/findings/", "-reload=0", str(folder / "corpus")]
     begin, used = time.monotonic(), cpu_of_children()
     with open(folder / "log", "ab") as log, subprocess.Popen(command, stdout=log, stderr=log, cwd=folder, env=environment(folder)) as process:
         at = (folder / "log").stat().st_size
@@ -56,59 +59,44 @@ def run_once(program, folder, seconds):
     units = re.findall(r"stat::number_of_executed_units: (\d+)", text)
     executions = int(units[-1]) if units else int(last[-1][0]) if last else 0
     edges, features = (int(last[-1][1]), int(last[-1][2])) if last else (0, 0)
-    return time.monotonic() - begin, cpu_of_children() - used, executions, edges, features, process.returncode
-
-
-def counts_of(out):
-    file = out / "counts.json"
-    return json.loads(file.read_text()) if file.exists() else {}
+    return time.monotonic() - begin, process.returncode, {
+        "processor_s": round(cpu_of_children() - used, 1), "executions": executions, "edges": edges, "features": features,
+        "findings": len(list((folder / "findings").iterdir())) - found, "corpus_inputs": len(list((folder / "corpus").iterdir()))}
 
 
 def run_target(target, options):
-    folder = options.out / target
+    folder, program = options.out / target, options.build / f"fuzz_{target}"
     (folder / "findings").mkdir(parents=True, exist_ok=True)
     seeds.make(target, ROOT, folder / "corpus")
-    left = options.seconds
-    for _ in range(TRIES):
-        counts = counts_of(options.out)
-        have = counts.setdefault(target, {"cpu_seconds": 0.0, "executions": 0, "edges": 0, "features": 0, "findings": 0})
-        if left < 1 or have["cpu_seconds"] >= options.total:
-            return
-        seconds, used, executions, edges, features, code = run_once(options.build / f"fuzz_{target}", folder, left)
-        have["cpu_seconds"] = round(have["cpu_seconds"] + used, 1)
-        have["executions"] += executions
-        have["edges"], have["features"] = max(have["edges"], edges), max(have["features"], features)
-        have["findings"] = len(list((folder / "findings").iterdir()))
-        (options.out / "counts.json").write_text(json.dumps(counts, indent=1) + "\n")
+    commit = hours.build(program, options.hours)
+    left, failed = options.seconds, 0
+    while left >= 1 and failed < TRIES and hours.totals(options.hours).get(target, {}).get("processor_s", 0) < options.total:
+        seconds, code, counted = run_once(program, folder, min(left, PART), options.patience)
+        hours.add(options.hours, program, {"target": target, "commit": commit, **counted})
         left -= seconds
+        failed += code != 0
         if code == INTERRUPTED:
             raise KeyboardInterrupt
-        if code == 0:
-            return
-
-
-def table(counts):
-    lines = ["target,cpu_seconds,executions,edges,features,findings"]
-    for target, have in counts.items():
-        lines.append(f"{target},{have['cpu_seconds']:.0f},{have['executions']},{have['edges']},{have['features']},{have['findings']}")
-    return "\n".join(lines)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=pathlib.Path, required=True)
+    parser.add_argument("--out", type=lambda name: pathlib.Path(name).resolve())
     parser.add_argument("--build", type=lambda name: pathlib.Path(name).resolve(), default=ROOT / "build-fuzz")
     parser.add_argument("--seconds", type=float, default=600, help="of each target, now")
-    parser.add_argument("--total", type=float, default=3600, help="of the processor, of each target, in all")
+    parser.add_argument("--total", type=float, default=hours.OWED, help="of the processor, of each target, in all")
     parser.add_argument("--only", nargs="*", default=TARGETS, choices=TARGETS)
-    parser.add_argument("--list", action="store_true", help="print the table and end")
+    parser.add_argument("--patience", type=float, default=LONGEST, help="s by the clock that an input may take")
+    parser.add_argument("--hours", type=lambda name: pathlib.Path(name).resolve(), default=hours.TABLE, help="the table that is added to")
+    parser.add_argument("--table", action="store_true", help="print the totals and end")
     options = parser.parse_args()
-    options.out = options.out.resolve()
+    if not options.table and options.out is None:
+        parser.error("--out DIR is missing, expected the folder of corpora and findings")
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the target is interrupted, and what it did is counted
-    if not options.list:
+    if not options.table:
         for target in options.only:
             run_target(target, options)
-    print(table(counts_of(options.out)))
+    print(hours.told(options.hours, TARGETS))
 
 
 if __name__ == "__main__":

@@ -85,6 +85,7 @@ TEST(ScenarioFields, are_the_keys_of_the_schema_with_its_defaults_and_units) {
   expect_section<scenario::RunOptions>("run");
   expect_section<scenario::OutputOptions>("output");
   expect_section<scenario::CheckpointOptions>("checkpoint");
+  expect_section<scenario::PressKeys>("press");
   expect_section<scenario::ExpectedResult>("expected");
 }
 

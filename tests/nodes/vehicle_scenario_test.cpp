@@ -133,8 +133,16 @@ TEST(VehicleScenario, starts_clear_of_the_wall_and_says_when_the_bin_is_too_shor
   EXPECT_TRUE(complaint(document, {{"terrain.width", "1.5"}})
                   .starts_with(": key 'terrain.width': is 1.5 m, expected at "))
       << complaint(document, {{"terrain.width", "1.5"}});
-  EXPECT_TRUE(complaint(document, {{"rig.start", "1"}}).starts_with(": key 'rig.start': "))
+  // Places are those of the key, the vehicle's origin, not those of a wheel.
+  EXPECT_TRUE(
+      complaint(document, {{"rig.start", "1"}})
+          .starts_with(
+              ": key 'rig.start': is 1 m, expected 2.120 to 5.884 m: the tire of rear_left with radius "))
       << complaint(document, {{"rig.start", "1"}});
+  EXPECT_EQ(complaint(document, {{"terrain.length", "3"}}),
+            ": key 'terrain.length': is 3 m, expected at least 4.28 m: from the first to the last tire the "
+            "rig is 4.24 m "
+            "long");
 }
 
 TEST(VehicleScenario, wrong_combinations_are_refused_by_key) {
@@ -166,12 +174,84 @@ TEST(VehicleScenario, wrong_combinations_are_refused_by_key) {
   EXPECT_EQ(
       complaint(rover),
       ": key 'rig.driver': asks for gear 2 at 0 s, expected at most 1: the vehicle Rover has no gearbox");
+  rover["rig"]["driver"] = {{"inputs", {{"brake", {{0, 0}, {1, 0.5}}}}}};
+  EXPECT_EQ(complaint(rover),
+            ": key 'rig.driver': gives brake 0.5 at 1 s, expected a driver that does not: the vehicle Rover "
+            "has no brakes");
+  EXPECT_EQ(complaint(json::parse(std::ifstream(data_folder() / "vehicle" / "data" / "hmmwv.json"))),
+            ": is a vehicle, expected a scenario, whose key rig.vehicle names it beside rig.type 'vehicle'");
   json foreign = hmmwv();
   foreign["rig"] = {{"type", "drawbar"}, {"vehicle", "hmmwv.json"}};
   foreign["tire"] = {{"file", "hmmwv_layered.json"}};
   EXPECT_EQ(complaint(foreign),
             ": key 'rig.vehicle': is a key of type 'vehicle', but rig.type is 'drawbar', expected "
             "keys of that type alone");
+}
+
+TEST(VehicleScenario, wheels_of_one_vehicle_in_each_other_are_its_file_s_fault) {
+  json document = hmmwv();
+  document["rig"]["vehicle"] = "mine.json";
+  const ScenarioFile file(document.dump());
+  json rover = json::parse(std::ifstream(data_folder() / "vehicle" / "data" / "rover.json"));
+  rover["axles"][0]["origin"] = {0.10, 0.0, 0.0};
+  std::ofstream(file.path().parent_path() / "mine.json") << rover.dump();
+  EXPECT_EQ(file.complaint(),
+            ": key 'rig.vehicle': has the wheel middle_left in the way of front_left, expected 0.12 m "
+            "between their axles "
+            "or 0.05 m between their mid-planes");
+}
+
+/// A driver must not ask for what the vehicle lacks: it would be ignored.
+TEST(VehicleScenario, pedals_and_steering_without_effect_are_refused) {
+  json document = hmmwv();
+  document["rig"]["vehicle"] = "mine.json";
+  const auto complains = [&](const json& car, const char* input) {
+    json with = document;
+    with["rig"]["driver"] = {{"inputs", {{input, {{0, 0}, {2, 1}}}}}};
+    const ScenarioFile file(with.dump());
+    std::ofstream(file.path().parent_path() / "mine.json") << car.dump();
+    return file.complaint();
+  };
+  const json whole = json::parse(std::ifstream(data_folder() / "vehicle" / "data" / "hmmwv.json"));
+  json pushed = whole, straight = whole;
+  pushed.erase("driveline");
+  straight["axles"][0].erase("steering");
+  EXPECT_EQ(complains(pushed, "throttle"),
+            ": key 'rig.driver': gives throttle 1 at 2 s, expected a driver that does not: the vehicle HMMWV "
+            "has neither "
+            "engine nor motors");
+  EXPECT_EQ(complains(straight, "steering"),
+            ": key 'rig.driver': gives steering 1 at 2 s, expected a driver that does not: the vehicle HMMWV "
+            "has no "
+            "steering");
+}
+
+/// They are followed as well as it can be done, which is seldom what was meant.
+TEST(VehicleScenario, paths_that_the_vehicle_cannot_follow_are_warned_of) {
+  const auto warning = [](const json& path) {
+    json document = hmmwv();
+    document["rig"]["driver"] = {{"speed", {{"target", 3}}}, {"path", path}};
+    const scenario::Scenario s = load(document, {{"tire.rigid", "true"}});
+    std::string texts;
+    for (const std::string& text : s.warnings)
+      if (const std::size_t at = text.find("key 'rig.driver': "); at != std::string::npos)
+        texts += text.substr(at);
+    return texts;
+  };
+  const auto waypoints = [](const json& points) { return json{{"kind", "waypoints"}, {"points", points}}; };
+  EXPECT_EQ(warning({{"kind", "straight"}, {"length", 30}}), "");
+  EXPECT_EQ(warning({{"kind", "circle"}, {"radius", 8}}), "");
+  EXPECT_EQ(warning({{"kind", "circle"}, {"radius", 3}}),
+            "key 'rig.driver': has a path that bends with a radius of 3.00 m, the vehicle HMMWV turns with "
+            "6.63 m at least");
+  EXPECT_EQ(warning(waypoints({{-10, 0}, {-20, 0}})),
+            "key 'rig.driver': has a path that leads backward where the vehicle starts: drivers drive "
+            "forward and turn "
+            "round");
+  EXPECT_EQ(warning(waypoints({{0, 50}, {100, 50}})),
+            "key 'rig.driver': has a path that comes no nearer than 50.0 m to where the rear axle starts, x "
+            "= -1.65 m, y = "
+            "0.00 m");
 }
 
 /// What the vehicle's own file gets wrong is said with its name.

@@ -97,6 +97,8 @@ def main():
     parser.add_argument("--seeds", nargs="+", type=int, default=[1, 2, 3])
     parser.add_argument("--core", type=int)
     arguments = parser.parse_args()
+    # Before the table makes files differ.
+    made = provenance.made_here() | {"note": f"sleep = strips: commit {arguments.before[1]}"}
     rows = []
     for seed in arguments.seeds:
         make_bed(seed)
@@ -106,7 +108,6 @@ def main():
         print(*rows[-3:], sep="\n", flush=True)
         text = [{key: f"{value:.4g}" if isinstance(value, float) else value for key, value in row.items()} for row in rows]
         text += [pooled(rows, sleep) for sleep in SLEEP]
-        made = provenance.made_here() | {"note": f"sleep = strips: commit {arguments.before[1]}"}
         provenance.write_table(HERE / "sleep_across.csv", list(text[0]), text, made)
 
 

@@ -46,7 +46,8 @@ SCENARIOS = [
     ("fraction_for_whole", text(terrain={"layers": 2.5}), [], "key 'terrain.layers': is 2.5, expected a whole number"),
     ("section_is_number", text(rig=3), [], "key 'rig': is 3, expected an object"),
     ("unknown_law", text(terrain={"law": "hertz"}), [], "key 'terrain.law': is 'hertz', expected 'mindlin' or 'hertz_tanh'"),
-    ("engine_of_later", text(terrain={"engine": "liggghts"}), [], "'liggghts' is not available in this version, expected 'dem', 'rigid' or 'scm'"),
+    ("key_of_grains_that_sleep", text(terrain={"engine": "liggghts", "activity": False}), [],
+     "key 'terrain.activity': is a key of engine 'dem', but terrain.engine is 'liggghts'"),
     ("two_terrain_ranks", text(terrain={"ranks": 2}), [], "key 'terrain.ranks': is 2, expected 1"),
     ("vehicle", text(vehicle={"file": "hmmwv"}, rig=None), [], "key 'vehicle': is not a section, expected rig.vehicle beside rig.type 'vehicle'"),
     ("newer_format", text(format_version=2), [], "key 'format_version': is 2: the file is newer than this program"),
@@ -79,7 +80,7 @@ SCENARIOS = [
      "key 'terrain.mohr_friction_angle': is 95 deg, expected a number, 0 to 80"),
     ("grid_too_fine", EMPIRICAL.replace('"scm"', '"scm", "grid_spacing": 0.001, "length": 200, "width": 50'), [],
      "key 'terrain.grid_spacing': is 0.001: 200 m x 50 m have 1e+10 nodes, expected at most 1e+08"),
-    ("grains_key_of_soil", EMPIRICAL.replace('"scm"', '"scm", "radius": 0.01'), [], "key 'terrain.radius': is a key of engine 'dem'"),
+    ("grains_key_of_soil", EMPIRICAL.replace('"scm"', '"scm", "radius": 0.01'), [], "key 'terrain.radius': is a key of engine 'dem' or 'liggghts'"),
     ("missing_soil", text(terrain={"material": "moon.json"}), [], "key 'terrain.material': 'moon.json' does not exist, expected a file at one of"),
     ("spread_too_wide", text(terrain={"size_spread": 0.9}), [], "key 'terrain.size_spread': is 0.9, expected a number, 0 to 0.6"),
     ("spread_with_hertz_tanh", text(terrain={"size_spread": 0.2, "law": "coulomb"}), [], "key 'terrain.size_spread': is 0.2 with law 'hertz_tanh'"),
@@ -295,11 +296,11 @@ class BadFile(SystemTest):
     def test_beds_and_soil_tests_need_grains(self):
         path = write_scenario(self.folder, {**changed(), "terrain": {"engine": "rigid"}})
         for command in ("bed", "soil"):
-            self.assertIn("small.json: key 'terrain.engine': is 'rigid', expected 'dem'", self.error_of(command, path))
+            self.assertIn("small.json: key 'terrain.engine': is 'rigid', expected 'dem' or 'liggghts'", self.error_of(command, path))
 
     def test_keys_of_another_engine(self):
         path = write_scenario(self.folder, {**changed(), "terrain": {"engine": "rigid", "friction": 0.5, "radius": 0.02}})
-        self.assertIn("small.json: key 'terrain.radius': is a key of engine 'dem', but terrain.engine is 'rigid'",
+        self.assertIn("small.json: key 'terrain.radius': is a key of engine 'dem' or 'liggghts', but terrain.engine is 'rigid'",
                       self.error_of("validate", path))
 
     def test_soil_options(self):

@@ -84,6 +84,10 @@ class Press(SystemTest):
         patch = summary["footprint"]
         self.assertAlmostEqual(patch["force_N"], 2000, delta=2)
         self.assertAlmostEqual(patch["mean_pressure_Pa"] * patch["area_m2"], 2000, delta=20)
+        sticking = summary["sticking_stiffness"]
+        self.assertGreater(sticking["vertical_N_per_m"], summary["tangent_stiffness_N_per_m"] * 0.9)
+        self.assertTrue(0 < sticking["lateral_N_per_m"] < sticking["longitudinal_N_per_m"], sticking)
+        self.assertGreater(sticking["torsional_Nm_per_rad"], 0)
         self.assertTrue(0.005 < patch["length_m"] < 0.3 and 0.02 < patch["width_m"] < 0.3, patch)  # coarse facets
         lines = (out / "press.csv").read_text().splitlines()
         self.assertTrue(lines[0].startswith("deflection_m,force_N"))
@@ -113,6 +117,31 @@ class Press(SystemTest):
         done = self.press("--overwrite", "--load", "1e5")
         plate = json.loads((self.folder / "out/summary.json").read_text())
         self.assertLess(cleat["footprint"]["force_N"], plate["footprint"]["force_N"])
+
+    def test_a_scenario_says_how_its_tire_is_pressed_and_options_override_it(self):
+        coarse = ("--set", "tire.elements_circumference=48", "--set", "tire.elements_width=8", "--points", "2", "--deflection", "0.012",
+                  "--load", "2000")
+        deflections = []
+        for more in ((), ("--cleat-width", "0.1"), ("--set", "press.cleat_width=0.1")):
+            done = furrow("press", "cleat_press.json", "--out", self.folder / "out", "--overwrite", *coarse, *more, cwd=self.folder)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            summary = json.loads((self.folder / "out/summary.json").read_text())
+            self.assertEqual((summary["obstacle"], summary["cleat_width_m"], summary["cleat_height_m"]),
+                             ("cleat", 0.1 if more else 0.051, 0.1))
+            deflections.append(summary["deflection_m"])
+        self.assertGreater(deflections[0], deflections[1])
+        self.assertEqual(deflections[1], deflections[2])
+        for setting, said in (("press.on=road", "key 'press.on': is 'road', expected 'plate' or 'cleat'"),
+                              ("press.on=profile", "key 'press.on'"), ("press.points=0", "key 'press.points': is 0"),
+                              ("press.deflection=0.3", "key 'press.deflection': is 0.3 m"), ("press.width=1", "key 'press.width'"),
+                              ("press.cleat_width=[0.1]", "key 'press.cleat_width'")):
+            done = furrow("press", "cleat_press.json", "--out", self.folder / "other", "--set", setting, cwd=self.folder)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn("cleat_press.json: " + said, done.stderr)
+        done = furrow("press", "cleat_press.json", "--out", self.folder / "other", "--set", "tire.file=hmmwv_ring.json",
+                      "--set", "press.deflection=0.19", cwd=self.folder)
+        self.assertIn("cleat_press.json: key 'press.deflection': is 0.19 m, expected at most 0.11", done.stderr)
+        self.assertFalse((self.folder / "other").exists())
 
     def test_flexible_ring(self):
         path = self.folder / "ring.json"
@@ -151,6 +180,7 @@ class Press(SystemTest):
             summary = json.loads((self.folder / "out/summary.json").read_text())
             self.assertEqual(summary["obstacle"], name)
             self.assertIsNone(summary["pressure_Pa"])
+            self.assertEqual(set(summary["sticking_stiffness"].values()), {None})
             self.assertLess(summary["max_residual"], 1e-6)
             self.assertLess(summary["loading_unloading_difference"], 1e-5)
             self.assertAlmostEqual(summary["footprint"]["force_N"], 15000, delta=15)

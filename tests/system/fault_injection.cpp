@@ -1,7 +1,8 @@
 // Makes a rank of furrow_faults fail at a named point:
 //   FURROW_FAULT=point:rank:count:action   the count-th time that this rank comes to the point
 //   FURROW_FAULT_FIRED=file                made when it happens
-// Actions: kill (SIGKILL), stop (SIGSTOP), wait (until the file is removed, a minute at most).
+// Actions: kill (SIGKILL), stop (SIGSTOP), wait (until the file is removed, a minute at most), say TEXT (fault_text).
+// The rank * is every rank.
 #include <fcntl.h>
 #include <unistd.h>
 #include <csignal>
@@ -26,12 +27,13 @@ struct Fault {
     std::istringstream in(text);
     std::string number;
     std::getline(in, point, ':');
-    std::getline(in, number, ':');
-    rank = std::atoi(number.c_str());
+    std::string number_of_rank;
+    std::getline(in, number_of_rank, ':');
+    rank = std::atoi(number_of_rank.c_str());
     std::getline(in, number, ':');
     count = std::atoi(number.c_str());
     std::getline(in, action, ':');
-    if (rank != launched_rank()) point.clear();
+    if (number_of_rank != "*" && rank != launched_rank()) point.clear();
   }
 };
 
@@ -45,11 +47,22 @@ void fire(const std::string& action) {
   for (int i = 0; action == "wait" && i < 6000 && access(mark, F_OK) == 0; ++i) usleep(10000);
 }
 
+/// The action that is due now, done; or nothing.
+std::string come_to(const char* name) {
+  static Fault fault;
+  if (!(fault.count > 0 && fault.point == name && --fault.count == 0)) return {};
+  fire(fault.action);
+  return fault.action;
+}
+
 }  // namespace
 
-void fault_point(const char* name) {
-  static Fault fault;
-  if (fault.count > 0 && fault.point == name && --fault.count == 0) fire(fault.action);
+void fault_point(const char* name) { come_to(name); }
+
+std::string fault_text(const char* name) {
+  constexpr char kSay[] = "say ";
+  const std::string action = come_to(name);
+  return action.rfind(kSay, 0) == 0 ? action.substr(sizeof kSay - 1) : "";
 }
 
 }  // namespace furrow

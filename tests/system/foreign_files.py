@@ -150,6 +150,29 @@ class Reports(SystemTest):
                 lines = [line for line in self.told(expected).splitlines() if line.startswith("furrow: error: ")]
                 self.assertEqual(len([line for line in lines if "nothing to plot" not in line]), 1, lines)
 
+    def test_the_command_says_once_why_there_are_no_plots(self):
+        self.summary({"drawbar_pull_N": 3})
+        (self.folder / "empty").mkdir()
+        (self.folder / "empty" / "scenario.json").write_text(json.dumps(changed()))
+        taken = self.folder / "taken"
+        taken.mkdir()
+        (taken / ".furrow-run").write_text("furrow-run 1\n")
+        (taken / "report.html").write_text("the user's own")
+        (self.run / "timeseries.csv").write_text("time_s,position_m\n0,0\n1,1\n")
+        for arguments, expected in (([self.run], "key 'drawbar_pull_N': is 3, expected an object"),
+                                    ([self.folder / "empty"], "holds nothing to plot"),
+                                    ([self.folder / "empty", self.run, "--out", "both"], "holds no results of a run")):
+            with self.subTest(arguments):
+                done = furrow("report", *arguments, cwd=self.folder)
+                self.assertEqual((done.returncode, done.stdout), (5, ""), done.stderr)
+                self.assertEqual(done.stderr.count("furrow: error: "), 1, done.stderr)
+                self.assertIn(expected, done.stderr)
+        self.summary({})
+        done = furrow("report", self.run, self.run, "--out", taken, cwd=self.folder)
+        self.assertEqual((done.returncode, done.stdout, done.stderr.count("furrow: error: ")), (5, "", 1), done.stderr)
+        self.assertIn("taken/report.html: was not written", done.stderr)
+        self.assertEqual((taken / "report.html").read_text(), "the user's own")
+
     def test_summary_that_is_none(self):
         for text in ("[1, 2]", "{", "", '{"a": ' + "[" * 100000 + "]" * 100000 + "}"):
             (self.run / "summary.json").write_text(text)

@@ -6,7 +6,7 @@ import json
 from program import ROOT, SystemTest, changed, furrow, main, write_scenario
 
 PRESSED = changed(rig={"slip": 0.1, "ramp": 0.1}, tire={"file": "hmmwv_lumped.json", "rigid": False, "elements_circumference": 30, "elements_width": 6})
-WITH_QUIET = ("run", "resume", "sweep", "bed", "soil", "press", "kc", "report", "validate", "ranks", "new")
+WITH_QUIET = ("run", "resume", "sweep", "bed", "soil", "press", "modes", "kc", "report", "validate", "ranks", "new")
 TIMES = ("wall_s", "settle_wall_s", "from_cache", "ms", "_per_s", "_ms")  # keys whose values differ from time to time
 
 
@@ -65,6 +65,10 @@ class Quiet(SystemTest):
     def test_pressing(self):
         self.assertEqual(self.both("press", write_scenario(self.folder, PRESSED), "--points", "2"),
                          ("results/small-press-001\n", "results/small-press-002\n"))
+
+    def test_frequencies(self):
+        self.assertEqual(self.both("modes", "aligator_planar.json", "--orders", "1", "--no-plots"),
+                         ("results/aligator_planar-modes-001\n", "results/aligator_planar-modes-002\n"))
 
     def test_suspensions(self):
         self.assertEqual(self.both("kc", ROOT / "vehicle" / "data" / "rover.json", "--points", "3", "--no-plots", says=False),

@@ -268,12 +268,14 @@ class Page(SystemTest):
         folder = self.folder / "press"
         folder.mkdir()
         (folder / "summary.json").write_text(json.dumps({"obstacle": "plate", "load_N": 4600.0, "deflection_m": 0.0128, "pressure_Pa": 2e5,
-                                                         "statically_stable": True}))
+                                                         "statically_stable": True,
+                                                         "sticking_stiffness": {"lateral_N_per_m": 1.5e5, "torsional_Nm_per_rad": 2500.0}}))
         (folder / "press.csv").write_text("deflection_m,force_N,unloading\n0,0,0\n0.01,3000,0\n0.02,7000,0\n0.01,2990,1\n0,0,1\n")
         page.write(folder, [Press(folder)], lambda *_: True)
         about, part = document(folder / "report.html")
         rows = blocks_of(about, "table")[-1]["rows"]
-        for row in (["load", "4600", "N"], ["deflection", "12.8", "mm"], ["pressure", "200", "kPa"], ["statically stable", "yes", ""]):
+        for row in (["load", "4600", "N"], ["deflection", "12.8", "mm"], ["pressure", "200", "kPa"], ["statically stable", "yes", ""],
+                    ["sticking stiffness lateral", "150", "kN/m"], ["sticking stiffness torsional", "2500", "N m/rad"]):
             self.assertIn(row, rows)
         loading, unloading = blocks_of(about, "charts")[0]["charts"][0]["lines"]
         self.assertEqual(len(unloading["dash"]), 2, "it mostly lies on the curve of loading")

@@ -91,6 +91,8 @@ WRONG = [
      "key 'driveline.differentials[1].outputs': has 1 shafts, expected two"),
     ("shaft_of_no_wheel", changed("hmmwv.json", ("driveline/shafts/12", {"name": "pump", "inertia": 0.1, "axis": [1, 0, 0]})),
      "key 'driveline.shafts[12].name': 'pump' reaches no wheel, expected a train of gears to one"),
+    ("output_that_drives_nothing", changed("hmmwv.json", ("driveline/wheels/3", ...)),
+     "key 'driveline.differentials[2].outputs': 'rear right' drives nothing, expected a shaft that a wheel, a gear or a differential"),
     ("loop_of_gears", changed("hmmwv.json", ("driveline/gears/3", {"name": "bypass", "in": "front box", "out": "front drive", "ratio": 5})),
      "key 'driveline.gears[3]': 'bypass' closes a loop of gears, expected a train without loops"),
     ("wheel_driven_twice", changed("hmmwv.json", ("driveline/wheels/3/side", "left")),
@@ -102,7 +104,18 @@ WRONG = [
     ("number_for_a_name", changed("hmmwv.json", ("name", 3)), "key 'name': is 3, expected a text"),
     ("text_for_a_number", changed("hmmwv.json", ("chassis/mass", "heavy")), "key 'chassis.mass': is 'heavy', expected a number"),
     ("key_given_twice", '{"axles": [], "axles": []}', "key 'axles'"),
+    ("empty_name", changed("hmmwv.json", ("name", "")), "key 'name': is empty, expected a name"),
+    ("lengths_in_mm", changed("hmmwv.json", ("axles/0/origin", [1688.965, 0, 0])),
+     "key 'axles[0].origin': has 1688.965 among its coordinates, expected at most 100 in magnitude: points are in m"),
+    ("rack_that_leaves_its_tie_rods", changed("buggy.json", ("axles/0/steering/left_travel", -0.5)),
+     "key 'axles[0].steering.left_travel': is -0.5, expected at most 0.1 in magnitude: the linkage of axle 'front' goes no further"),
+    ("pitman_arm_beyond_its_dead_centre", changed("hmmwv.json", ("axles/0/steering/left_angle_deg", -85)),
+     "key 'axles[0].steering.left_angle_deg': is -85, expected at most "),
     ("cut_short", json.dumps(shipped("hmmwv.json"))[:4000], "wrong.json:1:4001: is not valid JSON"),
+    ("rate_in_N_per_mm", changed("buggy.json", ("axles/0/suspension/spring/rate", 38.8)),
+     "there is no equilibrium near the drawn posture; it weighs 5511 N, and the springs of axle 'front' push with 4.22 N as drawn"),
+    ("behind_its_wheels", changed("hmmwv.json", ("chassis/center_of_mass", [-4, 0, 0.2])),
+     "near the drawn posture; its centre of mass, x = -3.42 m, y = 0.00 m, does not lie between its wheels"),
     ("no_spring", changed("buggy.json", ("axles/0/suspension/spring", ...)), "vehicle 'Buggy'"),
 ]
 
@@ -142,6 +155,28 @@ class Wrong(SystemTest):
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn("--set", done.stderr)
         self.assertEqual([], list(self.folder.iterdir()))
+
+
+class Unlikely(SystemTest):
+    def test_what_looks_like_another_unit_is_warned_of(self):
+        for where, value, message in (
+                ("chassis/mass", 0.42, "key 'chassis.mass': is 0.42 kg, all other parts have "),
+                ("chassis/inertia", [0.07, 0.26, 0.28], "key 'chassis.inertia': gives a radius of gyration of 0.0269 m between wheels "
+                                                       "that are 2.78 m apart: another unit?")):
+            with self.subTest(where):
+                path = self.folder / "odd.json"
+                path.write_text(json.dumps(changed("buggy.json", (where, value))))
+                done = furrow("validate", path, cwd=self.folder, timeout=300)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertIn(f"furrow: warning: {path}: {message}", done.stderr)
+                scenario = self.folder / "run.json"
+                scenario.write_text(json.dumps({"rig": {"type": "vehicle", "vehicle": "odd.json"}, "terrain": {"engine": "rigid"}}))
+                done = furrow("validate", scenario, cwd=self.folder, timeout=300)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertIn(f"furrow: warning: {scenario}: key 'rig.vehicle': is {path}, whose {message.replace(': ', ' ', 1)}", done.stderr)
+        for path in DATA.glob("*.json"):
+            if "schema" not in path.name:
+                self.assertNotIn("warning", furrow("validate", path, cwd=self.folder, timeout=300).stderr)
 
 
 class Stands(SystemTest):

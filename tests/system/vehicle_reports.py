@@ -72,7 +72,7 @@ def write_run(folder, **shape):
     for k, wheel in enumerate(wheels):
         write_table(folder / f"timeseries_wheel{k}.csv", wheel)
     (folder / "scenario.json").write_text(json.dumps({
-        "rig": {"type": "vehicle", "vehicle": "hmmwv.json", "lateral": 0.0}, "run": {"end": shape.get("end", END), "average_from": 1.0},
+        "rig": {"type": "vehicle", "vehicle": shape.get("vehicle", "hmmwv.json"), "lateral": 0.0}, "run": {"end": shape.get("end", END), "average_from": 1.0},
         "terrain": {"engine": "dem"}}))
     (folder / "summary.json").write_text(json.dumps({
         "scenario": "made", "terrain_engine": "dem", "law": "mindlin", "grains": 3000,
@@ -137,6 +137,17 @@ class Events(SystemTest):
         self.assertAlmostEqual(at["pitch changes", "rear axle"]["time_s"], meets, delta=0.01)
         self.assertAlmostEqual(at["pitch changes", "rear axle"]["value"], np.degrees(-0.02), delta=0.05)
         self.assertEqual(at["end", "vehicle"]["time_s"], END)
+
+    def test_a_vehicle_of_ones_own_is_read_where_it_is(self):
+        car = json.loads((ROOT / "vehicle/data/hmmwv.json").read_text())
+        car["driveline"]["gearbox"]["up_rpm"] *= 1.1
+        own = self.folder / "hmmwv.json"  # with the name of a shipped one
+        own.write_text(json.dumps(car))
+        speed = [json.loads(self.told("--json", **file).stdout)["gear_balance"]["shift_wheel_speed_m_per_s"]
+                 for file in ({}, {"vehicle": str(own)})]
+        self.assertAlmostEqual(speed[1] / speed[0], 1.1, delta=1e-9)
+        gone = str(self.folder / "gone" / "hmmwv.json")
+        self.assertIsNone(json.loads(self.told("--json", vehicle=gone).stdout)["gear_balance"])
 
     def test_a_run_that_is_not_complete_says_so(self):
         found = json.loads(self.told("--json", end=5.2).stdout)["events"]

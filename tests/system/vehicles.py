@@ -96,6 +96,20 @@ class Vehicles(SystemTest):
         self.assertEqual(len(self.summary()["wheels"]), 6)
         self.assertIn("sinkage_in_rut_m", self.table("wheel5")[0])
 
+    def test_a_run_is_not_continued_with_another_vehicle(self):
+        car = json.loads((ROOT / "vehicle/data/hmmwv.json").read_text())
+        scenario = json.loads((ROOT / "rigs/hmmwv_rigid.json").read_text())
+        scenario["rig"]["vehicle"] = "mine.json"
+        (self.folder / "mine.json").write_text(json.dumps(car))
+        (self.folder / "car.json").write_text(json.dumps(scenario))
+        self.run_it(self.folder / "car.json", *QUICK, "--set", "run.end=0.02", "--set", "run.average_from=0.01")
+        car["axles"][0]["suspension"]["shock"]["rebound"] *= 2  # the masses stay
+        (self.folder / "mine.json").write_text(json.dumps(car))
+        done = furrow("resume", self.folder / "out", "--until", "0.04", "--no-plots", cwd=self.folder, timeout=300)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn(f"key 'rig.vehicle': '{self.folder / 'mine.json'}' was changed since the run began, expected the file that it "
+                      "was computed with", done.stderr)
+
     def test_every_shipped_scenario_of_a_vehicle_is_valid(self):
         names = [path.name for path in (ROOT / "rigs").glob("*.json")
                  if json.loads(path.read_text()).get("rig", {}).get("type") == "vehicle"]

@@ -11,7 +11,7 @@ from ._settings import arguments
 from .opening import open
 from .runs import Run
 from .studies import Study
-from .virtual_tests import Press, Soil
+from .virtual_tests import Modes, Press, Soil
 
 
 def _out(out: File | None, overwrite: bool) -> list[str]:
@@ -81,11 +81,12 @@ def sweep(study: File | Content, *, out: File | None = None, jobs: int = 1, prog
     return opened
 
 
-def press(scenario: File | Content, *, out: File | None = None, overwrite: bool = False, on: str = "plate",
+def press(scenario: File | Content, *, out: File | None = None, overwrite: bool = False, on: str | None = None,
           deflection: float | None = None, load: float | None = None, points: int | None = None, progress: bool = True,
           settings: Mapping[str, Any] | None = None, **keys: Any) -> Press:
     """Presses the tire of a scenario on a plate or a cleat, statically, and opens what was measured.
 
+    on           "plate" or "cleat"; where this and the others are not given, the section `press` of the scenario counts
     deflection   the largest one, m; `points` of the curve
     load         of the footprint, N
     """
@@ -94,6 +95,21 @@ def press(scenario: File | Content, *, out: File | None = None, overwrite: bool 
     with as_file(scenario, "scenario") as path:
         printed, _ = call(["press", *_out(out, overwrite), *options, *arguments(settings, keys), "--", os.fspath(path)], progress)
     opened: Press = _opened(printed)
+    return opened
+
+
+def modes(tire: File, *, out: File | None = None, overwrite: bool = False, orders: int | None = None, count: int | None = None,
+          pressure: float | None = None, plots: bool = False, progress: bool = True) -> Modes:
+    """Computes the natural frequencies of a tire on a rim at rest and opens them.
+
+    tire       a tire file, as given or one that comes with the program
+    orders     highest circumferential order; `count` frequencies of each
+    pressure   of inflation, Pa; None: the file's
+    """
+    given = {"orders": orders, "count": count, "pressure": pressure}
+    options = [f"--{name}={value}" for name, value in given.items() if value is not None] + ([] if plots else ["--no-plots"])
+    printed, _ = call(["modes", *_out(out, overwrite), *options, "--", os.fspath(tire)], progress)
+    opened: Modes = _opened(printed)
     return opened
 
 

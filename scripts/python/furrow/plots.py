@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from ._scripts import drawing, style
 from .runs import Run
 from .studies import Study
-from .virtual_tests import Kinematics, Press, Soil
+from .virtual_tests import Kinematics, Modes, Press, Soil
 
 
 def _draw(where: str, name: str, shown: Any) -> Figure:
@@ -22,7 +22,7 @@ def _draw(where: str, name: str, shown: Any) -> Figure:
     return figure
 
 
-def _of(where: str, kind: str, opened: Study | Soil | Press | Kinematics) -> Any:
+def _of(where: str, kind: str, opened: Study | Soil | Press | Modes | Kinematics) -> Any:
     return getattr(drawing(where), kind)(opened.directory)
 
 
@@ -109,6 +109,21 @@ def load_deflection(press: Press) -> Figure:
 def footprint(press: Press) -> Figure:
     """Contact pressure of a pressed tire."""
     return _draw("press", "footprint", _of("press", "Press", press))
+
+
+def frequencies(modes: Modes) -> Figure:
+    """Natural frequencies against the circumferential order."""
+    return _draw("modes", "frequencies", _of("modes", "Modes", modes))
+
+
+def mode_shapes(modes: Modes) -> Figure:
+    """The first modes seen from the side."""
+    return _draw("modes", "mode_shapes", _of("modes", "Modes", modes))
+
+
+def mode_sections(modes: Modes) -> Figure:
+    """Sections of the tire in the first modes."""
+    return _draw("modes", "mode_sections", _of("modes", "Modes", modes))
 
 
 def parallel(kinematics: Kinematics) -> Figure:

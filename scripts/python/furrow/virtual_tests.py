@@ -1,4 +1,4 @@
-"""Soil tests, pressed tires and suspensions: what `furrow soil`, `furrow press` and `furrow kc` leave."""
+"""Soil tests, pressed tires, frequencies and suspensions: what `furrow soil`, `press`, `modes` and `kc` leave."""
 from __future__ import annotations
 
 import pathlib
@@ -70,6 +70,20 @@ class Press(Tests):
     def footprint(self) -> pd.DataFrame:
         """Contact pressure over the footprint."""
         return self.table("footprint")
+
+
+class Modes(Tests):
+    """Natural frequencies of a tire on a rim at rest."""
+
+    @cached_property
+    def frequencies(self) -> pd.DataFrame:
+        """Frequencies by circumferential order and number."""
+        return self.table("modes")
+
+    @cached_property
+    def shapes(self) -> pd.DataFrame:
+        """Amplitudes of the nodes of a section in each mode, their real and imaginary parts."""
+        return self.table("shapes")
 
 
 class Kinematics(Tests):

@@ -1,5 +1,6 @@
 """Which page each kind of folder gets."""
 from plot.kinematics import Kinematics
+from plot.modes import Modes
 from plot.press import Press
 from plot.run_data import Run
 from plot.soil import Soil
@@ -18,8 +19,8 @@ def fill(page, arrays, runs, sections):
     if len(runs) > 1:
         compare.fill(page, arrays, runs, sections)
         return
-    for kind, fill_it in ((Press, test_pages.press), (Soil, test_pages.soil), (Kinematics, test_pages.kinematics),
+    for kind, fill_it in ((Press, test_pages.press), (Modes, test_pages.modes), (Soil, test_pages.soil), (Kinematics, test_pages.kinematics),
                           (Sweep, study_page.fill), (Run, run_page.fill)):
-        if isinstance(run, kind):  # a press is read like a soil test
+        if isinstance(run, kind):  # presses and modes are read like a soil test
             fill_it(page, arrays, run, sections)
             return

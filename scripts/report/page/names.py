@@ -2,7 +2,7 @@
 import math
 
 # Ending of a name: (unit as shown, factor to it). The first that fits counts.
-ENDINGS = (("_kg_m_per_s", "kg m/s", 1.0), ("_rad_per_s", "rad/s", 1.0), ("_m_per_s2", "m/s²", 1.0), ("_m_per_s", "m/s", 1.0), ("_m_s", "m/s", 1.0), ("_rpm", "1/min", 1.0),
+ENDINGS = (("_kg_m_per_s", "kg m/s", 1.0), ("_Nm_per_rad", "N m/rad", 1.0), ("_rad_per_s", "rad/s", 1.0), ("_m_per_s2", "m/s²", 1.0), ("_m_per_s", "m/s", 1.0), ("_m_s", "m/s", 1.0), ("_rpm", "1/min", 1.0),
            ("_N_per_mm", "N/mm", 1.0), ("_N_per_m", "kN/m", 1e-3), ("_N_per_s", "N/s", 1.0), ("_kg_m2", "kg m²", 1.0),
            ("_Nm", "N m", 1.0), ("_Ns", "N s", 1.0), ("_N", "N", 1.0), ("_J", "J", 1.0), ("_W", "W", 1.0), ("_m2", "m²", 1.0),
            ("_deg", "°", 1.0), ("_rad", "°", math.degrees(1.0)), ("_Pa", "kPa", 1e-3), ("_kg", "kg", 1.0), ("_s", "s", 1.0),

@@ -1,4 +1,4 @@
-"""The pages of soil tests, of a pressed tire and of a vehicle's suspensions."""
+"""The pages of soil tests, of a pressed tire, of its frequencies and of a vehicle's suspensions."""
 import numpy as np
 
 from plot import kinematics as suspensions
@@ -128,11 +128,33 @@ def footprint(run, arrays):
     return {"id": "footprint", "title": "Footprint", "blocks": [blocks.charts([{**blocks.chart("Pressure", "along", "mm", "kPa", lines), "wide": True}])]}
 
 
+def flat(values, **groups):
+    """The values with those of nested groups beside them, each group's words before their keys."""
+    return {**values, **{f"{words} {key}": value for group, words in groups.items() for key, value in (values.get(group) or {}).items()}}
+
+
 def press(page, arrays, run, sections):
     page["title"] = f"{run.values.get('scenario', '')} · {run.values.get('tire', '')} on a {run.values.get('obstacle', '')}"
     sections(page, [("result", lambda: press_answer(run)), ("load and deflection", lambda: press_curves(run, arrays)),
                     ("footprint", lambda: footprint(run, arrays)), ("scenario", lambda: kept_scenario(run.directory)),
-                    ("all values", lambda: provenance({**run.values, **{f"footprint {k}": v for k, v in (run.values.get("footprint") or {}).items()}}))])
+                    ("all values", lambda: provenance(flat(run.values, footprint="footprint", sticking_stiffness="sticking stiffness")))])
+
+
+def mode_frequencies(run, arrays):
+    found = run.frequencies()
+    lines = []
+    for number in sorted({number for _, number in found}):
+        orders = sorted(order for order, which in found if which == number)
+        lines.append(line(arrays, f"frequency {number}", np.array(orders, dtype=float),
+                          np.array([found[order, number] for order in orders]), "points"))
+    return {"id": "series", "title": "Natural frequencies",
+            "blocks": [blocks.charts([{**blocks.chart("Frequency", "circumferential order", "", "Hz", lines), "wide": True}])]}
+
+
+def modes(page, arrays, run, sections):
+    page["title"] = f"{run.values.get('tire', '')} · natural frequencies on a rim at rest"
+    sections(page, [("frequencies", lambda: mode_frequencies(run, arrays)),
+                    ("all values", lambda: provenance({key: value for key, value in run.values.items() if key != "modes"}))])
 
 
 def motion(run, arrays, name):

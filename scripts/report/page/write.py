@@ -102,6 +102,8 @@ def compare(directories, folder, may_write):
         return 5
     written = write(folder, runs, may_write)
     print(json.dumps(written))
+    if not written:
+        print(f"furrow: error: {folder / NAME}: was not written", file=sys.stderr)
     return 0 if written else 5
 
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "nodes/launch/run_list.hpp"
 #include "nodes/output/column_labels.hpp"
@@ -179,6 +180,9 @@ void Results::finish(const RunEnd& end, bool stopped) {
   write_hdf5(end.reports);
   write_xdmf_index(directory_);
   if (stopped) return;
+  // Of a checkpoint or a frame that could not be written while the folder had another name.
+  checkpoint::remove_checkpoints_after(directory_, std::numeric_limits<std::int64_t>::max());
+  launch::remove_unfinished(directory_);
   // Of an earlier failure: until now it said that the run may be stepped more finely.
   std::error_code ignored;
   std::filesystem::remove(directory_ / "summary_failed.json", ignored);

@@ -181,6 +181,18 @@ class Gone(CheckpointTest):
         self.assertEqual({path.name: path.read_text() for path in elsewhere.iterdir()}, {"rig.h5": "mine"})
         self.assertEqual(steps(self.run_folder), [100, 200, 400, 500][-3:])
 
+    def test_what_a_move_left_unfinished_is_gone_at_the_end(self):
+        """Moved while a checkpoint is written and moved back before anything looks: its parts have nobody to remove them."""
+        process = self.start_waiting("step", 0, 220)
+        part = self.run_folder / "checkpoints" / ".000000000210.part"
+        part.mkdir()
+        for path in (part / "rig.h5", part / "tire0.h5", self.run_folder / ".results.h5.0123456789abcdef.part"):
+            path.write_text("half")
+        self.mark.unlink()
+        _, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 0, err)
+        self.same_as_whole(self.run_folder)
+
     def test_another_run_in_its_place(self):
         process = self.start_waiting("step", 0, 220)
         self.run_folder.rename(self.folder / "elsewhere")

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <string>
+#include <tuple>
 
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
@@ -106,13 +108,16 @@ void SurfaceContacts::reorder(const Resorted& range, const Strips& strips) {
   for (std::size_t g = 0; g < range.order.size(); ++g)
     new_of[range.order[g] - range.first] = range.first + static_cast<std::int32_t>(g);
   for (SurfaceHistory& h : all) h.grain = new_of[h.grain - range.first];
-  std::stable_sort(all.begin(), all.end(), [](const SurfaceHistory& a, const SurfaceHistory& b) {
-    return a.grain != b.grain ? a.grain < b.grain : a.surface < b.surface;
+  // By index: the buffer of std::stable_sort is not aligned as a Quad is.
+  std::vector<std::int32_t> sorted(all.size());
+  std::iota(sorted.begin(), sorted.end(), 0);
+  std::sort(sorted.begin(), sorted.end(), [&](std::int32_t a, std::int32_t b) {
+    return std::tie(all[a].grain, all[a].surface, a) < std::tie(all[b].grain, all[b].surface, b);
   });
   int s = range.from;
-  for (const SurfaceHistory& h : all) {
-    while (h.grain >= strips[s].last) ++s;
-    strips_[s].history.push_back(h);
+  for (const std::int32_t h : sorted) {
+    while (all[h].grain >= strips[s].last) ++s;
+    strips_[s].history.push_back(all[h]);
   }
 }
 

@@ -18,6 +18,11 @@ struct GroundOptions : TerrainContext {
   double ground_shear_stiffness = 1e8;  // N/m³: a tread of 1 MPa shear modulus, 10 mm thick
   double ground_damping = 2.5e4;        // N s/m³: holds such a vertex of 2.8 g on its own up to H = 4e-5 s
   ProfilePoints profile;                // z at x; empty: the plane z = 0
+  std::string profile_file;             // CSV or OpenCRG, in place of `profile`
+  double profile_v = 0.0;               // of the cut of an OpenCRG file, m
+  std::string road_class;               // of ISO 8608, A to H, in place of `profile`
+  double road_from = 5.0;               // x where it begins, m
+  double road_length = 100.0;           // m
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<GroundOptions> auto& s) {
@@ -27,6 +32,11 @@ void visit_fields(Visit&& visit, FieldsOf<GroundOptions> auto& s) {
   visit(Field{"ground_shear_stiffness", "N/m³", role::key}, s.ground_shear_stiffness);
   visit(Field{"ground_damping", "N s/m³", role::key}, s.ground_damping);
   visit(Field{"profile", "m", role::key}, s.profile);
+  visit(Field{"profile_file", "", role::key}, s.profile_file);
+  visit(Field{"profile_v", "m", role::key}, s.profile_v);
+  visit(Field{"road_class", "", role::key}, s.road_class);
+  visit(Field{"road_from", "m", role::key}, s.road_from);
+  visit(Field{"road_length", "m", role::key}, s.road_length);
 }
 
 }  // namespace furrow::terrain

@@ -3,8 +3,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "protocol/core/error.hpp"
+#include "protocol/files/data_files.hpp"
 #include "protocol/files/json_fields.hpp"
 #include "terrain/rigid/rigid_ground.hpp"
+#include "terrain/rigid/roads/iso_8608.hpp"
+#include "terrain/rigid/roads/read_road.hpp"
 
 namespace furrow::terrain {
 namespace {
@@ -16,27 +20,49 @@ class GroundSpec final : public TerrainSpec {
   TerrainDescription describe() const override {
     TerrainDescription d;
     d.engine = "rigid";
-    d.name = options_.profile.empty() ? "rigid ground" : "rigid ground with a profile";
+    d.name = !options_.road_class.empty() ? "rigid road of class " + options_.road_class
+             : options_.profile.empty()   ? "rigid ground"
+                                          : "rigid ground with a profile";
     d.gives_tangents = true;
     return d;
   }
   TerrainEstimate estimate(const TerrainContext&) const override {
     TerrainEstimate e;
-    e.text = options_.profile.empty()
-                 ? "rigid plane z = 0"
-                 : fmt::format("rigid profile of {} points", options_.profile.size());
+    e.text = !options_.road_class.empty() ? fmt::format("rigid road of class {} (ISO 8608), {:g} m long",
+                                                        options_.road_class, options_.road_length)
+             : options_.profile.empty()   ? "rigid plane z = 0"
+                                        : fmt::format("rigid profile of {} points", options_.profile.size());
     e.stable_reason = "no grains";
     return e;
   }
   std::unique_ptr<Terrain> make(const TerrainContext& context) const override {
     GroundOptions options = options_;
     static_cast<TerrainContext&>(options) = context;
+    if (!options.road_class.empty())
+      options.profile =
+          iso_8608_road(options.road_class.front(), options.road_from, options.road_length, context.seed);
     return make_rigid_ground(options);
+  }
+  std::vector<TerrainFile> files() const override {
+    if (options_.profile_file.empty()) return {};
+    return {{"profile_file", options_.profile_file}};
   }
 
  private:
   GroundOptions options_;
 };
+
+/// One of the ways to say what the ground's heights are.
+void check_heights(const GroundOptions& o, const ReadContext& context) {
+  const auto alone = [&](bool given, const char* key, const char* other) {
+    if (given)
+      throw input_error(context.file, context.key(key),
+                        std::string("is given beside ") + context.key(other) + ", expected one of them");
+  };
+  alone(!o.profile_file.empty() && !o.profile.empty(), "profile_file", "profile");
+  alone(!o.road_class.empty() && !o.profile.empty(), "road_class", "profile");
+  alone(!o.road_class.empty() && !o.profile_file.empty(), "road_class", "profile_file");
+}
 
 }  // namespace
 
@@ -44,7 +70,13 @@ std::unique_ptr<TerrainSpec> read_ground_spec(const nlohmann::json& section, con
   GroundOptions options;
   options.scenario = context.file;
   read_fields(section, options);
+  check_heights(options, context);
   check_profile(options.profile, context.file, context.key("profile"));
+  if (!options.profile_file.empty()) {
+    options.profile_file =
+        find_file(options.profile_file, context.key("profile_file"), context.file).string();
+    options.profile = read_road(options.profile_file, options.profile_v);
+  }
   return make_ground_spec(options);
 }
 

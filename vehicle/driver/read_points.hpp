@@ -9,7 +9,7 @@
 #include <string>
 
 #include "protocol/files/json_reader.hpp"
-#include "vehicle/driver/csv_file.hpp"
+#include "protocol/files/csv_file.hpp"
 #include "vehicle/driver/driver_spec.hpp"
 
 namespace furrow::vehicle {

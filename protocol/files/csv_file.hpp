@@ -8,7 +8,7 @@
 
 #include "protocol/core/error.hpp"
 
-namespace furrow::vehicle {
+namespace furrow {
 
 class CsvFile {
  public:
@@ -41,4 +41,4 @@ class CsvFile {
   std::vector<Row> rows_;
 };
 
-}  // namespace furrow::vehicle
+}  // namespace furrow

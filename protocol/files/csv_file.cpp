@@ -1,4 +1,4 @@
-#include "vehicle/driver/csv_file.hpp"
+#include "protocol/files/csv_file.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -12,7 +12,7 @@
 #include "protocol/files/printable.hpp"
 #include "protocol/files/text_file.hpp"
 
-namespace furrow::vehicle {
+namespace furrow {
 namespace {
 
 constexpr const char* kByteOrderMark = "\xEF\xBB\xBF";  // as spreadsheets write it
@@ -96,4 +96,4 @@ Error CsvFile::wrong_line(int line, const std::string& what) const {
   return input_error(name_, fmt::format("line {}", line), what);
 }
 
-}  // namespace furrow::vehicle
+}  // namespace furrow

@@ -1,0 +1,33 @@
+// Measured roads in the format ASAM OpenCRG 1.2: heights on a grid, u along a reference line and v to its left.
+//
+// Read are the road parameters, the data definition and the road data in the four formats (LRFI and LDFI as text, KRBI and
+// KDBI as big-endian numbers). The reference line is taken as straight: its heading, its position and those of the Earth
+// are left out, for a profile is alike across. Its slope is added to the heights. What changes the heights and is not
+// read here is refused: banking, modifiers, options, and references to other files.
+//
+// ASAM OpenCRG 1.2.0, chapter 6, "OpenCRG data format".
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "terrain/rigid/ground_profile.hpp"
+
+namespace furrow::terrain {
+
+struct OpenCrg {
+  double start = 0.0, increment = 0.0;  // u of the first cross-section, distance of two, m
+  std::vector<double> v;                // of the longitudinal cuts, rising, m
+  std::vector<double> heights;          // (cross-sections, cuts), m; NaN beside the road
+
+  std::size_t count() const { return v.empty() ? 0 : heights.size() / v.size(); }
+};
+
+/// @throws Error(bad_input) naming the file, its line or cross-section, and what was expected
+OpenCrg read_open_crg(const std::filesystem::path& file);
+
+/// The cut at v, straight between the two beside it.
+/// @throws Error(bad_input) where the road has no height at v. @param file for messages
+ProfilePoints profile_of(const OpenCrg& road, double v, const std::filesystem::path& file);
+
+}  // namespace furrow::terrain

@@ -1,0 +1,52 @@
+#include "terrain/rigid/roads/read_road.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "protocol/files/csv_file.hpp"
+#include "terrain/rigid/roads/open_crg.hpp"
+
+namespace furrow::terrain {
+namespace {
+
+constexpr double kFarthest = 1e6;  // m, as entries of terrain.profile
+
+ProfilePoints read_csv(const std::filesystem::path& file) {
+  const CsvFile csv(file, "a profile in CSV with the columns x_m and z_m", {"x_m", "z_m"});
+  ProfilePoints points;
+  for (std::size_t row = 0; row < csv.row_count(); ++row) {
+    std::array<double, 2> point;
+    for (const auto& [name, value] : {std::pair("x_m", &point[0]), std::pair("z_m", &point[1])}) {
+      *value = csv.number(row, name);
+      if (std::abs(*value) > kFarthest)
+        throw csv.wrong(
+            row, fmt::format("{} is {:g}, expected {:g} to {:g}", name, *value, -kFarthest, kFarthest));
+    }
+    if (!points.empty() && point[0] < points.back()[0])
+      throw csv.wrong(row, fmt::format("x_m is {:g}, expected {:g}, as in the row before, or more", point[0],
+                                       points.back()[0]));
+    if (!points.empty() && point == points.back())
+      throw csv.wrong(row, "is the row before once more, expected another point");
+    if (points.size() > 1 && point[0] == points[points.size() - 2][0])
+      throw csv.wrong(
+          row, fmt::format("x_m is {:g} a third time, expected two rows at most: the foot and the top of "
+                           "an upright face",
+                           point[0]));
+    points.push_back(point);
+  }
+  return points;
+}
+
+}  // namespace
+
+ProfilePoints read_road(const std::filesystem::path& file, double v) {
+  const ProfilePoints points =
+      file.extension() == ".crg" ? profile_of(read_open_crg(file), v, file) : read_csv(file);
+  if (points.size() > kMostProfilePoints)
+    throw input_error(file.string(), "",
+                      fmt::format("has {} points, expected at most {}", points.size(), kMostProfilePoints));
+  return points;
+}
+
+}  // namespace furrow::terrain

@@ -1,0 +1,250 @@
+// Roads: heights of ISO 8608 against the density of their class, and measured roads read from CSV and OpenCRG.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <complex>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <vector>
+
+#include "protocol/core/error.hpp"
+#include "terrain/rigid/roads/iso_8608.hpp"
+#include "terrain/rigid/roads/open_crg.hpp"
+#include "terrain/rigid/roads/read_road.hpp"
+
+namespace furrow::terrain {
+namespace {
+
+TEST(IsoRoad, class_densities_are_those_of_the_standards_table) {
+  // ISO 8608:2016, table C.1, geometric means at 0.1 cycles/m in 1e-6 m³.
+  const std::pair<char, double> table[] = {{'A', 16},   {'B', 64},    {'C', 256},   {'D', 1024},
+                                           {'E', 4096}, {'F', 16384}, {'G', 65536}, {'H', 262144}};
+  for (const auto& [name, density] : table) EXPECT_NEAR(road_density(name, 0.1), 1e-6 * density, 1e-12);
+  EXPECT_NEAR(road_density('C', 1.0), 2.56e-6, 1e-15);  // falls with n⁻²
+}
+
+TEST(IsoRoad, heights_have_the_density_of_their_class_in_every_octave) {
+  constexpr double kLength = 409.6;
+  constexpr int kSeeds = 8;
+  std::vector<double> density;  // of line m, frequency m/kLength
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const ProfilePoints road = iso_8608_road('C', 0.0, kLength, seed);
+    const std::size_t n = road.size() - 1;
+    const auto lines = static_cast<std::size_t>(kMostRoadFrequency * kLength);
+    density.resize(lines + 1);
+    for (std::size_t m = 1; m <= lines; ++m) {
+      std::complex<double> sum = 0.0;
+      const std::complex<double> turn =
+          std::polar(1.0, -2.0 * std::numbers::pi * static_cast<double>(m) / static_cast<double>(n));
+      std::complex<double> phase = 1.0;
+      for (std::size_t k = 0; k < n; ++k, phase *= turn) {
+        const double hann =
+            1.0 - std::cos(2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(n));
+        sum += hann * road[k][1] * phase;
+      }
+      // One-sided; the window's mean square is 1.5.
+      density[m] +=
+          2.0 * std::norm(sum) * kLength / (1.5 * static_cast<double>(n) * static_cast<double>(n)) / kSeeds;
+    }
+  }
+  for (double from = 0.04; from < 2.0; from *= 2.0) {
+    double measured = 0.0, wanted = 0.0;
+    for (std::size_t m = 1; m < density.size(); ++m) {
+      const double f = static_cast<double>(m) / kLength;
+      if (f >= from && f < std::min(2.0 * from, kMostRoadFrequency))
+        measured += density[m], wanted += road_density('C', f);
+    }
+    EXPECT_NEAR(measured / wanted, 1.0, 0.15) << "from " << from << " 1/m";
+  }
+}
+
+TEST(IsoRoad, begins_and_ends_level_and_is_drawn_by_its_seed) {
+  const ProfilePoints road = iso_8608_road('E', 3.0, 50.0, 7);
+  EXPECT_EQ(road.front(), (std::array<double, 2>{3.0, 0.0}));
+  EXPECT_EQ(road.back()[1], 0.0);
+  EXPECT_DOUBLE_EQ(road.back()[0], 53.0);
+  EXPECT_LT(std::abs(road[1][1]), 1e-4 * std::abs(road[road.size() / 2][1]));
+  EXPECT_EQ(road, iso_8608_road('E', 3.0, 50.0, 7));
+  EXPECT_NE(road, iso_8608_road('E', 3.0, 50.0, 8));
+  const ProfilePoints rougher = iso_8608_road('F', 3.0, 50.0, 7);
+  for (std::size_t k = 0; k < road.size(); ++k) EXPECT_NEAR(rougher[k][1], 2.0 * road[k][1], 1e-12);
+}
+
+class RoadFile : public ::testing::Test {
+ protected:
+  ~RoadFile() override { std::filesystem::remove_all(folder_); }
+  std::filesystem::path put(const std::string& name, const std::string& bytes) {
+    std::filesystem::create_directories(folder_);
+    std::ofstream(folder_ / name, std::ios::binary) << bytes;
+    return folder_ / name;
+  }
+  template <class F>
+  std::string refusal(F&& f) {
+    try {
+      f();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::bad_input) << error.what();
+      return error.what();
+    }
+    return "accepted";
+  }
+
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("furrow_road_" + std::to_string(::getpid()));
+};
+
+const std::string kRoad =
+    "$CT ! text\na road\n$\n$ROAD_CRG\nREFERENCE_LINE_START_U = 2.0\nREFERENCE_LINE_END_U = 4.0 ! m\n"
+    "REFERENCE_LINE_INCREMENT = 1\nLONG_SECTION_V_RIGHT = -0.5\nLONG_SECTION_V_INCREMENT = 0.5\n$!***\n";
+const std::string kCuts = "D:long section 1,m\nD:long section 2,m\nD:long section 3,m\n$\n";
+
+template <class Number>
+std::string big_endian(const std::vector<Number>& values) {
+  std::string bytes;
+  for (const Number value : values) {
+    char raw[sizeof value];
+    std::memcpy(raw, &value, sizeof value);
+    if constexpr (std::endian::native == std::endian::little) std::reverse(raw, raw + sizeof value);
+    bytes.append(raw, sizeof value);
+  }
+  return bytes;
+}
+
+TEST_F(RoadFile, the_four_formats_hold_the_same_road) {
+  const std::string text = kRoad + "$KD_Definition\n#:LRFI\n" + kCuts +
+                           "$$$$ data\n 0.0000000 0.0100000 *missing*\n 0.0200000-0.0300000 0.0400000\r\n "
+                           "5.00e-02 0.0600000 0.0700000\n";
+  const std::string wide = kRoad + "$KD_Definition\n#:LDFI\n" + kCuts + "$$$$\n" +
+                           "                 0.0                0.01           *missing*\n" +
+                           "                0.02               -0.03                0.04\n" +
+                           "                0.05                0.06                0.07\n";
+  const float nan = std::nanf("");
+  std::vector<float> singles{0.0f, 0.01f, nan, 0.02f, -0.03f, 0.04f, 0.05f, 0.06f, 0.07f};
+  singles.resize(20, nan);  // a record of 80 bytes
+  std::vector<double> doubles{0.0, 0.01, nan, 0.02, -0.03, 0.04, 0.05, 0.06, 0.07, nan};
+  const std::string binary = kRoad + "$KD_Definition\n" + kCuts + "$$$$\n" + big_endian(singles);
+  const std::string fine = kRoad + "$KD_Definition\n#:KDBI\n" + kCuts + "$$$$\n" + big_endian(doubles);
+  for (const std::string& bytes : {text, wide, binary, fine}) {
+    const OpenCrg road = read_open_crg(put("road.crg", bytes));
+    EXPECT_EQ(road.v, (std::vector<double>{-0.5, 0.0, 0.5}));
+    ASSERT_EQ(road.count(), 3U);
+    EXPECT_TRUE(std::isnan(road.heights[2]));
+    const ProfilePoints middle = read_road(folder_ / "road.crg", 0.0);
+    ASSERT_EQ(middle.size(), 3U);
+    EXPECT_EQ(middle[0][0], 2.0);
+    EXPECT_EQ(middle[2][0], 4.0);
+    EXPECT_NEAR(middle[1][1], -0.03, 1e-8);
+    EXPECT_NEAR(read_road(folder_ / "road.crg", -0.25)[2][1], 0.055, 1e-8);
+  }
+}
+
+TEST_F(RoadFile, slope_and_banking_of_the_reference_line_are_added) {
+  const std::string head =
+      "$ROAD_CRG\nREFERENCE_LINE_INCREMENT = 2.0\nREFERENCE_LINE_START_Z = 1.0\n$\n$KD_DEFINITION\n#:LRFI\n";
+  const std::string bytes =
+      head +
+      "D:reference line phi,rad\nD:reference line slope,m/m\nD:reference line banking,m/m\n"
+      "U:reference line u,m,0,2.0\nD:long section at v = 1.0,m\nD:long section at v = -1.0,m\n$\n$$\n"
+      " *missing* *missing* 0.0000000 0.0100000 0.0200000\n"
+      " 0.0000000 0.0500000 0.0300000 0.0100000 0.0200000\n"
+      " 0.0000000-0.0100000 0.0000000 0.0100000 0.0200000\n";
+  const std::filesystem::path file = put("sloped.crg", bytes);
+  const ProfilePoints left = read_road(file, 1.0), right = read_road(file, -1.0);
+  const double z_left[] = {1.01, 1.1 + 0.01 + 0.03, 1.08 + 0.01},
+               z_right[] = {1.02, 1.1 + 0.02 - 0.03, 1.08 + 0.02};
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_NEAR(left[k][1], z_left[k], 1e-12);
+    EXPECT_NEAR(right[k][1], z_right[k], 1e-12);
+  }
+}
+
+TEST_F(RoadFile, a_row_of_more_than_eight_channels_goes_on_in_the_next_record) {
+  std::string bytes =
+      "$ROAD_CRG\nREFERENCE_LINE_INCREMENT = 1\nLONG_SECTION_V_RIGHT = 0\nLONG_SECTION_V_INCREMENT = "
+      "1\n$\n$KD_DEFINITION\n#:LRFI\n";
+  for (int k = 1; k <= 10; ++k) bytes += "D:long section " + std::to_string(k) + ",m\n";
+  bytes += "$\n$$\n";
+  for (int row = 0; row < 2; ++row)
+    for (int k = 0; k < 10; ++k)
+      bytes += std::string(" 0.") + std::to_string(1000000 + 10 * row + k) + (k == 7 || k == 9 ? "\n" : "");
+  const OpenCrg road = read_open_crg(put("wide.crg", bytes));
+  ASSERT_EQ(road.heights.size(), 20U);
+  EXPECT_EQ(road.heights[9], 0.1000009);
+  EXPECT_EQ(road.heights[18], 0.1000018);
+}
+
+TEST_F(RoadFile, mistakes_of_an_open_crg_file_are_told_by_line_and_parameter) {
+  const std::string rows =
+      "$$\n 0.0000000 0.0000000 0.0000000\n 0.0000000 0.0000000 0.0000000\n 0.0000000 0.0000000 0.0000000\n";
+  const std::string text = "$KD_DEFINITION\n#:LRFI\n" + kCuts;
+  const std::pair<std::string, std::string> wrong[] = {
+      {"", "has no road data"},
+      {"{}\n", "has no road data"},
+      {kRoad + text, "has no road data"},
+      {kRoad + rows, "defines no channel"},
+      {kRoad + "$KD_DEFINITION\n#:LRFI\nD:reference line phi,rad\n$\n" + rows, "has no cut along the road"},
+      {kRoad + "$KD_DEFINITION\n#:XXXX\n" + kCuts + rows, "line 12': is the data format 'XXXX'"},
+      {kRoad + "$KD_DEFINITION\n#:LRFI\nD:long section one,m\n$\n" + rows, "line 13': is no cut"},
+      {kRoad + "$KD_DEFINITION\n#:LRFI\nD:long section 1,mm\n$\n" + rows, "line 13': is no cut"},
+      {kRoad + "$KD_DEFINITION\n#:LRFI\nD:long section 1,m\nD:long section at v = 0,m\n$\n" + rows,
+       "line 14': mixes cuts"},
+      {kRoad +
+           "$KD_DEFINITION\n#:LRFI\nD:long section 1,m\nD:long section 1,m\n$\n$$\n 0.0000000 0.0000000\n",
+       "has two cuts at v = -0.5 m"},
+      {"$ROAD_CRG\nLONG_SECTION_V_RIGHT = 0\n$\n$KD_DEFINITION\n#:LRFI\nD:long section 1,m\n$\n$$\n "
+       "0.0000000\n 0.0000000\n",
+       "REFERENCE_LINE_INCREMENT': is missing"},
+      {"$ROAD_CRG\nREFERENCE_LINE_INCREMENT = -1\n$\n$KD_DEFINITION\n#:LRFI\nD:long section at v = "
+       "0,m\n$\n$$\n 0.0000000\n 0.0000000\n",
+       "is -1, expected above 0 m"},
+      {"$ROAD_CRG\nREFERENCE_LINE_INCREMENT = wide\n$\n", "line 2': is 'REFERENCE_LINE_INCREMENT = wide'"},
+      {"$ROAD_CRG\nREFERENCE_LINE_INCREMENT = 1\nREFERENCE_LINE_INCREMENT = 1\n$\n",
+       "line 3': gives a parameter twice"},
+      {kRoad + "$ROAD_CRG_MODS\nSCALE_Z = 2\n$\n" + text + rows, "line 12': modifies the road"},
+      {kRoad + "$ROAD_CRG_FILE\nother.crg\n$\n" + text + rows, "line 11': refers to another file"},
+      {kRoad + text + "$$\n 0.0000000 0.0000000\n", "line 18': is '' for channel 3"},
+      {kRoad + text + "$$\n 0.0000000 0.00x0000 0.0000000\n", "line 18': is '0.00x0000' for channel 2"},
+      {kRoad + text + "$$\n 0.0000000 0.0000000 0.0000000\n", "has 1 cross-sections"},
+      {kRoad + "$KD_DEFINITION\n#:KRBI\n" + kCuts + "$$\n" + std::string(32, '\0'),
+       "holds 8 numbers, expected 9: the file is cut short"}};
+  for (const auto& [bytes, words] : wrong) {
+    const std::filesystem::path file = put("wrong.crg", bytes);
+    EXPECT_NE(refusal([&] { read_open_crg(file); }).find(words), std::string::npos)
+        << refusal([&] { read_open_crg(file); }) << "\n"
+        << bytes;
+  }
+  const std::filesystem::path file =
+      put("road.crg", kRoad + text + "$$\n *missing* 0.0000000 0.0000000\n 0.0000000 0.0000000 0.0000000\n");
+  EXPECT_NE(refusal([&] { read_road(file, 0.75); }).find("expected terrain.profile_v from -0.5 to 0.5 m"),
+            std::string::npos);
+  EXPECT_NE(refusal([&] { read_road(file, -0.2); }).find("has no height at u = 2 m, v = -0.2 m"),
+            std::string::npos);
+}
+
+TEST_F(RoadFile, a_profile_in_csv_is_read_and_its_mistakes_are_told_by_line) {
+  const ProfilePoints curb = read_road(put("curb.csv", "# a curb\nx_m,z_m\n-1,0\r\n6,0\n6,0.2\n"), 0.0);
+  EXPECT_EQ(curb, (ProfilePoints{{-1.0, 0.0}, {6.0, 0.0}, {6.0, 0.2}}));
+  const std::pair<const char*, const char*> wrong[] = {
+      {"x_m,z_m\n1,0\n0,0\n", "line 3': x_m is 0, expected 1"},
+      {"x_m,z_m\n1,0\n1,0\n", "line 3': is the row before once more"},
+      {"x_m,z_m\n1,0\n1,1\n1,2\n", "line 4': x_m is 1 a third time"},
+      {"x_m,z_m\n1,nan\n", "line 2': z_m is 'nan', expected a number"},
+      {"x_m,z_m\n1,2e6\n", "line 2': z_m is 2e+06, expected -1e+06 to 1e+06"},
+      {"x,z\n0,0\n", "line 1': column 'x' is unknown"},
+      {"x_m,z_m\n", "has no rows of values"},
+      {"x_m,z_m\n1\n", "line 2': has 1 values, expected 2"}};
+  for (const auto& [text, words] : wrong) {
+    const std::filesystem::path file = put("wrong.csv", text);
+    const std::string told = refusal([&] { read_road(file, 0.0); });
+    EXPECT_NE(told.find(words), std::string::npos) << told;
+  }
+}
+
+}  // namespace
+}  // namespace furrow::terrain

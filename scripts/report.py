@@ -23,7 +23,7 @@ matplotlib.use("Agg")
 
 sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent), str(pathlib.Path(__file__).resolve().parent / "report")]
 
-from plot import (accounts, charts, ground, kinematics, modes, press, scene, soil, sweep, vehicle_ground, vehicle_plots,  # noqa: E402
+from plot import (accounts, charts, ground, kinematics, modes, press, ride, scene, soil, sweep, vehicle_ground, vehicle_plots,  # noqa: E402
                   vehicle_run, vehicle_scene, wheels)
 from plot.digits import with_error  # noqa: E402
 from plot.run_data import Damaged, Missing, Run, printable  # noqa: E402
@@ -51,6 +51,7 @@ PLOTS = {
     "momentum": accounts.momentum,
     "scene": scene.scene,
 }
+QUARTER_CAR_PLOTS = {**PLOTS, "ride": ride.ride}
 VEHICLE_PLOTS = {
     "vehicle": of_vehicle(vehicle_plots.vehicle),
     "wheel_forces": of_vehicle(wheels.wheel_forces),
@@ -121,7 +122,7 @@ def main():
     parser.add_argument("directory", type=pathlib.Path)
     parser.add_argument("others", type=pathlib.Path, nargs="*", help="further runs: one page that compares all of them")
     parser.add_argument("--out", type=pathlib.Path, help="folder for the plots (default: the run directory)")
-    parser.add_argument("--only", action="append", choices=PLOTS | VEHICLE_PLOTS | SOIL_PLOTS | PRESS_PLOTS | MODES_PLOTS | KINEMATICS_PLOTS | SWEEP_PLOTS | BEDS_PLOTS, help="this plot only; may be repeated")
+    parser.add_argument("--only", action="append", choices=QUARTER_CAR_PLOTS | VEHICLE_PLOTS | SOIL_PLOTS | PRESS_PLOTS | MODES_PLOTS | KINEMATICS_PLOTS | SWEEP_PLOTS | BEDS_PLOTS, help="this plot only; may be repeated")
     parser.add_argument("--quiet", action="store_true", help="print errors only")
     arguments = parser.parse_args()
     global quiet
@@ -149,7 +150,8 @@ def main():
     written = []
     of_beds = of_sweep and run.values.get("beds")
     plots = (SOIL_PLOTS if of_soil else BEDS_PLOTS if of_beds else SWEEP_PLOTS if of_sweep else PRESS_PLOTS if of_press
-             else MODES_PLOTS if of_modes else KINEMATICS_PLOTS if of_kinematics else VEHICLE_PLOTS if run.has_vehicle else PLOTS)
+             else MODES_PLOTS if of_modes else KINEMATICS_PLOTS if of_kinematics else VEHICLE_PLOTS if run.has_vehicle
+             else QUARTER_CAR_PLOTS if run.rig.get("type") == "quarter_car" else PLOTS)
     for name in arguments.only or plots:
         try:
             figure = plots[name](run)

@@ -13,8 +13,8 @@ plt.rcParams.update({
 
 
 def panels(run, rows, height, **options):
-    """A figure with `rows` axes that share the time axis."""
-    figure, axes = plt.subplots(rows, 1, figsize=(10, height), sharex=True, squeeze=False, **options)
+    """A figure with `rows` axes, which share the time axis unless `sharex` is False."""
+    figure, axes = plt.subplots(rows, 1, figsize=(10, height), squeeze=False, **{"sharex": True, **options})
     figure.suptitle(run.title, fontsize=11.5, x=0.01, ha="left", fontweight="bold")
     return figure, axes[:, 0]
 

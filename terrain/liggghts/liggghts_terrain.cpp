@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 
@@ -113,7 +114,8 @@ class LiggghtsTerrain final : public Terrain {
     const int parts = 1 << refinement_.level(), steps = substeps * parts;
     const double part = dt_ / parts;
     if (part != part_) set_part(part);
-    contacts_.begin_interval(targets, duration, steps, own_box());
+    if (!now_) now_ = look();
+    contacts_.begin_interval(targets, duration, steps, with_room(now_->box));
     for (int k = 0; k < contacts_.tires(); ++k)
       if (const char* wall = dem::side_crossed(contacts_.params().bin, contacts_.swept_bounds(k)))
         return Outcome::failure("is too small", fmt::format("tire {} reached {} of the bin", k, wall));
@@ -121,8 +123,10 @@ class LiggghtsTerrain final : public Terrain {
     contacts_.end_interval(duration, forces, sums);
     for (int s = 0; s < substeps; ++s) refinement_.count(parts);
     time_ += duration;
-    if (Outcome outcome = judge(); !outcome.ok) return outcome;
-    add_up_forces(group(), forces, sums);
+    now_ = look();
+    SharedReports shared = share_reports(group(), own_interval(), now_->report, forces, sums);
+    states_ = std::move(shared.states);
+    if (Outcome outcome = judge(shared.intervals); !outcome.ok) return outcome;
     for (const ContactSums& one : sums) surface_work_ -= one.work;
     if (ranks() > 1 && ++since_balance_ >= kBalanceEvery) balance();
     return {};
@@ -131,7 +135,8 @@ class LiggghtsTerrain final : public Terrain {
   TerrainState state() const override {
     StateReport all;
     if (engine_)
-      for (const StateReport& one : gather_states(group(), own_report())) add(all, one);
+      for (const StateReport& one : states_.empty() ? gather_states(group(), look().report) : states_)
+        add(all, one);
     TerrainState s;
     const double strength = options_.gravity.norm();
     s.kinetic_energy = all.kinetic + all.rotational;
@@ -258,6 +263,7 @@ class LiggghtsTerrain final : public Terrain {
   void start(const StartingBed& bed, bool own_only) {
     if (!own_only) size_ = bed.size(), top_ = bed.top;
     engine_.reset();
+    forget();
     try {
       engine_ = make_engine(setup());
       engine_->set_coefficients(contacts_.coefficients().pair);
@@ -308,23 +314,27 @@ class LiggghtsTerrain final : public Terrain {
                             error.on_all ? "" : " on this rank", error.what()));
   }
 
-  /// How the interval ended, alike on all ranks.
-  Outcome judge() {
+  IntervalReport own_interval() const {
     IntervalReport own;
-    if (const auto& lost = contacts_.lost()) own.lost = lost->id, own.lost_at = lost->position;
+    if (const auto& lost = contacts_.lost()) own.lost = lost->id, own.lost_at = vec(lost->position);
     own.overlap = contacts_.interval_overlap();
     own.share = contacts_.hardest_share();
-    own.hardest_at = contacts_.hardest_at();
+    own.hardest_at = vec(contacts_.hardest_at());
+    return own;
+  }
+
+  /// How the interval ended, alike on all ranks.
+  Outcome judge(std::span<const IntervalReport> reports) {
     dem::HardContacts hard;
-    for (const IntervalReport& one : share_reports(group(), own)) {
+    for (const IntervalReport& one : reports) {
       if (one.lost >= 0.0)
         return Outcome::failure(
             fmt::format("lost grain {:.0f}", one.lost),
-            fmt::format("it left the bin or is not finite, x = ({:.6g}, {:.6g}, {:.6g}) m", one.lost_at[0],
-                        one.lost_at[1], one.lost_at[2]));
+            fmt::format("it left the bin or is not finite, x = ({:.6g}, {:.6g}, {:.6g}) m", one.lost_at.x(),
+                        one.lost_at.y(), one.lost_at.z()));
       hard.overlap = std::max(hard.overlap, one.overlap);
       if (one.share <= hard.share) continue;
-      hard.share = one.share, hard.deepest = one.overlap, hard.at = vec(one.hardest_at);
+      hard.share = one.share, hard.deepest = one.overlap, hard.at = one.hardest_at;
       hard.count = hard.past = 1;
       hard.between = "a grain and what it touches";
     }
@@ -342,6 +352,7 @@ class LiggghtsTerrain final : public Terrain {
     for (int g = 0; g < own.count; ++g) crowd.add(own.position[g][0]);
     crowd.set_sum_of(gather_on_all<std::int64_t>(*group(), crowd.counts()));
     borders_ = crowd.borders(ranks());
+    forget();
     try {
       engine_->move_borders(borders_);
     } catch (const EngineError& error) {
@@ -349,29 +360,54 @@ class LiggghtsTerrain final : public Terrain {
     }
   }
 
-  StateReport own_report() const {
-    StateReport r;
+  /// This rank's grains, as they are between two intervals.
+  struct Look {
+    StateReport report;
+    SurfaceBox box{Vec3::Constant(1e300), Vec3::Constant(-1e300)};  // of the centres
+  };
+
+  Look look() const {
+    Look now;
+    StateReport& r = now.report;
     const OwnGrains g = engine_->own();
     const dem::GrainProperties& grain = contacts_.grain();
     const double strength = options_.gravity.norm();
     const Vec3 up = strength > 0.0 ? Vec3(-options_.gravity / strength) : Vec3::UnitZ();
+    // Sums of their own: those of the report could be what the grains' pointers point at, and would be stored each time.
+    double all = 0.0, kinetic = 0.0, rotational = 0.0, height_moment = 0.0;
+    Vec3 momentum = Vec3::Zero(), lo = now.box.lo, hi = now.box.hi;
     for (int k = 0; k < g.count; ++k) {
-      const double size = g.radius[k] / grain.radius, mass = grain.mass * size * size * size;
+      double mass = grain.mass, inertia = grain.inertia;
+      if (g.radius[k] != grain.radius) {
+        const double size = g.radius[k] / grain.radius, volume = size * size * size;
+        mass *= volume, inertia *= volume * size * size;
+      }
       const Vec3 x(g.position[k]), v(g.velocity[k]), w(g.spin[k]);
-      r.mass += mass;
-      r.kinetic += 0.5 * mass * v.squaredNorm();
-      r.rotational += 0.5 * grain.inertia * size * size * size * size * size * w.squaredNorm();
-      r.height_moment += mass * up.dot(x);
-      r.momentum += mass * v;
+      all += mass;
+      kinetic += 0.5 * mass * v.squaredNorm();
+      rotational += 0.5 * inertia * w.squaredNorm();
+      height_moment += mass * up.dot(x);
+      momentum += mass * v;
+      for (int axis = 0; axis < 3; ++axis) {
+        lo[axis] = std::min(lo[axis], x[axis]);
+        hi[axis] = std::max(hi[axis], x[axis]);
+      }
     }
+    now.box = {lo, hi};
+    r.mass = all;
+    r.kinetic = kinetic, r.rotational = rotational, r.height_moment = height_moment;
+    r.momentum = momentum;
     r.grains = g.count;
     r.sums = contacts_.sums();
     r.lost = contacts_.energies().lost();
     r.stored = contacts_.energies().state().stored;
     r.error2 = contacts_.energies().state().error2;
     r.list_builds = g.count * static_cast<double>(engine_->list_builds()) / static_cast<double>(size_);
-    return r;
+    return now;
   }
+
+  /// What was seen of the grains holds no longer.
+  void forget() { now_.reset(), states_.clear(); }
 
   static void add(StateReport& to, const StateReport& one) {
     to.grains += one.grains;
@@ -403,15 +439,9 @@ class LiggghtsTerrain final : public Terrain {
     return grains;
   }
 
-  /// This rank's grains now, with room for what they may move in one interval.
-  SurfaceBox own_box() const {
+  /// With room for what grains may move in one interval.
+  SurfaceBox with_room(SurfaceBox box) const {
     const double room = kRoom * dem::largest_radius(options_);
-    const OwnGrains g = engine_->own();
-    SurfaceBox box{Vec3::Constant(1e300), Vec3::Constant(-1e300)};
-    for (int k = 0; k < g.count; ++k) {
-      box.lo = box.lo.cwiseMin(Vec3(g.position[k]));
-      box.hi = box.hi.cwiseMax(Vec3(g.position[k]));
-    }
     box.lo.array() -= room, box.hi.array() += room;
     return box;
   }
@@ -423,11 +453,14 @@ class LiggghtsTerrain final : public Terrain {
   std::int64_t size_ = 0;           // grains of all ranks
   std::vector<double> borders_;     // between the ranks' parts along x, m
   int since_balance_ = 0;           // intervals since they were looked at
-  double top_ = 0.0;                // of the bed at the beginning, m
-  double dt_, part_;                // the step, and the part of it that contacts are evaluated for, s
-  double since_ = 0.0;              // forces were last taken, s; 0: not yet
-  double time_ = 0.0;               // advanced, s
-  double surface_work_ = 0.0;       // by tires on the grains, J
+  std::optional<Look> now_;         // since the last interval; none: not looked yet
+  std::vector<StateReport>
+      states_;                 // of all ranks since the last interval, on the leader; empty: not asked yet
+  double top_ = 0.0;           // of the bed at the beginning, m
+  double dt_, part_;           // the step, and the part of it that contacts are evaluated for, s
+  double since_ = 0.0;         // forces were last taken, s; 0: not yet
+  double time_ = 0.0;          // advanced, s
+  double surface_work_ = 0.0;  // by tires on the grains, J
 };
 
 }  // namespace

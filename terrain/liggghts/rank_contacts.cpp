@@ -119,19 +119,24 @@ void RankContacts::add_forces(const OwnGrains& grains, bool losses) {
 template <class Law, bool kRolling>
 void RankContacts::add_forces_of(const OwnGrains& grains, bool losses) {
   const dem::Bin& bin = params_.bin;
+  const SurfaceBox apart = apart_from_walls();
+  double low = 1e300;  // of all tires
+  for (const Tire& t : tires_) low = std::min(low, t.near.lo.z());
   for (int g = 0; g < grains.count; ++g) {
     const double* const x = grains.position[g];
-    const double r = grains.radius[g];
-    const Quad at{x[0], x[1], x[2], r};
-    if (!lost_ && !bin.holds(at)) lost_ = LostGrain{grains.id[g] - 1, {x[0], x[1], x[2]}};
     std::vector<Carried>& mine = grains.carried[g];
-    bool wall = false;
-    for (int w = 0; w < dem::kWalls; ++w) wall |= bin.has_wall(w) && bin.distance(w, at) < r;
+    // Most grains touch nothing but each other. What is not a number is not inside.
+    const bool wall = !(x[0] > apart.lo.x() && x[0] < apart.hi.x() && x[1] > apart.lo.y() &&
+                        x[1] < apart.hi.y() && x[2] > apart.lo.z() && x[2] < apart.hi.z());
     bool tire = false;
-    for (const Tire& t : tires_)
-      tire |= at.z < t.near.hi.z() && at.z > t.near.lo.z() && at.x > t.near.lo.x() && at.x < t.near.hi.x() &&
-              at.y > t.near.lo.y() && at.y < t.near.hi.y();
+    if (x[2] > low)
+      for (const Tire& t : tires_)
+        tire |= x[2] < t.near.hi.z() && x[2] > t.near.lo.z() && x[0] > t.near.lo.x() &&
+                x[0] < t.near.hi.x() && x[1] > t.near.lo.y() && x[1] < t.near.hi.y();
     if (!wall && !tire && mine.empty()) continue;
+    const double r = grains.radius[g];
+    if (wall && !lost_ && !bin.holds({x[0], x[1], x[2], r}))
+      lost_ = LostGrain{grains.id[g] - 1, {x[0], x[1], x[2]}};
     past_.assign(mine.begin(), mine.end());
     mine.clear();
     taken_.assign(past_.size(), 0);
@@ -142,7 +147,9 @@ void RankContacts::add_forces_of(const OwnGrains& grains, bool losses) {
     for (std::size_t p = 0; p < past_.size(); ++p) {
       if (taken_[p]) continue;
       const int partner = static_cast<int>(past_[p].partner);
-      const auto c = partner < dem::kWalls ? of_wall(partner, r) : of_tire(tires_[partner - dem::kWalls], r);
+      dem::ContactCoefficients room;
+      const auto& c =
+          partner < dem::kWalls ? of_wall(partner, r, room) : of_tire(tires_[partner - dem::kWalls], r, room);
       now_.sample.power.opening += dem::held_by_springs(c, triple(past_[p].tangential), past_[p].root_overlap,
                                                         triple(past_[p].rolling)) /
                                    times_.since;
@@ -151,15 +158,27 @@ void RankContacts::add_forces_of(const OwnGrains& grains, bool losses) {
   for (Tire& tire : tires_) tire.sum->add_substep(tire.forces, *tire.collider, times_.kick, times_.dt);
 }
 
-dem::ContactCoefficients RankContacts::of_wall(int wall, double radius) const {
-  const dem::ContactCoefficients& c = wall == dem::kFloor ? coefficients_.floor : coefficients_.side;
-  if (radius == params_.grain.radius) return c;
-  return dem::scaled(c, dem::surface_scale(radius / params_.grain.radius, 0.0));
+SurfaceBox RankContacts::apart_from_walls() const {
+  const dem::Bin& bin = params_.bin;
+  const double far = 1e6, r = params_.largest_radius();  // farther than any wall; as in Bin::holds
+  SurfaceBox box{{r, r - 0.5 * bin.width, r}, {bin.length - r, 0.5 * bin.width - r, far}};
+  if (bin.periodic_x) box.lo.x() = -far, box.hi.x() = far;
+  if (bin.periodic_y) box.lo.y() = -far, box.hi.y() = far;
+  return box;
 }
 
-dem::ContactCoefficients RankContacts::of_tire(const Tire& tire, double radius) const {
+const dem::ContactCoefficients& RankContacts::of_wall(int wall, double radius,
+                                                      dem::ContactCoefficients& scaled) const {
+  const dem::ContactCoefficients& c = wall == dem::kFloor ? coefficients_.floor : coefficients_.side;
+  if (radius == params_.grain.radius) return c;
+  return scaled = dem::scaled(c, dem::surface_scale(radius / params_.grain.radius, 0.0));
+}
+
+const dem::ContactCoefficients& RankContacts::of_tire(const Tire& tire, double radius,
+                                                      dem::ContactCoefficients& scaled) const {
   if (radius == params_.grain.radius) return tire.coefficients;
-  return dem::scaled(tire.coefficients, dem::surface_scale(radius / params_.grain.radius, tire.mass_share));
+  return scaled = dem::scaled(tire.coefficients,
+                              dem::surface_scale(radius / params_.grain.radius, tire.mass_share));
 }
 
 void RankContacts::note(double overlap, double radius, const double* at) {
@@ -190,7 +209,8 @@ void RankContacts::touch_walls(const OwnGrains& grains, int g, bool losses) {
     ContactHistory<double> history{{0, 0, 0}, 0.0, {0, 0, 0}};
     for (std::size_t p = 0; p < past_.size(); ++p)
       if (static_cast<int>(past_[p].partner) == wall) history = history_of(past_[p]), taken_[p] = 1;
-    const dem::ContactCoefficients c = of_wall(wall, r);
+    dem::ContactCoefficients room;
+    const dem::ContactCoefficients& c = of_wall(wall, r, room);
     if (losses) add(now_.sample, dem::sample_of<Law, kRolling>(c, times_.since, motion, history));
     const ContactForce<double> f = Law::template force<kRolling>(c, times_.since, motion, history);
     if constexpr (Law::kHistory) grains.carried[g].push_back(carried_of(wall, motion.normal, history));
@@ -214,7 +234,8 @@ void RankContacts::touch_tire(const OwnGrains& grains, int g, int k, bool losses
   const int count = tire.collider->hits(centre, r, hits);
   if (count == 0) return;
   const int partner = dem::kWalls + k;
-  const dem::ContactCoefficients c = of_tire(tire, r);
+  dem::ContactCoefficients room;
+  const dem::ContactCoefficients& c = of_tire(tire, r, room);
   const Triple<double> v = triple(grains.velocity[g]), w = triple(grains.spin[g]);
   for (int h = 0; h < count; ++h) {
     const SurfaceHit& hit = hits[h];

@@ -107,8 +107,12 @@ class RankContacts final : public StepWork {
   void touch_walls(const OwnGrains& grains, int g, bool losses);
   template <class Law, bool kRolling>
   void touch_tire(const OwnGrains& grains, int g, int k, bool losses);
-  dem::ContactCoefficients of_wall(int wall, double radius) const;
-  dem::ContactCoefficients of_tire(const Tire& tire, double radius) const;
+  /// Where no grain touches a wall; where the bin is periodic, all of it.
+  SurfaceBox apart_from_walls() const;
+  /// Where the radius is not that of the reference, `scaled` takes the coefficients.
+  const dem::ContactCoefficients& of_wall(int wall, double radius, dem::ContactCoefficients& scaled) const;
+  const dem::ContactCoefficients& of_tire(const Tire& tire, double radius,
+                                          dem::ContactCoefficients& scaled) const;
   void note(double overlap, double radius, const double* at);
 
   dem::DemOptions options_;

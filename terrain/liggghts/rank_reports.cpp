@@ -47,20 +47,20 @@ void add(ContactSums& to, const ContactSums& more) {
 
 }  // namespace
 
-std::vector<IntervalReport> share_reports(RankGroup* group, const IntervalReport& own) {
-  if (!group) return {own};
-  return gather_on_all<IntervalReport>(*group, std::span<const IntervalReport>(&own, 1));
-}
-
-void add_up_forces(RankGroup* group, std::span<NodalForces> forces, std::span<ContactSums> sums) {
+SharedReports share_reports(RankGroup* group, const IntervalReport& interval, const StateReport& state,
+                            std::span<NodalForces> forces, std::span<ContactSums> sums) {
   FURROW_ASSERT(forces.size() == sums.size(), forces.size(), sums.size());
-  if (!group) return;
+  SharedReports all{{interval}, {state}};
+  if (!group) return all;
   ByteWriter writer;
-  if (group->rank() > 0)
+  if (group->rank() > 0) {
+    writer(interval), writer(state);
     for (std::size_t k = 0; k < forces.size(); ++k) writer(forces[k]), writer(sums[k]);
+  }
   const std::vector<RankGroup::Bytes> parts = group->gather(writer.take());
   for (std::size_t rank = 1; rank < parts.size(); ++rank) {
     ByteReader reader(parts[rank]);
+    reader(all.intervals.emplace_back()), reader(all.states.emplace_back());
     for (std::size_t k = 0; k < forces.size(); ++k) {
       NodalForces more;
       ContactSums more_sums;
@@ -70,6 +70,15 @@ void add_up_forces(RankGroup* group, std::span<NodalForces> forces, std::span<Co
     }
     reader.finish();
   }
+  ByteWriter back;
+  if (group->rank() == 0) back(all.intervals);
+  const RankGroup::Bytes bytes = group->broadcast(back.take());
+  if (group->rank() > 0) {
+    ByteReader reader(bytes);
+    reader(all.intervals);
+    reader.finish();
+  }
+  return all;
 }
 
 void merge_heights(RankGroup* group, HeightField& field) {

@@ -12,12 +12,20 @@ namespace furrow::terrain::liggghts {
 
 /// What decides how an interval ended. All ranks receive that of all.
 struct IntervalReport {
-  double lost = -1.0;                  // number of a grain; −1: none
-  std::array<double, 3> lost_at{};     // m
-  double overlap = 0.0;                // largest, m
-  double share = 0.0;                  // largest overlap over a diameter, -
-  std::array<double, 3> hardest_at{};  // m
+  double lost = -1.0;              // number of a grain; −1: none
+  Vec3 lost_at = Vec3::Zero();     // m
+  double overlap = 0.0;            // largest, m
+  double share = 0.0;              // largest overlap over a diameter, -
+  Vec3 hardest_at = Vec3::Zero();  // m
 };
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<IntervalReport> auto& s) {
+  visit(Field{"lost"}, s.lost);
+  visit(Field{"lost_at", "m"}, s.lost_at);
+  visit(Field{"overlap", "m"}, s.overlap);
+  visit(Field{"share", "-"}, s.share);
+  visit(Field{"hardest_at", "m"}, s.hardest_at);
+}
 
 /// A rank's share of the terrain's state.
 struct StateReport {
@@ -45,11 +53,16 @@ void visit_fields(Visit&& visit, FieldsOf<StateReport> auto& s) {
   visit(Field{"list_builds"}, s.list_builds);
 }
 
-/// Of all ranks, on each of them; null: there is one.
-std::vector<IntervalReport> share_reports(RankGroup* group, const IntervalReport& own);
+/// What the ranks know of an interval once they have told each other.
+struct SharedReports {
+  std::vector<IntervalReport> intervals;  // of all ranks, on each of them
+  std::vector<StateReport> states;  // of all ranks, in their order, on the leader; the own one elsewhere
+};
 
-/// Adds up what tires felt on all ranks, in the order of ranks. What it leaves counts on the leader.
-void add_up_forces(RankGroup* group, std::span<NodalForces> forces, std::span<ContactSums> sums);
+/// After an interval, in one message of each rank to the leader and one back. Adds up what tires felt on all ranks, in the
+/// order of ranks; what it leaves in `forces` and `sums` counts on the leader. @param group  null: there is one rank
+SharedReports share_reports(RankGroup* group, const IntervalReport& interval, const StateReport& state,
+                            std::span<NodalForces> forces, std::span<ContactSums> sums);
 
 /// Highest tops of grains per cell over all ranks, on each of them.
 void merge_heights(RankGroup* group, HeightField& field);

@@ -5,10 +5,17 @@ usage: liggghts_cost.py [--steps 300] [--rounds 3] [--ranks 1 2 4] [--timed 1 2]
 
 Nothing else may run meanwhile. For each number of ranks, in turn: stock LIGGGHTS (hertz, tangential history, walls), our pair
 style with motion and lists alone in one `run N`, the same with walls and accounts, the same with a `run 1` and the sums of a
-step for each step (tests/benchmarks/liggghts.cpp), and a whole run of Furrow with tire, protocol and accounts (the terrain's
-time of computing and communicating over its steps). Rows have the median over rounds and the range; `over_pairs` is the ratio
-to the pair style alone. Ranks that are not --timed share cores: of these only the counts mean anything, and no time is given.
-ghosts and bytes are of the rank that has most: position, velocity and spin of each ghost cross in every step.
+step for each step (tests/benchmarks/liggghts.cpp), and a whole run of Furrow with tire, protocol and accounts: with the tire
+of the rig, and with a rigid one, which leaves the cores to the terrain. Rows have the median over rounds and the range;
+`over_pairs` is the ratio to the pair style alone. Of a whole run the rows are, each of the rank that has most of it:
+
+    whole_run          wall time of computing and communicating over the steps, as the table of the nodes has it
+    whole_run_cpu      processor time; what a rank spends in polling for others is part of it
+    whole_run_waiting  wall time of waiting for tire, rig and, outside of LIGGGHTS, other ranks of the terrain
+    whole_run: PART    processor time by part, from a run of its own under `perf record`, by the functions of PARTS
+
+Ranks that are not --timed share cores: of these only the counts mean anything, and no time is given. ghosts and bytes are of
+the rank that has most: position, velocity and spin of each ghost cross in every step.
 """
 import argparse
 import csv
@@ -61,6 +68,18 @@ fix move all nve/sphere
 run 20
 run {steps}
 """
+# The first pattern that a function (or else its library) matches says to which part it belongs.
+PARTS = [("pairs", r"PairFurrow::evaluate"), ("lists", r"Neighbor::(?!check)|FixContactHistory|FixFurrow::pre_neighbor|FixFurrow::copy|"
+          r"Comm::(exchange|borders)|AtomVec.*(exchange|border|copy)|Atom::"),
+         ("motion_and_when_to_list", r"final_integrate|check_distance|force_clear|memset|Verlet::"),
+         ("walls", r"touch_walls|RankContacts::add_forces_of|Carried"),
+         ("tire_contact", r"SurfaceCollider|SurfaceGrid|touch_tire|closest_point|solve_push_out|share_depth|NodalForceSum|SurfaceTopology|"
+          r"on_edge|spin_about|RankContacts::begin_"),
+         ("accounts", r"sample_of|LiggghtsTerrain::(look|state)|EnergyAccounts|RankContacts::end_step|held"),
+         ("border_grains", r"Comm::forward_comm|pack_comm|unpack_comm"),
+         ("frames_and_files", r"Row\b|hdf5|H5|archive|checkpoint|add_file|state_hash"),
+         ("messages_and_polling", r"mca_|libmpi|open-pal|open-rte|libevent|MpiWire|Transport|ByteWriter|ByteReader|PMPI|opal_|ompi_|MPI_|"
+          r"share_reports|kernel|vdso|pthread_mutex")]
 COLUMNS = ["part", "ranks", "grains", "steps", "rounds", "us_per_step", "lowest", "highest", "ns_per_grain_step", "over_pairs",
            "grains_least", "grains_most", "ghosts_most", "bytes_per_step", "list_builds"]
 
@@ -81,13 +100,38 @@ def parts(ranks, steps):
     return list(csv.DictReader(io.StringIO(mpirun(ranks, str(program), RIG, str(steps), "1"))))
 
 
-def whole_run(ranks, out):
+def whole_run(ranks, out, rigid=False, before=()):
+    """Of the ranks of the terrain, those that have most: µs a step by the name of the row."""
     keys = ["terrain.engine=liggghts", f"terrain.ranks={ranks}", f"run.end={RUN}", f"run.average_from={RUN - 0.05}"]
+    if rigid:
+        keys.append("tire.rigid=true")
     words = [word for key in keys for word in ("--set", key)]
-    subprocess.run([provenance.program(), "run", RIG, *words, "--out", str(out), "--overwrite", "--no-plots"], check=True,
+    subprocess.run([*before, provenance.program(), "run", RIG, *words, "--out", str(out), "--overwrite", "--no-plots"], check=True,
                    env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     rows = [row for row in provenance.read_json(out / "summary.json")["ranks"] if row["node"].startswith("terrain")]
-    return 1e6 * max(row["compute_s"] + row["communicate_s"] for row in rows) / (RUN / STEP)
+    each = 1e6 / (RUN / STEP)
+    return {"": each * max(row["compute_s"] + row["communicate_s"] for row in rows), "_cpu": each * max(row["cpu_s"] for row in rows),
+            "_waiting": each * max(row["wait_s"] for row in rows)}
+
+
+def profile(ranks, folder):
+    """The processor time of the busiest rank of a whole run, by part."""
+    data = folder / "perf.data"
+    most = whole_run(ranks, folder / "run", before=("perf", "record", "-q", "-F", "499", "-o", str(data)))["_cpu"]
+    text = subprocess.run(["perf", "report", "-i", str(data), "--stdio", "-g", "none", "--sort", "pid,dso,sym", "-F", "sample,pid,dso,sym", "-t", "|"],
+                          capture_output=True, text=True, check=True).stdout
+    found = {}
+    for line in text.splitlines():
+        words = line.split("|")
+        if line.startswith("#") or len(words) < 4:
+            continue
+        where = f"{words[2]} {'|'.join(words[3:])}"
+        part = next((name for name, pattern in PARTS if re.search(pattern, where)), "other")
+        rank = found.setdefault(words[1].strip(), {})
+        rank[part] = rank.get(part, 0) + int(words[0])
+    ranks_found = [rank for rank in found.values() if rank.get("pairs")]
+    busiest = max(ranks_found, key=lambda rank: sum(rank.values()))
+    return {part: most * samples / sum(busiest.values()) for part, samples in busiest.items()}
 
 
 def write_data(frame, file):
@@ -108,12 +152,16 @@ def stock(ranks, steps, folder):
 
 
 def main():
+    global RUN
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--steps", type=int, default=300)
     parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--out", type=pathlib.Path, default=HERE / "liggghts_cost.csv")
     parser.add_argument("--ranks", type=int, nargs="+", default=[1, 2, 4])
     parser.add_argument("--timed", type=int, nargs="+", default=[1, 2])
+    parser.add_argument("--end", type=float, default=RUN, help="of the whole run, s")
     arguments = parser.parse_args()
+    RUN = arguments.end
     made = provenance.made_here()
     rows = []
     with tempfile.TemporaryDirectory() as name:
@@ -128,15 +176,20 @@ def main():
                     found.setdefault(row["part"], []).append(row)
                 if ranks not in arguments.timed:
                     continue
-                found.setdefault("whole_run", []).append({"us_per_step": whole_run(ranks, folder / "run")})
+                for name, rigid in (("whole_run", False), ("rigid_tire", True)):
+                    for kind, time in whole_run(ranks, folder / "run", rigid).items():
+                        found.setdefault(name + kind, []).append({"us_per_step": time})
                 found.setdefault("stock_liggghts", []).append(stock(ranks, arguments.steps, folder))
+            if ranks in arguments.timed:
+                for part, time in sorted(profile(ranks, folder).items(), key=lambda one: -one[1]):
+                    found["whole_run: " + part] = [{"us_per_step": time}]
             alone = statistics.median(float(row["us_per_step"]) for row in found["pairs"])
             grains = int(found["pairs"][0]["grains"])
             for part, measured in found.items():
                 times = [float(row["us_per_step"]) for row in measured]
                 row = {column: measured[0].get(column, "") for column in COLUMNS} | {"part": part, "ranks": ranks, "grains": grains,
-                                                                                    "rounds": rounds}
-                row["steps"] = arguments.steps if part != "whole_run" else round(RUN / STEP)
+                                                                                    "rounds": len(measured)}
+                row["steps"] = round(RUN / STEP) if part.startswith(("whole_run", "rigid_tire")) else arguments.steps
                 median = statistics.median(times)
                 row |= {"us_per_step": f"{median:.0f}", "lowest": f"{min(times):.0f}", "highest": f"{max(times):.0f}",
                         "ns_per_grain_step": f"{1e3 * median / grains:.0f}", "over_pairs": f"{median / alone:.3f}"}
@@ -146,7 +199,7 @@ def main():
                     row["bytes_per_step"] = GHOST_BYTES * int(row["ghosts_most"])
                 rows.append(row)
                 print(row, flush=True)
-            provenance.write_table(HERE / "liggghts_cost.csv", COLUMNS, rows, made)
+            provenance.write_table(arguments.out, COLUMNS, rows, made)
 
 
 if __name__ == "__main__":

@@ -233,13 +233,16 @@ void Checks::start() {
                                   "(rig.stop_before_wall)",
                                   number_text(s_.run.end), number_text(rig_.stop_before_wall())));
     if (wheel.from - radius < 0.0 || wheel.from + radius > length) throw in_a_wall(wheel);
-    if (wheel.to - radius < 0.0 || wheel.to + radius > length)
+    if (wheel.to - radius < 0.0 || wheel.to + radius > length) {
+      const double behind =
+          wheel.to > wheel.from ? wheel.from : radius + wall_margin(radius);  // what lies behind it stays
+      const double needed = behind + std::abs(wheel.to - wheel.from) + radius + wall_margin(radius);
       throw wrong(
           "terrain.length",
           fmt::format("is {} m, but the axle travels from x = {:.3f} to {:.3f} m and the tire's radius "
                       "is {:.3f} m: it would hit the end wall; expected at least {:.2f} m or a shorter run",
-                      number_text(length), wheel.from, wheel.to, radius,
-                      std::abs(wheel.to - wheel.from) + 2.0 * (radius + wall_margin(radius))));
+                      number_text(length), wheel.from, wheel.to, radius, std::ceil(100.0 * needed) / 100.0));
+    }
   }
 }
 

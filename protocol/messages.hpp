@@ -161,8 +161,9 @@ struct RimMotion {
   static constexpr MessageKind kKind = MessageKind::rim_motion;
   StepHeader header;
   RimState rim;
-  Order order = Order::go_on;      // due at synchronization n + 1
-  std::int64_t ends_at = kNotYet;  // the step at which the run is complete before its planned end, at least n + 2
+  Order order = Order::go_on;  // due at synchronization n + 1
+  std::int64_t ends_at =
+      kNotYet;  // the step at which the run is complete before its planned end, at least n + 2
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<RimMotion> auto& s) {
@@ -293,6 +294,7 @@ struct FinalReport {
   double cpu_s = 0.0, compute_s = 0.0, communicate_s = 0.0, wait_s = 0.0;
   std::int32_t threads = 1;
   std::int64_t grains = 0;                  // of this rank of a terrain
+  std::int64_t grains_begin = 0;            // the same when the run began; 0: not known
   std::vector<double> profile;              // what StepProfile::times() holds; empty unless asked for
   HeightField height_before, height_after;  // terrain
 };
@@ -306,6 +308,7 @@ void visit_fields(Visit&& visit, FieldsOf<FinalReport> auto& s) {
   visit(Field{"wait_s", "s"}, s.wait_s);
   visit(Field{"threads"}, s.threads);
   visit(Field{"grains"}, s.grains);
+  visit(Field{"grains_begin"}, s.grains_begin);
   visit(Field{"profile", "s"}, s.profile);
   visit(Field{"height_before", ""}, s.height_before);
   visit(Field{"height_after", ""}, s.height_after);

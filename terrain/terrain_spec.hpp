@@ -23,12 +23,12 @@ struct DemOptions;
 
 /// What a run supplies to its terrain beside the keys of the scenario.
 struct TerrainContext {
-  double step = 4e-5;             // run.step / terrain.substeps, s: the terrain will be advanced with it
-  std::uint64_t seed = 1;         // run.seed
-  int threads = 1;                // OpenMP threads while stepping
-  int settle_threads = 1;         // OpenMP threads while a bed settles
-  bool contact_tangents = false;  // tire.contact_tangent of any tire: send them beside the forces
-  std::shared_ptr<RankGroup> group;  // the terrain's ranks, this one among them; null: there is one
+  double step = 4e-5;                 // run.step / terrain.substeps, s: the terrain will be advanced with it
+  std::uint64_t seed = 1;             // run.seed
+  int threads = 1;                    // OpenMP threads while stepping
+  int settle_threads = 1;             // OpenMP threads while a bed settles
+  bool contact_tangents = false;      // tire.contact_tangent of any tire: send them beside the forces
+  std::shared_ptr<RankGroup> group;   // the terrain's ranks, this one among them; null: there is one
   Vec3 gravity = standard_gravity();  // m/s²; acts on the grains, the rigid ground has no weight
 };
 
@@ -57,6 +57,7 @@ struct TerrainDescription {
   std::string law;                           // of contact between grains; empty: there are none
   double grain_radius = 0.0;                 // m; 0: there are none
   int most_ranks = 1;                        // that the engine can use
+  bool core_per_rank = false;                // each rank computes on one core, and no grain sleeps
   bool exact_restart = true;                 // a run continued from a checkpoint has the same bits
   bool gives_tangents = false;               // sends contact tangents beside forces where tires ask for them
   bool unstable_step_allowed = false;        // a step above the stable one is warned of, not refused

@@ -169,6 +169,17 @@ void add_mobility(const WheelInput& in, const Window& w, Json& json) {
   json["iso_w"] = tire_axes_means(w);
 }
 
+/// What the rank of the terrain with most grains has more than the mean of all, of that mean; NaN where unknown.
+double imbalance(const SummaryInput& in, std::int64_t FinalReport::*grains) {
+  double most = 0.0, sum = 0.0;
+  for (const FinalReport& r : in.end.reports) {
+    if (r.self.role != Role::terrain) continue;
+    most = std::max(most, static_cast<double>(r.*grains));
+    sum += static_cast<double>(r.*grains);
+  }
+  return sum > 0.0 ? most * in.scenario.terrain_ranks / sum - 1.0 : NAN;
+}
+
 Json rank_table(const SummaryInput& in) {
   Json ranks = Json::array();
   for (std::size_t i = 0; i < in.end.reports.size(); ++i) {
@@ -345,7 +356,12 @@ std::string summary_text(const SummaryInput& in) {
   json["average_from_s"] = average_from(in);
   const terrain::TerrainDescription terrain = in.scenario.terrain->describe();
   json["terrain_engine"] = terrain.engine;
-  if (in.scenario.terrain_ranks > 1) json["terrain_ranks"] = in.scenario.terrain_ranks;
+  if (in.scenario.terrain_ranks > 1) {
+    json["terrain_ranks"] = in.scenario.terrain_ranks;
+    if (!in.end.reports.empty())
+      json["terrain_imbalance"] = {{"begin", json_number(imbalance(in, &FinalReport::grains_begin))},
+                                   {"end", json_number(imbalance(in, &FinalReport::grains))}};
+  }
   if (!terrain.law.empty()) json["law"] = terrain.law;
   Json wheels = Json::array();
   for (std::size_t k = 0; k < in.end.wheels.size(); ++k)

@@ -38,6 +38,7 @@ class TerrainFollower final : public Node {
       share(group_.get(), prepare);
       terrain_->prepare(watched_progress(scenario_, transport, context));
       terrain_->height_field();
+      grains_begin_ = terrain_->grains_here();
       MeasureOrder measure;
       share(group_.get(), measure);
       TerrainSetup unused;
@@ -53,6 +54,7 @@ class TerrainFollower final : public Node {
     if (!context.saved) return;
     restore(*context.saved);
     now_.ends_at = saved_end(*context.saved);
+    if (context.saved->has(kGrainsBegin)) grains_begin_ = context.saved->get_int(kGrainsBegin);
   }
 
   void synchronize(Transport&, const StepHeader& header) override {
@@ -78,11 +80,15 @@ class TerrainFollower final : public Node {
   void finish(Transport& transport, FinalReport own, bool) override {
     terrain_->height_field();
     own.grains = terrain_->grains_here();
+    own.grains_begin = grains_begin_;
     send(transport, {Role::rig, 0}, own);
   }
 
   void save(Archive& archive) const override { terrain_->save(archive); }
-  void save_setup(Archive& archive) const override { save_end(archive, now_.ends_at); }
+  void save_setup(Archive& archive) const override {
+    archive.put(kGrainsBegin, grains_begin_);
+    save_end(archive, now_.ends_at);
+  }
   void restore(const Archive& archive) override {
     terrain_->restore(archive);
     terrain_->state();
@@ -98,6 +104,7 @@ class TerrainFollower final : public Node {
 
   scenario::Scenario scenario_;
   int threads_;
+  std::int64_t grains_begin_ = 0;  // of this rank; 0: not known
   std::shared_ptr<RankGroup> group_;
   std::unique_ptr<terrain::Terrain> terrain_;
   AdvanceOrder now_;

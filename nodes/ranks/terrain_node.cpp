@@ -90,8 +90,8 @@ class TerrainNode : public Node {
   void advance(const StepHeader& header) override {
     FURROW_ASSERT(now_.targets.size() == forces_.size(), now_.targets.size(), forces_.size());
     FURROW_ASSERT(report_.contact.size() == forces_.size(), report_.contact.size(), forces_.size());
-    const Outcome outcome =
-        terrain_->advance(now_.targets, scenario_.run.step, scenario_.terrain_substeps, forces_, report_.contact);
+    const Outcome outcome = terrain_->advance(now_.targets, scenario_.run.step, scenario_.terrain_substeps,
+                                              forces_, report_.contact);
     if (!outcome.ok) throw physics_error(outcome, "terrain", when(header));
     report_.state = terrain_->state();
   }
@@ -103,6 +103,7 @@ class TerrainNode : public Node {
     own.height_before = before_;
     own.height_after = terrain_->height_field();
     own.grains = terrain_->grains_here();
+    own.grains_begin = grains_begin_;
     send(transport, kRig, own);
   }
 
@@ -117,6 +118,7 @@ class TerrainNode : public Node {
   void save_setup(Archive& archive) const override {
     save_fields(archive, kSetup, setup_);
     save_fields(archive, kBefore, before_);
+    if (group_) archive.put(kGrainsBegin, grains_begin_);
     save_end(archive, now_.ends_at);
   }
 
@@ -141,11 +143,13 @@ class TerrainNode : public Node {
     setup_.grains = terrain_->size();
     setup_.floor_height = terrain_->floor_height();
     before_ = terrain_->height_field();
+    grains_begin_ = terrain_->grains_here();
   }
 
   void restore_setup(const Archive& archive) {
     restore_fields(archive, kSetup, setup_);
     restore_fields(archive, kBefore, before_);
+    if (archive.has(kGrainsBegin)) grains_begin_ = archive.get_int(kGrainsBegin);
   }
 
   void write_frame(const StepHeader& header) {
@@ -165,6 +169,8 @@ class TerrainNode : public Node {
   TerrainReport report_;
   TerrainSetup setup_;
   HeightField before_;
+  std::int64_t grains_begin_ =
+      0;  // of this rank; 0: not known, of a checkpoint from before they were counted
   terrain::TerrainFrame frame_;
   std::filesystem::path directory_;
   launch::HeldFolder* held_ = nullptr;

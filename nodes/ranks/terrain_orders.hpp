@@ -15,6 +15,9 @@
 
 namespace furrow::ranks {
 
+/// In the saved state: how many grains a rank of a terrain of several owned when the run began.
+inline constexpr char kGrainsBegin[] = "setup/grains_begin";
+
 /// Now prepare the bed.
 struct PrepareOrder {
   bool prepare = true;

@@ -15,6 +15,7 @@
 #include "terrain/dem/beds/bed_preparation.hpp"
 #include "terrain/dem/beds/bed_settling.hpp"
 #include "terrain/dem/beds/bed_tiling.hpp"
+#include "terrain/liggghts/rank_cost.hpp"
 
 namespace furrow::scenario {
 namespace {
@@ -83,6 +84,7 @@ RunTime run_time(const Scenario& s, const Calibration& machine) {
   const std::vector<tire::TireDescription> tires = describe_tires(s);
   const int count = static_cast<int>(tires.size());
   t.threads = s.run.threads;
+  t.ranks = s.terrain_ranks;
   if (t.threads == 0)
     t.threads = auto_terrain_threads(t.cores, count, s.terrain_ranks,
                                      s.terrain->estimate(s.terrain_context()).grains);
@@ -103,13 +105,20 @@ RunTime run_time(const Scenario& s, const Calibration& machine) {
     const double settled = settling(o);
     t.bed_is_kept = settled == 0.0;
     t.bed = settled * grain / std::clamp(o.settle_threads, 1, t.cores);
-    if (o.activity) t.awake = awake_share(s, tires, o.length);
+    if (o.activity && !s.terrain->describe().core_per_rank) t.awake = awake_share(s, tires, o.length);
     const GrainLoads loads = grain_loads(s);
     t.refined = loads.refined;
-    const double terrain =
-        s.terrain_substeps * loads.parts * t.awake * terrain::dem::expected_grains(o) * grain;
-    t.terrain = terrain / std::min(t.threads, t.cores);
-    all += terrain;
+    const double steps = s.terrain_substeps * loads.parts;
+    if (s.terrain->describe().core_per_rank) {
+      const terrain::liggghts::RankLoad load = terrain::liggghts::rank_load(o, s.terrain_ranks);
+      t.ghosts = load.ghosts;
+      t.terrain = steps * terrain::liggghts::rank_step(load, machine.grain_step);
+      all += t.terrain * s.terrain_ranks;
+    } else {
+      const double terrain = steps * t.awake * terrain::dem::expected_grains(o) * grain;
+      t.terrain = terrain / std::min(t.threads, t.cores);
+      all += terrain;
+    }
   }
   t.terrain += surfaces;
   all += surfaces;

@@ -2,7 +2,8 @@
 //
 // A step takes as long as its slowest node, and not less than all processor time of the step over the cores:
 //   T = max(max tires, terrain/threads, (Σ tires + terrain + messages)/cores) + latency.
-// The terrain's is that of the grains awake: those within kAwake tire radii of an axle, where strips may sleep. Where
+// The terrain's is that of the grains awake: those within kAwake tire radii of an axle, where strips may sleep. A terrain
+// with a core for each rank takes the time of one of them (terrain/liggghts/rank_cost.hpp). Where
 // contacts are expected to be too hard for its step it is taken in parts (grain_loads.hpp).
 #pragma once
 
@@ -17,10 +18,12 @@ struct RunTime {
   double run = 0.0;          // all communication steps, s
   double step = 0.0;         // one of them, s
   double tire = 0.0;         // of it: the slowest tire, s
-  double terrain = 0.0;      // of it: the terrain on its threads, s
+  double terrain = 0.0;      // of it: a rank of the terrain on its threads, s
   double awake = 1.0;        // mean share of the grains that is stepped
   double refined = 0.0;      // share of the time in which the terrain's steps are taken in parts
-  int threads = 1;           // of the terrain
+  double ghosts = 0.0;  // copies of its neighbours' grains that a rank of the terrain steps beside its own
+  int ranks = 1;        // of the terrain
+  int threads = 1;      // of each of them
   int cores = 1;
 
   double all() const { return bed + run; }

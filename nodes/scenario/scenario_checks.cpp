@@ -12,11 +12,13 @@
 #include "nodes/scenario/wheel_geometry.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_text.hpp"
+#include "protocol/host.hpp"
 
 namespace furrow::scenario {
 namespace {
 
 constexpr double kMaxSteps = 1e10;    // beyond it the value is almost certainly a typo
+constexpr double kLeastPart = 6.0;    // radii along x that a rank's part of the bed must measure at least
 constexpr double kMinGrains = 4.0;    // radii that the bin must measure at least
 constexpr double kCoarseGrain = 0.1;  // of the tire radius
 constexpr double kGigabyte = 1e9;
@@ -47,6 +49,7 @@ class Checks {
   void tire_options(std::size_t wheel);
   void room();
   void ranks();
+  void thin_parts();
   void bin();
   void start();
   Error in_a_wall(const rigs::WheelDescription& wheel) const;
@@ -176,12 +179,39 @@ void Checks::room() {
 }
 
 void Checks::ranks() {
-  if (s_.terrain_ranks <= terrain_.most_ranks) return;
+  if (terrain_.core_per_rank) {
+    if (s_.run.threads > 1)
+      warn("run.threads",
+           fmt::format("is {}: engine '{}' uses them to make the bed, then one core on each of its ranks "
+                       "(terrain.ranks)",
+                       s_.run.threads, terrain_.engine));
+    s_.run.threads = 1;
+    if (const auto cores = static_cast<int>(allowed_cores().size()); s_.terrain_ranks > cores)
+      warn("terrain.ranks",
+           fmt::format("is {}, this machine has {} core{}: each rank needs one of its own, here or on other "
+                       "nodes; more ranks than cores are slower",
+                       s_.terrain_ranks, cores, cores > 1 ? "s" : ""));
+  }
+  if (s_.terrain_ranks <= terrain_.most_ranks) return thin_parts();
   throw wrong(
       "terrain.ranks",
       fmt::format("is {}, expected {}: engine '{}' runs on {}", s_.terrain_ranks,
                   terrain_.most_ranks > 1 ? fmt::format("1 to {}", terrain_.most_ranks) : "1",
                   terrain_.engine, terrain_.most_ranks > 1 ? "no more" : "one rank, on all of its cores"));
+}
+
+/// A rank exchanges grains with its next neighbours.
+void Checks::thin_parts() {
+  if (!terrain_.core_per_rank || !terrain_.bounds) return;
+  const double length = terrain_.bounds->length, least = kLeastPart * terrain_.grain_radius;
+  if (length < s_.terrain_ranks * least && s_.terrain_ranks > 1)
+    throw wrong(
+        "terrain.ranks",
+        fmt::format(
+            "is {}, expected {} or fewer: of a bed of {} m each would have a part thinner than {} m, three "
+            "grains",
+            s_.terrain_ranks, std::max(1, static_cast<int>(length / least)), number_text(length),
+            number_text(least)));
 }
 
 void Checks::bin() {
@@ -233,13 +263,16 @@ void Checks::start() {
                                   "(rig.stop_before_wall)",
                                   number_text(s_.run.end), number_text(rig_.stop_before_wall())));
     if (wheel.from - radius < 0.0 || wheel.from + radius > length) throw in_a_wall(wheel);
-    if (wheel.to - radius < 0.0 || wheel.to + radius > length)
+    if (wheel.to - radius < 0.0 || wheel.to + radius > length) {
+      const double behind =
+          wheel.to > wheel.from ? wheel.from : radius + wall_margin(radius);  // what lies behind it stays
+      const double needed = behind + std::abs(wheel.to - wheel.from) + radius + wall_margin(radius);
       throw wrong(
           "terrain.length",
           fmt::format("is {} m, but the axle travels from x = {:.3f} to {:.3f} m and the tire's radius "
                       "is {:.3f} m: it would hit the end wall; expected at least {:.2f} m or a shorter run",
-                      number_text(length), wheel.from, wheel.to, radius,
-                      std::abs(wheel.to - wheel.from) + 2.0 * (radius + wall_margin(radius))));
+                      number_text(length), wheel.from, wheel.to, radius, std::ceil(100.0 * needed) / 100.0));
+    }
   }
 }
 

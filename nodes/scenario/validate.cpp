@@ -73,7 +73,9 @@ nlohmann::ordered_json time_json(const RunTime& t) {
           {"terrain_s", number(t.terrain)},
           {"awake_share", number(t.awake)},
           {"refined_share", number(t.refined)},
+          {"terrain_ranks", t.ranks},
           {"terrain_threads", t.threads},
+          {"ghosts_per_rank", std::round(t.ghosts)},
           {"cores", t.cores}};
 }
 
@@ -96,6 +98,9 @@ std::string time_text(const RunTime& t) {
   if (t.bed > 0.0) text += fmt::format("bed {}, ", duration(t.bed));
   text += fmt::format("run {}; of a step of {} ms the slowest tire takes {}, the terrain {}", duration(t.run),
                       digits(1e3 * t.step), digits(1e3 * t.tire), digits(1e3 * t.terrain));
+  if (t.ranks > 1)
+    text += fmt::format(" on each of {} ranks, {:.0f} copies of its neighbours' grains among them", t.ranks,
+                        t.ghosts);
   if (t.awake < 1.0) text += fmt::format(" with {:.0f} % of its grains awake", 100.0 * t.awake);
   if (t.refined >= 0.005)
     text += fmt::format(
@@ -124,6 +129,10 @@ nlohmann::ordered_json validation_report(const Scenario& s, const RunTime* time)
   json["tire_coordinates"] = e.coordinates;
   json["memory_MB"] = std::round(e.memory / kMegabyte);
   json["disk_MB"] = std::round(e.disk / kMegabyte);
+  json["terrain"] = {{"ranks", s.terrain_ranks},
+                     {"memory_per_rank_bytes", e.terrain.memory_bytes / s.terrain_ranks},
+                     {"checkpoint_bytes", e.terrain.checkpoint_bytes},
+                     {"frame_bytes", e.terrain.frame_bytes}};
   if (time) json["time"] = time_json(*time);
   const rigs::RigDescription rig = describe_rig(s);
   const std::vector<WheelScales> scales = wheel_scales(s);
@@ -167,7 +176,11 @@ std::string validation_text(const Scenario& s, const RunTime* time) {
     line("axle", fmt::format("from x = {:.3f} m to {:.3f} m", rig.wheels[k].from, rig.wheels[k].to));
     for (const auto& [name, value] : scales_lines(scales[k])) line(name, value);
   }
-  line("memory", fmt::format("about {:.0f} MB in all", e.memory / kMegabyte));
+  std::string memory = fmt::format("about {:.0f} MB in all", e.memory / kMegabyte);
+  if (s.terrain_ranks > 1)
+    memory += fmt::format(", {:.0f} MB of them for the grains of each rank of the terrain",
+                          e.terrain.memory_bytes / s.terrain_ranks / kMegabyte);
+  line("memory", memory);
   line("disk", fmt::format("about {:.0f} MB of results", e.disk / kMegabyte));
   if (time) line("time", time_text(*time));
   for (const Bound& bound : all_bounds(s)) line("bound by", bound.key + ": " + bound.what);

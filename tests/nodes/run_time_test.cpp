@@ -83,6 +83,23 @@ TEST(RunTime, sleeping_tiled_and_kept_beds_take_less) {
   EXPECT_LT(rigid.terrain, 1e-3);  // the surface alone
 }
 
+/// By hand: 24,330 grains over two ranks, and 8,110 a metre within 22 mm of the border, at 4.7 times 50 ns.
+TEST(RunTime, ranks_of_one_core_share_the_grains_and_step_copies_of_their_neighbours) {
+  const auto on = [](const char* ranks, Settings more = {}) {
+    more.insert(more.end(), {{"terrain.engine", "liggghts"}, {"terrain.ranks", ranks}});
+    return time_of("drawbar_pull_small.json", more);
+  };
+  const scenario::RunTime one = on("1"), two = on("2"), four = on("4", {{"run.threads", "3"}});
+  EXPECT_EQ(one.ghosts, 0.0);
+  EXPECT_NEAR(two.ghosts, 178.4, 0.5);
+  EXPECT_NEAR(four.ghosts, 2.0 * two.ghosts, 0.1);
+  EXPECT_NEAR(one.terrain, 24330 * 4.7 * 5e-8, 0.02 * one.terrain);
+  EXPECT_NEAR(two.terrain / one.terrain, 0.5 + 178.4 / 24330.0, 0.01);
+  EXPECT_EQ(four.threads, 1);
+  EXPECT_EQ(four.awake, 1.0);
+  EXPECT_GT(four.step, 0.5 * one.terrain);  // on the machine's two cores
+}
+
 /// Within a factor of three of what runs had: 0.76 of the time in hmmwv_straight, 0.28 in hmmwv_small, 0.21 in
 /// rover_small, none in drawbar_pull_small.
 TEST(RunTime, hard_contacts_take_more_steps) {

@@ -3,6 +3,8 @@
 ranks and of LIGGGHTS itself; what is refused. Skipped where the engine was not built.
 
 The test tests_system_liggghts (label system) runs a part of it, cluster_liggghts (label cluster) the whole."""
+import json
+import os
 import pathlib
 import re
 import shutil
@@ -145,6 +147,19 @@ class Refused(CheckpointTest):
                 path = write_scenario(self.folder, on_liggghts(self.SCENARIO, 1, **{key: value}), "wrong.json")
                 done = self.program("run", path, "--out", self.run_folder, code=2)
                 self.assertIn(f"key 'terrain.{key}'", done.stderr)
+
+    def test_parts_thinner_than_grains(self):
+        done = self.program("run", self.path, "--out", self.run_folder, "--set", "terrain.ranks=20", code=2)
+        self.assertIn("key 'terrain.ranks': is 20, expected 7 or fewer: of a bed of 1.4 m each would have a part", done.stderr)
+
+    def test_what_it_does_without_is_said(self):
+        done = self.program("validate", self.path, "--set", "terrain.ranks=3", "--threads", 4, "--json")
+        self.assertIn("key 'run.threads': is 4: engine 'liggghts' uses them to make the bed, then one core", done.stderr)
+        told = json.loads(done.stdout)
+        self.assertEqual(told["time"]["terrain_threads"], 1)
+        self.assertGreater(told["time"]["ghosts_per_rank"], 0)
+        if len(os.sched_getaffinity(0)) < 3:
+            self.assertIn("key 'terrain.ranks': is 3, this machine has ", done.stderr)
 
     def test_without_its_library(self):
         program = self.folder / "alone" / "in" / "some" / "folder" / "furrow"

@@ -48,6 +48,7 @@ class Package(SystemTest):
         usr = self.folder / "root" / "usr"
         self.assertIn("GNU GPL", (usr / "share/doc/furrow/copyright").read_text())
         self.assertFalse((usr / "include").exists(), "the libraries are no part of it")
+        self.assertEqual(list(usr.rglob("libfurrow_liggghts*")), [], "what links LIGGGHTS is under the GPL and a component of its own")
         for name in ("furrow/rigs/README.md", "furrow/nodes/output/README.md", "furrow/GLOSSARY.md", "man/man1/furrow.1", "bash-completion/completions/furrow", "furrow/scripts/report/bundle/LICENSES.txt"):
             self.assertTrue((usr / "share" / name).is_file(), name)
         write_scenario(self.folder)

@@ -29,9 +29,11 @@ def free_ports(count):
 
 
 class Cluster:
-    """@param requeue_exit whether the administrator has jobs that end with 75 queued again"""
+    """@param requeue_exit whether the administrator has jobs that end with 75 queued again
+    @param cores that the node says it has, however many there are; memory in MB"""
 
-    def __init__(self, requeue_exit):
+    def __init__(self, requeue_exit, cores=2, memory=2000):
+        self.cores, self.memory = cores, memory
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="furrow-slurm-"))
         self.folder.chmod(0o755)
         self.processes = []
@@ -71,7 +73,8 @@ class Cluster:
                  "ProctrackType=proctrack/linuxproc", "TaskPlugin=task/none", "SwitchType=switch/none",
                  "JobAcctGatherType=jobacct_gather/none", "SelectType=select/cons_tres", "SelectTypeParameters=CR_Core",
                  "MpiDefault=none", "ReturnToService=2", "KillWait=10", "JobRequeue=1",
-                 f"NodeName={host} NodeAddr=127.0.0.1 CPUs=2 RealMemory=2000",
+                 "SlurmdParameters=config_overrides",
+                 f"NodeName={host} NodeAddr=127.0.0.1 CPUs={self.cores} RealMemory={self.memory}",
                  "PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE State=UP"]
         if requeue_exit:
             lines.append("RequeueExit=75")

@@ -95,6 +95,10 @@ class TerrainRanks(CheckpointTest):
         self.assertEqual(list(rows), ["rig", "tire 0", *RANKS])
         self.assertEqual(sum(rows[name]["size"] for name in RANKS), summary(self.whole)["grains"])
         self.assertEqual(summary(self.whole)["terrain_ranks"], 3)
+        sizes = [rows[name]["size"] for name in RANKS]
+        uneven = max(sizes) * 3 / sum(sizes) - 1
+        for when in ("begin", "end"):
+            self.assertAlmostEqual(summary(self.whole)["terrain_imbalance"][when], uneven, delta=1e-12)
         parts = {path.name for path in (self.whole / "checkpoints").glob("*500/*")}
         self.assertEqual(parts, {"manifest.json", "rig.h5", "tire0.h5", "terrain.h5", "terrain1.h5", "terrain2.h5"})
         self.assertGreater(float(table(self.whole)[-1]["sinkage_m"]), 1e-4)

@@ -1,0 +1,26 @@
+// What a step of a bed on several ranks costs one of them. A rank owns its share of the grains and keeps copies of those
+// within reach of its two borders, the ghosts: of a bed of N grains, L long and cut across, N reach/L at each border.
+//   ghosts = min(2, ranks − 1) N reach/L, at most all that others own
+//   t      = c (N/ranks + ghosts)
+// All grains are awake, and each rank has one core.
+#pragma once
+
+#include "terrain/dem/dem_options.hpp"
+
+namespace furrow::terrain::liggghts {
+
+/// Processor time of a grain-step over that of the engine dem in the program's calibration (nodes/scenario/calibration.hpp):
+/// 181 against 38 ns, measured on 24,340 grains under a flexible tire with walls, accounts and reports.
+inline constexpr double kGrainStep = 4.7;
+
+struct RankLoad {
+  double own = 0.0, ghosts = 0.0;  // grains
+};
+
+/// Of an inner rank. @pre ranks > 0
+RankLoad rank_load(const dem::DemOptions& options, int ranks);
+
+/// Of one step on its core, s. @param grain_step  of the calibration, s
+double rank_step(const RankLoad& load, double grain_step);
+
+}  // namespace furrow::terrain::liggghts

@@ -282,6 +282,15 @@ std::vector<std::pair<std::string, std::string>> VehicleRigSpec::unlikely_values
   for (const auto& [key, what] : vehicle::unlikely_values(plan_.vehicle, mass_))
     odd.emplace_back(context_.key("vehicle"),
                      fmt::format("is {}, whose key '{}' {}", file_.string(), key, what));
+  const auto brakes = [](const vehicle::AxleSpec& axle) {
+    return axle.corners[vehicle::kLeft].brake || axle.corners[vehicle::kRight].brake;
+  };
+  if (!plan_.driver && std::none_of(plan_.vehicle.axles.begin(), plan_.vehicle.axles.end(), brakes))
+    odd.emplace_back(
+        context_.key("driver"),
+        fmt::format("is missing, and so the brakes hold the vehicle, but {} has no brakes: it may "
+                    "roll",
+                    plan_.vehicle.name));
   if (plan_.driver && plan_.driver->path)
     for (const std::string& what : oddities_of_path()) odd.emplace_back(context_.key("driver"), what);
   return odd;

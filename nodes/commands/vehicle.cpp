@@ -53,8 +53,14 @@ vehicle::VehiclePage stand(const vehicle::VehicleSpec& spec) {
 
 std::vector<vehicle::KinematicsRow> sweep(const vehicle::VehicleSpec& spec, const vehicle::VehiclePage& page,
                                           const vehicle::KinematicsOptions& options) {
+  launch::ProgressDisplay display;
+  const ProgressCall show = [&](const std::string& what, double share) {
+    if (launch::stop_signalled())
+      throw Error(ExitCode::stopped, "stopped by a signal while suspensions were moved");
+    display.show({.phase = what, .share = share});
+  };
   try {
-    std::vector<vehicle::KinematicsRow> rows = vehicle::kinematics(spec, page.loaded_radii, options);
+    std::vector<vehicle::KinematicsRow> rows = vehicle::kinematics(spec, page.loaded_radii, options, show);
     if (rows.empty())
       throw input_error(spec.file, "axles",
                         "has no wheel that travels, expected a suspension other than fixed");

@@ -188,6 +188,21 @@ TEST(VehicleScenario, wrong_combinations_are_refused_by_key) {
             "keys of that type alone");
 }
 
+TEST(VehicleScenario, a_parked_vehicle_without_brakes_is_warned_of) {
+  json rover = hmmwv();
+  rover["rig"]["vehicle"] = "rover.json";
+  const ScenarioFile file(rover.dump());
+  const std::vector<std::string> warnings = file.load().warnings;
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_TRUE(
+      warnings[0].ends_with("key 'rig.driver': is missing, and so the brakes hold the vehicle, but Rover has "
+                            "no brakes: it may roll"))
+      << warnings[0];
+  rover["rig"]["driver"] = {{"inputs", {{"throttle", 0.5}}}};
+  EXPECT_TRUE(load(rover).warnings.empty());
+  EXPECT_TRUE(load(hmmwv()).warnings.empty()) << "it has brakes";
+}
+
 TEST(VehicleScenario, wheels_of_one_vehicle_in_each_other_are_its_file_s_fault) {
   json document = hmmwv();
   document["rig"]["vehicle"] = "mine.json";

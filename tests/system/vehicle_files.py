@@ -158,8 +158,9 @@ class Wrong(SystemTest):
 
 
 class Unlikely(SystemTest):
-    def test_what_looks_like_another_unit_is_warned_of(self):
+    def test_what_is_hardly_meant_is_warned_of(self):
         for where, value, message in (
+                ("driveline/gearbox/up_rpm", 7000, "key 'driveline.gearbox.up_rpm': is 7000, above the 6305 rpm to which the engine drives it"),
                 ("chassis/mass", 0.42, "key 'chassis.mass': is 0.42 kg, all other parts have "),
                 ("chassis/inertia", [0.07, 0.26, 0.28], "key 'chassis.inertia': gives a radius of gyration of 0.0269 m between wheels "
                                                        "that are 2.78 m apart: another unit?")):
@@ -233,6 +234,15 @@ class Kinematics(SystemTest):
         listed = json.loads(furrow("kc", "buggy.json", "--json", "--points", "5", cwd=self.folder, timeout=300).stdout)
         self.assertEqual(len(listed["rows"]), len(rows))
         self.assertEqual([out], list(self.folder.iterdir()))
+
+    def test_a_long_sweep_tells_how_far_it_is_and_stops_on_a_signal(self):
+        furrow("kc", "buggy.json", "--csv", "--points", "3", cwd=self.folder, timeout=300)
+        done = start("kc", "buggy.json", "--points", "1001", cwd=self.folder)
+        self.assertIn("moving the suspensions", done.stderr.readline())
+        done.terminate()
+        _, said = done.communicate(timeout=60)
+        self.assertEqual(done.returncode, 75, said)
+        self.assertFalse((self.folder / "results").exists())
 
     def test_a_damaged_cache_is_made_anew(self):
         first = furrow("kc", "buggy.json", "--csv", "--points", "3", cwd=self.folder, timeout=300,

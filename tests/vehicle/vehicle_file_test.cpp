@@ -8,7 +8,9 @@
 #include "tests/protocol/fields_of.hpp"
 #include "tests/vehicle/schema_check.hpp"
 #include "tests/vehicle/shipped.hpp"
+#include "vehicle/analysis/vehicle_page.hpp"
 #include "vehicle/spec/read_vehicle.hpp"
+#include "vehicle/spec/vehicle_magnitudes.hpp"
 
 using namespace furrow;
 using namespace furrow::testing;
@@ -282,6 +284,23 @@ TEST(VehicleFile, mistakes_in_the_driveline_name_their_key) {
             "key 'driveline.motors[1].axle': 'front' is driven already, expected one drive per wheel");
   EXPECT_EQ(changed("rover.json", "/driveline/motors", nullptr),
             "key 'driveline.skid_steer': is given without motors, expected a motor at each wheel");
+}
+
+TEST(VehicleFile, a_gearbox_whose_mark_the_engine_does_not_reach_is_unlikely) {
+  vehicle::VehicleSpec spec = shipped("hmmwv.json");
+  const double mass = vehicle::mass_without_tires(spec);
+  EXPECT_TRUE(vehicle::unlikely_values(spec, mass).empty());
+  // Between 2,500 and 2,700 rpm the torque falls from 558 − 80 to −400 − 84 N m: it is zero at 2,599 rpm.
+  spec.driveline.gearbox->up_rpm = 2598;
+  EXPECT_TRUE(vehicle::unlikely_values(spec, mass).empty());
+  spec.driveline.gearbox->up_rpm = 2600;
+  const auto odd = vehicle::unlikely_values(spec, mass);
+  ASSERT_EQ(odd.size(), 1U);
+  EXPECT_EQ(odd[0].first, "driveline.gearbox.up_rpm");
+  EXPECT_EQ(odd[0].second,
+            "is 2600, above the 2599 rpm to which the engine drives it: it will not shift up by itself");
+  spec.driveline.engine->torque.back().second = 500;  // an engine without a highest speed
+  EXPECT_TRUE(vehicle::unlikely_values(spec, mass).empty());
 }
 
 TEST(VehicleFile, loops_of_gears_and_trains_that_reach_no_wheel_are_refused) {

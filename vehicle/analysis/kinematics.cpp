@@ -8,6 +8,7 @@
 
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
+#include "protocol/core/paced_call.hpp"
 #include "protocol/files/figures_json.hpp"
 #include "protocol/files/json_text.hpp"
 #include "vehicle/analysis/held_vehicle.hpp"
@@ -17,6 +18,7 @@ namespace furrow::vehicle {
 namespace {
 
 constexpr double kRateStep = 5e-4;  // of the travel, for wheel rates, m
+constexpr double kQuiet = 2.0;      // before progress is told, s
 
 /// The vehicle with its chassis held, posture after posture.
 class Bench {
@@ -215,15 +217,19 @@ int steps_reached(const VehicleSpec& spec, std::span<const double> radii, int ax
 
 class Sweep {
  public:
-  Sweep(const VehicleSpec& spec, std::span<const double> radii, const KinematicsOptions& options)
+  Sweep(const VehicleSpec& spec, std::span<const double> radii, const KinematicsOptions& options,
+        const ProgressCall& progress)
       : bench_(spec, radii),
         options_(options),
         base_(base_of(bench_.vehicle(), radii)),
-        line_(turning_line(bench_)) {}
+        line_(turning_line(bench_)),
+        tell_(progress, kQuiet) {
+    for (int axle = 0; axle < axle_count(); ++axle)
+      if (bench_.lifts(axle)) postures_ += options_.points * (bench_.steers(axle) ? 3 : 2);
+  }
 
   std::vector<KinematicsRow> run() {
-    for (std::size_t k = 0; k < bench_.vehicle().spec().axles.size(); ++k) {
-      const int axle = static_cast<int>(k);
+    for (int axle = 0; axle < axle_count(); ++axle) {
       if (!bench_.lifts(axle)) continue;
       add(axle, "parallel", options_.travel, options_.travel, 0.0);
       add(axle, "opposite", options_.travel, -options_.travel, 0.0);
@@ -233,10 +239,13 @@ class Sweep {
   }
 
  private:
+  int axle_count() const { return static_cast<int>(bench_.vehicle().spec().axles.size()); }
+
   void add(int axle, const char* motion, double left, double right, double steering) {
     std::vector<KinematicsRow> both[2];
     const int last = options_.points - 1;
     for (int i = 0; i < options_.points; ++i) {
+      tell_("moving the suspensions", static_cast<double>(done_++) / postures_);
       const double share = last > 0 ? 2.0 * i / last - 1.0 : 0.0;
       KinematicsRow rows[2];
       double rates[2] = {};
@@ -267,15 +276,17 @@ class Sweep {
   KinematicsOptions options_;
   Base base_;
   double line_;
+  PacedCall tell_;
+  int postures_ = 0, done_ = 0;
   std::vector<KinematicsRow> rows_;
 };
 
 }  // namespace
 
 std::vector<KinematicsRow> kinematics(const VehicleSpec& spec, std::span<const double> radii,
-                                      const KinematicsOptions& options) {
+                                      const KinematicsOptions& options, const ProgressCall& progress) {
   FURROW_ASSERT(options.points > 0, options.points);
-  return Sweep(spec, radii, options).run();
+  return Sweep(spec, radii, options, progress).run();
 }
 
 void check_locks(const VehicleSpec& spec, std::span<const double> radii) {

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "protocol/core/fields.hpp"
+#include "protocol/core/progress_call.hpp"
 #include "vehicle/parts/vehicle.hpp"
 
 namespace furrow::vehicle {
@@ -74,9 +75,11 @@ struct KinematicsOptions {
 
 /// All three motions of all axles that have them, wheel after wheel.
 /// @param radii of the tires under load, m, one for each wheel
+/// @param progress may be empty; hears nothing of what is done within a few seconds
 /// @throws Error(physics) naming the wheel where a suspension cannot follow
 std::vector<KinematicsRow> kinematics(const VehicleSpec& spec, std::span<const double> radii,
-                                      const KinematicsOptions& options = {});
+                                      const KinematicsOptions& options = {},
+                                      const ProgressCall& progress = {});
 
 /// Every steered axle must reach both ends of its steering, step by step from straight ahead, as drawn.
 /// @throws Error(bad_input) naming the key that says where the ends are

@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <optional>
+#include <set>
 
 #include <fmt/format.h>
 
 #include "protocol/core/assert.hpp"
 #include "protocol/files/json_text.hpp"
+#include "vehicle/multibody/table.hpp"
 
 namespace furrow::vehicle {
 namespace {
@@ -14,6 +18,30 @@ namespace {
 constexpr double kLeastChassis = 0.05;  // of the mass of all other parts
 constexpr double kLeastGyration = 0.05,
                  kMostGyration = 1.5;  // radius, of the largest distance between wheels
+
+/// Speed above which an engine at full throttle only brakes, rpm; none where its tables never say so.
+std::optional<double> highest_speed(const EngineSpec& engine) {
+  const Table torque("engine torque", engine.torque, TableCurve::linear, TableEnd::constant),
+      losses("engine losses", engine.losses, TableCurve::linear, TableEnd::constant);
+  std::set<double> marks;
+  for (const Points* points : {&engine.torque, &engine.losses})
+    for (const auto& [rpm, unused] : *points) marks.insert(rpm);
+  const auto drive = [&](double rpm) { return torque.value(rpm) + losses.value(rpm); };
+  if (drive(*marks.rbegin()) > 0.0) return std::nullopt;
+  for (auto above = marks.rbegin(), below = std::next(above); below != marks.rend(); ++above, ++below)
+    if (const double d = drive(*below), lack = drive(*above); d > 0.0)
+      return *below + (*above - *below) * d / (d - lack);
+  return std::nullopt;
+}
+
+/// Of the gearbox's input, rpm; none where gears lie between it and the engine.
+std::optional<double> highest_speed(const DrivelineSpec& driveline) {
+  if (!driveline.engine || !driveline.gearbox) return std::nullopt;
+  const std::string &from = driveline.engine->shaft, &to = driveline.gearbox->in;
+  const auto joins = [&](const auto& part) { return part && part->in == from && part->out == to; };
+  if (from != to && !joins(driveline.converter) && !joins(driveline.clutch)) return std::nullopt;
+  return highest_speed(*driveline.engine);
+}
 
 /// Largest distance between the centres of two wheels, m.
 double size_of(const VehicleSpec& spec) {
@@ -30,18 +58,28 @@ double size_of(const VehicleSpec& spec) {
 
 std::vector<std::pair<std::string, std::string>> unlikely_values(const VehicleSpec& spec, double mass) {
   FURROW_ASSERT(mass >= spec.chassis.mass, mass, spec.chassis.mass);
+  std::vector<std::pair<std::string, std::string>> odd;
+  if (const auto highest = highest_speed(spec.driveline);
+      highest && spec.driveline.gearbox->ratios.size() > 1 && spec.driveline.gearbox->up_rpm >= *highest)
+    odd.emplace_back(
+        "driveline.gearbox.up_rpm",
+        fmt::format("is {}, above the {:.4g} rpm to which the engine drives it: it will not shift "
+                    "up by itself",
+                    number_text(spec.driveline.gearbox->up_rpm), *highest));
   const double others = mass - spec.chassis.mass;
-  if (spec.chassis.mass < kLeastChassis * others)
-    return {{"chassis.mass", fmt::format("is {} kg, all other parts have {:.4g} kg: another unit?",
-                                         number_text(spec.chassis.mass), others)}};
+  if (spec.chassis.mass < kLeastChassis * others) {
+    odd.emplace_back("chassis.mass", fmt::format("is {} kg, all other parts have {:.4g} kg: another unit?",
+                                                 number_text(spec.chassis.mass), others));
+    return odd;
+  }
   const double gyration = std::sqrt(0.5 * spec.chassis.inertia.trace() / spec.chassis.mass),
                size = size_of(spec);
   if (gyration < kLeastGyration * size || gyration > kMostGyration * size)
-    return {{"chassis.inertia",
-             fmt::format("gives a radius of gyration of {:.3g} m between wheels that are {:.3g} m "
-                         "apart: another unit?",
-                         gyration, size)}};
-  return {};
+    odd.emplace_back("chassis.inertia",
+                     fmt::format("gives a radius of gyration of {:.3g} m between wheels that are {:.3g} m "
+                                 "apart: another unit?",
+                                 gyration, size));
+  return odd;
 }
 
 }  // namespace furrow::vehicle

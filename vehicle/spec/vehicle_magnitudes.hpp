@@ -1,4 +1,5 @@
-// Magnitudes that look like another unit in a vehicle file: nothing forbids them, but no vehicle has them.
+// What nothing forbids in a vehicle file, but is hardly meant: magnitudes that look like another unit, a gearbox whose
+// mark the engine never reaches.
 #pragma once
 
 #include <string>

@@ -151,7 +151,7 @@ def main():
     of_beds = of_sweep and run.values.get("beds")
     plots = (SOIL_PLOTS if of_soil else BEDS_PLOTS if of_beds else SWEEP_PLOTS if of_sweep else PRESS_PLOTS if of_press
              else MODES_PLOTS if of_modes else KINEMATICS_PLOTS if of_kinematics else VEHICLE_PLOTS if run.has_vehicle
-             else QUARTER_CAR_PLOTS if run.rig.get("type") == "quarter_car" else PLOTS)
+             else QUARTER_CAR_PLOTS if ride.COLUMN in run.series else PLOTS)
     for name in arguments.only or plots:
         try:
             figure = plots[name](run)

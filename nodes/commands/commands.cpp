@@ -38,7 +38,8 @@ namespace {
 
 /// What the user typed, as CLI11 fills it in.
 struct Typed {
-  std::string scenario, out, threads, key, directory, soil, until, vtk;
+  std::string scenario, threads, key, directory, soil, until, vtk;
+  std::filesystem::path out;
   std::vector<std::string> settings, others;
   bool overwrite = false, profile = false, json = false, no_plots = false, slurm = false;
   std::optional<int> seeds, jobs;
@@ -346,10 +347,7 @@ void CommandLine::add_runs() {
   CLI::App& run = add("run", "Run a scenario and print the folder that holds the results.",
                       [this] { return run_command(typed_, argc_, argv_); });
   add_scenario(run, typed_);
-  run.add_option("--out", typed_.out,
-                 "Write the results to this new folder (default: results/<scenario>-NNN).");
-  run.add_flag("--overwrite", typed_.overwrite,
-               "Replace the results of an earlier run in the folder of --out.");
+  add_folder_options(run, typed_.out, typed_.overwrite, "<scenario>-NNN");
   run.add_flag("--profile", typed_.profile,
                "Write profile.json too: where the time of each step goes (Chrome trace).");
   run.add_flag("--no-plots", typed_.no_plots, "Make no plots; 'furrow report' makes them later.");
@@ -438,10 +436,7 @@ void CommandLine::add_vehicles() {
   kc.add_option("VEHICLE", kinematics_.vehicle,
                 "Read this vehicle file (JSON), as given or in vehicle/data/.")
       ->required();
-  CLI::Option* out = kc.add_option(
-      "--out", kinematics_.out, "Write the results to this new folder (default: results/<vehicle>-kc-NNN).");
-  kc.add_flag("--overwrite", kinematics_.overwrite,
-              "Replace the results of an earlier run in the folder of --out.");
+  CLI::Option* out = add_folder_options(kc, kinematics_.out, kinematics_.overwrite, "<vehicle>-kc-NNN");
   kc.add_option(
       "--travel", kinematics_.travel,
       "Move the wheels up and down by this travel, m (default: a fifth of the smallest tire's radius).");

@@ -2,6 +2,14 @@
 
 namespace furrow::commands {
 
+CLI::Option* add_folder_options(CLI::App& command, std::filesystem::path& out, bool& overwrite,
+                                const std::string& usual) {
+  CLI::Option* option = command.add_option(
+      "--out", out, "Write the results to this new folder (default: results/" + usual + ").");
+  command.add_flag("--overwrite", overwrite, "Replace the results of an earlier run in the folder of --out.");
+  return option;
+}
+
 void add_grain_bench(CLI::App& command, GrainBench& bench) {
   command
       .add_option("--bed", bench.bed,
@@ -65,10 +73,7 @@ void add_tire_bench(CLI::App& command, TireBench& bench) {
 }
 
 void add_press_options(CLI::App& command, PressArguments& press) {
-  command.add_option("--out", press.out,
-                     "Write the results to this new folder (default: results/<scenario>-press-NNN).");
-  command.add_flag("--overwrite", press.overwrite,
-                   "Replace the results of an earlier run in the folder of --out.");
+  add_folder_options(command, press.out, press.overwrite, "<scenario>-press-NNN");
   command.add_option("--on", press.on, "Choose the obstacle: plate, cleat or profile (press.on).");
   command.add_option("--deflection", press.deflection, "Press up to this deflection, m (press.deflection).");
   command.add_option("--points", press.points,
@@ -91,10 +96,7 @@ void add_press_options(CLI::App& command, PressArguments& press) {
 void add_modes_options(CLI::App& command, ModesArguments& modes) {
   command.add_option("TIRE", modes.tire, "Read this tire file (JSON), as given or in tire/data/.")
       ->required();
-  CLI::Option* out = command.add_option(
-      "--out", modes.out, "Write the results to this new folder (default: results/<tire>-modes-NNN).");
-  command.add_flag("--overwrite", modes.overwrite,
-                   "Replace the results of an earlier run in the folder of --out.");
+  CLI::Option* out = add_folder_options(command, modes.out, modes.overwrite, "<tire>-modes-NNN");
   command.add_option(
       "--orders", modes.orders,
       "Compute circumferential orders from 0 to this one (default: 8, or half of the elements around).");
@@ -116,10 +118,7 @@ void add_modes_options(CLI::App& command, ModesArguments& modes) {
 }
 
 void add_soil_options(CLI::App& command, SoilArguments& soil) {
-  command.add_option("--out", soil.out,
-                     "Write the results to this new folder (default: results/<scenario>-soil-NNN).");
-  command.add_flag("--overwrite", soil.overwrite,
-                   "Replace the results of an earlier run in the folder of --out.");
+  add_folder_options(command, soil.out, soil.overwrite, "<scenario>-soil-NNN");
   command
       .add_option("--seeds", soil.seeds,
                   "Repeat each test on this number of beds, with run.seed, run.seed + 1, …")

@@ -1,6 +1,9 @@
 // The options of those commands that have many.
 #pragma once
 
+#include <filesystem>
+#include <string>
+
 #include <CLI/CLI.hpp>
 
 #include "nodes/commands/arguments.hpp"
@@ -8,6 +11,10 @@
 
 namespace furrow::commands {
 
+/// --out and --overwrite of a command that makes a folder. @param usual its name without --out: "<scenario>-NNN"
+/// @returns --out
+CLI::Option* add_folder_options(CLI::App& command, std::filesystem::path& out, bool& overwrite,
+                                const std::string& usual);
 void add_grain_bench(CLI::App& command, GrainBench& bench);
 void add_tire_bench(CLI::App& command, TireBench& bench);
 void add_press_options(CLI::App& command, PressArguments& press);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 
 #include "tire/ancf/press_solver.hpp"
 
@@ -38,21 +37,10 @@ LinearPlate::LinearPlate(const InflatedCarcass& ring, double reach) {
 }
 
 void LinearPlate::make_compliance(const InflatedCarcass& ring) {
-  const int all = ring.mesh.columns, size = 2 * rows_;
+  const int size = 2 * rows_;
   // Coordinate 2 b + s of a column: x (s = 0) or z (s = 1) of row b within reach, in the column's axes.
   const auto place = [&](int k) { return 6 * (first_row_ + k / 2 - 1) + (k % 2 == 0 ? 0 : 2); };
-  std::vector<Eigen::MatrixXd> between(columns_,
-                                       Eigen::MatrixXd::Zero(size, size));  // by the distance of the columns
-  for (int order = 0; order <= all / 2; ++order) {
-    const Eigen::MatrixXcd k = ring.stiffness(order);
-    Eigen::MatrixXcd unit = Eigen::MatrixXcd::Zero(k.rows(), size), answer(size, size);
-    for (int c = 0; c < size; ++c) unit(place(c), c) = 1.0;
-    const Eigen::MatrixXcd u = k.partialPivLu().solve(unit);
-    for (int r = 0; r < size; ++r) answer.row(r) = u.row(place(r));
-    const double share = (order == 0 || 2 * order == all ? 1.0 : 2.0) / all;
-    for (int d = 0; d < columns_; ++d)
-      between[d] += share * (std::polar(1.0, order * d * ring.mesh.pitch()) * answer).real();
-  }
+  const std::vector<Eigen::MatrixXd> between = compliance_by_distance(ring, columns_, size, place);
   compliance_.resize(columns_ * rows_, columns_ * rows_);
   for (int i = 0; i < columns_; ++i)
     for (int k = 0; k <= i; ++k) {

@@ -24,18 +24,7 @@ constexpr int kAside = 3;                // columns on either side of the lowest
 Eigen::MatrixXd compliance(const InflatedCarcass& ring) {
   const int rows = ring.mesh.rows - 2, size = 3 * rows, columns = 2 * kAside + 1, all = ring.mesh.columns;
   const auto place = [](int k) { return 6 * (k / 3) + k % 3; };
-  std::vector<Eigen::MatrixXd> between(columns,
-                                       Eigen::MatrixXd::Zero(size, size));  // by the columns' distance
-  for (int order = 0; order <= all / 2; ++order) {
-    const Eigen::MatrixXcd k = ring.stiffness(order);
-    Eigen::MatrixXcd unit = Eigen::MatrixXcd::Zero(k.rows(), size), answer(size, size);
-    for (int c = 0; c < size; ++c) unit(place(c), c) = 1.0;
-    const Eigen::MatrixXcd u = k.partialPivLu().solve(unit);
-    for (int r = 0; r < size; ++r) answer.row(r) = u.row(place(r));
-    const double share = (order == 0 || 2 * order == all ? 1.0 : 2.0) / all;
-    for (int d = 0; d < columns; ++d)
-      between[d] += share * (std::polar(1.0, order * d * ring.mesh.pitch()) * answer).real();
-  }
+  const std::vector<Eigen::MatrixXd> between = compliance_by_distance(ring, columns, size, place);
   Eigen::MatrixXd whole(columns * size, columns * size);
   const int first = all / 2 - kAside;
   for (int i = 0; i < columns; ++i)

@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <regex>
+#include <string_view>
+
+#include "protocol/files/text_file.hpp"
 
 namespace furrow::launch {
 namespace {
@@ -25,11 +28,6 @@ int signal_called(const std::string& name) {
   return 0;
 }
 
-std::string trimmed(std::string_view line) {
-  const std::size_t from = line.find_first_not_of(" \t\r"), to = line.find_last_not_of(" \t\r");
-  return from == std::string_view::npos ? std::string() : std::string(line.substr(from, to - from + 1));
-}
-
 }  // namespace
 
 void LauncherText::add(std::string_view line) {
@@ -44,11 +42,11 @@ void LauncherText::add(std::string_view line) {
   // "srun: error: node7: task 2: Killed"
   static const std::regex kDeadTask("srun: error: .*: task ([0-9]+): ([A-Za-z ]+)");
   if (std::regex_search(line.begin(), line.end(), found, kDeadTask)) {
-    if (const int signal = signal_called(trimmed(found[2].str())); signal > 0 && !lost_)
+    if (const int signal = signal_called(std::string(trimmed(found[2].str()))); signal > 0 && !lost_)
       lost_ = LostRank{std::stoi(found[1].str()), signal};
     return;
   }
-  const std::string text = trimmed(line);
+  const std::string text(trimmed(line));
   if (text.empty() || is_rule(text) || lines_.size() >= kMaxLines) return;
   lines_.push_back(text);
 }

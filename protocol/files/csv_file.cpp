@@ -17,17 +17,11 @@ namespace {
 
 constexpr const char* kByteOrderMark = "\xEF\xBB\xBF";  // as spreadsheets write it
 
-std::string trimmed(const std::string& text) {
-  constexpr const char* kBlank = " \t\r";
-  const std::size_t first = text.find_first_not_of(kBlank);
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(kBlank) - first + 1);
-}
-
 std::vector<std::string> cells_of(const std::string& line) {
   std::vector<std::string> cells;
   for (std::size_t at = 0;;) {
     const std::size_t comma = line.find(',', at);
-    cells.push_back(trimmed(line.substr(at, comma - at)));
+    cells.emplace_back(trimmed(std::string_view(line).substr(at, comma - at)));
     if (comma == std::string::npos) return cells;
     at = comma + 1;
   }

@@ -119,6 +119,11 @@ std::string read_text_file(const std::filesystem::path& file, const std::string&
   return text;
 }
 
+std::string_view trimmed(std::string_view text) {
+  const std::size_t from = text.find_first_not_of(" \t\r"), to = text.find_last_not_of(" \t\r");
+  return from == std::string_view::npos ? std::string_view() : text.substr(from, to - from + 1);
+}
+
 std::size_t utf8_length(const std::string& text, std::size_t at) {
   FURROW_ASSERT(at < text.size(), at, text.size());
   const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[at + k]); };

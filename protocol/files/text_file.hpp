@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "protocol/core/hash.hpp"
 
@@ -32,6 +33,9 @@ void write_whole_file(const std::filesystem::path& file, const std::string& text
 
 /// Flushes what was renamed, made or removed in a folder to the disk. @throws Error(io)
 void sync_folder(const std::filesystem::path& folder);
+
+/// Without the blanks (space, tab, carriage return) at both ends.
+std::string_view trimmed(std::string_view text);
 
 /// Bytes of the UTF-8 character (RFC 3629) that begins at `at`; 0 where none does. @pre at < text.size()
 std::size_t utf8_length(const std::string& text, std::size_t at);

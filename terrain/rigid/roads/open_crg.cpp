@@ -27,13 +27,6 @@ constexpr std::size_t kTextRecord = 80, kSingleField = 10, kDoubleField = 20;  /
 constexpr double kSameCut = 1e-6;                                              // m
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-std::string_view trimmed(std::string_view text) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
 std::string upper(std::string_view text) {
   std::string out(text);
   for (char& c : out)

@@ -21,21 +21,34 @@ bool before(const std::array<double, 2>& point, double x) { return point[0] < x;
 
 }  // namespace
 
+ProfileFault fault_of(const ProfilePoints& points, std::size_t last) {
+  FURROW_ASSERT(last < points.size(), last, points.size());
+  if (last == 0) return ProfileFault::none;
+  const auto &a = points[last - 1], &b = points[last];
+  if (b[0] < a[0]) return ProfileFault::goes_back;
+  if (b == a) return ProfileFault::repeated;
+  if (last > 1 && b[0] == points[last - 2][0]) return ProfileFault::third_at_one_x;
+  return ProfileFault::none;
+}
+
 void check_profile(const ProfilePoints& points, const std::string& file, const std::string& key) {
   for (std::size_t k = 1; k < points.size(); ++k) {
     const auto &a = points[k - 1], &b = points[k];
     const std::string here = fmt::format("{}.{}", key, k);
-    if (b[0] < a[0])
-      throw input_error(file, here + ".0",
-                        fmt::format("is {:g} m, expected {:g} m, as in the entry before, or more", b[0], a[0]));
-    if (b == a)
-      throw input_error(file, here, fmt::format("is [{:g}, {:g}] m as the entry before, expected another point",
-                                                b[0], b[1]));
-    if (k > 1 && b[0] == points[k - 2][0])
-      throw input_error(file, here + ".0",
-                        fmt::format("is {:g} m a third time, expected two entries at most: the foot and the top "
-                                    "of an upright face",
-                                    b[0]));
+    switch (fault_of(points, k)) {
+      case ProfileFault::none: break;
+      case ProfileFault::goes_back:
+        throw input_error(file, here + ".0",
+                          fmt::format("is {:g} m, expected {:g} m, as in the entry before, or more", b[0], a[0]));
+      case ProfileFault::repeated:
+        throw input_error(file, here, fmt::format("is [{:g}, {:g}] m as the entry before, expected another point",
+                                                  b[0], b[1]));
+      case ProfileFault::third_at_one_x:
+        throw input_error(file, here + ".0",
+                          fmt::format("is {:g} m a third time, expected two entries at most: the foot and the top "
+                                      "of an upright face",
+                                      b[0]));
+    }
   }
 }
 

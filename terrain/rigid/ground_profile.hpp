@@ -19,6 +19,10 @@ namespace furrow::terrain {
 /// Height z (m) at x (m), one entry [x, z] for each corner.
 using ProfilePoints = std::vector<std::array<double, 2>>;
 
+/// What is wrong with the last of some points, if anything.
+enum class ProfileFault { none, goes_back, repeated, third_at_one_x };
+ProfileFault fault_of(const ProfilePoints& points, std::size_t last);
+
 /// @throws Error(bad_input) naming file and key where x decreases, two entries are alike, or more than two have one x
 void check_profile(const ProfilePoints& points, const std::string& file, const std::string& key);
 

@@ -23,17 +23,21 @@ ProfilePoints read_csv(const std::filesystem::path& file) {
         throw csv.wrong(
             row, fmt::format("{} is {:g}, expected {:g} to {:g}", name, *value, -kFarthest, kFarthest));
     }
-    if (!points.empty() && point[0] < points.back()[0])
-      throw csv.wrong(row, fmt::format("x_m is {:g}, expected {:g}, as in the row before, or more", point[0],
-                                       points.back()[0]));
-    if (!points.empty() && point == points.back())
-      throw csv.wrong(row, "is the row before once more, expected another point");
-    if (points.size() > 1 && point[0] == points[points.size() - 2][0])
-      throw csv.wrong(
-          row, fmt::format("x_m is {:g} a third time, expected two rows at most: the foot and the top of "
-                           "an upright face",
-                           point[0]));
     points.push_back(point);
+    switch (fault_of(points, points.size() - 1)) {
+      case ProfileFault::none:
+        break;
+      case ProfileFault::goes_back:
+        throw csv.wrong(row, fmt::format("x_m is {:g}, expected {:g}, as in the row before, or more",
+                                         point[0], points[points.size() - 2][0]));
+      case ProfileFault::repeated:
+        throw csv.wrong(row, "is the row before once more, expected another point");
+      case ProfileFault::third_at_one_x:
+        throw csv.wrong(row,
+                        fmt::format("x_m is {:g} a third time, expected two rows at most: the foot and the "
+                                    "top of an upright face",
+                                    point[0]));
+    }
   }
   return points;
 }

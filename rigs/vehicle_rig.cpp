@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -15,10 +14,9 @@
 #include "rigs/rut_trace.hpp"
 #include "rigs/vehicle_driving.hpp"
 #include "rigs/vehicle_findings.hpp"
-#include "rigs/vehicle_rows.hpp"
+#include "rigs/vehicle_measures.hpp"
 #include "rigs/vehicle_start.hpp"
-#include "vehicle/analysis/held_vehicle.hpp"
-#include "vehicle/analysis/wheel_angles.hpp"
+#include "rigs/wheel_measures.hpp"
 #include "vehicle/driver/driver_car.hpp"
 #include "vehicle/driver/file_driver.hpp"
 #include "vehicle/parts/vehicle_energy.hpp"
@@ -26,35 +24,13 @@
 namespace furrow::rigs {
 namespace {
 
-constexpr double kSlipLimit = 1e6;      // reported instead of larger magnitudes when the wheel hardly turns
-constexpr double kStandsFroude = 0.01;  // v/√(g r) below which a wheel stands
 constexpr double kTraceSpacing = 0.05;  // of ruts, in radii
 constexpr double kTraceDepth = 1e-3;    // in radii, below which there is no rut
-
-/// A row in speeds that turns a wheel, with what its torque does to the wheel.
-struct WheelRow {
-  int row = 0;
-  double factor = 1.0;
-  bool brake = false;
-};
 
 struct MountedMass {
   MassProperties mass;
   double radius = 0.0;  // undeformed, m
 };
-
-/// What is saved of a wheel besides the vehicle's own state.
-struct WheelRecord {
-  WheelReport report;
-  VehicleWheelRow row;
-  double load = 0.0;  // at rest, N
-};
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<WheelRecord> auto& s) {
-  visit(Field{"report", ""}, s.report);
-  visit(Field{"row", ""}, s.row);
-  visit(Field{"load", "N"}, s.load);
-}
 
 struct VehicleRecord {
   VehicleRow row;
@@ -67,12 +43,6 @@ void visit_fields(Visit&& visit, FieldsOf<VehicleRecord> auto& s) {
   visit(Field{"accounts", ""}, s.accounts);
   visit(Field{"inputs", ""}, s.inputs);
 }
-
-/// What a wheel does in one advance: sums over the substeps.
-struct WheelSums {
-  double turned = 0.0, torque = 0.0, brake = 0.0, spring = 0.0, shock = 0.0;  // rad; N m, N times substeps
-  Vec3 from = Vec3::Zero();                                                   // of its centre, m
-};
 
 class VehicleRig final : public Rig {
  public:
@@ -101,7 +71,6 @@ class VehicleRig final : public Rig {
  private:
   void check_built() const;
   void build();
-  void find_wheel_rows();
   void roll();
   void drive();
   void note_findings(std::span<const Wrench> wrenches);
@@ -109,11 +78,7 @@ class VehicleRig final : public Rig {
   double damping() const;
   Outcome step(std::span<const Wrench> wrenches, double h, std::vector<WheelSums>& sums);
   void book(std::span<const RimState> before, std::span<const Wrench> wrenches, double h);
-  void add_to(WheelSums& sum, int k, const RimState& before) const;
-  void measure_wheel(int k, const Wrench& wrench, const WheelSums& sums, double duration, int substeps);
-  void measure_wheel_end(int k);
-  void measure_vehicle(const Vec3& origin, const Vec3& momentum, double duration);
-  void measure_vehicle_end();
+  void measure_end(int k) { measure_now(*car_, k, plan_.options.heading, wheels_[k]); }
 
   VehicleRigPlan plan_;
   std::vector<MountedMass> tires_;
@@ -122,8 +87,8 @@ class VehicleRig final : public Rig {
 
   std::unique_ptr<vehicle::Vehicle> car_;  // built by place() or restore()
   std::unique_ptr<vehicle::Driver> driver_;
-  std::vector<std::vector<WheelRow>> rows_;  // of each wheel
-  std::vector<RutTrace> traces_;             // of each wheel
+  std::vector<std::vector<TorqueRow>> rows_;  // of each wheel
+  std::vector<RutTrace> traces_;              // of each wheel
   vehicle::DriverCar driven_;                // what a driver knows of it
   std::optional<VehicleFindings> findings_;  // once it moves
   Vec3 seat_ = Vec3::Zero();                 // of the driver's view, in the vehicle's frame, m
@@ -159,20 +124,7 @@ void VehicleRig::build() {
     driven_ = vehicle::driver_car(plan_.vehicle, radii, plan_.tire_width, car_->mass());
     driver_ = vehicle::make_driver(*plan_.driver, driven_);
   }
-  find_wheel_rows();
-}
-
-/// Rows in speeds act on a wheel's spindle as their second body, about the axle as it was when they were added.
-void VehicleRig::find_wheel_rows() {
-  rows_.assign(wheel_count(), {});
-  const vehicle::System& system = car_->system();
-  for (int k = 0; k < wheel_count(); ++k)
-    for (int i = 0; i < system.rate_row_count(); ++i)
-      for (const vehicle::SpinTerm& term : system.rate_row(i).spins)
-        if (term.b == car_->wheel(k).spindle) {
-          const bool brake = car_->brake(k) && car_->brake(k)->row() == i;
-          rows_[k].push_back({i, term.factor * term.axis.y(), brake});
-        }
+  rows_ = torque_rows(*car_);
 }
 
 void VehicleRig::place(std::span<const double> axle_height) {
@@ -198,8 +150,8 @@ void VehicleRig::place(std::span<const double> axle_height) {
   record_ = {};
   record_.inputs = parked();
   for (WheelRecord& wheel : wheels_) wheel = {{}, {}, wheel.load};
-  for (int k = 0; k < wheel_count(); ++k) measure_wheel_end(k);
-  measure_vehicle_end();
+  for (int k = 0; k < wheel_count(); ++k) measure_end(k);
+  measure_now(*car_, record_.inputs, record_.row);
 }
 
 /// From the first instant on, in the gear that the driver holds then.
@@ -218,8 +170,7 @@ RimState VehicleRig::rim(int wheel) const {
 
 Vec3 VehicleRig::heading(int wheel) const {
   check_built();
-  const Vec3 axle = vehicle::spin_axis(*car_, wheel);
-  return Vec3(axle.y(), -axle.x(), 0.0).normalized();
+  return wheel_heading(*car_, wheel);
 }
 
 void VehicleRig::drive() {
@@ -258,29 +209,28 @@ Outcome VehicleRig::advance(std::span<const Wrench> wrenches, double duration, i
                               "it comes from a tire; try a smaller run.step");
   drive();
   note_findings(wrenches);
-  const Vec3 origin = car_->origin(), momentum = car_->system().momentum();
-  const double drive_work = car_->drive().work(car_->system()), tire_work = record_.accounts.tire_work;
+  const MotionBefore before = MotionBefore::of(*car_);
+  const double tire_work = record_.accounts.tire_work;
   std::vector<WheelSums> sums(wheel_count());
   for (int k = 0; k < wheel_count(); ++k) {
     car_->set_wrench(k, wrenches[k]);
     sums[k].from = car_->rim(k).position;
   }
   VehicleRow& row = record_.row;
-  row.shifting = row.engine_speed = row.turbine_speed = row.engine_torque = 0.0;
+  begin_driveline(row);
   for (int i = 0; i < substeps; ++i)
     if (Outcome outcome = step(wrenches, duration / substeps, sums); !outcome.ok) return outcome;
-  row.shifting /= substeps;
-  for (double* speed : {&row.engine_speed, &row.turbine_speed})
-    *speed *= 30.0 / std::numbers::pi / substeps;  // 1/min
-  row.engine_torque /= substeps;
-  row.engine_power = (car_->drive().work(car_->system()) - drive_work) / duration;
+  finish_driveline(*car_, before, duration, substeps, row);
   row.soil_power = (tire_work - record_.accounts.tire_work) / duration;
   row.wheel_power = 0.0;
   for (int k = 0; k < wheel_count(); ++k) {
-    measure_wheel(k, wrenches[k], sums[k], duration, substeps);
+    measure_advance(*car_, k, tires_[k].radius, wrenches[k], sums[k], duration, substeps, wheels_[k]);
+    measure_end(k);
     row.wheel_power += wheels_[k].report.drive_torque * wheels_[k].report.spin;
   }
-  measure_vehicle(origin, momentum, duration);
+  measure_motion(*car_, before, duration, row);
+  measure_driver(record_.inputs, driver_.get(), row);
+  measure_now(*car_, record_.inputs, row);
   return {};
 }
 
@@ -296,16 +246,8 @@ Outcome VehicleRig::step(std::span<const Wrench> wrenches, double h, std::vector
   record_.row.lowering_heat -= lift * (chassis.position.z() - height);
   record_.accounts.guide_impulse.z() += h * lift;
   book(before, wrenches, h);
-  for (int k = 0; k < wheel_count(); ++k) add_to(sums[k], k, before[k]);
-  VehicleRow& row = record_.row;
-  const vehicle::DriveTrain& drive = car_->drive();
-  if (drive.engine()) {
-    row.engine_speed += system.shaft(drive.shaft(plan_.vehicle.driveline.engine->shaft)).state.speed;
-    row.engine_torque += drive.engine()->torque(system);
-  }
-  if (const auto& converter = plan_.vehicle.driveline.converter)
-    row.turbine_speed += system.shaft(drive.shaft(converter->out)).state.speed;
-  if (drive.gearbox() && drive.gearbox()->shifting()) row.shifting += 1.0;
+  for (int k = 0; k < wheel_count(); ++k) add_step(*car_, k, before[k], rows_[k], sums[k]);
+  add_driveline(*car_, record_.row);
   return {};
 }
 
@@ -327,70 +269,6 @@ void VehicleRig::book(std::span<const RimState> before, std::span<const Wrench> 
   a.gravity_impulse += h * car_->mass() * plan_.gravity;
 }
 
-void VehicleRig::add_to(WheelSums& sum, int k, const RimState& before) const {
-  const vehicle::System& system = car_->system();
-  const vehicle::Wheel& wheel = car_->wheel(k);
-  const Eigen::AngleAxisd turn(car_->rim(k).orientation * before.orientation.conjugate());
-  sum.turned += turn.angle() * turn.axis().dot(vehicle::spin_axis(*car_, k));
-  for (const WheelRow& one : rows_[k]) {
-    const double torque = one.factor * system.rate_state(one.row).torque;
-    sum.torque += torque;
-    if (one.brake) sum.brake += torque;
-  }
-  if (wheel.spring) sum.spring += system.element_force(*wheel.spring);
-  if (wheel.shock) sum.shock += system.element_force(*wheel.shock);
-}
-
-void VehicleRig::measure_wheel(int k, const Wrench& wrench, const WheelSums& sums, double duration,
-                               int substeps) {
-  FURROW_ASSERT(in_range(k, wheels_.size()), k, wheels_.size());
-  WheelReport& report = wheels_[k].report;
-  VehicleWheelRow& row = wheels_[k].row;
-  const Vec3 forward = heading(k), left = Vec3::UnitZ().cross(forward);
-  const double radius = tires_[k].radius;
-  report.speed = forward.dot(car_->rim(k).position - sums.from) / duration;
-  report.spin = sums.turned / duration;
-  const double rolled = report.spin * radius, slid = rolled - report.speed;
-  const double stands = kStandsFroude * std::sqrt(plan_.gravity.norm() * radius);
-  if (std::abs(rolled) < stands && std::abs(report.speed) < stands)
-    report.slip = 0.0;
-  else if (std::abs(slid) <= kSlipLimit * std::abs(rolled))
-    report.slip = slid / rolled;
-  else
-    report.slip = (slid > 0.0) == (rolled > 0.0) ? kSlipLimit : -kSlipLimit;
-  report.drive_torque = sums.torque / substeps;
-  report.lateral_force = wrench.force.dot(left);
-  report.aligning_moment = wrench.moment.z();
-  row.brake_torque = sums.brake / substeps;
-  row.spring_force = sums.spring / substeps;
-  row.shock_force = sums.shock / substeps;
-  measure_wheel_end(k);
-}
-
-void VehicleRig::measure_wheel_end(int k) {
-  const vehicle::System& system = car_->system();
-  const vehicle::Body& chassis = system.body(car_->chassis());
-  const vehicle::Wheel& wheel = car_->wheel(k);
-  const vehicle::Body& spindle = system.body(wheel.spindle);
-  WheelReport& report = wheels_[k].report;
-  VehicleWheelRow& row = wheels_[k].row;
-  const double psi = plan_.options.heading, outward = vehicle::outward(wheel.side);
-  report.axle_height = spindle.state.position.z();
-  report.axle_position = Vec3(std::cos(psi), std::sin(psi), 0.0).dot(spindle.state.position);
-  report.vertical_speed = system.body(wheel.carrier).state.velocity.z();
-  report.carried_mass = -wheels_[k].load / plan_.gravity.z();
-  report.vertical_momentum = spindle.mass * spindle.state.velocity.z() +
-                             (report.carried_mass - spindle.mass) * chassis.state.velocity.z();
-  report.joint_drift = system.max_violation();
-  report.gravity = plan_.gravity;
-  const Vec3 axle = chassis.R.transpose() * vehicle::spin_axis(*car_, k),
-             center = chassis.R.transpose() * (spindle.state.position - car_->origin());
-  row.travel = center.z() - vehicle::spindle_of(wheel.corner->suspension).center.z();
-  row.camber = vehicle::camber_angle(axle, outward);
-  row.toe = vehicle::toe_angle(axle, outward);
-  row.steer = vehicle::steer_angle(axle);
-}
-
 void VehicleRig::observe(int k, double lowest_point, double ground) {
   FURROW_ASSERT(in_range(k, wheels_.size()), k, wheels_.size());
   const Vec3 at = rim(k).position;
@@ -401,52 +279,6 @@ void VehicleRig::observe(int k, double lowest_point, double ground) {
   wheels_[k].row.sinkage_in_rut = bottom - lowest_point;
   if (ground - lowest_point > kTraceDepth * tires_[k].radius)
     traces_[k].add(Vec3(at.x(), at.y(), lowest_point));
-}
-
-void VehicleRig::measure_vehicle(const Vec3& origin, const Vec3& momentum, double duration) {
-  FURROW_ASSERT(duration > 0.0, duration);
-  const double psi = yaw_of(*car_);
-  const Vec3 forward(std::cos(psi), std::sin(psi), 0.0), left(-forward.y(), forward.x(), 0.0);
-  const Vec3 way = car_->origin() - origin, gain = car_->system().momentum() - momentum;
-  VehicleRow& row = record_.row;
-  row.distance += std::hypot(way.x(), way.y());
-  row.speed = forward.dot(way) / duration;
-  row.lateral_speed = left.dot(way) / duration;
-  row.acceleration = forward.dot(gain) / (car_->mass() * duration);
-  row.lateral_acceleration = left.dot(gain) / (car_->mass() * duration);
-  row.yaw_rate = std::remainder(psi - row.yaw, 2.0 * std::numbers::pi) / duration;
-  row.throttle = record_.inputs.throttle;
-  row.brake = record_.inputs.brake;
-  row.steering = record_.inputs.steering;
-  if (driver_) {
-    const vehicle::DriverRecord& driver = driver_->record();
-    row.target_speed = driver.target_speed;
-    row.path_distance = driver.path_distance;
-    row.cross_track = driver.cross_track;
-    row.heading_error = driver.heading_error;
-  }
-  measure_vehicle_end();
-}
-
-void VehicleRig::measure_vehicle_end() {
-  const Mat3& R = car_->system().body(car_->chassis()).R;
-  const Vec3 origin = car_->origin();
-  VehicleRow& row = record_.row;
-  row.x = origin.x();
-  row.y = origin.y();
-  row.z = origin.z();
-  row.roll = std::atan2(R(2, 1), R(2, 2));
-  row.pitch = -std::asin(std::clamp(R(2, 0), -1.0, 1.0));
-  row.yaw = yaw_of(*car_);
-  row.gear = gear_of(*car_, record_.inputs);
-  const vehicle::VehicleEnergy energy = vehicle::vehicle_energy(*car_);
-  row.drive_work = energy.drive_work;
-  row.converter_heat = energy.converter_heat;
-  row.clutch_heat = energy.clutch_heat;
-  row.shift_heat = energy.shift_heat;
-  row.brake_heat = energy.brake_heat;
-  row.shock_heat = energy.shock_heat;
-  row.spring_energy = energy.springs;
 }
 
 LiveNote VehicleRig::live() const {

@@ -2,7 +2,7 @@
 //
 //   normal damping      −(p − κ g) A ż dt, whether the pressure p is cut at 0 or not
 //   sliding             −F·s dt
-//   tangential damping  d A |v − s|² dt
+//   tangential damping  (d + ½ κ_t dt) A |v − s|² dt: a backward Euler step of the shear damps it by ½ κ_t dt beside d
 //   opening             what the shear ½ κ_t A ξ² of a vertex gives up as its area changes and where its load ends
 #pragma once
 

@@ -406,6 +406,27 @@ TEST(RigidGround, books_each_loss_where_it_belongs) {
   EXPECT_LT(std::abs(residual(end, lifted)), 0.02 * end.elastic_normal);
 }
 
+TEST(RigidGround, accounts_of_its_shear_close_at_any_step) {
+  // A block that turns about z while it slides sideways: at constant depth all work goes into shear and friction.
+  const testing::Surface block = testing::box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
+  GroundOptions options;
+  options.ground_shear_stiffness = 1.6e7;
+  options.ground_damping = 1e4;
+  options.friction_velocity_scale = 50.0;
+  for (const double h : {1e-3, 1e-4}) {
+    const auto ground = make_rigid_ground(options);
+    SurfaceState state = placed(block, {0.0, 0.0, -4e-4}, Vec3(0.3, -0.2, 0.0));
+    for (std::size_t v = 0; v < state.position.size(); ++v)
+      state.velocity[v] += Vec3(0.0, 0.0, 2.0).cross(Vec3(block.vertex[v].x(), block.vertex[v].y(), 0.0));
+    ground->attach(block.mesh, rubber(), state);
+    const TerrainEnergies begin = ground->state().energies;
+    slide_steadily(*ground, state, h, static_cast<int>(std::lround(0.03 / h)));
+    const TerrainEnergies end = ground->state().energies;
+    EXPECT_GT(end.tangential_damping_loss, 0.01 * end.losses());
+    EXPECT_LT(std::abs(residual(begin, end)), 1e-10 * end.losses()) << h;
+  }
+}
+
 TEST(RigidGround, residual_of_a_rolling_wheel_shrinks_with_the_step) {
   // A wheel that rolls at slip 0.1 and bounces; its accounts against the work of its surface.
   const testing::Surface round = testing::wheel(0.4673, 0.2, 60, 4);

@@ -1,12 +1,15 @@
 #!/usr/bin/python3
-"""What wheels and axles do on soil, from the runs of vehicle_on_soil.json.
+"""What wheels and axles do on soil, from the runs of vehicle_on_soil.json or of another study of vehicles on several beds.
 
     /usr/bin/python3 tests/studies/run_study.py tests/studies/vehicle_on_soil.json
     /usr/bin/python3 tests/studies/vehicle_on_soil.py
+    /usr/bin/python3 tests/studies/run_study.py tests/studies/vehicle_turn_and_rover.json
+    /usr/bin/python3 tests/studies/vehicle_on_soil.py tests/studies/vehicle_turn_and_rover.json --wheels
 
-Writes vehicle_on_soil_wheels.csv, the means of every wheel of every run over its averaging window, and
-vehicle_on_soil_figures.csv: the vehicle and its axles on three beds, on flexible tires at 200 kPa, softer ones and rigid ones, with
-half of the 95 % interval of the mean over the beds [Student's t] and the difference from the first, bed by bed.
+Writes beside the study, named after it: ..._wheels.csv, the means of every wheel of every run over its averaging window, and
+..._figures.csv: the vehicle and its axles over the beds, of each variant with half of the 95 % interval of the mean over the beds
+[Student's t] and, of other tires, the difference from flexible ones at 200 kPa, bed by bed. With --wheels also every wheel, and
+every axle less the front one, bed by bed.
 """
 import argparse
 import json
@@ -22,7 +25,7 @@ from provenance import ROOT, read_json
 sys.path.insert(0, str(ROOT / "scripts"))
 from plot.student import half_interval  # noqa: E402
 
-STUDY = pathlib.Path(__file__).with_suffix(".json")
+STUDY = pathlib.Path(__file__).with_suffix(".json")  # unless another is named
 REFERENCE = "flexible_200_kPa"
 # column of a wheel's table, name in the tables here, factor, whether an axle has the sum of its wheels
 WHEEL = [("iso_force_x_N", "force_x_N", 1.0, True), ("iso_force_y_N", "force_y_N", 1.0, True), ("iso_force_z_N", "force_z_N", 1.0, True),
@@ -65,21 +68,32 @@ class Run:
                 found[f"{axle}: {name}"] = sum(values) if total else statistics.mean(values)
         return found
 
-    def figures(self):
-        return {**self.of_vehicle(), **self.of_axles()}
+    def of_wheels(self):
+        """Every wheel, and the axles less the front one."""
+        found = {f"{wheel}: {name}": mean[name] for wheel, mean in zip(self.wheels, self.means) for name in NAMES}
+        axles = self.of_axles()
+        front = next(iter(axles)).split(":")[0]
+        for key, value in axles.items():
+            axle, name = key.split(": ")
+            if axle != front:
+                found[f"{axle} less {front}: {name}"] = value - axles[f"{front}: {name}"]
+        return found
+
+    def figures(self, wheels):
+        return {**self.of_vehicle(), **self.of_axles(), **(self.of_wheels() if wheels else {})}
 
 
 def short(value):
     return f"{value:.4g}"
 
 
-def figures_of_beds(runs):
-    """Lines of the variants that were run on several beds; `runs`: {case: Run}, cases named variant-seed."""
+def figures_of_beds(runs, wheels):
+    """Lines of the variants that were run on several beds; `runs`: {case: Run}, cases named variant-seed; `wheels`: of every wheel too."""
     variants = {}
     for case, run in runs.items():
         if "-" in case:
             variant, seed = case.rsplit("-", 1)
-            variants.setdefault(variant, {})[seed] = run.figures()
+            variants.setdefault(variant, {})[seed] = run.figures(wheels)
     rows = []
     for variant, beds in variants.items():
         reference = variants.get(REFERENCE, {})
@@ -98,19 +112,23 @@ def figures_of_beds(runs):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--results", type=pathlib.Path, default=ROOT / "results" / "studies" / STUDY.stem, help="folder of the cases")
+    parser.add_argument("study", type=pathlib.Path, nargs="?", default=STUDY, help="study file whose runs are finished")
+    parser.add_argument("--wheels", action="store_true", help="figures of every wheel, and of the axles against the front one")
+    parser.add_argument("--results", type=pathlib.Path, help="folder of the cases; default: results/studies/NAME_OF_THE_STUDY")
     arguments = parser.parse_args()
-    cases = json.loads(STUDY.read_text())["cases"]
-    runs = {case: Run(arguments.results / case) for case in cases if (arguments.results / case / "summary.json").exists()}
+    study, results = arguments.study, arguments.results or ROOT / "results" / "studies" / arguments.study.stem
+    cases = json.loads(study.read_text())["cases"]
+    runs = {case: Run(results / case) for case in cases if (results / case / "summary.json").exists()}
     if not runs:
-        raise SystemExit(f"{arguments.results}: holds no finished case, expected those of run_study.py {STUDY.name}")
+        raise SystemExit(f"{results}: holds no finished case, expected those of run_study.py {study.name}")
     origin = provenance.origin_of_runs(run.folder for run in runs.values())
-    origin["command"] = pathlib.Path(__file__).name
+    origin["command"] = " ".join([pathlib.Path(__file__).name, *([study.name] if study.stem != STUDY.stem else []),
+                                  *(["--wheels"] if arguments.wheels else [])])
     rows = [{"case": case, "wheel": wheel, **{name: short(value) for name, value in means.items()}}
             for case, run in runs.items() for wheel, means in zip(run.wheels, run.means)]
-    provenance.write_table(STUDY.with_name(f"{STUDY.stem}_wheels.csv"), ["case", "wheel", *NAMES], rows, origin)
-    figures = figures_of_beds(runs)
-    provenance.write_table(STUDY.with_name(f"{STUDY.stem}_figures.csv"), ["tires", "figure", "beds", "mean", "half_95", "change", "change_half_95"],
+    provenance.write_table(study.with_name(f"{study.stem}_wheels.csv"), ["case", "wheel", *NAMES], rows, origin)
+    figures = figures_of_beds(runs, arguments.wheels)
+    provenance.write_table(study.with_name(f"{study.stem}_figures.csv"), ["tires", "figure", "beds", "mean", "half_95", "change", "change_half_95"],
                            figures, origin)
     for row in figures:
         change = f"change {row['change']:>8} ± {row['change_half_95']}" if row.get("change") else ""

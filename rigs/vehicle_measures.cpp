@@ -41,7 +41,8 @@ void finish_driveline(const vehicle::Vehicle& car, const MotionBefore& before, d
   row.engine_power = (car.drive().work(car.system()) - before.drive_work) / duration;
 }
 
-void measure_motion(const vehicle::Vehicle& car, const MotionBefore& before, double duration, VehicleRow& row) {
+void measure_motion(const vehicle::Vehicle& car, const MotionBefore& before, double duration,
+                    VehicleRow& row) {
   FURROW_ASSERT(duration > 0.0, duration);
   const double psi = yaw_of(car);
   const Vec3 forward(std::cos(psi), std::sin(psi), 0.0), left(-forward.y(), forward.x(), 0.0);

@@ -89,9 +89,9 @@ class VehicleRig final : public Rig {
   std::unique_ptr<vehicle::Driver> driver_;
   std::vector<std::vector<TorqueRow>> rows_;  // of each wheel
   std::vector<RutTrace> traces_;              // of each wheel
-  vehicle::DriverCar driven_;                // what a driver knows of it
-  std::optional<VehicleFindings> findings_;  // once it moves
-  Vec3 seat_ = Vec3::Zero();                 // of the driver's view, in the vehicle's frame, m
+  vehicle::DriverCar driven_;                 // what a driver knows of it
+  std::optional<VehicleFindings> findings_;   // once it moves
+  Vec3 seat_ = Vec3::Zero();                  // of the driver's view, in the vehicle's frame, m
 };
 
 void VehicleRig::check_built() const {

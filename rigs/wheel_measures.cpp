@@ -47,8 +47,8 @@ void add_step(const vehicle::Vehicle& car, int k, const RimState& before, const 
   if (wheel.shock) sums.shock += system.element_force(*wheel.shock);
 }
 
-void measure_advance(const vehicle::Vehicle& car, int k, double radius, const Wrench& wrench, const WheelSums& sums,
-                     double duration, int substeps, WheelRecord& wheel) {
+void measure_advance(const vehicle::Vehicle& car, int k, double radius, const Wrench& wrench,
+                     const WheelSums& sums, double duration, int substeps, WheelRecord& wheel) {
   FURROW_ASSERT(duration > 0.0 && substeps > 0 && radius > 0.0, duration, substeps, radius);
   WheelReport& report = wheel.report;
   const Vec3 forward = wheel_heading(car, k), left = Vec3::UnitZ().cross(forward);

@@ -101,7 +101,7 @@ ExitCode validate_vehicle(const std::string& name, bool json) {
 
 ExitCode kinematics_command(const KinematicsArguments& arguments) {
   check(arguments);
-  const std::filesystem::path file = scenario::find_vehicle(arguments.vehicle);
+  const std::filesystem::path file = scenario::find_vehicle_alone(arguments.vehicle);
   const vehicle::VehicleSpec spec = vehicle::read_vehicle(file);
   const vehicle::VehiclePage page = stand(spec);
   vehicle::KinematicsOptions options{arguments.travel, arguments.points};

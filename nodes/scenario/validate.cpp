@@ -42,8 +42,8 @@ nlohmann::ordered_json scales_json(const WheelScales& w, const std::string& name
   return json;
 }
 
-/// Name and text of each line.
-std::vector<std::pair<std::string, std::string>> scales_lines(const WheelScales& w) {
+/// Name and text of each line. @param travels it is known how far the wheel gets
+std::vector<std::pair<std::string, std::string>> scales_lines(const WheelScales& w, bool travels) {
   std::vector<std::pair<std::string, std::string>> lines{{"load", digits(w.load) + " N"}};
   std::string speed = fmt::format("Froude number {}", digits(w.froude));
   if (w.grains) {
@@ -53,13 +53,13 @@ std::vector<std::pair<std::string, std::string>> scales_lines(const WheelScales&
                                               digits(g.grains_long), digits(g.grains_wide)));
     lines.emplace_back("sinkage", fmt::format("about {} mm by bearing capacity; the bed is {} times as deep",
                                               digits(1e3 * g.sinkage), digits(g.depth_ratio)));
-    lines.emplace_back(
-        "walls",
-        fmt::format("{}, {} m ahead of the wheel at the end",
-                    g.beside ? digits(*g.beside) + " m beside the wheel" : "none beside", digits(g.ahead)));
+    lines.emplace_back("walls",
+                       fmt::format("{}, {} m ahead of the wheel at the {}",
+                                   g.beside ? digits(*g.beside) + " m beside the wheel" : "none beside",
+                                   digits(g.ahead), travels ? "end" : "start"));
     speed += fmt::format(", inertial number {}", digits(g.inertial));
   }
-  lines.emplace_back("speed", speed);
+  if (travels || w.froude > 0.0) lines.emplace_back("speed", speed);
   return lines;
 }
 
@@ -173,8 +173,12 @@ std::string validation_text(const Scenario& s, const RunTime* time) {
                              tires[k].details, tires[k].radius));
     const MassProperties& mass = tires[k].mass;
     line("tire mass", fmt::format("{:.2f} kg, spin inertia {:.3g} kg m²", mass.mass, mass.inertia(1, 1)));
-    line("axle", fmt::format("from x = {:.3f} m to {:.3f} m", rig.wheels[k].from, rig.wheels[k].to));
-    for (const auto& [name, value] : scales_lines(scales[k])) line(name, value);
+    // Of a vehicle that is driven by its pedals nobody knows yet how far it gets.
+    const double from = rig.wheels[k].from, to = rig.wheels[k].to;
+    const bool travels = to != from;
+    line("axle", travels ? fmt::format("from x = {:.3f} m to {:.3f} m", from, to)
+                         : fmt::format("at x = {:.3f} m at the start", from));
+    for (const auto& [name, value] : scales_lines(scales[k], travels)) line(name, value);
   }
   std::string memory = fmt::format("about {:.0f} MB in all", e.memory / kMegabyte);
   if (s.terrain_ranks > 1)

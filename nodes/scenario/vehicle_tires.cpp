@@ -53,6 +53,19 @@ std::filesystem::path find_vehicle(const std::string& name) {
   return file;
 }
 
+std::filesystem::path find_vehicle_alone(const std::string& name) {
+  const std::filesystem::path file = find_vehicle(name);
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error) || is_vehicle(name)) return file;
+  const nlohmann::ordered_json document = read_json_if_whole(file);
+  if (!document.is_object() || (!document.contains("rig") && !document.contains("terrain"))) return file;
+  const auto rig = document.find("rig");
+  std::string what = "is a scenario, expected the file of a vehicle";
+  if (rig != document.end() && rig->is_object() && rig->contains("vehicle") && (*rig)["vehicle"].is_string())
+    what += fmt::format(": its rig.vehicle is '{}'", (*rig)["vehicle"].get<std::string>());
+  throw input_error(file.string(), "", what);
+}
+
 bool is_vehicle(const std::string& name) {
   std::error_code error;
   const std::filesystem::path file = candidate(name);

@@ -16,6 +16,9 @@ namespace furrow::scenario {
 /// `name` as it stands, or in vehicle/data/. @throws Error(bad_input) naming the places where it was looked for
 std::filesystem::path find_vehicle(const std::string& name);
 
+/// As find_vehicle(), for a command that takes nothing else. @throws Error(bad_input) of a scenario, naming its vehicle
+std::filesystem::path find_vehicle_alone(const std::string& name);
+
 /// Whether `name` is a file that describes a vehicle, by what it holds: it has axles or a chassis, which no scenario has.
 bool is_vehicle(const std::string& name);
 

@@ -124,8 +124,9 @@ EnergyAccount turned(double step, double time) {
 /// The shear of the ground under tires that slip sideways is stepped implicitly. What such a step loses is booked.
 TEST(Accounts, energy_closes_in_a_turn_on_rigid_wheels) {
   const EnergyAccount coarse = turned(2e-4, 0.7), fine = turned(1e-4, 0.7);
-  EXPECT_GT(coarse.lost.sliding + coarse.lost.tangential_damping + coarse.lost.opening, 0.1 * coarse.turnover());
-  EXPECT_LT(std::abs(coarse.residual()), 3e-3 * coarse.turnover());
+  EXPECT_GT(coarse.lost.sliding + coarse.lost.tangential_damping + coarse.lost.opening,
+            0.1 * coarse.turnover());
+  EXPECT_LT(std::abs(coarse.residual()), 1e-4 * coarse.turnover());
   EXPECT_LT(std::abs(fine.residual()), 0.35 * std::abs(coarse.residual()));
   for (const EnergyAccount* a : {&coarse, &fine})
     std::printf("residuals of terrain, tires, rig: %.4g, %.4g, %.4g J of %.4g J\n", a->terrain_residual,

@@ -259,7 +259,7 @@ class Sweep {
       for (int side = 0; side < 2; ++side) {
         rows[side] = bench_.row(2 * axle + side);
         rows[side].motion = motion;
-        rows[side].steering = share * steering;
+        rows[side].steering = steering == 0.0 ? 0.0 : share * steering;  // not -0
         rows[side].wheel_rate = rates[side];
       }
       bench_.add_slopes(axle, rows);

@@ -92,8 +92,10 @@ Error all_problems(const std::string& file, const std::vector<Problem>& problems
 std::filesystem::path named_scenario(const std::filesystem::path& name) {
   std::error_code error;
   if (name.empty() || name.has_parent_path() || std::filesystem::exists(name, error)) return name;
-  const std::filesystem::path shipped = data_folder() / "rigs" / name;
-  return std::filesystem::is_regular_file(shipped, error) ? shipped : name;
+  // A vehicle's name is found too, and then refused for what it is.
+  for (const std::filesystem::path& folder : {data_folder() / "rigs", data_folder() / "vehicle" / "data"})
+    if (std::filesystem::is_regular_file(folder / name, error)) return folder / name;
+  return name;
 }
 
 /// The engine that the scenario will have once all settings are made.

@@ -1,5 +1,6 @@
 #include "protocol/files/data_files.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <vector>
 
@@ -47,12 +48,15 @@ std::filesystem::path find_file(const std::string& name, const std::string& key,
     if (std::filesystem::exists(place, error))
       throw input_error(scenario.string(), key,
                         "'" + place.string() + "' is not a regular file, expected one");
-  std::string looked;
-  for (const auto& place : places)
-    looked +=
-        (looked.empty() ? "" : ", ") + std::filesystem::absolute(place, error).lexically_normal().string();
+  std::vector<std::filesystem::path> looked;
+  std::string list;
+  for (const auto& place : places) {
+    looked.push_back(std::filesystem::absolute(place, error).lexically_normal());
+    if (std::find(looked.begin(), looked.end() - 1, looked.back()) == looked.end() - 1)
+      list += (list.empty() ? "" : ", ") + looked.back().string();
+  }
   throw input_error(scenario.string(), key,
-                    "'" + name + "' does not exist, expected a file at one of: " + looked);
+                    "'" + name + "' does not exist, expected a file at one of: " + list);
 }
 
 }  // namespace furrow

@@ -11,6 +11,7 @@
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/core/mean_turn.hpp"
+#include "rigs/reported_slip.hpp"
 #include "vehicle/multibody/system.hpp"
 
 namespace furrow::rigs {
@@ -20,7 +21,6 @@ namespace {
 // constraint matrix.
 constexpr double kGuidedInertia = 1.0;    // kg m², chassis and set-toe
 constexpr double kCarrierInertia = 20.0;  // kg m²
-constexpr double kSlipLimit = 1e6;        // reported instead of larger magnitudes when the wheel hardly turns
 
 void require(bool ok, const std::string& key, const std::string& what) {
   if (!ok) throw input_error("scenario", "rig." + key, what);
@@ -37,6 +37,8 @@ void validate(const DrawbarRigOptions& o) {
   require(o.touchdown_damping >= 0.0 && std::isfinite(o.touchdown_damping), "touchdown_damping",
           "must not be negative");
   require(o.touchdown_time >= 0.0, "touchdown_time", "must not be negative");
+  require(o.hold_axle_from < 0.0 || o.hold_axle_from >= o.touchdown_time, "hold_axle_from",
+          "must not come before touchdown_time");
   require(std::abs(o.toe_angle) < 0.5 * std::numbers::pi, "toe_angle", "must lie between -pi/2 and pi/2 rad");
   require(o.toe_time >= 0.0 && std::isfinite(o.toe_time), "toe_time", "must not be negative");
   require(o.toe_ramp > 0.0 && std::isfinite(o.toe_ramp), "toe_ramp", "must be positive");
@@ -112,6 +114,8 @@ class DrawbarRig final : public Rig {
   void check_built() const;
   void set_speeds();
   void build(double axle_height);
+  void add_stop(double travel);
+  void hold_axle();
   vehicle::BodyState moving(double axle_height) const;
   double forward_momentum() const { return forward_.dot(system_->momentum()); }
   double spin_angle() const { return options_.travel_sign * system_->coordinate(spindle_).value; }
@@ -134,6 +138,7 @@ class DrawbarRig final : public Rig {
   int rail_ = 0, toe_lock_ = 0, slider_ = 0, spindle_ = 0;  // joints
   int drive_ = 0, spindle_motor_ = 0, steering_ = 0;        // motors
   int damper_ = 0;                                          // force element
+  std::optional<double> held_;                              // travel of the slider at which the stop holds it, m
   WheelReport report_;
   DrawbarRow row_;
   RigAccounts accounts_ = RigAccounts::none();
@@ -189,6 +194,7 @@ void DrawbarRig::build(double axle_height) {
   FURROW_ASSERT(std::isfinite(axle_height), axle_height);
   FURROW_ASSERT(radius_ > 0.0, radius_);
   system_.emplace(options_.gravity);
+  held_.reset();
   placed_height_ = axle_height;
   vehicle::BodyState state = moving(axle_height);
   chassis_ = system_->add_body("chassis", options_.chassis_mass, kGuidedInertia * Mat3::Identity(), state);
@@ -244,6 +250,20 @@ void DrawbarRig::build(double axle_height) {
   system_->track_energy(damper_);
 }
 
+void DrawbarRig::add_stop(double travel) {
+  held_ = travel;
+  system_->add_motor("stop of the axle", slider_, [travel](double) { return vehicle::Motion{travel, 0.0}; });
+}
+
+void DrawbarRig::hold_axle() {
+  const Vec3 momentum = system_->momentum();
+  const double energy = system_->kinetic_energy();
+  add_stop(system_->coordinate(slider_).value);
+  system_->assemble(system_->time());
+  accounts_.guide_impulse += system_->momentum() - momentum;
+  accounts_.guide_work += system_->kinetic_energy() - energy;
+}
+
 void DrawbarRig::place(std::span<const double> axle_height) {
   if (axle_height.size() != 1) throw physics_error("drawbar rig: expected one axle height");
   if (!std::isfinite(axle_height[0])) throw physics_error("drawbar rig: the axle height is not finite");
@@ -275,6 +295,7 @@ Outcome DrawbarRig::advance(std::span<const Wrench> wrenches, double duration, i
   if (!wrench.force.allFinite() || !wrench.moment.allFinite())
     return Outcome::failure("was pulled with a wrench that is not finite",
                             "it comes from the tire; try a smaller run.step");
+  if (!held_ && options_.hold_axle_from >= 0.0 && system_->time() >= options_.hold_axle_from) hold_axle();
   system_->set_load(rim_, wrench.force, wrench.moment);
 
   const double step = duration / substeps;
@@ -304,13 +325,8 @@ Outcome DrawbarRig::advance(std::span<const Wrench> wrenches, double duration, i
   row_.damper_force = damper / substeps;
   report_.lateral_force = wrench.force.dot(left_);
   report_.aligning_moment = wrench.moment.z();
-  const double rolled = report_.spin * radius_, slid = rolled - report_.speed;
-  if (options_.move_from > 0.0 && system_->time() <= options_.move_from)
-    report_.slip = 0.0;  // the wheel stands
-  else if (std::abs(slid) <= kSlipLimit * std::abs(rolled))
-    report_.slip = rolled == 0.0 ? 0.0 : slid / rolled;
-  else
-    report_.slip = (slid > 0.0) == (rolled > 0.0) ? kSlipLimit : -kSlipLimit;
+  const bool stands = options_.move_from > 0.0 && system_->time() <= options_.move_from;
+  report_.slip = stands ? 0.0 : reported_slip(report_.spin * radius_, report_.speed);
   measure_end();
   // Fused whatever else the compiler does here: the same bits in every build.
   row_.pull_work = std::fma(duration * row_.pull_raw, report_.speed, row_.pull_work);
@@ -397,11 +413,13 @@ void DrawbarRig::save(Archive& archive) const {
   archive.put("mass", system_->body(rim_).mass);
   archive.put("radius", radius_);
   archive.put("placed_height", placed_height_);
+  if (held_) archive.put("held_travel", *held_);
 }
 
 void DrawbarRig::restore(const Archive& archive) {
   const Archive::Scope scope(archive, "rig/");
   build(archive.get_double("placed_height"));
+  if (archive.has("held_travel")) add_stop(archive.get_double("held_travel"));
   if (archive.get_double("mass") != system_->body(rim_).mass || archive.get_double("radius") != radius_)
     throw Error(ExitCode::io, "saved rig state belongs to another tire (mass or radius differ)");
   system_->restore(archive);

@@ -7,6 +7,7 @@
 #include "protocol/files/json_fields.hpp"
 #include "protocol/files/json_text.hpp"
 #include "rigs/drawbar_spec.hpp"
+#include "rigs/half_car_spec.hpp"
 #include "rigs/quarter_car_spec.hpp"
 #include "rigs/vehicle_spec.hpp"
 
@@ -15,6 +16,7 @@ namespace {
 
 constexpr auto kKinds = std::to_array<RigKind>({
     {"drawbar", {drawbar_fields, changed_fields<DrawbarRigOptions>}, read_drawbar},
+    {"half_car", key_list<HalfCarOptions>(), read_half_car},
     {"quarter_car", key_list<QuarterCarOptions>(), read_quarter_car},
     {"vehicle", key_list<VehicleRigOptions>(), read_vehicle_rig, tires_of_vehicle},
 });

@@ -55,11 +55,6 @@ DrawbarRigOptions mounted(DrawbarRigOptions rig, const MountedTire& tire, const 
   mount_masses(rig, tire, context);
   mount_load(rig, tire, context, wheel);
   mount_damper(rig, tire);
-  if (rig.hold_axle_from >= 0.0 && rig.hold_axle_from < rig.touchdown_time)
-    throw input_error(context.file, context.key("hold_axle_from"),
-                      fmt::format("is {} s, expected at least {}, {} s: the wheel is let down until then",
-                                  number_text(rig.hold_axle_from), context.key("touchdown_time"),
-                                  number_text(rig.touchdown_time)));
   return rig;
 }
 

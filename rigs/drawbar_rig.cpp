@@ -11,6 +11,7 @@
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/core/mean_turn.hpp"
+#include "rigs/held_axle.hpp"
 #include "rigs/reported_slip.hpp"
 #include "vehicle/multibody/system.hpp"
 
@@ -37,8 +38,6 @@ void validate(const DrawbarRigOptions& o) {
   require(o.touchdown_damping >= 0.0 && std::isfinite(o.touchdown_damping), "touchdown_damping",
           "must not be negative");
   require(o.touchdown_time >= 0.0, "touchdown_time", "must not be negative");
-  require(o.hold_axle_from < 0.0 || o.hold_axle_from >= o.touchdown_time, "hold_axle_from",
-          "must not come before touchdown_time");
   require(std::abs(o.toe_angle) < 0.5 * std::numbers::pi, "toe_angle", "must lie between -pi/2 and pi/2 rad");
   require(o.toe_time >= 0.0 && std::isfinite(o.toe_time), "toe_time", "must not be negative");
   require(o.toe_ramp > 0.0 && std::isfinite(o.toe_ramp), "toe_ramp", "must be positive");
@@ -82,13 +81,17 @@ void visit_fields(Visit&& visit, FieldsOf<DrawbarRow> auto& r) {
 
 class DrawbarRig final : public Rig {
  public:
-  explicit DrawbarRig(const DrawbarRigOptions& options) : options_(options) {
+  /// @param hold_axle_from s; negative: never
+  DrawbarRig(const DrawbarRigOptions& options, double hold_axle_from)
+      : options_(options), hold_axle_from_(hold_axle_from) {
     validate(options_);
+    FURROW_ASSERT(hold_axle_from < 0.0 || hold_axle_from >= options.touchdown_time, hold_axle_from,
+                  options.touchdown_time);
     forward_ = Vec3(options_.travel_sign, 0.0, 0.0);
     left_ = Vec3::UnitZ().cross(forward_);
   }
 
-  std::string kind() const override { return "drawbar"; }
+  std::string kind() const override { return hold_axle_from_ < 0.0 ? "drawbar" : "cleat_stand"; }
   int wheel_count() const override { return 1; }
   Vec3 heading(int wheel) const override {
     check_wheel(wheel);
@@ -126,6 +129,7 @@ class DrawbarRig final : public Rig {
   void book(const Stand& before, double turned, const Wrench& wrench, double step);
 
   DrawbarRigOptions options_;
+  double hold_axle_from_;  // s; negative: never
   Vec3 forward_, left_;
   double radius_ = 0.0;        // undeformed tire radius, m
   double travel_speed_ = 0.0;  // after the ramp, along travel, m/s
@@ -295,7 +299,7 @@ Outcome DrawbarRig::advance(std::span<const Wrench> wrenches, double duration, i
   if (!wrench.force.allFinite() || !wrench.moment.allFinite())
     return Outcome::failure("was pulled with a wrench that is not finite",
                             "it comes from the tire; try a smaller run.step");
-  if (!held_ && options_.hold_axle_from >= 0.0 && system_->time() >= options_.hold_axle_from) hold_axle();
+  if (!held_ && hold_axle_from_ >= 0.0 && system_->time() >= hold_axle_from_) hold_axle();
   system_->set_load(rim_, wrench.force, wrench.moment);
 
   const double step = duration / substeps;
@@ -432,7 +436,12 @@ void DrawbarRig::restore(const Archive& archive) {
 }  // namespace
 
 std::unique_ptr<Rig> make_drawbar_rig(const DrawbarRigOptions& options) {
-  return std::make_unique<DrawbarRig>(options);
+  return std::make_unique<DrawbarRig>(options, -1.0);
+}
+
+std::unique_ptr<Rig> make_held_drawbar_rig(const DrawbarRigOptions& options, double hold_axle_from) {
+  FURROW_ASSERT(hold_axle_from >= 0.0, hold_axle_from);
+  return std::make_unique<DrawbarRig>(options, hold_axle_from);
 }
 
 }  // namespace furrow::rigs

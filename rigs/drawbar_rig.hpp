@@ -1,9 +1,6 @@
 // Single-tire drawbar-pull rig: ground –prismatic (imposed speed)– chassis –imposed toe angle– set-toe
 // –vertical slider– wheel carrier (ballast) –driven revolute (imposed angular speed)– rim. Slip s = 1 − v/(ω
 // r), r the undeformed tire radius.
-//
-// From `hold_axle_from` on a stop holds the vertical slider where the wheel then stands on its load, as on a test stand
-// of fixed axle height. What speed the slider still has ends in the stop.
 #pragma once
 
 #include <memory>
@@ -29,7 +26,6 @@ struct DrawbarRigOptions {
   double touchdown_damping = -1.0;  // N s/m, vertical damper between set-toe and carrier
   double touchdown_time = -1.0;     // s, how long it acts
   double lowering_speed = -1.0;     // m/s, at which that damper lets the load down; in place of its constant
-  double hold_axle_from = -1.0;     // s, from when on the axle keeps its height; negative: never
   double toe_angle = 0.0;           // rad, about +z
   double toe_time = 0.0;   // s, when the wheel is turned from 0 to toe_angle; 0: it stands so from the start
   double toe_ramp = 0.01;  // s, how long that takes
@@ -58,7 +54,6 @@ void visit_fields(Visit&& visit, FieldsOf<DrawbarRigOptions> auto& s) {
   visit(Field{"touchdown_damping", "N s/m", role::key}, s.touchdown_damping);
   visit(Field{"touchdown_time", "s", role::key}, s.touchdown_time);
   visit(Field{"lowering_speed", "m/s", role::key}, s.lowering_speed);
-  visit(Field{"hold_axle_from", "s", role::key}, s.hold_axle_from);
   visit(Field{"toe_angle", "rad", role::key}, s.toe_angle);
   visit(Field{"toe_time", "s", role::key}, s.toe_time);
   visit(Field{"toe_ramp", "s", role::key}, s.toe_ramp);

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "protocol/core/error.hpp"
+#include "rigs/held_axle.hpp"
 #include "tests/protocol/fields_of.hpp"
 #include "tests/rigs/rig_fixture.hpp"
 
@@ -66,14 +67,15 @@ TEST(Restart, continues_bit_for_bit_from_before_and_after_the_axle_is_held) {
   rigs::DrawbarRigOptions options = reference_options();
   options.mode = "free_rolling";
   options.touchdown_time = 0.012;
-  options.hold_axle_from = 0.0125;
   for (const int saved : {250, 313, 400}) {
-    const auto original = placed_rig(options);
+    const auto original = rigs::make_held_drawbar_rig(options, 0.0125);
+    original->add_tire_mass(0, tire_mass(), kRadius);
+    original->place(std::array{0.5});
     int i = 0;
     for (; i < saved; ++i) advance(*original, varying(i), 1);
     Archive archive;
     original->save(archive);
-    const auto fresh = rigs::make_drawbar_rig(options);
+    const auto fresh = rigs::make_held_drawbar_rig(options, 0.0125);
     fresh->add_tire_mass(0, tire_mass(), kRadius);
     fresh->restore(archive);
     expect_equal(*original, *fresh);

@@ -2,6 +2,7 @@
 // closed form on sines and on the heights of a road, accounts, masses, exact continuation.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "protocol/core/constants.hpp"
+#include "rigs/held_axle.hpp"
 #include "rigs/rig_row.hpp"
 #include "tests/rigs/rig_fixture.hpp"
 
@@ -54,8 +55,9 @@ TEST(RigAccounts, of_an_axle_that_is_held_close_and_its_rail_bears_what_the_tire
   rigs::DrawbarRigOptions options = reference_options();
   options.mode = "free_rolling";
   options.touchdown_time = 0.02;
-  options.hold_axle_from = 0.05;
-  const auto rig = placed_rig(options);
+  const auto rig = rigs::make_held_drawbar_rig(options, 0.05);
+  rig->add_tire_mass(0, tire_mass(), kRadius);
+  rig->place(std::array{0.5});
   const rigs::RigAccounts start = rig->accounts();
   const auto push = [&](int from, int to) {
     for (int i = from; i < to; ++i)

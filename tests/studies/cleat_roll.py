@@ -87,8 +87,7 @@ def scenario(tire, speed, height, settled=SETTLED, friction=0.8):
     end = settled + (BEFORE + AFTER) / speed + (RINGS if speed > 1.0 else 0.0)
     return {
         "format_version": 1,
-        "rig": {"type": "drawbar", "mode": "free_rolling", "speed": speed, "ramp": 0, "load": LOAD, "touchdown_time": settled,
-                "hold_axle_from": settled},
+        "rig": {"type": "cleat_stand", "speed": speed, "ramp": 0, "load": LOAD, "hold_axle_from": settled},
         "tire": mesh,
         "terrain": {"engine": "rigid", "friction": friction, "friction_velocity_scale": 20, **ground,
                     "profile": [[at, 0], [at, height], [at + LENGTH, height], [at + LENGTH, 0]]},

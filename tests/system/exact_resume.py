@@ -158,10 +158,9 @@ class HalfCar(Exact, CheckpointTest):
     WHEELS = 2
 
 
-class HeldAxle(Exact, CheckpointTest):
+class CleatStand(Exact, CheckpointTest):
     """The stop takes hold of the axle between two checkpoints."""
-    SCENARIO = on_a_curb({"type": "drawbar", "mode": "free_rolling", "carrier_mass": 400, "touchdown_time": 0.04, "hold_axle_from": 0.045},
-                         rigid=True, elements_circumference=40)
+    SCENARIO = on_a_curb({"type": "cleat_stand", "carrier_mass": 400, "hold_axle_from": 0.045}, rigid=True, elements_circumference=40)
 
 
 class BeforeTheWall(CheckpointTest):

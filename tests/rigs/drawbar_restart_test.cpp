@@ -4,7 +4,6 @@
 #include <cstring>
 
 #include "protocol/core/error.hpp"
-#include "rigs/held_axle.hpp"
 #include "tests/protocol/fields_of.hpp"
 #include "tests/rigs/rig_fixture.hpp"
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "protocol/core/constants.hpp"
-#include "rigs/held_axle.hpp"
 #include "rigs/rig_row.hpp"
 #include "tests/rigs/rig_fixture.hpp"
 

@@ -1,5 +1,5 @@
-// A cleat test stand as an entry of the table of rigs: the drawbar rig (drawbar_rig.hpp) with a freely rolling wheel that
-// a damper lets down on its load, and whose axle is then held at the height where it stands.
+// A cleat test stand as an entry of the table of rigs: the drawbar rig (drawbar_rig.hpp) with a freely rolling wheel
+// that a damper lets down on its load, and whose axle is then held at the height where it stands.
 #pragma once
 
 #include <memory>

@@ -5,9 +5,9 @@
 // The wheels roll freely; what pulls them along is the trolley, so that only the suspensions pitch the body. With the
 // travel s of a suspension, positive in compression, the body is pushed up above the axle by
 //   F = W + k s + c ṡ                                                                                          (1)
-// and the carrier down, W the body's weight there. The struts are 1 m long and stand upright at rest: (1) acts along them,
-// so the rig is linear in heights and pitch but for terms of third order. The hub is a hundredth of the body and sits in
-// its centre. A damper between trolley and hub lets the wheels down onto the ground.
+// and the carrier down, W the body's weight there. The struts are 1 m long and stand upright at rest: (1) acts along
+// them, so the rig is linear in heights and pitch but for terms of third order. The hub is a hundredth of the body
+// and sits in its centre. A damper between trolley and hub lets the wheels down onto the ground.
 #pragma once
 
 #include <memory>

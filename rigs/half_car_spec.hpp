@@ -13,10 +13,10 @@
 
 namespace furrow::rigs {
 
-/// Fills in what is open from the tires, front and rear: rim and body (the carrier masses of both) as the block `rim` of
-/// their files says, a pitch inertia m a b, a hundredth of the rim for the rest of what is unsprung, the front of the
-/// body at 1.5 Hz with 0.3 of its critical damping, the rear likewise stiff and damped for the weight that it bears, and
-/// how the wheels are let down. Both rims are as the file of the front tire says.
+/// Fills in what is open from the tires, front and rear: rim and body (the carrier masses of both) as the block `rim`
+/// of their files says, a pitch inertia m a b, a hundredth of the rim for the rest of what is unsprung, the front of
+/// the body at 1.5 Hz with 0.3 of its critical damping, the rear likewise stiff and damped for the weight that it
+/// bears, and how the wheels are let down. Both rims are as the file of the front tire says.
 /// @throws Error(bad_input) naming the keys where neither of them says a mass
 HalfCarOptions mounted(HalfCarOptions rig, std::span<const MountedTire, 2> tires, const ReadContext& context);
 

@@ -1,4 +1,5 @@
-// What quarter car and half car have in common where their scenarios are read and completed. `Options` is either's struct.
+// What quarter car and half car have in common where their scenarios are read and completed. `Options` is either's
+// struct.
 #pragma once
 
 #include <algorithm>

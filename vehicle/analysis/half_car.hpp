@@ -1,12 +1,13 @@
-// The linear half car: one body that rises and pitches on two wheels behind each other, each on a spring and damper, the
-// road under each wheel.
+// The linear half car: one body that rises and pitches on two wheels behind each other, each on a spring and damper,
+// the road under each wheel.
 //
-// Heights y of the body's centre and w of the wheels, pitch θ with the nose down, front axle a ahead of the centre, rear
-// axle b behind it; all count from rest on a level road. Above the wheels the body stands at y_f = y − aθ, y_r = y + bθ.
+// Heights y of the body's centre and w of the wheels, pitch θ with the nose down, front axle a ahead of the centre,
+// rear axle b behind it; all count from rest on a level road. Above the wheels the body stands at y_f = y − aθ, y_r =
+// y + bθ.
 //   m ÿ = F_f + F_r,   J θ̈ = −a F_f + b F_r,   F_i = k_i (w_i − y_i) + c_i (ẇ_i − ẏ_i)
 //   m_i ẅ_i = −F_i + k_ti (r_i − w_i) + c_ti (ṙ_i − ẇ_i)                                                       (1)
-// as M q̈ + C q̇ + K q = (0, 0, Z_tf r_f, Z_tr r_r), q = (y, θ, w_f, w_r). Both wheels follow one road at the speed v, so
-// that r_r(t) = r_f(t − (a + b)/v): R_r = R_f e^{−iω(a + b)/v}.
+// as M q̈ + C q̇ + K q = (0, 0, Z_tf r_f, Z_tr r_r), q = (y, θ, w_f, w_r). Both wheels follow one road at the speed
+// v, so that r_r(t) = r_f(t − (a + b)/v): R_r = R_f e^{−iω(a + b)/v}.
 // Where J = m a b, nothing couples y_f with y_r: the half car is two quarter cars, of the bodies m b/(a + b) and
 // m a/(a + b).
 //

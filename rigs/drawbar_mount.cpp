@@ -1,55 +1,31 @@
 #include "rigs/drawbar_mount.hpp"
 
 #include <cmath>
-#include <vector>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_text.hpp"
 #include "rigs/lowering.hpp"
+#include "rigs/ride_mount.hpp"
+#include "rigs/rim_masses.hpp"
 
 namespace furrow::rigs {
 namespace {
 
-constexpr double kRingInertia = 0.5;  // of a thin ring about a diameter, of that about its axle
-
-bool open(double value) { return value < 0.0; }
-
-void take(double& value, double of_file) {
-  if (open(value)) value = of_file;
-}
-
 /// Rim and carrier as far as the tire file says them.
 void mount_masses(DrawbarRigOptions& rig, const MountedTire& tire, const ReadContext& context) {
-  take(rig.rim_mass, tire.rim.mass);
-  take(rig.rim_spin_inertia, tire.rim.spin_inertia);
-  take(rig.rim_diametral_inertia, tire.rim.diametral_inertia);
-  take(rig.rim_diametral_inertia, kRingInertia * rig.rim_spin_inertia);
-  if (open(rig.load)) take(rig.carrier_mass, tire.rim.carrier_mass);
-  std::vector<std::string> missing;
-  if (open(rig.load) && open(rig.carrier_mass)) missing.push_back(context.key("load"));
-  if (open(rig.rim_mass)) missing.push_back(context.key("rim_mass"));
-  if (open(rig.rim_spin_inertia)) missing.push_back(context.key("rim_spin_inertia"));
-  if (missing.empty()) return;
-  const std::string first = missing.front();
-  missing.erase(missing.begin());
-  throw input_error(
-      context.file, first,
-      fmt::format(
-          "is missing{}{}, expected here ({} in place of {} if you like), or as mass, spin_inertia and "
-          "carrier_mass in a block 'rim' of the tire file {}",
-          missing.empty() ? "" : " and so is ", fmt::join(missing, ", "), context.key("carrier_mass"),
-          context.key("load"), tire.file));
+  const RimMasses rim = mount_rim(rig, tire);
+  if (is_open(rig.load)) take(rig.carrier_mass, tire.rim.carrier_mass);
+  require_masses(rim, is_open(rig.load) && is_open(rig.carrier_mass), "carrier_mass", tire, context);
 }
 
 /// load = (carrier + rim + tire) g: the one that is open from the other.
 void mount_load(DrawbarRigOptions& rig, const MountedTire& tire, const ReadContext& context,
                 const std::string& wheel) {
   const double g = -rig.gravity.z(), rest = rig.rim_mass + tire.mass;
-  if (open(rig.load)) {
+  if (is_open(rig.load)) {
     rig.load = (rig.carrier_mass + rest) * g;
     return;
   }
@@ -64,7 +40,7 @@ void mount_load(DrawbarRigOptions& rig, const MountedTire& tire, const ReadConte
 
 void mount_damper(DrawbarRigOptions& rig, const MountedTire& tire) {
   const double g = -rig.gravity.z();
-  if (open(rig.touchdown_damping)) {
+  if (is_open(rig.touchdown_damping)) {
     take(rig.lowering_speed, kLoweringFroude * std::sqrt(g * tire.radius));
     rig.touchdown_damping = rig.load / rig.lowering_speed;
   }

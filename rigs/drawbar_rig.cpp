@@ -11,6 +11,7 @@
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/core/mean_turn.hpp"
+#include "rigs/reported_slip.hpp"
 #include "vehicle/multibody/system.hpp"
 
 namespace furrow::rigs {
@@ -20,7 +21,6 @@ namespace {
 // constraint matrix.
 constexpr double kGuidedInertia = 1.0;    // kg m², chassis and set-toe
 constexpr double kCarrierInertia = 20.0;  // kg m²
-constexpr double kSlipLimit = 1e6;        // reported instead of larger magnitudes when the wheel hardly turns
 
 void require(bool ok, const std::string& key, const std::string& what) {
   if (!ok) throw input_error("scenario", "rig." + key, what);
@@ -80,13 +80,17 @@ void visit_fields(Visit&& visit, FieldsOf<DrawbarRow> auto& r) {
 
 class DrawbarRig final : public Rig {
  public:
-  explicit DrawbarRig(const DrawbarRigOptions& options) : options_(options) {
+  /// @param hold_axle_from s; negative: never
+  DrawbarRig(const DrawbarRigOptions& options, double hold_axle_from)
+      : options_(options), hold_axle_from_(hold_axle_from) {
     validate(options_);
+    FURROW_ASSERT(hold_axle_from < 0.0 || hold_axle_from >= options.touchdown_time, hold_axle_from,
+                  options.touchdown_time);
     forward_ = Vec3(options_.travel_sign, 0.0, 0.0);
     left_ = Vec3::UnitZ().cross(forward_);
   }
 
-  std::string kind() const override { return "drawbar"; }
+  std::string kind() const override { return hold_axle_from_ < 0.0 ? "drawbar" : "cleat_stand"; }
   int wheel_count() const override { return 1; }
   Vec3 heading(int wheel) const override {
     check_wheel(wheel);
@@ -112,6 +116,8 @@ class DrawbarRig final : public Rig {
   void check_built() const;
   void set_speeds();
   void build(double axle_height);
+  void add_stop(double travel);
+  void hold_axle();
   vehicle::BodyState moving(double axle_height) const;
   double forward_momentum() const { return forward_.dot(system_->momentum()); }
   double spin_angle() const { return options_.travel_sign * system_->coordinate(spindle_).value; }
@@ -122,6 +128,7 @@ class DrawbarRig final : public Rig {
   void book(const Stand& before, double turned, const Wrench& wrench, double step);
 
   DrawbarRigOptions options_;
+  double hold_axle_from_;  // s; negative: never
   Vec3 forward_, left_;
   double radius_ = 0.0;        // undeformed tire radius, m
   double travel_speed_ = 0.0;  // after the ramp, along travel, m/s
@@ -134,6 +141,7 @@ class DrawbarRig final : public Rig {
   int rail_ = 0, toe_lock_ = 0, slider_ = 0, spindle_ = 0;  // joints
   int drive_ = 0, spindle_motor_ = 0, steering_ = 0;        // motors
   int damper_ = 0;                                          // force element
+  std::optional<double> held_;                              // travel of the slider at which the stop holds it, m
   WheelReport report_;
   DrawbarRow row_;
   RigAccounts accounts_ = RigAccounts::none();
@@ -189,6 +197,7 @@ void DrawbarRig::build(double axle_height) {
   FURROW_ASSERT(std::isfinite(axle_height), axle_height);
   FURROW_ASSERT(radius_ > 0.0, radius_);
   system_.emplace(options_.gravity);
+  held_.reset();
   placed_height_ = axle_height;
   vehicle::BodyState state = moving(axle_height);
   chassis_ = system_->add_body("chassis", options_.chassis_mass, kGuidedInertia * Mat3::Identity(), state);
@@ -244,6 +253,20 @@ void DrawbarRig::build(double axle_height) {
   system_->track_energy(damper_);
 }
 
+void DrawbarRig::add_stop(double travel) {
+  held_ = travel;
+  system_->add_motor("stop of the axle", slider_, [travel](double) { return vehicle::Motion{travel, 0.0}; });
+}
+
+void DrawbarRig::hold_axle() {
+  const Vec3 momentum = system_->momentum();
+  const double energy = system_->kinetic_energy();
+  add_stop(system_->coordinate(slider_).value);
+  system_->assemble(system_->time());
+  accounts_.guide_impulse += system_->momentum() - momentum;
+  accounts_.guide_work += system_->kinetic_energy() - energy;
+}
+
 void DrawbarRig::place(std::span<const double> axle_height) {
   if (axle_height.size() != 1) throw physics_error("drawbar rig: expected one axle height");
   if (!std::isfinite(axle_height[0])) throw physics_error("drawbar rig: the axle height is not finite");
@@ -275,6 +298,7 @@ Outcome DrawbarRig::advance(std::span<const Wrench> wrenches, double duration, i
   if (!wrench.force.allFinite() || !wrench.moment.allFinite())
     return Outcome::failure("was pulled with a wrench that is not finite",
                             "it comes from the tire; try a smaller run.step");
+  if (!held_ && hold_axle_from_ >= 0.0 && system_->time() >= hold_axle_from_) hold_axle();
   system_->set_load(rim_, wrench.force, wrench.moment);
 
   const double step = duration / substeps;
@@ -304,13 +328,8 @@ Outcome DrawbarRig::advance(std::span<const Wrench> wrenches, double duration, i
   row_.damper_force = damper / substeps;
   report_.lateral_force = wrench.force.dot(left_);
   report_.aligning_moment = wrench.moment.z();
-  const double rolled = report_.spin * radius_, slid = rolled - report_.speed;
-  if (options_.move_from > 0.0 && system_->time() <= options_.move_from)
-    report_.slip = 0.0;  // the wheel stands
-  else if (std::abs(slid) <= kSlipLimit * std::abs(rolled))
-    report_.slip = rolled == 0.0 ? 0.0 : slid / rolled;
-  else
-    report_.slip = (slid > 0.0) == (rolled > 0.0) ? kSlipLimit : -kSlipLimit;
+  const bool stands = options_.move_from > 0.0 && system_->time() <= options_.move_from;
+  report_.slip = stands ? 0.0 : reported_slip(report_.spin * radius_, report_.speed);
   measure_end();
   // Fused whatever else the compiler does here: the same bits in every build.
   row_.pull_work = std::fma(duration * row_.pull_raw, report_.speed, row_.pull_work);
@@ -397,11 +416,13 @@ void DrawbarRig::save(Archive& archive) const {
   archive.put("mass", system_->body(rim_).mass);
   archive.put("radius", radius_);
   archive.put("placed_height", placed_height_);
+  if (held_) archive.put("held_travel", *held_);
 }
 
 void DrawbarRig::restore(const Archive& archive) {
   const Archive::Scope scope(archive, "rig/");
   build(archive.get_double("placed_height"));
+  if (archive.has("held_travel")) add_stop(archive.get_double("held_travel"));
   if (archive.get_double("mass") != system_->body(rim_).mass || archive.get_double("radius") != radius_)
     throw Error(ExitCode::io, "saved rig state belongs to another tire (mass or radius differ)");
   system_->restore(archive);
@@ -414,7 +435,12 @@ void DrawbarRig::restore(const Archive& archive) {
 }  // namespace
 
 std::unique_ptr<Rig> make_drawbar_rig(const DrawbarRigOptions& options) {
-  return std::make_unique<DrawbarRig>(options);
+  return std::make_unique<DrawbarRig>(options, -1.0);
+}
+
+std::unique_ptr<Rig> make_held_drawbar_rig(const DrawbarRigOptions& options, double hold_axle_from) {
+  FURROW_ASSERT(hold_axle_from >= 0.0, hold_axle_from);
+  return std::make_unique<DrawbarRig>(options, hold_axle_from);
 }
 
 }  // namespace furrow::rigs

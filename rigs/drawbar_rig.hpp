@@ -72,4 +72,8 @@ void visit_fields(Visit&& visit, FieldsOf<DrawbarRigOptions> auto& s) {
 
 std::unique_ptr<Rig> make_drawbar_rig(const DrawbarRigOptions& options);
 
+/// The same, until a stop takes hold of the vertical slider where the wheel then stands on its load. What speed the
+/// slider still has ends in the stop. @param hold_axle_from s, at touchdown_time or later
+std::unique_ptr<Rig> make_held_drawbar_rig(const DrawbarRigOptions& options, double hold_axle_from);
+
 }  // namespace furrow::rigs

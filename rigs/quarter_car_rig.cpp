@@ -8,6 +8,8 @@
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/core/mean_turn.hpp"
+#include "rigs/reported_slip.hpp"
+#include "rigs/ride_row.hpp"
 #include "vehicle/multibody/system.hpp"
 
 namespace furrow::rigs {
@@ -16,7 +18,6 @@ namespace {
 // Guided bodies do not turn: their inertia only scales the constraint matrix.
 constexpr double kGuidedInertia = 20.0;  // kg m²
 constexpr double kTrolleyMass = 1.0;     // kg: rides on the rail and feels nothing but the drive
-constexpr double kSlipLimit = 1e6;       // reported instead of larger magnitudes when the wheel hardly turns
 
 class QuarterCar final : public Rig {
  public:
@@ -31,7 +32,7 @@ class QuarterCar final : public Rig {
   std::string kind() const override { return "quarter_car"; }
   int wheel_count() const override { return 1; }
   Vec3 heading(int) const override { return Vec3::UnitX(); }
-  std::vector<Subject> subjects() const override { return {{"wheel0", columns_of<QuarterCarRow>()}}; }
+  std::vector<Subject> subjects() const override { return {{"wheel0", columns_of<RideRow>()}}; }
   void measure(int, std::span<double> values) const override { get_values(row_, values); }
 
   void add_tire_mass(int wheel, const MassProperties& tire, double tire_radius) override;
@@ -61,7 +62,7 @@ class QuarterCar final : public Rig {
   int drive_ = 0;                                            // motor
   int lowering_ = 0, spring_ = 0;                            // force elements
   WheelReport report_;
-  QuarterCarRow row_;
+  RideRow row_;
   RigAccounts accounts_ = RigAccounts::none();
 };
 
@@ -161,13 +162,8 @@ Outcome QuarterCar::advance(std::span<const Wrench> wrenches, double duration, i
   report_.spin = turn / duration;
   report_.lateral_force = wrench.force.y();
   report_.aligning_moment = wrench.moment.z();
-  const double rolled = report_.spin * radius_, slid = rolled - report_.speed;
-  if (system_->time() <= options_.move_from)
-    report_.slip = 0.0;  // the wheel stands
-  else if (std::abs(slid) <= kSlipLimit * std::abs(rolled))
-    report_.slip = rolled == 0.0 ? 0.0 : slid / rolled;
-  else
-    report_.slip = (slid > 0.0) == (rolled > 0.0) ? kSlipLimit : -kSlipLimit;
+  const bool stands = system_->time() <= options_.move_from;
+  report_.slip = stands ? 0.0 : reported_slip(report_.spin * radius_, report_.speed);
   measure_end();
   return {};
 }

@@ -48,23 +48,6 @@ void visit_fields(Visit&& visit, FieldsOf<QuarterCarOptions> auto& s) {
   visit(Field{"rim_diametral_inertia", "kg m²", role::key}, s.rim_diametral_inertia);
 }
 
-/// What the rig adds to the table of its wheel.
-struct QuarterCarRow {
-  double body_height = 0.0;        // above where the body was placed, m
-  double body_acceleration = 0.0;  // upwards, m/s²
-  double travel = 0.0;             // s, m
-  double force = 0.0;              // F, N
-  double drive_force = 0.0;        // of what keeps the trolley at its speed, N
-};
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<QuarterCarRow> auto& r) {
-  visit(column::instant("body_height_m", "m"), r.body_height);
-  visit(column::mean("body_acceleration_m_per_s2", "m/s²"), r.body_acceleration);
-  visit(column::instant("suspension_travel_m", "m"), r.travel);
-  visit(column::mean("suspension_force_N", "N"), r.force);
-  visit(column::mean("trolley_force_N", "N"), r.drive_force);
-}
-
 /// @pre every option is given
 std::unique_ptr<Rig> make_quarter_car(const QuarterCarOptions& options);
 

@@ -6,7 +6,9 @@
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_fields.hpp"
 #include "protocol/files/json_text.hpp"
+#include "rigs/cleat_stand_spec.hpp"
 #include "rigs/drawbar_spec.hpp"
+#include "rigs/half_car_spec.hpp"
 #include "rigs/quarter_car_spec.hpp"
 #include "rigs/vehicle_spec.hpp"
 
@@ -14,7 +16,9 @@ namespace furrow::rigs {
 namespace {
 
 constexpr auto kKinds = std::to_array<RigKind>({
+    {"cleat_stand", key_list<CleatStandOptions>(), read_cleat_stand},
     {"drawbar", {drawbar_fields, changed_fields<DrawbarRigOptions>}, read_drawbar},
+    {"half_car", key_list<HalfCarOptions>(), read_half_car},
     {"quarter_car", key_list<QuarterCarOptions>(), read_quarter_car},
     {"vehicle", key_list<VehicleRigOptions>(), read_vehicle_rig, tires_of_vehicle},
 });

@@ -51,7 +51,7 @@ PLOTS = {
     "momentum": accounts.momentum,
     "scene": scene.scene,
 }
-QUARTER_CAR_PLOTS = {**PLOTS, "ride": ride.ride}
+RIDE_PLOTS = {**PLOTS, "ride": ride.ride}
 VEHICLE_PLOTS = {
     "vehicle": of_vehicle(vehicle_plots.vehicle),
     "wheel_forces": of_vehicle(wheels.wheel_forces),
@@ -122,7 +122,7 @@ def main():
     parser.add_argument("directory", type=pathlib.Path)
     parser.add_argument("others", type=pathlib.Path, nargs="*", help="further runs: one page that compares all of them")
     parser.add_argument("--out", type=pathlib.Path, help="folder for the plots (default: the run directory)")
-    parser.add_argument("--only", action="append", choices=QUARTER_CAR_PLOTS | VEHICLE_PLOTS | SOIL_PLOTS | PRESS_PLOTS | MODES_PLOTS | KINEMATICS_PLOTS | SWEEP_PLOTS | BEDS_PLOTS, help="this plot only; may be repeated")
+    parser.add_argument("--only", action="append", choices=RIDE_PLOTS | VEHICLE_PLOTS | SOIL_PLOTS | PRESS_PLOTS | MODES_PLOTS | KINEMATICS_PLOTS | SWEEP_PLOTS | BEDS_PLOTS, help="this plot only; may be repeated")
     parser.add_argument("--quiet", action="store_true", help="print errors only")
     arguments = parser.parse_args()
     global quiet
@@ -151,7 +151,7 @@ def main():
     of_beds = of_sweep and run.values.get("beds")
     plots = (SOIL_PLOTS if of_soil else BEDS_PLOTS if of_beds else SWEEP_PLOTS if of_sweep else PRESS_PLOTS if of_press
              else MODES_PLOTS if of_modes else KINEMATICS_PLOTS if of_kinematics else VEHICLE_PLOTS if run.has_vehicle
-             else QUARTER_CAR_PLOTS if ride.COLUMN in run.series else PLOTS)
+             else RIDE_PLOTS if ride.COLUMN in run.series else PLOTS)
     for name in arguments.only or plots:
         try:
             figure = plots[name](run)

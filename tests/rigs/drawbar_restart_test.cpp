@@ -62,6 +62,29 @@ TEST(Restart, continues_bit_for_bit_whether_placed_before_or_not) {
   }
 }
 
+TEST(Restart, continues_bit_for_bit_from_before_and_after_the_axle_is_held) {
+  rigs::DrawbarRigOptions options = reference_options();
+  options.mode = "free_rolling";
+  options.touchdown_time = 0.012;
+  for (const int saved : {250, 313, 400}) {
+    const auto original = rigs::make_held_drawbar_rig(options, 0.0125);
+    original->add_tire_mass(0, tire_mass(), kRadius);
+    original->place(std::array{0.5});
+    int i = 0;
+    for (; i < saved; ++i) advance(*original, varying(i), 1);
+    Archive archive;
+    original->save(archive);
+    const auto fresh = rigs::make_held_drawbar_rig(options, 0.0125);
+    fresh->add_tire_mass(0, tire_mass(), kRadius);
+    fresh->restore(archive);
+    expect_equal(*original, *fresh);
+    for (; i < 600; ++i)
+      for (rigs::Rig* rig : {original.get(), fresh.get()}) advance(*rig, varying(i), 1);
+    expect_equal(*original, *fresh);
+    EXPECT_NEAR(original->report(0).vertical_speed, 0.0, 1e-12);
+  }
+}
+
 TEST(Restart, the_list_of_fields_of_a_report_forgets_no_member) {
   EXPECT_EQ(names_of<rigs::WheelReport>().size(), member_count<rigs::WheelReport>());
 }

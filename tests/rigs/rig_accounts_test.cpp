@@ -50,6 +50,34 @@ struct Ride {
 
 }  // namespace
 
+TEST(RigAccounts, of_an_axle_that_is_held_close_and_its_rail_bears_what_the_tire_gives_beyond_the_weight) {
+  rigs::DrawbarRigOptions options = reference_options();
+  options.mode = "free_rolling";
+  options.touchdown_time = 0.02;
+  const auto rig = rigs::make_held_drawbar_rig(options, 0.05);
+  rig->add_tire_mass(0, tire_mass(), kRadius);
+  rig->place(std::array{0.5});
+  const rigs::RigAccounts start = rig->accounts();
+  const auto push = [&](int from, int to) {
+    for (int i = from; i < to; ++i)
+      advance(*rig, wrench(Vec3(-300.0 * std::sin(0.01 * i), 0.0, 4000.0 + 2000.0 * std::sin(0.02 * i)),
+                           Vec3(0.0, 30.0, 0.0)), 1);
+  };
+  push(0, 1251);  // one step beyond 0.05 s
+  const double height = rig->rim(0).position.z();
+  const rigs::RigAccounts held = rig->accounts();
+  EXPECT_LT(height, 0.5);  // it had begun to fall
+  push(1251, 4000);
+  EXPECT_NEAR(rig->rim(0).position.z(), height, 1e-12);
+  EXPECT_NEAR(rig->report(0).vertical_speed, 0.0, 1e-12);
+  const rigs::RigAccounts end = rig->accounts();
+  // At rest in z, guide and tire carry the weight together; what the guide gave while the axle fell is before that.
+  EXPECT_NEAR((end.guide_impulse + end.gravity_impulse + end.tire_impulse - held.guide_impulse - held.gravity_impulse -
+               held.tire_impulse).z(), 0.0, 1e-8 * end.gravity_impulse.norm());
+  EXPECT_LT(momentum_residual(start, end).norm(), 1e-8 * end.tire_impulse.norm());
+  EXPECT_NEAR(energy_residual(start, end), 0.0, 1e-4 * (std::abs(end.pull_work) + std::abs(end.tire_work)));
+}
+
 TEST(RigAccounts, a_wheel_let_down_by_its_damper_loses_its_height_and_the_ground_carries_nothing) {
   rigs::DrawbarRigOptions options = reference_options();
   options.angular_speed = 0.0;

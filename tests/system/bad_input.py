@@ -25,6 +25,18 @@ def curb(rig=(), profile=None):
                        "run": {"step": 4e-5, "end": 2.6, "average_from": 2.3}})
 
 
+def half_car(**rig):
+    """A half car on two planar tires, with keys of its own."""
+    return json.dumps({"format_version": 1, "rig": {"type": "half_car", "speed": 4.0, "body_mass": 2000, **rig},
+                       "tire": {"file": "aligator_planar.json"}, "terrain": {"engine": "rigid"}, "run": {"step": 4e-5, "end": 1.0}})
+
+
+def cleat_stand(rig):
+    """A cleat test stand on a plane, with keys of its own."""
+    return json.dumps({"format_version": 1, "rig": {"type": "cleat_stand", **rig}, "tire": {"file": "aligator_planar.json"},
+                       "terrain": {"engine": "rigid"}, "run": {"step": 4e-5, "end": 1.0}})
+
+
 EMPIRICAL = json.dumps({**changed(terrain=None), "terrain": {"engine": "scm"}})
 
 # (name, file text or bytes, flags of `furrow run`, what the error line must hold)
@@ -136,7 +148,24 @@ SCENARIOS = [
     ("negative_suspension", curb({"suspension_stiffness": -1}), [], "key 'rig.suspension_stiffness': is -1 N/m, expected a number, 0 to"),
     ("negative_unsprung_mass", curb({"unsprung_mass": -2}), [], "key 'rig.unsprung_mass': is -2 kg, expected a number, above 0"),
     ("backward_quarter_car", curb({"speed": -1}), [], "key 'rig.speed': is -1 m/s, expected a number, 0 to"),
-    ("body_mass_of_a_drawbar_rig", text(rig={"body_mass": 300}), [], "key 'rig.body_mass': is a key of type 'quarter_car', but rig.type is 'drawbar'"),
+    ("body_mass_of_a_drawbar_rig", text(rig={"body_mass": 300}), [], "key 'rig.body_mass': is a key of type 'half_car' or 'quarter_car', but rig.type is 'drawbar'"),
+    ("half_car_without_wheelbase", half_car(wheelbase=0), [], "key 'rig.wheelbase': is 0 m, expected a number, above 0"),
+    ("wheelbase_as_text", half_car(wheelbase="long"), [], "key 'rig.wheelbase': is 'long', expected a number"),
+    ("half_car_on_its_front_wheel", half_car(front_share=1), [], "key 'rig.front_share': is 1, expected a number, above 0"),
+    ("half_car_on_its_rear_wheel", half_car(front_share=0), [], "key 'rig.front_share': is 0, expected a number, above 0"),
+    ("negative_pitch_inertia", half_car(pitch_inertia=-5), [], "key 'rig.pitch_inertia': is -5 kg m², expected a number, above 0"),
+    ("negative_rear_spring", half_car(rear_suspension_stiffness=-1), [], "key 'rig.rear_suspension_stiffness': is -1 N/m, expected a number, 0 to"),
+    ("negative_rear_damper", half_car(rear_suspension_damping=-1), [], "key 'rig.rear_suspension_damping': is -1 N s/m, expected a number, 0 to"),
+    ("load_beside_body_mass_of_a_half_car", half_car(load=30e3), [], "key 'rig.load': is given beside 'rig.body_mass', expected one of the two"),
+    ("half_car_lighter_than_its_wheels", half_car(body_mass=None, load=100), [], "key 'rig.load': is 100 N, expected above"),
+    ("slip_of_a_half_car", half_car(slip=0.2), [], "key 'rig.slip': is a key of type 'drawbar', but rig.type is 'half_car'"),
+    ("held_axle_of_a_half_car", half_car(hold_axle_from=1), [], "key 'rig.hold_axle_from': is a key of type 'cleat_stand', but rig.type is 'half_car'"),
+    ("wheelbase_of_a_quarter_car", curb({"wheelbase": 2}), [], "key 'rig.wheelbase': is a key of type 'half_car', but rig.type is 'quarter_car'"),
+    ("negative_time_of_the_stop", cleat_stand({"hold_axle_from": -1}), [], "key 'rig.hold_axle_from': is -1 s, expected a number, 0 to"),
+    ("stop_of_a_drawbar_rig", text(rig={"hold_axle_from": 0.1}), [], "key 'rig.hold_axle_from': is a key of type 'cleat_stand', but rig.type is 'drawbar'"),
+    ("load_beside_carrier_mass_of_a_cleat_stand", cleat_stand({"load": 4e3, "carrier_mass": 400}), [], "key 'rig.load': is given beside 'rig.carrier_mass', expected one of the two"),
+    ("slip_of_a_cleat_stand", cleat_stand({"slip": 0.1}), [], "key 'rig.slip': is a key of type 'drawbar', but rig.type is 'cleat_stand'"),
+    ("stop_as_text", cleat_stand({"hold_axle_from": "soon"}), [], "key 'rig.hold_axle_from': is 'soon', expected a number"),
 ]
 
 

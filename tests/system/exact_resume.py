@@ -134,6 +134,36 @@ class Vehicle(Exact, CheckpointTest):
         self.same_as_whole()
 
 
+def on_a_curb(rig, **tire):
+    """A quick run over a curb that keeps all its checkpoints."""
+    return {
+        "format_version": 1,
+        "rig": {"speed": 4.0, "ramp": 0.01, "rim_mass": 15, "rim_spin_inertia": 0.7, **rig},
+        "tire": {"file": "hmmwv_lumped.json", **tire},
+        "terrain": {"engine": "rigid", "profile": [[0.2, 0], [0.2, 0.02]], "ground_stiffness": 2e7, "ground_shear_stiffness": 5e6,
+                    "ground_damping": 5e3},
+        "run": {"step": 2e-4, "end": 0.08, "average_from": 0.04, "peer_timeout": 20},
+        "output": {"series_interval": 0.002, "frame_interval": 0.01},
+        "checkpoint": {"interval": 0.01, "keep": 1000},
+    }
+
+
+class QuarterCar(Exact, CheckpointTest):
+    SCENARIO = on_a_curb({"type": "quarter_car", "body_mass": 400}, rigid=True, elements_circumference=40)
+
+
+class HalfCar(Exact, CheckpointTest):
+    """The front wheel has met the curb, the rear one has not."""
+    SCENARIO = on_a_curb({"type": "half_car", "body_mass": 800, "wheelbase": 1.5, "front_share": 0.6}, rigid=True, elements_circumference=40)
+    WHEELS = 2
+
+
+class CleatStand(Exact, CheckpointTest):
+    """The stop takes hold of the axle between two checkpoints."""
+    SCENARIO = on_a_curb({"type": "cleat_stand", "carrier_mass": 400, "hold_axle_from": 0.045}, rigid=True, elements_circumference=40)
+    LOADED = 6
+
+
 class BeforeTheWall(CheckpointTest):
     """A vehicle comes near the end wall: the rig knows two steps before the end, the tires too, the terrain one."""
     SCENARIO = {

@@ -1,0 +1,87 @@
+// Half of a vehicle for ride: ground –prismatic (imposed speed)– trolley –vertical slider– hub –hinge about y– body; of
+// each of two wheels, front and rear: trolley –vertical slider– carrier –free revolute– rim, spring and damper between
+// carrier and body.
+//
+// The wheels roll freely; what pulls them along is the trolley, so that only the suspensions pitch the body. With the
+// travel s of a suspension, positive in compression, the body is pushed up above the axle by
+//   F = W + k s + c ṡ                                                                                          (1)
+// and the carrier down, W the body's weight there. The struts are 1 m long and stand upright at rest: (1) acts along
+// them, so the rig is linear in heights and pitch but for terms of third order. The hub is a hundredth of the body
+// and sits in its centre. A damper between trolley and hub lets the wheels down onto the ground.
+#pragma once
+
+#include <memory>
+
+#include "protocol/core/column.hpp"
+#include "protocol/core/fields.hpp"
+#include "rigs/rig.hpp"
+
+namespace furrow::rigs {
+
+/// Every field is the scenario key `rig.<name>`. What is negative here is open: RigSpec::mount fills it in.
+struct HalfCarOptions {
+  double speed = 4.0;            // of the trolley, m/s
+  double ramp = 0.15;            // smooth (C²) start from rest, s; 0: full speed from t = 0
+  double move_from = 0.0;        // when it starts, s
+  double touchdown_time = -1.0;  // how long the damper lets the wheels down, s
+  double lowering_speed = -1.0;  // m/s, at which it does
+  double start = 0.0;            // x of the front axle at t = 0, m; where the scenario does not say it, it is filled in
+  double wheelbase = 2.7;        // a + b, m
+  double front_share = 0.5;      // of the body's weight, on the front wheel: b/(a + b)
+  double load = -1.0;            // weight of all that the ground carries, N
+  double body_mass = -1.0;       // kg; in place of the load
+  double pitch_inertia = -1.0;   // J of the body about its centre, kg m²
+  double unsprung_mass = -1.0;   // of each carrier, kg: what hangs under a spring beside rim and tire
+  double suspension_stiffness = -1.0;       // k of the front, N/m
+  double suspension_damping = -1.0;         // c of the front, N s/m
+  double rear_suspension_stiffness = -1.0;  // k of the rear, N/m
+  double rear_suspension_damping = -1.0;    // c of the rear, N s/m
+  double rim_mass = -1.0;                   // of each rim, kg
+  double rim_spin_inertia = -1.0;           // kg m², about the axle
+  double rim_diametral_inertia = -1.0;      // kg m²
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<HalfCarOptions> auto& s) {
+  visit(Field{"speed", "m/s", role::key}, s.speed);
+  visit(Field{"ramp", "s", role::key}, s.ramp);
+  visit(Field{"move_from", "s", role::key}, s.move_from);
+  visit(Field{"touchdown_time", "s", role::key}, s.touchdown_time);
+  visit(Field{"lowering_speed", "m/s", role::key}, s.lowering_speed);
+  visit(Field{"start", "m", role::key}, s.start);
+  visit(Field{"wheelbase", "m", role::key}, s.wheelbase);
+  visit(Field{"front_share", "-", role::key}, s.front_share);
+  visit(Field{"load", "N", role::key}, s.load);
+  visit(Field{"body_mass", "kg", role::key}, s.body_mass);
+  visit(Field{"pitch_inertia", "kg m²", role::key}, s.pitch_inertia);
+  visit(Field{"unsprung_mass", "kg", role::key}, s.unsprung_mass);
+  visit(Field{"suspension_stiffness", "N/m", role::key}, s.suspension_stiffness);
+  visit(Field{"suspension_damping", "N s/m", role::key}, s.suspension_damping);
+  visit(Field{"rear_suspension_stiffness", "N/m", role::key}, s.rear_suspension_stiffness);
+  visit(Field{"rear_suspension_damping", "N s/m", role::key}, s.rear_suspension_damping);
+  visit(Field{"rim_mass", "kg", role::key}, s.rim_mass);
+  visit(Field{"rim_spin_inertia", "kg m²", role::key}, s.rim_spin_inertia);
+  visit(Field{"rim_diametral_inertia", "kg m²", role::key}, s.rim_diametral_inertia);
+}
+
+/// The body's own table (subject `body`).
+struct HalfCarBodyRow {
+  double height = 0.0;              // of the centre, above where it was placed, m
+  double acceleration = 0.0;        // of the centre, upwards, m/s²
+  double pitch = 0.0;               // nose down, rad
+  double pitch_acceleration = 0.0;  // rad/s²
+  double drive_force = 0.0;         // of what keeps the trolley at its speed, N
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<HalfCarBodyRow> auto& r) {
+  using namespace column;
+  visit(instant("body_height_m", "m"), r.height);
+  visit(mean("body_acceleration_m_per_s2", "m/s²"), r.acceleration);
+  visit(instant("pitch_rad", "rad"), r.pitch);
+  visit(mean("pitch_acceleration_rad_per_s2", "rad/s²"), r.pitch_acceleration);
+  visit(mean("trolley_force_N", "N"), r.drive_force);
+}
+
+/// @pre every option is given
+std::unique_ptr<Rig> make_half_car(const HalfCarOptions& options);
+
+}  // namespace furrow::rigs

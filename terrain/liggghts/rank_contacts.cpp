@@ -18,6 +18,9 @@
 namespace furrow::terrain::liggghts {
 namespace {
 
+constexpr double kRoom = 10.0;      // around a rank's grains for what they may move in one interval, largest radii
+constexpr double kTireRoom = 3.0;   // around a tire within which grains are looked for, skins
+
 using dem::ContactForce;
 using dem::ContactHistory;
 using dem::ContactMotion;
@@ -31,6 +34,12 @@ void add(double* to, const Triple<double>& v) { to[0] += v.x, to[1] += v.y, to[2
 
 ContactHistory<double> history_of(const Carried& c) {
   return {triple(c.tangential), c.root_overlap, triple(c.rolling)};
+}
+
+/// What is not a number is not inside.
+bool inside(const SurfaceBox& box, const double* x) {
+  return x[0] > box.lo.x() && x[0] < box.hi.x() && x[1] > box.lo.y() && x[1] < box.hi.y() && x[2] > box.lo.z() &&
+         x[2] < box.hi.z();
 }
 
 Carried carried_of(int partner, const Triple<double>& normal, const ContactHistory<double>& h) {
@@ -76,9 +85,11 @@ void RankContacts::attach(const SurfaceMesh& mesh, const ContactMaterial& materi
   tires_.push_back(std::move(tire));
 }
 
-void RankContacts::begin_interval(std::span<const SurfaceState> targets, double duration, int steps,
-                                  const SurfaceBox& grains) {
+void RankContacts::begin_interval(std::span<const SurfaceState> targets, double duration, int steps) {
   FURROW_ASSERT(targets.size() == tires_.size() && steps > 0, targets.size(), tires_.size(), steps);
+  SurfaceBox grains = box_;
+  const double room = kRoom * params_.largest_radius();
+  grains.lo.array() -= room, grains.hi.array() += room;
   for (std::size_t k = 0; k < tires_.size(); ++k) {
     Tire& tire = tires_[k];
     tire.start.swap(tire.end);
@@ -93,7 +104,18 @@ void RankContacts::begin_interval(std::span<const SurfaceState> targets, double 
   interval_overlap_ = hardest_share_ = 0.0;
 }
 
-bool RankContacts::begin_step() {
+void RankContacts::lists_made(const OwnGrains& grains) {
+  looked_ = false;
+  Vec3 lo = Vec3::Constant(1e300), hi = -lo;
+  for (int g = 0; g < grains.count; ++g)
+    for (int axis = 0; axis < 3; ++axis) {
+      lo[axis] = std::min(lo[axis], grains.position[g][axis]);
+      hi[axis] = std::max(hi[axis], grains.position[g][axis]);
+    }
+  box_ = {lo, hi};
+}
+
+StepWish RankContacts::begin_step() {
   const Vec3 r = Vec3::Constant(params_.largest_radius());
   for (Tire& tire : tires_) {
     tire.collider->move_to(static_cast<double>(step_) / steps_);
@@ -103,7 +125,7 @@ bool RankContacts::begin_step() {
   }
   now_ = {};
   on_grains_.setZero();
-  return energies_.due();
+  return {energies_.due(), step_ + 1 == steps_};
 }
 
 void RankContacts::add_forces(const OwnGrains& grains, bool losses) {
@@ -119,20 +141,14 @@ void RankContacts::add_forces(const OwnGrains& grains, bool losses) {
 template <class Law, bool kRolling>
 void RankContacts::add_forces_of(const OwnGrains& grains, bool losses) {
   const dem::Bin& bin = params_.bin;
-  const SurfaceBox apart = apart_from_walls();
-  double low = 1e300;  // of all tires
-  for (const Tire& t : tires_) low = std::min(low, t.near.lo.z());
-  for (int g = 0; g < grains.count; ++g) {
+  const SurfaceBox apart = apart_from_walls(params_.largest_radius());
+  if (!looked_far_enough()) look_for_touchable(grains);
+  for (const int g : touchable_) {
     const double* const x = grains.position[g];
     std::vector<Carried>& mine = grains.carried[g];
-    // Most grains touch nothing but each other. What is not a number is not inside.
-    const bool wall = !(x[0] > apart.lo.x() && x[0] < apart.hi.x() && x[1] > apart.lo.y() &&
-                        x[1] < apart.hi.y() && x[2] > apart.lo.z() && x[2] < apart.hi.z());
+    const bool wall = !inside(apart, x);
     bool tire = false;
-    if (x[2] > low)
-      for (const Tire& t : tires_)
-        tire |= x[2] < t.near.hi.z() && x[2] > t.near.lo.z() && x[0] > t.near.lo.x() &&
-                x[0] < t.near.hi.x() && x[1] > t.near.lo.y() && x[1] < t.near.hi.y();
+    for (const Tire& t : tires_) tire |= inside(t.near, x);
     if (!wall && !tire && mine.empty()) continue;
     const double r = grains.radius[g];
     if (wall && !lost_ && !bin.holds({x[0], x[1], x[2], r}))
@@ -158,9 +174,38 @@ void RankContacts::add_forces_of(const OwnGrains& grains, bool losses) {
   for (Tire& tire : tires_) tire.sum->add_substep(tire.forces, *tire.collider, times_.kick, times_.dt);
 }
 
-SurfaceBox RankContacts::apart_from_walls() const {
+/// Most grains touch nothing but each other. From one making of the lists to the next they move by a skin against where
+/// they stand now at the most: half a skin from where they stood when lists were made, on either side.
+void RankContacts::look_for_touchable(const OwnGrains& grains) {
+  const SurfaceBox apart = apart_from_walls(params_.largest_radius() + params_.skin);
+  double low = 1e300;  // of all tires
+  for (Tire& t : tires_) {
+    t.looked_for = t.near;
+    t.looked_for.lo.array() -= kTireRoom * params_.skin, t.looked_for.hi.array() += kTireRoom * params_.skin;
+    low = std::min(low, t.looked_for.lo.z());
+  }
+  touchable_.clear();
+  for (int g = 0; g < grains.count; ++g) {
+    const double* const x = grains.position[g];
+    bool near = !inside(apart, x) || !grains.carried[g].empty();
+    if (x[2] > low)
+      for (const Tire& t : tires_) near |= inside(t.looked_for, x);
+    if (near) touchable_.push_back(g);
+  }
+  looked_ = true;
+}
+
+bool RankContacts::looked_far_enough() const {
+  const double skin = params_.skin;
+  return looked_ && std::all_of(tires_.begin(), tires_.end(), [skin](const Tire& t) {
+           return (t.near.lo.array() - skin >= t.looked_for.lo.array()).all() &&
+                  (t.near.hi.array() + skin <= t.looked_for.hi.array()).all();
+         });
+}
+
+SurfaceBox RankContacts::apart_from_walls(double r) const {
   const dem::Bin& bin = params_.bin;
-  const double far = 1e6, r = params_.largest_radius();  // farther than any wall; as in Bin::holds
+  const double far = 1e6;  // farther than any wall; as in Bin::holds
   SurfaceBox box{{r, r - 0.5 * bin.width, r}, {bin.length - r, 0.5 * bin.width - r, far}};
   if (bin.periodic_x) box.lo.x() = -far, box.hi.x() = far;
   if (bin.periodic_y) box.lo.y() = -far, box.hi.y() = far;
@@ -266,7 +311,15 @@ void RankContacts::touch_tire(const OwnGrains& grains, int g, int k, bool losses
   }
 }
 
-void RankContacts::end_step(const PairSums& pairs, bool losses) {
+void RankContacts::sum_motion(const OwnGrains& grains) {
+  sums_.motion = {};
+  for (int g = 0; g < grains.count; ++g) {
+    const double size = grains.radius[g] / params_.grain.radius, volume = size * size * size;
+    sums_.motion.add(grains.position[g], grains.velocity[g], grains.spin[g], volume, volume * size * size);
+  }
+}
+
+void RankContacts::end_step(const PairSums& pairs, const MotionSums& motion, bool losses) {
   const double dt = times_.kick;
   sums_.elastic = pairs.elastic + now_.elastic;
   sums_.wall_impulse += dt * Vec3(now_.wall_force.x, now_.wall_force.y, now_.wall_force.z);
@@ -282,7 +335,7 @@ void RankContacts::end_step(const PairSums& pairs, bool losses) {
     energies_.sample(1, [&](int) { return &all; });
   }
   energies_.advance(dt, true, 0.0);
-  ++step_;
+  if (++step_ == steps_) sums_.motion = motion;
 }
 
 void RankContacts::end_interval(double duration, std::span<NodalForces> forces, std::span<ContactSums> sums) {
@@ -294,7 +347,9 @@ void RankContacts::end_interval(double duration, std::span<NodalForces> forces, 
 }
 
 void RankContacts::begin_accounts(const dem::Stored& stored, double elastic) {
+  const MotionSums motion = sums_.motion;
   sums_ = {};
+  sums_.motion = motion;
   sums_.elastic = elastic;
   energies_.begin({stored}, 0.0);
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "nodes/scenario/explain.hpp"
@@ -68,6 +69,19 @@ TEST(TerrainKeys, a_key_of_another_engine_is_an_error_in_a_scenario_written_for_
   EXPECT_EQ(with_terrain(R"({"ground_damping": 1e4})").complaint().substr(0, 59),
             ": key 'terrain.ground_damping': is a key of engine 'rigid',");
   EXPECT_TRUE(with_terrain(R"({"ground_damping": 2.5e4})").load().warnings.empty()) << "the default";
+}
+
+/// In LIGGGHTS no grain sleeps, and every contact is computed in double precision.
+TEST(TerrainKeys, what_an_engine_cannot_do_is_refused_even_where_it_is_the_default) {
+  for (const char* key : {R"("activity": true)", R"("precision": "mixed")"}) {
+    const std::string text = fmt::format(R"({{"engine": "liggghts", {}}})", key);
+    EXPECT_NE(with_terrain(text).complaint().find("is a key of engine 'dem', but terrain.engine is 'liggghts'"),
+              std::string::npos)
+        << with_terrain(text).complaint();
+  }
+  const scenario::Scenario s = with_terrain(R"({"activity": true})").load({{"terrain.engine", "liggghts"}});
+  ASSERT_EQ(s.warnings.size(), 1U);
+  EXPECT_TRUE(s.warnings[0].ends_with("keys of other engines are ignored: activity")) << s.warnings[0];
 }
 
 TEST(TerrainKeys, an_engine_chosen_on_the_command_line_sets_keys_of_others_aside_with_one_warning) {

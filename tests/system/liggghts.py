@@ -142,7 +142,8 @@ class Refused(CheckpointTest):
     SCENARIO = on_liggghts(changed(run={"step": 2e-4, "end": 0.01, "average_from": 0.0}), 1)
 
     def test_keys_that_it_cannot_honour(self):
-        for key, value in (("activity", False), ("precision", "double"), ("ground_stiffness", 1e8)):
+        for key, value in (("activity", False), ("activity", True), ("precision", "double"), ("precision", "mixed"),
+                           ("ground_stiffness", 1e8)):
             with self.subTest(key):
                 path = write_scenario(self.folder, on_liggghts(self.SCENARIO, 1, **{key: value}), "wrong.json")
                 done = self.program("run", path, "--out", self.run_folder, code=2)

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <string_view>
 
 #include "protocol/files/json_fields.hpp"
 #include "protocol/files/read_context.hpp"
@@ -15,8 +14,6 @@ struct TerrainEntry {
   KeyList keys;      // of its options
   /// @pre the section was checked against the schema. @throws Error(bad_input) for a file that does not exist
   std::unique_ptr<TerrainSpec> (*read)(const nlohmann::json& section, const ReadContext& context);
-  /// Keys of other engines that this one cannot honour: refused even with their default. Null: none.
-  bool (*denies)(std::string_view key) = nullptr;
 };
 
 }  // namespace furrow::terrain

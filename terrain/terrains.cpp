@@ -24,8 +24,7 @@ namespace {
 constexpr auto kTerrains = std::to_array<TerrainEntry>({
     {"dem", key_list<dem::DemOptions>(), dem::read_dem_spec},
     {"rigid", key_list<GroundOptions>(), read_ground_spec},
-    {"liggghts", key_list<liggghts::LiggghtsOptions>(), liggghts::read_liggghts_spec,
-     liggghts::is_key_of_dem_only},
+    {"liggghts", key_list<liggghts::LiggghtsOptions>(), liggghts::read_liggghts_spec},
     {"scm", key_list<scm::ScmOptions>(), scm::read_scm_spec},
 });
 
@@ -65,12 +64,6 @@ std::vector<std::string> engines_of_key(const std::string& key) {
     for (const Field& field : entry.keys.fields())
       if (field.is(role::key) && key == field.name) engines.emplace_back(entry.name);
   return engines;
-}
-
-bool engine_denies(const std::string& engine, const std::string& key) {
-  return std::any_of(terrains().begin(), terrains().end(), [&](const TerrainEntry& entry) {
-    return engine == entry.name && entry.denies && entry.denies(key);
-  });
 }
 
 std::vector<std::string> terrain_keys(unsigned roles) {

@@ -25,9 +25,6 @@ std::vector<Field> common_terrain_fields();
 /// The engines that take this key of the section; empty for the keys that all share and for those that none has.
 std::vector<std::string> engines_of_key(const std::string& key);
 
-/// Whether the engine cannot do what this key of another engine says, not even with its default.
-bool engine_denies(const std::string& engine, const std::string& key);
-
 /// Keys of all engines that have this role, in order, each once.
 std::vector<std::string> terrain_keys(unsigned roles);
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -22,7 +23,7 @@ struct ModelSection {
   /// The models that take a key of the section; empty for those that all share.
   std::vector<std::string> (*owners)(const std::string& key);
   /// Whether the model must not be asked for a key of others even with its default, as it cannot do what that says.
-  bool (*denies)(const std::string& model, const std::string& key) = nullptr;
+  bool (*denies)(std::string_view model, std::string_view key) = nullptr;
 };
 std::span<const ModelSection> model_sections();
 

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "protocol/core/fields.hpp"
+#include "protocol/core/vec.hpp"
 #include "terrain/dem/accounts/contact_losses.hpp"
 #include "terrain/dem/bin.hpp"
 #include "terrain/dem/contact_mixing.hpp"
@@ -69,8 +70,8 @@ struct PairSums {
 struct MotionSums {
   double volume = 0.0;               // Σ V
   double speed2 = 0.0, spin2 = 0.0;  // Σ V v², m²/s²; Σ V (r/r₀)² ω², rad²/s²
-  std::array<double, 3> speed{};     // Σ V v, m/s
-  std::array<double, 3> place{};     // Σ V x, m
+  Vec3 speed = Vec3::Zero();         // Σ V v, m/s
+  Vec3 place = Vec3::Zero();         // Σ V x, m
 
   void add(const double* x, const double* v, const double* w, double of_volume, double of_spread) {
     volume += of_volume;

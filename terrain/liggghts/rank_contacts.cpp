@@ -19,6 +19,7 @@ namespace furrow::terrain::liggghts {
 namespace {
 
 constexpr double kRoom = 10.0;      // around a rank's grains for what they may move in one interval, largest radii
+constexpr double kFar = 1e6;        // farther than any wall, m; as in Bin::holds
 constexpr double kTireRoom = 3.0;   // around a tire within which grains are looked for, skins
 
 using dem::ContactForce;
@@ -106,6 +107,8 @@ void RankContacts::begin_interval(std::span<const SurfaceState> targets, double 
 
 void RankContacts::lists_made(const OwnGrains& grains) {
   looked_ = false;
+  box_ = {Vec3::Constant(-kFar), Vec3::Constant(kFar)};  // to a rank without grains they may come from anywhere
+  if (grains.count == 0) return;
   Vec3 lo = Vec3::Constant(1e300), hi = -lo;
   for (int g = 0; g < grains.count; ++g)
     for (int axis = 0; axis < 3; ++axis) {
@@ -142,6 +145,7 @@ template <class Law, bool kRolling>
 void RankContacts::add_forces_of(const OwnGrains& grains, bool losses) {
   const dem::Bin& bin = params_.bin;
   const SurfaceBox apart = apart_from_walls(params_.largest_radius());
+  const bool by_lanes = !losses && !params_.sizes();
   if (!looked_far_enough()) look_for_touchable(grains);
   for (const int g : touchable_) {
     const double* const x = grains.position[g];
@@ -153,6 +157,11 @@ void RankContacts::add_forces_of(const OwnGrains& grains, bool losses) {
     const double r = grains.radius[g];
     if (wall && !lost_ && !bin.holds({x[0], x[1], x[2], r}))
       lost_ = LostGrain{grains.id[g] - 1, {x[0], x[1], x[2]}};
+    if constexpr (Law::kHistory)
+      if (by_lanes && !tire) {
+        wait_for_walls<Law, kRolling>(grains, g);
+        continue;
+      }
     past_.assign(mine.begin(), mine.end());
     mine.clear();
     taken_.assign(past_.size(), 0);
@@ -170,6 +179,10 @@ void RankContacts::add_forces_of(const OwnGrains& grains, bool losses) {
                                                         triple(past_[p].rolling)) /
                                    times_.since;
     }
+  }
+  if constexpr (Law::kHistory) {
+    evaluate_walls<Law, kRolling>(grains, floor_lanes_, coefficients_.floor);
+    evaluate_walls<Law, kRolling>(grains, side_lanes_, coefficients_.side);
   }
   for (Tire& tire : tires_) tire.sum->add_substep(tire.forces, *tire.collider, times_.kick, times_.dt);
 }
@@ -205,10 +218,9 @@ bool RankContacts::looked_far_enough() const {
 
 SurfaceBox RankContacts::apart_from_walls(double r) const {
   const dem::Bin& bin = params_.bin;
-  const double far = 1e6;  // farther than any wall; as in Bin::holds
-  SurfaceBox box{{r, r - 0.5 * bin.width, r}, {bin.length - r, 0.5 * bin.width - r, far}};
-  if (bin.periodic_x) box.lo.x() = -far, box.hi.x() = far;
-  if (bin.periodic_y) box.lo.y() = -far, box.hi.y() = far;
+  SurfaceBox box{{r, r - 0.5 * bin.width, r}, {bin.length - r, 0.5 * bin.width - r, kFar}};
+  if (bin.periodic_x) box.lo.x() = -kFar, box.hi.x() = kFar;
+  if (bin.periodic_y) box.lo.y() = -kFar, box.hi.y() = kFar;
   return box;
 }
 
@@ -232,6 +244,31 @@ void RankContacts::note(double overlap, double radius, const double* at) {
   if (share <= hardest_share_) return;
   hardest_share_ = share;
   hardest_at_ = {at[0], at[1], at[2]};
+}
+
+template <class Law, bool kRolling>
+void RankContacts::wait_for_walls(const OwnGrains& grains, int g) {
+  const double* const x = grains.position[g];
+  std::array<double, dem::kWalls> distance;
+  const unsigned touched = walls_touched(params_.bin, {x[0], x[1], x[2], grains.radius[g]}, distance);
+  std::vector<Carried>& mine = grains.carried[g];
+  keep_touched(mine, touched);
+  for (std::size_t entry = 0; entry < mine.size(); ++entry) {
+    const int wall = static_cast<int>(mine[entry].partner);
+    WallLanes& lanes = wall == dem::kFloor ? floor_lanes_ : side_lanes_;
+    lanes.grain[lanes.count] = g, lanes.wall[lanes.count] = wall;
+    lanes.entry[lanes.count] = static_cast<int>(entry);
+    lanes.distance[lanes.count] = distance[wall];
+    if (++lanes.count == WallLanes::kLanes)
+      evaluate_walls<Law, kRolling>(grains, lanes, wall == dem::kFloor ? coefficients_.floor : coefficients_.side);
+  }
+}
+
+template <class Law, bool kRolling>
+void RankContacts::evaluate_walls(const OwnGrains& grains, WallLanes& lanes, const dem::ContactCoefficients& c) {
+  wall_forces<Law, kRolling>(lanes, grains, c, params_.grain.radius, times_.since, now_, [&](double overlap, int g) {
+    note(overlap, params_.grain.radius, grains.position[g]);
+  });
 }
 
 template <class Law, bool kRolling>

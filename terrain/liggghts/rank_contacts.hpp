@@ -16,6 +16,7 @@
 #include "terrain/dem/solver_setup.hpp"
 #include "terrain/dem/wall_forces.hpp"
 #include "terrain/liggghts/engine.hpp"
+#include "terrain/liggghts/wall_lanes.hpp"
 #include "terrain/surface/surface_collider.hpp"
 #include "terrain/surface/surface_forces.hpp"
 
@@ -108,6 +109,11 @@ class RankContacts final : public StepWork {
 
   template <class Law, bool kRolling>
   void add_forces_of(const OwnGrains& grains, bool losses);
+  /// Its contacts with walls wait for others; at the latest they are evaluated at the end of add_forces_of.
+  template <class Law, bool kRolling>
+  void wait_for_walls(const OwnGrains& grains, int g);
+  template <class Law, bool kRolling>
+  void evaluate_walls(const OwnGrains& grains, WallLanes& lanes, const dem::ContactCoefficients& c);
   template <class Law, bool kRolling>
   void touch_walls(const OwnGrains& grains, int g, bool losses);
   template <class Law, bool kRolling>
@@ -136,6 +142,7 @@ class RankContacts final : public StepWork {
   std::optional<LostGrain> lost_;
   double interval_overlap_ = 0.0, hardest_share_ = 0.0;
   std::array<double, 3> hardest_at_{};
+  WallLanes floor_lanes_, side_lanes_;
   std::vector<int> touchable_;       // rising
   bool looked_ = false;              // touchable_ still holds
   SurfaceBox box_;                   // of the centres, when lists were made

@@ -7,13 +7,12 @@
 namespace furrow::terrain::liggghts {
 namespace {
 
-Vec3 vec(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
-
 void add(MotionSums& to, const MotionSums& one) {
   to.volume += one.volume;
   to.speed2 += one.speed2;
   to.spin2 += one.spin2;
-  for (int k = 0; k < 3; ++k) to.speed[k] += one.speed[k], to.place[k] += one.place[k];
+  to.speed += one.speed;
+  to.place += one.place;
 }
 
 }  // namespace
@@ -55,9 +54,9 @@ TerrainState terrain_state(const StateReport& all, const dem::GrainProperties& g
   e.rotational = 0.5 * grain.inertia * motion.spin2;
   s.kinetic_energy = e.kinetic + e.rotational;
   // Gravity g and the places x: Σ m |g| h = −g·Σ m x.
-  s.potential_energy = -grain.mass * gravity.dot(vec(motion.place));
+  s.potential_energy = -grain.mass * gravity.dot(motion.place);
   s.elastic_energy = all.sums.elastic;
-  s.momentum = grain.mass * vec(motion.speed);
+  s.momentum = grain.mass * motion.speed;
   s.wall_impulse = all.sums.wall_impulse;
   s.surface_impulse = all.sums.surface_impulse;
   s.floor_force = all.sums.floor_force;

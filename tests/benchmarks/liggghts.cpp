@@ -2,6 +2,8 @@
 // (one `run N`); with walls and accounts; and with one `run 1` and the terrain's sums for each step, as a run of Furrow
 // does it, but without tires and messages. Under mpirun for several ranks.
 //
+// Wall time, and the processor time of the rank that took most of it: waiting for other ranks is part of both.
+//
 // usage: bench_liggghts SCENARIO STEPS ROUNDS [KEY=VALUE …]     prints a line of CSV for each part and round
 #include <mpi.h>
 
@@ -9,6 +11,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <memory>
 #include <string>
 #include <utility>
@@ -31,6 +34,13 @@ class NoWork final : public StepWork {
   void add_forces(const OwnGrains&, bool) override {}
   void end_step(const PairSums&, const MotionSums&, bool) override {}
 };
+
+/// Of this process, s.
+double processor_time() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
 
 template <class T>
 void broadcast(std::vector<T>& values) {
@@ -73,6 +83,7 @@ struct Bench {
     const auto builds = made->list_builds();
     MPI_Barrier(MPI_COMM_WORLD);
     const auto begin = std::chrono::steady_clock::now();
+    const double busy_before = processor_time();
     if (each_step) {
       for (int s = 0; s < steps; ++s) {
         contacts.begin_interval({}, options.step, 1);
@@ -81,14 +92,15 @@ struct Bench {
     } else {
       made->run(steps, times);
     }
-    MPI_Barrier(MPI_COMM_WORLD);
+    double busy = processor_time() - busy_before;
+    MPI_Allreduce(MPI_IN_PLACE, &busy, 1, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
     int counts[2] = {made->own().count, made->own_ghosts()}, least = 0, most[2];
     MPI_Allreduce(&counts[0], &least, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
     MPI_Allreduce(counts, most, 2, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
     if (rank == 0)
-      std::printf("%s,%d,%d,%zu,%d,%.2f,%.2f,%d,%d,%d,%lld\n", part, ranks, round, bed.grains.size(), steps,
-                  1e6 * wall.count() / steps,
+      std::printf("%s,%d,%d,%zu,%d,%.2f,%.2f,%.2f,%d,%d,%d,%lld\n", part, ranks, round, bed.grains.size(), steps,
+                  1e6 * wall.count() / steps, 1e6 * busy / steps,
                   1e9 * wall.count() / steps / static_cast<double>(bed.grains.size()), least, most[0],
                   most[1], static_cast<long long>(made->list_builds() - builds));
     std::fflush(stdout);
@@ -115,7 +127,7 @@ int run(int argc, char** argv) {
     dem::restore_bed(solver, dem::prepare_bed(bench.options, {}));
     bench.bed = starting_bed(solver);
     std::printf(
-        "part,ranks,round,grains,steps,us_per_step,ns_per_grain_step,grains_least,grains_most,ghosts_most,"
+        "part,ranks,round,grains,steps,us_per_step,cpu_us_per_step,ns_per_grain_step,grains_least,grains_most,ghosts_most,"
         "list_builds\n");
   }
   broadcast(bench.bed.grains);

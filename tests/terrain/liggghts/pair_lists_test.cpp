@@ -118,7 +118,9 @@ TEST(PairLists, histories_are_kept_when_lists_are_made_again) {
     turned += std::find(first.begin(), first.end(), std::pair(j, i)) != first.end() ? 1 : 0;
     const PairHistory h = of_lower(i, j, lists.history(entry)), was = some_history(std::min(i, j), std::max(i, j));
     for (const auto& [now, then] : {std::pair(h.tangential, was.tangential), std::pair(h.rolling, was.rolling)}) {
-      EXPECT_EQ(now.x, then.x), EXPECT_EQ(now.y, then.y), EXPECT_EQ(now.z, then.z);
+      EXPECT_EQ(now.x, then.x);
+      EXPECT_EQ(now.y, then.y);
+      EXPECT_EQ(now.z, then.z);
       EXPECT_EQ(now.w, then.w);
     }
   });

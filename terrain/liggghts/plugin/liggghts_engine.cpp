@@ -119,23 +119,7 @@ class LiggghtsEngine final : public Engine {
   }
 
   void remember(std::span<const PairRecord> records) override {
-    std::unordered_map<int, int> own;  // by tag
-    for (int i = 0; i < lmp_->atom->nlocal; ++i) own.emplace(lmp_->atom->tag[i], i);
-    // Across a periodic side both grains have listed a pair: it is saved twice.
-    const auto give = [&](int tag, int partner, const PairHistory& history) {
-      const auto found = own.find(tag);
-      if (found == own.end()) return;
-      std::vector<PairOf>& pairs = fix_->pairs_of(found->second);
-      for (const PairOf& known : pairs)
-        if (known.partner == partner) return;
-      pairs.push_back({partner, history});
-    };
-    for (const PairRecord& r : records) {
-      const PairHistory h{{r.tangential[0], r.tangential[1], r.tangential[2], r.root_overlap},
-                          {r.rolling[0], r.rolling[1], r.rolling[2], 0.0}};
-      give(r.i + 1, r.j + 1, h);
-      give(r.j + 1, r.i + 1, h.turned());
-    }
+    records_.assign(records.begin(), records.end());
   }
 
   void begin(StepWork& work, bool exchange) override {
@@ -143,12 +127,13 @@ class LiggghtsEngine final : public Engine {
     LAMMPS_NS::bigint own = atom.nlocal;
     MPI_Allreduce(&own, &atom.natoms, 1, MPI_LMP_BIGINT, MPI_SUM, communicator_);
     fix_->set_work(work);
-    command("run 0 pre yes post no");
+    make_ready();
     const auto move = [&](std::array<double, 3> Moved::*to) {
       for (int i = 0; i < atom.nlocal; ++i)
         if (const auto it = moved_.find(atom.tag[i]); it != moved_.end())
           std::copy_n((it->second.*to).data(), 3, atom.x[i]);
     };
+    give_records();  // now: the first set-up of a run clears the arrays of a fix
     move(&Moved::list_position);
     lmp_->comm->forward_comm();  // ghosts follow
     fix_->make_lists();
@@ -178,7 +163,7 @@ class LiggghtsEngine final : public Engine {
     lmp_->modify->setup_pre_exchange();
     set_borders(borders);
     LAMMPS_NS::Irregular(lmp_.get()).migrate_atoms();
-    command("run 0 pre yes post no");
+    make_ready();
     fix_->make_lists();
     fix_->look_again();
   }
@@ -212,6 +197,35 @@ class LiggghtsEngine final : public Engine {
   }
 
  private:
+  /// Exchanges grains. In the step after that LIGGGHTS would exchange them once more, for a restart file that nobody asked
+  /// for: there is no such step.
+  void make_ready() {
+    command("run 0 pre yes post no");
+    ++lmp_->update->ntimestep;
+  }
+
+  /// What touching grains remember becomes that of this rank's own grains.
+  void give_records() {
+    std::unordered_map<int, int> own;  // by tag
+    for (int i = 0; i < lmp_->atom->nlocal; ++i) own.emplace(lmp_->atom->tag[i], i);
+    // Across a periodic side both grains have listed a pair: it is saved twice.
+    const auto give = [&](int tag, int partner, const PairHistory& history) {
+      const auto found = own.find(tag);
+      if (found == own.end()) return;
+      std::vector<PairOf>& pairs = fix_->pairs_of(found->second);
+      for (const PairOf& known : pairs)
+        if (known.partner == partner) return;
+      pairs.push_back({partner, history});
+    };
+    for (const PairRecord& r : records_) {
+      const PairHistory h{{r.tangential[0], r.tangential[1], r.tangential[2], r.root_overlap},
+                          {r.rolling[0], r.rolling[1], r.rolling[2], 0.0}};
+      give(r.i + 1, r.j + 1, h);
+      give(r.j + 1, r.i + 1, h.turned());
+    }
+    records_ = {};
+  }
+
   void set_borders(std::span<const double> borders) {
     LAMMPS_NS::Comm& comm = *lmp_->comm;
     const LAMMPS_NS::Domain& domain = *lmp_->domain;
@@ -226,6 +240,7 @@ class LiggghtsEngine final : public Engine {
   std::unique_ptr<LAMMPS> lmp_;
   PairFurrow* pair_ = nullptr;
   FixFurrow* fix_ = nullptr;
+  std::vector<PairRecord> records_;  // until begin()
   struct Moved {
     std::array<double, 3> list_position{}, position{};
   };

@@ -18,9 +18,10 @@
 namespace furrow::terrain::liggghts {
 namespace {
 
-constexpr double kRoom = 10.0;      // around a rank's grains for what they may move in one interval, largest radii
-constexpr double kFar = 1e6;        // farther than any wall, m; as in Bin::holds
-constexpr double kTireRoom = 3.0;   // around a tire within which grains are looked for, skins
+constexpr double kRoom =
+    10.0;                     // around a rank's grains for what they may move in one interval, largest radii
+constexpr double kFar = 1e6;  // farther than any wall, m; as in Bin::holds
+constexpr double kTireRoom = 3.0;  // around a tire within which grains are looked for, skins
 
 using dem::ContactForce;
 using dem::ContactHistory;
@@ -39,8 +40,8 @@ ContactHistory<double> history_of(const Carried& c) {
 
 /// What is not a number is not inside.
 bool inside(const SurfaceBox& box, const double* x) {
-  return x[0] > box.lo.x() && x[0] < box.hi.x() && x[1] > box.lo.y() && x[1] < box.hi.y() && x[2] > box.lo.z() &&
-         x[2] < box.hi.z();
+  return x[0] > box.lo.x() && x[0] < box.hi.x() && x[1] > box.lo.y() && x[1] < box.hi.y() &&
+         x[2] > box.lo.z() && x[2] < box.hi.z();
 }
 
 Carried carried_of(int partner, const Triple<double>& normal, const ContactHistory<double>& h) {
@@ -107,7 +108,8 @@ void RankContacts::begin_interval(std::span<const SurfaceState> targets, double 
 
 void RankContacts::lists_made(const OwnGrains& grains) {
   looked_ = false;
-  box_ = {Vec3::Constant(-kFar), Vec3::Constant(kFar)};  // to a rank without grains they may come from anywhere
+  box_ = {Vec3::Constant(-kFar),
+          Vec3::Constant(kFar)};  // to a rank without grains they may come from anywhere
   if (grains.count == 0) return;
   Vec3 lo = Vec3::Constant(1e300), hi = -lo;
   for (int g = 0; g < grains.count; ++g)
@@ -260,15 +262,17 @@ void RankContacts::wait_for_walls(const OwnGrains& grains, int g) {
     lanes.entry[lanes.count] = static_cast<int>(entry);
     lanes.distance[lanes.count] = distance[wall];
     if (++lanes.count == WallLanes::kLanes)
-      evaluate_walls<Law, kRolling>(grains, lanes, wall == dem::kFloor ? coefficients_.floor : coefficients_.side);
+      evaluate_walls<Law, kRolling>(grains, lanes,
+                                    wall == dem::kFloor ? coefficients_.floor : coefficients_.side);
   }
 }
 
 template <class Law, bool kRolling>
-void RankContacts::evaluate_walls(const OwnGrains& grains, WallLanes& lanes, const dem::ContactCoefficients& c) {
-  wall_forces<Law, kRolling>(lanes, grains, c, params_.grain.radius, times_.since, now_, [&](double overlap, int g) {
-    note(overlap, params_.grain.radius, grains.position[g]);
-  });
+void RankContacts::evaluate_walls(const OwnGrains& grains, WallLanes& lanes,
+                                  const dem::ContactCoefficients& c) {
+  wall_forces<Law, kRolling>(
+      lanes, grains, c, params_.grain.radius, times_.since, now_,
+      [&](double overlap, int g) { note(overlap, params_.grain.radius, grains.position[g]); });
 }
 
 template <class Law, bool kRolling>

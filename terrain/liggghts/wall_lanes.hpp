@@ -24,7 +24,8 @@ struct WallLanes {
 };
 
 /// The walls that a grain at `at` touches, a bit for each, and how far its centre is from each, m.
-inline unsigned walls_touched(const dem::Bin& bin, const dem::Quad& at, std::array<double, dem::kWalls>& distance) {
+inline unsigned walls_touched(const dem::Bin& bin, const dem::Quad& at,
+                              std::array<double, dem::kWalls>& distance) {
   unsigned touched = 0;
   for (int wall = 0; wall < dem::kWalls; ++wall) {
     distance[wall] = bin.distance(wall, at);
@@ -37,7 +38,9 @@ inline unsigned walls_touched(const dem::Bin& bin, const dem::Quad& at, std::arr
 inline void keep_touched(std::vector<Carried>& carried, unsigned touched) {
   unsigned known = 0;
   bool others = false;
-  for (const Carried& c : carried) known |= c.partner < dem::kWalls ? 1U << static_cast<int>(c.partner) : 0U, others |= c.partner >= dem::kWalls;
+  for (const Carried& c : carried)
+    known |= c.partner < dem::kWalls ? 1U << static_cast<int>(c.partner) : 0U,
+        others |= c.partner >= dem::kWalls;
   if (known == touched && !others) return;
   std::erase_if(carried, [touched](const Carried& c) {
     return c.partner >= dem::kWalls || !(touched >> static_cast<int>(c.partner) & 1U);
@@ -55,8 +58,8 @@ inline void keep_touched(std::vector<Carried>& carried, unsigned touched) {
 /// Adds the forces of the waiting contacts to the grains and to `sums`; none waits any longer. Calls
 /// note(overlap, grain) for each. @pre radius > 0 of all grains, m; dt > 0, s
 template <class Law, bool kRolling, class Note>
-void wall_forces(WallLanes& lanes, const OwnGrains& grains, const dem::ContactCoefficients& c, double radius, double dt,
-                 dem::ContactTotals& sums, const Note& note) {
+void wall_forces(WallLanes& lanes, const OwnGrains& grains, const dem::ContactCoefficients& c, double radius,
+                 double dt, dem::ContactTotals& sums, const Note& note) {
   using dem::Double4;
   using dem::Triple;
   constexpr int kLanes = WallLanes::kLanes;

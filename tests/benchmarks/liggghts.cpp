@@ -99,8 +99,8 @@ struct Bench {
     MPI_Allreduce(&counts[0], &least, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
     MPI_Allreduce(counts, most, 2, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
     if (rank == 0)
-      std::printf("%s,%d,%d,%zu,%d,%.2f,%.2f,%.2f,%d,%d,%d,%lld\n", part, ranks, round, bed.grains.size(), steps,
-                  1e6 * wall.count() / steps, 1e6 * busy / steps,
+      std::printf("%s,%d,%d,%zu,%d,%.2f,%.2f,%.2f,%d,%d,%d,%lld\n", part, ranks, round, bed.grains.size(),
+                  steps, 1e6 * wall.count() / steps, 1e6 * busy / steps,
                   1e9 * wall.count() / steps / static_cast<double>(bed.grains.size()), least, most[0],
                   most[1], static_cast<long long>(made->list_builds() - builds));
     std::fflush(stdout);
@@ -127,7 +127,8 @@ int run(int argc, char** argv) {
     dem::restore_bed(solver, dem::prepare_bed(bench.options, {}));
     bench.bed = starting_bed(solver);
     std::printf(
-        "part,ranks,round,grains,steps,us_per_step,cpu_us_per_step,ns_per_grain_step,grains_least,grains_most,ghosts_most,"
+        "part,ranks,round,grains,steps,us_per_step,cpu_us_per_step,ns_per_grain_step,grains_least,grains_"
+        "most,ghosts_most,"
         "list_builds\n");
   }
   broadcast(bench.bed.grains);

@@ -79,14 +79,14 @@ class FixFurrow final : public LAMMPS_NS::Fix {
   PairFurrow* pair_ = nullptr;
   StepWork* work_ = nullptr;
   StepTimes times_;
-  StepWish wish_;        // of this step
-  MotionSums sums_;      // of this step, where wanted
-  double way_ = 0.0;     // that no own grain has exceeded since the lists were made, m
+  StepWish wish_;         // of this step
+  MotionSums sums_;       // of this step, where wanted
+  double way_ = 0.0;      // that no own grain has exceeded since the lists were made, m
   double fastest_ = 0.0;  // own grain, m/s
   MPI_Request asking_ = MPI_REQUEST_NULL;
   int asks_ = 0, any_asks_ = 0;  // for an exchange: this rank, any rank
   std::vector<std::vector<Carried>> carried_;
-  std::vector<std::vector<PairOf>> pairs_;  // while there are no lists
+  std::vector<std::vector<PairOf>> pairs_;                 // while there are no lists
   std::vector<std::array<double, 3>> listed_, exchanged_;  // m
 };
 

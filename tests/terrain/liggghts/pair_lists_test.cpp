@@ -27,11 +27,14 @@ struct Crowd {
 
   explicit Crowd(unsigned seed, int own_count = 400, int ghosts = 60) : own(own_count) {
     std::mt19937 random(seed);
-    const auto within = [&](double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(random); };
+    const auto within = [&](double lo, double hi) {
+      return std::uniform_real_distribution<double>(lo, hi)(random);
+    };
     for (int i = 0; i < own + ghosts; ++i) {
       const bool left = i % 2 == 0;
       const double x = i < own ? within(-0.1 * kSkin, kLength + 0.1 * kSkin)
-                               : left ? within(-kReach, 0.0) : within(kLength, kLength + kReach);
+                       : left  ? within(-kReach, 0.0)
+                               : within(kLength, kLength + kReach);
       place.push_back({x, within(-0.5 * kWidth - kReach, 0.5 * kWidth + kReach), within(0.0, 0.1)});
       radius.push_back(within(0.8, 1.2) * kRadius);
     }
@@ -116,8 +119,10 @@ TEST(PairLists, histories_are_kept_when_lists_are_made_again) {
   lists.for_touching([&](int i, int j, int entry) {
     kept.insert(std::minmax(i, j));
     turned += std::find(first.begin(), first.end(), std::pair(j, i)) != first.end() ? 1 : 0;
-    const PairHistory h = of_lower(i, j, lists.history(entry)), was = some_history(std::min(i, j), std::max(i, j));
-    for (const auto& [now, then] : {std::pair(h.tangential, was.tangential), std::pair(h.rolling, was.rolling)}) {
+    const PairHistory h = of_lower(i, j, lists.history(entry)),
+                      was = some_history(std::min(i, j), std::max(i, j));
+    for (const auto& [now, then] :
+         {std::pair(h.tangential, was.tangential), std::pair(h.rolling, was.rolling)}) {
       EXPECT_EQ(now.x, then.x);
       EXPECT_EQ(now.y, then.y);
       EXPECT_EQ(now.z, then.z);

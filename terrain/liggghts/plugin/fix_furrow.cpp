@@ -148,13 +148,14 @@ bool FixFurrow::exchange_due() const { return next_reneighbor == update->ntimest
 void FixFurrow::set_exchange_due() { next_reneighbor = update->ntimestep + 1; }
 
 void FixFurrow::pre_force(int) {
-  asks_ = 0;
-  if (lists_due()) {
+  int due = lists_due() ? 1 : 0, any_due = due;
+  if (comm->nprocs > 1) MPI_Allreduce(&due, &any_due, 1, MPI_INT, MPI_MAX, world);
+  asks_ = any_asks_ = 0;
+  if (any_due) {
     make_lists();
-    asks_ = strayed() ? 1 : 0;
+    asks_ = any_asks_ = strayed() ? 1 : 0;
+    if (comm->nprocs > 1) MPI_Iallreduce(&asks_, &any_asks_, 1, MPI_INT, MPI_MAX, world, &asking_);
   }
-  any_asks_ = asks_;
-  if (comm->nprocs > 1) MPI_Iallreduce(&asks_, &any_asks_, 1, MPI_INT, MPI_MAX, world, &asking_);
   wish_ = work_->begin_step();
   pair_->want_losses(wish_.losses);
 }
@@ -167,7 +168,7 @@ void FixFurrow::final_integrate() {
   } else {
     setup_.sizes ? move<false, true>() : move<false, false>();
   }
-  if (comm->nprocs > 1) MPI_Wait(&asking_, MPI_STATUS_IGNORE);
+  if (asking_ != MPI_REQUEST_NULL) MPI_Wait(&asking_, MPI_STATUS_IGNORE);
   if (any_asks_) set_exchange_due();
   work_->end_step(pair_->sums(), sums_, wish_.losses);
 }

@@ -1,9 +1,9 @@
 // What happens to grains in a step beside their contacts with each other: lists are made where they are due, Furrow adds
 // the forces of walls and tires, then the grains move. Keeps what each grain carries, also from rank to rank.
 //
-// When lists are due. Each rank makes the lists of its own grains when one of them, or one of the ghosts, has moved by
-// half the skin s since they were made: no other rank needs to know. How far grains moved is looked at only when the
-// fastest of each step could have come that far.
+// When lists are due. All ranks make their lists when a grain of any has moved by half the skin s since they were made:
+// then the ghosts of a continued run stand where they stood, as their owners know. How far grains moved is looked at only
+// when the fastest of each step could have come that far.
 //
 // When grains change ranks. LIGGGHTS' exchange, which also renews the ghosts, is due on all ranks alike and seldom. Its
 // reach for ghosts is wider by kGhostRoom skins than that of the lists, so that grains may stray: in x from the rank's

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -15,6 +16,7 @@
 #include "protocol/core/constants.hpp"
 #include "protocol/core/hash.hpp"
 #include "protocol/files/json_number.hpp"
+#include "terrain/liggghts/borders.hpp"
 #include "terrain/rut.hpp"
 
 namespace furrow::output {
@@ -171,13 +173,12 @@ void add_mobility(const WheelInput& in, const Window& w, Json& json) {
 
 /// What the rank of the terrain with most grains has more than the mean of all, of that mean; NaN where unknown.
 double imbalance(const SummaryInput& in, std::int64_t FinalReport::*grains) {
-  double most = 0.0, sum = 0.0;
-  for (const FinalReport& r : in.end.reports) {
-    if (r.self.role != Role::terrain) continue;
-    most = std::max(most, static_cast<double>(r.*grains));
-    sum += static_cast<double>(r.*grains);
-  }
-  return sum > 0.0 ? most * in.scenario.terrain_ranks / sum - 1.0 : NAN;
+  std::vector<std::int64_t> counts;
+  for (const FinalReport& r : in.end.reports)
+    if (r.self.role == Role::terrain) counts.push_back(r.*grains);
+  counts.resize(std::max(in.scenario.terrain_ranks, 1));
+  const bool known = std::any_of(counts.begin(), counts.end(), [](std::int64_t n) { return n > 0; });
+  return known ? terrain::liggghts::imbalance(counts) : NAN;
 }
 
 Json rank_table(const SummaryInput& in) {

@@ -9,6 +9,7 @@
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_text.hpp"
 #include "rigs/rigs.hpp"
+#include "terrain/liggghts/liggghts_options.hpp"
 #include "terrain/terrains.hpp"
 
 namespace furrow::scenario {
@@ -66,7 +67,8 @@ std::string belongs_to_others(const json& document, const ModelSection& of,
 
 std::span<const ModelSection> model_sections() {
   static const auto sections = std::to_array<ModelSection>({
-      {"terrain", "engine", terrain::CommonOptions().engine, terrain::engines_of_key},
+      {"terrain", "engine", terrain::CommonOptions().engine, terrain::engines_of_key,
+       terrain::liggghts::denies},
       {"rig", "type", rigs::RigOptions().type, rigs::kinds_of_key},
   });
   return sections;
@@ -92,7 +94,8 @@ std::vector<std::string> set_aside_keys(json& document, const Schema& schema,
     std::vector<std::string> stated;
     for (const std::string& key : foreign_keys(document, of)) {
       const json* node = schema.find(fmt::format("{}.{}", of.name, key));
-      if (!node || document[of.name][key] != node->value("default", json())) stated.push_back(key);
+      const bool denied = of.denies && of.denies(chosen_model(document, of), key);
+      if (denied || !node || document[of.name][key] != node->value("default", json())) stated.push_back(key);
     }
     if (!stated.empty() && !chosen && !completed)
       throw Error(ExitCode::bad_input, belongs_to_others(document, of, stated, file));

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -21,6 +22,8 @@ struct ModelSection {
   std::string standard;  // that is chosen where the key is missing
   /// The models that take a key of the section; empty for those that all share.
   std::vector<std::string> (*owners)(const std::string& key);
+  /// Whether the model must not be asked for a key of others even with its default, as it cannot do what that says.
+  bool (*denies)(std::string_view model, std::string_view key) = nullptr;
 };
 std::span<const ModelSection> model_sections();
 
@@ -30,7 +33,7 @@ bool chooses_model(const std::string& key);
 /// Removes the keys of other models than the document's own from its sections. A scenario that is written for one model
 /// must not state those of another. They are set aside where the command line has chosen the model, and in completed
 /// scenarios: those of runs hold the key `completed_by`, those of earlier versions the keys of all engines. Values that
-/// are the default do not count.
+/// are the default do not count, unless the model cannot do what they say.
 /// @param settings of the command line. Returns a warning for each section of which something was set aside
 /// @throws Error(bad_input) naming each key that is another model's, and whose
 std::vector<std::string> set_aside_keys(nlohmann::json& document, const Schema& schema,

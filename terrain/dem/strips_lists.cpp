@@ -1,8 +1,8 @@
 // The lists of a strip: its pairs and who is near a wall.
 #include <algorithm>
-#include <cmath>
 
 #include "protocol/core/assert.hpp"
+#include "terrain/dem/near_four.hpp"
 #include "terrain/dem/strips.hpp"
 
 namespace furrow::terrain::dem {
@@ -19,19 +19,6 @@ struct FoundPairs {
     j.resize(2 * (count + more));
   }
 };
-
-/// Bits of the four grains at x, x + 1, … (the first `valid` of them) whose surface is closer to that of the grain at
-/// `at` than `skin`.
-inline unsigned near_four(const Quad* x, int valid, Double4 at, double skin, double width) {
-  const auto d = [&](int k) { return load(x[k]) - at; };
-  Double4 r[4] = {d(0), d(1), d(2), d(3)};
-  transpose(r);
-  if (width > 0.0)
-    for (int k = 0; k < 4; ++k) r[1][k] -= width * std::round(r[1][k] / width);
-  const Double4 reach = r[3] + (2.0 * at[3] + skin);
-  const Double4 room = reach * reach - (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
-  return positive(room) & ((1u << std::min(valid, 4)) - 1u);
-}
 
 }  // namespace
 

@@ -17,6 +17,8 @@
 #include <string>
 #include <vector>
 
+#include "protocol/core/fields.hpp"
+#include "protocol/core/vec.hpp"
 #include "terrain/dem/accounts/contact_losses.hpp"
 #include "terrain/dem/bin.hpp"
 #include "terrain/dem/contact_mixing.hpp"
@@ -24,7 +26,7 @@
 namespace furrow::terrain::liggghts {
 
 /// Changes with this header: a library made for another number is refused.
-inline constexpr int kEngineVersion = 1;
+inline constexpr int kEngineVersion = 2;
 /// What the library offers: kMakeEngine makes an engine, kEngineVersionOf tells kEngineVersion.
 inline constexpr char kMakeEngine[] = "furrow_make_engine";
 inline constexpr char kEngineVersionOf[] = "furrow_engine_version";
@@ -63,25 +65,57 @@ struct PairSums {
   dem::ContactSample sample;           // where it was asked for
 };
 
-/// Called once in each step on each rank: adds the forces of walls and tires.
+/// Sums over the grains that a rank owns, where they stand. Each counts by its volume V = (r/r₀)³ of that of the
+/// reference radius, in turning by V (r/r₀)².
+struct MotionSums {
+  double volume = 0.0;               // Σ V
+  double speed2 = 0.0, spin2 = 0.0;  // Σ V v², m²/s²; Σ V (r/r₀)² ω², rad²/s²
+  Vec3 speed = Vec3::Zero();         // Σ V v, m/s
+  Vec3 place = Vec3::Zero();         // Σ V x, m
+
+  void add(const double* x, const double* v, const double* w, double of_volume, double of_spread) {
+    volume += of_volume;
+    speed2 += of_volume * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    spin2 += of_spread * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+    for (int k = 0; k < 3; ++k) speed[k] += of_volume * v[k], place[k] += of_volume * x[k];
+  }
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<MotionSums> auto& s) {
+  visit(Field{"volume"}, s.volume);
+  visit(Field{"speed2", "m²/s²"}, s.speed2);
+  visit(Field{"spin2", "rad²/s²"}, s.spin2);
+  visit(Field{"speed", "m/s"}, s.speed);
+  visit(Field{"place", "m"}, s.place);
+}
+
+/// What is wanted of a step beside its forces.
+struct StepWish {
+  bool losses = false;
+  bool motion = false;  // the sums of motion after it
+};
+
+/// Called in each step on each rank: adds the forces of walls and tires.
 class StepWork {
  public:
   virtual ~StepWork() = default;
-  /// Whether the losses of this step are wanted.
-  virtual bool begin_step() = 0;
+  /// The lists of pairs were made where these grains stand: until it is called again each moves by half a skin at most.
+  virtual void lists_made(const OwnGrains& grains) = 0;
+  virtual StepWish begin_step() = 0;
   /// @param losses as begin_step said
   virtual void add_forces(const OwnGrains& grains, bool losses) = 0;
-  /// The step's pairs, once all grains have moved.
-  virtual void end_step(const PairSums& pairs, bool losses) = 0;
+  /// The step's pairs, once all grains have moved. @param motion  where begin_step wanted it
+  virtual void end_step(const PairSums& pairs, const MotionSums& motion, bool losses) = 0;
 };
 
 struct NewGrain {
   int id = 0;
-  double radius = 0.0;                    // m
-  std::array<double, 3> position{};       // m
-  std::array<double, 3> list_position{};  // where it stood when the lists were made, m
-  std::array<double, 3> velocity{};       // m/s
-  std::array<double, 3> spin{};           // rad/s
+  double radius = 0.0;                        // m
+  std::array<double, 3> position{};           // m
+  std::array<double, 3> list_position{};      // where it stood when its rank's lists were made, m
+  std::array<double, 3> exchange_position{};  // where it stood when grains last could change their rank, m
+  std::array<double, 3> velocity{};           // m/s
+  std::array<double, 3> spin{};               // rad/s
 };
 
 /// History of two touching grains, of the spring on grain i; i < j are numbers of grains.
@@ -133,8 +167,8 @@ class Engine {
   virtual void place(std::span<const NewGrain> grains, bool own_only) = 0;
   /// What touching grains remember; a rank looks at those that name a grain of its own. Before the first run.
   virtual void remember(std::span<const PairRecord> records) = 0;
-  /// Makes the lists. @throws EngineError
-  virtual void begin(StepWork& work) = 0;
+  /// Makes the lists. @param exchange  as exchange_due() said  @throws EngineError
+  virtual void begin(StepWork& work, bool exchange) = 0;
 
   virtual void set_coefficients(const dem::ContactCoefficients& pair) = 0;
   /// @throws EngineError
@@ -143,11 +177,14 @@ class Engine {
   /// Gives the ranks other parts: grains move to their ranks with all that they carry. @throws EngineError
   virtual void move_borders(std::span<const double> borders) = 0;
 
+  /// In the first step to come grains will change ranks. Alike on all ranks.
+  virtual bool exchange_due() const = 0;
+
   virtual OwnGrains own() = 0;
-  /// Where this rank's grains stood when the lists were made.
   virtual std::vector<NewGrain> own_state() = 0;
   virtual std::vector<PairRecord> own_pairs() = 0;
   virtual int own_ghosts() const = 0;
+  /// How often this rank has made its lists.
   virtual std::int64_t list_builds() const = 0;
   /// For tests of what happens then: runs a line of LIGGGHTS' own language.
   virtual void command(const std::string& line) = 0;

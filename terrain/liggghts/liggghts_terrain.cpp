@@ -27,7 +27,9 @@
 #include "terrain/liggghts/borders.hpp"
 #include "terrain/liggghts/engine_library.hpp"
 #include "terrain/liggghts/rank_contacts.hpp"
+#include "terrain/liggghts/rank_frames.hpp"
 #include "terrain/liggghts/rank_reports.hpp"
+#include "terrain/liggghts/rank_states.hpp"
 #include "terrain/liggghts/saved_grains.hpp"
 #include "terrain/liggghts/starting_bed.hpp"
 
@@ -36,8 +38,6 @@ namespace {
 
 using namespace liggghts;
 
-constexpr double kRoom =
-    10.0;  // around a rank's grains for what they may move in one interval, largest radii
 constexpr double kMostImbalance = 0.05;       // above it the borders move
 constexpr int kBalanceEvery = 500;            // intervals: moving borders costs about as much as ten steps
 constexpr char kRefinement[] = "refinement";  // in the saved state
@@ -77,7 +77,8 @@ class LiggghtsTerrain final : public Terrain {
       for (const NewGrain& grain : bed.grains) crowd.add(grain.position[0]);
       borders_ = crowd.borders(ranks());
     }
-    start(bed, false);
+    start(bed, false, false);
+    contacts_.sum_motion(engine_->own());
     contacts_.begin_accounts(stored, elastic);
     return wall_clock() - begin;
   }
@@ -114,8 +115,7 @@ class LiggghtsTerrain final : public Terrain {
     const int parts = 1 << refinement_.level(), steps = substeps * parts;
     const double part = dt_ / parts;
     if (part != part_) set_part(part);
-    if (!now_) now_ = look();
-    contacts_.begin_interval(targets, duration, steps, with_room(now_->box));
+    contacts_.begin_interval(targets, duration, steps);
     for (int k = 0; k < contacts_.tires(); ++k)
       if (const char* wall = dem::side_crossed(contacts_.params().bin, contacts_.swept_bounds(k)))
         return Outcome::failure("is too small", fmt::format("tire {} reached {} of the bin", k, wall));
@@ -123,8 +123,7 @@ class LiggghtsTerrain final : public Terrain {
     contacts_.end_interval(duration, forces, sums);
     for (int s = 0; s < substeps; ++s) refinement_.count(parts);
     time_ += duration;
-    now_ = look();
-    SharedReports shared = share_reports(group(), own_interval(), now_->report, forces, sums);
+    SharedReports shared = share_reports(group(), own_interval(), own_state(), forces, sums);
     states_ = std::move(shared.states);
     if (Outcome outcome = judge(shared.intervals); !outcome.ok) return outcome;
     for (const ContactSums& one : sums) surface_work_ -= one.work;
@@ -135,74 +134,20 @@ class LiggghtsTerrain final : public Terrain {
   TerrainState state() const override {
     StateReport all;
     if (engine_)
-      for (const StateReport& one : states_.empty() ? gather_states(group(), look().report) : states_)
+      for (const StateReport& one : states_.empty() ? gather_states(group(), own_state()) : states_)
         add(all, one);
-    TerrainState s;
-    const double strength = options_.gravity.norm();
-    s.kinetic_energy = all.kinetic + all.rotational;
-    s.potential_energy = strength * all.height_moment;
-    s.elastic_energy = all.sums.elastic;
-    s.momentum = all.momentum;
-    s.wall_impulse = all.sums.wall_impulse;
-    s.surface_impulse = all.sums.surface_impulse;
-    s.floor_force = all.sums.floor_force;
-    s.contacts = std::llround(all.sums.contacts);
-    s.active = std::llround(all.grains);
-    s.list_rebuilds = std::llround(all.list_builds);
+    TerrainState s = terrain_state(all, contacts_.grain(), options_.gravity, surface_work_);
     s.substeps_added = refinement_.state().added;
     s.refined_time = refinement_.state().time;
     s.most_parts = 1 << refinement_.state().finest;
-    TerrainEnergies& e = s.energies;
-    e.kinetic = all.kinetic;
-    e.rotational = all.rotational;
-    e.potential = s.potential_energy;
-    e.elastic_normal = all.sums.elastic - all.stored.cohesion;
-    e.elastic_tangential = all.stored.tangential;
-    e.cohesion = all.stored.cohesion;
-    e.sliding_loss = all.lost.sliding;
-    e.normal_damping_loss = all.lost.normal_damping;
-    e.tangential_damping_loss = all.lost.tangential_damping;
-    e.rolling_loss = all.lost.rolling;
-    e.opening_loss = all.lost.opening;
-    e.sample_error = std::sqrt(all.error2);
-    e.surface_work = surface_work_;
-    s.dissipation = e.losses();
-    const Vec3 gravity = contacts_.sums().gravity_time * all.mass * options_.gravity;
-    s.momenta = {s.momentum, gravity, s.wall_impulse, s.surface_impulse, Vec3::Zero()};
     return s;
   }
 
   std::int64_t size() const override { return size_; }
   std::int64_t grains_here() const override { return engine_ ? engine_->own().count : 0; }
 
-  /// The whole frame on the leader, grains in the order of their numbers; nothing on the others.
   void frame(TerrainFrame& out) const override {
-    struct Row {
-      double id;
-      float x, y, z, radius, speed;
-    };
-    const OwnGrains g = engine_->own();
-    std::vector<Row> rows(g.count);
-    for (int k = 0; k < g.count; ++k) {
-      dem::Quad at{g.position[k][0], g.position[k][1], g.position[k][2], 0.0};
-      contacts_.params().bin.wrap(at);
-      const double* const v = g.velocity[k];
-      rows[k] = {static_cast<double>(g.id[k]),
-                 static_cast<float>(at.x),
-                 static_cast<float>(at.y),
-                 static_cast<float>(at.z),
-                 static_cast<float>(g.radius[k]),
-                 static_cast<float>(std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]))};
-    }
-    if (group()) rows = gather_on_all<Row>(*group(), rows);
-    out.position.clear(), out.speed.clear(), out.radius.clear();
-    if (!leads()) return;
-    std::sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.id < b.id; });
-    for (const Row& row : rows) {
-      out.position.insert(out.position.end(), {row.x, row.y, row.z});
-      out.speed.push_back(row.speed);
-      out.radius.push_back(row.radius);
-    }
+    gather_frame(group(), engine_->own(), contacts_.params().bin, out);
   }
 
   void save(Archive& archive) const override {
@@ -216,6 +161,7 @@ class LiggghtsTerrain final : public Terrain {
     archive.put("top", top_);
     archive.put("borders", borders_);
     archive.put("since_balance", static_cast<std::int64_t>(since_balance_));
+    archive.put("exchange_due", static_cast<std::int64_t>(engine_->exchange_due() ? 1 : 0));
     if (refinement_.used()) save_fields(archive, kRefinement, refinement_.state());
     contacts_.save(archive);
     save_grains(*engine_, archive);
@@ -236,7 +182,7 @@ class LiggghtsTerrain final : public Terrain {
     refinement_.restore(refined);
     contacts_.restore(archive);
     size_ = archive.get_int("grains/all");
-    start(read_grains(archive, size_, contacts_.tires()), true);
+    start(read_grains(archive, size_, contacts_.tires()), true, archive.get_int("exchange_due") != 0);
     set_part(archive.get_double("part"));
   }
 
@@ -259,17 +205,17 @@ class LiggghtsTerrain final : public Terrain {
     return s;
   }
 
-  /// Makes the engine anew with these grains.
-  void start(const StartingBed& bed, bool own_only) {
+  /// Makes the engine anew with these grains. @param exchange  as Engine::begin takes it
+  void start(const StartingBed& bed, bool own_only, bool exchange) {
     if (!own_only) size_ = bed.size(), top_ = bed.top;
     engine_.reset();
-    forget();
+    states_.clear();
     try {
       engine_ = make_engine(setup());
       engine_->set_coefficients(contacts_.coefficients().pair);
       engine_->place(bed.grains, own_only);
       engine_->remember(bed.pairs);
-      engine_->begin(contacts_);
+      engine_->begin(contacts_, exchange);
     } catch (const EngineError& error) {
       engine_failed(error);
     }
@@ -352,99 +298,21 @@ class LiggghtsTerrain final : public Terrain {
     for (int g = 0; g < own.count; ++g) crowd.add(own.position[g][0]);
     crowd.set_sum_of(gather_on_all<std::int64_t>(*group(), crowd.counts()));
     borders_ = crowd.borders(ranks());
-    forget();
+    states_.clear();
     try {
       engine_->move_borders(borders_);
     } catch (const EngineError& error) {
       engine_failed(error);
     }
+    contacts_.sum_motion(engine_->own());
   }
 
-  /// This rank's grains, as they are between two intervals.
-  struct Look {
-    StateReport report;
-    SurfaceBox box{Vec3::Constant(1e300), Vec3::Constant(-1e300)};  // of the centres
-  };
-
-  Look look() const {
-    Look now;
-    StateReport& r = now.report;
-    const OwnGrains g = engine_->own();
-    const dem::GrainProperties& grain = contacts_.grain();
-    const double strength = options_.gravity.norm();
-    const Vec3 up = strength > 0.0 ? Vec3(-options_.gravity / strength) : Vec3::UnitZ();
-    // Sums of their own: those of the report could be what the grains' pointers point at, and would be stored each time.
-    double all = 0.0, kinetic = 0.0, rotational = 0.0, height_moment = 0.0;
-    Vec3 momentum = Vec3::Zero(), lo = now.box.lo, hi = now.box.hi;
-    for (int k = 0; k < g.count; ++k) {
-      double mass = grain.mass, inertia = grain.inertia;
-      if (g.radius[k] != grain.radius) {
-        const double size = g.radius[k] / grain.radius, volume = size * size * size;
-        mass *= volume, inertia *= volume * size * size;
-      }
-      const Vec3 x(g.position[k]), v(g.velocity[k]), w(g.spin[k]);
-      all += mass;
-      kinetic += 0.5 * mass * v.squaredNorm();
-      rotational += 0.5 * inertia * w.squaredNorm();
-      height_moment += mass * up.dot(x);
-      momentum += mass * v;
-      for (int axis = 0; axis < 3; ++axis) {
-        lo[axis] = std::min(lo[axis], x[axis]);
-        hi[axis] = std::max(hi[axis], x[axis]);
-      }
-    }
-    now.box = {lo, hi};
-    r.mass = all;
-    r.kinetic = kinetic, r.rotational = rotational, r.height_moment = height_moment;
-    r.momentum = momentum;
-    r.grains = g.count;
-    r.sums = contacts_.sums();
-    r.lost = contacts_.energies().lost();
-    r.stored = contacts_.energies().state().stored;
-    r.error2 = contacts_.energies().state().error2;
-    r.list_builds = g.count * static_cast<double>(engine_->list_builds()) / static_cast<double>(size_);
-    return now;
+  StateReport own_state() const {
+    return state_report(contacts_, engine_->own().count, static_cast<double>(size_),
+                        static_cast<double>(engine_->list_builds()));
   }
 
-  /// What was seen of the grains holds no longer.
-  void forget() { now_.reset(), states_.clear(); }
-
-  static void add(StateReport& to, const StateReport& one) {
-    to.grains += one.grains;
-    to.mass += one.mass;
-    to.kinetic += one.kinetic;
-    to.rotational += one.rotational;
-    to.height_moment += one.height_moment;
-    to.momentum += one.momentum;
-    to.sums.elastic += one.sums.elastic;
-    to.sums.wall_impulse += one.sums.wall_impulse;
-    to.sums.surface_impulse += one.sums.surface_impulse;
-    to.sums.floor_force += one.sums.floor_force;
-    to.sums.contacts += one.sums.contacts;
-    dem::add(to.lost, one.lost, 1.0);
-    dem::add(to.stored, one.stored, 1.0);
-    to.error2 += one.error2;
-    to.list_builds += one.list_builds;
-  }
-
-  dem::Grains own_grains() const {
-    const OwnGrains g = engine_->own();
-    dem::Grains grains;
-    grains.resize(g.count);
-    for (int k = 0; k < g.count; ++k) {
-      grains.position[k] = {g.position[k][0], g.position[k][1], g.position[k][2], g.radius[k]};
-      contacts_.params().bin.wrap(grains.position[k]);
-      grains.id[k] = g.id[k] - 1;
-    }
-    return grains;
-  }
-
-  /// With room for what grains may move in one interval.
-  SurfaceBox with_room(SurfaceBox box) const {
-    const double room = kRoom * dem::largest_radius(options_);
-    box.lo.array() -= room, box.hi.array() += room;
-    return box;
-  }
+  dem::Grains own_grains() const { return grains_of(engine_->own(), contacts_.params().bin); }
 
   dem::DemOptions options_;
   RankContacts contacts_;
@@ -453,7 +321,6 @@ class LiggghtsTerrain final : public Terrain {
   std::int64_t size_ = 0;           // grains of all ranks
   std::vector<double> borders_;     // between the ranks' parts along x, m
   int since_balance_ = 0;           // intervals since they were looked at
-  std::optional<Look> now_;         // since the last interval; none: not looked yet
   std::vector<StateReport>
       states_;                 // of all ranks since the last interval, on the leader; empty: not asked yet
   double top_ = 0.0;           // of the bed at the beginning, m

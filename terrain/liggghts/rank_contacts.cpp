@@ -18,6 +18,11 @@
 namespace furrow::terrain::liggghts {
 namespace {
 
+constexpr double kRoom =
+    10.0;                     // around a rank's grains for what they may move in one interval, largest radii
+constexpr double kFar = 1e6;  // farther than any wall, m; as in Bin::holds
+constexpr double kTireRoom = 3.0;  // around a tire within which grains are looked for, skins
+
 using dem::ContactForce;
 using dem::ContactHistory;
 using dem::ContactMotion;
@@ -31,6 +36,12 @@ void add(double* to, const Triple<double>& v) { to[0] += v.x, to[1] += v.y, to[2
 
 ContactHistory<double> history_of(const Carried& c) {
   return {triple(c.tangential), c.root_overlap, triple(c.rolling)};
+}
+
+/// What is not a number is not inside.
+bool inside(const SurfaceBox& box, const double* x) {
+  return x[0] > box.lo.x() && x[0] < box.hi.x() && x[1] > box.lo.y() && x[1] < box.hi.y() &&
+         x[2] > box.lo.z() && x[2] < box.hi.z();
 }
 
 Carried carried_of(int partner, const Triple<double>& normal, const ContactHistory<double>& h) {
@@ -76,9 +87,11 @@ void RankContacts::attach(const SurfaceMesh& mesh, const ContactMaterial& materi
   tires_.push_back(std::move(tire));
 }
 
-void RankContacts::begin_interval(std::span<const SurfaceState> targets, double duration, int steps,
-                                  const SurfaceBox& grains) {
+void RankContacts::begin_interval(std::span<const SurfaceState> targets, double duration, int steps) {
   FURROW_ASSERT(targets.size() == tires_.size() && steps > 0, targets.size(), tires_.size(), steps);
+  SurfaceBox grains = box_;
+  const double room = kRoom * params_.largest_radius();
+  grains.lo.array() -= room, grains.hi.array() += room;
   for (std::size_t k = 0; k < tires_.size(); ++k) {
     Tire& tire = tires_[k];
     tire.start.swap(tire.end);
@@ -93,7 +106,21 @@ void RankContacts::begin_interval(std::span<const SurfaceState> targets, double 
   interval_overlap_ = hardest_share_ = 0.0;
 }
 
-bool RankContacts::begin_step() {
+void RankContacts::lists_made(const OwnGrains& grains) {
+  looked_ = false;
+  box_ = {Vec3::Constant(-kFar),
+          Vec3::Constant(kFar)};  // to a rank without grains they may come from anywhere
+  if (grains.count == 0) return;
+  Vec3 lo = Vec3::Constant(1e300), hi = -lo;
+  for (int g = 0; g < grains.count; ++g)
+    for (int axis = 0; axis < 3; ++axis) {
+      lo[axis] = std::min(lo[axis], grains.position[g][axis]);
+      hi[axis] = std::max(hi[axis], grains.position[g][axis]);
+    }
+  box_ = {lo, hi};
+}
+
+StepWish RankContacts::begin_step() {
   const Vec3 r = Vec3::Constant(params_.largest_radius());
   for (Tire& tire : tires_) {
     tire.collider->move_to(static_cast<double>(step_) / steps_);
@@ -103,7 +130,7 @@ bool RankContacts::begin_step() {
   }
   now_ = {};
   on_grains_.setZero();
-  return energies_.due();
+  return {energies_.due(), step_ + 1 == steps_};
 }
 
 void RankContacts::add_forces(const OwnGrains& grains, bool losses) {
@@ -119,24 +146,24 @@ void RankContacts::add_forces(const OwnGrains& grains, bool losses) {
 template <class Law, bool kRolling>
 void RankContacts::add_forces_of(const OwnGrains& grains, bool losses) {
   const dem::Bin& bin = params_.bin;
-  const SurfaceBox apart = apart_from_walls();
-  double low = 1e300;  // of all tires
-  for (const Tire& t : tires_) low = std::min(low, t.near.lo.z());
-  for (int g = 0; g < grains.count; ++g) {
+  const SurfaceBox apart = apart_from_walls(params_.largest_radius());
+  const bool by_lanes = !losses && !params_.sizes();
+  if (!looked_far_enough()) look_for_touchable(grains);
+  for (const int g : touchable_) {
     const double* const x = grains.position[g];
     std::vector<Carried>& mine = grains.carried[g];
-    // Most grains touch nothing but each other. What is not a number is not inside.
-    const bool wall = !(x[0] > apart.lo.x() && x[0] < apart.hi.x() && x[1] > apart.lo.y() &&
-                        x[1] < apart.hi.y() && x[2] > apart.lo.z() && x[2] < apart.hi.z());
+    const bool wall = !inside(apart, x);
     bool tire = false;
-    if (x[2] > low)
-      for (const Tire& t : tires_)
-        tire |= x[2] < t.near.hi.z() && x[2] > t.near.lo.z() && x[0] > t.near.lo.x() &&
-                x[0] < t.near.hi.x() && x[1] > t.near.lo.y() && x[1] < t.near.hi.y();
+    for (const Tire& t : tires_) tire |= inside(t.near, x);
     if (!wall && !tire && mine.empty()) continue;
     const double r = grains.radius[g];
     if (wall && !lost_ && !bin.holds({x[0], x[1], x[2], r}))
       lost_ = LostGrain{grains.id[g] - 1, {x[0], x[1], x[2]}};
+    if constexpr (Law::kHistory)
+      if (by_lanes && !tire) {
+        wait_for_walls<Law, kRolling>(grains, g);
+        continue;
+      }
     past_.assign(mine.begin(), mine.end());
     mine.clear();
     taken_.assign(past_.size(), 0);
@@ -155,15 +182,47 @@ void RankContacts::add_forces_of(const OwnGrains& grains, bool losses) {
                                    times_.since;
     }
   }
+  if constexpr (Law::kHistory) {
+    evaluate_walls<Law, kRolling>(grains, floor_lanes_, coefficients_.floor);
+    evaluate_walls<Law, kRolling>(grains, side_lanes_, coefficients_.side);
+  }
   for (Tire& tire : tires_) tire.sum->add_substep(tire.forces, *tire.collider, times_.kick, times_.dt);
 }
 
-SurfaceBox RankContacts::apart_from_walls() const {
+/// Most grains touch nothing but each other. From one making of the lists to the next they move by a skin against where
+/// they stand now at the most: half a skin from where they stood when lists were made, on either side.
+void RankContacts::look_for_touchable(const OwnGrains& grains) {
+  const SurfaceBox apart = apart_from_walls(params_.largest_radius() + params_.skin);
+  double low = 1e300;  // of all tires
+  for (Tire& t : tires_) {
+    t.looked_for = t.near;
+    t.looked_for.lo.array() -= kTireRoom * params_.skin, t.looked_for.hi.array() += kTireRoom * params_.skin;
+    low = std::min(low, t.looked_for.lo.z());
+  }
+  touchable_.clear();
+  for (int g = 0; g < grains.count; ++g) {
+    const double* const x = grains.position[g];
+    bool near = !inside(apart, x) || !grains.carried[g].empty();
+    if (x[2] > low)
+      for (const Tire& t : tires_) near |= inside(t.looked_for, x);
+    if (near) touchable_.push_back(g);
+  }
+  looked_ = true;
+}
+
+bool RankContacts::looked_far_enough() const {
+  const double skin = params_.skin;
+  return looked_ && std::all_of(tires_.begin(), tires_.end(), [skin](const Tire& t) {
+           return (t.near.lo.array() - skin >= t.looked_for.lo.array()).all() &&
+                  (t.near.hi.array() + skin <= t.looked_for.hi.array()).all();
+         });
+}
+
+SurfaceBox RankContacts::apart_from_walls(double r) const {
   const dem::Bin& bin = params_.bin;
-  const double far = 1e6, r = params_.largest_radius();  // farther than any wall; as in Bin::holds
-  SurfaceBox box{{r, r - 0.5 * bin.width, r}, {bin.length - r, 0.5 * bin.width - r, far}};
-  if (bin.periodic_x) box.lo.x() = -far, box.hi.x() = far;
-  if (bin.periodic_y) box.lo.y() = -far, box.hi.y() = far;
+  SurfaceBox box{{r, r - 0.5 * bin.width, r}, {bin.length - r, 0.5 * bin.width - r, kFar}};
+  if (bin.periodic_x) box.lo.x() = -kFar, box.hi.x() = kFar;
+  if (bin.periodic_y) box.lo.y() = -kFar, box.hi.y() = kFar;
   return box;
 }
 
@@ -187,6 +246,33 @@ void RankContacts::note(double overlap, double radius, const double* at) {
   if (share <= hardest_share_) return;
   hardest_share_ = share;
   hardest_at_ = {at[0], at[1], at[2]};
+}
+
+template <class Law, bool kRolling>
+void RankContacts::wait_for_walls(const OwnGrains& grains, int g) {
+  const double* const x = grains.position[g];
+  std::array<double, dem::kWalls> distance;
+  const unsigned touched = walls_touched(params_.bin, {x[0], x[1], x[2], grains.radius[g]}, distance);
+  std::vector<Carried>& mine = grains.carried[g];
+  keep_touched(mine, touched);
+  for (std::size_t entry = 0; entry < mine.size(); ++entry) {
+    const int wall = static_cast<int>(mine[entry].partner);
+    WallLanes& lanes = wall == dem::kFloor ? floor_lanes_ : side_lanes_;
+    lanes.grain[lanes.count] = g, lanes.wall[lanes.count] = wall;
+    lanes.entry[lanes.count] = static_cast<int>(entry);
+    lanes.distance[lanes.count] = distance[wall];
+    if (++lanes.count == WallLanes::kLanes)
+      evaluate_walls<Law, kRolling>(grains, lanes,
+                                    wall == dem::kFloor ? coefficients_.floor : coefficients_.side);
+  }
+}
+
+template <class Law, bool kRolling>
+void RankContacts::evaluate_walls(const OwnGrains& grains, WallLanes& lanes,
+                                  const dem::ContactCoefficients& c) {
+  wall_forces<Law, kRolling>(
+      lanes, grains, c, params_.grain.radius, times_.since, now_,
+      [&](double overlap, int g) { note(overlap, params_.grain.radius, grains.position[g]); });
 }
 
 template <class Law, bool kRolling>
@@ -266,7 +352,15 @@ void RankContacts::touch_tire(const OwnGrains& grains, int g, int k, bool losses
   }
 }
 
-void RankContacts::end_step(const PairSums& pairs, bool losses) {
+void RankContacts::sum_motion(const OwnGrains& grains) {
+  sums_.motion = {};
+  for (int g = 0; g < grains.count; ++g) {
+    const double size = grains.radius[g] / params_.grain.radius, volume = size * size * size;
+    sums_.motion.add(grains.position[g], grains.velocity[g], grains.spin[g], volume, volume * size * size);
+  }
+}
+
+void RankContacts::end_step(const PairSums& pairs, const MotionSums& motion, bool losses) {
   const double dt = times_.kick;
   sums_.elastic = pairs.elastic + now_.elastic;
   sums_.wall_impulse += dt * Vec3(now_.wall_force.x, now_.wall_force.y, now_.wall_force.z);
@@ -282,7 +376,7 @@ void RankContacts::end_step(const PairSums& pairs, bool losses) {
     energies_.sample(1, [&](int) { return &all; });
   }
   energies_.advance(dt, true, 0.0);
-  ++step_;
+  if (++step_ == steps_) sums_.motion = motion;
 }
 
 void RankContacts::end_interval(double duration, std::span<NodalForces> forces, std::span<ContactSums> sums) {
@@ -294,7 +388,9 @@ void RankContacts::end_interval(double duration, std::span<NodalForces> forces, 
 }
 
 void RankContacts::begin_accounts(const dem::Stored& stored, double elastic) {
+  const MotionSums motion = sums_.motion;
   sums_ = {};
+  sums_.motion = motion;
   sums_.elastic = elastic;
   energies_.begin({stored}, 0.0);
 }

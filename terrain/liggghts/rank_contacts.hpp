@@ -16,6 +16,7 @@
 #include "terrain/dem/solver_setup.hpp"
 #include "terrain/dem/wall_forces.hpp"
 #include "terrain/liggghts/engine.hpp"
+#include "terrain/liggghts/wall_lanes.hpp"
 #include "terrain/surface/surface_collider.hpp"
 #include "terrain/surface/surface_forces.hpp"
 
@@ -29,6 +30,7 @@ struct RankSums {
   double gravity_time = 0.0;            // for which the weight has acted, s
   double floor_force = 0.0;             // last step, N
   double contacts = 0.0;                // last step
+  MotionSums motion;                    // now
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<RankSums> auto& s) {
@@ -38,6 +40,7 @@ void visit_fields(Visit&& visit, FieldsOf<RankSums> auto& s) {
   visit(Field{"gravity_time", "s"}, s.gravity_time);
   visit(Field{"floor_force", "N"}, s.floor_force);
   visit(Field{"contacts"}, s.contacts);
+  visit(Field{"motion", ""}, s.motion);
 }
 
 /// A grain that left the bin or is not finite.
@@ -57,14 +60,14 @@ class RankContacts final : public StepWork {
   int tires() const { return static_cast<int>(tires_.size()); }
   SurfaceBox swept_bounds(int k) const { return tires_.at(k).collider->swept_bounds(); }
 
-  /// Declares the motion of the coming interval of `steps` steps; grains stand inside `grains`.
-  void begin_interval(std::span<const SurfaceState> targets, double duration, int steps,
-                      const SurfaceBox& grains);
+  /// Declares the motion of the coming interval of `steps` steps.
+  void begin_interval(std::span<const SurfaceState> targets, double duration, int steps);
   /// Of the coming steps.
   void set_times(const StepTimes& times) { times_ = times; }
-  bool begin_step() override;
+  void lists_made(const OwnGrains& grains) override;
+  StepWish begin_step() override;
   void add_forces(const OwnGrains& grains, bool losses) override;
-  void end_step(const PairSums& pairs, bool losses) override;
+  void end_step(const PairSums& pairs, const MotionSums& motion, bool losses) override;
   /// This rank's share of the interval's means.
   void end_interval(double duration, std::span<NodalForces> forces, std::span<ContactSums> sums);
 
@@ -85,6 +88,8 @@ class RankContacts final : public StepWork {
   const dem::SolverCoefficients& coefficients() const { return coefficients_; }
   /// Begins the accounts. @param stored by the contacts of this rank's grains now  @param elastic J
   void begin_accounts(const dem::Stored& stored, double elastic);
+  /// These are the rank's grains now, other ones than before.
+  void sum_motion(const OwnGrains& grains);
 
   void save(Archive& archive) const;
   void restore(const Archive& archive);
@@ -98,17 +103,26 @@ class RankContacts final : public StepWork {
     double mass_share = 0.0;       // of surface_scale
     std::vector<Vec3> start, end;  // m
     SurfaceBox near;               // bounds now, grown by the largest radius
+    SurfaceBox looked_for;         // while `near` stays inside, `touchable_` holds all grains in it
     std::vector<SurfaceContactForce> forces;
   };
 
   template <class Law, bool kRolling>
   void add_forces_of(const OwnGrains& grains, bool losses);
+  /// Its contacts with walls wait for others; at the latest they are evaluated at the end of add_forces_of.
+  template <class Law, bool kRolling>
+  void wait_for_walls(const OwnGrains& grains, int g);
+  template <class Law, bool kRolling>
+  void evaluate_walls(const OwnGrains& grains, WallLanes& lanes, const dem::ContactCoefficients& c);
   template <class Law, bool kRolling>
   void touch_walls(const OwnGrains& grains, int g, bool losses);
   template <class Law, bool kRolling>
   void touch_tire(const OwnGrains& grains, int g, int k, bool losses);
-  /// Where no grain touches a wall; where the bin is periodic, all of it.
-  SurfaceBox apart_from_walls() const;
+  /// The grains that may touch a wall or a tire before the next look.
+  void look_for_touchable(const OwnGrains& grains);
+  bool looked_far_enough() const;
+  /// Where no grain is as near to a wall as `reach`, m; where the bin is periodic, all of it.
+  SurfaceBox apart_from_walls(double reach) const;
   /// Where the radius is not that of the reference, `scaled` takes the coefficients.
   const dem::ContactCoefficients& of_wall(int wall, double radius, dem::ContactCoefficients& scaled) const;
   const dem::ContactCoefficients& of_tire(const Tire& tire, double radius,
@@ -128,6 +142,10 @@ class RankContacts final : public StepWork {
   std::optional<LostGrain> lost_;
   double interval_overlap_ = 0.0, hardest_share_ = 0.0;
   std::array<double, 3> hardest_at_{};
+  WallLanes floor_lanes_, side_lanes_;
+  std::vector<int> touchable_;       // rising
+  bool looked_ = false;              // touchable_ still holds
+  SurfaceBox box_;                   // of the centres, when lists were made
   std::vector<Carried> past_;        // of the grain at hand, as it was before this step
   std::vector<std::uint8_t> taken_;  // of those: a point has taken it over
 };

@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "protocol/core/rank_group.hpp"
-#include "protocol/core/terrain_state.hpp"
-#include "terrain/liggghts/rank_contacts.hpp"
+#include "terrain/liggghts/rank_states.hpp"
 
 namespace furrow::terrain::liggghts {
 
@@ -25,32 +24,6 @@ void visit_fields(Visit&& visit, FieldsOf<IntervalReport> auto& s) {
   visit(Field{"overlap", "m"}, s.overlap);
   visit(Field{"share", "-"}, s.share);
   visit(Field{"hardest_at", "m"}, s.hardest_at);
-}
-
-/// A rank's share of the terrain's state.
-struct StateReport {
-  double grains = 0.0, mass = 0.0;                              // Σ m, kg
-  double kinetic = 0.0, rotational = 0.0, height_moment = 0.0;  // J, J, Σ m h kg m
-  Vec3 momentum = Vec3::Zero();                                 // kg m/s
-  RankSums sums;
-  dem::Losses lost;     // J
-  dem::Stored stored;   // J
-  double error2 = 0.0;  // of the losses by sampling, J²
-  double list_builds = 0.0;
-};
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<StateReport> auto& s) {
-  visit(Field{"grains"}, s.grains);
-  visit(Field{"mass", "kg"}, s.mass);
-  visit(Field{"kinetic", "J"}, s.kinetic);
-  visit(Field{"rotational", "J"}, s.rotational);
-  visit(Field{"height_moment", "kg m"}, s.height_moment);
-  visit(Field{"momentum", "kg m/s"}, s.momentum);
-  visit(Field{"sums", ""}, s.sums);
-  visit(Field{"lost", ""}, s.lost);
-  visit(Field{"stored", ""}, s.stored);
-  visit(Field{"error2", "J²"}, s.error2);
-  visit(Field{"list_builds"}, s.list_builds);
 }
 
 /// What the ranks know of an interval once they have told each other.

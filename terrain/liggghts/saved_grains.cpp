@@ -12,7 +12,7 @@
 namespace furrow::terrain::liggghts {
 namespace {
 
-constexpr std::size_t kState = 13, kPair = 7, kCarried = 11;  // numbers of an entry
+constexpr std::size_t kState = 16, kPair = 7, kCarried = 11;  // numbers of an entry
 
 [[noreturn]] void damaged(const std::string& what) {
   throw Error(ExitCode::io, "saved state " + what + ": it is damaged");
@@ -42,7 +42,8 @@ void save_grains(Engine& engine, Archive& archive) {
   for (const NewGrain& g : engine.own_state()) {
     id.push_back(g.id);
     state.push_back(g.radius);
-    for (const auto* v : {&g.position, &g.list_position, &g.velocity, &g.spin}) put(state, *v);
+    for (const auto* v : {&g.position, &g.list_position, &g.exchange_position, &g.velocity, &g.spin})
+      put(state, *v);
   }
   for (const PairRecord& p : engine.own_pairs()) {
     partners.insert(partners.end(), {p.i, p.j});
@@ -80,7 +81,8 @@ StartingBed read_grains(const Archive& archive, std::int64_t size, int tires) {
     NewGrain g;
     g.id = k;
     g.radius = state.one();
-    for (auto* v : {&g.position, &g.list_position, &g.velocity, &g.spin}) *v = state.three();
+    for (auto* v : {&g.position, &g.list_position, &g.exchange_position, &g.velocity, &g.spin})
+      *v = state.three();
     if (k < 0 || k >= size || !(g.radius > 0.0)) damaged("'grains' holds a grain that there is not");
     bed.grains.push_back(g);
   }

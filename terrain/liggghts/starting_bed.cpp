@@ -90,7 +90,7 @@ StartingBed starting_bed(const dem::GrainSolver& solver) {
     NewGrain& to = bed.grains.at(grains.id[g]);
     to.id = grains.id[g];
     to.radius = grains.position[g].w;
-    to.position = to.list_position = array(grains.position[g]);
+    to.position = to.list_position = to.exchange_position = array(grains.position[g]);
     to.velocity = array(grains.velocity[g]);
     to.spin = array(grains.spin[g]);
   }

@@ -1,13 +1,15 @@
 #!/usr/bin/python3
 """What a step of the engine liggghts costs on the bed of the small rig, part by part, and on several ranks.
 
-usage: liggghts_cost.py [--steps 300] [--rounds 3] [--ranks 1 2 4] [--timed 1 2]     writes liggghts_cost.csv beside this script
+usage: liggghts_cost.py     takes about six minutes, prints a table and writes liggghts_cost.csv beside this script
 
 Nothing else may run meanwhile. For each number of ranks, in turn: stock LIGGGHTS (hertz, tangential history, walls), our pair
 style with motion and lists alone in one `run N`, the same with walls and accounts, the same with a `run 1` and the sums of a
 step for each step (tests/benchmarks/liggghts.cpp), and a whole run of Furrow with tire, protocol and accounts: with the tire
 of the rig, and with a rigid one, which leaves the cores to the terrain. Rows have the median over rounds and the range;
-`over_pairs` is the ratio to the pair style alone. Of a whole run the rows are, each of the rank that has most of it:
+`over_pairs` is the ratio to the pair style alone: of wall times, and for rows of processor time of processor times.
+On a machine that does other work too, only processor times mean something, and of several ranks not even those: they poll
+for each other. Of a whole run the rows are, each of the rank that has most of it:
 
     whole_run          wall time of computing and communicating over the steps, as the table of the nodes has it
     whole_run_cpu      processor time; what a rank spends in polling for others is part of it
@@ -69,18 +71,19 @@ run 20
 run {steps}
 """
 # The first pattern that a function (or else its library) matches says to which part it belongs.
-PARTS = [("pairs", r"PairFurrow::evaluate"), ("lists", r"Neighbor::(?!check)|FixContactHistory|FixFurrow::pre_neighbor|FixFurrow::copy|"
-          r"Comm::(exchange|borders)|AtomVec.*(exchange|border|copy)|Atom::"),
-         ("motion_and_when_to_list", r"final_integrate|check_distance|force_clear|memset|Verlet::"),
-         ("walls", r"touch_walls|RankContacts::add_forces_of|Carried"),
+PARTS = [("pairs", r"PairFurrow::evaluate"),
+         ("lists", r"PairLists::|FixFurrow::(make_lists|lists_due|strayed|pre_exchange|pre_neighbor|note_exchange|copy|pack_e|unpack_e)|"
+          r"Neighbor::|Comm::(exchange|borders)|AtomVec.*(exchange|border|copy)|Atom::|RankContacts::(lists_made|look_for)"),
+         ("motion", r"FixFurrow::(move|final_integrate)|force_clear|memset|Verlet::"),
+         ("walls", r"touch_walls|wait_for_walls|evaluate_walls|wall_forces|keep_touched|RankContacts::add_forces|Carried"),
          ("tire_contact", r"SurfaceCollider|SurfaceGrid|touch_tire|closest_point|solve_push_out|share_depth|NodalForceSum|SurfaceTopology|"
           r"on_edge|spin_about|RankContacts::begin_"),
-         ("accounts", r"sample_of|LiggghtsTerrain::(look|state)|EnergyAccounts|RankContacts::end_step|held"),
+         ("accounts", r"sample_of|LiggghtsTerrain::state|state_report|terrain_state|EnergyAccounts|RankContacts::end_step|held"),
          ("border_grains", r"Comm::forward_comm|pack_comm|unpack_comm"),
          ("frames_and_files", r"Row\b|hdf5|H5|archive|checkpoint|add_file|state_hash"),
          ("messages_and_polling", r"mca_|libmpi|open-pal|open-rte|libevent|MpiWire|Transport|ByteWriter|ByteReader|PMPI|opal_|ompi_|MPI_|"
           r"share_reports|kernel|vdso|pthread_mutex")]
-COLUMNS = ["part", "ranks", "grains", "steps", "rounds", "us_per_step", "lowest", "highest", "ns_per_grain_step", "over_pairs",
+COLUMNS = ["part", "ranks", "grains", "steps", "rounds", "us_per_step", "lowest", "highest", "cpu_us_per_step", "ns_per_grain_step", "over_pairs",
            "grains_least", "grains_most", "ghosts_most", "bytes_per_step", "list_builds"]
 
 
@@ -151,11 +154,18 @@ def stock(ranks, steps, folder):
     return {"us_per_step": 1e6 * float(seconds) / int(done), "list_builds": builds}
 
 
+def show(rows):
+    print(f"\n{rows[0]['ranks']} ranks".ljust(40) + "us a step   processor   over pairs alone", flush=True)
+    for row in rows:
+        over = f"{100 * (float(row['over_pairs']) - 1):+.0f} %" if row["part"].startswith(("whole", "rigid")) and ": " not in row["part"] else ""
+        print(f"{row['part']:<38} {row['us_per_step']:>10} {row['cpu_us_per_step']:>11} {over:>18}", flush=True)
+
+
 def main():
     global RUN
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--steps", type=int, default=300)
-    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--steps", type=int, default=200)
+    parser.add_argument("--rounds", type=int, default=2)
     parser.add_argument("--out", type=pathlib.Path, default=HERE / "liggghts_cost.csv")
     parser.add_argument("--ranks", type=int, nargs="+", default=[1, 2, 4])
     parser.add_argument("--timed", type=int, nargs="+", default=[1, 2])
@@ -184,6 +194,7 @@ def main():
                 for part, time in sorted(profile(ranks, folder).items(), key=lambda one: -one[1]):
                     found["whole_run: " + part] = [{"us_per_step": time}]
             alone = statistics.median(float(row["us_per_step"]) for row in found["pairs"])
+            alone_cpu = statistics.median(float(row["cpu_us_per_step"]) for row in found["pairs"])
             grains = int(found["pairs"][0]["grains"])
             for part, measured in found.items():
                 times = [float(row["us_per_step"]) for row in measured]
@@ -191,15 +202,18 @@ def main():
                                                                                     "rounds": len(measured)}
                 row["steps"] = round(RUN / STEP) if part.startswith(("whole_run", "rigid_tire")) else arguments.steps
                 median = statistics.median(times)
+                of_cpu = part.endswith("_cpu") or ": " in part
+                if row["cpu_us_per_step"] != "":
+                    row["cpu_us_per_step"] = f"{statistics.median(float(one['cpu_us_per_step']) for one in measured):.0f}"
                 row |= {"us_per_step": f"{median:.0f}", "lowest": f"{min(times):.0f}", "highest": f"{max(times):.0f}",
-                        "ns_per_grain_step": f"{1e3 * median / grains:.0f}", "over_pairs": f"{median / alone:.3f}"}
+                        "ns_per_grain_step": f"{1e3 * median / grains:.0f}", "over_pairs": f"{median / (alone_cpu if of_cpu else alone):.3f}"}
                 if ranks not in arguments.timed:
-                    row |= dict.fromkeys(("us_per_step", "lowest", "highest", "ns_per_grain_step", "over_pairs"), "")
+                    row |= dict.fromkeys(("us_per_step", "lowest", "highest", "cpu_us_per_step", "ns_per_grain_step", "over_pairs"), "")
                 if row["ghosts_most"] != "":
                     row["bytes_per_step"] = GHOST_BYTES * int(row["ghosts_most"])
                 rows.append(row)
-                print(row, flush=True)
             provenance.write_table(arguments.out, COLUMNS, rows, made)
+            show([row for row in rows if row["ranks"] == ranks])
 
 
 if __name__ == "__main__":

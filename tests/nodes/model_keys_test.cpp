@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "nodes/scenario/explain.hpp"
@@ -61,13 +62,27 @@ TEST(TerrainKeys, an_unknown_engine_is_refused_with_those_that_there_are) {
 }
 
 TEST(TerrainKeys, a_key_of_another_engine_is_an_error_in_a_scenario_written_for_its_own) {
-  EXPECT_EQ(
-      with_terrain(R"({"engine": "rigid", "radius": 0.01, "friction": 0.5})").complaint(),
-      ": key 'terrain.radius': is a key of engine 'dem' or 'liggghts', but terrain.engine is 'rigid', expected keys of "
-      "that engine alone");
+  EXPECT_EQ(with_terrain(R"({"engine": "rigid", "radius": 0.01, "friction": 0.5})").complaint(),
+            ": key 'terrain.radius': is a key of engine 'dem' or 'liggghts', but terrain.engine is 'rigid', "
+            "expected keys of "
+            "that engine alone");
   EXPECT_EQ(with_terrain(R"({"ground_damping": 1e4})").complaint().substr(0, 59),
             ": key 'terrain.ground_damping': is a key of engine 'rigid',");
   EXPECT_TRUE(with_terrain(R"({"ground_damping": 2.5e4})").load().warnings.empty()) << "the default";
+}
+
+/// In LIGGGHTS no grain sleeps, and every contact is computed in double precision.
+TEST(TerrainKeys, what_an_engine_cannot_do_is_refused_even_where_it_is_the_default) {
+  for (const char* key : {R"("activity": true)", R"("precision": "mixed")"}) {
+    const std::string text = fmt::format(R"({{"engine": "liggghts", {}}})", key);
+    EXPECT_NE(
+        with_terrain(text).complaint().find("is a key of engine 'dem', but terrain.engine is 'liggghts'"),
+        std::string::npos)
+        << with_terrain(text).complaint();
+  }
+  const scenario::Scenario s = with_terrain(R"({"activity": true})").load({{"terrain.engine", "liggghts"}});
+  ASSERT_EQ(s.warnings.size(), 1U);
+  EXPECT_TRUE(s.warnings[0].ends_with("keys of other engines are ignored: activity")) << s.warnings[0];
 }
 
 TEST(TerrainKeys, an_engine_chosen_on_the_command_line_sets_keys_of_others_aside_with_one_warning) {
@@ -171,9 +186,10 @@ TEST(TerrainKeys, tools_that_need_grains_say_why_and_which_engine_has_them) {
     (void)file.load({{"terrain.engine", "rigid"}}).grains("only grains keep a rut");
     ADD_FAILURE() << "rigid ground has grains";
   } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what())
-                  .find("key 'terrain.engine': is 'rigid', expected 'dem' or 'liggghts': only grains keep a rut"),
-              std::string::npos)
+    EXPECT_NE(
+        std::string(error.what())
+            .find("key 'terrain.engine': is 'rigid', expected 'dem' or 'liggghts': only grains keep a rut"),
+        std::string::npos)
         << error.what();
   }
 }

@@ -10,6 +10,8 @@ import re
 import shutil
 import sys
 
+import h5py
+
 from checkpoint_runs import FAULTY, CheckpointTest, steps, summary, table
 from exact_resume import Exact, kept
 from program import changed, furrow, main, write_scenario
@@ -92,6 +94,44 @@ class SameNumbersOfTheReportsLaw(SameNumbers):
         self.assertLess(self.differs_from_whole_by(on_liggghts(kept("rigid"), 2, **self.TERRAIN)), 1e-9)
 
 
+class BordersThatMove(CheckpointTest):
+    """A heavy wheel that slips pushes grains over the borders of four ranks. After 1000 steps one has 5 % more than the mean."""
+    SCENARIO = {
+        "format_version": 1,
+        "rig": {"type": "drawbar", "slip": 0.5, "angular_speed": 8, "ramp": 0.01, "carrier_mass": 450, "touchdown_damping": 0},
+        "tire": {"file": "hmmwv_layered.json", "rigid": True},
+        "terrain": {"engine": "liggghts", "ranks": 4, "radius": 0.03, "layers": 4, "length": 1.6, "width": 0.4},
+        "run": {"step": 2e-4, "end": 0.208, "average_from": 0.1, "peer_timeout": 60},
+        "output": {"series_interval": 0.002, "frame_interval": 0.02},
+        "checkpoint": {"interval": 0.02, "keep": 1000},
+    }
+    MOVED = 1000
+
+    def borders(self, step):
+        with h5py.File(self.whole / "checkpoints" / f"{step:012}" / "terrain.h5") as file:
+            return list(file["state"]["terrain:borders"][()])
+
+    def test_a_run_goes_on_from_the_step_in_which_they_moved(self):
+        self.assertEqual(self.borders(self.MOVED - 100), self.borders(100))
+        self.assertNotEqual(self.borders(self.MOVED), self.borders(100))
+        for step in (self.MOVED, self.MOVED - 100):
+            with self.subTest(step):
+                shutil.rmtree(self.run_folder, ignore_errors=True)
+                self.copy_of_whole()
+                for later in [s for s in steps(self.whole) if s > step]:
+                    shutil.rmtree(self.run_folder / "checkpoints" / f"{later:012}")
+                self.resume()
+                self.same_as_whole()
+
+    def test_the_summary_tells_the_imbalance(self):
+        told = summary(self.whole)
+        sizes = [row["size"] for row in told["ranks"] if row["node"].startswith("terrain")]
+        self.assertEqual(sum(sizes), told["grains"])
+        self.assertAlmostEqual(told["terrain_imbalance"]["end"], max(sizes) * 4 / sum(sizes) - 1, delta=1e-12)
+        self.assertLess(told["terrain_imbalance"]["begin"], 0.05)
+        self.assertLess(told["terrain_imbalance"]["end"], 0.05)
+
+
 class Faults(CheckpointTest):
     SCENARIO = on_liggghts(kept("rigid"), 2)
     RANKS = {"terrain 0": 2, "terrain 1": 3}
@@ -142,7 +182,8 @@ class Refused(CheckpointTest):
     SCENARIO = on_liggghts(changed(run={"step": 2e-4, "end": 0.01, "average_from": 0.0}), 1)
 
     def test_keys_that_it_cannot_honour(self):
-        for key, value in (("activity", False), ("precision", "double"), ("ground_stiffness", 1e8)):
+        for key, value in (("activity", False), ("activity", True), ("precision", "double"), ("precision", "mixed"),
+                           ("ground_stiffness", 1e8)):
             with self.subTest(key):
                 path = write_scenario(self.folder, on_liggghts(self.SCENARIO, 1, **{key: value}), "wrong.json")
                 done = self.program("run", path, "--out", self.run_folder, code=2)

@@ -1,34 +1,48 @@
 #include "terrain/liggghts/plugin/fix_furrow.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 #include <atom.h>
 #include <comm.h>
+#include <domain.h>
 #include <error.h>
+#include <update.h>
 
 namespace furrow::terrain::liggghts {
 namespace {
 
 constexpr int kCarriedSize = sizeof(Carried) / sizeof(double);
 static_assert(kCarriedSize * sizeof(double) == sizeof(Carried));
+constexpr int kPairSize = 1 + sizeof(PairHistory) / sizeof(double);
+constexpr int kMostPairs = 256;  // of one grain
+constexpr double kForever = std::numeric_limits<double>::infinity();
+
+double distance2(const double* a, const std::array<double, 3>& b) {
+  const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+  return x * x + y * y + z * z;
+}
 
 }  // namespace
 
 FixFurrow::FixFurrow(LAMMPS_NS::LAMMPS* lmp, int narg, char** arg) : Fix(lmp, narg, arg) {
   time_integrate = 1;
   create_attribute = 1;
+  force_reneighbor = 1;
+  next_reneighbor = -1;
   grow_arrays(atom->nmax);
   atom->add_callback(0);
-  comm->maxexchange_fix += 1 + kMostCarried * kCarriedSize;
+  comm->maxexchange_fix += 2 + kMostCarried * kCarriedSize + kMostPairs * kPairSize;
 }
 
 FixFurrow::~FixFurrow() { atom->delete_callback(id, 0); }
 
 int FixFurrow::setmask() {
   namespace when = LAMMPS_NS::FixConst;
-  return when::PRE_NEIGHBOR | when::PRE_FORCE | when::POST_FORCE | when::FINAL_INTEGRATE;
+  return when::PRE_EXCHANGE | when::PRE_NEIGHBOR | when::PRE_FORCE | when::POST_FORCE | when::FINAL_INTEGRATE;
 }
 
 OwnGrains FixFurrow::own() {
@@ -46,63 +60,197 @@ OwnGrains FixFurrow::own() {
   return g;
 }
 
-void FixFurrow::pre_neighbor() {
-  for (int i = 0; i < atom->nlocal; ++i) listed_[i] = {atom->x[i][0], atom->x[i][1], atom->x[i][2]};
+/// The numbers of grains change: each grain takes along what it remembers. Of a pair of own grains either may leave.
+void FixFurrow::pre_exchange() {
+  PairLists& lists = pair_->lists();
+  if (!lists.valid()) return;
+  const int own = atom->nlocal;
+  lists.for_touching([&](int i, int j, int entry) {
+    const PairHistory h = lists.history(entry);
+    pairs_[i].push_back({atom->tag[j], h});
+    if (j < own) pairs_[j].push_back({atom->tag[i], h.turned()});
+  });
+  lists.drop();
 }
+
+void FixFurrow::note_exchange() {
+  for (int i = 0; i < atom->nlocal; ++i) exchanged_[i] = {atom->x[i][0], atom->x[i][1], atom->x[i][2]};
+}
+
+void FixFurrow::pre_neighbor() {
+  note_exchange();
+  make_lists();
+}
+
+void FixFurrow::make_lists() {
+  PairLists& lists = pair_->lists();
+  const int own = atom->nlocal, all = own + atom->nghost;
+  const bool numbered = lists.valid();
+  lists.make({atom->x, atom->radius, own, all, domain->sublo[0], domain->subhi[0]});
+  if (!numbered) {
+    for (int row = 0; row < lists.rows(); ++row)
+      for (const PairOf& pair : pairs_[lists.grain(row)])
+        for (int e = lists.begin(row); e < lists.end(row); ++e)
+          if (atom->tag[lists.partner()[e]] == pair.partner) lists.remember(e, pair.history);
+    for (int i = 0; i < own; ++i) pairs_[i].clear();
+  }
+  for (int i = 0; i < all; ++i) listed_[i] = {atom->x[i][0], atom->x[i][1], atom->x[i][2]};
+  way_ = 0.0;
+  work_->lists_made(this->own());
+}
+
+void FixFurrow::look_again() {
+  double fastest2 = 0.0;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const double* const v = atom->v[i];
+    fastest2 = std::max(fastest2, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  }
+  fastest_ = std::sqrt(fastest2);
+  way_ = kForever;
+}
+
+/// What is not a number has moved too far.
+bool FixFurrow::lists_due() {
+  const double limit2 = 0.25 * setup_.skin * setup_.skin;
+  const int own = atom->nlocal, all = own + atom->nghost;
+  for (int i = own; i < all; ++i)
+    if (!(distance2(atom->x[i], listed_[i]) <= limit2)) return true;
+  if (way_ * way_ <= limit2) return false;
+  double most2 = 0.0;
+  for (int i = 0; i < own; ++i) {
+    const double d2 = distance2(atom->x[i], listed_[i]);
+    if (!(d2 <= limit2)) return true;
+    most2 = std::max(most2, d2);
+  }
+  way_ = std::sqrt(most2);
+  return false;
+}
+
+/// (1) and (2).
+bool FixFurrow::strayed() const {
+  const double skin = setup_.skin, moves = 2.0 * fastest_ * times_.dt;
+  const double outside = 0.5 * skin - moves, near = 2.0 * setup_.largest + 1.5 * skin + moves;
+  const double sent = 2.0 * setup_.largest + (1.0 + kGhostRoom) * skin;
+  const auto over = [&](int axis, bool low, bool high) {
+    const double lo = low ? domain->sublo[axis] : -kForever, hi = high ? domain->subhi[axis] : kForever;
+    for (int i = 0; i < atom->nlocal; ++i) {
+      const double x = atom->x[i][axis], from = exchanged_[i][axis];
+      if (!(x >= lo - outside && x <= hi + outside)) return true;
+      if ((x < lo + near && from >= lo + sent) || (x > hi - near && from <= hi - sent)) return true;
+    }
+    return false;
+  };
+  const bool first = comm->myloc[0] == 0, last = comm->myloc[0] == comm->procgrid[0] - 1;
+  return (comm->nprocs > 1 && over(0, !first, !last)) || (domain->yperiodic && over(1, true, true));
+}
+
+bool FixFurrow::exchange_due() const { return next_reneighbor == update->ntimestep + 1; }
+void FixFurrow::set_exchange_due() { next_reneighbor = update->ntimestep + 1; }
 
 void FixFurrow::pre_force(int) {
-  losses_ = work_->begin_step();
-  pair_->want_losses(losses_);
+  int due = lists_due() ? 1 : 0, any_due = due;
+  if (comm->nprocs > 1) MPI_Allreduce(&due, &any_due, 1, MPI_INT, MPI_MAX, world);
+  asks_ = any_asks_ = 0;
+  if (any_due) {
+    make_lists();
+    asks_ = any_asks_ = strayed() ? 1 : 0;
+    if (comm->nprocs > 1) MPI_Iallreduce(&asks_, &any_asks_, 1, MPI_INT, MPI_MAX, world, &asking_);
+  }
+  wish_ = work_->begin_step();
+  pair_->want_losses(wish_.losses);
 }
 
-void FixFurrow::post_force(int) { work_->add_forces(own(), losses_); }
+void FixFurrow::post_force(int) { work_->add_forces(own(), wish_.losses); }
 
 void FixFurrow::final_integrate() {
+  if (wish_.motion) {
+    setup_.sizes ? move<true, true>() : move<true, false>();
+  } else {
+    setup_.sizes ? move<false, true>() : move<false, false>();
+  }
+  if (asking_ != MPI_REQUEST_NULL) MPI_Wait(&asking_, MPI_STATUS_IGNORE);
+  if (any_asks_) set_exchange_due();
+  work_->end_step(pair_->sums(), sums_, wish_.losses);
+}
+
+template <bool kSums, bool kSizes>
+void FixFurrow::move() {
   const double kick = times_.kick, dt = times_.dt;
   const double mass = setup_.grain.mass, inertia = setup_.grain.inertia, radius = setup_.grain.radius;
-  double per_mass = 1.0 / mass, per_inertia = 1.0 / inertia;
-  for (int g = 0; g < atom->nlocal; ++g) {
+  const std::array<double, 3> gravity = setup_.gravity;
+  double volume = 1.0, spread = 1.0, per_mass = 1.0 / mass, per_inertia = 1.0 / inertia;
+  double fastest2 = 0.0;
+  MotionSums sums;
+  const int count = atom->nlocal;
+  for (int g = 0; g < count; ++g) {
     double *const x = atom->x[g], *const v = atom->v[g], *const w = atom->omega[g];
     const double *const f = atom->f[g], *const t = atom->torque[g];
-    if (setup_.sizes) {
-      const double size = atom->radius[g] / radius, volume = size * size * size;
-      per_mass = 1.0 / (mass * volume), per_inertia = 1.0 / (inertia * volume * size * size);
+    if constexpr (kSizes) {
+      const double size = atom->radius[g] / radius;
+      volume = size * size * size, spread = volume * size * size;
+      per_mass = 1.0 / (mass * volume), per_inertia = 1.0 / (inertia * spread);
     }
     for (int k = 0; k < 3; ++k) {
-      const double a = f[k] * per_mass + setup_.gravity[k], alpha = t[k] * per_inertia;
+      const double a = f[k] * per_mass + gravity[k], alpha = t[k] * per_inertia;
       v[k] += kick * a;
       w[k] += kick * alpha;
       x[k] += dt * v[k];
     }
+    const double speed2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    if (!(speed2 <= fastest2)) fastest2 = speed2 < kForever ? speed2 : kForever;
+    if constexpr (kSums) sums.add(x, v, w, volume, spread);
   }
-  work_->end_step(pair_->sums(), losses_);
+  fastest_ = std::sqrt(fastest2);
+  way_ += dt * fastest_;
+  sums_ = sums;
 }
 
 void FixFurrow::grow_arrays(int most) {
   carried_.resize(most);
+  pairs_.resize(most);
   listed_.resize(most);
+  exchanged_.resize(most);
 }
 
 void FixFurrow::copy_arrays(int from, int to, int) {
   if (from == to) return;
   carried_[to] = std::move(carried_[from]);
   carried_[from].clear();
-  listed_[to] = listed_[from];
+  pairs_[to] = std::move(pairs_[from]);
+  pairs_[from].clear();
 }
 
 int FixFurrow::pack_exchange(int i, double* buffer) {
   const std::vector<Carried>& mine = carried_[i];
+  const std::vector<PairOf>& pairs = pairs_[i];
   if (mine.size() > kMostCarried) error->one(FLERR, "a grain touches more surfaces than it can carry along");
-  buffer[0] = static_cast<double>(mine.size());
-  if (!mine.empty()) std::memcpy(buffer + 1, mine.data(), mine.size() * sizeof(Carried));
-  return 1 + static_cast<int>(mine.size()) * kCarriedSize;
+  if (pairs.size() > kMostPairs) error->one(FLERR, "a grain touches more grains than it can carry along");
+  double* to = buffer;
+  *to++ = static_cast<double>(mine.size());
+  *to++ = static_cast<double>(pairs.size());
+  if (!mine.empty()) std::memcpy(to, mine.data(), mine.size() * sizeof(Carried));
+  to += mine.size() * kCarriedSize;
+  for (const PairOf& pair : pairs) {
+    *to++ = pair.partner;
+    std::memcpy(to, &pair.history, sizeof pair.history);
+    to += kPairSize - 1;
+  }
+  return static_cast<int>(to - buffer);
 }
 
 int FixFurrow::unpack_exchange(int i, double* buffer) {
-  const int count = static_cast<int>(buffer[0]);
-  carried_[i].resize(count);
-  if (count > 0) std::memcpy(static_cast<void*>(carried_[i].data()), buffer + 1, count * sizeof(Carried));
-  return 1 + count * kCarriedSize;
+  const double* from = buffer;
+  carried_[i].resize(static_cast<std::size_t>(*from++));
+  pairs_[i].resize(static_cast<std::size_t>(*from++));
+  if (!carried_[i].empty())
+    std::memcpy(static_cast<void*>(carried_[i].data()), from, carried_[i].size() * sizeof(Carried));
+  from += carried_[i].size() * kCarriedSize;
+  for (PairOf& pair : pairs_[i]) {
+    pair.partner = static_cast<std::int32_t>(*from++);
+    std::memcpy(static_cast<void*>(&pair.history), from, sizeof pair.history);
+    from += kPairSize - 1;
+  }
+  return static_cast<int>(from - buffer);
 }
 
 }  // namespace furrow::terrain::liggghts

@@ -15,10 +15,10 @@
 #include <domain.h>
 #include <force.h>
 #include <input.h>
+#include <integrate.h>
 #include <irregular.h>
 #include <lammps.h>
 #include <modify.h>
-#include <neighbor.h>
 #include <update.h>
 
 #include "terrain/liggghts/engine.hpp"
@@ -69,8 +69,8 @@ class LiggghtsEngine final : public Engine {
     };
     const dem::Bin& bin = setup.bin;
     const double room = kMargin * setup.largest, across = bin.periodic_y ? 0.0 : room;
-    // Cells as wide as the reach of a list make it in two thirds of the time that LIGGGHTS' own, half as wide, take.
-    const double reach = 2.0 * setup.largest + setup.skin;
+    // LIGGGHTS makes no lists of its own, and exchanges grains only when the fix says so.
+    const double reach = (1.0 + kGhostRoom) * setup.skin;
     // Each `run` begins and ends with a line of LIGGGHTS' own sums: of these none is wanted, nor a count of grains.
     for (const std::string& line :
          {std::string("atom_style sphere"), std::string("atom_modify sort 0 0"),
@@ -80,8 +80,8 @@ class LiggghtsEngine final : public Engine {
           "region bin block " + number(-room) + " " + number(bin.length + room) + " " +
               number(-0.5 * bin.width - across) + " " + number(0.5 * bin.width + across) + " " +
               number(-room) + " " + number(setup.top + room) + " units box",
-          std::string("create_box 1 bin"), "neighbor " + number(setup.skin) + " bin",
-          "neigh_modify delay 0 every 1 check yes binsize " + number(reach), std::string("pair_style gran"),
+          std::string("create_box 1 bin"), "neighbor " + number(reach) + " bin",
+          std::string("neigh_modify delay 0 every 2000000000 check no"), std::string("pair_style gran"),
           std::string("pair_coeff * *"), std::string("thermo_style custom step"),
           std::string("thermo_modify lost ignore"), std::string("fix furrow all furrow")})
       command(line);
@@ -102,7 +102,7 @@ class LiggghtsEngine final : public Engine {
     LAMMPS_NS::Atom& atom = *lmp_->atom;
     const double lo = lmp_->domain->sublo[0], hi = lmp_->domain->subhi[0];
     for (const NewGrain& grain : grains) {
-      double at[3] = {grain.list_position[0], grain.list_position[1], grain.list_position[2]};
+      double at[3] = {grain.exchange_position[0], grain.exchange_position[1], grain.exchange_position[2]};
       if (!own_only && !(at[0] >= lo && at[0] < hi)) continue;
       atom.avec->create_atom(1, at);
       const int i = atom.nlocal - 1;
@@ -113,39 +113,62 @@ class LiggghtsEngine final : public Engine {
       std::copy_n(grain.velocity.data(), 3, atom.v[i]);
       std::copy_n(grain.spin.data(), 3, atom.omega[i]);
       fix_->set_arrays(i);
-      if (grain.position != grain.list_position) moved_[grain.id + 1] = grain.position;
+      if (grain.position != grain.exchange_position || grain.list_position != grain.exchange_position)
+        moved_[grain.id + 1] = {grain.list_position, grain.position};
     }
   }
 
-  void remember(std::span<const PairRecord> records) override { pair_->remember(records); }
+  void remember(std::span<const PairRecord> records) override {
+    records_.assign(records.begin(), records.end());
+  }
 
-  void begin(StepWork& work) override {
+  void begin(StepWork& work, bool exchange) override {
     LAMMPS_NS::Atom& atom = *lmp_->atom;
     LAMMPS_NS::bigint own = atom.nlocal;
     MPI_Allreduce(&own, &atom.natoms, 1, MPI_LMP_BIGINT, MPI_SUM, communicator_);
     fix_->set_work(work);
-    command("run 0 pre yes post no");
-    for (int i = 0; i < atom.nlocal; ++i)
-      if (const auto it = moved_.find(atom.tag[i]); it != moved_.end())
-        std::copy_n(it->second.data(), 3, atom.x[i]);
+    make_ready();
+    const auto move = [&](std::array<double, 3> Moved::*to) {
+      for (int i = 0; i < atom.nlocal; ++i)
+        if (const auto it = moved_.find(atom.tag[i]); it != moved_.end())
+          std::copy_n((it->second.*to).data(), 3, atom.x[i]);
+    };
+    give_records();  // now: the first set-up of a run clears the arrays of a fix
+    move(&Moved::list_position);
+    lmp_->comm->forward_comm();  // ghosts follow
+    fix_->make_lists();
+    move(&Moved::position);
+    fix_->look_again();
+    if (exchange) fix_->set_exchange_due();
     moved_ = {};
   }
 
   void set_coefficients(const dem::ContactCoefficients& pair) override { pair_->set_coefficients(pair); }
 
   void run(int steps, const StepTimes& times) override {
-    lmp_->update->dt = times.dt;
+    // As the command `run` does it, without its lines of output and its barriers before and after.
+    LAMMPS_NS::Update& update = *lmp_->update;
+    update.dt = times.dt;
     pair_->set_since(times.since);
     fix_->set_times(times);
-    command("run " + std::to_string(steps) + " pre no post no");
+    update.whichflag = 1;
+    update.nsteps = steps;
+    update.firststep = update.beginstep = update.ntimestep;
+    update.laststep = update.endstep = update.ntimestep + steps;
+    update.integrate->run(steps);
+    update.whichflag = 0;
   }
 
   void move_borders(std::span<const double> borders) override {
     lmp_->modify->setup_pre_exchange();
     set_borders(borders);
     LAMMPS_NS::Irregular(lmp_.get()).migrate_atoms();
-    command("run 0 pre yes post no");
+    make_ready();
+    fix_->make_lists();
+    fix_->look_again();
   }
+
+  bool exchange_due() const override { return fix_->exchange_due(); }
 
   OwnGrains own() override { return fix_->own(); }
 
@@ -160,12 +183,13 @@ class LiggghtsEngine final : public Engine {
       std::copy_n(atom.v[i], 3, g.velocity.data());
       std::copy_n(atom.omega[i], 3, g.spin.data());
       g.list_position = fix_->list_position(i);
+      g.exchange_position = fix_->exchange_position(i);
     }
     return all;
   }
   std::vector<PairRecord> own_pairs() override { return pair_->records(); }
   int own_ghosts() const override { return lmp_->atom->nghost; }
-  std::int64_t list_builds() const override { return lmp_->neighbor->ncalls; }
+  std::int64_t list_builds() const override { return pair_->lists().builds(); }
 
   void command(const std::string& line) override {
     std::string text = line;
@@ -173,6 +197,35 @@ class LiggghtsEngine final : public Engine {
   }
 
  private:
+  /// Exchanges grains. In the step after that LIGGGHTS would exchange them once more, for a restart file that nobody asked
+  /// for: there is no such step.
+  void make_ready() {
+    command("run 0 pre yes post no");
+    ++lmp_->update->ntimestep;
+  }
+
+  /// What touching grains remember becomes that of this rank's own grains.
+  void give_records() {
+    std::unordered_map<int, int> own;  // by tag
+    for (int i = 0; i < lmp_->atom->nlocal; ++i) own.emplace(lmp_->atom->tag[i], i);
+    // Across a periodic side both grains have listed a pair: it is saved twice.
+    const auto give = [&](int tag, int partner, const PairHistory& history) {
+      const auto found = own.find(tag);
+      if (found == own.end()) return;
+      std::vector<PairOf>& pairs = fix_->pairs_of(found->second);
+      for (const PairOf& known : pairs)
+        if (known.partner == partner) return;
+      pairs.push_back({partner, history});
+    };
+    for (const PairRecord& r : records_) {
+      const PairHistory h{{r.tangential[0], r.tangential[1], r.tangential[2], r.root_overlap},
+                          {r.rolling[0], r.rolling[1], r.rolling[2], 0.0}};
+      give(r.i + 1, r.j + 1, h);
+      give(r.j + 1, r.i + 1, h.turned());
+    }
+    records_ = {};
+  }
+
   void set_borders(std::span<const double> borders) {
     LAMMPS_NS::Comm& comm = *lmp_->comm;
     const LAMMPS_NS::Domain& domain = *lmp_->domain;
@@ -187,7 +240,11 @@ class LiggghtsEngine final : public Engine {
   std::unique_ptr<LAMMPS> lmp_;
   PairFurrow* pair_ = nullptr;
   FixFurrow* fix_ = nullptr;
-  std::unordered_map<int, std::array<double, 3>> moved_;  // by tag: since the lists were made
+  std::vector<PairRecord> records_;  // until begin()
+  struct Moved {
+    std::array<double, 3> list_position{}, position{};
+  };
+  std::unordered_map<int, Moved> moved_;  // by tag: since grains could change their rank; until begin()
 };
 
 }  // namespace

@@ -1,36 +1,34 @@
-// The contact laws of terrain/dem between grains, as a pair style of LIGGGHTS. Its name there must be `gran`:
-// FixContactHistory::init of LIGGGHTS 3.8 looks for no other.
+// The contact laws of terrain/dem between grains, as a pair style of LIGGGHTS. It has lists of its own: LIGGGHTS' lists
+// are those of all of a rank's grains, made again together with its exchange of grains once one grain has moved. Its
+// history of contacts is not used either: what pairs remember stands in the lists, and is carried along by FixFurrow.
 #pragma once
 
 #include <cstdint>
-#include <span>
-#include <unordered_map>
+#include <vector>
 
 #include <pair_gran.h>
 
 #include "terrain/liggghts/engine.hpp"
+#include "terrain/liggghts/plugin/pair_lists.hpp"
 
 namespace furrow::terrain::liggghts {
 
 class PairFurrow final : public LAMMPS_NS::PairGran {
  public:
-  static constexpr int kTangential = 0, kRoot = 3, kRolling = 4;  // in the history of a pair
-  static constexpr int kValues = 7;
-
-  explicit PairFurrow(LAMMPS_NS::LAMMPS* lmp) : PairGran(lmp) {}
+  explicit PairFurrow(LAMMPS_NS::LAMMPS* lmp) : PairGran(lmp) { needs_neighlist = false; }
 
   void set_up(const EngineSetup& setup);
   void set_coefficients(const dem::ContactCoefficients& c) { coefficients_ = c; }
   /// The coming evaluations: histories grow for `since`, s.
   void set_since(double since) { since_ = since; }
   void want_losses(bool yes) { losses_ = yes; }
-  void remember(std::span<const PairRecord> records);
+  PairLists& lists() { return lists_; }
   /// The histories that this rank's lists hold, of its grains; a pair across a border by the rank of the lower number.
   std::vector<PairRecord> records();
   /// Of the last evaluation.
   const PairSums& sums() const { return sums_; }
 
-  void settings(int, char**) override;
+  void settings(int, char**) override {}
   void init_granular() override {}
   bool contact_match(const std::string, const std::string) override { return false; }
   int64_t hashcode() override { return 0; }
@@ -40,8 +38,7 @@ class PairFurrow final : public LAMMPS_NS::PairGran {
   void compute_force(int, int, int) override;
   template <class Law, bool kRoll, bool kSizes>
   void evaluate();
-  void recall();
-  double held(const double* history, double r_i, double r_j) const;
+  double held(int entry, double r_i, double r_j) const;
 
   dem::LawKind law_ = dem::LawKind::mindlin;
   bool rolling_ = false, sizes_ = false, losses_ = false;
@@ -49,7 +46,7 @@ class PairFurrow final : public LAMMPS_NS::PairGran {
   double since_ = 0.0;   // s
   dem::ContactCoefficients coefficients_;
   PairSums sums_;
-  std::unordered_map<std::uint64_t, PairRecord> remembered_;  // until the first evaluation
+  PairLists lists_;
 };
 
 }  // namespace furrow::terrain::liggghts

@@ -67,9 +67,9 @@ class Case {
     NewGrain grain;
     grain.radius = kRadius;
     grain.position = {0.5 * s.bin.length - 0.04, 0.01, kRadius - kOverlap};
-    grain.list_position = grain.position;
+    grain.list_position = grain.exchange_position = grain.position;
     engine_->place(std::vector<NewGrain>{grain}, false);
-    engine_->begin(contacts_);
+    engine_->begin(contacts_, false);
     const double top = 2.0 * kRadius - 2.0 * kOverlap;
     plate_ = testing::sheet(0.02, -0.08, 0.04, 8, 4, [&](double, double) { return top; });
     for (auto& t : plate_.mesh.triangles) std::swap(t[1], t[2]);  // its outside is below
@@ -80,8 +80,7 @@ class Case {
 
   Seen advance(int steps) {
     SurfaceState target{plate_.vertex, std::vector<Vec3>(plate_.vertex.size(), Vec3(kSpeed, 0, 0))};
-    const SurfaceBox all{Vec3::Constant(-10.0), Vec3::Constant(10.0)};
-    contacts_.begin_interval(std::span<const SurfaceState>(&target, 1), steps * kStep, steps, all);
+    contacts_.begin_interval(std::span<const SurfaceState>(&target, 1), steps * kStep, steps);
     const StepTimes times{kStep, kStep, kStep};
     contacts_.set_times(times);
     engine_->run(steps, times);

@@ -1,0 +1,37 @@
+// A rank's share of the terrain's state, and the state that the shares of all ranks make.
+#pragma once
+
+#include "protocol/core/terrain_state.hpp"
+#include "terrain/liggghts/rank_contacts.hpp"
+
+namespace furrow::terrain::liggghts {
+
+struct StateReport {
+  double grains = 0.0;
+  RankSums sums;
+  dem::Losses lost;          // J
+  dem::Stored stored;        // J
+  double error2 = 0.0;       // of the losses by sampling, J²
+  double list_builds = 0.0;  // weighted by the rank's share of the grains
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<StateReport> auto& s) {
+  visit(Field{"grains"}, s.grains);
+  visit(Field{"sums", ""}, s.sums);
+  visit(Field{"lost", ""}, s.lost);
+  visit(Field{"stored", ""}, s.stored);
+  visit(Field{"error2", "J²"}, s.error2);
+  visit(Field{"list_builds"}, s.list_builds);
+}
+
+/// @param grains of this rank  @param of_all grains  @param list_builds of this rank
+StateReport state_report(const RankContacts& contacts, double grains, double of_all, double list_builds);
+
+void add(StateReport& to, const StateReport& one);
+
+/// Without what all ranks know: refined steps. @param all  summed over the ranks  @param gravity m/s²
+/// @param surface_work by tires on the grains, J
+TerrainState terrain_state(const StateReport& all, const dem::GrainProperties& grain, const Vec3& gravity,
+                           double surface_work);
+
+}  // namespace furrow::terrain::liggghts

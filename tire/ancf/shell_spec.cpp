@@ -27,12 +27,6 @@ int most_layers(const TireFile& file) {
       std::max({file.bead.layers.size(), file.sidewall.layers.size(), file.tread.layers.size()}));
 }
 
-std::string pressure_text(const PressureSchedule& p) {
-  if (!p.varies()) return fmt::format("{:g} kPa", 1e-3 * p.at(0.0));
-  return fmt::format("{:g} kPa, later {:g} to {:g} kPa", 1e-3 * p.at(0.0), 1e-3 * p.lowest(),
-                     1e-3 * p.highest());
-}
-
 class ShellPress final : public StaticTest {
  public:
   explicit ShellPress(const TireFile& file) : file_(file) {}

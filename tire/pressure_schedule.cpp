@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "protocol/core/assert.hpp"
@@ -31,12 +30,6 @@ double PressureSchedule::lowest() const {
 double PressureSchedule::highest() const {
   FURROW_ASSERT(!knots.empty(), knots.size());
   return std::max_element(knots.begin(), knots.end(), by_pressure)->pressure;
-}
-
-std::string pressure_text(const PressureSchedule& p) {
-  if (!p.varies()) return fmt::format("{:g} kPa", 1e-3 * p.at(0.0));
-  return fmt::format("{:g} kPa, later {:g} to {:g} kPa", 1e-3 * p.at(0.0), 1e-3 * p.lowest(),
-                     1e-3 * p.highest());
 }
 
 void from_json(const nlohmann::json& value, PressureSchedule& schedule) {

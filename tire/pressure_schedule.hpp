@@ -2,7 +2,6 @@
 // last one.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
@@ -24,9 +23,6 @@ struct PressureSchedule {
   double highest() const;
   bool operator==(const PressureSchedule&) const = default;
 };
-
-/// For people, in kPa. @pre not empty
-std::string pressure_text(const PressureSchedule& schedule);
 
 /// A number is one knot, an array has [t, p] for each, in s and Pa; as read, not checked.
 void from_json(const nlohmann::json& value, PressureSchedule& schedule);

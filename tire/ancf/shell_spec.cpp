@@ -10,6 +10,7 @@
 #include "tire/ancf/ancf_tire.hpp"
 #include "tire/ancf/shell_modes.hpp"
 #include "tire/ancf/shell_press.hpp"
+#include "tire/pressure_text.hpp"
 #include "tire/read_tire_file.hpp"
 #include "tire/tire_magnitudes.hpp"
 

@@ -2,7 +2,7 @@
 """`furrow bench tire` and `furrow press` on coarse tires: what they print, leave behind, and refuse."""
 import json
 
-from program import SystemTest, furrow, main, start
+from program import ROOT, SystemTest, furrow, main, start
 
 SCENARIO = {
     "format_version": 1,

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "protocol/core/fields.hpp"
-#include "tire/plane_model.hpp"
+#include "tire/extruded/plane_model.hpp"
 #include "tire/planar/planar_ground.hpp"
 #include "tire/planar/planar_wheel.hpp"
 

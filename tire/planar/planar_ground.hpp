@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "tire/plane_vectors.hpp"
+#include "tire/extruded/plane_vectors.hpp"
 
 namespace furrow::tire {
 

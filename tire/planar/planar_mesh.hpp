@@ -9,7 +9,7 @@
 #include <array>
 #include <vector>
 
-#include "tire/plane_vectors.hpp"
+#include "tire/extruded/plane_vectors.hpp"
 
 namespace furrow::tire {
 

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "protocol/core/assert.hpp"
-#include "tire/extruded_tire.hpp"
+#include "tire/extruded/extruded_tire.hpp"
 #include "tire/planar/planar_carcass.hpp"
 
 namespace furrow::tire {

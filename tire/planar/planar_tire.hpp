@@ -1,4 +1,4 @@
-// The planar finite-element tire in motion: planar_carcass.hpp, drawn out over its width (tire/extruded_tire.hpp). Its inner
+// The planar finite-element tire in motion: planar_carcass.hpp, drawn out over its width (tire/extruded/extruded_tire.hpp). Its inner
 // nodes move with the rim, which stands for the disc.
 #pragma once
 

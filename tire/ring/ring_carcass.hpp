@@ -27,7 +27,7 @@
 #include <vector>
 
 #include "protocol/core/fields.hpp"
-#include "tire/plane_model.hpp"
+#include "tire/extruded/plane_model.hpp"
 #include "tire/ring/folded_band.hpp"
 #include "tire/ring/ring_mechanics.hpp"
 

@@ -10,7 +10,7 @@
 
 #include "protocol/core/error.hpp"
 #include "tire/cylinder.hpp"
-#include "tire/extruded_tire.hpp"
+#include "tire/extruded/extruded_tire.hpp"
 #include "tire/pressure_text.hpp"
 #include "tire/ring/ring_carcass.hpp"
 #include "tire/ring/ring_modes.hpp"

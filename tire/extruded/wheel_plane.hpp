@@ -3,7 +3,7 @@
 #pragma once
 
 #include "protocol/core/vec.hpp"
-#include "tire/plane_vectors.hpp"
+#include "tire/extruded/plane_vectors.hpp"
 
 namespace furrow::tire {
 

@@ -1,4 +1,4 @@
-#include "tire/wheel_plane.hpp"
+#include "tire/extruded/wheel_plane.hpp"
 
 #include <cmath>
 

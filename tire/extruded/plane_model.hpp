@@ -8,7 +8,7 @@
 #include "protocol/core/archive.hpp"
 #include "protocol/core/outcome.hpp"
 #include "tire/named_values.hpp"
-#include "tire/plane_vectors.hpp"
+#include "tire/extruded/plane_vectors.hpp"
 
 namespace furrow::tire {
 

@@ -11,7 +11,7 @@
 
 #include <memory>
 
-#include "tire/plane_model.hpp"
+#include "tire/extruded/plane_model.hpp"
 #include "tire/tire_spec.hpp"
 
 namespace furrow::tire {

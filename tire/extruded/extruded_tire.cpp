@@ -1,4 +1,4 @@
-#include "tire/extruded_tire.hpp"
+#include "tire/extruded/extruded_tire.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/mean_turn.hpp"
-#include "tire/wheel_plane.hpp"
+#include "tire/extruded/wheel_plane.hpp"
 
 namespace furrow::tire {
 namespace {

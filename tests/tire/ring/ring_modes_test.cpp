@@ -34,7 +34,7 @@ std::array<double, 2> closed_form(const RingParams& p, int n) {
 
 TEST(RingModes, frequencies_converge_to_those_of_the_continuous_ring) {
   double before = 1.0;
-  for (const int segments : {60, 120, 240}) {
+  for (const int segments : {60, 120, 240, 480}) {
     const RingParams p = linear_ring(segments);
     const ModesResults r = RingModes(p, motion(), {}).modes({.orders = 8, .count = 2}, {});
     double worst = 0.0;
@@ -43,7 +43,7 @@ TEST(RingModes, frequencies_converge_to_those_of_the_continuous_ring) {
     EXPECT_LT(worst, 0.27 * before) << segments;
     before = worst;
   }
-  EXPECT_LT(before, 2e-3);
+  EXPECT_LT(before, 1e-3);
   // Orders 0 and 1, whose waves the differences hold exactly.
   const RingParams p = linear_ring(16);
   const ModesResults r = RingModes(p, motion(), {}).modes({.orders = 1, .count = 2}, {});
@@ -78,7 +78,8 @@ TEST(RingModes, orders_together_have_the_frequencies_of_the_whole_ring) {
 }
 
 TEST(RingModes, shapes_are_those_of_the_belt_on_a_rim_that_does_not_move) {
-  const RingParams p = truck_ring(48);
+  RingParams p = truck_ring(48);
+  p.shear = 4e8;
   const ModesResults r = RingModes(p, motion(), {5.0, Mat3::Identity()}).modes({.orders = 4, .count = 2}, {});
   ASSERT_EQ(r.modes.size(), 10U);
   EXPECT_EQ(r.around, 48);
@@ -89,9 +90,9 @@ TEST(RingModes, shapes_are_those_of_the_belt_on_a_rim_that_does_not_move) {
     EXPECT_EQ(mode.shape[0], (std::array<std::complex<double>, 3>{}));
     EXPECT_NEAR(std::max(std::abs(mode.shape[1][0]), std::abs(mode.shape[1][2])), 1.0, 1e-12);
   }
-  // In order 1 the belt shifts almost as it is. Upwards that is radial cos θ and tangential −sin θ, θ from the top forwards.
+  // In order 1 a stiff belt shifts as it is. Upwards that is radial cos θ and tangential −sin θ, θ from the top forwards.
   const auto& shift = r.modes[2].shape[1];
-  EXPECT_NEAR(std::abs(shift[0]) / std::abs(shift[2]), 1.0, 0.2);
+  EXPECT_NEAR(std::abs(shift[0]) / std::abs(shift[2]), 1.0, 0.01);
   EXPECT_NEAR(std::arg(shift[0] / shift[2]), 0.5 * kPi, 1e-9);
 }
 

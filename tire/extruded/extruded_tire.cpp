@@ -60,11 +60,12 @@ class ExtrudedTire final : public Tire {
   bool on_tread(int vertex) const { return vertex < 2 * static_cast<int>(model_->tread().size()); }
   double side(int vertex) const { return (vertex % 2 == 0 ? 0.5 : -0.5) * shape_.tread_width; }
   Rigid rigid(const RimState& rim) const;
+  Vec3 momentum(const WheelPlane& plane, const RimState& rim) const;
   Vec3 angular_momentum(const WheelPlane& plane, const RimState& rim) const;
   Vec3 arm(const WheelPlane& plane, int vertex) const;
   void spread(const NodalForces& forces, const WheelPlane& plane);
   Outcome run(const RimTrajectory& rim, const WheelPlane& plane, int steps, PlaneSums& sums);
-  void book(const RimTrajectory& rim, const WheelPlane& plane, const PlaneSums& sums);
+  void book(const RimTrajectory& rim, const WheelPlane& plane, const Vec3& by_turning, const PlaneSums& sums);
 
   template <class Visit>
   friend void visit_fields(Visit&& visit, FieldsOf<ExtrudedTire> auto& s) {
@@ -99,6 +100,10 @@ void ExtrudedTire::place(const RimState& rim) {
 Rigid ExtrudedTire::rigid(const RimState& rim) const {
   const WheelPlane plane = WheelPlane::of(rim.orientation);
   return {plane.along(rim.velocity), plane.across(rim.angular_velocity)};
+}
+
+Vec3 ExtrudedTire::momentum(const WheelPlane& plane, const RimState& rim) const {
+  return plane.out(model_->momentum()) + shape_.mass.mass * rigid(rim).lateral;
 }
 
 /// About the rim's centre, W.
@@ -173,8 +178,9 @@ Outcome ExtrudedTire::advance(const RimTrajectory& rim, const NodalForces& force
   const WheelPlane first = WheelPlane::of(rim.start().orientation), last = WheelPlane::of(rim.end().orientation);
   spread(forces, plane);
   spindle_ = {};
-  // Across the plane, with lever arms that are means of the interval's ends.
-  const Vec3 momentum = rigid(rim.start()).lateral, turning = angular_momentum(first, rim.start());
+  // Forces by the balance of momentum in space, which is that of the plane's steps where the plane does not turn. Moments
+  // across the plane with lever arms that are means of the interval's ends.
+  const Vec3 before = momentum(first, rim.start()), turning = angular_momentum(first, rim.start());
   const PlanarPoint moment_before = model_->first_moment();
   std::vector<Vec3>& arms = arms_before_;
   arms.clear();
@@ -184,32 +190,35 @@ Outcome ExtrudedTire::advance(const RimTrajectory& rim, const NodalForces& force
   const PlanarPoint moment_after = model_->first_moment();
   const double mass = shape_.mass.mass;
   const Vec3 acceleration = (rim.end().velocity - rim.start().velocity) / duration;
-  Vec3 force = mass * gravity_ - mass * (rigid(rim.end()).lateral - momentum) / duration;
+  Vec3 force = mass * gravity_ - (momentum(last, rim.end()) - before) / duration;
   Vec3 moment = plane.out({0.5 * (moment_before.x + moment_after.x), 0.5 * (moment_before.z + moment_after.z)})
                     .cross(gravity_ - acceleration) -
                 (angular_momentum(last, rim.end()) - turning) / duration;
-  Vec3 direct = Vec3::Zero();  // forces on the middles of the sides, which are the rim's
+  Vec3 direct = Vec3::Zero();  // in the plane, on the middles of the sides, which are the rim's
   for (std::size_t k = 0; k < forces.vertex.size(); ++k) {
     force += forces.force[k];
     moment += (0.5 * (arms[k] + arm(last, forces.vertex[k]))).cross(forces.force[k]);
-    if (!on_tread(forces.vertex[k])) direct += forces.force[k];
+    if (!on_tread(forces.vertex[k])) direct += plane.across(forces.force[k]);
   }
-  spindle_.force = plane.out({sums.impulse_x / duration, sums.impulse_z / duration}) + plane.along(force) +
-                   plane.across(direct);
+  spindle_.force = force;
   spindle_.moment = sums.turn_impulse / duration * plane.axis + plane.across(moment);
-  book(rim, plane, sums);
+  const Vec3 by_steps = plane.out({sums.impulse_x / duration, sums.impulse_z / duration}) + direct;
+  book(rim, plane, plane.across(force) - by_steps, sums);
   rim_ = rim.end();
   return {};
 }
 
 /// Losses of the interval: those of the steps; what mean force times way and mean moment times turn say of the rim's work
-/// otherwise than its steps; and what a rigid body's rule loses across the plane.
-void ExtrudedTire::book(const RimTrajectory& rim, const WheelPlane& plane, const PlaneSums& sums) {
+/// otherwise than its steps, also through the force that a plane which turns adds to that of its steps; and what a rigid
+/// body's rule loses across the plane.
+void ExtrudedTire::book(const RimTrajectory& rim, const WheelPlane& plane, const Vec3& by_turning,
+                        const PlaneSums& sums) {
   const RimState &from = rim.start(), &to = rim.end();
   const double h = rim.duration();
   const Vec3 way = to.position - from.position, turn = mean_turn(from.orientation, to.orientation);
   const PlanarPoint in = plane.in(way);
-  const double mean = -(sums.impulse_x * in.x + sums.impulse_z * in.z + sums.turn_impulse * plane.axis.dot(turn)) / h;
+  const double mean = -(sums.impulse_x * in.x + sums.impulse_z * in.z + sums.turn_impulse * plane.axis.dot(turn)) / h -
+                      by_turning.dot(way);
   dissipation_ += sums.dissipation;
   numerical_loss_ += sums.numerical_loss + mean - sums.rim_work;
   solver_loss_ += sums.solver_loss;
@@ -226,7 +235,7 @@ TireDiagnostics ExtrudedTire::diagnostics() const {
   const Rigid with = rigid(rim_);
   const double mass = shape_.mass.mass;
   TireDiagnostics d;
-  d.momentum = plane.out(model_->momentum()) + mass * with.lateral;
+  d.momentum = momentum(plane, rim_);
   d.kinetic_energy = model_->kinetic_energy() + 0.5 * mass * with.lateral.squaredNorm() +
                      0.5 * shape_.mass.inertia(0, 0) * with.tilt.squaredNorm();
   d.elastic_energy = model_->elastic_energy();

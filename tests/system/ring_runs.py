@@ -19,7 +19,7 @@ ROLLING = {
 GROUNDS = {
     "rigid": {"engine": "rigid", "ground_stiffness": 5e7, "ground_shear_stiffness": 2e7, "ground_damping": 1e4},
     "scm": {"engine": "scm", "material": "dry_sand.json", "length": 2.5, "width": 0.5, "grid_spacing": 0.02},
-    "dem": {"engine": "dem", "radius": 0.03, "cohesion": 20e3, "layers": 3, "length": 1.6, "width": 0.5},
+    "dem": {"engine": "dem", "radius": 0.03, "cohesion": 20e3, "layers": 3, "length": 2.1, "width": 0.5},
 }
 STAND = {**ROLLING, "rig": {"type": "drawbar", "slip": 0.0, "angular_speed": 0, "ramp": 0, "carrier_mass": 450,
                             "touchdown_damping": 20e3, "touchdown_time": 0.3},
@@ -75,8 +75,8 @@ class RingRuns(SystemTest):
             deflections.append(told["tire_deflection_m"])
             self.assertTrue(told["accounts"]["energy"]["closes"], told["accounts"]["energy"])
         full, low, down = deflections
-        self.assertGreater(low, 1.01 * full)  # this ring's stiffnesses tell little of its pressure
-        self.assertAlmostEqual(down / low, 1.0, delta=1e-3)
+        self.assertGreater(down, 1.01 * full)  # this ring's stiffnesses tell little of its pressure
+        self.assertAlmostEqual(down / low, 1.0, delta=0.01)
 
     def test_a_load_beyond_the_model_ends_the_run(self):
         path = write_scenario(self.folder, {**ROLLING, "terrain": GROUNDS["rigid"]})

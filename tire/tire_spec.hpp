@@ -67,7 +67,7 @@ struct TireDescription {
   /// `step_share` of `damping_time` are good; with a share of 0 any step is.
   double damping_time = 0.0;  // s
   double step_share = 0.0;    // -
-  /// Why the model cannot be made and run: "which has no motion of its own: …"; empty: it can.
+  /// Why this tire can be pressed but not made and run: "whose key 'integrator' is …"; empty: it can.
   std::string static_only;
   NamedValues model;          // what else there is to know of this model: "layers"
 };

@@ -55,7 +55,7 @@ std::unique_ptr<tire::TireSpec> tire_of(const ModesArguments& arguments) {
 tire::ModesOptions modes_options(const ModesArguments& arguments, const tire::ModalTest& test) {
   const int most = test.sections() / 2;
   const tire::ModesOptions options{arguments.orders.value_or(std::min(tire::ModesOptions{}.orders, most)),
-                                   arguments.count};
+                                   arguments.count.value_or(std::min(tire::ModesOptions{}.count, test.unknowns()))};
   if (options.orders < 0 || options.orders > most)
     throw refused("--orders",
                   fmt::format("is {}, expected 0 to {}, half of the elements around", options.orders, most));
@@ -102,7 +102,7 @@ ExitCode modes_command(const ModesArguments& arguments) {
   if (!test)
     throw refused(
         "TIRE",
-        fmt::format("is '{}', a {}, which has no masses that vibrate, expected a shell or planar tire",
+        fmt::format("is '{}', a {}, which has no masses that vibrate",
                     spec->options().file.filename().string(), spec->describe().name));
   const tire::ModesOptions options = modes_options(arguments, *test);
   const tire::ModesResults results = compute(*test, options);

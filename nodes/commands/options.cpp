@@ -100,8 +100,9 @@ void add_modes_options(CLI::App& command, ModesArguments& modes) {
   command.add_option(
       "--orders", modes.orders,
       "Compute circumferential orders from 0 to this one (default: 8, or half of the elements around).");
-  command.add_option("--count", modes.count, "Compute this number of frequencies of each order.")
-      ->capture_default_str();
+  command.add_option(
+      "--count", modes.count,
+      "Compute this number of frequencies of each order (default: 3, or all that a section of the tire has).");
   command.add_option("--pressure", modes.pressure,
                      "Set the inflation pressure (gauge), Pa (default: the file's).");
   command.add_option("--elements-circumference", modes.around,

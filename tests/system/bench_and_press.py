@@ -2,7 +2,7 @@
 """`furrow bench tire` and `furrow press` on coarse tires: what they print, leave behind, and refuse."""
 import json
 
-from program import SystemTest, furrow, main, start
+from program import ROOT, SystemTest, furrow, main, start
 
 SCENARIO = {
     "format_version": 1,
@@ -194,13 +194,15 @@ class Press(SystemTest):
         self.assertFalse((self.folder / "other").exists())
 
     def test_a_static_tire_does_not_run(self):
+        tire = json.loads((ROOT / "tire/data/aligator_planar.json").read_text())
+        (self.folder / "tire.json").write_text(json.dumps({**tire, "integrator": "runge_kutta_4"}))
         path = self.folder / "static.json"
-        path.write_text(json.dumps({**SCENARIO, "tire": {"file": "hmmwv_ring.json"}}))
+        path.write_text(json.dumps({**SCENARIO, "tire": {"file": "tire.json"}}))
         for command in ("validate", "run"):
             done = furrow(command, path, cwd=self.folder)
             self.assertEqual(done.returncode, 2, done.stderr)
-            self.assertIn("key 'tire.file': is a flexible ring, which has no motion of its own", done.stderr)
-            self.assertEqual(sorted(file.name for file in self.folder.iterdir()), ["static.json"])
+            self.assertIn("key 'tire.file': is a planar finite-element tire, whose key 'integrator' is 'runge_kutta_4'", done.stderr)
+            self.assertEqual(sorted(file.name for file in self.folder.iterdir()), ["static.json", "tire.json"])
         done = furrow("validate", path, "--set", "tire.rigid=true", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
 

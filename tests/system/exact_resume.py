@@ -11,7 +11,7 @@ from checkpoint_runs import CheckpointTest, steps, summary
 from program import ROOT, main
 
 sys.path.insert(0, str(ROOT / "tests" / "campaign"))
-from scenarios import SHELL, SINGLE  # noqa: E402
+from scenarios import SHELL, SINGLE, run_of  # noqa: E402
 
 
 def kept(name):
@@ -68,6 +68,15 @@ class RigidTireOnGrains(Exact, CheckpointTest):
 
 class FlexibleTireUnderAPressureSchedule(Exact, CheckpointTest):
     SCENARIO = kept("shell")
+
+
+class FlexibleRing(Exact, CheckpointTest):
+    """On grains, while its pressure falls."""
+    SCENARIO = run_of(0.1, rig={"touchdown_damping": 0}, checkpoint={"interval": 0.01, "keep": 1000},
+                      tire={"file": "hmmwv_ring.json", "rigid": False, "elements_circumference": 60,
+                            "pressure": [[0, 200e3], [0.08, 120e3]]})
+    KILLED = (1,)
+    LOADED = 7
 
 
 class ContactTangents(Exact, CheckpointTest):

@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import math
 
 from program import ROOT, SystemTest, furrow, main
 
@@ -62,13 +63,25 @@ class Modes(SystemTest):
         self.assertTrue((self.folder / "out" / "mode_shapes.png").exists())
         self.assertIsNone(json.loads((self.folder / "out" / "summary.json").read_text())["pressure_Pa"])
 
+    def test_flexible_rings(self):
+        done = self.run_modes("hmmwv_ring.json", "--elements-circumference", "240", "--orders", "3", "--out", "out")
+        self.assertIn("lowest frequency", done.stderr)
+        self.assertTrue((self.folder / "out" / "mode_shapes.png").exists())
+        summary = json.loads((self.folder / "out" / "summary.json").read_text())
+        self.assertEqual((summary["pressure_Pa"], summary["mass_kg"], summary["sections"]), (200e3, 11.5, 240))
+        self.assertEqual([(mode["order"], mode["number"]) for mode in summary["modes"]],
+                         [(order, number) for order in range(4) for number in (1, 2)])
+        self.assertTrue(summary["stable"])
+        # The belt turns on its rim with k_t alone: sqrt(2 pi k_t / belt mass) / (2 pi).
+        self.assertAlmostEqual(summary["modes"][0]["frequency_Hz"], (2 * math.pi * 5e4 / 8.207) ** 0.5 / (2 * math.pi), delta=0.01)
+
     def test_bad_input(self):
         (self.folder / "broken.json").write_text("{")
         (self.folder / "other.json").write_text(json.dumps({**json.loads((ROOT / "tire/data/aligator_planar.json").read_text()), "radius": 0.1}))
         for arguments, said in (
                 ((), "TIRE is required"), (("none.json",), "key 'TIRE': 'none.json' does not exist"),
                 (("broken.json",), "broken.json:1:2: is not valid JSON"), (("other.json",), "other.json: key 'rim_radius'"),
-                (("hmmwv_ring.json",), "a flexible ring, which has no masses that vibrate, expected a shell or planar tire"),
+                (("hmmwv_ring.json", "--count", "3"), "key '--count': is 3, expected 1 to 2, the unknowns of a section"),
                 (("hmmwv_lumped.json", "--orders", "46"), "key '--orders': is 46, expected 0 to 45"),
                 (("hmmwv_lumped.json", "--orders", "-1"), "key '--orders': is -1"),
                 (("hmmwv_lumped.json", "--count", "0"), "key '--count': is 0, expected 1 to 138"),

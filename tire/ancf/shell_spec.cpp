@@ -10,6 +10,7 @@
 #include "tire/ancf/ancf_tire.hpp"
 #include "tire/ancf/shell_modes.hpp"
 #include "tire/ancf/shell_press.hpp"
+#include "tire/pressure_text.hpp"
 #include "tire/read_tire_file.hpp"
 #include "tire/tire_magnitudes.hpp"
 
@@ -25,12 +26,6 @@ constexpr double kLateShare = 0.04, kTangentShare = 0.1;
 int most_layers(const TireFile& file) {
   return static_cast<int>(
       std::max({file.bead.layers.size(), file.sidewall.layers.size(), file.tread.layers.size()}));
-}
-
-std::string pressure_text(const PressureSchedule& p) {
-  if (!p.varies()) return fmt::format("{:g} kPa", 1e-3 * p.at(0.0));
-  return fmt::format("{:g} kPa, later {:g} to {:g} kPa", 1e-3 * p.at(0.0), 1e-3 * p.lowest(),
-                     1e-3 * p.highest());
 }
 
 class ShellPress final : public StaticTest {

@@ -6,11 +6,18 @@
 #include <span>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
 #include "tire/planar/planar_tangent.hpp"
 
 namespace furrow::tire {
 namespace {
+
+constexpr int kStepsBetweenChecks = 500;  // of the step's limit in the present shape
+constexpr int kMostSteps = 1000;          // in one step of the scenario
+constexpr double kLeastRadius = 1.02;     // of outer nodes, in radii of the rim
 
 /// With a node at the top, as cylinder() has vertices.
 PlanarMesh annulus(const PlanarWheelSize& size) {
@@ -25,12 +32,17 @@ PlanarMesh annulus(const PlanarWheelSize& size) {
 PlanarCarcass::PlanarCarcass(const PlanarParams& params)
     : mesh_(annulus(params.size)),
       elements_(mesh_, std::span(&params.tire, 1), params.options),
+      rim_radius_(params.size.rim_radius),
+      share_(params.step_share),
+      tread_(mesh_.outer.size()),
       held_(mesh_.position.size(), 0),
       r_(mesh_.position),
       u_(mesh_.position.size()),
       internal_(mesh_.position.size()),
       internal_before_(mesh_.position.size()),
       target_(mesh_.position.size()) {
+  const int around = params.size.around;
+  for (int k = 0; k < around; ++k) tread_[(around - k) % around] = mesh_.outer[k];
   for (const int n : mesh_.inner) held_[n] = 1;
   const PlanarField& p = mesh_.position;
   for (std::size_t n = 0; n < p.size(); ++n) {
@@ -47,13 +59,23 @@ void PlanarCarcass::place(double angle, double spin, PlanarPoint velocity) {
     u_.x[n] = spin * r_.z[n], u_.z[n] = -spin * r_.x[n];
   }
   centre_ = velocity;
+  steps_ = since_check_ = 0;
+  limit_ = step_limit();
   renew();
 }
 
-void PlanarCarcass::restore(PlanarField position, PlanarField velocity, PlanarPoint centre_velocity) {
-  FURROW_ASSERT(position.size() == r_.size() && velocity.size() == r_.size(), position.size(),
-                velocity.size(), r_.size());
-  r_ = std::move(position), u_ = std::move(velocity), centre_ = centre_velocity;
+void PlanarCarcass::save(Archive& archive) const {
+  save_value(archive, "planar/x", r_.x), save_value(archive, "planar/z", r_.z);
+  save_value(archive, "planar/velocity_x", u_.x), save_value(archive, "planar/velocity_z", u_.z);
+  save_fields(archive, "planar", *this);
+}
+
+void PlanarCarcass::restore(const Archive& archive) {
+  const std::size_t nodes = r_.size();
+  restore_value(archive, "planar/x", r_.x, nodes), restore_value(archive, "planar/z", r_.z, nodes);
+  restore_value(archive, "planar/velocity_x", u_.x, nodes);
+  restore_value(archive, "planar/velocity_z", u_.z, nodes);
+  restore_fields(archive, "planar", *this);
   renew();
 }
 
@@ -72,8 +94,18 @@ void PlanarCarcass::hold(double h, double angle) {
   }
 }
 
-bool PlanarCarcass::step(double h, const PlanarRimStep& rim, const PlanarField& load, PlanarPoint gravity,
-                         PlanarSums& sums) {
+Outcome PlanarCarcass::parts(double h, int& count) {
+  if (since_check_ >= kStepsBetweenChecks) limit_ = step_limit(), since_check_ = 0;
+  count = static_cast<int>(std::ceil(std::min(h / (share_ * limit_), 2.0 * kMostSteps)));
+  if (h <= kMostSteps * share_ * limit_) return {};
+  return Outcome::failure("is pressed too thin for its explicit steps",
+                          fmt::format("stable steps are below {:.3g} s, more than {} of them in {:.3g} s: "
+                                      "try a smaller run.step, a stiffer tire or a coarser mesh",
+                                      share_ * limit_, kMostSteps, h));
+}
+
+Outcome PlanarCarcass::step(double h, const PlaneRimStep& rim, const PlanarField& load, PlanarPoint gravity,
+                            PlaneSums& sums) {
   FURROW_ASSERT(h > 0.0 && load.size() == r_.size(), h, load.size());
   const double ax = (rim.velocity.x - centre_.x) / h, az = (rim.velocity.z - centre_.z) / h;
   hold(h, rim.angle);
@@ -105,7 +137,27 @@ bool PlanarCarcass::step(double h, const PlanarRimStep& rim, const PlanarField& 
   sums.numerical_loss += 0.5 * (squares + change);
   sums.dissipation += 0.5 * h * (power_ + power);
   power_ = power;
-  return sound;
+  ++steps_, ++since_check_;
+  if (sound) return {};
+  return Outcome::failure("has a triangle that is turned inside out",
+                          "try a smaller run.step or step_share, a stiffer tire or a coarser mesh");
+}
+
+Outcome PlanarCarcass::check() const {
+  const double least = least_radius();
+  if (!std::isfinite(least))
+    return Outcome::failure("has a motion that is not finite", "try a smaller run.step");
+  if (least < kLeastRadius * rim_radius_)
+    return Outcome::failure("was pressed to its rim",
+                            fmt::format("a node of the tread is {:.4g} m from the axle, the rim {:.4g} m",
+                                        least, rim_radius_));
+  return {};
+}
+
+double PlanarCarcass::tread_mass() const {
+  double sum = 0.0;
+  for (const int n : tread_) sum += mass()[n];
+  return sum;
 }
 
 double PlanarCarcass::step_limit() const { return furrow::tire::step_limit(elements_, r_); }

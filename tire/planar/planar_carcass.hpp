@@ -13,29 +13,17 @@
 // P the viscous power; what (3) leaves is of third order in the elastic part and of second in the viscous one.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
+#include "protocol/core/fields.hpp"
+#include "tire/extruded/plane_model.hpp"
 #include "tire/planar/planar_ground.hpp"
 #include "tire/planar/planar_wheel.hpp"
 
 namespace furrow::tire {
 
-/// Where the rim's centre goes in a step, and how far the rim is turned at its end.
-struct PlanarRimStep {
-  PlanarPoint velocity;  // V', m/s
-  double angle = 0.0;    // about +y: forward rolling increases it, rad
-};
-
-/// Sums over steps.
-struct PlanarSums {
-  double impulse_x = 0.0, impulse_z = 0.0;  // of the tire on the rim, N s
-  double turn_impulse = 0.0;                // about +y, N m s
-  double rim_work = 0.0;                    // of the rim on the tire, J
-  double dissipation = 0.0;                 // by viscosity, J
-  double numerical_loss = 0.0;              // J
-};
-
-class PlanarCarcass {
+class PlanarCarcass final : public PlaneModel {
  public:
   explicit PlanarCarcass(const PlanarParams& params);
 
@@ -44,35 +32,54 @@ class PlanarCarcass {
   const std::vector<double>& mass() const { return elements_.mass(); }  // of nodes, kg
   double total_mass() const { return total_mass_; }                     // kg
   double spin_inertia() const { return spin_inertia_; }                 // undeformed, kg m²
-
-  /// Undeformed, moving as a rigid body with the rim.
-  void place(double angle, double spin, PlanarPoint velocity);
-  /// One step of h. @param load on nodes, N. @param gravity in the wheel's plane, m/s²
-  /// @returns whether no triangle was turned inside out. @pre placed or restored; h > 0
-  bool step(double h, const PlanarRimStep& rim, const PlanarField& load, PlanarPoint gravity,
-            PlanarSums& sums);
   /// Largest stable step in the present shape, s.
   double step_limit() const;
+  double least_radius() const;  // of the outer nodes, m
 
-  const PlanarField& position() const { return r_; }    // from the rim's centre, m
-  const PlanarField& velocity() const { return u_; }    // likewise, m/s
-  PlanarPoint centre_velocity() const { return centre_; }  // of the last step, m/s
-  PlanarPoint first_moment() const;                     // Σ m r, kg m
-  PlanarPoint momentum() const;                         // Σ m v, kg m/s
-  double angular_momentum() const;                      // Σ m r × u about +y, kg m²/s
-  double kinetic_energy() const;                        // J
-  double elastic_energy() const { return elements_.energy(r_); }  // J
-  double least_radius() const;                          // of the outer nodes, m
+  int coordinates() const override { return 2 * mesh_.nodes(); }
+  const std::vector<int>& tread() const override { return tread_; }
+  double tread_mass() const override;
+  void set_pressure(double) override {}
+  void place(double angle, double spin, PlanarPoint velocity) override;
+  /// Explicit steps are a share of the largest stable one, which is looked at again now and then.
+  Outcome parts(double h, int& count) override;
+  Outcome step(double h, const PlaneRimStep& rim, const PlanarField& load, PlanarPoint gravity,
+               PlaneSums& sums) override;
+  Outcome check() const override;
 
-  /// @pre of this mesh
-  void restore(PlanarField position, PlanarField velocity, PlanarPoint centre_velocity);
+  const PlanarField& position() const override { return r_; }
+  const PlanarField& velocity() const override { return u_; }
+  PlanarPoint centre_velocity() const override { return centre_; }
+  PlanarPoint first_moment() const override;
+  PlanarPoint momentum() const override;
+  double angular_momentum() const override;
+  double kinetic_energy() const override;
+  double elastic_energy() const override { return elements_.energy(r_); }
+  double pressure_energy() const override { return 0.0; }
+
+  NamedValues figures() const override {
+    return {{"explicit_steps", static_cast<double>(steps_)}, {"step_limit_s", limit_}};
+  }
+  void save(Archive& archive) const override;
+  void restore(const Archive& archive) override;
 
  private:
   void hold(double h, double angle);
   void renew();
 
+  template <class Visit>
+  friend void visit_fields(Visit&& visit, FieldsOf<PlanarCarcass> auto& s) {
+    visit(Field{"centre_velocity_x", "m/s"}, s.centre_.x);
+    visit(Field{"centre_velocity_z", "m/s"}, s.centre_.z);
+    visit(Field{"step_limit", "s"}, s.limit_);
+    visit(Field{"steps", ""}, s.steps_);
+    visit(Field{"steps_since_check", ""}, s.since_check_);
+  }
+
   PlanarMesh mesh_;
   PlanarElements elements_;
+  double rim_radius_, share_;
+  std::vector<int> tread_;
   double total_mass_ = 0.0, spin_inertia_ = 0.0;
   std::vector<char> held_;  // of nodes
   PlanarField r_, u_;
@@ -80,6 +87,8 @@ class PlanarCarcass {
   PlanarField internal_, internal_before_;  // F_int, N
   PlanarField target_;                      // u' of held nodes, m/s
   double power_ = 0.0;                      // P, W
+  double limit_ = 0.0;                      // of the last check, s
+  std::int64_t steps_ = 0, since_check_ = 0;
 };
 
 }  // namespace furrow::tire

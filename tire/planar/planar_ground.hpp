@@ -5,11 +5,9 @@
 
 #include <vector>
 
-namespace furrow::tire {
+#include "tire/extruded/plane_vectors.hpp"
 
-struct PlanarPoint {
-  double x = 0.0, z = 0.0;  // forward, up, m
-};
+namespace furrow::tire {
 
 /// How deep a point lies in the solid, and where the nearest side is.
 struct PlanarDepth {

@@ -9,16 +9,9 @@
 #include <array>
 #include <vector>
 
+#include "tire/extruded/plane_vectors.hpp"
+
 namespace furrow::tire {
-
-/// A vector of every node: positions (m), velocities (m/s) or forces (N).
-struct PlanarField {
-  std::vector<double> x, z;  // forward, up
-
-  PlanarField() = default;
-  explicit PlanarField(std::size_t nodes) : x(nodes, 0.0), z(nodes, 0.0) {}
-  std::size_t size() const { return x.size(); }
-};
 
 struct PlanarMesh {
   PlanarField position;                       // undeformed, m

@@ -25,7 +25,6 @@ RingMechanics::RingMechanics(const RingParams& params)
     : params_(params),
       n_(params.segments),
       phi_(2.0 * std::numbers::pi / params.segments),
-      draw_(sidewall_draw(params)),
       radius_(params.radius),
       volume_(params.air_share * std::numbers::pi * radius_ * radius_ * params.width),
       first_(0.5 / std::sin(phi_)),
@@ -33,8 +32,7 @@ RingMechanics::RingMechanics(const RingParams& params)
       share_(radius_ * phi_ * params.width) {
   FURROW_ASSERT(n_ >= kMinSegments, n_);
   FURROW_ASSERT(params.ambient > 0.0 && params.air_share > 0.0, params.ambient, params.air_share);
-  const double q = draw_, k1 = params.sidewall_1, k2 = params.sidewall_2, k3 = params.sidewall_3;
-  s_ = {params.pressure * radius_ * params.width, k1 + q * (2.0 * k2 + 3.0 * k3 * q), k2 + 3.0 * k3 * q, k3};
+  set_pressure(params.pressure);
   // Block (j, j + d) of (2): φ Σ_o A b(o) b(o + d)ᵀ + B a(o) a(o + d)ᵀ; o: place of segment j as the measure's own
   // segment sees it, −1, 0, 1.
   const double f = first_, g = second_;
@@ -49,6 +47,13 @@ RingMechanics::RingMechanics(const RingParams& params)
         belt_[d][2 * row + column] = phi_ * sum;
       }
   a_.resize(n_), b_.resize(n_);
+}
+
+void RingMechanics::set_pressure(double pressure) {
+  params_.pressure = pressure;
+  const double q = draw_ = sidewall_draw(params_);
+  const double k1 = params_.sidewall_1, k2 = params_.sidewall_2, k3 = params_.sidewall_3;
+  s_ = {pressure * radius_ * params_.width, k1 + q * (2.0 * k2 + 3.0 * k3 * q), k2 + 3.0 * k3 * q, k3};
 }
 
 RingField RingMechanics::zero() const { return {std::vector<double>(n_), std::vector<double>(n_)}; }
@@ -70,19 +75,22 @@ double RingMechanics::belt_energy(const RingField& q) const {
   return 0.5 * phi_ * sum;
 }
 
+double RingMechanics::air_energy(const RingField& q) const {
+  const double change = share_ * std::accumulate(q.u.begin(), q.u.end(), 0.0);
+  const double absolute = params_.pressure + params_.ambient;
+  return params_.gas == RingGas::exact
+             ? params_.ambient * change - absolute * volume_ * std::log1p(change / volume_)
+             : change * (0.5 * absolute * change / volume_ - params_.pressure);
+}
+
 double RingMechanics::energy(const RingField& q) const {
-  double sidewall = 0.0, sum = 0.0;
+  double sidewall = 0.0;
   for (int j = 0; j < n_; ++j) {
     const double u = q.u[j];
     sidewall += u * (s_[0] + u * (s_[1] / 2.0 + u * (s_[2] / 3.0 + u * s_[3] / 4.0))) +
                 0.5 * params_.tangential * q.v[j] * q.v[j];
-    sum += u;
   }
-  const double change = share_ * sum, absolute = params_.pressure + params_.ambient;
-  const double gas = params_.gas == RingGas::exact
-                         ? params_.ambient * change - absolute * volume_ * std::log1p(change / volume_)
-                         : change * (0.5 * absolute * change / volume_ - params_.pressure);
-  return belt_energy(q) + phi_ * sidewall + gas;
+  return belt_energy(q) + phi_ * sidewall + air_energy(q);
 }
 
 double RingMechanics::pressure(const RingField& q) const {
@@ -92,21 +100,34 @@ double RingMechanics::pressure(const RingField& q) const {
   return params_.pressure - absolute * change / (volume_ + change);
 }
 
-void RingMechanics::gradient(const RingField& q, RingField& out) {
+void RingMechanics::belt_gradient(const RingField& q, RingField& out) {
   with_neighbours([&](int l, int j, int r) {
     a_[j] = params_.shear * (first_ * (q.u[r] - q.u[l]) + second_ * (q.v[r] - 2.0 * q.v[j] + q.v[l]));
     b_[j] = params_.bending * (first_ * (q.v[r] - q.v[l]) - second_ * (q.u[r] - 2.0 * q.u[j] + q.u[l]));
   });
+  with_neighbours([&](int l, int j, int r) {
+    out.u[j] = phi_ * (first_ * (a_[l] - a_[r]) - second_ * (b_[r] - 2.0 * b_[j] + b_[l]));
+    out.v[j] = phi_ * (first_ * (b_[l] - b_[r]) + second_ * (a_[r] - 2.0 * a_[j] + a_[l]));
+  });
+}
+
+void RingMechanics::gradient(const RingField& q, RingField& out) {
+  belt_gradient(q, out);
   // Air and the constant part of the sidewall cancel when not loaded: their difference is taken first.
   const double lift = share_ * (params_.pressure - pressure(q));
-  with_neighbours([&](int l, int j, int r) {
+  for (int j = 0; j < n_; ++j) {
     const double u = q.u[j];
-    out.u[j] = phi_ * (first_ * (a_[l] - a_[r]) - second_ * (b_[r] - 2.0 * b_[j] + b_[l]) +
-                       u * (s_[1] + u * (s_[2] + u * s_[3]))) +
-               lift;
-    out.v[j] = phi_ * (first_ * (b_[l] - b_[r]) + second_ * (a_[r] - 2.0 * a_[j] + a_[l]) +
-                       params_.tangential * q.v[j]);
-  });
+    out.u[j] += phi_ * u * (s_[1] + u * (s_[2] + u * s_[3])) + lift;
+    out.v[j] += phi_ * params_.tangential * q.v[j];
+  }
+}
+
+void RingMechanics::without_air(const RingField& q, const RingField& x, RingField& out) {
+  belt_gradient(x, out);
+  for (int j = 0; j < n_; ++j) {
+    out.u[j] += slope(q.u[j]) * x.u[j];
+    out.v[j] += phi_ * params_.tangential * x.v[j];
+  }
 }
 
 void RingMechanics::tangent(const RingField& q, RingTangent& out) const {
@@ -119,7 +140,7 @@ void RingMechanics::tangent(const RingField& q, RingTangent& out) const {
   double sum = 0.0;
   for (int j = 0; j < n_; ++j) {
     const double u = q.u[j];
-    out.uu[0][j] += phi_ * (s_[1] + u * (2.0 * s_[2] + 3.0 * s_[3] * u));
+    out.uu[0][j] += slope(u);
     sum += u;
   }
   const double absolute = params_.pressure + params_.ambient, volume = volume_ + share_ * sum;

@@ -57,12 +57,19 @@ class RingMechanics {
   double volume() const { return volume_; }  // inflated, V₀, m³
   const RingParams& params() const { return params_; }
 
+  /// Gauge pressure of the inflated ring from now on, Pa.
+  void set_pressure(double pressure);
+
   RingField zero() const;
   RingTangent no_tangent() const;  // of the right size
   /// Π, J; 0 when inflated and not loaded.
   double energy(const RingField& q) const;
   /// ∂Π/∂q. @pre the volume is positive
   void gradient(const RingField& q, RingField& out);
+  /// The part of the air, J.
+  double air_energy(const RingField& q) const;
+  /// Tangent at q of belt and sidewall, without air, times x.
+  void without_air(const RingField& q, const RingField& x, RingField& out);
   void tangent(const RingField& q, RingTangent& out) const;
   /// Gauge pressure, Pa.
   double pressure(const RingField& q) const;
@@ -75,6 +82,8 @@ class RingMechanics {
 
  private:
   double belt_energy(const RingField& q) const;
+  /// Gradient of (2).
+  void belt_gradient(const RingField& q, RingField& out);
   /// Calls visit(before, j, after) for all segments; its inner loop has no modulo.
   template <class Visit>
   void with_neighbours(Visit visit) const {
@@ -85,12 +94,12 @@ class RingMechanics {
 
   RingParams params_;
   int n_;
-  double phi_, draw_, radius_, volume_;
+  double phi_, draw_ = 0.0, radius_, volume_;
   double first_, second_;                      // 1 / (2 sin φ), 1 / (2 (1 − cos φ))
   double share_;                               // RφT, m²
   std::array<double, 4> s_;                    // of (3), per radian
   std::array<std::array<double, 4>, 3> belt_;  // uu, uv, vu, vv of the belt's blocks d = 0, 1, 2
-  std::vector<double> a_, b_;                  // of gradient(): B (D₁u + D₂v), A (D₁v − D₂u)
+  std::vector<double> a_, b_;                  // of belt_gradient(): B (D₁u + D₂v), A (D₁v − D₂u)
 };
 
 }  // namespace furrow::tire

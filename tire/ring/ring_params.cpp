@@ -22,4 +22,10 @@ double sidewall_draw(const RingParams& s) {
   return q;
 }
 
+double belt_mass(const RingMotion& m, double radius) {
+  const double inner = m.rim_radius * m.rim_radius, outer = radius * radius;
+  FURROW_ASSERT(m.mass * inner < m.spin_inertia && m.spin_inertia < m.mass * outer, m.mass, m.spin_inertia);
+  return (m.spin_inertia - m.mass * inner) / (outer - inner);
+}
+
 }  // namespace furrow::tire

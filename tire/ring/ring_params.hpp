@@ -36,6 +36,22 @@ struct RingParams {
 
 inline constexpr int kMinSegments = 16, kMaxSegments = 20000;
 
+/// Largest deflection that the model is meant for, share of the radius.
+inline constexpr double kMostRingDeflection = 0.25;
+
+/// What a ring in motion needs besides. Mass and spin inertia are those of two thin rings: the belt, m_b at R, and a rest
+/// at the rim's radius ρ, which moves with the rim:
+///   m_b R² + (m − m_b) ρ² = I.                                                                              (2)
+struct RingMotion {
+  double rim_radius = 0.0;    // ρ, m
+  double mass = 0.0;          // m, kg
+  double spin_inertia = 0.0;  // I, kg m²
+  double damping = 0.0;       // τ of belt and sidewall, s
+};
+
+/// m_b of (2), kg. @pre m ρ² < I < m R²
+double belt_mass(const RingMotion& motion, double radius);
+
 /// Draw q of (1), m. @pre radius, width, k₁ > 0; k₂, k₃, pressure ≥ 0
 double sidewall_draw(const RingParams& params);
 

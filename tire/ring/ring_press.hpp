@@ -9,9 +9,6 @@
 
 namespace furrow::tire {
 
-/// Largest deflection that the model is meant for, share of the radius.
-inline constexpr double kMostRingDeflection = 0.25;
-
 /// @param rim_radius m, that the belt must not reach
 /// @throws Error(bad_input) when the deflection is beyond kMostRingDeflection, Error(physics) without an equilibrium
 PressResults press_ring(const RingParams& params, double rim_radius, const MassProperties& mass,

@@ -1,13 +1,19 @@
 #include "tire/ring/ring_spec.hpp"
 
+#include <algorithm>
 #include <array>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "protocol/core/error.hpp"
 #include "tire/cylinder.hpp"
+#include "tire/extruded/extruded_tire.hpp"
+#include "tire/pressure_text.hpp"
+#include "tire/ring/ring_carcass.hpp"
+#include "tire/ring/ring_modes.hpp"
 #include "tire/ring/ring_press.hpp"
 #include "tire/tire_file_reader.hpp"
 
@@ -16,14 +22,24 @@ namespace {
 
 constexpr double kMostDraw = 0.5;  // of the radius: beyond, a sidewall is too soft for its pressure
 constexpr double kBytesPerSegment = 1200.0;
+constexpr double kSavedBytes = 32.0;    // of a segment
+constexpr double kDamping = 5e-3;       // τ where the file says none, s
+constexpr double kStepShare = 0.04;     // of τ: contact forces come one step late
 constexpr std::array<std::string_view, 2> kGas{"linearised", "exact"}, kKinematics{"radial", "exact"};
 
 void check(const RingFile& f) {
   const RingParams& p = f.params;
-  if (!(f.rim_radius < p.radius))
+  const RingMotion& m = f.motion;
+  if (!(m.rim_radius < p.radius))
     throw input_error(
         f.path, "rim_radius",
-        fmt::format("is {:g} m, expected less than the radius of {:g} m", f.rim_radius, p.radius));
+        fmt::format("is {:g} m, expected less than the radius of {:g} m", m.rim_radius, p.radius));
+  const double least = m.mass * m.rim_radius * m.rim_radius, most = m.mass * p.radius * p.radius;
+  if (!(m.spin_inertia > least && m.spin_inertia < most))
+    throw input_error(f.path, "spin_inertia",
+                      fmt::format("is {:g} kg m², expected between {:.4g} and {:.4g} kg m²: the whole mass at the rim's "
+                                  "radius, and at the belt's",
+                                  m.spin_inertia, least, most));
   if (p.air_share > 1.0)
     throw input_error(f.path, "air_share", fmt::format("is {:g}, expected above 0 up to 1", p.air_share));
   if (p.sidewall_2 * p.sidewall_2 > 3.0 * p.sidewall_1 * p.sidewall_3)
@@ -33,21 +49,23 @@ void check(const RingFile& f) {
                     p.sidewall_1, p.sidewall_2, p.sidewall_3));
 }
 
-void check_pressure(const RingFile& f, const std::string& key) {
-  const double draw = sidewall_draw(f.params);
+void check_pressure(const RingFile& f, double pressure, const std::string& key) {
+  RingParams p = f.params;
+  p.pressure = pressure;
+  const double draw = sidewall_draw(p);
   if (!(draw < kMostDraw * f.params.radius))
     throw input_error(
         f.path, key,
         fmt::format("at {:g} Pa the sidewall is drawn out by {:.3g} m, expected less than {:.3g} m, half "
                     "of the radius: a stiffer sidewall or less pressure",
-                    f.params.pressure, draw, kMostDraw * f.params.radius));
+                    pressure, draw, kMostDraw * f.params.radius));
 }
 
 class RingStatic final : public StaticTest {
  public:
   RingStatic(const RingFile& file, const MassProperties& mass) : file_(file), mass_(mass) {}
   PressResults press(const PressOptions& options, const ProgressCall& progress) const override {
-    return press_ring(file_.params, file_.rim_radius, mass_, options, progress);
+    return press_ring(file_.params, file_.motion.rim_radius, mass_, options, progress);
   }
 
  private:
@@ -60,22 +78,22 @@ class RingSpec final : public TireSpec {
   RingSpec(RingFile file, const TireOptions& options) : TireSpec(options), file_(std::move(file)) {}
 
   TireDescription describe() const override;
-  std::unique_ptr<Tire> make(const TireContext&) const override {
-    throw input_error(file_.path, "model", std::string("is 'ring', ") + kNoMotion);
+  std::unique_ptr<Tire> make(const TireContext& context) const override {
+    return make_extruded_tire(std::make_unique<RingCarcass>(file_.params, file_.motion), shape(),
+                              context.gravity);
   }
   TireShape shape() const override;
   std::unique_ptr<StaticTest> static_test() const override {
     return std::make_unique<RingStatic>(file_, mass());
   }
+  std::unique_ptr<ModalTest> modal_test() const override {
+    return std::make_unique<RingModes>(file_.params, file_.motion, mass());
+  }
 
  private:
-  static constexpr const char* kNoMotion =
-      "which has no motion of its own: it can be pressed (furrow press); for a run expected another model, "
-      "or "
-      "tire.rigid true";
   MassProperties mass() const {
-    return {file_.mass,
-            Vec3(file_.diametral_inertia, file_.spin_inertia, file_.diametral_inertia).asDiagonal()};
+    return {file_.motion.mass,
+            Vec3(file_.diametral_inertia, file_.motion.spin_inertia, file_.diametral_inertia).asDiagonal()};
   }
 
   RingFile file_;
@@ -86,8 +104,9 @@ TireDescription RingSpec::describe() const {
   TireDescription d;
   d.kind = "ring";
   d.name = "flexible ring";
-  d.details =
-      fmt::format("{} segments, {} coordinates, {:g} kPa", p.segments, 2 * p.segments, 1e-3 * p.pressure);
+  PressureSchedule pressure = options().pressure;
+  if (pressure.empty()) pressure.knots = {{0.0, p.pressure}};
+  d.details = fmt::format("{} segments, {} coordinates, {}", p.segments, 2 * p.segments, pressure_text(pressure));
   d.radius = p.radius;
   d.width = d.tread_width = p.width;
   d.coordinates = 2 * p.segments;
@@ -95,9 +114,11 @@ TireDescription RingSpec::describe() const {
   d.facets = p.segments;
   d.mass = mass();
   d.memory = kBytesPerSegment * p.segments;
-  d.static_only = kNoMotion;
-  d.takes = {"pressure", "friction", "elements_circumference"};
-  d.model = {{"draw_m", sidewall_draw(p)}};
+  d.saved_bytes = kSavedBytes * p.segments;
+  d.takes = {"pressure", "friction", "elements_circumference", "structural_damping"};
+  d.damping_time = file_.motion.damping;
+  d.step_share = kStepShare;
+  d.model = {{"draw_m", sidewall_draw(p)}, {"belt_mass_kg", belt_mass(file_.motion, p.radius)}};
   return d;
 }
 
@@ -112,6 +133,7 @@ TireShape RingSpec::shape() const {
 void apply(RingFile& file, const TireOptions& options) {
   if (!options.pressure.empty()) file.params.pressure = options.pressure.at(0.0);
   if (options.friction >= 0.0) file.contact.friction = options.friction;
+  if (options.structural_damping >= 0.0) file.motion.damping = options.structural_damping;
   if (options.elements_circumference == 0) return;
   if (options.elements_circumference < kMinSegments || options.elements_circumference > kMaxSegments)
     throw input_error(
@@ -131,7 +153,7 @@ RingFile read_ring_file(const nlohmann::json& document, const std::string& path)
   p.segments = reader.count("segments", kMinSegments, kMaxSegments);
   p.radius = reader.positive("radius");
   p.width = reader.positive("width");
-  f.rim_radius = reader.positive("rim_radius");
+  f.motion.rim_radius = reader.positive("rim_radius");
   p.pressure = reader.not_negative("pressure");
   p.air_share = reader.positive("air_share");
   p.bending = reader.positive("bending");
@@ -144,20 +166,21 @@ RingFile read_ring_file(const nlohmann::json& document, const std::string& path)
   p.sidewall_1 = k[0], p.sidewall_2 = k[1], p.sidewall_3 = k[2];
   p.gas = choice_of<RingGas>(reader, "gas", kGas);
   p.kinematics = choice_of<RingKinematics>(reader, "kinematics", kKinematics);
-  f.mass = reader.positive("mass");
-  f.spin_inertia = reader.positive("spin_inertia");
+  f.motion.mass = reader.positive("mass");
+  f.motion.spin_inertia = reader.positive("spin_inertia");
   f.diametral_inertia = reader.positive("diametral_inertia");
+  f.motion.damping = reader.has("structural_damping") ? reader.not_negative("structural_damping") : kDamping;
   f.contact = read_contact(reader.child("contact"));
   reader.finish();
   check(f);
-  check_pressure(f, "pressure");
+  check_pressure(f, p.pressure, "pressure");
   return f;
 }
 
 std::unique_ptr<TireSpec> read_ring(const nlohmann::json& file, const TireOptions& options) {
   RingFile ring = read_ring_file(file, options.file.string());
   apply(ring, options);
-  check_pressure(ring, "pressure");
+  if (!options.pressure.empty()) check_pressure(ring, options.pressure.highest(), "pressure");
   return std::make_unique<RingSpec>(std::move(ring), options);
 }
 

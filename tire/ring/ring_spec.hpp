@@ -1,5 +1,5 @@
 // The flexible-ring tire as an entry of the table of models: its file, what a scenario changes of it, what it says of
-// itself. It has no motion of its own: it is pressed (furrow press), or rolls held rigid (tire.rigid).
+// itself.
 #pragma once
 
 #include <memory>
@@ -15,9 +15,7 @@ namespace furrow::tire {
 struct RingFile {
   std::string path;
   RingParams params;
-  double rim_radius = 0.0;         // m
-  double mass = 0.0;               // kg
-  double spin_inertia = 0.0;       // kg m²
+  RingMotion motion;
   double diametral_inertia = 0.0;  // kg m²
   ContactMaterial contact;
 };

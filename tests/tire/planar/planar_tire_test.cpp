@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "protocol/core/error.hpp"
-#include "protocol/core/mean_turn.hpp"
+#include "tests/tire/extruded_ride.hpp"
 #include "tests/tire/planar/planar_examples.hpp"
 #include "tire/outward.hpp"
 #include "tire/planar/planar_carcass.hpp"
@@ -39,82 +39,18 @@ PlanarFile file(int around = 36) {
   return f;
 }
 
-RimState rim_at(double t, double toe = 0.0) {
-  RimState rim;
-  rim.position = Vec3(3.0 * t + 0.4 * t * t, 0.2 * t, 0.5 - 0.05 * t);
-  rim.velocity = Vec3(3.0 + 0.8 * t, 0.2, -0.05);
-  const Quat plane(Eigen::AngleAxisd(toe, Vec3::UnitZ()));
-  rim.orientation = plane * Quat(Eigen::AngleAxisd(6.0 * t + t * t, Vec3::UnitY()));
-  rim.angular_velocity = plane * Vec3(0.0, 6.0 + 2.0 * t, 0.0);
-  return rim;
-}
-
-/// Forces that come and go on the lower half of the tread, on both sides unlike, and on the middle of a side.
-NodalForces loads(const SurfaceState& surface, const RimState& rim, double t) {
-  NodalForces f;
-  const int last = static_cast<int>(surface.position.size()) - 2;
-  for (int v = 0; v < last; ++v) {
-    if (surface.position[v].z() > rim.position.z() - 0.45) continue;
-    f.vertex.push_back(v);
-    f.force.push_back(Vec3(80.0 * std::sin(50.0 * t + v), 30.0, (v % 2 ? 400.0 : 300.0) * (1.0 + std::sin(90.0 * t))));
-  }
-  f.vertex.push_back(last);
-  f.force.push_back(Vec3(5.0, -3.0, 7.0));
-  return f;
-}
-
-struct Ride {
-  double worst_force = 0.0;                   // of Δ momentum − impulses over the largest impulse
-  double work = 0.0, residual = 0.0;          // J
-  TireDiagnostics first, last;
-
-  explicit Ride(double step, double toe = 0.0, double end = 0.1) {
-    const auto tire = make_tire(options());
-    const RimState start = rim_at(0.0, toe);
-    RimTrajectory rim(start);
-    tire->place(start);
-    first = tire->diagnostics();
-    SurfaceState before, after;
-    double rim_work = 0.0, terrain_work = 0.0;
-    const int steps = static_cast<int>(std::lround(end / step));
-    for (int k = 0; k < steps; ++k) {
-      rim.extend(rim_at(k * step, toe), step);
-      tire->surface(before);
-      const NodalForces f = loads(before, rim.start(), k * step);
-      const Vec3 momentum = tire->diagnostics().momentum;
-      const Outcome outcome = tire->advance(rim, f, 1);
-      EXPECT_TRUE(outcome.ok) << outcome.message("tire");
-      tire->surface(after);
-      const Wrench spindle = tire->spindle_wrench();
-      Vec3 impulse = step * (tire->mass_properties().mass * tire->gravity() - spindle.force);
-      double size = impulse.norm();
-      for (std::size_t i = 0; i < f.vertex.size(); ++i) {
-        impulse += step * f.force[i], size += step * f.force[i].norm();
-        terrain_work += f.force[i].dot(after.position[f.vertex[i]] - before.position[f.vertex[i]]);
-      }
-      const double off = (tire->diagnostics().momentum - momentum - impulse).norm() / size;
-      worst_force = std::max(worst_force, off);
-      rim_work -= spindle.force.dot(rim.end().position - rim.start().position) +
-                  spindle.moment.dot(mean_turn(rim.start().orientation, rim.end().orientation));
-    }
-    last = tire->diagnostics();
-    work = std::abs(rim_work) + std::abs(terrain_work);
-    residual = rim_work + terrain_work - (last.stored() - first.stored()) - last.losses();
-  }
-};
-
 TEST(PlanarTire, momentum_changes_by_ground_gravity_and_spindle_to_round_off) {
-  EXPECT_LT(Ride(kStep).worst_force, 1e-11);
-  EXPECT_LT(Ride(kStep, 0.1).worst_force, 1e-11);  // with a slip angle
+  EXPECT_LT(Ride(options(), kStep).worst_force, 1e-11);
+  EXPECT_LT(Ride(options(), kStep, 0.1).worst_force, 1e-11);  // with a slip angle
 }
 
 TEST(PlanarTire, the_account_of_energy_closes) {
-  const Ride ride(kStep);
+  const Ride ride(options(), kStep);
   EXPECT_GT(ride.last.elastic_energy, 0.5);
   EXPECT_GT(ride.last.dissipation, 0.1);
   EXPECT_LT(std::abs(ride.residual), 2e-3 * ride.work) << ride.work;
   EXPECT_LT(std::abs(ride.residual), 0.03 * ride.last.dissipation) << ride.last.dissipation;
-  const Ride turned(kStep, 0.1);
+  const Ride turned(options(), kStep, 0.1);
   EXPECT_NEAR(turned.residual / turned.work, 0.0, 2e-3);
 }
 
@@ -151,7 +87,7 @@ TEST(PlanarTire, pressed_slowly_it_comes_to_the_static_test) {
                         {f.params.contact_stiffness * f.params.options.width, 0.0});
   carcass.place(0.0, 0.0, {});
   const double h = 0.5 * carcass.step_limit(), down = 0.2, speed = deflection / down;
-  PlanarSums sums;
+  PlaneSums sums;
   PlanarField load(carcass.mesh().position.size());
   double force = 0.0;
   const int lowering = static_cast<int>(down / h), steps = 3 * lowering;
@@ -162,58 +98,15 @@ TEST(PlanarTire, pressed_slowly_it_comes_to_the_static_test) {
     for (std::size_t n = 0; n < load.size(); ++n) load.x[n] = load.z[n] = 0.0;
     contact.load(state, carcass.mass(), h, load);
     force = contact.force_z();
-    ASSERT_TRUE(carcass.step(h, {{0.0, k < lowering ? -speed : 0.0}, 0.0}, load, {}, sums));
+    ASSERT_TRUE(carcass.step(h, {{0.0, k < lowering ? -speed : 0.0}, 0.0}, load, {}, sums).ok);
   }
   EXPECT_NEAR(force / peer.force(), 1.0, 1e-3);
 }
 
-TEST(PlanarTire, a_restored_tire_continues_bit_for_bit) {
-  const auto one = make_tire(options()), other = make_tire(options());
-  RimTrajectory rim(rim_at(0.0, 0.05));
-  one->place(rim.end());
-  const auto go = [&](Tire& tire, RimTrajectory& motion, int from, int to) {
-    SurfaceState surface;
-    for (int k = from; k < to; ++k) {
-      motion.extend(rim_at(k * kStep, 0.05), kStep);
-      tire.surface(surface);
-      ASSERT_TRUE(tire.advance(motion, loads(surface, motion.start(), k * kStep), 2).ok);
-    }
-  };
-  go(*one, rim, 0, 333);
-  Archive archive;
-  one->save(archive);
-  other->restore(archive);
-  RimTrajectory copy = rim;
-  go(*one, rim, 333, 700);
-  go(*other, copy, 333, 700);
-  SurfaceState a, b;
-  one->surface(a), other->surface(b);
-  EXPECT_EQ(a.position, b.position);
-  EXPECT_EQ(a.velocity, b.velocity);
-  EXPECT_EQ(one->spindle_wrench().force, other->spindle_wrench().force);
-  EXPECT_EQ(one->spindle_wrench().moment, other->spindle_wrench().moment);
-  EXPECT_EQ(one->diagnostics().losses(), other->diagnostics().losses());
-  EXPECT_EQ(one->figures().of("explicit_steps"), other->figures().of("explicit_steps"));
-}
+TEST(PlanarTire, a_restored_tire_continues_bit_for_bit) { expect_exact_continuation(options(), kStep); }
 
 TEST(PlanarTire, its_surface_is_the_shape_that_it_was_described_with) {
-  for (const int around : {24, 37}) {
-    const auto spec = read_tire(options(around));
-    const auto tire = spec->make();
-    const TireDescription d = spec->describe();
-    EXPECT_EQ(d.vertices, tire->mesh().vertex_count);
-    EXPECT_EQ(d.coordinates, tire->coordinates());
-    EXPECT_EQ(d.mass.mass, tire->mass_properties().mass);
-    EXPECT_EQ(d.static_only, "");
-    EXPECT_EQ(d.facets, around);
-    tire->place(RimState());
-    SurfaceState s;
-    tire->surface(s);
-    const TireShape shape = spec->shape();
-    for (std::size_t v = 0; v < shape.vertex.size(); ++v) EXPECT_LT((s.position[v] - shape.vertex[v]).norm(), 1e-12);
-    EXPECT_NO_THROW(require_outward(tire->mesh(), s.position, Vec3::Zero(), "tire.json"));
-    EXPECT_GT(tire->material().area_density, 0.1);
-  }
+  for (const int around : {24, 37}) expect_described_shape(options(around));
 }
 
 TEST(PlanarTire, what_cannot_go_on_says_so) {

@@ -101,6 +101,29 @@ TEST(RingMechanics, the_belts_null_space_has_four_dimensions) {
   }
 }
 
+TEST(RingMechanics, what_is_damped_is_the_tangent_without_air) {
+  RingMechanics ring(truck_ring(61));
+  const RingField q = random_field(ring, 0.02, 4), x = random_field(ring, 0.01, 5);
+  RingTangent tangent = ring.no_tangent();
+  ring.tangent(q, tangent);
+  tangent.gas = 0.0;
+  RingField fast = ring.zero();
+  ring.without_air(q, x, fast);
+  EXPECT_LT(largest(along(product(tangent, x), fast, -1.0)), 1e-13 * largest(fast));
+}
+
+TEST(RingMechanics, another_pressure_is_another_ring) {
+  RingParams p = truck_ring(40);
+  RingMechanics changed(p);
+  p.pressure = 1.1e5;
+  changed.set_pressure(p.pressure);
+  const RingMechanics made(p);
+  const RingField q = random_field(changed, 0.02, 6);
+  EXPECT_EQ(changed.energy(q), made.energy(q));
+  EXPECT_EQ(changed.draw(), made.draw());
+  EXPECT_LT(changed.air_energy(q), changed.energy(q));
+}
+
 TEST(RingMechanics, force_is_the_derivative_of_the_energy_to_round_off) {
   for (const RingGas gas : {RingGas::exact, RingGas::linearised})
     for (const unsigned seed : {1U, 2U, 3U}) {

@@ -57,6 +57,10 @@ TEST(RingSpec, wrong_files_are_refused_with_file_and_key) {
                                                         {"kinematics", 1},
                                                         {"mass", 0},
                                                         {"spin_inertia", -2},
+                                                        {"spin_inertia", 0.8},
+                                                        {"spin_inertia", 2.6},
+                                                        {"structural_damping", -1e-3},
+                                                        {"structural_damping", "5 ms"},
                                                         {"diametral_inertia", false},
                                                         {"contact", 3},
                                                         {"format_version", 2},
@@ -75,17 +79,23 @@ TEST(RingSpec, wrong_files_are_refused_with_file_and_key) {
     EXPECT_EQ(complaint(file).rfind("tire.json: key '" + std::string(key), 0), 0U) << complaint(file);
   }
   json file = file_text();
-  file.erase("gas"), file.erase("kinematics");
+  file.erase("gas"), file.erase("kinematics"), file.erase("structural_damping");
   EXPECT_EQ(complaint(file), "no error");
+  TireOptions o;
+  o.file = "tire.json";
+  EXPECT_EQ(read_ring(file, o)->describe().damping_time, 5e-3);
 }
 
-TEST(RingSpec, a_scenario_may_change_pressure_friction_and_segments) {
+TEST(RingSpec, a_scenario_may_change_pressure_friction_segments_and_damping) {
   TireOptions o = options(64);
+  EXPECT_EQ(read_tire(o)->describe().damping_time, 0.005);
+  o.structural_damping = 0.01;
   o.pressure.knots = {{0.0, 1e5}};
   o.friction = 0.4;
   const auto spec = read_tire(o);
   EXPECT_EQ(idle_keys(*spec), std::vector<std::string>());
   EXPECT_EQ(spec->describe().coordinates, 128);
+  EXPECT_EQ(spec->describe().damping_time, 0.01);
   EXPECT_EQ(spec->shape().material.friction, 0.4);
   PressOptions press;
   EXPECT_EQ(pressed(o, press).pressure, 1e5);
@@ -93,18 +103,14 @@ TEST(RingSpec, a_scenario_may_change_pressure_friction_and_segments) {
   o.elements_circumference = 8;
   EXPECT_NE(complaint(file_text(), o).find("expected 16 to 20000"), std::string::npos);
   o = options();
-  o.pressure.knots = {{0.0, 1e8}};
+  o.pressure.knots = {{0.0, 1e5}, {1.0, 1e8}};
   EXPECT_NE(complaint(file_text(), o).find("a stiffer sidewall or less pressure"), std::string::npos);
 }
 
-TEST(RingSpec, it_is_pressed_but_not_run_unless_held_rigid) {
+TEST(RingSpec, held_rigid_it_keeps_surface_and_mass) {
   TireOptions o = options();
-  const auto spec = read_tire(o);
-  EXPECT_NE(spec->describe().static_only.find("tire.rigid"), std::string::npos);
-  EXPECT_THROW(spec->make(), Error);
   o.rigid = true;
   const auto rigid = read_tire(o);
-  EXPECT_EQ(rigid->describe().static_only, "");
   EXPECT_EQ(rigid->static_test(), nullptr);
   const auto tire = rigid->make();
   tire->place(RimState());
@@ -169,7 +175,7 @@ TEST(RingSpec, what_lies_beyond_the_model_is_refused) {
         << error.what();
   }
   json file = file_text();
-  file["rim_radius"] = 0.44;
+  file["rim_radius"] = 0.44, file["spin_inertia"] = 2.3;
   TireOptions o;
   o.file = "tire.json";
   press.deflection = 0.05;

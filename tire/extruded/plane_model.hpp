@@ -1,0 +1,69 @@
+// A tire that is alike across its width, in the plane of its wheel, on a rim with a given motion: what an extruded tire
+// (extruded_tire.hpp) moves in its plane. Positions and velocities of nodes count from the rim's centre, in axes that do
+// not turn with the rim. Angles are about +y: forward rolling increases them.
+#pragma once
+
+#include <vector>
+
+#include "protocol/core/archive.hpp"
+#include "protocol/core/outcome.hpp"
+#include "tire/named_values.hpp"
+#include "tire/extruded/plane_vectors.hpp"
+
+namespace furrow::tire {
+
+/// Where the rim's centre goes in a step, and how far the rim is turned at its end.
+struct PlaneRimStep {
+  PlanarPoint velocity;  // of the centre: its way over the step, m/s
+  double angle = 0.0;    // rad
+};
+
+/// Sums over steps.
+struct PlaneSums {
+  double impulse_x = 0.0, impulse_z = 0.0;  // of the tire on the rim, N s
+  double turn_impulse = 0.0;                // about +y, N m s
+  double rim_work = 0.0;                    // of the rim on the tire, J
+  double dissipation = 0.0;                 // by viscosity, J
+  double numerical_loss = 0.0;              // J
+  double solver_loss = 0.0;                 // J
+  PlanarPoint solver_impulse;               // part of the impulse, N s
+};
+
+class PlaneModel {
+ public:
+  virtual ~PlaneModel() = default;
+
+  virtual int coordinates() const = 0;
+  /// Nodes of the outer edge in the order of the pairs of vertices of cylinder(): from the top of the rim forwards.
+  virtual const std::vector<int>& tread() const = 0;
+  virtual double tread_mass() const = 0;  // of these nodes, kg
+
+  /// Gauge pressure from now on, Pa.
+  virtual void set_pressure(double pressure) = 0;
+  /// Undeformed, moving as a rigid body with the rim. @param spin rad/s
+  virtual void place(double angle, double spin, PlanarPoint velocity) = 0;
+  /// Into how many equal steps one of h is cut. @returns failure when they are too many
+  virtual Outcome parts(double h, int& count) = 0;
+  /// One step of h. @param load on nodes, N. @param gravity in the wheel's plane, m/s²
+  /// @pre placed or restored; h > 0
+  virtual Outcome step(double h, const PlaneRimStep& rim, const PlanarField& load, PlanarPoint gravity,
+                       PlaneSums& sums) = 0;
+  /// Whether the tire is within what the model is meant for.
+  virtual Outcome check() const = 0;
+
+  virtual const PlanarField& position() const = 0;     // m
+  virtual const PlanarField& velocity() const = 0;     // m/s
+  virtual PlanarPoint centre_velocity() const = 0;     // of the last step, m/s
+  virtual PlanarPoint first_moment() const = 0;        // Σ m r, kg m
+  virtual PlanarPoint momentum() const = 0;            // kg m/s
+  virtual double angular_momentum() const = 0;         // about the rim's centre, kg m²/s
+  virtual double kinetic_energy() const = 0;           // J
+  virtual double elastic_energy() const = 0;           // J
+  virtual double pressure_energy() const = 0;          // J
+
+  virtual NamedValues figures() const = 0;
+  virtual void save(Archive& archive) const = 0;
+  virtual void restore(const Archive& archive) = 0;
+};
+
+}  // namespace furrow::tire

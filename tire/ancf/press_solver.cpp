@@ -15,6 +15,7 @@
 #include "tire/ancf/inflation.hpp"
 #include "tire/ancf/shell_batch.hpp"
 #include "tire/ancf/shell_tangent.hpp"
+#include "tire/lone_thread.hpp"
 
 namespace furrow::tire {
 namespace {
@@ -80,6 +81,13 @@ struct PressSolver::Linear {
         }
     llt.cholmod().print = 0;
     llt.analyzePattern(matrix);
+  }
+
+  /// @returns whether the matrix is positive definite
+  bool factorize() {
+    const LoneThread alone;
+    llt.factorize(matrix);
+    return llt.info() == Eigen::Success;
   }
 
   /// Where unknown k lies in a field.
@@ -234,8 +242,7 @@ void PressSolver::assemble() {
 bool PressSolver::factorize() {
   assemble();
   contact(true);
-  linear_->llt.factorize(linear_->matrix);
-  return linear_->llt.info() == Eigen::Success;
+  return linear_->factorize();
 }
 
 /// One step of creep, with a factor in place; `norm` is the residual's norm before and after.
@@ -386,8 +393,8 @@ GroundStiffness PressSolver::ground_stiffness(double tangential) {
               linear_->add(j * layout_.columns + i, 6 * n + a, 6 * m + b, w[n] * w[m] * c(a, b));
     }
   });
-  linear_->llt.factorize(linear_->matrix);
-  FURROW_ASSERT(linear_->llt.info() == Eigen::Success, tangential);
+  const bool definite = linear_->factorize();
+  FURROW_ASSERT(definite, tangential);
   Eigen::MatrixXd right(linear_->matrix.rows(), 4);
   for (int k = 0; k < 4; ++k) right.col(k) = linear_->gather(layout_, pull[k]);
   const GroundStiffness stiffness = direct - right.transpose() * linear_->llt.solve(right);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "protocol/core/assert.hpp"
+#include "tire/lone_thread.hpp"
 
 namespace furrow::tire {
 namespace {
@@ -182,6 +183,7 @@ bool PlanarStatic::factorize(double share) {
   if (share > 0.0) l.shifted.diagonal() += share * l.diagonal;
   if (!l.analyzed) l.llt.analyzePattern(l.shifted);
   l.analyzed = true;
+  const LoneThread alone;
   l.llt.factorize(l.shifted);
   return l.llt.info() == Eigen::Success;
 }

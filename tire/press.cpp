@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "protocol/core/assert.hpp"
+#include "protocol/core/error.hpp"
 #include "protocol/files/text_file.hpp"
 
 namespace furrow::tire {
@@ -38,10 +39,10 @@ bool stable_unpressed(const PressResults& results) { return results.loading.fron
 double path_difference(const PressResults& results) {
   double difference = 0.0, largest = 0.0;
   for (const PressPoint& point : results.loading) largest = std::max(largest, point.force);
-  const std::size_t n = results.unloading.size();
-  for (std::size_t k = 0; k < n; ++k) {
-    largest = std::max(largest, results.unloading[k].force);
-    difference = std::max(difference, std::abs(results.unloading[k].force - results.loading[n - 1 - k].force));
+  for (std::size_t k = 0; k < results.unloading.size(); ++k) {
+    const double up = results.loading[results.loading.size() - 2 - k].force, down = results.unloading[k].force;
+    largest = std::max(largest, down);
+    difference = std::max(difference, std::abs(down - up));
   }
   return largest > 0.0 ? difference / largest : 0.0;
 }
@@ -62,20 +63,37 @@ void measure_press(const PressOptions& options, const PressModel& model,
     const int step = k <= options.points ? k : 2 * options.points - k;
     return model.press(options.deflection * step / options.points);
   };
-  results.loading.push_back(at(0));
-  if (model.unpressed) model.unpressed();
-  for (int k = 1; k <= options.points; ++k) {
-    const PressPoint before = results.loading.back();
-    results.loading.push_back(at(k));
-    const PressPoint& now = results.loading.back();
-    const bool reached = before.force < options.load && now.force >= options.load;
-    if (reached || (k == options.points && results.footprint.empty())) {
-      results.at_load = reached ? find_load(model.press, before, now, options.load) : now;
-      results.footprint = model.footprint();
-      if (model.stiffness) results.stiffness = model.stiffness();
+  bool reached = false;
+  const auto look = [&](const PressPoint& point) {
+    results.at_load = point;
+    results.footprint = model.footprint();
+  };
+  try {
+    results.loading.push_back(at(0));
+    if (model.unpressed) model.unpressed();
+    for (int k = 1; k <= options.points; ++k) {
+      const PressPoint before = results.loading.back();
+      const PressPoint& now = results.loading.emplace_back(at(k));
+      if (reached) continue;
+      reached = before.force < options.load && now.force >= options.load;
+      look(reached ? find_load(model.press, before, now, options.load) : now);
+      if (reached || k == options.points) results.stiffness = model.stiffness();
     }
+    for (int k = options.points + 1; k <= total; ++k) results.unloading.push_back(at(k));
+  } catch (const Error& error) {
+    if (error.code() != ExitCode::physics || results.loading.empty()) throw;
+    results.ended =
+        fmt::format("{}; up to {:.4g} m it was found: see --deflection", error.what(), results.loading.back().deflection);
+    if (!options.partial || results.footprint.empty()) throw physics_error(results.ended);
   }
-  for (int k = options.points + 1; k <= total; ++k) results.unloading.push_back(at(k));
+}
+
+void require_no_camber(const PressOptions& options, const char* name) {
+  if (options.obstacle.camber == 0.0) return;
+  throw input_error(options.camber_from, options.camber_key,
+                    fmt::format("is {:g} rad, expected 0: a {} is alike across its width, so that camber would press no "
+                                "side of it more than the other",
+                                options.obstacle.camber, name));
 }
 
 std::string press_caution(const PressResults& results) {
@@ -106,6 +124,7 @@ nlohmann::ordered_json press_json(const PressOptions& options, const PressResult
   const auto if_any = [](const std::optional<double>& value) {
     return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
   };
+  j["camber_rad"] = options.obstacle.camber;
   j["pressure_Pa"] = if_any(results.pressure);
   j["mass_kg"] = results.mass.mass;
   j["spin_inertia_kg_m2"] = results.mass.inertia(1, 1);
@@ -124,15 +143,24 @@ nlohmann::ordered_json press_json(const PressOptions& options, const PressResult
         a.force < p.force && p.force <= b.force)
       tangent = (b.force - a.force) / (b.deflection - a.deflection);
   j["deflection_m"] = if_reached(p.deflection);
+  j["axle_height_m"] = if_reached(results.start_height - p.deflection);
   j["secant_stiffness_N_per_m"] = if_reached(p.force / p.deflection);
   j["tangent_stiffness_N_per_m"] = if_reached(tangent);
+  const auto vector = [&](const Vec3& v) {
+    return reached ? nlohmann::ordered_json({v.x(), v.y(), v.z()}) : nlohmann::ordered_json();
+  };
+  j["rim_force_N"] = vector(p.rim.force);
+  j["rim_moment_Nm"] = vector(p.rim.moment);
   const auto sticking = [&](int k) {
-    return results.stiffness ? if_reached((*results.stiffness)(k, k)) : nlohmann::ordered_json();
+    const double value = results.stiffness ? (*results.stiffness)(k, k) : std::nan("");
+    return std::isfinite(value) ? if_reached(value) : nlohmann::ordered_json();
   };
   j["sticking_stiffness"] = {{"longitudinal_N_per_m", sticking(0)},
                              {"lateral_N_per_m", sticking(1)},
                              {"vertical_N_per_m", sticking(2)},
                              {"torsional_Nm_per_rad", sticking(3)}};
+  const std::string missing = reached ? results.stiffness_missing : "the load was not reached";
+  j["stiffness_missing_because"] = missing.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(missing);
   double residual = 0.0;
   int steps = 0, failed = 0;
   for (const auto* path : {&results.loading, &results.unloading})
@@ -140,6 +168,7 @@ nlohmann::ordered_json press_json(const PressOptions& options, const PressResult
       residual = std::max(residual, point.residual);
       steps += point.creep_steps, failed += point.failed_factorizations;
     }
+  j["ended_because"] = results.ended.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(results.ended);
   j["loading_unloading_difference"] = path_difference(results);
   j["max_residual"] = residual;
   j["creep_steps"] = steps;
@@ -169,11 +198,11 @@ nlohmann::ordered_json press_json(const PressOptions& options, const PressResult
 }
 
 void write_press_tables(const std::filesystem::path& folder, const PressResults& results) {
-  std::string text = "deflection_m,force_N,residual,unloading\n";
+  std::string text = "deflection_m,force_N,residual,unloading,moment_x_Nm,moment_y_Nm\n";
   for (const auto* path : {&results.loading, &results.unloading})
     for (const PressPoint& p : *path)
-      fmt::format_to(std::back_inserter(text), "{:.9g},{:.12g},{:.3g},{}\n", p.deflection, p.force,
-                     p.residual, path == &results.unloading ? 1 : 0);
+      fmt::format_to(std::back_inserter(text), "{:.9g},{:.12g},{:.3g},{},{:.9g},{:.9g}\n", p.deflection, p.force, p.residual,
+                     path == &results.unloading ? 1 : 0, p.rim.moment.x(), p.rim.moment.y());
   write_whole_file(folder / "press.csv", text);
   text = "x_m,y_m,area_m2,pressure_Pa\n";
   for (const PressSample& s : results.footprint)

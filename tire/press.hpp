@@ -21,14 +21,19 @@ struct PressOptions {
   int points = 10;           // of the curve up to it
   double load = 4561.65;     // of the footprint, N: 465 kg
   bool unload = true;        // the curve also back to zero
+  bool partial = false;      // a curve that ends before its largest deflection is a result, with PressResults::ended
   std::string deflection_from = "command line", deflection_key = "--deflection";  // for messages
+  std::string camber_from = "command line", camber_key = "--camber";
 };
 
 struct PressResults {
   std::vector<PressPoint> loading, unloading;
   PressPoint at_load;  // of the footprint; at the largest deflection when the load is not reached
   std::vector<PressSample> footprint;
-  std::optional<GroundStiffness> stiffness;  // at the footprint's load; where the model has one
+  std::optional<GroundStiffness> stiffness;  // at the footprint's load
+  std::string stiffness_missing;             // why parts of it are not a number; empty: none is
+  double start_height = 0.0;                 // of the rim's centre over the obstacle's top where deflection starts, m
+  std::string ended;                         // why the curve ends early; empty: it does not
   std::optional<double> inflation_growth;  // of the largest radius, axisymmetric, m; where the model has one
   std::optional<double> footprint_width;   // m; where the model has no points across
   std::optional<double> pressure;          // gauge, Pa; where the model has one
@@ -38,16 +43,22 @@ struct PressResults {
 };
 
 /// The curve, loading and unloading, and the footprint under the load, for whatever model presses.
-/// @param press to a deflection, @param footprint of the last point, @param unpressed called after the first point
 struct PressModel {
-  std::function<PressPoint(double deflection)> press;
-  std::function<std::vector<PressSample>()> footprint;
-  std::function<void()> unpressed;
-  std::function<GroundStiffness()> stiffness = {};  // of the last point; empty: the model has none
+  std::function<PressPoint(double deflection)> press;   // throws Error(physics) without an equilibrium
+  std::function<std::vector<PressSample>()> footprint;  // of the last point
+  std::function<GroundStiffness()> stiffness;           // of the last point
+  std::function<void()> unpressed = {};                 // called after the first point
 };
 /// @param share called with the share of the curve that is done
+/// @throws Error(physics) where an equilibrium is not found, unless the results may be partial and have a load
 void measure_press(const PressOptions& options, const PressModel& model,
                    const std::function<void(double share)>& share, PressResults& results);
+
+/// Why a model that is alike across its width has neither a lateral nor a torsional stiffness.
+inline constexpr const char* kAlikeAcross =
+    "lateral and torsional: the model is alike across its width and rigid sideways";
+/// @throws Error(bad_input) where a model that is alike across its width is asked for camber
+void require_no_camber(const PressOptions& options, const char* name);
 
 /// What TireSpec::static_test() gives for models that can be pressed.
 class StaticTest {

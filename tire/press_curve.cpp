@@ -18,7 +18,7 @@
 namespace furrow::tire {
 namespace {
 
-constexpr int kFormat = 1;             // raise when the bits of a curve or its digest may change
+constexpr int kFormat = 2;             // raise when the bits of a curve or its digest may change
 constexpr double kFirstShare = 0.048;  // of the radius, which is pressed first
 constexpr double kMore = 1.6;          // times the deflection when the load was not reached
 constexpr int kMostTrials = 4;

@@ -2,18 +2,25 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "protocol/core/surface.hpp"
+
 namespace furrow::tire {
 
 /// A flat plate, a flat-topped bar across the direction of travel with rounded edges, or a profile.
+///
+/// The ground's axes are x forward, y left, z up from it; the rim's centre is over their origin. Camber turns the wheel in
+/// them about x. Seen from the wheel, whose x is the same, it is the ground that is tilted.
 struct PressObstacle {
   double height = 0.0;                         // of the bar's top above the base, m; 0: a plate
   double width = 0.0;                          // of the top along x, m
   double position = 0.0;                       // of the bar's middle, forward of the axle, m
+  double camber = 0.0;                         // of the wheel; leans its top to the right of travel, rad
   double edge = 5e-3;                          // along x, over which the bar's sides rise, m
   double stiffness = 4e9;                      // κ, N/m³: 0.06 mm under 240 kPa
   std::vector<std::array<double, 2>> profile;  // x from the axle, z, m; empty: plate or bar
@@ -23,6 +30,9 @@ struct PressObstacle {
   };
   /// Of plate and bar. Top at 0; the base of a bar is never touched.
   Profile at(double x) const;
+  /// The ground's y and z in the wheel's axes.
+  Vec3 left() const { return {0.0, std::cos(camber), -std::sin(camber)}; }
+  Vec3 up() const { return {0.0, std::sin(camber), std::cos(camber)}; }
 };
 
 /// Rows x_m,z_m of a CSV file, x increasing. @throws Error(bad_input) naming file and line
@@ -34,17 +44,19 @@ struct PressPoint {
   double residual = 0.0;    // of the free forces, relative to the load
   int creep_steps = 0;
   int failed_factorizations = 0;
+  Wrench rim;  // of the tire on the rim, about its centre, in the ground's axes
 };
 
 /// Pressure at a point of the contact surface.
 struct PressSample {
-  double x = 0.0, y = 0.0;  // m, from under the rim's centre
+  double x = 0.0, y = 0.0;  // in the ground's axes, m
   double area = 0.0;        // m²
   double pressure = 0.0;    // Pa
 };
 
 /// How a pressed tire resists small motions of a ground to which it sticks wherever it touches: force and moment that move
-/// the ground, by its way x forward, y left, z up (m) and turn about the vertical through the axle (rad). N/m, N, N m/rad.
+/// the ground, by its way along its x, y and z (m) and its turn about z through the rim's centre (rad). N/m, N, N m/rad.
+/// Not a number: the model has none.
 using GroundStiffness = Eigen::Matrix4d;
 
 }  // namespace furrow::tire

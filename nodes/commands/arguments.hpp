@@ -34,6 +34,7 @@ struct PressArguments {
   std::optional<double> deflection;                 // largest, m
   std::optional<int> points;                        // of the curve up to it
   std::optional<double> load;                       // of the footprint, N
+  std::optional<double> camber;                     // rad
   std::optional<double> cleat_height, cleat_width;  // m
   std::optional<double> cleat_position;             // of its middle, forward of the axle, m
 };

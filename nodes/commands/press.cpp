@@ -20,6 +20,7 @@ namespace furrow::commands {
 namespace {
 
 constexpr int kFormatVersion = 1;
+constexpr double kMostCamber = 0.7;  // rad, as of the rig
 
 /// An option overrides the scenario's key; the schema has checked the latter.
 tire::PressOptions press_options(const scenario::Scenario& scenario, const PressArguments& arguments) {
@@ -35,16 +36,25 @@ tire::PressOptions press_options(const scenario::Scenario& scenario, const Press
           "is missing, expected a CSV file for --on profile");
   require(profile || arguments.profile.empty(), "--profile",
           "is given for --on " + on + ", expected it for --on profile alone");
+  const auto of_cleat = [&](const std::optional<double>& given, const char* key) {
+    require(!given || on == "cleat", key, "is given for --on " + on + ", expected it for --on cleat alone");
+  };
+  of_cleat(arguments.cleat_height, "--cleat-height");
+  of_cleat(arguments.cleat_width, "--cleat-width");
+  of_cleat(arguments.cleat_position, "--cleat-position");
   tire::PressOptions o;
   o.deflection = arguments.deflection.value_or(keys.deflection);
   o.points = arguments.points.value_or(keys.points);
   o.load = arguments.load.value_or(keys.load);
+  o.partial = true;
+  o.obstacle.camber = arguments.camber.value_or(keys.camber);
   const double height = arguments.cleat_height.value_or(keys.cleat_height),
                width = arguments.cleat_width.value_or(keys.cleat_width),
                position = arguments.cleat_position.value_or(keys.cleat_position);
   require(o.deflection > 0.0 && o.deflection <= 0.2, "--deflection", "expected above 0 up to 0.2 m");
   require(o.points >= 1 && o.points <= 1000, "--points", "expected 1 to 1000");
   require(o.load > 0.0 && std::isfinite(o.load), "--load", "expected above 0 N");
+  require(std::abs(o.obstacle.camber) <= kMostCamber, "--camber", "expected -0.7 to 0.7 rad");
   require(height > 0.0 && height <= 0.2, "--cleat-height", "expected above 0 up to 0.2 m");
   require(width > 0.0 && width <= 1.0, "--cleat-width", "expected above 0 up to 1 m");
   require(std::abs(position) <= 1.0, "--cleat-position", "expected -1 to 1 m");
@@ -52,6 +62,7 @@ tire::PressOptions press_options(const scenario::Scenario& scenario, const Press
   if (profile) o.obstacle.profile = tire::read_press_profile(arguments.profile);
   if (!arguments.deflection)
     o.deflection_from = scenario.file.string(), o.deflection_key = "press.deflection";
+  if (!arguments.camber) o.camber_from = scenario.file.string(), o.camber_key = "press.camber";
   return o;
 }
 
@@ -84,8 +95,12 @@ std::string result_line(const nlohmann::ordered_json& summary) {
 ExitCode press_command(const scenario::Scenario& scenario, const PressArguments& arguments) {
   const std::unique_ptr<tire::StaticTest> test = static_test(scenario);
   const tire::PressOptions options = press_options(scenario, arguments);
+  const tire::PressureSchedule& pressure = scenario.tires.front()->options().pressure;
+  if (pressure.varies())
+    print_warning(fmt::format("tire.pressure changes in time: the tire is pressed at that of t = 0, {:g} Pa", pressure.at(0.0)));
   launch::RunDirectory directory(scenario.name + "-press", arguments.out, arguments.overwrite);
   launch::catch_stop_signals();
+  std::string ended;
   try {
     launch::ProgressDisplay display;
     const double begin = wall_clock();
@@ -106,6 +121,7 @@ ExitCode press_command(const scenario::Scenario& scenario, const PressArguments&
     write_whole_file(directory.path() / "summary.json", summary.dump(2) + "\n");
     if (const std::string caution = tire::press_caution(results); !caution.empty())
       print_warning(caution + "; see summary.json and tire/README.md, \"Static pressing\"");
+    ended = results.ended;
     if (summary["deflection_m"].is_null())
       print_warning(fmt::format(
           "the load of {:g} N was not reached: the largest force is {:.4g} N; no stiffness is given, and the "
@@ -119,7 +135,9 @@ ExitCode press_command(const scenario::Scenario& scenario, const PressArguments&
     throw;
   }
   make_report_or_warn(directory.path());
-  return ExitCode::done;
+  if (ended.empty()) return ExitCode::done;
+  print_error(fmt::format("the curve ends early: {}; what was found is in {}", ended, directory.path().string()));
+  return ExitCode::physics;
 }
 
 }  // namespace furrow::commands

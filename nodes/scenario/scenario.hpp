@@ -73,6 +73,7 @@ struct PressKeys {
   double deflection = 0.02;  // largest, m
   int points = 10;           // of the curve up to it
   double load = 4561.65;     // of the footprint, N
+  double camber = 0.0;       // of the wheel, rad
   double cleat_height = 0.025, cleat_width = 0.025;  // m
   double cleat_position = 0.0;                       // of its middle, forward of the axle, m
 };
@@ -83,6 +84,7 @@ void visit_fields(Visit&& visit, FieldsOf<PressKeys> auto& s) {
   visit(Field{"deflection", "m", role::key | role::harmless}, s.deflection);
   visit(Field{"points", "", role::key | role::harmless}, s.points);
   visit(Field{"load", "N", role::key | role::harmless}, s.load);
+  visit(Field{"camber", "rad", role::key | role::harmless}, s.camber);
   visit(Field{"cleat_height", "m", role::key | role::harmless}, s.cleat_height);
   visit(Field{"cleat_width", "m", role::key | role::harmless}, s.cleat_width);
   visit(Field{"cleat_position", "m", role::key | role::harmless}, s.cleat_position);

@@ -38,7 +38,7 @@ WEIGHTS = [4, 4, 10, 4, 6, 1, 1, 1, 2, 2, 3, 4, 2, 1, 3, 1, 1, 1, 1, 1, 1, 1, 1,
 FLAGS = ["--set", "--threads", "--out", "--overwrite", "--orders", "--count", "--elements-circumference", "--profile", "--no-plots", "--json", "--until", "--seeds", "--speed", "--only",
          "--quick", "--on", "--deflection", "--points", "--load", "--cleat-height", "--cleat-width", "--jobs", "--travel", "--csv", "--soil", "--bed",
          "--law", "--precision", "--cohesion", "--steps", "--warm", "--settle", "--save-bed", "--step", "--tire", "--pressure",
-         "--tolerance", "--renewal", "--elements-width", "--quiet", "--vtk", "--cleat-position", "--slurm", "--help", "-h", "--version", "--fast", "-x", "--set=", "--out="]
+         "--tolerance", "--renewal", "--elements-width", "--quiet", "--vtk", "--cleat-position", "--camber", "--slurm", "--help", "-h", "--version", "--fast", "-x", "--set=", "--out="]
 FILES = ["small.json", "study.json", "tire.json", "soil.json", "deep.json", "empty.json", "list.json", "binary.json", "folder", "run",
          "bed.csv", "bed.h5", "nowhere.json", "first_look.json", "study_slip.json", "hmmwv_layered.json", "rover.json", "car.json", "curb.json", "cleat_press.json", "aligator_planar.json", "hmmwv_ring.json", "/dev/null", "/proc/self/mem", "/",
          ".", "..", "", " ", "a" * 300, "a" * 5000, "folder/", "run/summary.json", "-", "--", "$(touch pwn)", "~"]

@@ -63,14 +63,15 @@ class Bench(SystemTest):
 
 
 class Press(SystemTest):
-    def press(self, *more):
+    def press(self, *more, deflection="0.012", points="4"):
         path = self.folder / "pressed.json"
         path.write_text(json.dumps(SCENARIO))
-        return furrow("press", path, "--out", self.folder / "out", "--deflection", "0.012", "--points", "4", *more,
+        return furrow("press", path, "--out", self.folder / "out", "--deflection", deflection, "--points", points, *more,
                       cwd=self.folder)
 
     def test_plate(self):
-        done = self.press("--load", "2000")
+        # Two rows of nodes or more touch: one alone has no length.
+        done = self.press("--load", "2000", "--set", "tire.elements_circumference=60")
         self.assertRegex(done.stderr, r"a load of 2000 N deflects the tire by [\d.]+ mm: secant stiffness \d+ kN/m, footprint \d[\d.]* mm long, [\d.]+ mm wide")
         self.assertEqual(done.returncode, 0, done.stderr)
         out = self.folder / "out"
@@ -146,7 +147,7 @@ class Press(SystemTest):
     def test_flexible_ring(self):
         path = self.folder / "ring.json"
         path.write_text(json.dumps({**SCENARIO, "tire": {"file": "hmmwv_ring.json"}}))
-        deflections = {}
+        deflections, keys = {}, []
         profile = self.folder / "bar.csv"
         profile.write_text("x_m,z_m\n-0.0255,0\n0.0255,0\n")
         for name, more in (("plate", ()), ("cleat", ("--on", "cleat", "--cleat-width", "0.051")),
@@ -160,7 +161,19 @@ class Press(SystemTest):
             self.assertLess(summary["loading_unloading_difference"], 1e-6)
             self.assertAlmostEqual(summary["footprint"]["force_N"], 8000, delta=8)
             self.assertAlmostEqual(summary["footprint"]["width_m"], 0.24)
+            keys.append(sorted(summary) + sorted(summary["sticking_stiffness"]) + sorted(summary["footprint"]))
+            self.assertGreater(summary["sticking_stiffness"]["vertical_N_per_m"], 0.99 * summary["tangent_stiffness_N_per_m"])
+            self.assertGreater(summary["sticking_stiffness"]["longitudinal_N_per_m"], 0)
+            self.assertIsNone(summary["sticking_stiffness"]["lateral_N_per_m"])
+            self.assertAlmostEqual(summary["rim_force_N"][2], 8000, delta=8)
             deflections[name] = summary["deflection_m"]
+        shell = furrow("press", path, "--set", "tire.file=hmmwv_lumped.json", "--set", "tire.elements_circumference=30",
+                       "--set", "tire.elements_width=6", "--deflection", "0.005", "--points", "1", "--load", "100",
+                       "--out", self.folder / "shell", cwd=self.folder)
+        self.assertEqual(shell.returncode, 0, shell.stderr)
+        summary = json.loads((self.folder / "shell/summary.json").read_text())
+        self.assertEqual(keys[0], sorted(summary) + sorted(summary["sticking_stiffness"]) + sorted(summary["footprint"]))
+        self.assertIsNone(summary["stiffness_missing_because"])
         # The patch on a plate is far longer than the bar; up to 3 kN it is not, and the bar is as good as a plate.
         self.assertLess(1.1 * deflections["plate"], deflections["cleat"])
         self.assertAlmostEqual(deflections["profile"], deflections["cleat"], places=9)
@@ -180,7 +193,10 @@ class Press(SystemTest):
             summary = json.loads((self.folder / "out/summary.json").read_text())
             self.assertEqual(summary["obstacle"], name)
             self.assertIsNone(summary["pressure_Pa"])
-            self.assertEqual(set(summary["sticking_stiffness"].values()), {None})
+            sticking = summary["sticking_stiffness"]
+            self.assertTrue(sticking["longitudinal_N_per_m"] > 0 and sticking["vertical_N_per_m"] > 0, sticking)
+            self.assertEqual((sticking["lateral_N_per_m"], sticking["torsional_Nm_per_rad"]), (None, None))
+            self.assertIn("rigid sideways", summary["stiffness_missing_because"])
             self.assertLess(summary["max_residual"], 1e-6)
             self.assertLess(summary["loading_unloading_difference"], 1e-5)
             self.assertAlmostEqual(summary["footprint"]["force_N"], 15000, delta=15)
@@ -191,7 +207,46 @@ class Press(SystemTest):
         done = furrow("press", path, "--out", self.folder / "other", "--deflection", "0.19", cwd=self.folder)
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn("key '--deflection': is 0.19 m, expected at most 0.1608 m", done.stderr)
+        done = furrow("press", path, "--out", self.folder / "other", "--camber", "0.05", cwd=self.folder)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("key '--camber': is 0.05 rad, expected 0: a planar tire is alike across its width", done.stderr)
         self.assertFalse((self.folder / "other").exists())
+
+    def test_camber_tilts_the_plate(self):
+        force, moment = {}, {}
+        for angle in ("0.08", "-0.08", "0"):
+            done = self.press("--camber", angle, "--overwrite", "--load", "1500")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            summary = json.loads((self.folder / "out/summary.json").read_text())
+            self.assertEqual(summary["camber_rad"], float(angle))
+            force[angle], moment[angle] = summary["deflection_m"], summary["rim_moment_Nm"][0]
+            self.assertAlmostEqual(summary["rim_force_N"][2], 1500, delta=1.5)
+            self.assertAlmostEqual(summary["rim_force_N"][1], 0, delta=1e-6)
+        self.assertAlmostEqual(force["0.08"], force["-0.08"], places=8)
+        self.assertNotAlmostEqual(force["0.08"], force["0"], places=4)
+        self.assertAlmostEqual(moment["0.08"], -moment["-0.08"], places=2)
+        self.assertLess(moment["0.08"], -1)  # leaning to the right it stands on its right shoulder
+        done = self.press("--set", "press.camber=0.08", "--overwrite", "--load", "1500")
+        self.assertAlmostEqual(json.loads((self.folder / "out/summary.json").read_text())["deflection_m"], force["0.08"], places=12)
+        done = self.press("--set", "press.camber=0.02", "--set", "tire.file=hmmwv_ring.json", "--overwrite")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("pressed.json: key 'press.camber': is 0.02 rad, expected 0: a flexible ring is alike across its width", done.stderr)
+
+    def test_a_curve_that_ends_early_is_written(self):
+        done = self.press("--load", "5000", deflection="0.2", points="8")
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertRegex(done.stderr, r"furrow: error: the curve ends early: .*; up to 0\.\d+ m it was found")
+        summary = json.loads((self.folder / "out/summary.json").read_text())
+        self.assertIn("up to", summary["ended_because"])
+        lines = (self.folder / "out/press.csv").read_text().splitlines()
+        self.assertTrue(2 < len(lines) < 1 + 9, lines)
+        self.assertGreater(summary["footprint"]["force_N"], 0)
+
+    def test_a_pressure_that_changes_is_said_to_count_as_it_begins(self):
+        done = self.press("--set", "tire.pressure=[[0, 200000], [1, 100000]]", "--load", "1500")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("tire.pressure changes in time: the tire is pressed at that of t = 0, 200000 Pa", done.stderr)
+        self.assertEqual(json.loads((self.folder / "out/summary.json").read_text())["pressure_Pa"], 200000)
 
     def test_a_static_tire_does_not_run(self):
         tire = json.loads((ROOT / "tire/data/aligator_planar.json").read_text())
@@ -211,7 +266,11 @@ class Press(SystemTest):
                            (("--set", "tire.rigid=true"), "tire.rigid"),
                            (("--on", "profile"), "--profile"), (("--profile", "road.csv"), "--profile"),
                            (("--on", "profile", "--profile", "road.csv"), "road.csv"),
-                           (("--on", "cleat", "--cleat-position", "2"), "--cleat-position")):
+                           (("--on", "cleat", "--cleat-position", "2"), "--cleat-position"),
+                           (("--cleat-height", "0.05"), "--cleat-height"), (("--cleat-width", "0.05"), "--cleat-width"),
+                           (("--on", "profile", "--profile", "road.csv", "--cleat-position", "0"), "--cleat-position"),
+                           (("--camber", "0.8"), "--camber"), (("--camber", "nan"), "--camber"),
+                           (("--set", "press.camber=1"), "press.camber")):
             done = self.press(*more)
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(word, done.stderr)

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include "protocol/core/assert.hpp"
@@ -14,6 +15,7 @@
 #include "tire/ancf/inflation.hpp"
 #include "tire/ancf/shell_batch.hpp"
 #include "tire/ancf/shell_tangent.hpp"
+#include "tire/lone_thread.hpp"
 
 namespace furrow::tire {
 namespace {
@@ -81,6 +83,13 @@ struct PressSolver::Linear {
     llt.analyzePattern(matrix);
   }
 
+  /// @returns whether the matrix is positive definite
+  bool factorize() {
+    const LoneThread alone;
+    llt.factorize(matrix);
+    return llt.info() == Eigen::Success;
+  }
+
   /// Where unknown k lies in a field.
   static std::size_t place(const ShellLayout& layout, int k) {
     const int across = layout.rows - 2;
@@ -102,6 +111,8 @@ PressSolver::PressSolver(const TireFile& file, const ShellMesh& mesh, const Fiel
       shell_(file, mesh),
       layout_(shell_.layout()),
       obstacle_(obstacle),
+      left_(obstacle.left()),
+      up_(obstacle.up()),
       clearance_(file, mesh),
       q_(inflated),
       r_(layout_.size()),
@@ -109,7 +120,11 @@ PressSolver::PressSolver(const TireFile& file, const ShellMesh& mesh, const Fiel
       linear_(std::make_unique<Linear>(layout_)) {
   shell_.strains(q_, strains_);
   for (int j = 0; j < layout_.rows; ++j)
-    start_radius_ = std::max(start_radius_, layout_.get(q_, 0, j, 0).z());
+    largest_radius_ = std::max(largest_radius_, layout_.get(q_, 0, j, 0).z());
+  contact_points([&](int, int, const std::array<double, 4>&, const Vec3& x, double) {
+    start_height_ = std::max(start_height_, -up_.dot(x));
+  });
+  top_ = -start_height_;
   ShellCarcass bare = shell_;
   bare.set_pressure(0.0);
   Field without(layout_.size());
@@ -125,52 +140,64 @@ PressSolver::PressSolver(const TireFile& file, const ShellMesh& mesh, const Fiel
 
 PressSolver::~PressSolver() = default;
 
-/// visit(i, j, weights of the corners, position, share of the undeformed area)
+/// visit(i, j, weights of the corners, position, share of the undeformed area), for points below the obstacle's top at least.
+/// The nodes are among the points, so that deflection counts from one; those at the beads are the rim's.
 template <class Visit>
 void PressSolver::contact_points(Visit visit) const {
+  double before = 0.0;  // area of a point of the elements in the row before
   for (int j = 0; j + 1 < layout_.rows; ++j) {
     const Vec3 around = 0.5 * ((mesh_.turn(1) * mesh_.position[j] - mesh_.position[j]) +
                                (mesh_.turn(1) * mesh_.position[j + 1] - mesh_.position[j + 1]));
     const double area = around.cross(mesh_.position[j + 1] - mesh_.position[j]).norm() / (around_ * kAcross);
     for (int i = 0; i < layout_.columns; ++i) {
       Vec3 corner[4];
-      double lowest = 1.0;
+      double lowest = std::numeric_limits<double>::max();
       for (int n = 0; n < 4; ++n) {
         corner[n] = layout_.get(q_, i + kColumn[n], j + kRow[n], 0);
-        lowest = std::min(lowest, corner[n].z());
+        lowest = std::min(lowest, up_.dot(corner[n]));
       }
       if (lowest > top_) continue;
       for (int a = 0; a < around_; ++a)
-        for (int b = 0; b < kAcross; ++b) {
-          const double u = (a + 0.5) / around_, v = (b + 0.5) / kAcross;
+        for (int b = j == 0 ? 1 : 0; b < kAcross; ++b) {
+          const double u = double(a) / around_, v = double(b) / kAcross;
           const std::array<double, 4> w{(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v};
-          visit(i, j, w, w[0] * corner[0] + w[1] * corner[1] + w[2] * corner[2] + w[3] * corner[3], area);
+          visit(i, j, w, w[0] * corner[0] + w[1] * corner[1] + w[2] * corner[2] + w[3] * corner[3],
+                b == 0 ? 0.5 * (before + area) : area);
         }
     }
+    before = area;
   }
 }
 
-/// Adds to r_, force_ and potential_, or to the tangent.
+/// Of a point, m; its part of the contact's stiffness acts along −∂depth/∂x.
+double PressSolver::depth(const Vec3& x, const PressObstacle::Profile& top) const {
+  return top_ + top.height - up_.dot(x);
+}
+
+Vec3 PressSolver::normal(const PressObstacle::Profile& top) const { return up_ - top.slope * Vec3::UnitX(); }
+
+/// Adds to r_, rim_ and potential_, or to the tangent.
 void PressSolver::contact(bool tangent) {
   contact_points([&](int i, int j, const std::array<double, 4>& w, const Vec3& x, double area) {
     const PressObstacle::Profile top = obstacle_.at(x.x());
-    const double depth = top_ + top.height - x.z();
+    const double depth = this->depth(x, top);
     if (depth <= 0.0) return;
     const double stiffness = obstacle_.stiffness * area;
-    const Vec3 normal(-top.slope, 0.0, 1.0);  // −∂depth/∂x
+    const Vec3 normal = this->normal(top);
     if (tangent) {
       const double bend = depth * top.curvature;
       for (int n = 0; n < 4; ++n)
         for (int m = 0; m <= n; ++m)
-          for (const int a : {0, 2})
-            for (const int b : {0, 2})
+          for (int a = 0; a < 3; ++a)
+            for (int b = 0; b < 3; ++b)
               if (6 * n + a >= 6 * m + b)
                 linear_->add(j * layout_.columns + i, 6 * n + a, 6 * m + b,
                              stiffness * w[n] * w[m] * (normal[a] * normal[b] + (a + b == 0 ? bend : 0.0)));
       return;
     }
-    force_ += stiffness * depth;
     potential_ += 0.5 * stiffness * depth * depth;
+    const Vec3 force = stiffness * depth * Vec3(-top.slope, 0.0, 1.0);  // in the ground's axes, as the place
+    rim_.force += force, rim_.moment += Vec3(x.x(), left_.dot(x), up_.dot(x)).cross(force);
     for (int n = 0; n < 4; ++n) {
       const int row = j + kRow[n], column = (i + kColumn[n]) % layout_.columns;
       layout_.set(r_, column, row, 0, layout_.get(r_, column, row, 0) - w[n] * stiffness * depth * normal);
@@ -178,11 +205,11 @@ void PressSolver::contact(bool tangent) {
   });
 }
 
-/// ∂Π/∂q into r_, Π into potential_, the vertical force into force_. @returns the free residual's norm
+/// ∂Π/∂q into r_, Π into potential_, what the rim bears into rim_. @returns the free residual's norm
 double PressSolver::evaluate() {
   potential_ = shell_.account(q_, strains_).elastic - shell_.pressure() * shell_.volume(q_, Vec3::Zero());
   shell_.forces(q_, q_, strains_, 1.0, r_);
-  force_ = 0.0;
+  rim_ = {};
   contact(false);
   double total = 0.0;
   for (int j = 1; j + 1 < layout_.rows; ++j)
@@ -215,8 +242,7 @@ void PressSolver::assemble() {
 bool PressSolver::factorize() {
   assemble();
   contact(true);
-  linear_->llt.factorize(linear_->matrix);
-  return linear_->llt.info() == Eigen::Success;
+  return linear_->factorize();
 }
 
 /// One step of creep, with a factor in place; `norm` is the residual's norm before and after.
@@ -249,33 +275,37 @@ void PressSolver::move(const Field& from, const Eigen::VectorXd& change, double 
 /// a slow motion, not a sudden release.
 void PressSolver::follow(double top) {
   const double rise = top - top_;
+  if (!(force() > 0.0)) {
+    top_ = top;
+    return;
+  }
   Field pull(layout_.size(), 0.0);
   contact_points([&](int i, int j, const std::array<double, 4>& w, const Vec3& x, double area) {
     const PressObstacle::Profile at = obstacle_.at(x.x());
-    if (top_ + at.height - x.z() <= 0.0) return;
-    const Vec3 force = obstacle_.stiffness * area * rise * Vec3(-at.slope, 0.0, 1.0);
+    if (depth(x, at) <= 0.0) return;
+    const Vec3 force = obstacle_.stiffness * area * rise * normal(at);
     for (int n = 0; n < 4; ++n) {
       const int row = j + kRow[n], column = (i + kColumn[n]) % layout_.columns;
       layout_.set(pull, column, row, 0, layout_.get(pull, column, row, 0) + w[n] * force);
     }
   });
   top_ = top;
-  if (force_ > 0.0) move(Field(q_), linear_->llt.solve(linear_->gather(layout_, pull)), 1.0);
+  move(Field(q_), linear_->llt.solve(linear_->gather(layout_, pull)), 1.0);
 }
 
 PressPoint PressSolver::press(double deflection, const std::function<void()>& each_step) {
   FURROW_ASSERT(std::isfinite(deflection), deflection);
   PressPoint point;
   point.deflection = deflection;
-  follow(deflection - start_radius_);
+  follow(deflection - start_height_);
   viscosity_ = 0.0;
   double norm = evaluate();
   for (; point.creep_steps < kMaxSteps && viscosity_ < kMaxViscosity; ++point.creep_steps) {
     if (each_step) each_step();
     const bool definite = factorize();
     if (!definite) ++point.failed_factorizations;
-    point.force = force_;
-    point.residual = norm / (force_ > kMinLoad ? force_ : pressure_norm_);
+    point.force = force(), point.rim = rim_;
+    point.residual = norm / (force() > kMinLoad ? force() : pressure_norm_);
     if (definite && viscosity_ == 0.0 && point.residual <= kTolerance) {
       const Outcome outcome = clearance_.outcome(clearance_.measure(layout_, q_, RimState{}));
       if (!outcome.ok)
@@ -330,9 +360,9 @@ double PressSolver::director_runout() const {
 /// C of a point; zero where it does not touch.
 Eigen::Matrix3d PressSolver::contact_matrix(const Vec3& x, double area, double tangential) const {
   const PressObstacle::Profile top = obstacle_.at(x.x());
-  const double depth = top_ + top.height - x.z();
+  const double depth = this->depth(x, top);
   if (depth <= 0.0) return Eigen::Matrix3d::Zero();
-  const Vec3 normal(-top.slope, 0.0, 1.0), unit = normal.normalized();
+  const Vec3 normal = this->normal(top), unit = normal.normalized();
   Eigen::Matrix3d c =
       normal * normal.transpose() + tangential * (Eigen::Matrix3d::Identity() - unit * unit.transpose());
   c(0, 0) += depth * top.curvature;
@@ -348,9 +378,8 @@ GroundStiffness PressSolver::ground_stiffness(double tangential) {
   assemble();
   contact_points([&](int i, int j, const std::array<double, 4>& w, const Vec3& x, double area) {
     const Eigen::Matrix3d c = contact_matrix(x, area, tangential);
-    Motions d = Motions::Zero();
-    d.leftCols<3>().setIdentity();
-    d.col(3) = Vec3(-x.y(), x.x(), 0.0);
+    Motions d;
+    d << Vec3::UnitX(), left_, up_, up_.cross(x);
     direct += d.transpose() * c * d;
     const Motions force = c * d;
     for (int n = 0; n < 4; ++n) {
@@ -364,8 +393,8 @@ GroundStiffness PressSolver::ground_stiffness(double tangential) {
               linear_->add(j * layout_.columns + i, 6 * n + a, 6 * m + b, w[n] * w[m] * c(a, b));
     }
   });
-  linear_->llt.factorize(linear_->matrix);
-  FURROW_ASSERT(linear_->llt.info() == Eigen::Success, tangential);
+  const bool definite = linear_->factorize();
+  FURROW_ASSERT(definite, tangential);
   Eigen::MatrixXd right(linear_->matrix.rows(), 4);
   for (int k = 0; k < 4; ++k) right.col(k) = linear_->gather(layout_, pull[k]);
   const GroundStiffness stiffness = direct - right.transpose() * linear_->llt.solve(right);
@@ -376,8 +405,8 @@ GroundStiffness PressSolver::ground_stiffness(double tangential) {
 std::vector<PressSample> PressSolver::footprint() const {
   std::vector<PressSample> samples;
   contact_points([&](int, int, const std::array<double, 4>&, const Vec3& x, double area) {
-    const double depth = top_ + obstacle_.at(x.x()).height - x.z();
-    if (depth > 0.0) samples.push_back({x.x(), x.y(), area, obstacle_.stiffness * depth});
+    const double depth = this->depth(x, obstacle_.at(x.x()));
+    if (depth > 0.0) samples.push_back({x.x(), left_.dot(x), area, obstacle_.stiffness * depth});
   });
   return samples;
 }

@@ -1,8 +1,9 @@
-// Static pressing of an inflated ring of shell elements, its beads fixed, on a frictionless obstacle z = H(x).
+// Static pressing of an inflated ring of shell elements, its beads fixed, on a frictionless obstacle z = H(x) in the
+// ground's axes (press_obstacle.hpp), whose z is n in the wheel's.
 //
 // Equilibrium is a minimum of the potential of elastic, pressure and contact forces, without inertia, viscosity and
 // weight:
-//   Π(q) = ½ EᵀD̂E − p V(q) + Σ ½ κ A ⟨H(x) − z⟩²,
+//   Π(q) = ½ EᵀD̂E − p V(q) + Σ ½ κ A ⟨H(x) − n·r⟩²,
 // the contact summed over points of the mid-surface with their share A of the undeformed area. Loading and unloading
 // coincide wherever the minimum is unique.
 //
@@ -20,6 +21,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -35,8 +37,9 @@ class PressSolver {
               const PressObstacle& obstacle);
   ~PressSolver();
 
-  /// Largest radius of the inflated tire: where deflection starts, m.
-  double start_radius() const { return start_radius_; }
+  double largest_radius() const { return largest_radius_; }  // of the inflated tire, m
+  /// Of the rim's centre over a plate that the inflated tire just touches: where deflection starts, m.
+  double start_height() const { return start_height_; }
   /// Moves the obstacle to a deflection and finds equilibrium; `each_step` is called before each step of creep and may
   /// throw. @throws Error(physics) when there is none, or when the tire would be in its rim.
   PressPoint press(double deflection, const std::function<void()>& each_step = {});
@@ -62,6 +65,9 @@ class PressSolver {
   void contact(bool tangent);
   void move(const Field& from, const Eigen::VectorXd& change, double share);
   void follow(double top);
+  double force() const { return rim_.force.z(); }
+  double depth(const Vec3& x, const PressObstacle::Profile& top) const;
+  Vec3 normal(const PressObstacle::Profile& top) const;
   template <class Visit>
   void contact_points(Visit visit) const;
 
@@ -69,12 +75,15 @@ class PressSolver {
   ShellCarcass shell_;
   ShellLayout layout_;
   PressObstacle obstacle_;
+  Vec3 left_, up_;  // the ground's y and z
   RimClearance clearance_;
   Field q_, strains_, r_;
   int around_;  // contact points of an element, around
-  double start_radius_ = 0.0, top_ = 0.0, pressure_norm_ = 0.0, rounding_ = 0.0;
-  double force_ = 0.0, potential_ = 0.0;  // N, J, at q_
-  double viscosity_ = 0.0;                // σ
+  double largest_radius_ = 0.0, start_height_ = 0.0, pressure_norm_ = 0.0, rounding_ = 0.0;
+  double top_ = std::numeric_limits<double>::max();  // of the obstacle, along n from the rim's centre, m
+  Wrench rim_;                                       // at q_, in the ground's axes
+  double potential_ = 0.0;                           // at q_, J
+  double viscosity_ = 0.0;                           // σ
   std::unique_ptr<Linear> linear_;
 };
 

@@ -1,9 +1,6 @@
 #include "tire/ancf/shell_press.hpp"
 
-#include <fmt/format.h>
-
 #include "protocol/core/assert.hpp"
-#include "protocol/core/error.hpp"
 #include "tire/ancf/inflation.hpp"
 #include "tire/ancf/press_solver.hpp"
 
@@ -21,19 +18,14 @@ PressResults press_tire(const TireFile& file, const PressOptions& options, const
   PressResults results;
   results.pressure = file.pressure;
   results.mass = rigid_mass(mesh, element_masses(file, mesh));
-  results.inflation_growth = solver.start_radius() - file.radius;
+  results.inflation_growth = solver.largest_radius() - file.radius;
+  results.start_height = solver.start_height();
   double done = 0.0;
   PressModel model;
   model.press = [&](double deflection) {
-    try {
-      return solver.press(deflection, [&] {
-        if (progress) progress("pressing", done);
-      });
-    } catch (const Error& error) {
-      if (error.code() != ExitCode::physics || results.loading.empty()) throw;
-      throw physics_error(fmt::format("{}; up to {:.4g} m it was found: see --deflection", error.what(),
-                                      results.loading.back().deflection));
-    }
+    return solver.press(deflection, [&] {
+      if (progress) progress("pressing", done);
+    });
   };
   model.footprint = [&] { return solver.footprint(); };
   model.stiffness = [&] { return solver.ground_stiffness(); };

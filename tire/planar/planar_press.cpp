@@ -60,6 +60,7 @@ std::vector<PressSample> planar_footprint(const PlanarStatic& wheel) {
 PressResults press_planar(const PlanarParams& params, const MassProperties& mass, const PressOptions& options,
                           const ProgressCall& progress) {
   require_range(params, options);
+  require_no_camber(options, "planar tire");
   PlanarStatic wheel(params, planar_ground(options.obstacle, params.size.radius));
   const double top = wheel.contact().ground().top();
   double done = 0.0;
@@ -74,10 +75,16 @@ PressResults press_planar(const PlanarParams& params, const MassProperties& mass
           deflection, report.residual));
     const double force = wheel.force();
     return PressPoint{deflection, force, report.residual / std::max(force, kMinLoad), report.steps,
-                      report.indefinite};
+                      report.indefinite, wheel.rim()};
   };
   model.footprint = [&] { return planar_footprint(wheel); };
   PressResults results;
+  model.stiffness = [&] {
+    const GroundStiffness s = wheel.ground_stiffness();
+    results.stiffness_missing = std::isfinite(s(2, 2)) ? kAlikeAcross : "the tangent is not positive definite at this load";
+    return s;
+  };
+  results.start_height = params.size.radius;
   results.mass = mass;
   results.footprint_width = params.options.width;
   measure_press(

@@ -3,12 +3,13 @@
 #include <Eigen/CholmodSupport>
 #include <Eigen/Sparse>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
 
 #include "protocol/core/assert.hpp"
-#include "tire/planar/planar_tangent.hpp"
+#include "tire/lone_thread.hpp"
 
 namespace furrow::tire {
 namespace {
@@ -24,6 +25,9 @@ constexpr double kFirstShare = 1e-5, kLastShare = 1e3, kMoreShare = 4.0;
 using Entries = std::vector<std::pair<int, double>>;  // of a vector: row, value
 
 int unknown(int node) { return 2 * (node - 1); }
+/// Of the rows of touch_stiffness() that belong to nodes.
+int touch_size(const PlanarTouch& t) { return t.b < 0 ? 2 : 4; }
+int touch_unknown(const PlanarTouch& t, int row) { return unknown(row < 2 ? t.a : t.b) + row % 2; }
 
 }  // namespace
 
@@ -113,33 +117,27 @@ double PlanarStatic::gradient(const PlanarField& x) {
   return most;
 }
 
-/// Of ½ c h²: c ∇h ∇hᵀ, and on a side of the length L, with its direction t and its normal m inwards,
-/// c h d²h = c h [(2/L) m·(u_b − u_a) t·u − h/L² (m·(u_b − u_a))²], u where it touches.
-void PlanarStatic::stiffen(const PlanarTouch& t) {
-  Linear& l = *linear_;
-  const double c = contact_.law().stiffness;
-  const int a = unknown(t.a), b = t.b < 0 ? a : unknown(t.b);
-  Entries g{{a, (1.0 - t.share) * t.push_x}, {a + 1, (1.0 - t.share) * t.push_z}};
-  if (t.b >= 0) g.emplace_back(b, t.share * t.push_x), g.emplace_back(b + 1, t.share * t.push_z);
-  l.add_outer(g, c);
-  if (t.b < 0 || t.share <= 0.0 || t.share >= 1.0) return;
-  const double length = std::hypot(x_.x[t.b] - x_.x[t.a], x_.z[t.b] - x_.z[t.a]);
-  const double along_x = t.push_z, along_z = -t.push_x;  // m turned clockwise
-  const Entries turns{{a, -t.push_x}, {a + 1, -t.push_z}, {b, t.push_x}, {b + 1, t.push_z}};
-  const Entries slides{{a, (1.0 - t.share) * along_x},
-                       {a + 1, (1.0 - t.share) * along_z},
-                       {b, t.share * along_x},
-                       {b + 1, t.share * along_z}};
-  for (int r = 0; r < 4; ++r)
-    for (int k = 0; k < 4; ++k)
-      l.add(turns[r].first, turns[k].first,
-            c * t.depth / length *
-                (turns[r].second * slides[k].second + slides[r].second * turns[k].second -
-                 t.depth / length * turns[r].second * turns[k].second));
+/// Stiffness of a touch in x, z of its nodes a and b and of the ground. Of ½ c h²: c ∇h ∇hᵀ, and on a side of the length L,
+/// with its direction t, its normal m inwards and u the motion against the ground where it touches,
+/// c h d²h = c h [(2/L) m·(u_b − u_a) t·u − h/L² (m·(u_b − u_a))²]. A ground that sticks adds s c (t·u)².
+PlanarMatrix PlanarStatic::touch_stiffness(const PlanarTouch& t, double tangential) const {
+  using Motion = Eigen::Matrix<double, 6, 1>;
+  const double c = contact_.law().stiffness, of_a = 1.0 - t.share, of_b = t.share;
+  const auto against_ground = [&](double x, double z) {
+    return Motion{of_a * x, of_a * z, of_b * x, of_b * z, -x, -z};
+  };
+  const Motion closes = against_ground(t.push_x, t.push_z), slides = against_ground(t.push_z, -t.push_x);
+  PlanarMatrix k = c * (closes * closes.transpose() + tangential * slides * slides.transpose());
+  if (t.b < 0 || t.share <= 0.0 || t.share >= 1.0) return k;
+  const double length = std::hypot(x_.x[t.b] - x_.x[t.a], x_.z[t.b] - x_.z[t.a]), slope = t.depth / length;
+  const Motion turns{-t.push_x, -t.push_z, t.push_x, t.push_z, 0.0, 0.0};
+  k += c * slope * (turns * slides.transpose() + slides * turns.transpose() - slope * turns * turns.transpose());
+  return k;
 }
 
 /// The entries are those of the same places every time: what touches adds to places that the elements fill.
-void PlanarStatic::assemble() {
+/// @param tangential s of touch_stiffness()
+void PlanarStatic::assemble(double tangential) {
   Linear& l = *linear_;
   l.entries.clear();
   const std::vector<double> pressure = elements_.volumetric(x_);
@@ -169,7 +167,11 @@ void PlanarStatic::assemble() {
     g.emplace_back(unknown(n) + 1, -mesh_.position.x[n] / inertia_);
   }
   l.add_outer(g, spring_);
-  for (const PlanarTouch& t : contact_.touches()) stiffen(t);
+  for (const PlanarTouch& t : contact_.touches()) {
+    const PlanarMatrix k = touch_stiffness(t, tangential);
+    for (int r = 0; r < touch_size(t); ++r)
+      for (int c = 0; c < touch_size(t); ++c) l.add(touch_unknown(t, r), touch_unknown(t, c), k(r, c));
+  }
   const int n = 2 * (mesh_.nodes() - 1);
   l.matrix.resize(n, n);
   l.matrix.setFromTriplets(l.entries.begin(), l.entries.end());
@@ -181,6 +183,7 @@ bool PlanarStatic::factorize(double share) {
   if (share > 0.0) l.shifted.diagonal() += share * l.diagonal;
   if (!l.analyzed) l.llt.analyzePattern(l.shifted);
   l.analyzed = true;
+  const LoneThread alone;
   l.llt.factorize(l.shifted);
   return l.llt.info() == Eigen::Success;
 }
@@ -224,6 +227,37 @@ PlanarReport PlanarStatic::solve() {
     if (!descend(energy, report.residual)) break;
   }
   return report;
+}
+
+Wrench PlanarStatic::rim() const {
+  Wrench sum;
+  for (const PlanarTouch& t : contact_.touches()) {
+    const int b = t.b < 0 ? t.a : t.b;
+    const Vec3 at((1.0 - t.share) * x_.x[t.a] + t.share * x_.x[b] - centre_.x, 0.0,
+                  (1.0 - t.share) * x_.z[t.a] + t.share * x_.z[b] - centre_.z);
+    const Vec3 force = t.force * Vec3(t.push_x, 0.0, t.push_z);
+    sum.force += force, sum.moment += at.cross(force);
+  }
+  return sum;
+}
+
+GroundStiffness PlanarStatic::ground_stiffness(double tangential) {
+  GroundStiffness out = GroundStiffness::Constant(std::nan(""));
+  assemble(tangential);
+  if (!factorize(0.0)) return out;
+  Eigen::Matrix2d direct = Eigen::Matrix2d::Zero();
+  Eigen::MatrixXd pull = Eigen::MatrixXd::Zero(linear_->matrix.rows(), 2);
+  for (const PlanarTouch& t : contact_.touches()) {
+    const PlanarMatrix k = touch_stiffness(t, tangential);
+    direct += k.bottomRightCorner<2, 2>();
+    for (int r = 0; r < touch_size(t); ++r) pull.row(touch_unknown(t, r)) += k.block<1, 2>(r, 4);
+  }
+  const Eigen::MatrixXd way = linear_->llt.solve(pull);
+  const Eigen::Matrix2d s = direct - pull.transpose() * way;
+  const std::array<int, 2> place{0, 2};
+  for (int r = 0; r < 2; ++r)
+    for (int c = 0; c < 2; ++c) out(place[r], place[c]) = 0.5 * (s(r, c) + s(c, r));
+  return out;
 }
 
 PlanarReport PlanarStatic::move_to(PlanarPoint centre) {

@@ -8,7 +8,9 @@
 
 #include <memory>
 
+#include "tire/planar/planar_tangent.hpp"
 #include "tire/planar/planar_wheel.hpp"
+#include "tire/press_obstacle.hpp"
 
 namespace furrow::tire {
 
@@ -35,14 +37,18 @@ class PlanarStatic {
   const PlanarContact& contact() const { return contact_; }
   double force() const { return contact_.force_z(); }  // of the ground on the tire, upwards, N
   double couple() const;                               // that holds the rim, about +y, N m
+  Wrench rim() const;  // of the tire on the rim about the centre, from the ground's forces
+  /// Along x and z against a ground that sticks wherever it touches; sideways the tire is rigid.
+  /// @param tangential share of the contact's stiffness with which it sticks; 0: it slides
+  GroundStiffness ground_stiffness(double tangential = 1.0);
 
  private:
   struct Linear;
   PlanarReport solve();
   double potential(const PlanarField& x);
   double gradient(const PlanarField& x);  // into right_, with its sign changed; largest component
-  void assemble();
-  void stiffen(const PlanarTouch& touch);
+  void assemble(double tangential = 0.0);
+  PlanarMatrix touch_stiffness(const PlanarTouch& touch, double tangential) const;
   bool factorize(double share);
   bool descend(double& potential, double& residual);
   double turn(const PlanarField& x) const;

@@ -120,7 +120,7 @@ void RingContact::radial_corner(const RingField& q, int k, std::vector<CornerGap
   const Belt::Weights w = Belt::weights(turns - middle);
   CornerGap gap;
   gap.corner = k, gap.first = wrapped(static_cast<int>(middle) - 1);
-  gap.gap = corner_ray_[k] - radius_;
+  gap.gap = corner_ray_[k] - radius_, gap.share = w.share;
   for (int i = 0; i < 3; ++i) {
     const int j = after(gap.first, i);
     gap.gap -= w.share[i] * q.u[j], gap.slope[2 * i] = -w.share[i];
@@ -147,7 +147,7 @@ void RingContact::exact_corner(const RingField& q, int k, std::vector<CornerGap>
   CornerGap gap;
   gap.corner = k, gap.first = p.first;
   gap.gap = p.z + axle_.z - ground_.corners()[k].z;
-  gap.push_x = -m, gap.push_z = 1.0;
+  gap.push_x = -m, gap.push_z = 1.0, gap.share = Belt::weights(turns - std::round(turns)).share;
   std::array<double, 6> s_q, l;
   for (int i = 0; i < 6; ++i) {
     gap.slope[i] = p.z_q[i] - m * p.x_q[i];

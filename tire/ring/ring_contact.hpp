@@ -41,6 +41,7 @@ struct CornerGap {
   double gap = 0.0;               // m
   std::array<double, 6> slope{};  // ∂g/∂(u, v) of the three
   std::array<double, 36> bend{};  // ∂²g, 1/m
+  std::array<double, 3> share{};  // of the three in the belt's displacement there, (1)
   double push_x = 0.0, push_z = 0.0;
 };
 

@@ -21,6 +21,20 @@ void add_local(RingTangent& t, int first, const std::array<double, 36>& matrix, 
     }
 }
 
+std::array<double, 2> tangent_row(const RingTangent& k, const RingField& change, double sum, int j) {
+  const int n = static_cast<int>(change.u.size());
+  double u = k.gas * sum, v = 0.0;
+  for (int d = 0; d < 3; ++d) {
+    const int after = (j + d) % n, before = (j + n - d) % n;
+    u += k.uu[d][j] * change.u[after] + k.uv[d][j] * change.v[after];
+    v += k.vu[d][j] * change.u[after] + k.vv[d][j] * change.v[after];
+    if (d == 0) continue;
+    u += k.uu[d][before] * change.u[before] + k.vu[d][before] * change.v[before];
+    v += k.uv[d][before] * change.u[before] + k.vv[d][before] * change.v[before];
+  }
+  return {u, v};
+}
+
 RingMechanics::RingMechanics(const RingParams& params)
     : params_(params),
       n_(params.segments),
@@ -160,6 +174,12 @@ RingForce RingMechanics::spindle(const RingField& q) const {
     sum.z += after * s - out * c;
   }
   return sum;
+}
+
+double RingMechanics::spindle_moment(const RingField& q) const {
+  double sum = 0.0;
+  for (const double v : q.v) sum += v;
+  return -phi_ * params_.tangential * radius_ * sum;
 }
 
 double RingMechanics::rounding(const RingField& q) const {

@@ -45,6 +45,9 @@ struct RingTangent {
 /// Adds factor × a symmetric matrix in (u, v) of three neighbouring segments, row by row, from segment `first` on.
 void add_local(RingTangent& tangent, int first, const std::array<double, 36>& matrix, double factor);
 
+/// Tangent × change on segment j, N. @param sum of all change.u
+std::array<double, 2> tangent_row(const RingTangent& tangent, const RingField& change, double sum, int j);
+
 class RingMechanics {
  public:
   /// @pre as of sidewall_draw(); segments ≥ kMinSegments, ambient, air_share > 0
@@ -77,6 +80,8 @@ class RingMechanics {
   double slope(double u) const { return phi_ * (s_[1] + u * (2.0 * s_[2] + 3.0 * s_[3] * u)); }
   /// Force of the sidewall on the rim, seen from the axle, N.
   RingForce spindle(const RingField& q) const;
+  /// Its moment on the rim about +y, N m: that of the tangential springs.
+  double spindle_moment(const RingField& q) const;
   /// Round-off of an entry of the gradient, N: that of the belt's stiffness times the largest displacement.
   double rounding(const RingField& q) const;
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "protocol/core/error.hpp"
+#include "tire/ring/ring_stiffness.hpp"
 
 namespace furrow::tire {
 namespace {
@@ -109,6 +110,7 @@ PressResults press_ring(const RingParams& params, double rim_radius, const MassP
   const RingGround ground = ring_ground(options.obstacle, params.radius);
   RingSolver solver(params, ground);
   require_range(solver.ring(), options);
+  require_no_camber(options, "flexible ring");
   Descent descent(solver, ground.top());
   double done = 0.0;
   PressModel model;
@@ -132,11 +134,20 @@ PressResults press_ring(const RingParams& params, double rim_radius, const MassP
           fmt::format("the ring reaches its rim at a deflection of {:.4g} m: its belt is {:.4g} m from "
                       "the axle, the rim's radius is {:.4g} m; see --deflection",
                       deflection, lowest, rim_radius));
-    const double force = solver.spindle_force().z;
-    return PressPoint{deflection, force, report.residual / std::max(force, kMinLoad), report.steps, 0};
+    const RingForce force = solver.spindle_force();
+    const Wrench rim{Vec3(force.x, 0.0, force.z), Vec3(0.0, solver.ring().spindle_moment(solver.state()), 0.0)};
+    return PressPoint{deflection, force.z, report.residual / std::max(force.z, kMinLoad), report.steps, 0, rim};
   };
   model.footprint = [&] { return ring_footprint(solver); };
+  model.stiffness = [&] {
+    const Eigen::Matrix2d s = ring_ground_stiffness(solver);
+    GroundStiffness all = GroundStiffness::Constant(std::nan(""));
+    all(0, 0) = s(0, 0), all(0, 2) = all(2, 0) = s(0, 1), all(2, 2) = s(1, 1);
+    return all;
+  };
   PressResults results;
+  results.stiffness_missing = kAlikeAcross;
+  results.start_height = params.radius;
   results.pressure = params.pressure;
   results.mass = mass;
   results.footprint_width = params.width;

@@ -215,22 +215,11 @@ void RingStep::forces(const Problem& p, ContactSet& set) {
   for (std::size_t b = 0; b < closed_.size(); ++b) set.corner_force[closed_[b]] = border_right_[b + 1];
   double sum = 0.0;
   for (const double u : change_.u) sum += u;
-  const auto row = [&](int j) {
-    double u = p.gradient.u[j] + k.gas * sum, v = p.gradient.v[j];
-    for (int d = 0; d < 3; ++d) {
-      const int after = (j + d) % n_, before = (j + n_ - d) % n_;
-      u += k.uu[d][j] * change_.u[after] + k.uv[d][j] * change_.v[after];
-      v += k.vu[d][j] * change_.u[after] + k.vv[d][j] * change_.v[after];
-      if (d == 0) continue;
-      u += k.uu[d][before] * change_.u[before] + k.vu[d][before] * change_.v[before];
-      v += k.uv[d][before] * change_.u[before] + k.vv[d][before] * change_.v[before];
-    }
-    return std::array<double, 2>{u, v};
-  };
   for (int j = 0; j < n_; ++j) {
     set.segment_force[j] = 0.0;
     if (!set.segment[j]) continue;
-    std::array<double, 2> left = row(j);
+    std::array<double, 2> left = tangent_row(k, change_, sum, j);
+    left[0] += p.gradient.u[j], left[1] += p.gradient.v[j];
     for (const int b : closed_)
       for (int side = 0; side < 3; ++side)
         if (after(p.corners[b].first, side) == j)

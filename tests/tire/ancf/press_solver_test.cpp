@@ -89,6 +89,109 @@ TEST(PressSolver, a_ground_that_the_tire_sticks_to_is_held_in_every_direction) {
   EXPECT_EQ(solver->press(0.008).force, force);  // nothing has been disturbed
 }
 
+tire::PressObstacle tilted(tire::PressObstacle obstacle, double camber) {
+  obstacle.camber = camber;
+  return obstacle;
+}
+
+TEST(PressSolver, at_camber_force_and_overturning_moment_are_derivatives_of_the_potential) {
+  const tire::TireFile file = small_file("hmmwv_lumped.json", 30, 8);
+  const double camber = 0.06, d = 0.012, turn = 2e-5;  // rad, m, rad
+  for (const tire::PressObstacle& flat : {tire::PressObstacle{}, cleat()}) {
+    const auto solver = solver_of(file, tilted(flat, camber));
+    const double step = 1e-5;
+    solver->press(d - step);
+    const double before = solver->potential();
+    const tire::PressPoint middle = solver->press(d);
+    const double there = solver->potential();
+    solver->press(d + step);
+    EXPECT_NEAR((solver->potential() - before) / (2.0 * step) / middle.force, 1.0, 1e-5);
+    EXPECT_EQ(middle.rim.force.z(), middle.force);
+    EXPECT_NEAR(middle.rim.force.y(), 0.0, 1e-12 * middle.force);  // no friction
+    // The wheel is turned about its centre, which stays at its height: what turns it does the work −M dγ.
+    double turned[2];
+    for (const int side : {0, 1}) {
+      const auto other = solver_of(file, tilted(flat, camber + (side == 0 ? -turn : turn)));
+      other->press(d - solver->start_height() + other->start_height());
+      turned[side] = other->potential();
+      EXPECT_NEAR(turned[side] / there, 1.0, 0.1);
+    }
+    EXPECT_NEAR((turned[1] - turned[0]) / (2.0 * turn) / -middle.rim.moment.x(), 1.0, 1e-3);
+    EXPECT_LT(middle.rim.moment.x(), -1.0);  // leaning to the right it stands on its right shoulder
+  }
+}
+
+TEST(PressSolver, opposite_cambers_are_mirror_images) {
+  const tire::TireFile file = small_file("hmmwv_lumped.json", 30, 8);
+  tire::PressObstacle aside = cleat();
+  aside.position = 0.02;
+  for (const tire::PressObstacle& flat : {tire::PressObstacle{}, aside}) {
+    tire::PressPoint point[2];
+    tire::GroundStiffness stiffness[2];
+    double sideways[2];
+    for (const int k : {0, 1}) {
+      const auto solver = solver_of(file, tilted(flat, k == 0 ? 0.08 : -0.08));
+      point[k] = solver->press(0.012);
+      stiffness[k] = solver->ground_stiffness();
+      sideways[k] = 0.0;
+      for (const tire::PressSample& s : solver->footprint()) sideways[k] += s.y * s.area * s.pressure;
+    }
+    EXPECT_NEAR(point[1].force / point[0].force, 1.0, 1e-6);
+    EXPECT_NEAR(point[0].rim.moment.x() / sideways[0], 1.0, flat.height > 0.0 ? 1e-2 : 1e-9);
+    EXPECT_NEAR(sideways[1] / sideways[0], -1.0, 1e-5);
+    const Vec3 mirror(-1.0, 1.0, -1.0);  // of a moment, in the plane of the wheel
+    const Vec3 off = point[1].rim.moment - mirror.cwiseProduct(point[0].rim.moment);
+    EXPECT_LT(off.norm(), 1e-5 * point[0].rim.moment.norm());
+    for (int r = 0; r < 4; ++r)
+      for (int c = 0; c < 4; ++c) {
+        const double sign = (r % 2 == 0) == (c % 2 == 0) ? 1.0 : -1.0;  // y and the turn about z change sign
+        EXPECT_NEAR(stiffness[1](r, c), sign * stiffness[0](r, c),
+                    1e-5 * std::sqrt(stiffness[0](r, r) * stiffness[0](c, c)))
+            << r << " " << c;
+      }
+  }
+}
+
+TEST(PressSolver, small_camber_changes_the_force_by_its_square_and_the_moment_in_proportion) {
+  const tire::TireFile file = small_file("hmmwv_lumped.json", 30, 12);
+  double force[3], moment[3];
+  for (const int k : {0, 1, 2}) {
+    const auto solver = solver_of(file, tilted({}, 2e-3 * k));
+    solver->press(0.006);
+    const tire::PressPoint point = solver->press(0.012 + solver->start_height() - solver_of(file, {})->start_height());
+    force[k] = point.force, moment[k] = point.rim.moment.x();
+  }
+  EXPECT_LT(std::abs(moment[0]), 1e-6 * std::abs(moment[1]));
+  EXPECT_NEAR(moment[2] / moment[1], 2.0, 0.02);
+  EXPECT_LT(std::abs(force[1] / force[0] - 1.0), 1e-3);
+  EXPECT_NEAR((force[2] - force[0]) / (force[1] - force[0]), 4.0, 0.4);
+}
+
+TEST(PressSolver, a_torus_touches_a_tilted_plate_where_geometry_says) {
+  tire::TireFile file = small_file("toroidal.json", 24, 12);
+  file.pressure = 1.0;
+  const double ring = 0.35, section = 0.195;  // radii of the half torus, m
+  const tire::ShellMesh mesh = tire::make_shell_mesh(file);
+  for (const int aside : {1, 2}) {  // rows of nodes beside the middle: one of them is the lowest
+    const Vec3 node = mesh.position[static_cast<std::size_t>(mesh.rows / 2 + aside)];
+    const double camber = std::atan2(node.y(), node.z() - ring);
+    ASSERT_GT(camber, 0.05);
+    const auto solver = solver_of(file, tilted({}, camber));
+    EXPECT_NEAR(solver->start_height(), ring * std::cos(camber) + section, 1e-5);
+    const tire::PressPoint point = solver->press(5e-5);
+    EXPECT_NEAR(point.rim.moment.x() / point.force / (ring * std::sin(camber)), 1.0, 1e-2);
+  }
+}
+
+TEST(PressSolver, deflection_counts_from_the_first_point_that_touches) {
+  for (const int columns : {30, 31}) {  // a row of nodes, or a facet, is the lowest
+    const auto solver = solver_of(small_file("hmmwv_lumped.json", columns, 6), {});
+    EXPECT_EQ(solver->press(0.0).force, 0.0) << columns;
+    EXPECT_GT(solver->press(1e-6).force, 0.0) << columns;
+    EXPECT_LE(solver->start_height(), solver->largest_radius() + 1e-12);
+  }
+}
+
 TEST(PressSolver, an_axisymmetric_tire_has_no_runout) {
   const auto solver = solver_of(small_file("hmmwv_lumped.json", 30, 6), {});
   EXPECT_EQ(solver->press(0.0).failed_factorizations, 0);

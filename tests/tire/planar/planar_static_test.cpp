@@ -64,6 +64,50 @@ TEST(PlanarStatic, small_deflections_follow_the_linear_stiffness_at_the_lowest_n
   EXPECT_NEAR(s.force() / 1e-6, stiffness, 1e-3 * stiffness);
 }
 
+TEST(PlanarStatic, a_ground_that_the_lowest_node_sticks_to_feels_its_compliance) {
+  const PlanarParams p = wheel();
+  PlanarStatic s(p, PlanarGround::plate(0.5));
+  Eigen::MatrixXd k = assembled(s.elements(), s.mesh().position);
+  Eigen::VectorXd turn = Eigen::VectorXd::Zero(k.rows());  // of the rim, which is held
+  for (const int n : s.mesh().rim) turn[2 * n] = s.mesh().position.z[n], turn[2 * n + 1] = -s.mesh().position.x[n];
+  k += 1e12 * turn * turn.transpose();
+  for (const int held : {0, 1}) k.row(held).setZero(), k.col(held).setZero(), k(held, held) = 1.0;
+  Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(k.rows(), 2);
+  for (const int d : {0, 1}) unit(2 * s.mesh().outer[0] + d, d) = 1.0;
+  const Eigen::MatrixXd way = k.llt().solve(unit);
+  Eigen::Matrix2d compliance = way.middleRows<2>(2 * s.mesh().outer[0]);
+  compliance += Eigen::Matrix2d::Identity() / p.contact_stiffness;
+  const Eigen::Matrix2d expected = compliance.inverse();
+  ASSERT_TRUE(s.move_to({0.0, reach(s) - 1e-6}).converged);
+  ASSERT_EQ(s.contact().touches().size(), 1U);
+  const GroundStiffness found = s.ground_stiffness();
+  EXPECT_NEAR(found(0, 0) / expected(0, 0), 1.0, 1e-3);
+  EXPECT_NEAR(found(2, 2) / expected(1, 1), 1.0, 1e-3);
+  EXPECT_TRUE(std::isnan(found(1, 1)) && std::isnan(found(3, 3)));
+}
+
+TEST(PlanarStatic, stiffness_against_a_sliding_ground_is_the_slope_of_the_curve_and_a_soft_layer_its_springs) {
+  for (const bool bar : {false, true}) {
+    const PlanarParams p = wheel();
+    PlanarStatic s(p, bar ? PlanarGround::bar(0.05, 0.0) : PlanarGround::plate(0.5));
+    const auto force = [&](double deflection) {
+      EXPECT_TRUE(s.move_to({0.0, reach(s) - deflection}).converged);
+      return s.force();
+    };
+    const double h = 1e-6, before = force(0.05 - h), after = force(0.05 + h);
+    const double there = force(0.05);
+    const GroundStiffness sliding = s.ground_stiffness(0.0), stuck = s.ground_stiffness();
+    EXPECT_NEAR(sliding(2, 2) / ((after - before) / (2.0 * h)), 1.0, 1e-4) << bar;
+    EXPECT_GE(stuck(2, 2), sliding(2, 2));
+    EXPECT_GT(stuck(0, 0), sliding(0, 0));
+    EXPECT_EQ(force(0.05), there);  // nothing has been disturbed
+    if (bar) continue;
+    EXPECT_NEAR(sliding(0, 0), 0.0, 1e-9 * sliding(2, 2));
+    const double soft = 1e-6, springs = soft * p.contact_stiffness * static_cast<double>(s.contact().touches().size());
+    EXPECT_NEAR(s.ground_stiffness(soft)(0, 0) / springs, 1.0, 1e-3);
+  }
+}
+
 TEST(PlanarStatic, what_is_pressed_symmetrically_needs_no_couple_and_a_bar_aside_one) {
   PlanarStatic plate(wheel(24, 3), PlanarGround::plate(0.5)), bar(wheel(24, 3), PlanarGround::bar(0.04, 0.1));
   for (PlanarStatic* s : {&plate, &bar}) {
@@ -84,6 +128,8 @@ TEST(PlanarStatic, what_is_pressed_symmetrically_needs_no_couple_and_a_bar_aside
     moment += z * t.force * t.push_x - x * t.force * t.push_z;
   }
   EXPECT_GT(std::abs(moment), 10.0);
+  EXPECT_NEAR(bar.rim().moment.y(), moment, 1e-9 * std::abs(moment));
+  EXPECT_NEAR(bar.rim().force.z(), bar.force(), 1e-9 * bar.force());
   EXPECT_NEAR(bar.couple(), -moment, 1e-3 * std::abs(moment));  // the mean turn counts small turns
 }
 

@@ -3,12 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
 #include "tests/tire/ring/ring_examples.hpp"
+#include "tire/ring/ring_stiffness.hpp"
 
 namespace furrow::tire {
 namespace {
@@ -37,19 +40,19 @@ TEST(RingSolver, without_contact_nothing_moves) {
   EXPECT_EQ(solver.spindle_force().z, 0.0);
 }
 
-/// u of one segment under a unit force on it, from the Fourier series of the discrete ring; `exact` waves are those of
-/// the continuous one.
-double point_compliance(const RingParams& p, int terms, bool exact) {
+/// u of one segment under a unit force on it, or v under one along it, from the Fourier series of the discrete ring; `exact`
+/// waves are those of the continuous one.
+double point_compliance(const RingParams& p, int terms, bool exact, bool along = false) {
   const double phi = 2.0 * kPi / p.segments;
   const RingMechanics ring(p);
   const double air = p.ambient * std::pow(2.0 * kPi * ring.radius() * p.width, 2) / ring.volume();
-  double sum = 1.0 / (2.0 * kPi * p.sidewall_1 + air);
+  double sum = 1.0 / (along ? 2.0 * kPi * p.tangential : 2.0 * kPi * p.sidewall_1 + air);
   for (int n = 1; n < terms; ++n) {
     const double s = exact ? n : std::sin(n * phi) / std::sin(phi),
                  c = exact ? 1.0 * n * n : (1.0 - std::cos(n * phi)) / (1.0 - std::cos(phi));
     const double uu = p.bending * c * c + p.shear * s * s + p.sidewall_1,
                  vv = p.bending * s * s + p.shear * c * c + p.tangential, uv = (p.bending + p.shear) * s * c;
-    sum += (exact ? 1.0 / kPi : 0.5 / kPi) * vv / (uu * vv - uv * uv);
+    sum += (exact ? 1.0 / kPi : 0.5 / kPi) * (along ? uu : vv) / (uu * vv - uv * uv);
   }
   return sum;
 }
@@ -66,6 +69,96 @@ TEST(RingSolver, the_linear_ring_touched_at_one_segment_answers_as_its_fourier_s
   const RingParams fine = linear_ring(1920);
   RingSolver solver(fine, plate(fine));
   EXPECT_NEAR(pressed(solver, 1e-7, 1) * point_compliance(fine, 100000, true), 1e-7, 2e-11);
+}
+
+TEST(RingSolver, a_ground_that_one_segment_sticks_to_feels_its_compliance) {
+  for (const int n : {64, 480, 481}) {
+    const RingParams p = linear_ring(n);
+    RingSolver solver(p, plate(p));
+    pressed(solver, 1e-7, 1);
+    const Eigen::Matrix2d s = ring_ground_stiffness(solver);
+    EXPECT_NEAR(s(0, 0) * point_compliance(p, n, false, true), 1.0, 1e-7) << n;
+    EXPECT_NEAR(s(1, 1) * point_compliance(p, n, false), 1.0, 1e-7) << n;
+    EXPECT_NEAR(s(0, 1), 0.0, 1e-9 * s(1, 1));
+  }
+}
+
+/// The same by one dense system: all displacements, and what holds them, as unknowns.
+Eigen::Matrix2d stuck_densely(const RingSolver& solver) {
+  const RingMechanics& ring = solver.ring();
+  const int n = ring.segments();
+  RingTangent tangent = ring.no_tangent();
+  ring.tangent(solver.state(), tangent);
+  Eigen::MatrixXd k(2 * n, 2 * n);
+  for (int c = 0; c < 2 * n; ++c) {
+    RingField unit = ring.zero();
+    (c % 2 == 0 ? unit.u : unit.v)[c / 2] = 1.0;
+    for (int j = 0; j < n; ++j) {
+      const std::array<double, 2> row = tangent_row(tangent, unit, c % 2 == 0 ? 1.0 : 0.0, j);
+      k(2 * j, c) = row[0], k(2 * j + 1, c) = row[1];
+    }
+  }
+  std::vector<Eigen::MatrixXd> holds;  // way of the belt along x and z where it is held
+  const auto hold = [&](int first, const std::vector<double>& share) {
+    Eigen::MatrixXd way = Eigen::MatrixXd::Zero(2, 2 * n);
+    for (int i = 0; i < static_cast<int>(share.size()); ++i) {
+      const int j = (first + i) % n;
+      const double s = std::sin(j * ring.angle()), c = std::cos(j * ring.angle());
+      way(0, 2 * j) = share[i] * s, way(0, 2 * j + 1) = share[i] * c;
+      way(1, 2 * j) = -share[i] * c, way(1, 2 * j + 1) = share[i] * s;
+    }
+    holds.push_back(way);
+  };
+  for (int j = 0; j < n; ++j)
+    if (solver.contacts().segment[j]) hold(j, {1.0});
+  for (std::size_t c = 0; c < solver.corner_gaps().size(); ++c)
+    if (solver.contacts().corner[c]) {
+      const CornerGap& gap = solver.corner_gaps()[c];
+      hold(gap.first, {gap.share.begin(), gap.share.end()});
+    }
+  const int held = 2 * static_cast<int>(holds.size());
+  const double scale = k(0, 0);  // N/m: rows of one size, which the pivots need
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(2 * n + held, 2 * n + held), right = Eigen::MatrixXd::Zero(2 * n + held, 2);
+  all.topLeftCorner(2 * n, 2 * n) = k;
+  for (int h = 0; h < held / 2; ++h) {
+    all.block(2 * n + 2 * h, 0, 2, 2 * n) = scale * holds[h];
+    all.block(0, 2 * n + 2 * h, 2 * n, 2) = -scale * holds[h].transpose();
+    right.block<2, 2>(2 * n + 2 * h, 0) = scale * Eigen::Matrix2d::Identity();
+  }
+  const Eigen::MatrixXd found = all.fullPivLu().solve(right);
+  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+  for (int h = 0; h < held / 2; ++h) sum += scale * found.block<2, 2>(2 * n + 2 * h, 0);
+  return sum;
+}
+
+TEST(RingSolver, a_pressed_ring_that_sticks_resists_as_one_dense_system_says) {
+  for (const RingKinematics kinematics : {RingKinematics::exact, RingKinematics::radial})
+    for (const double width : {0.0, 0.025, 0.1}) {
+      RingParams p = truck_ring(120);
+      p.kinematics = kinematics;
+      RingSolver solver(p, width > 0.0 ? RingGround::bar(width, 0.01) : plate(p));
+      const double before = pressed(solver, 0.03 - 1e-6, 3), force = pressed(solver, 0.03, 1);
+      const Eigen::Matrix2d s = ring_ground_stiffness(solver), dense = stuck_densely(solver);
+      for (int r = 0; r < 2; ++r)
+        for (int c = 0; c < 2; ++c) EXPECT_NEAR(s(r, c), dense(r, c), 1e-7 * dense(1, 1)) << width;
+      if (kinematics == RingKinematics::exact) {
+        EXPECT_GE(s(1, 1), (force - before) / 1e-6 * (1.0 - 1e-4)) << width;  // than where it slides
+      }
+      EXPECT_GT(s(0, 0), 0.0);
+    }
+}
+
+TEST(RingSolver, the_moment_on_the_rim_is_what_turning_the_belt_costs) {
+  const RingParams p = truck_ring(240);
+  RingSolver solver(p, RingGround::bar(0.05, 0.08));
+  pressed(solver, 0.04, 4);
+  const RingMechanics& ring = solver.ring();
+  RingField turn = ring.zero();  // about −y
+  for (double& v : turn.v) v = ring.radius();
+  const double step = 1e-5;  // rad
+  const double slope = (ring.energy(along(solver.state(), turn, step)) - ring.energy(along(solver.state(), turn, -step))) / (2.0 * step);
+  EXPECT_GT(std::abs(slope), 0.1);
+  EXPECT_NEAR(ring.spindle_moment(solver.state()), -slope, 1e-6 * std::abs(slope));
 }
 
 TEST(RingSolver, a_stiff_belt_moves_as_a_rigid_ring_that_can_grow) {

@@ -19,6 +19,7 @@
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/mean_turn.hpp"
+#include "tire/capabilities.hpp"
 #include "tire/outward.hpp"
 #include "tire/reach.hpp"
 
@@ -35,6 +36,7 @@ class TireNode : public Node {
         tire_(
             scenario.tires.at(index)->make({.gravity = scenario.rig->gravity(), .alive = std::move(alive)})),
         reach_(tire::inflated_reach(*tire_, scenario::describe_rig(scenario).wheels.at(index).camber_angle)) {
+    states_contact_ = dynamic_cast<const tire::StatesContact*>(tire_.get());
     report_.contact_tangent = scenario.tires.at(index)->options().contact_tangent;
     if (report_.contact_tangent) ledger_ = ImpulseLedger(tire_->mesh().vertex_count);
   }
@@ -61,6 +63,7 @@ class TireNode : public Node {
     trajectory_ = tire::RimTrajectory(start.rim);
     tire_->place(start.rim);
     tire_->surface(motion_.surface);
+    if (states_contact_) states_contact_->stated_contact(motion_.contact);
     tire::require_outward(tire_->mesh(), motion_.surface.position, start.rim.position,
                           scenario_.tires[index_]->options().file.string());
     motion_.header = {kPlacement, 0.0};
@@ -129,6 +132,7 @@ class TireNode : public Node {
       report_ledger();
     }
     tire_->surface(motion_.surface);
+    if (states_contact_) states_contact_->stated_contact(motion_.contact);
     describe_state();
   }
 
@@ -164,6 +168,7 @@ class TireNode : public Node {
 
     before_.swap(motion_.surface.position);
     tire_->surface(motion_.surface);
+    if (states_contact_) states_contact_->stated_contact(motion_.contact);
     Vec3 impulse = Vec3::Zero();
     for (std::size_t i = 0; i < forces_.vertex.size(); ++i) {
       const int vertex = forces_.vertex[i];
@@ -213,6 +218,7 @@ class TireNode : public Node {
   std::string kind_;
   tire::PressureSchedule pressure_;
   std::unique_ptr<tire::Tire> tire_;
+  const tire::StatesContact* states_contact_ = nullptr;  // the same tire, if it does
   double reach_;  // m
   tire::RimTrajectory trajectory_;
   RimMotion rim_;

@@ -56,11 +56,14 @@ struct Extent {
 
 void measure_press(const PressOptions& options, const PressModel& model,
                    const std::function<void(double)>& share, PressResults& results) {
+  FURROW_ASSERT(options.at.empty() || options.at.size() == static_cast<std::size_t>(options.points), options.at.size(),
+                options.points);
   const int total = (options.unload ? 2 : 1) * options.points;
   const auto at = [&](int k) {
     share(static_cast<double>(k) / total);
     const int step = k <= options.points ? k : 2 * options.points - k;
-    return model.press(options.deflection * step / options.points);
+    const bool equal = options.at.empty() || step == 0;
+    return model.press(equal ? options.deflection * step / options.points : options.at[step - 1]);
   };
   results.loading.push_back(at(0));
   if (model.unpressed) model.unpressed();

@@ -17,14 +17,13 @@
 #include <vector>
 
 #include "protocol/core/fields.hpp"
-#include "protocol/core/stated_contact.hpp"
 #include "protocol/core/surface.hpp"
 #include "protocol/core/terrain_state.hpp"
 #include "protocol/core/tire_diagnostics.hpp"
 
 namespace furrow {
 
-inline constexpr std::int32_t kProtocolVersion = 9;
+inline constexpr std::int32_t kProtocolVersion = 8;
 
 enum class Role : std::int32_t { rig = 0, tire = 1, terrain = 2 };
 /// "rig", "tire", "terrain".
@@ -223,7 +222,6 @@ struct SurfaceMotion {
   static constexpr MessageKind kKind = MessageKind::surface_motion;
   StepHeader header;
   SurfaceState surface;
-  StatedContact contact;           // of a tire that computes it by a law of its own
   Order order = Order::go_on;      // due now: the terrain gets it through the tires
   std::int64_t ends_at = kNotYet;  // as the rig said, at least n + 1
 };
@@ -231,7 +229,6 @@ template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<SurfaceMotion> auto& s) {
   visit(Field{"header", ""}, s.header);
   visit(Field{"surface", ""}, s.surface);
-  visit(Field{"contact", ""}, s.contact);
   visit(Field{"order", ""}, s.order);
   visit(Field{"ends_at"}, s.ends_at);
 }

@@ -10,6 +10,7 @@
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
 #include "nodes/study/calibrate.hpp"
+#include "nodes/study/calibrate_files.hpp"
 #include "nodes/study/calibrate_evaluations.hpp"
 #include "protocol/files/digits.hpp"
 
@@ -55,7 +56,11 @@ ExitCode calibrate_command(const CalibrateArguments& arguments) {
   launch::RunDirectory directory = launch::RunDirectory::of_calibration(folder, arguments.overwrite);
   launch::remove_unfinished(folder);
   launch::catch_stop_signals();
-  directory.add({study::kCalibration, study::kEvaluations, "fit.csv", calibration.result});
+  std::vector<std::string> files{study::kCalibration, study::kEvaluations, "fit.csv", calibration.result};
+  if (const auto* leaves = dynamic_cast<const study::LeavesFiles*>(calibration.model.get()))
+    for (const study::ResultFile& further : leaves->further_files(calibration.model->start_values(), ""))
+      files.push_back(further.name);
+  directory.add(files);
   launch::say(fmt::format("furrow: calibration {}, results in {}\n", calibration.name, folder.string()));
   try {
     launch::ProgressDisplay display;

@@ -5,9 +5,11 @@
 #include "nodes/ranks/node.hpp"
 #include "nodes/ranks/saved_forces.hpp"
 #include "nodes/ranks/terrain_orders.hpp"
+#include "protocol/contact_statement.hpp"
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
 #include "terrain/stated_contacts.hpp"
+#include "tire/capabilities.hpp"
 
 namespace furrow::ranks {
 namespace {
@@ -61,6 +63,8 @@ class TerrainNode : public Node {
 
     forces_.resize(tires);
     stated_.resize(tires);
+    for (const auto& tire : scenario_.tires)
+      states_contact_.push_back(dynamic_cast<const tire::HasOwnContact*>(tire.get()) != nullptr);
     report_.contact.assign(tires, {});
     for (int k = 0; k < tires; ++k)
       attach.start.push_back(receive_step<SurfaceMotion>(transport, {Role::tire, k}, kPlacement).surface);
@@ -83,7 +87,8 @@ class TerrainNode : public Node {
     for (int k = 0; k < static_cast<int>(forces_.size()); ++k) {
       SurfaceMotion motion = receive_step<SurfaceMotion>(transport, {Role::tire, k}, header.step);
       now_.targets[k] = std::move(motion.surface);
-      stated_[k] = std::move(motion.contact);
+      if (states_contact_[k])
+        stated_[k] = receive_step<ContactStatement>(transport, {Role::tire, k}, header.step).contact;
       now_.order = motion.order;
       now_.ends_at = motion.ends_at;
     }
@@ -170,6 +175,7 @@ class TerrainNode : public Node {
   std::shared_ptr<RankGroup> group_;  // null: the only rank
   std::unique_ptr<terrain::Terrain> terrain_;
   terrain::TakesStatedContacts* takes_stated_ = nullptr;  // the same terrain, where it can
+  std::vector<bool> states_contact_;                      // of each tire
   std::vector<StatedContact> stated_;                     // by the tires, of the running step
   AdvanceOrder now_;
   std::vector<NodalForces> forces_;

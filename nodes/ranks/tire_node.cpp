@@ -16,6 +16,7 @@
 #include "nodes/ranks/impulse_ledger.hpp"
 #include "nodes/ranks/saved_forces.hpp"
 #include "nodes/scenario/wheel_geometry.hpp"
+#include "protocol/contact_statement.hpp"
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/mean_turn.hpp"
@@ -63,7 +64,6 @@ class TireNode : public Node {
     trajectory_ = tire::RimTrajectory(start.rim);
     tire_->place(start.rim);
     tire_->surface(motion_.surface);
-    if (states_contact_) states_contact_->stated_contact(motion_.contact);
     tire::require_outward(tire_->mesh(), motion_.surface.position, start.rim.position,
                           scenario_.tires[index_]->options().file.string());
     motion_.header = {kPlacement, 0.0};
@@ -81,6 +81,11 @@ class TireNode : public Node {
     write_frame(header);
     send(transport, kRig, report_);
     send(transport, kTerrain, motion_);
+    if (states_contact_) {
+      statement_.header = header;
+      states_contact_->stated_contact(statement_.contact);
+      send(transport, kTerrain, statement_);
+    }
     rim_ = receive_step<RimMotion>(transport, kRig, header.step);
     next_ = rim_.order;
     const std::int64_t sent = motion_.ends_at;
@@ -132,7 +137,6 @@ class TireNode : public Node {
       report_ledger();
     }
     tire_->surface(motion_.surface);
-    if (states_contact_) states_contact_->stated_contact(motion_.contact);
     describe_state();
   }
 
@@ -168,7 +172,6 @@ class TireNode : public Node {
 
     before_.swap(motion_.surface.position);
     tire_->surface(motion_.surface);
-    if (states_contact_) states_contact_->stated_contact(motion_.contact);
     Vec3 impulse = Vec3::Zero();
     for (std::size_t i = 0; i < forces_.vertex.size(); ++i) {
       const int vertex = forces_.vertex[i];
@@ -225,6 +228,7 @@ class TireNode : public Node {
   NodalForces forces_;
   ImpulseLedger ledger_;
   SurfaceMotion motion_;
+  ContactStatement statement_;
   SpindleReport report_;
   std::vector<Vec3> before_;
   std::filesystem::path directory_;

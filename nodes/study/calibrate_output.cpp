@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "nodes/study/calibrate.hpp"
+#include "nodes/study/calibrate_files.hpp"
 #include "protocol/files/digits.hpp"
 #include "protocol/files/json_number.hpp"
 #include "protocol/files/text_file.hpp"
@@ -173,9 +174,13 @@ Json calibration_json(const Calibration& calibration, const CalibrationResults& 
 void write_calibration(const Calibration& calibration, const CalibrationResults& results,
                        const std::filesystem::path& folder) {
   const Json summary = calibration_json(calibration, results);
-  const Json file = calibration.model->fitted_file(results.values, source_text(calibration, results, summary));
+  const std::string source = source_text(calibration, results, summary);
+  const Json file = calibration.model->fitted_file(results.values, source);
   write_whole_file(folder / "fit.csv", fit_table(calibration, results));
   write_whole_file(folder / calibration.result, file.dump(2) + "\n");
+  if (const auto* leaves = dynamic_cast<const LeavesFiles*>(calibration.model.get()))
+    for (const ResultFile& further : leaves->further_files(results.values, source))
+      write_whole_file(folder / further.name, further.text);
   write_whole_file(folder / kCalibration, summary.dump(2) + "\n");
 }
 

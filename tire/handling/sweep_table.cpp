@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <string>
 
@@ -92,8 +93,9 @@ std::vector<SweepPoint> read_sweep_table(const std::filesystem::path& file) {
     p.rolling_radius = v[9];
     if (!(p.state.load > 0.0 && p.rolling_radius > 0.0))
       throw wrong("has a load or a rolling radius of 0 or less, expected a wheel that rolls on the ground");
-    p.rolls_freely = cells[at("rig.mode")] == "free_rolling" && std::abs(p.state.slip_angle) < kStraight &&
-                     std::abs(p.state.camber) < kStraight;
+    const bool free = cells[at("rig.mode")] == "free_rolling";
+    p.rolls_freely = free && std::abs(p.state.slip_angle) < kStraight && std::abs(p.state.camber) < kStraight;
+    p.state.slip = free ? 0.0 : std::numeric_limits<double>::quiet_NaN();
     points.push_back(p);
   }
   std::vector<std::pair<double, double>> free;
@@ -106,7 +108,8 @@ std::vector<SweepPoint> read_sweep_table(const std::filesystem::path& file) {
     throw input_error(file.string(), "",
                       "has no row with rig.mode free_rolling, straight and upright, expected one at each load: slip "
                       "counts from free rolling");
-  for (SweepPoint& p : points) p.state.slip = between(free, p.state.load) / p.rolling_radius - 1.0;
+  for (SweepPoint& p : points)
+    if (std::isnan(p.state.slip)) p.state.slip = between(free, p.state.load) / p.rolling_radius - 1.0;
   return points;
 }
 

@@ -6,7 +6,8 @@
 //
 //   κ = R_e(F_z)/(V/Ω) − 1,
 //
-// R_e from the rows that roll freely, straight and upright, on straight lines between their loads and beyond.
+// R_e from the rows that roll freely, straight and upright, on straight lines between their loads and beyond. A wheel
+// that rolls freely has no slip, also where it is turned or leans: the formula's R_e knows the load alone.
 #pragma once
 
 #include <filesystem>

@@ -67,12 +67,14 @@ void measure_press(const PressOptions& options, const PressModel& model,
   };
   results.loading.push_back(at(0));
   if (model.unpressed) model.unpressed();
+  bool measured = false;  // some models have no footprint
   for (int k = 1; k <= options.points; ++k) {
     const PressPoint before = results.loading.back();
     results.loading.push_back(at(k));
     const PressPoint& now = results.loading.back();
     const bool reached = before.force < options.load && now.force >= options.load;
-    if (reached || (k == options.points && results.footprint.empty())) {
+    if (reached || (k == options.points && !measured)) {
+      measured = true;
       results.at_load = reached ? find_load(model.press, before, now, options.load) : now;
       results.footprint = model.footprint();
       if (model.stiffness) results.stiffness = model.stiffness();

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
@@ -23,7 +24,8 @@ namespace {
 using tire::handling::MagicFormula;
 using tire::handling::SweepPoint;
 
-constexpr double kMost = 1e9;  // of any coefficient's size
+constexpr double kMost = 1e9;          // of any coefficient's size
+constexpr std::size_t kColumns = 110;  // of comments
 
 /// What of a table is compared.
 struct Quantity {
@@ -83,6 +85,7 @@ double* coefficient(MagicFormula& tire, const std::string& name) {
 
 /// Numbers of a target: which quantity of which rows.
 struct Rows {
+  std::string target;  // its name
   const Quantity* quantity = nullptr;
   std::vector<SweepPoint> points;
 };
@@ -132,7 +135,7 @@ class HandlingModel final : public CalibrationModel, public LeavesFiles {
 
   std::vector<ResultFile> further_files(std::span<const double> values, const std::string& source) const override {
     const MagicFormula tire = ranged(with(values));
-    std::vector<std::string> comments{source};
+    std::vector<std::string> comments = lines_of(source);
     comments.push_back("fitted ranges: " + ranges_text(tire));
     for (std::size_t k = 0; k < of_fitted_.size(); ++k) comments.push_back(residual_text(tire, of_fitted_[k]));
     std::vector<SweepPoint> points;
@@ -170,6 +173,15 @@ class HandlingModel final : public CalibrationModel, public LeavesFiles {
     return tire;
   }
 
+  /// Words of a text in lines that fit a page.
+  static std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines(1);
+    std::istringstream words(text);
+    for (std::string word; words >> word; lines.back() += (lines.back().empty() ? "" : " ") + word)
+      if (lines.back().size() + word.size() > kColumns) lines.emplace_back();
+    return lines;
+  }
+
   static std::string ranges_text(const MagicFormula& t) {
     return fmt::format("slip to {:.3g}, slip angle to {:.3g} rad, camber to {:.3g} rad, load {:.0f} to {:.0f} N", t.slip.most,
                        t.slip_angle.most, t.camber.most, t.load.least, t.load.most);
@@ -184,7 +196,7 @@ class HandlingModel final : public CalibrationModel, public LeavesFiles {
       peak = std::max(peak, std::abs(measured));
     }
     return fmt::format("residual of {}: root mean square {:.3g} {}, largest {:.3g} {} of a peak of {:.4g} {}, {} points",
-                       rows.quantity->name, std::sqrt(squares / static_cast<double>(rows.points.size())),
+                       rows.target, std::sqrt(squares / static_cast<double>(rows.points.size())),
                        rows.quantity->unit, largest, rows.quantity->unit, peak, rows.quantity->unit, rows.points.size());
   }
 
@@ -216,6 +228,7 @@ class HandlingModel final : public CalibrationModel, public LeavesFiles {
       }
       target.what = fmt::format("{} of {} rows", rows.quantity->name, rows.points.size());
       target.x_name = "row", target.y_name = rows.quantity->column;
+      rows.target = target.name;
       set_sigma(keys, {});
       target.state = fmt::format("handling {} {}", rows.quantity->name, file_hash(target.data));
       targets.push_back(target);

@@ -6,7 +6,7 @@ import unittest
 
 from program import ROOT, SMALL, SystemTest, changed, furrow, main, write_scenario
 
-STUDIES = ("study_slip.json", "study_slip_angle.json", "study_camber.json", "study_hard_slip.json", "multipass.json")  # for `furrow sweep`
+STUDIES = ("study_slip.json", "study_slip_angle.json", "study_camber.json", "study_hard_slip.json", "study_handling.json", "multipass.json")  # for `furrow sweep`
 CALIBRATIONS = sorted(path.name for path in (ROOT / "rigs").glob("calibrate_*.json"))  # for `furrow calibrate`
 SHIPPED = sorted(path.name for path in (ROOT / "rigs").glob("*.json")
                  if path.name not in ("scenario.schema.json", *STUDIES, *CALIBRATIONS))

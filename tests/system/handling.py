@@ -80,7 +80,7 @@ class Handling(SystemTest):
 
     def test_under_a_vehicle(self):
         path = ROOT / "rigs/hmmwv_rigid.json"
-        done = furrow("run", path, "--no-plots", "--out", self.folder / "car", "--set", 'tire={"file": "hmmwv_handling.tir"}', "--set",
+        done = furrow("run", path, "--no-plots", "--out", self.folder / "car", "--set", "tire.file=hmmwv_handling.tir", "--set",
                       "run.step=5e-4", "--set", "run.end=2", "--set", "output.frame_interval=0", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         told = json.loads((self.folder / "car/summary.json").read_text())
@@ -111,6 +111,62 @@ class Handling(SystemTest):
             self.assertEqual(done.returncode, 2, terrain)
             self.assertIn(f"key 'terrain.{key}'", done.stderr)
             self.assertIn("Magic Formula", done.stderr)
+
+    def test_calibration_finds_the_tire_that_made_the_table(self):
+        truth = evaluate_tir.read(TIR)
+        tire = evaluate_tir.Tire(truth)
+        states = [(load, kappa, alpha, gamma) for load in (3000.0, 4500.0, 6500.0)
+                  for kappa, alpha, gamma in [(k, 0.0, 0.0) for k in (-0.1, -0.03, -0.01, 0.01, 0.03, 0.1)] +
+                  [(0.0, a, 0.0) for a in (-0.1, -0.03, 0.0, 0.01, 0.03, 0.1)] + [(0.0, 0.0, 0.05), (0.0, 0.03, -0.05)]]
+        load, kappa, alpha, gamma = (np.array(column) for column in zip(*states))
+        forces = evaluate_tir.evaluate(tire, load, kappa, alpha, gamma, 0 * load)
+        lines = ["rig.mode," + ",".join(f"iso_w.force_N.{k}" for k in range(3)) + "," + ",".join(f"iso_w.moment_Nm.{k}" for k in range(3)) +
+                 ",iso_w.slip_angle_rad,iso_w.camber_angle_rad,iso_w.loaded_radius_m,effective_rolling_radius_m"]
+        for k, state in enumerate(states):
+            rolling = 0.47 / (1.0 + state[1])
+            lines.append(("free_rolling" if state[1] == 0.0 else "fixed_speed") + "," +
+                         ",".join(repr(float(x)) for x in (forces["Fx_N"][k], forces["Fy_N"][k], state[0], forces["Mx_Nm"][k],
+                                                            forces["My_Nm"][k], forces["Mz_Nm"][k], *state[2:], 0.46, rolling)))
+        (self.folder / "table.csv").write_text("\n".join(lines) + "\n")
+        fitted = {"PDX1": 1.1, "PKX1": 0.8, "PDY1": 0.9, "PKY1": 1.2, "PKY2": 1.1, "QDZ1": 0.8, "QSY1": 1.3}
+        text = TIR.read_text()
+        for name, factor in fitted.items():
+            line = next(line for line in text.splitlines() if line.startswith(name + " "))
+            text = text.replace(line, f"{name} = {factor * truth[name]!r}")
+        (self.folder / "start.tir").write_text(text)
+        study = {"format_version": 1, "calibrate": "handling", "start": "start.tir", "starts": 1,
+                 "parameters": {name: dict(zip(("lower", "upper"), sorted((0.5 * truth[name], 1.6 * truth[name])))) for name in fitted},
+                 "targets": [{"data": "table.csv", "of": of} for of in ("fx", "fy", "my", "mz")]}
+        (self.folder / "fit.json").write_text(json.dumps(study))
+        done = furrow("calibrate", self.folder / "fit.json", "--out", self.folder / "fit", "--no-plots", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        found = evaluate_tir.read(self.folder / "fit/start_fitted.tir")
+        for name in fitted:
+            self.assertAlmostEqual(found[name], truth[name], delta=1e-4 * abs(truth[name]), msg=name)
+        self.assertEqual(found["FZMIN"], 3000.0)
+        self.assertAlmostEqual(found["KPUMAX"], 0.1)
+        text = (self.folder / "fit/start_fitted.tir").read_text()
+        self.assertIn("! fitted ranges: slip to 0.1, slip angle to 0.1 rad, camber to 0.05 rad, load 3000 to 6500 N", text)
+        self.assertIn("! residual of table_fy: root mean square", text)
+        table = (self.folder / "fit/start_fitted.tdx").read_text()
+        self.assertTrue(table.startswith("**HEADER\nRELEASE   Release of TYDEX-Format"))
+        self.assertEqual(len(table.split("**MEASURDATA\n")[1].splitlines()), len(states) + 1)
+        done = furrow("validate", ROOT / "rigs/rigid_ground.json", "--set", f"tire.file={self.folder / 'fit/start_fitted.json'}", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_wrong_calibrations_are_refused_by_key(self):
+        good = {"format_version": 1, "calibrate": "handling", "start": "handling_start.tir", "parameters": {"PKY1": {}},
+                "targets": [{"data": "sweep_lumped.csv", "of": "fy"}]}
+        for change, said in (({"start": "hmmwv_ring.json"}, "key 'start': is 'hmmwv_ring.json', expected a tire property file"),
+                             ({"parameters": {"PKY9": {}}}, "key 'parameters.PKY9'"),
+                             ({"targets": [{"data": "sweep_lumped.csv"}]}, "key 'targets[0].of': is missing"),
+                             ({"targets": [{"data": "sweep_lumped.csv", "of": "fw"}]}, "key 'targets[0].of': is 'fw', expected"),
+                             ({"targets": [{"data": "no.csv", "of": "fy"}]}, "no.csv"),
+                             ({"targets": [{"data": "sweep_lumped.csv", "of": "fy", "on": "plate"}]}, "key 'targets[0].on'")):
+            (self.folder / "fit.json").write_text(json.dumps({**good, **change}))
+            done = furrow("calibrate", self.folder / "fit.json", "--out", self.folder / "fit", "--no-plots", cwd=self.folder)
+            self.assertEqual(done.returncode, 2, (change, done.stderr))
+            self.assertIn(said, done.stderr)
 
     def test_a_changed_file_is_noticed(self):
         text = TIR.read_text()

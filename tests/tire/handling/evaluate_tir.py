@@ -21,7 +21,9 @@ def read(path):
     """Names and numbers of all sections; what is no number is left out."""
     values, section = {}, ""
     units = {}
-    for line in open(path, encoding="utf-8"):
+    with open(path, encoding="utf-8") as file:
+        lines = file.read().splitlines()
+    for line in lines:
         line = re.split(r"[$!]", line)[0].strip()
         if line.startswith("["):
             section = line.strip("[] ").upper()

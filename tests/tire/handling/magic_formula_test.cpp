@@ -70,7 +70,9 @@ TEST(MagicFormula, is_odd_in_slip_and_slip_angle_without_shifts) {
         EXPECT_NEAR(a.mx, -b.mx, 1e-9);
         EXPECT_NEAR(a.fx, -c.fx, 1e-9);
         EXPECT_NEAR(a.fy, c.fy, 1e-9);
-        if (angle != 0.0) EXPECT_NEAR(a.mz, -b.mz, 1e-9);  // at 0 the equivalent slip angle has the sign +
+        if (angle != 0.0) {  // at 0 the equivalent slip angle has the sign +
+          EXPECT_NEAR(a.mz, -b.mz, 1e-9);
+        }
       }
 }
 

@@ -79,11 +79,15 @@ TEST(Tydex, has_the_layout_of_its_release) {
       section = line;
       continue;
     }
-    if (section == "**HEADER" && line.starts_with("RELEASE")) EXPECT_EQ(line.substr(50), "1.3");
+    if (section == "**HEADER" && line.starts_with("RELEASE")) {
+      EXPECT_EQ(line.substr(50), "1.3");
+    }
     if (section == "**MEASURCHANNELS") {
       ++channels;
       EXPECT_GE(line.size(), 71u);
-      if (line.starts_with("FYW")) EXPECT_EQ(line.substr(40, 1), "N");
+      if (line.starts_with("FYW")) {
+        EXPECT_EQ(line.substr(40, 1), "N");
+      }
     }
     if (section == "**MEASURDATA") {
       ++data;

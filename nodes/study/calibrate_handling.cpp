@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <map>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -86,6 +88,7 @@ double* coefficient(MagicFormula& tire, const std::string& name) {
 /// Numbers of a target: which quantity of which rows.
 struct Rows {
   std::string target;  // its name
+  std::filesystem::path data;
   const Quantity* quantity = nullptr;
   std::vector<SweepPoint> points;
 };
@@ -139,8 +142,10 @@ class HandlingModel final : public CalibrationModel, public LeavesFiles {
     comments.push_back("fitted ranges: " + ranges_text(tire));
     for (std::size_t k = 0; k < of_fitted_.size(); ++k) comments.push_back(residual_text(tire, of_fitted_[k]));
     std::vector<SweepPoint> points;
+    std::set<std::filesystem::path> tables;
     for (const Rows& rows : of_fitted_)
-      if (!rows.quantity->free_rolling && points.size() < rows.points.size()) points = rows.points;
+      if (!rows.quantity->free_rolling && tables.insert(rows.data).second)
+        points.insert(points.end(), rows.points.begin(), rows.points.end());
     return {{stem_ + ".tir", tire::handling::tir_text(tire, comments)},
             {stem_ + ".tdx", tire::handling::tydex_text(stem_, tire, points, comments)}};
   }
@@ -228,7 +233,7 @@ class HandlingModel final : public CalibrationModel, public LeavesFiles {
       }
       target.what = fmt::format("{} of {} rows", rows.quantity->name, rows.points.size());
       target.x_name = "row", target.y_name = rows.quantity->column;
-      rows.target = target.name;
+      rows.target = target.name, rows.data = target.data;
       set_sigma(keys, {});
       target.state = fmt::format("handling {} {}", rows.quantity->name, file_hash(target.data));
       targets.push_back(target);

@@ -1,6 +1,8 @@
 #!/usr/bin/python3
 """A tire property file as a tire on hard ground: what a user gets of it in the rig, under a vehicle, pressed, and refused."""
+import csv
 import json
+import re
 import sys
 
 import numpy as np
@@ -11,6 +13,7 @@ sys.path.insert(0, str(ROOT / "tests/tire/handling"))
 import evaluate_tir  # noqa: E402  the other evaluator
 
 TIR = ROOT / "tire/data/hmmwv_handling.tir"
+SHELL_RADIUS = 0.4673  # m, of hmmwv_lumped.json
 STEADY = {
     "format_version": 1,
     "rig": {"type": "drawbar", "mode": "fixed_speed", "speed": 4.0, "ramp": 0.05, "carrier_mass": 450, "rim_mass": 15,
@@ -57,6 +60,22 @@ class Handling(SystemTest):
                 self.assertTrue(told["accounts"]["energy"]["closes"], told["accounts"]["energy"])
                 self.assertTrue(told["accounts"]["momentum"]["closes"], told["accounts"]["momentum"])
                 self.assertEqual(told["warnings"] if "warnings" in told else [], [])
+
+    def test_runs_give_the_table_that_it_was_fitted_to_within_its_residuals(self):
+        text = TIR.read_text()
+        largest = {of: float(re.search(rf"residual of sweep_lumped_{of}: .* largest ([0-9.e+-]+) N", text)[1]) for of in ("fx", "fy")}
+        with open(ROOT / "tire/data/sweep_lumped.csv", encoding="utf-8") as file:
+            rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+        radius = evaluate_tir.read(TIR)["UNLOADED_RADIUS"]
+        for mode, slip, toe in (("fixed_speed", 0.01, 0.0), ("fixed_speed", 0.03, 0.0), ("fixed_speed", 0.1, 0.0), ("free_rolling", 0.0, -0.13963)):
+            wanted = {"rig.mode": mode, "rig.slip": slip, "rig.toe_angle": toe, "rig.camber_angle": 0.0}
+            found = [row for row in rows if all(row[key] == value if key == "rig.mode" else float(row[key]) == value for key, value in wanted.items())]
+            row = max(found, key=lambda row: row["rig.carrier_mass"] == "450")
+            turns = 1.0 - SHELL_RADIUS * (1.0 - slip) / radius  # the same spin: rig.slip counts from each tire's own radius
+            told = self.run_of(f"table_{mode}_{slip}", "--set", f"rig.mode={mode}", "--set", f"rig.slip={turns}", "--set", f"rig.toe_angle={toe}",
+                               "--set", f"rig.carrier_mass={row['rig.carrier_mass']}")
+            for k, of in enumerate(("fx", "fy")):
+                self.assertAlmostEqual(told["iso_w"]["force_N"][k], float(row[f"iso_w.force_N.{k}"]), delta=1.1 * largest[of] + 5.0, msg=(wanted, of))
 
     def test_friction_of_the_ground_counts_no_second_time(self):
         one = self.run_of("one", "--set", "terrain.friction=0.9")
@@ -151,7 +170,8 @@ class Handling(SystemTest):
         table = (self.folder / "fit/start_fitted.tdx").read_text()
         self.assertTrue(table.startswith("**HEADER\nRELEASE   Release of TYDEX-Format"))
         self.assertEqual(len(table.split("**MEASURDATA\n")[1].splitlines()), len(states) + 1)
-        done = furrow("validate", ROOT / "rigs/rigid_ground.json", "--set", f"tire.file={self.folder / 'fit/start_fitted.json'}", cwd=self.folder)
+        (self.folder / "scenario.json").write_text(json.dumps({**STEADY, "tire": {"file": "fit/start_fitted.json"}}))
+        done = furrow("validate", self.folder / "scenario.json", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_wrong_calibrations_are_refused_by_key(self):

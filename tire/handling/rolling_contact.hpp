@@ -14,7 +14,7 @@
 // u, v are the deflections of the contact patch against the rim; they stay within what the file's ranges of slip allow,
 // so that a spinning or sliding wheel does not wind them up. They are integrated exactly for a constant motion, and at
 // rest they are springs: a tire holds its place on a slope. D damps these springs below VXLOW, and fades with the cosine
-// of the speed, after [1, section 8.6]; it is a tenth of the critical damping of the mass that F_z carries. Sideways
+// of the speed, after [1, chapter 8]; it is a tenth of the critical damping of the mass that F_z carries. Sideways
 // likewise. A file without relaxation lengths takes κ = −V_sx/max(|V_Cx|, VXLOW).
 //
 // Reference: [1] H. B. Pacejka, Tire and Vehicle Dynamics, 3rd edition, 2012.

@@ -1,4 +1,5 @@
 // A message crosses as its fields in the order of its list.
+#include "protocol/contact_statement.hpp"
 #include "protocol/core/byte_stream.hpp"
 #include "protocol/transport.hpp"
 
@@ -29,6 +30,7 @@ FURROW_MESSAGE(TerrainSetup)
 FURROW_MESSAGE(RimMotion)
 FURROW_MESSAGE(SpindleReport)
 FURROW_MESSAGE(SurfaceMotion)
+FURROW_MESSAGE(ContactStatement)
 FURROW_MESSAGE(TerrainForces)
 FURROW_MESSAGE(TerrainReport)
 FURROW_MESSAGE(FinalReport)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Plots of a run, of soil tests, of a pressed tire, of its natural frequencies, of a vehicle's suspensions or of a study: PNG files in the run
+"""Plots of a run, of soil tests, of a pressed tire, of its natural frequencies, of a vehicle's suspensions, of a study or of a calibration: PNG files in the run
 directory, and report.html, a page with all of it; their names, without the folder, as a JSON list on stdout.
 
 usage: report.py DIR [--out FOLDER] [--only NAME]... [--quiet]
@@ -23,7 +23,7 @@ matplotlib.use("Agg")
 
 sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent), str(pathlib.Path(__file__).resolve().parent / "report")]
 
-from plot import (accounts, charts, ground, kinematics, modes, press, ride, scene, soil, sweep, vehicle_ground, vehicle_plots,  # noqa: E402
+from plot import (accounts, calibrate, charts, ground, kinematics, modes, press, ride, scene, soil, sweep, vehicle_ground, vehicle_plots,  # noqa: E402
                   vehicle_run, vehicle_scene, wheels)
 from plot.digits import with_error  # noqa: E402
 from plot.run_data import Damaged, Missing, Run, printable  # noqa: E402
@@ -70,6 +70,7 @@ BEDS_PLOTS = {"beds": sweep.beds}
 SOIL_PLOTS = {"plate": soil.plate, "shear": soil.shear, "cone": soil.cone, "repose": soil.repose}
 KINEMATICS_PLOTS = {"parallel": kinematics.parallel, "opposite": kinematics.opposite, "steering": kinematics.steering}
 MODES_PLOTS = {"frequencies": modes.frequencies, "mode_shapes": modes.mode_shapes, "mode_sections": modes.mode_sections}
+CALIBRATION_PLOTS = {"fit": calibrate.fit, "residual": calibrate.residual}
 PRESS_PLOTS = {"load_deflection": press.load_deflection, "footprint": press.footprint}
 
 
@@ -122,7 +123,7 @@ def main():
     parser.add_argument("directory", type=pathlib.Path)
     parser.add_argument("others", type=pathlib.Path, nargs="*", help="further runs: one page that compares all of them")
     parser.add_argument("--out", type=pathlib.Path, help="folder for the plots (default: the run directory)")
-    parser.add_argument("--only", action="append", choices=RIDE_PLOTS | VEHICLE_PLOTS | SOIL_PLOTS | PRESS_PLOTS | MODES_PLOTS | KINEMATICS_PLOTS | SWEEP_PLOTS | BEDS_PLOTS, help="this plot only; may be repeated")
+    parser.add_argument("--only", action="append", choices=RIDE_PLOTS | VEHICLE_PLOTS | SOIL_PLOTS | PRESS_PLOTS | MODES_PLOTS | KINEMATICS_PLOTS | SWEEP_PLOTS | BEDS_PLOTS | CALIBRATION_PLOTS, help="this plot only; may be repeated")
     parser.add_argument("--quiet", action="store_true", help="print errors only")
     arguments = parser.parse_args()
     global quiet
@@ -137,7 +138,8 @@ def main():
         of_press = (arguments.directory / "press.csv").is_file()
         of_modes = (arguments.directory / "modes.csv").is_file()
         of_kinematics = (arguments.directory / "kinematics.csv").is_file()
-        of = (soil.Soil if of_soil else sweep.Sweep if of_sweep else press.Press if of_press
+        of_calibration = (arguments.directory / "calibration.json").is_file()
+        of = (calibrate.Calibration if of_calibration else soil.Soil if of_soil else sweep.Sweep if of_sweep else press.Press if of_press
               else modes.Modes if of_modes else kinematics.Kinematics if of_kinematics else Run)
         run = of(arguments.directory)
         out.mkdir(parents=True, exist_ok=True)
@@ -149,7 +151,7 @@ def main():
         return 5
     written = []
     of_beds = of_sweep and run.values.get("beds")
-    plots = (SOIL_PLOTS if of_soil else BEDS_PLOTS if of_beds else SWEEP_PLOTS if of_sweep else PRESS_PLOTS if of_press
+    plots = (CALIBRATION_PLOTS if of_calibration else SOIL_PLOTS if of_soil else BEDS_PLOTS if of_beds else SWEEP_PLOTS if of_sweep else PRESS_PLOTS if of_press
              else MODES_PLOTS if of_modes else KINEMATICS_PLOTS if of_kinematics else VEHICLE_PLOTS if run.has_vehicle
              else RIDE_PLOTS if ride.COLUMN in run.series else PLOTS)
     for name in arguments.only or plots:
@@ -181,7 +183,7 @@ def main():
             return 5
         matplotlib.pyplot.close(figure)
         written.append(f"{name}.png")
-    if not (of_soil or of_sweep or of_press or of_modes or of_kinematics):
+    if not (of_calibration or of_soil or of_sweep or of_press or of_modes or of_kinematics):
         try:
             words(run)
         except Damaged as error:

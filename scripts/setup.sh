@@ -14,6 +14,7 @@ libhwloc-dev                              cores and their affinity
 libeigen3-dev                             small matrices
 libsuitesparse-dev                        sparse Cholesky factorization (CHOLMOD)
 libopenblas-serial-dev|libopenblas-pthread-dev|libopenblas-openmp-dev  dense kernels under CHOLMOD
+libceres-dev                              nonlinear least squares: calibrations
 libhdf5-dev                               result files and checkpoints
 nlohmann-json3-dev                        reading JSON
 libvalijson-dev                           checking scenarios against the schema

@@ -57,11 +57,14 @@ struct Extent {
 
 void measure_press(const PressOptions& options, const PressModel& model,
                    const std::function<void(double)>& share, PressResults& results) {
+  FURROW_ASSERT(options.at.empty() || options.at.size() == static_cast<std::size_t>(options.points), options.at.size(),
+                options.points);
   const int total = (options.unload ? 2 : 1) * options.points;
   const auto at = [&](int k) {
     share(static_cast<double>(k) / total);
     const int step = k <= options.points ? k : 2 * options.points - k;
-    return model.press(options.deflection * step / options.points);
+    const bool equal = options.at.empty() || step == 0;
+    return model.press(equal ? options.deflection * step / options.points : options.at[step - 1]);
   };
   bool reached = false;
   const auto look = [&](const PressPoint& point) {
@@ -77,7 +80,7 @@ void measure_press(const PressOptions& options, const PressModel& model,
       if (reached) continue;
       reached = before.force < options.load && now.force >= options.load;
       look(reached ? find_load(model.press, before, now, options.load) : now);
-      if (reached || k == options.points) results.stiffness = model.stiffness();
+      if (model.stiffness && (reached || k == options.points)) results.stiffness = model.stiffness();
     }
     for (int k = options.points + 1; k <= total; ++k) results.unloading.push_back(at(k));
   } catch (const Error& error) {

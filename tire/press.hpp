@@ -19,6 +19,8 @@ struct PressOptions {
   PressObstacle obstacle;
   double deflection = 0.02;  // largest, m
   int points = 10;           // of the curve up to it
+  /// Deflections of the curve in place of equal steps, rising, m: `points` of them, the last is `deflection`.
+  std::vector<double> at = {};
   double load = 4561.65;     // of the footprint, N: 465 kg
   bool unload = true;        // the curve also back to zero
   bool partial = false;      // a curve that ends before its largest deflection is a result, with PressResults::ended

@@ -13,6 +13,7 @@
 #include "protocol/files/cache_folder.hpp"
 #include "protocol/files/json_text.hpp"
 #include "protocol/files/text_file.hpp"
+#include "tire/capabilities.hpp"
 #include "tire/press.hpp"
 
 namespace furrow::tire {
@@ -25,7 +26,8 @@ constexpr int kMostTrials = 4;
 constexpr int kPoints = 4;                 // of the curve
 constexpr int kColumns = 48, kWidth = 12;  // elements of a coarse mesh
 
-std::filesystem::path cache_file(const TireOptions& o, double deflection) {
+std::filesystem::path cache_file(const TireSpec& tire, double deflection) {
+  const TireOptions& o = tire.options();
   const std::filesystem::path folder = cache_folder("press");
   if (folder.empty()) return {};
   Hash hash;
@@ -38,6 +40,7 @@ std::filesystem::path cache_file(const TireOptions& o, double deflection) {
   add(o.structural_damping);
   add(o.pressure.empty() ? -1.0 : o.pressure.at(0.0));
   hash.add(read_text_file(o.file, "a tire file in JSON"));
+  for (const std::filesystem::path& named : files_of(tire)) hash.add(read_text_file(named, "a tire's file"));
   return folder / (hash.hex() + ".json");
 }
 
@@ -79,7 +82,7 @@ void write_curve(const std::filesystem::path& file, const PressCurve& curve) {
 
 PressCurve press(const StaticTest& test, const TireSpec& tire, double deflection,
                  const ProgressCall& progress) {
-  const std::filesystem::path file = cache_file(tire.options(), deflection);
+  const std::filesystem::path file = cache_file(tire, deflection);
   if (const std::optional<PressCurve> kept = read_curve(file)) return *kept;
   PressOptions options;
   options.deflection = deflection;

@@ -13,6 +13,7 @@
 #include "protocol/files/json_reader.hpp"
 #include "protocol/files/json_text.hpp"
 #include "tire/ancf/shell_spec.hpp"
+#include "tire/handling/handling_spec.hpp"
 #include "tire/planar/planar_spec.hpp"
 #include "tire/rigid/rigid_spec.hpp"
 #include "tire/ring/ring_spec.hpp"
@@ -26,6 +27,7 @@ constexpr auto kModels = std::to_array<TireModel>({
     {"shell", read_shell},
     {"ring", read_ring},
     {"planar", read_planar},
+    {"handling", read_handling},
 });
 // Names that tire files may come to use.
 constexpr std::array<std::string_view, 1> kLater{"wheel"};
@@ -80,7 +82,8 @@ void check(const PressureSchedule& schedule, const std::string& key, const std::
 std::span<const TireModel> tire_models() { return kModels; }
 
 std::unique_ptr<TireSpec> read_tire(const TireOptions& options) {
-  const json document = load_json(options.file, "a tire file in JSON");
+  const json document =
+      is_tir(options.file) ? tire_file_of_tir(options.file) : load_json(options.file, "a tire file in JSON");
   std::unique_ptr<TireSpec> spec = model_of(document, options.file.string()).read(document, options);
   if (options.rigid) spec = make_rigid(std::move(spec));
   spec->set_rim(rim_of(document, options.file.string()));

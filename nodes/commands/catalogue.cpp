@@ -27,10 +27,12 @@ struct Kind {
 };
 
 bool is_study(const Json& file) { return file.contains("scenario"); }
+bool is_calibration(const Json& file) { return file.contains("calibrate"); }
 
 constexpr Kind kKinds[] = {
-    {"scenarios", "rigs", "furrow run NAME", [](const Json& file) { return !is_study(file); }},
+    {"scenarios", "rigs", "furrow run NAME", [](const Json& file) { return !is_study(file) && !is_calibration(file); }},
     {"studies", "rigs", "furrow sweep FILE", is_study},
+    {"calibrations", "rigs", "furrow calibrate FILE", is_calibration},
     {"tires", "tire/data", "tire.file of a scenario", [](const Json&) { return true; }},
     {"soils", "terrain/data", "terrain.material of a scenario", [](const Json&) { return true; }},
     {"vehicles", "vehicle/data", "rig.vehicle of a scenario", [](const Json&) { return true; }},

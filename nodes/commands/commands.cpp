@@ -312,6 +312,7 @@ class CommandLine {
   NewArguments new_;
   EventsArguments events_;
   SweepArguments sweep_;
+  CalibrateArguments calibrate_;
   SlurmArguments slurm_;
   GrainBench grains_;
   TireBench tire_;
@@ -319,10 +320,10 @@ class CommandLine {
 
 void CommandLine::add_beginnings() {
   CLI::App& list =
-      add("list", "List the scenarios, studies, tires, soils and vehicles that come with Furrow.",
+      add("list", "List the scenarios, studies, calibrations, tires, soils and vehicles that come with Furrow.",
           [this] { return list_command(typed_.key, typed_.json); });
   list.add_option("KIND", typed_.key,
-                  "List this kind only: scenarios, studies, tires, soils or vehicles (default: all).");
+                  "List this kind only: scenarios, studies, calibrations, tires, soils or vehicles (default: all).");
   list.add_flag("--json", typed_.json, "Print JSON.");
 
   CLI::App& starter = add(
@@ -458,6 +459,19 @@ void CommandLine::add_studies() {
   sweep
       .add_option("--jobs", sweep_.jobs, "Run this number of runs at once, each with its share of the cores.")
       ->capture_default_str();
+
+  CLI::App& calibrate = add("calibrate",
+                            "Fit the parameters of a tire or a soil to data, with the error of each, or continue an "
+                            "interrupted calibration.",
+                            [this] {
+                              calibrate_.plots = !typed_.no_plots;
+                              return calibrate_command(calibrate_);
+                            });
+  calibrate.add_option("STUDY", calibrate_.study, "Read this calibration study (JSON).")->required();
+  calibrate.add_option("--out", calibrate_.out, "Keep the calibration in this folder (default: results/<study>).");
+  calibrate.add_flag("--overwrite", calibrate_.overwrite,
+                     "Begin again: remove what an earlier calibration wrote into the folder.");
+  calibrate.add_flag("--no-plots", typed_.no_plots, "Make no plots; 'furrow report' makes them later.");
 
   CLI::App& report =
       add("report", "Plot a finished run: PNG files and report.html, a page with plots and 3-D playback.",

@@ -84,6 +84,16 @@ struct SweepArguments {
 /// `furrow sweep` (commands_sweep.cpp). @throws Error
 ExitCode sweep_command(const SweepArguments& arguments);
 
+struct CalibrateArguments {
+  std::filesystem::path study;
+  std::filesystem::path out;  // empty: results/<study>
+  bool overwrite = false;
+  bool plots = true;
+};
+
+/// `furrow calibrate` (calibrate.cpp). @throws Error
+ExitCode calibrate_command(const CalibrateArguments& arguments);
+
 /// `furrow soil` (commands_soil.cpp). @throws Error
 ExitCode soil_command(const scenario::Scenario& scenario, const SoilArguments& arguments);
 

@@ -24,6 +24,7 @@ constexpr const char* kNoParents = "FURROW_MAKES_NO_PARENTS";
 constexpr const char* kStudy = "sweep.json";          // what the list of a study holds
 constexpr const char* kKinematics = "kinematics.csv";  // of `furrow kc`
 constexpr const char* kModes = "modes.csv";            // of `furrow modes`
+constexpr const char* kCalibration = "calibration.json";  // of `furrow calibrate`
 
 Error no_list(const fs::path& folder, const std::string& key, const std::string& why) {
   return input_error(folder.string(), key,
@@ -34,7 +35,7 @@ bool is_run(const fs::path& folder) {
   std::error_code error;
   return fs::exists(folder / "run.log", error) || fs::exists(folder / "scenario.json", error) ||
          fs::exists(folder / kStudy, error) || fs::exists(folder / kKinematics, error) ||
-         fs::exists(folder / kModes, error);
+         fs::exists(folder / kModes, error) || fs::exists(folder / kCalibration, error);
 }
 
 /// Whether the run of this list wrote more than what there is before its first step.
@@ -108,7 +109,12 @@ RunDirectory::RunDirectory(const fs::path& existing) : existing_(true), path_(ex
   take_back(RunList::read(path_));
 }
 
-RunDirectory::RunDirectory(OfStudy, const fs::path& folder) : path_(way_to(folder)) {
+struct RunDirectory::Continued {
+  const char* mark;  // a file that its list holds
+  const char* name;
+};
+
+RunDirectory::RunDirectory(const Continued& kind, const fs::path& folder, bool overwrite) : path_(way_to(folder)) {
   try {
     if (!stands(path_) && make()) {
       begin();
@@ -116,16 +122,18 @@ RunDirectory::RunDirectory(OfStudy, const fs::path& folder) : path_(way_to(folde
       std::error_code error;
       if (!fs::is_directory(path_, error))
         throw input_error(folder.string(), "--out",
-                          "exists and is not a folder, expected a new one or that of a study");
+                          fmt::format("exists and is not a folder, expected a new one or that of a {}", kind.name));
       if (!has_run_list(path_) && !fs::is_empty(path_, error))
         throw no_list(
             folder, "--out",
-            "no study made it, or an earlier version of furrow did; expected a new or empty folder");
+            fmt::format("no {} made it, or an earlier version of furrow did; expected a new or empty folder", kind.name));
       require_writable("--out");
       lock_ = FolderLock(path_, "--out", FolderLock::Mode::alone);
       const RunList list = RunList::read(path_);
-      if (!list.forms().empty() && !list.holds(kStudy))
-        throw input_error(folder.string(), "--out", "holds a run, expected a new folder or that of a study");
+      if (!list.forms().empty() && !list.holds(kind.mark))
+        throw input_error(folder.string(), "--out",
+                          fmt::format("holds a run, expected a new folder or that of a {}", kind.name));
+      if (overwrite) remove_listed(path_, list);
     }
   } catch (const Error&) {
     discard();
@@ -134,7 +142,11 @@ RunDirectory::RunDirectory(OfStudy, const fs::path& folder) : path_(way_to(folde
   existing_ = true;
 }
 
-RunDirectory RunDirectory::of_study(const fs::path& folder) { return RunDirectory(OfStudy{}, folder); }
+RunDirectory RunDirectory::of_study(const fs::path& folder) { return {Continued{kStudy, "study"}, folder, false}; }
+
+RunDirectory RunDirectory::of_calibration(const fs::path& folder, bool overwrite) {
+  return {Continued{kCalibration, "calibration"}, folder, overwrite};
+}
 
 fs::path RunDirectory::aside() const { return path_ / kAside; }
 

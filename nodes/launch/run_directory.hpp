@@ -25,6 +25,8 @@ class RunDirectory {
   explicit RunDirectory(const std::filesystem::path& existing);
   /// The folder of a study, which continues where there is one. @throws Error(bad_input)
   static RunDirectory of_study(const std::filesystem::path& folder);
+  /// The same of a calibration; `overwrite` removes what an earlier one wrote. @throws Error(bad_input)
+  static RunDirectory of_calibration(const std::filesystem::path& folder, bool overwrite);
 
   /// Gives the folder free and removes what was set aside.
   ~RunDirectory();
@@ -45,8 +47,8 @@ class RunDirectory {
   void discard();
 
  private:
-  struct OfStudy {};
-  RunDirectory(OfStudy, const std::filesystem::path& folder);
+  struct Continued;  // kinds of folders that one command makes and continues
+  RunDirectory(const Continued& kind, const std::filesystem::path& folder, bool overwrite);
 
   bool make();
   void begin();

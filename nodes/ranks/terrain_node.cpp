@@ -5,8 +5,11 @@
 #include "nodes/ranks/node.hpp"
 #include "nodes/ranks/saved_forces.hpp"
 #include "nodes/ranks/terrain_orders.hpp"
+#include "protocol/contact_statement.hpp"
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
+#include "terrain/stated_contacts.hpp"
+#include "tire/capabilities.hpp"
 
 namespace furrow::ranks {
 namespace {
@@ -23,6 +26,7 @@ class TerrainNode : public Node {
     context.threads = threads;
     context.group = group_;
     terrain_ = scenario.terrain->make(context);
+    takes_stated_ = dynamic_cast<terrain::TakesStatedContacts*>(terrain_.get());
   }
 
   NodeCard card() const override {
@@ -58,6 +62,9 @@ class TerrainNode : public Node {
     send(transport, kRig, setup_);
 
     forces_.resize(tires);
+    stated_.resize(tires);
+    for (const auto& tire : scenario_.tires)
+      states_contact_.push_back(dynamic_cast<const tire::HasOwnContact*>(tire.get()) != nullptr);
     report_.contact.assign(tires, {});
     for (int k = 0; k < tires; ++k)
       attach.start.push_back(receive_step<SurfaceMotion>(transport, {Role::tire, k}, kPlacement).surface);
@@ -80,6 +87,8 @@ class TerrainNode : public Node {
     for (int k = 0; k < static_cast<int>(forces_.size()); ++k) {
       SurfaceMotion motion = receive_step<SurfaceMotion>(transport, {Role::tire, k}, header.step);
       now_.targets[k] = std::move(motion.surface);
+      if (states_contact_[k])
+        stated_[k] = receive_step<ContactStatement>(transport, {Role::tire, k}, header.step).contact;
       now_.order = motion.order;
       now_.ends_at = motion.ends_at;
     }
@@ -90,6 +99,7 @@ class TerrainNode : public Node {
   void advance(const StepHeader& header) override {
     FURROW_ASSERT(now_.targets.size() == forces_.size(), now_.targets.size(), forces_.size());
     FURROW_ASSERT(report_.contact.size() == forces_.size(), report_.contact.size(), forces_.size());
+    if (takes_stated_) takes_stated_->state_contacts(stated_);
     const Outcome outcome = terrain_->advance(now_.targets, scenario_.run.step, scenario_.terrain_substeps,
                                               forces_, report_.contact);
     if (!outcome.ok) throw physics_error(outcome, "terrain", when(header));
@@ -164,6 +174,9 @@ class TerrainNode : public Node {
   int threads_;
   std::shared_ptr<RankGroup> group_;  // null: the only rank
   std::unique_ptr<terrain::Terrain> terrain_;
+  terrain::TakesStatedContacts* takes_stated_ = nullptr;  // the same terrain, where it can
+  std::vector<bool> states_contact_;                      // of each tire
+  std::vector<StatedContact> stated_;                     // by the tires, of the running step
   AdvanceOrder now_;
   std::vector<NodalForces> forces_;
   TerrainReport report_;

@@ -13,6 +13,8 @@
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_text.hpp"
 #include "protocol/host.hpp"
+#include "terrain/stated_contacts.hpp"
+#include "tire/capabilities.hpp"
 
 namespace furrow::scenario {
 namespace {
@@ -47,6 +49,7 @@ class Checks {
   void rig();
   void tires();
   void tire_options(std::size_t wheel);
+  void require_level_ground(std::size_t wheel, const std::string& why);
   void room();
   void ranks();
   void thin_parts();
@@ -151,8 +154,20 @@ void Checks::tire_options(std::size_t wheel) {
     throw wrong(s_.tire_key(wheel, "contact_tangent"),
                 fmt::format("is true, expected false: {} (terrain.engine '{}') gives no contact tangents",
                             terrain_.name, terrain_.engine));
+  if (const auto* own = dynamic_cast<const tire::HasOwnContact*>(&tire)) require_level_ground(wheel, own->own_contact());
   for (const std::string& key : tire::idle_keys(tire))
     warn(s_.tire_key(wheel, key), fmt::format("is ignored: a {} tire does not use it", tires_[wheel].name));
+}
+
+/// A tire that states its contact needs a terrain that lets it.
+void Checks::require_level_ground(std::size_t wheel, const std::string& why) {
+  const auto* allows = dynamic_cast<const terrain::AllowsStatedContacts*>(s_.terrain.get());
+  const terrain::AllowsStatedContacts::Refusal refusal =
+      allows ? allows->refuses_stated_contacts()
+             : terrain::AllowsStatedContacts::Refusal{"engine", fmt::format("is '{}', expected 'rigid'", terrain_.engine)};
+  if (!refusal.text.empty())
+    throw wrong("terrain." + refusal.key,
+                fmt::format("{}: {} is a {} tire, {}", refusal.text, s_.tire_key(wheel, "file"), tires_[wheel].name, why));
 }
 
 void Checks::room() {

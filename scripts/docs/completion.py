@@ -17,15 +17,15 @@ import help_text
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 # What an argument or the value of an option is, beyond the words that its description lists.
-KINDS = {"SCENARIO": "list:scenarios", "STUDY": "list:studies", "VEHICLE": "list:vehicles", "--tire": "list:tires",
+KINDS = {"SCENARIO": "list:scenarios", "STUDY": "list:studies", "calibrate STUDY": "list:calibrations", "VEHICLE": "list:vehicles", "--tire": "list:tires",
          "--soil": "list:soils", "--vehicle": "list:vehicles", "DIR": "folder", "OTHERS": "folder", "--out": "folder", "--vtk": "folder",
          "KEY": "key", "--set": "setting", "--profile": "file", "--bed": "file", "--save-bed": "file"}
 
 
-def value_of(entry):
-    """What an argument or the value of an option may be: 'words:a b', or one of the kinds above, or 'free'."""
+def value_of(command, entry):
+    """What an argument or the value of an option of a command may be: 'words:a b', or one of the kinds above, or 'free'."""
     words = [word for word in entry.words if word.isascii()]
-    return "words:" + " ".join(words) if words else KINDS.get(entry.names[-1], "free")
+    return "words:" + " ".join(words) if words else KINDS.get(f"{command.name} {entry.names[-1]}", KINDS.get(entry.names[-1], "free"))
 
 
 def all_commands(program):
@@ -44,10 +44,10 @@ def rules(program):
         if command.commands:
             found[f"{command.name} #"] = "words:" + " ".join(below.name.split()[-1] for below in command.commands)
         for entry in command.arguments:
-            found.setdefault(f"{command.name} #", value_of(entry))
+            found.setdefault(f"{command.name} #", value_of(command, entry))
         for entry in command.options:
             for name in entry.names if entry.kind else []:
-                found[f"{command.name} {name}"] = value_of(entry)
+                found[f"{command.name} {name}"] = value_of(command, entry)
     return found
 
 

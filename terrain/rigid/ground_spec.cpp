@@ -9,11 +9,12 @@
 #include "terrain/rigid/rigid_ground.hpp"
 #include "terrain/rigid/roads/iso_8608.hpp"
 #include "terrain/rigid/roads/read_road.hpp"
+#include "terrain/stated_contacts.hpp"
 
 namespace furrow::terrain {
 namespace {
 
-class GroundSpec final : public TerrainSpec {
+class GroundSpec final : public TerrainSpec, public AllowsStatedContacts {
  public:
   explicit GroundSpec(GroundOptions options) : options_(std::move(options)) {}
 
@@ -42,6 +43,13 @@ class GroundSpec final : public TerrainSpec {
       options.profile =
           iso_8608_road(options.road_class.front(), options.road_from, options.road_length, context.seed);
     return make_rigid_ground(options);
+  }
+  Refusal refuses_stated_contacts() const override {
+    const char* expected = "is given, expected level ground";
+    if (!options_.road_class.empty()) return {"road_class", expected};
+    if (!options_.profile_file.empty()) return {"profile_file", expected};
+    if (!options_.profile.empty()) return {"profile", expected};
+    return {};
   }
   std::vector<TerrainFile> files() const override {
     if (options_.profile_file.empty()) return {};

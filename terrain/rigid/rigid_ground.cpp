@@ -11,6 +11,7 @@
 #include "terrain/rigid/ground_friction.hpp"
 #include "terrain/rigid/ground_pressure.hpp"
 #include "terrain/rigid/ground_profile.hpp"
+#include "terrain/stated_contacts.hpp"
 #include "terrain/surface/surface_check.hpp"
 #include "terrain/surface/surface_forces.hpp"
 
@@ -40,6 +41,7 @@ struct GroundSurface {
   std::vector<SurfaceContactForce> contacts;
   std::vector<std::pair<int, int>>
       corner;  // of each vertex: one of its triangles, and which corner it is there
+  StatedContact stated;  // by the tire, of the running interval
   NodalForceSum sum;
   std::int64_t contact_count = 0;
   double pressed = 0.0, sheared = 0.0;  // elastic energy of the layer, J
@@ -64,7 +66,7 @@ void require(const std::string& file, const char* key, double value) {
                       std::to_string(value) + ", expected a finite number of at least 0");
 }
 
-class RigidGround final : public Terrain {
+class RigidGround final : public Terrain, public TakesStatedContacts {
  public:
   explicit RigidGround(const GroundOptions& options)
       : options_(options), profile_(options.profile), plane_(options.profile.empty()) {
@@ -83,6 +85,7 @@ class RigidGround final : public Terrain {
   double floor_height() const override { return 0.0; }
   HeightField height_field() const override;
   void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) override;
+  void state_contacts(std::span<const StatedContact> contacts) override;
   Outcome advance(std::span<const SurfaceState> targets, double duration, int substeps,
                   std::span<NodalForces> forces, std::span<ContactSums> contact) override;
   TerrainState state() const override;
@@ -102,6 +105,7 @@ class RigidGround final : public Terrain {
   void add_surface(const SurfaceMesh& mesh, const ContactMaterial& material, std::vector<Vec3> last);
   void press(GroundSurface& surface, double dt);
   void press_profile(GroundSurface& surface, const GroundLaw& law, double dt);
+  void give_stated(GroundSurface& surface, double dt);
   void rub(GroundSurface& surface, const GroundLaw& law, double dt);
   void measure(GroundSurface& surface) const;
   double measure_profile(const GroundSurface& surface) const;
@@ -146,6 +150,7 @@ void RigidGround::add_surface(const SurfaceMesh& mesh, const ContactMaterial& ma
                         .push = std::vector<Vec3>(mesh.vertex_count, Vec3::Zero()),
                         .contacts = {},
                         .corner = std::vector<std::pair<int, int>>(mesh.vertex_count, {-1, 0}),
+                        .stated = {},
                         .sum = NodalForceSum(mesh.vertex_count, options_.contact_tangents)};
   surface.position = surface.last;
   for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t)
@@ -277,10 +282,40 @@ void RigidGround::rub(GroundSurface& surface, const GroundLaw& law, double dt) {
   }
 }
 
+void RigidGround::state_contacts(std::span<const StatedContact> contacts) {
+  FURROW_ASSERT(contacts.size() == surfaces_.size(), contacts.size(), surfaces_.size());
+  for (std::size_t k = 0; k < surfaces_.size(); ++k) surfaces_[k].stated = contacts[k];
+}
+
+/// The forces that a tire states, in place of the ground's own: what they do along the ground is lost by sliding, what
+/// they do up and down is the damping of the pair.
+void RigidGround::give_stated(GroundSurface& surface, double dt) {
+  const NodalForces& stated = surface.stated.forces;
+  surface.contacts.clear();
+  surface.floor_force = 0.0;
+  for (std::size_t i = 0; i < stated.vertex.size(); ++i) {
+    FURROW_ASSERT(in_range(stated.vertex[i], surface.corner.size()), stated.vertex[i], surface.corner.size());
+    const auto vertex = static_cast<std::size_t>(stated.vertex[i]);
+    const auto [triangle, corner] = surface.corner[vertex];
+    SurfaceContactForce contact;
+    contact.triangle = triangle;
+    contact.weight[corner] = 1.0;
+    contact.point = surface.position[vertex];
+    contact.normal = Vec3(0.0, 0.0, stated.force[i].z());
+    contact.tangential = stated.force[i] - contact.normal;
+    surface.contacts.push_back(contact);
+    surface.floor_force += contact.normal.z();
+    losses_.sliding -= contact.tangential.dot(surface.velocity[vertex]) * dt;
+    losses_.normal_damping -= contact.normal.dot(surface.velocity[vertex]) * dt;
+  }
+  surface.contact_count = static_cast<std::int64_t>(surface.contacts.size());
+}
+
 /// Elastic energy ½ κ ∫ g² dA with the surface where the interval ended, and ½ κ_t Σ A ξ² of its shear.
 void RigidGround::measure(GroundSurface& surface) const {
   std::array<GroundPoint, kMaxGroundPoints> points;
   surface.pressed = surface.sheared = 0.0;
+  if (surface.stated.given) return;
   for (std::size_t v = 0; v < surface.shear.size(); ++v)
     surface.sheared +=
         0.5 * options_.ground_shear_stiffness * surface.area[v] * surface.shear[v].squaredNorm();
@@ -341,7 +376,10 @@ Outcome RigidGround::advance(std::span<const SurfaceState> targets, double durat
       const double share = (s + 0.5) / substeps;
       for (std::size_t v = 0; v < count; ++v)
         surface.position[v] = surface.last[v] + share * (end[v] - surface.last[v]);
-      press(surface, dt);
+      if (surface.stated.given)
+        give_stated(surface, dt);
+      else
+        press(surface, dt);
       surface.sum.add_substep(surface.contacts, {surface.mesh.triangles, surface.position, surface.velocity},
                               dt);
     }
@@ -390,6 +428,7 @@ void RigidGround::save(Archive& archive) const {
     archive.put("area", surface.area);
     archive.put("floor_force", surface.floor_force);
     archive.put("contacts", surface.contact_count);
+    if (surface.stated.given) archive.put("stated", std::int64_t{1});
   }
 }
 
@@ -408,6 +447,7 @@ void RigidGround::restore(const Archive& archive) {
     add_surface(mesh, material, std::move(last));
     restore_value(archive, "shear", surfaces_.back().shear, mesh.vertex_count);
     surfaces_.back().area = archive.get<double>("area");
+    surfaces_.back().stated.given = archive.has("stated");
     measure(surfaces_.back());
     surfaces_.back().floor_force = archive.get_double("floor_force");
     surfaces_.back().contact_count = archive.get_int("contacts");

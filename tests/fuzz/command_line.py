@@ -31,7 +31,7 @@ SMALL = {
     "terrain": {"radius": 0.03, "cohesion": 80e3, "layers": 2, "length": 1.4, "width": 0.4},
     "run": {"step": 1e-4, "end": 0.02, "average_from": 0},
 }
-COMMANDS = ["run", "resume", "validate", "ranks", "explain", "bed", "soil", "press", "modes", "kc", "sweep", "report", "events", "list", "new", "bench",
+COMMANDS = ["run", "resume", "validate", "ranks", "explain", "bed", "soil", "press", "modes", "kc", "sweep", "calibrate", "report", "events", "list", "new", "bench",
             "bench grains", "bench tire", "help", "rnu", "", "--", "-", "RUN", "validate validate"]
 # Those that compute get rarely what they need to begin.
 WEIGHTS = [4, 4, 10, 4, 6, 1, 1, 1, 2, 2, 3, 4, 2, 1, 3, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1]

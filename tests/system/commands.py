@@ -6,8 +6,10 @@ import unittest
 
 from program import ROOT, SMALL, SystemTest, changed, furrow, main, write_scenario
 
-STUDIES = ("study_slip.json", "study_slip_angle.json", "study_camber.json", "study_hard_slip.json", "multipass.json")  # for `furrow sweep`
-SHIPPED = sorted(path.name for path in (ROOT / "rigs").glob("*.json") if path.name not in ("scenario.schema.json", *STUDIES))
+STUDIES = ("study_slip.json", "study_slip_angle.json", "study_camber.json", "study_hard_slip.json", "study_handling.json", "multipass.json")  # for `furrow sweep`
+CALIBRATIONS = sorted(path.name for path in (ROOT / "rigs").glob("calibrate_*.json"))  # for `furrow calibrate`
+SHIPPED = sorted(path.name for path in (ROOT / "rigs").glob("*.json")
+                 if path.name not in ("scenario.schema.json", *STUDIES, *CALIBRATIONS))
 
 
 class Commands(SystemTest):
@@ -68,6 +70,7 @@ class Commands(SystemTest):
         listed = json.loads(self.output("list", "--json"))
         self.assertEqual(sorted(listed["scenarios"]["files"]), SHIPPED)
         self.assertEqual(sorted(listed["studies"]["files"]), sorted(STUDIES))
+        self.assertEqual(sorted(listed["calibrations"]["files"]), CALIBRATIONS)
         for kind, folder in (("tires", "tire/data"), ("soils", "terrain/data"), ("vehicles", "vehicle/data")):
             there = {path.name for path in (ROOT / folder).glob("*.json") if not path.name.endswith(".schema.json")}
             self.assertEqual(set(listed[kind]["files"]), there)

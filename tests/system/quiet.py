@@ -6,7 +6,7 @@ import json
 from program import ROOT, SystemTest, changed, furrow, main, write_scenario
 
 PRESSED = changed(rig={"slip": 0.1, "ramp": 0.1}, tire={"file": "hmmwv_lumped.json", "rigid": False, "elements_circumference": 30, "elements_width": 6})
-WITH_QUIET = ("run", "resume", "sweep", "bed", "soil", "press", "modes", "kc", "report", "validate", "ranks", "new")
+WITH_QUIET = ("run", "resume", "sweep", "calibrate", "bed", "soil", "press", "modes", "kc", "report", "validate", "ranks", "new")
 TIMES = ("wall_s", "settle_wall_s", "from_cache", "ms", "_per_s", "_ms")  # keys whose values differ from time to time
 
 

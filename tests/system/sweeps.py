@@ -135,7 +135,7 @@ class Sweep(SystemTest):
         self.assertIn("is a study, expected a scenario", done.stderr)
 
     def test_shipped_studies_are_valid(self):
-        for name in ("study_slip.json", "study_slip_angle.json", "study_camber.json", "study_hard_slip.json", "multipass.json"):
+        for name in ("study_slip.json", "study_slip_angle.json", "study_camber.json", "study_hard_slip.json", "study_handling.json", "multipass.json"):
             done = furrow("sweep", ROOT / "rigs" / name, "--out", "/proc/furrow", cwd=self.folder)
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn("key '--out': cannot be made", done.stderr)

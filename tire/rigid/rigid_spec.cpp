@@ -1,11 +1,12 @@
 #include "tire/rigid/rigid_spec.hpp"
 
+#include "tire/capabilities.hpp"
 #include "tire/rigid/rigid_tire.hpp"
 
 namespace furrow::tire {
 namespace {
 
-class RigidSpec final : public TireSpec {
+class RigidSpec final : public TireSpec, public NamesFiles {
  public:
   explicit RigidSpec(std::unique_ptr<TireSpec> flexible)
       : TireSpec(flexible->options()), flexible_(std::move(flexible)) {}
@@ -24,6 +25,7 @@ class RigidSpec final : public TireSpec {
     return std::make_unique<RigidTire>(flexible_->shape(), context.gravity);
   }
   TireShape shape() const override { return flexible_->shape(); }
+  std::vector<std::filesystem::path> files() const override { return files_of(*flexible_); }
   std::vector<std::pair<std::string, std::string>> unlikely_values() const override {
     return flexible_->unlikely_values();
   }

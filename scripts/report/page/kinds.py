@@ -1,4 +1,5 @@
 """Which page each kind of folder gets."""
+from plot.calibrate import Calibration
 from plot.kinematics import Kinematics
 from plot.modes import Modes
 from plot.press import Press
@@ -6,7 +7,7 @@ from plot.run_data import Run
 from plot.soil import Soil
 from plot.sweep import Sweep
 
-from . import compare, run_page, study_page, test_pages
+from . import calibration_page, compare, run_page, study_page, test_pages
 
 
 def has_frames(run):
@@ -19,7 +20,7 @@ def fill(page, arrays, runs, sections):
     if len(runs) > 1:
         compare.fill(page, arrays, runs, sections)
         return
-    for kind, fill_it in ((Press, test_pages.press), (Modes, test_pages.modes), (Soil, test_pages.soil), (Kinematics, test_pages.kinematics),
+    for kind, fill_it in ((Calibration, calibration_page.fill), (Press, test_pages.press), (Modes, test_pages.modes), (Soil, test_pages.soil), (Kinematics, test_pages.kinematics),
                           (Sweep, study_page.fill), (Run, run_page.fill)):
         if isinstance(run, kind):  # presses and modes are read like a soil test
             fill_it(page, arrays, run, sections)

@@ -1,0 +1,91 @@
+// `furrow calibrate`: a model fitted to data.
+#include <cstdio>
+#include <iostream>
+
+#include <fmt/format.h>
+
+#include "nodes/commands/commands.hpp"
+#include "nodes/launch/messages.hpp"
+#include "nodes/launch/progress.hpp"
+#include "nodes/launch/run_directory.hpp"
+#include "nodes/launch/signals.hpp"
+#include "nodes/study/calibrate.hpp"
+#include "nodes/study/calibrate_files.hpp"
+#include "nodes/study/calibrate_evaluations.hpp"
+#include "protocol/files/digits.hpp"
+
+namespace furrow::commands {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string percent(const Json& share) { return share.is_number() ? digits(100.0 * share.get<double>()) + " %" : "-"; }
+
+std::string target_line(const Json& target, const char* how) {
+  if (target.contains("problem")) return fmt::format("furrow: {} {}: no answer\n", how, target["name"].get<std::string>());
+  const Json& r = target["r_squared"];
+  return fmt::format("furrow: {} {} ({}): R² {}, largest error {} of the peak\n", how, target["name"].get<std::string>(),
+                     target["what"].get<std::string>(), r.is_number() ? fmt::format("{:.4f}", r.get<double>()) : "-",
+                     percent(target["largest_error_of_peak"]));
+}
+
+/// The result for people.
+std::string result_text(const Json& summary) {
+  std::string text;
+  for (const auto& [name, p] : summary["parameters"].items()) {
+    const double value = p["value"].get<double>();
+    const Json& error = p["standard_error"];
+    text += fmt::format("furrow: {} {} {}{}\n", name,
+                        error.is_number() ? with_error(value, error.get<double>()) : digits(value),
+                        p["unit"].get<std::string>(),
+                        p["at_bound"].is_string() ? fmt::format(", its {} bound", p["at_bound"].get<std::string>())
+                        : error.is_number()       ? ""
+                                                  : ", not determined");
+  }
+  for (const Json& target : summary["targets"]) text += target_line(target, "fitted");
+  for (const Json& target : summary["held_out_targets"]) text += target_line(target, "predicted");
+  return text;
+}
+
+}  // namespace
+
+ExitCode calibrate_command(const CalibrateArguments& arguments) {
+  const study::Calibration calibration = study::load_calibration(arguments.study);
+  const std::filesystem::path folder =
+      arguments.out.empty() ? std::filesystem::path("results") / calibration.name : arguments.out;
+  launch::RunDirectory directory = launch::RunDirectory::of_calibration(folder, arguments.overwrite);
+  launch::remove_unfinished(folder);
+  launch::catch_stop_signals();
+  std::vector<std::string> files{study::kCalibration, study::kEvaluations, "fit.csv", calibration.result};
+  if (const auto* leaves = dynamic_cast<const study::LeavesFiles*>(calibration.model.get()))
+    for (const study::ResultFile& further : leaves->further_files(calibration.model->start_values(), ""))
+      files.push_back(further.name);
+  directory.add(files);
+  launch::say(fmt::format("furrow: calibration {}, results in {}\n", calibration.name, folder.string()));
+  try {
+    launch::ProgressDisplay display;
+    const study::CalibrationResults results =
+        study::calibrate(calibration, folder, [&](const std::string& what, double share) {
+          if (launch::stop_signalled()) throw Error(ExitCode::stopped, "stopped by a signal");
+          if (!directory.lock().stands())
+            throw io_error(folder.string(),
+                           "was moved, removed or emptied while the calibration was under way; it ends here");
+          display.show({.phase = what, .share = share});
+        });
+    display.clear();
+    study::write_calibration(calibration, results, folder);
+    const Json summary = study::calibration_json(calibration, results);
+    launch::say(result_text(summary));
+    for (const Json& warning : summary["warnings"]) print_warning(warning.get<std::string>());
+  } catch (const Error& error) {
+    if (error.code() != ExitCode::stopped) throw;
+    std::fprintf(stderr, "furrow: stopped by a signal; run the same command to continue\n");
+    std::cout << folder.string() << "\n";
+    return ExitCode::stopped;
+  }
+  std::cout << folder.string() << std::endl;
+  if (arguments.plots) make_report_or_warn(folder);
+  return ExitCode::done;
+}
+
+}  // namespace furrow::commands

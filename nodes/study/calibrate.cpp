@@ -1,0 +1,63 @@
+#include "nodes/study/calibrate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "nodes/study/calibrate_objective.hpp"
+#include "protocol/core/error.hpp"
+#include "protocol/files/digits.hpp"
+
+namespace furrow::study {
+
+CalibrationResults calibrate(const Calibration& calibration, const std::filesystem::path& folder,
+                             const ProgressCall& progress) {
+  std::vector<std::string> names;
+  for (const Parameter& p : calibration.parameters) names.push_back(p.name);
+  EvaluationTable table(folder, calibration.digest, names);
+  double share = 0.0, best = std::numeric_limits<double>::infinity();
+  const auto tell = [&](const std::string&, double) {
+    if (!progress) return;
+    progress(std::isfinite(best) ? fmt::format("calibrating, sum of squares {}", digits(best)) : "calibrating", share);
+  };
+  Objective objective(calibration, table, tell);
+  const OptimizerOptions options{calibration.starts, calibration.seed, [&](double done, double squares) {
+                                   share = done, best = squares;
+                                   tell("", 0.0);
+                                 }};
+  CalibrationResults results;
+  results.optimum = calibration.kind->optimize(objective, options);
+  const std::vector<double>& place = results.optimum.place;
+  results.confidence = confidence(calibration.parameters, place, results.optimum.residuals, results.optimum.jacobian);
+  results.values = objective.values(place);
+  results.fitted = objective.predict(place);
+  if (!calibration.model->targets(TargetSet::held_out).empty())
+    results.held_out = objective.predict(place, TargetSet::held_out);
+  results.asked = objective.asked(), results.computed = objective.computed();
+  return results;
+}
+
+std::vector<std::string> calibration_warnings(const Calibration& calibration, const CalibrationResults& results) {
+  std::vector<std::string> warnings;
+  const Confidence& c = results.confidence;
+  for (std::size_t k = 0; k < calibration.parameters.size(); ++k) {
+    const Parameter& p = calibration.parameters[k];
+    if (c.estimates[k].at == Bound::none) continue;
+    warnings.push_back(fmt::format("{} ends at its {} bound of {} {}: its error is not known, and the data ask for more or do "
+                                   "not determine it",
+                                   p.name, c.estimates[k].at == Bound::lower ? "lower" : "upper",
+                                   digits(c.estimates[k].value), p.unit));
+  }
+  for (const Undetermined& u : c.undetermined)
+    warnings.push_back(fmt::format(
+        "the data do not determine {} (each on its scale from lower to upper): its 95 % interval is ± {}",
+        combination_text(calibration.parameters, u.direction),
+        std::isfinite(u.half_interval) ? fmt::format("{:.2g} of the scale", u.half_interval) : "without limit"));
+  if (const std::string& problem = results.held_out.problem; !problem.empty())
+    warnings.push_back("the fitted model has no answer to the held-out targets: " + problem);
+  return warnings;
+}
+
+}  // namespace furrow::study

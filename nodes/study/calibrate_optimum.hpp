@@ -1,0 +1,37 @@
+// What an optimizer of calibrations is told and what it finds. A kind names its optimizer (calibrate_kind.hpp).
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace furrow::study {
+
+struct OptimizerOptions {
+  int starts = 1;          // the first at the parameters' own start, the others anywhere within the bounds
+  std::uint64_t seed = 1;  // of the others
+  /// Called now and then with what is done, 0…1, and the smallest sum of squares so far.
+  std::function<void(double share, double best)> progress = {};
+};
+
+/// How one start went. Places are on the scales from 0 to 1.
+struct StartResult {
+  std::vector<double> begin, end;
+  std::optional<double> squares;  // Σ r² at the end; none: the model had no answer where it began
+  int iterations = 0;
+  std::string ended;  // "converged", "out of iterations", or why not
+};
+
+struct Optimum {
+  std::vector<StartResult> starts;
+  std::vector<double> place;   // of the least
+  Eigen::VectorXd residuals;   // there
+  Eigen::MatrixXd jacobian;    // ∂r/∂share there; of a surrogate where the model is noisy
+  double squares = 0.0;        // Σ r² there
+};
+
+}  // namespace furrow::study

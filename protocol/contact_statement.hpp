@@ -1,0 +1,21 @@
+// The message with which a tire that computes its contact by a law of its own says what the terrain shall give it.
+#pragma once
+
+#include "protocol/core/stated_contact.hpp"
+#include "protocol/messages.hpp"
+
+namespace furrow {
+
+/// tire k → terrain at each t_n, right after its SurfaceMotion and of the same kind, from tires that state their contact.
+struct ContactStatement {
+  static constexpr MessageKind kKind = MessageKind::surface_motion;
+  StepHeader header;
+  StatedContact contact;
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<ContactStatement> auto& s) {
+  visit(Field{"header", ""}, s.header);
+  visit(Field{"contact", ""}, s.contact);
+}
+
+}  // namespace furrow

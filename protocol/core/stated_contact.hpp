@@ -1,0 +1,20 @@
+// Contact that a tire computes by a law of its own, such as a handling tire on hard ground: the terrain gives the forces
+// that the tire asks for, and counts them as it counts its own.
+#pragma once
+
+#include "protocol/core/fields.hpp"
+#include "protocol/core/surface.hpp"
+
+namespace furrow {
+
+struct StatedContact {
+  bool given = false;  // the tire states its contact: the terrain adds no force of its own, also where `forces` is empty
+  NodalForces forces;  // on the tire, for the terrain's next interval; without tangents
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<StatedContact> auto& s) {
+  visit(Field{"given", ""}, s.given);
+  visit(Field{"forces", ""}, s.forces);
+}
+
+}  // namespace furrow

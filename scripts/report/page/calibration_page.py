@@ -1,0 +1,74 @@
+"""The page of a model fitted to data."""
+import numpy as np
+
+from plot.calibrate import quantity
+
+from . import blocks
+from .names import is_number
+
+MOST_LINES = 40  # of one chart
+
+
+def text_of(value, form=".4g"):
+    return f"{value:{form}}" if is_number(value) else "–"
+
+
+def answer(run):
+    rows = []
+    for name, p in (run.values.get("parameters") or {}).items():
+        interval = p.get("interval_95")
+        rows.append([name, text_of(p.get("value")), text_of(p.get("standard_error"), ".2g"),
+                     f"{interval[0]:.4g} … {interval[1]:.4g}" if isinstance(interval, list) and all(map(is_number, interval)) else "–",
+                     p.get("unit", ""), f"at its {p['at_bound']} bound" if p.get("at_bound") else ""])
+    made = [blocks.text(str(warning), "warn") for warning in run.values.get("warnings") or []]
+    made.append(blocks.table(["parameter", "value", "standard error", "95 % interval", "unit", ""], rows))
+    return {"id": "answer", "title": "Parameters", "blocks": made}
+
+
+def targets(run):
+    rows = []
+    for key, how in (("targets", "fitted"), ("held_out_targets", "predicted")):
+        for told in run.values.get(key) or []:
+            share = told.get("largest_error_of_peak")
+            rows.append([told.get("name", ""), told.get("what", ""), how, text_of(told.get("r_squared"), ".5f"),
+                         text_of(told.get("largest_error")), text_of(100.0 * share if is_number(share) else None, ".2g"),
+                         str(told.get("problem", ""))])
+    return {"id": "targets", "title": "Targets",
+            "blocks": [blocks.table(["target", "what", "", "R²", "largest error", "% of the peak", ""], rows)]}
+
+
+def curves(run, arrays):
+    groups = {}
+    for target in run.targets():
+        groups.setdefault((target.get("x"), target.get("y")), []).append(target)
+    items = []
+    for (x, y), members in groups.items():
+        (x_words, x_unit, x_factor), (words, unit, factor) = quantity(x), quantity(y)
+        lines = []
+        for target in members:
+            place = arrays.add(x_factor * target["x"], exact=True)
+            lines.append({"label": f"{target['name']}, data", "x": place, "y": arrays.add(factor * target["data"]), "style": "points"})
+            if np.isfinite(target["model"]).all():
+                lines.append({"label": f"{target['name']}, {'predicted' if target['held_out'] else 'fitted'}", "x": place,
+                              "y": arrays.add(factor * target["model"]), "style": "line"})
+        items.append({**blocks.chart(words.capitalize(), x_words, x_unit, unit, lines[:MOST_LINES]), "wide": True})
+    return {"id": "series", "title": "Data and model", "blocks": [blocks.charts(items)]}
+
+
+def starts(run):
+    rows = []
+    for k, start in enumerate(run.values.get("starts") or []):
+        end = ", ".join(f"{name} {value:.4g}" for name, value in (start.get("end") or {}).items())
+        rows.append([str(k + 1), text_of(start.get("sum_of_squares"), ".6g"), str(start.get("iterations", "")), str(start.get("ended", "")), end])
+    singular = (run.values.get("identifiability") or {}).get("singular_values") or []
+    return {"id": "starts", "title": "Starts",
+            "blocks": [blocks.table(["start", "sum of squares", "iterations", "ended", "at"], rows),
+                       blocks.text("Singular values of the Jacobian over the deviation of the residuals, parameters on their scales: "
+                                   + ", ".join(text_of(value, ".3g") for value in singular))]}
+
+
+def fill(page, arrays, run, sections):
+    page["title"] = f"{run.values.get('study', '')} · calibration of {run.values.get('start', '')}"
+    page["badges"] = [{"text": "with warnings", "kind": "warn"}] if run.values.get("warnings") else []
+    sections(page, [("parameters", lambda: answer(run)), ("targets", lambda: targets(run)),
+                    ("curves", lambda: curves(run, arrays)), ("starts", lambda: starts(run))])

@@ -1,0 +1,147 @@
+#!/usr/bin/python3
+"""`furrow calibrate`: what it leaves, how it continues, and what it refuses."""
+import csv
+import json
+import signal
+import time
+
+from program import ROOT, SystemTest, furrow, main, start, wait_for
+
+FILES = {"calibration.json", "evaluations.csv", "fit.csv", "hmmwv_ring_fitted.json"}
+
+
+class Calibrate(SystemTest):
+    """Curves of a ring whose first sidewall coefficient is 1e6 N/m, made by `furrow press`."""
+
+    def press(self, tire, segments, name, *words):
+        done = furrow("press", ROOT / "rigs" / "cleat_press.json", "--set", f"tire.file={tire}", "--set", f"tire.elements_circumference={segments}",
+                      "--set", "tire.elements_width=null", "--points", "8", "--out", name, "--quiet", *words, cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def curve(self, name, *words):
+        ring = json.loads((ROOT / "tire" / "data" / "hmmwv_ring.json").read_text())
+        ring["sidewall"][0] = 1e6
+        (self.folder / "hard_ring.json").write_text(json.dumps(ring))
+        if not (self.folder / name).exists():
+            self.press(self.folder / "hard_ring.json", 120, name, *words)
+        return f"{name}/press.csv"
+
+    def study(self, name="study.json", **more):
+        study = {"calibrate": "ring", "start": "hmmwv_ring.json",
+                 "parameters": {"sidewall_1": {"lower": 1e5, "upper": 1e7}, "air_share": {"lower": 0.1, "upper": 1}},
+                 "targets": [{"data": self.curve("plate", "--on", "plate"), "name": "plate", "on": "plate"},
+                             {"data": self.curve("cleat", "--on", "cleat", "--cleat-width", "0.051"), "name": "cleat", "on": "cleat",
+                              "cleat_width": 0.051, "weight": 2}],
+                 "held_out": [{"data": "plate/press.csv", "name": "again", "on": "plate"}], "starts": 3, **more}
+        (self.folder / name).write_text(json.dumps(study))
+        return name
+
+    def text(self, folder):
+        return {name: (self.folder / folder / name).read_bytes() for name in FILES}
+
+    def test_the_result_is_a_tire_with_the_errors_of_its_parameters(self):
+        done = furrow("calibrate", self.study(), "--out", "out", cwd=self.folder)
+        self.assertEqual((done.returncode, done.stdout), (0, "out\n"), done.stderr)
+        self.assertRegex(done.stderr, r"furrow: sidewall_1 \d+ ± \d+ N/m\n")
+        self.assertRegex(done.stderr, r"furrow: predicted again \(plate\): R² 1\.0000, largest error [\d.]+ % of the peak\n")
+        out = self.folder / "out"
+        self.assertEqual({path.name for path in out.iterdir()} - {".furrow-run"}, FILES | {"fit.png", "residual.png", "report.html"})
+        result = json.loads((out / "calibration.json").read_text())
+        stiff = result["parameters"]["sidewall_1"]
+        # The segments differ, 120 of the data and 480 of the start file.
+        self.assertAlmostEqual(stiff["value"] / 1e6, 1, delta=0.01)
+        self.assertLess(stiff["interval_95"][0], stiff["value"])
+        self.assertEqual([target["name"] for target in result["targets"]], ["plate", "cleat"])
+        self.assertGreater(result["fitted"]["r_squared"], 0.9999)
+        self.assertEqual(len(result["starts"]), 3)
+        with open(out / "fit.csv", newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), 24)
+        self.assertEqual(rows[0]["set"], "fitted")
+        fitted = json.loads((out / "hmmwv_ring_fitted.json").read_text())
+        self.assertEqual(fitted["sidewall"][0], stiff["value"])
+        self.assertIn("furrow calibrate", fitted["source"])
+        self.press(out / "hmmwv_ring_fitted.json", "null", "again", "--on", "plate")
+        with open(self.folder / "again" / "press.csv", newline="", encoding="utf-8") as file:
+            pressed = [row["force_N"] for row in csv.DictReader(file) if row["unloading"] == "0"][1:]
+        self.assertEqual(pressed, [row["model"] for row in rows if row["target"] == "plate"])
+        done = furrow("report", "out", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_it_continues_to_the_same_bits_after_signals_and_damage(self):
+        study = self.study()
+        self.assertEqual(furrow("calibrate", study, "--out", "once", "--no-plots", cwd=self.folder).returncode, 0)
+        expected = self.text("once")
+        table = expected["evaluations.csv"]
+        stops = 0
+        for wait in (0.0, 0.05, 0.2):
+            process = start("calibrate", study, "--out", "often", "--no-plots", cwd=self.folder)
+            wait_for(lambda: (self.folder / "often" / "evaluations.csv").exists() or process.poll() is not None, 60, "the table")
+            time.sleep(wait)
+            process.send_signal(signal.SIGTERM)
+            out, err = process.communicate(timeout=60)
+            if process.returncode == 0:
+                continue
+            self.assertEqual((process.returncode, out), (75, "often\n"), err)
+            self.assertIn("run the same command to continue", err)
+            stops += 1
+        self.assertGreater(stops, 0)
+        done = furrow("calibrate", study, "--out", "often", "--no-plots", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.text("often"), expected)
+        # Cut in the middle of a line, as a full disk or kill −9 leaves it.
+        (self.folder / "often" / "evaluations.csv").write_bytes(table[: len(table) // 2])
+        (self.folder / "often" / "calibration.json").unlink()
+        self.assertEqual(furrow("calibrate", study, "--out", "often", "--no-plots", cwd=self.folder).returncode, 0)
+        self.assertEqual(self.text("often"), expected)
+
+    def test_another_calibration_needs_another_folder(self):
+        self.assertEqual(furrow("calibrate", self.study(), "--out", "out", "--no-plots", cwd=self.folder).returncode, 0)
+        before = self.text("out")
+        other = self.study("other.json", parameters={"bending": {}})
+        done = furrow("calibrate", other, "--out", "out", cwd=self.folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("holds the evaluations of another calibration", done.stderr)
+        self.assertEqual(self.text("out"), before)
+        done = furrow("calibrate", other, "--out", "out", "--overwrite", "--no-plots", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotEqual(self.text("out"), before)
+        (self.folder / "mine").mkdir()
+        (self.folder / "mine" / "notes.txt").write_text("mine")
+        for words in ((), ("--overwrite",)):
+            done = furrow("calibrate", other, "--out", "mine", *words, cwd=self.folder)
+            self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertEqual([path.name for path in (self.folder / "mine").iterdir()], ["notes.txt"])
+
+    def test_wrong_studies_leave_nothing(self):
+        self.study()
+        before = set(self.names())
+        for change, expected in (({"calibrate": "rings"}, "'rings' is unknown, expected 'ring'?"), ({"start": "no.json"}, "key 'start'"),
+                                 ({"starts": 0}, "key 'starts'")):
+            document = {**json.loads((self.folder / "study.json").read_text()), **change}
+            (self.folder / "wrong.json").write_text(json.dumps(document))
+            done = furrow("calibrate", "wrong.json", cwd=self.folder)
+            self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+            self.assertIn(expected, done.stderr)
+            self.assertEqual(set(self.names()), before | {"wrong.json"}, expected)
+        done = furrow("calibrate", ROOT / "rigs" / "study_slip.json", cwd=self.folder)
+        self.assertIn("a study of runs is for 'furrow sweep'", done.stderr)
+        done = furrow("calibrate", ROOT / "rigs" / "first_look.json", cwd=self.folder)
+        self.assertIn("key 'calibrate': is missing, expected a calibration study", done.stderr)
+        # A tire that no pressure of the study can hold.
+        document = {**json.loads((self.folder / "study.json").read_text()), "starts": 2}
+        document["targets"][0]["pressure"] = 5e7
+        (self.folder / "stiff.json").write_text(json.dumps(document))
+        done = furrow("calibrate", "stiff.json", "--out", "stiff", cwd=self.folder)
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn("the model has no answer at any of the 2 starts", done.stderr)
+
+    def test_shipped_calibrations_are_valid(self):
+        for path in sorted((ROOT / "rigs").glob("calibrate_*.json")):
+            done = furrow("calibrate", path, "--out", "/proc/furrow", cwd=self.folder)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn("key '--out': cannot be made", done.stderr)
+
+
+if __name__ == "__main__":
+    main()

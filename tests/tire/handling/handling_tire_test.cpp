@@ -1,0 +1,351 @@
+// The handling tire against its formula, Newton's equations and closed forms of its contact.
+#include "tire/handling/handling_tire.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <tuple>
+
+#include <nlohmann/json.hpp>
+
+#include "protocol/core/error.hpp"
+#include "protocol/core/mean_turn.hpp"
+#include "tests/tire/handling/example_tire.hpp"
+#include "tests/tire/tire_file_checks.hpp"
+#include "tire/cylinder.hpp"
+#include "tire/handling/handling_spec.hpp"
+#include "tire/handling/tir_file.hpp"
+#include "tire/outward.hpp"
+
+namespace furrow::tire::handling {
+namespace {
+
+constexpr double kStep = 1e-4;  // s
+
+HandlingTire make(const MagicFormula& formula = example_tire()) {
+  TireShape shape = cylinder(96, formula.dimension.unloaded_radius, formula.dimension.width, 7);
+  shape.mass = {10.0, Vec3(0.5, 0.9, 0.5).asDiagonal()};
+  return HandlingTire(formula, shape, standard_gravity(), "a.tir");
+}
+
+/// A rim that rolls along x, turned by `toe` about z and leaning by `camber`, its wheel's lowest point `depth` deep.
+RimState rolling(double depth, double speed, double spin, double toe, double camber) {
+  RimState rim;
+  rim.orientation = Quat(Eigen::AngleAxisd(toe, Vec3::UnitZ())) * Quat(Eigen::AngleAxisd(camber, Vec3::UnitX()));
+  rim.position = Vec3(0.0, 0.0, (0.35 - depth) * std::cos(camber));
+  rim.velocity = Vec3(speed, 0.0, 0.0);
+  rim.angular_velocity = rim.orientation * Vec3(0.0, spin, 0.0);
+  return rim;
+}
+
+/// A rim whose motion goes on, its tire and the ground that gives it what it states.
+class Rolling {
+ public:
+  Rolling(HandlingTire& tire, const RimState& start) : tire_(tire), rim_(start), trajectory_(start) {
+    tire.place(start);
+    tire.stated_contact(stated_);
+    tire.surface(before_);
+  }
+  void step() {
+    const NodalForces given = ground_;
+    const Vec3 from = rim_.position;
+    const Quat turned = rim_.orientation;
+    trajectory_.extend(rim_, kStep);
+    ASSERT_TRUE(tire_.advance(trajectory_, given, 1).ok);
+    ground_ = stated_.forces;  // over the same interval the ground takes what was stated at its begin
+    tire_.stated_contact(stated_);
+    SurfaceState after;
+    tire_.surface(after);
+    for (std::size_t i = 0; i < given.vertex.size(); ++i)
+      terrain_work += given.force[i].dot(after.position[given.vertex[i]] - before_.position[given.vertex[i]]);
+    before_ = after;
+    const Wrench on_rim = tire_.spindle_wrench();
+    rim_ = trajectory_.end();
+    rim_work -= on_rim.force.dot(rim_.position - from) + on_rim.moment.dot(mean_turn(turned, rim_.orientation));
+  }
+  void change(const RimState& rim) { rim_ = rim; }
+  const RimState& rim() const { return rim_; }
+  const NodalForces& acted() const { return ground_; }
+  double terrain_work = 0.0, rim_work = 0.0;  // J
+
+ private:
+  HandlingTire& tire_;
+  RimState rim_;
+  RimTrajectory trajectory_;
+  StatedContact stated_;
+  NodalForces ground_;
+  SurfaceState before_;
+};
+
+TEST(HandlingTire, steady_rolling_gives_the_formula_at_the_rims_slips) {
+  for (const auto& [slip, toe, camber] :
+       {std::tuple{0.0, 0.0, 0.0}, {0.05, 0.0, 0.0}, {-0.1, 0.05, 0.0}, {0.02, -0.1, 0.08}, {0.0, 0.02, -0.1}}) {
+    const MagicFormula t = example_tire();
+    HandlingTire tire = make();
+    const double depth = 0.018, speed = 10.0;
+    const double spin = (1.0 + slip) * speed * std::cos(toe) / rolling_radius(t, depth);
+    Rolling run(tire, rolling(depth, speed, spin, toe, camber));
+    for (int n = 0; n < 4000; ++n) run.step();  // 4 m, ten relaxation lengths
+    const WheelAxes axes = wheel_axes(run.rim(), Vec3::UnitX(), 0.0);
+    const HandlingForces f =
+        evaluate(t, {.load = 2.2e5 * depth / std::cos(camber), .slip = slip, .slip_angle = -toe, .camber = axes.camber_angle,
+                     .speed = speed * std::cos(toe)});
+    const Wrench spindle = tire.spindle_wrench();
+    const Wrench found = axes.wrench(spindle.force - Vec3(0, 0, -9.81 * 10.0), spindle.moment, run.rim().position);
+    const double scale = f.fz;
+    EXPECT_NEAR(found.force.x(), f.fx, 2e-4 * scale);
+    EXPECT_NEAR(found.force.y(), f.fy, 2e-4 * scale);
+    EXPECT_NEAR(found.force.z(), f.fz, 1e-9 * scale);
+    EXPECT_NEAR(found.moment.x(), f.mx, 1e-3 * scale * 0.35);
+    EXPECT_NEAR(found.moment.y(), f.my, 1e-3 * scale * 0.35);
+    EXPECT_NEAR(found.moment.z(), f.mz, 1e-3 * scale * 0.35);
+  }
+}
+
+TEST(HandlingTire, stated_forces_have_the_wrench_whatever_the_wheel_does) {
+  HandlingTire tire = make();
+  Rolling run(tire, rolling(0.01, 5.0, 16.0, 0.07, 0.15));
+  for (int n = 0; n < 500; ++n) {
+    run.step();
+    StatedContact stated;
+    tire.stated_contact(stated);
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& force : stated.forces.force) sum += force;
+    EXPECT_TRUE(stated.given);
+    EXPECT_TRUE(std::is_sorted(stated.forces.vertex.begin(), stated.forces.vertex.end()));
+    EXPECT_NEAR(sum.z(), 2.2e5 * 0.01 / std::cos(0.15), 1e-6);
+  }
+}
+
+/// Down and up on the spring and damper of the file, at rest: K ρ̇² is lost, the rest comes back.
+TEST(HandlingTire, bounce_loses_what_the_damper_takes) {
+  MagicFormula t = example_tire();
+  HandlingTire tire = make(t);
+  RimState rim;
+  const double amplitude = 0.01, frequency = 20.0, mean = 0.35 - 0.015;
+  const auto at = [&](double time) {
+    rim.position.z() = mean + amplitude * std::cos(frequency * time);
+    rim.velocity.z() = -amplitude * frequency * std::sin(frequency * time);
+    return rim;
+  };
+  Rolling run(tire, at(0.0));
+  const int steps = static_cast<int>(std::lround(2.0 * std::numbers::pi / frequency / kStep));
+  for (int n = 0; n < steps; ++n) {
+    run.step();
+    run.change(at((n + 1) * kStep));
+  }
+  const double expected = 0.5 * 150.0 * amplitude * amplitude * frequency * frequency * steps * kStep;
+  EXPECT_NEAR(tire.diagnostics().dissipation, expected, 0.02 * expected);
+  EXPECT_NEAR(tire.diagnostics().elastic_energy, 0.5 * 2.2e5 * 0.005 * 0.005, 0.01);
+}
+
+/// rim work + terrain work = Δ(kinetic + elastic + potential) + dissipation + numerical, up to the forces' lateness.
+TEST(HandlingTire, accounts_close_while_it_rolls_and_slides) {
+  for (const double slip : {0.0, 0.1, -0.3}) {
+    HandlingTire tire = make();
+    const double speed = 8.0, depth = 0.016;
+    Rolling run(tire, rolling(depth, speed, (1.0 + slip) * speed / rolling_radius(example_tire(), depth), 0.05, 0.03));
+    for (int n = 0; n < 1000; ++n) run.step();
+    const TireDiagnostics before = tire.diagnostics();
+    const double rim = run.rim_work, ground = run.terrain_work;
+    for (int n = 0; n < 4000; ++n) run.step();
+    const TireDiagnostics after = tire.diagnostics();
+    const double left = run.rim_work - rim + run.terrain_work - ground - (after.stored() - before.stored()) -
+                        (after.losses() - before.losses());
+    const double turned_over = std::abs(run.terrain_work - ground) + after.dissipation - before.dissipation;
+    EXPECT_LT(std::abs(left), 2e-3 * std::max(turned_over, 50.0)) << slip;
+    EXPECT_LE(run.terrain_work, 0.0) << "the ground takes";
+  }
+}
+
+/// At rest the patch is a spring: F = K/σ × the way of the rim; it does not creep.
+TEST(HandlingTire, standing_wheel_holds_its_place) {
+  const MagicFormula t = symmetric_tire();
+  HandlingTire tire = make(t);
+  const double depth = 0.018, load = 2.2e5 * depth;
+  RimState rim = rolling(depth, 0.0, 0.0, 0.0, 0.0);
+  Rolling run(tire, rim);
+  const double speed = 1e-3, way = 2e-4;  // m/s, m
+  rim.velocity.y() = speed;
+  run.change(rim);
+  const int steps = static_cast<int>(std::lround(way / speed / kStep));
+  for (int n = 0; n < steps; ++n) {
+    run.step();
+    rim.position.y() += kStep * speed;
+    run.change(rim);
+  }
+  rim.velocity.y() = 0.0;
+  run.change(rim);
+  for (int n = 0; n < 20; ++n) run.step();
+  const HandlingForces still = evaluate(t, {.load = load});
+  const double spring = -still.cornering_stiffness / relaxation_lengths(t, load, 0.0).lateral;
+  const double held = tire.spindle_wrench().force.y();
+  EXPECT_NEAR(held, -spring * way, 1e-2 * spring * way);
+  for (int n = 0; n < 20000; ++n) run.step();
+  EXPECT_NEAR(tire.spindle_wrench().force.y(), held, 1e-9 * std::abs(held)) << "2 s later";
+}
+
+/// A spinning wheel does not wind its patch up: turned back, it holds at once.
+TEST(HandlingTire, spinning_on_the_spot_stays_within_the_range_of_slip) {
+  HandlingTire tire = make();
+  Rolling run(tire, rolling(0.018, 0.0, 30.0, 0.0, 0.0));
+  for (int n = 0; n < 3000; ++n) run.step();
+  const double sigma = relaxation_lengths(example_tire(), 2.2e5 * 0.018, 0.0).longitudinal;
+  EXPECT_NEAR(tire.figures().of("patch_along_m"), 1.2 * sigma, 1e-12);
+  EXPECT_NEAR(tire.spindle_wrench().force.x(), evaluate(example_tire(), {.load = 2.2e5 * 0.018, .slip = 1.2}).fx, 1.0);
+}
+
+/// F = F_end (1 − exp(−s/σ)) after a step of the slip angle, for small angles.
+TEST(HandlingTire, side_force_builds_up_over_the_relaxation_length) {
+  const MagicFormula t = symmetric_tire();
+  HandlingTire tire = make(t);
+  const double depth = 0.018, speed = 5.0, toe = 2e-3;
+  Rolling run(tire, rolling(depth, speed, speed / rolling_radius(t, depth), 0.0, 0.0));
+  for (int n = 0; n < 1000; ++n) run.step();
+  RimState turned = rolling(depth, speed, speed / rolling_radius(t, depth), toe, 0.0);
+  turned.position = run.rim().position;
+  run.change(turned);
+  const double sigma = relaxation_lengths(t, 2.2e5 * depth, 0.0).lateral;
+  const HandlingForces end = evaluate(t, {.load = 2.2e5 * depth, .slip_angle = -toe});
+  const int steps = static_cast<int>(std::lround(sigma / speed / kStep));
+  for (int n = 0; n < steps; ++n) run.step();
+  EXPECT_NEAR(tire.spindle_wrench().force.y(), (1.0 - std::exp(-1.0)) * end.fy, 0.01 * std::abs(end.fy));
+}
+
+TEST(HandlingTire, restored_tire_continues_bit_for_bit) {
+  HandlingTire tire = make();
+  Rolling run(tire, rolling(0.018, 10.0, 30.0, 0.05, 0.02));
+  for (int n = 0; n < 100; ++n) run.step();
+  Archive saved;
+  tire.save(saved);
+  HandlingTire other = make();
+  other.place(RimState());
+  other.restore(saved);
+  StatedContact a, b;
+  tire.stated_contact(a);
+  other.stated_contact(b);
+  EXPECT_EQ(a.forces.vertex, b.forces.vertex);
+  EXPECT_EQ(a.forces.force, b.forces.force);
+  RimTrajectory one(run.rim());
+  one.extend(run.rim(), kStep);
+  ASSERT_TRUE(tire.advance(one, run.acted(), 1).ok);
+  ASSERT_TRUE(other.advance(one, run.acted(), 1).ok);
+  Hash first, second;
+  tire.add_state(first);
+  other.add_state(second);
+  EXPECT_EQ(first.hex(), second.hex());
+  tire.stated_contact(a);
+  other.stated_contact(b);
+  EXPECT_EQ(a.forces.force, b.forces.force);
+  EXPECT_EQ(tire.diagnostics().dissipation, other.diagnostics().dissipation);
+}
+
+TEST(HandlingTire, in_the_air_it_states_no_force_and_is_round) {
+  HandlingTire tire = make();
+  RimState rim;
+  rim.position.z() = 0.4;
+  Rolling run(tire, rim);
+  run.step();
+  StatedContact stated;
+  tire.stated_contact(stated);
+  EXPECT_TRUE(stated.given);
+  EXPECT_TRUE(stated.forces.force.empty());
+  SurfaceState surface;
+  tire.surface(surface);
+  EXPECT_NO_THROW(require_outward(tire.mesh(), surface.position, rim.position, "a.tir"));
+}
+
+TEST(HandlingTire, stops_at_its_rim) {
+  HandlingTire tire = make();
+  RimState rim;
+  rim.position.z() = 0.19;
+  tire.place(rim);
+  RimTrajectory t(rim);
+  t.extend(rim, kStep);
+  const Outcome outcome = tire.advance(t, {}, 1);
+  EXPECT_FALSE(outcome.ok);
+}
+
+// ---- its files
+
+nlohmann::json file_of(const std::filesystem::path& tir) {
+  return {{"format_version", 1}, {"model", "handling"}, {"tir", tir.string()}};
+}
+
+std::filesystem::path written(MagicFormula formula) {
+  const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "handling_test.tir";
+  std::ofstream(file) << tir_text(formula, {});
+  return file;
+}
+
+TEST(HandlingFile, takes_mass_from_either_file) {
+  MagicFormula t = example_tire();
+  nlohmann::json file = file_of(written(t));
+  EXPECT_EQ(read_handling_file(file, "tire.json").mass, 10.0);
+  file["mass"] = 37.0;
+  EXPECT_EQ(read_handling_file(file, "tire.json").mass, 37.0);
+  EXPECT_EQ(read_handling_file(file, "tire.json").spin_inertia, 0.9);
+  t.inertia = {};
+  file = file_of(written(t));
+  EXPECT_NE(complaint_of(read_handling, file, {}).find("key 'mass': is missing"), std::string::npos);
+  TireOptions options;
+  options.file = written(t);
+  try {
+    read_tire(options);
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("key '[INERTIA] MASS': is missing"), std::string::npos) << error.what();
+  }
+}
+
+TEST(HandlingFile, a_tir_file_is_a_tire) {
+  TireOptions options;
+  options.file = written(example_tire());
+  const auto spec = read_tire(options);
+  const TireDescription d = spec->describe();
+  EXPECT_EQ(d.kind, "handling");
+  EXPECT_NE(dynamic_cast<const HasOwnContact*>(spec.get()), nullptr);
+  const auto tire = spec->make();
+  EXPECT_EQ(d.vertices, tire->mesh().vertex_count);
+  EXPECT_EQ(d.radius, tire->radius());
+  EXPECT_TRUE(files_of(*spec).empty());
+  options.rigid = true;
+  EXPECT_EQ(dynamic_cast<const HasOwnContact*>(read_tire(options).get()), nullptr);
+}
+
+TEST(HandlingFile, wrong_files_are_refused_by_key) {
+  const nlohmann::json good = file_of(written(example_tire()));
+  const auto said = [&](const char* key, const nlohmann::json& value) {
+    nlohmann::json file = good;
+    file[key] = value;
+    return complaint_of(read_handling, file, {});
+  };
+  EXPECT_EQ(complaint_of(read_handling, good, {}), "no error");
+  EXPECT_NE(said("mass", -1).find("key 'mass'"), std::string::npos);
+  EXPECT_NE(said("mas", 1).find("key 'mas'"), std::string::npos);
+  EXPECT_NE(said("tir", "nowhere.tir").find("nowhere.tir"), std::string::npos);
+  EXPECT_NE(said("tir", 3).find("key 'tir'"), std::string::npos);
+  EXPECT_NE(said("format_version", 7).find("key 'format_version'"), std::string::npos);
+}
+
+TEST(HandlingFile, is_pressed_along_its_stiffness_on_a_plate_alone) {
+  TireOptions options;
+  options.file = written(example_tire());
+  PressOptions press;
+  press.load = 2000.0;
+  const PressResults results = pressed(options, press);
+  EXPECT_NEAR(results.at_load.deflection, 2000.0 / 2.2e5, 1e-3 * 0.01);
+  press.obstacle.height = 0.05;
+  press.obstacle.width = 0.05;
+  EXPECT_THROW(pressed(options, press), Error);
+  press.obstacle.height = 0.0;
+  press.deflection = 0.16;
+  EXPECT_THROW(pressed(options, press), Error);
+}
+
+}  // namespace
+}  // namespace furrow::tire::handling

@@ -1,0 +1,150 @@
+// The Magic Formula against its limits in closed form [Pacejka 2012, section 4.3.1].
+#include "tire/handling/magic_formula.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tests/tire/handling/example_tire.hpp"
+
+namespace furrow::tire::handling {
+namespace {
+
+constexpr double kLoads[] = {800.0, 2500.0, 4000.0, 7500.0};
+
+TEST(MagicFormula, slope_at_no_slip_is_the_slip_stiffness) {
+  const MagicFormula t = symmetric_tire();
+  const double h = 1e-6;
+  for (const double load : kLoads) {
+    const double df = load / 4000.0 - 1.0;
+    const auto& x = t.longitudinal;
+    const double kx = load * (x.pkx1 + x.pkx2 * df) * std::exp(x.pkx3 * df);
+    const double ky = t.lateral.pky1 * 4000.0 * std::sin(2.0 * std::atan(load / (t.lateral.pky2 * 4000.0))) * t.scaling.lky;
+    const HandlingForces forward = evaluate(t, {.load = load, .slip = h}), back = evaluate(t, {.load = load, .slip = -h});
+    EXPECT_NEAR((forward.fx - back.fx) / (2 * h), kx, 1e-6 * kx);
+    EXPECT_DOUBLE_EQ(forward.slip_stiffness, kx);
+    const HandlingForces left = evaluate(t, {.load = load, .slip_angle = h}),
+                         right = evaluate(t, {.load = load, .slip_angle = -h});
+    EXPECT_NEAR((left.fy - right.fy) / (2 * h), ky, -1e-6 * ky);
+    EXPECT_NEAR(left.cornering_stiffness, ky, -1e-12 * ky);
+    EXPECT_LT(left.fy, 0.0) << "a positive slip angle gives a force to the right (ISO 8855)";
+  }
+}
+
+/// y reaches D where C atan(Bx − E(Bx − atan Bx)) = π/2, if C > 1.
+TEST(MagicFormula, peak_is_d) {
+  const MagicFormula t = symmetric_tire();
+  for (const double load : kLoads) {
+    const double df = load / 4000.0 - 1.0;
+    const double dx = load * (t.longitudinal.pdx1 + t.longitudinal.pdx2 * df) * t.scaling.lmux,
+                 dy = load * (t.lateral.pdy1 + t.lateral.pdy2 * df) * t.scaling.lmuy;
+    double most_x = 0.0, most_y = 0.0;
+    for (int k = 0; k < 20000; ++k) {
+      most_x = std::max(most_x, evaluate(t, {.load = load, .slip = 1.2 * k / 20000}).fx);
+      most_y = std::max(most_y, std::abs(evaluate(t, {.load = load, .slip_angle = 0.6 * k / 20000}).fy));
+    }
+    EXPECT_NEAR(most_x, dx, 1e-6 * dx);
+    EXPECT_NEAR(most_y, dy, 1e-6 * dy);
+  }
+}
+
+/// At very large slip the sine's argument goes to C π/2 where E < 1.
+TEST(MagicFormula, asymptote_is_d_times_the_sine_of_c) {
+  MagicFormula t = symmetric_tire();
+  const double end = t.longitudinal.pdx1 * t.scaling.lmux * 4000.0 * std::sin(0.5 * std::numbers::pi * t.longitudinal.pcx1);
+  EXPECT_NEAR(evaluate_formula(t, {.load = 4000.0, .slip = 1e9}).fx, end, 1e-6 * std::abs(end));
+}
+
+TEST(MagicFormula, is_odd_in_slip_and_slip_angle_without_shifts) {
+  const MagicFormula t = symmetric_tire();
+  for (const double load : kLoads)
+    for (const double slip : {0.0, 0.02, 0.3})
+      for (const double angle : {0.0, 0.03, 0.2}) {
+        const HandlingForces a = evaluate(t, {.load = load, .slip = slip, .slip_angle = angle}),
+                             b = evaluate(t, {.load = load, .slip = slip, .slip_angle = -angle}),
+                             c = evaluate(t, {.load = load, .slip = -slip, .slip_angle = angle});
+        EXPECT_NEAR(a.fx, b.fx, 1e-9);
+        EXPECT_NEAR(a.fy, -b.fy, 1e-9);
+        EXPECT_NEAR(a.mx, -b.mx, 1e-9);
+        EXPECT_NEAR(a.fx, -c.fx, 1e-9);
+        EXPECT_NEAR(a.fy, c.fy, 1e-9);
+        if (angle != 0.0) {  // at 0 the equivalent slip angle has the sign +
+          EXPECT_NEAR(a.mz, -b.mz, 1e-9);
+        }
+      }
+}
+
+/// A mirrored wheel: α, γ change their signs, and with them F_y, M_x and M_z, where the formula has no ply steer.
+TEST(MagicFormula, camber_and_slip_angle_mirror_together) {
+  const MagicFormula t = symmetric_tire();
+  for (const double angle : {-0.1, 0.02, 0.2})
+    for (const double camber : {-0.08, 0.1}) {
+      const HandlingForces a = evaluate(t, {.load = 3000.0, .slip_angle = angle, .camber = camber}),
+                           b = evaluate(t, {.load = 3000.0, .slip_angle = -angle, .camber = -camber});
+      EXPECT_NEAR(a.fy, -b.fy, 1e-9);
+      EXPECT_NEAR(a.mx, -b.mx, 1e-9);
+      EXPECT_NEAR(a.mz, -b.mz, 1e-9);
+      EXPECT_NEAR(a.fx, b.fx, 1e-9);
+    }
+  EXPECT_LT(evaluate(t, {.load = 3000.0, .camber = 0.1}).fy, 0.0) << "leaning to the right pulls to the right (ISO 8855)";
+}
+
+TEST(MagicFormula, combined_slip_without_the_other_slip_is_pure) {
+  MagicFormula t = example_tire();
+  t.lateral.rvy1 = t.lateral.rvy2 = t.lateral.rvy3 = 0.0;
+  MagicFormula pure = t;
+  pure.longitudinal.rbx1 = pure.lateral.rby1 = 0.0;  // no weighting
+  for (const double load : kLoads) {
+    for (const double slip : {-0.3, -0.02, 0.05, 0.8})
+      EXPECT_DOUBLE_EQ(evaluate(t, {.load = load, .slip = slip}).fx, evaluate(pure, {.load = load, .slip = slip}).fx);
+    for (const double angle : {-0.2, 0.01, 0.3})
+      EXPECT_DOUBLE_EQ(evaluate(t, {.load = load, .slip_angle = angle}).fy,
+                       evaluate(pure, {.load = load, .slip_angle = angle}).fy);
+  }
+  const HandlingForces both = evaluate(symmetric_tire(), {.load = 4000.0, .slip = 0.1, .slip_angle = 0.1}),
+                       alone = evaluate(symmetric_tire(), {.load = 4000.0, .slip = 0.1});
+  EXPECT_LT(both.fx, 0.95 * alone.fx);
+}
+
+/// −M_z/F_y → the trail D_t for small angles, and M_z = −t F_y without residual moment and arm.
+TEST(MagicFormula, trail_at_no_slip_is_d_t) {
+  MagicFormula t = symmetric_tire();
+  const HandlingForces f = evaluate(t, {.load = 4000.0, .slip_angle = 1e-6});
+  EXPECT_NEAR(-f.mz / f.fy, t.aligning.qdz1 * 0.35 * t.scaling.ltr, 1e-8);
+}
+
+TEST(MagicFormula, rolling_resistance_opposes_forward_rolling) {
+  MagicFormula t = symmetric_tire();
+  t.rolling = {.qsy1 = 0.01};
+  EXPECT_NEAR(evaluate(t, {.load = 4000.0, .speed = 10.0}).my, -0.01 * 4000.0 * 0.35, 1e-12);
+}
+
+TEST(MagicFormula, holds_the_ends_of_its_ranges_and_scales_with_loads_beyond_them) {
+  const MagicFormula t = example_tire();
+  EXPECT_EQ(evaluate(t, {.load = 4000.0, .slip = 1.2}).fx, evaluate(t, {.load = 4000.0, .slip = 7.0}).fx);
+  EXPECT_EQ(evaluate(t, {.load = 4000.0, .slip_angle = -0.6}).mz, evaluate(t, {.load = 4000.0, .slip_angle = -1.5}).mz);
+  EXPECT_NEAR(evaluate(t, {.load = 18000.0, .slip = 0.1}).fx, 2.0 * evaluate(t, {.load = 9000.0, .slip = 0.1}).fx, 1e-9);
+  EXPECT_NEAR(evaluate(t, {.load = 1.0, .slip = 0.1}).fx, evaluate(t, {.load = 200.0, .slip = 0.1}).fx / 200.0, 1e-12);
+  EXPECT_EQ(evaluate(t, {.load = 0.0, .slip = 0.1}).fx, 0.0);
+  EXPECT_EQ(evaluate(t, {.load = 18000.0}).fz, 18000.0);
+}
+
+TEST(MagicFormula, rolling_radius_is_that_of_the_wheel_in_the_air_and_falls_with_the_load) {
+  const MagicFormula t = example_tire();
+  EXPECT_EQ(rolling_radius(t, 0.0), 0.35);
+  const double nominal = 4000.0 / 2.2e5;
+  EXPECT_NEAR(rolling_radius(t, nominal), 0.35 - nominal * (0.25 * std::atan(8.0) + 0.05), 1e-15);
+}
+
+TEST(MagicFormula, relaxation_lengths_at_the_nominal_load) {
+  const MagicFormula t = example_tire();
+  const RelaxationLengths s = relaxation_lengths(t, 4000.0, 0.0);
+  EXPECT_NEAR(s.longitudinal, 0.4 * 0.35, 1e-15);
+  EXPECT_NEAR(s.lateral, 1.3 * std::sin(2.0 * std::atan(1.0 / 1.7)) * 0.35, 1e-15);
+  EXPECT_EQ(relaxation_lengths(t, 0.0, 0.0).longitudinal, 0.0);
+}
+
+}  // namespace
+}  // namespace furrow::tire::handling

@@ -1,0 +1,135 @@
+// Tire property files: what is written is read back, and what is wrong is refused by name.
+#include "tire/handling/tir_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <string>
+
+#include "protocol/core/error.hpp"
+#include "tests/tire/handling/example_tire.hpp"
+
+namespace furrow::tire::handling {
+namespace {
+
+std::string whole() { return tir_text(example_tire(), {"a tire for tests", "made up"}); }
+
+std::string replaced(const std::string& from, const std::string& to) {
+  std::string text = whole();
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+/// Without the section of that name.
+std::string without(const std::string& section) {
+  std::string text = whole();
+  const std::size_t at = text.find("[" + section + "]");
+  return text.erase(at, text.find("\n[", at) + 1 - at);
+}
+
+std::string complaint(const std::string& text) {
+  try {
+    parse_tir(text, "a.tir");
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::bad_input);
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(TirFile, reads_back_what_it_wrote_bit_for_bit) {
+  MagicFormula t = example_tire();
+  t.longitudinal.pdx2 = -0.1 / 3.0;
+  t.load.most = 1e4 / 7.0;
+  const std::string text = tir_text(t, {});
+  EXPECT_EQ(tir_text(parse_tir(text, "a.tir"), {}), text);
+  EXPECT_EQ(parse_tir(text, "a.tir").longitudinal.pdx2, t.longitudinal.pdx2);
+}
+
+/// Comments, quotes, line ends, names in small letters, and sections that only other programs know.
+TEST(TirFile, takes_layouts_of_others) {
+  std::string text = whole();
+  for (const auto& [from, to] : {std::pair<std::string, std::string>{"[UNITS]\n", "$------ units\n[units]\n"},
+                                 {"FORCE = 'newton'", "force ='Newton'   $ N"},
+                                 {"LENGTH = 'meter'", "LENGTH              ='meter'"},
+                                 {"FITTYP             = 5", "FITTYP = 5 $Magic Formula Version number\nMFSAFE3 ="},
+                                 {"PKX1               = 22", "PKX1 = +0.2200E+02 $Longitudinal slip stiffness"},
+                                 {"[SHAPE]", "[CONTACT_PATCH]\nELLIPS_MAX_STEP = 0.02\n[SHAPE]"}})
+    text.replace(text.find(from), from.size(), to);
+  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2) text.insert(at, 1, '\r');
+  EXPECT_EQ(tir_text(parse_tir(text, "a.tir"), {}), tir_text(example_tire(), {}));
+}
+
+TEST(TirFile, refuses_what_is_wrong_by_section_and_key) {
+  const std::pair<std::string, std::string> cases[] = {
+      {replaced("LENGTH = 'meter'", "LENGTH = 'mm'"), "key '[UNITS] LENGTH': is 'mm', expected 'METER'"},
+      {replaced("FORCE = 'newton'", "FORCE = 'pound_force'"), "key '[UNITS] FORCE': is 'pound_force'"},
+      {replaced("ANGLE = 'radians'", "ANGLE = 'degrees'"), "key '[UNITS] ANGLE': is 'degrees'"},
+      {replaced("TIME = 'second'\n", ""), "key '[UNITS] TIME': is missing"},
+      {replaced("FITTYP             = 5", "FITTYP = 61"), "key '[MODEL] FITTYP': is 61, expected one of 5, 6, 21, 52"},
+      {replaced("TYRESIDE = 'LEFT'", "TYRESIDE = 'UP'"), "key '[MODEL] TYRESIDE': is 'UP'"},
+      {without("UNITS"), "key '[UNITS]': is missing"},
+      {without("VERTICAL"), "key '[VERTICAL]': is missing"},
+      {without("LATERAL_COEFFICIENTS"), "key '[LATERAL_COEFFICIENTS]': is missing"},
+      {without("LONG_SLIP_RANGE"), "key '[LONG_SLIP_RANGE]': is missing"},
+      {replaced("PDX1               = 1.1", "PDX1 = nan"), "key '[LONGITUDINAL_COEFFICIENTS] PDX1': is 'nan', expected a finite number"},
+      {replaced("PKY2               = 1.9", "PKY2 = inf"), "key '[LATERAL_COEFFICIENTS] PKY2': is 'inf'"},
+      {replaced("QBZ1               = 9", "QBZ1 = 9.0e"), "key '[ALIGNING_COEFFICIENTS] QBZ1': is '9.0e'"},
+      {replaced("PCY1               = 1.35", "PCY1 = 0"), "key '[LATERAL_COEFFICIENTS] PCY1': is 0"},
+      {replaced("PKX1               = 22\n", ""), "key '[LONGITUDINAL_COEFFICIENTS] PKX1': is missing"},
+      {replaced("PKX1               = 22\n", "PKX1 = 22\nPKX1 = 23\n"), "key '[LONGITUDINAL_COEFFICIENTS] PKX1': is given twice"},
+      {replaced("PKX1               = 22\n", "PKX1 = 22\nPKX11 = 1\n"), "key '[LONGITUDINAL_COEFFICIENTS] PKX11': is unknown"},
+      {replaced("PKY1               = -18", "PKY1 = 18"), "key '[LATERAL_COEFFICIENTS] PKY1': is 18, expected less than 0"},
+      {replaced("VERTICAL_STIFFNESS = 220000", "VERTICAL_STIFFNESS = -1"), "key '[VERTICAL] VERTICAL_STIFFNESS': is -1"},
+      {replaced("FNOMIN             = 4000", "FNOMIN = 0"), "key '[VERTICAL] FNOMIN': is 0"},
+      {replaced("UNLOADED_RADIUS    = 0.35", "UNLOADED_RADIUS = 0.1"), "key '[DIMENSION] RIM_RADIUS': is 0.2 m"},
+      {replaced("KPUMIN             = -1.2", "KPUMIN = 3"), "key '[LONG_SLIP_RANGE] KPUMIN': is 3, expected less than"},
+      {replaced("ALPMAX             = 0.6", "ALPMAX = 30"), "key '[SLIP_ANGLE_RANGE] ALPMAX': is 30"},
+      {replaced("FZMIN              = 200", "FZMIN = -200"), "key '[VERTICAL_FORCE_RANGE] FZMIN': is -200"},
+      {replaced("LMUY               = 0.95", "LMUY = 0"), "key '[SCALING_COEFFICIENTS] LMUY': is 0"},
+      {replaced("[ROLLING_COEFFICIENTS]", "[ROLLING_COEFFICIENTS"), "expected a section [NAME]"},
+      {replaced("PCX1               = 1.6", "PCX1 1.6"), "expected a section [NAME] or a line NAME = VALUE"},
+      {replaced("[SHAPE]", "[UNITS]"), "key '[UNITS]': is given twice"},
+      {"PCX1 = 1\n", "line 1"},
+      {"", "key '[UNITS]': is missing"},
+  };
+  for (const auto& [text, expected] : cases) {
+    const std::string said = complaint(text);
+    EXPECT_EQ(said.substr(0, 5), "a.tir") << said;
+    EXPECT_NE(said.find(expected), std::string::npos) << said << "\nexpected: " << expected;
+  }
+}
+
+TEST(TirFile, coefficients_that_are_left_out_are_none_and_factors_one) {
+  const MagicFormula t = parse_tir(without("ALIGNING_COEFFICIENTS"), "a.tir");
+  EXPECT_EQ(t.aligning.qbz1, 0.0);
+  std::string text = whole();
+  const std::size_t at = text.find("[SCALING_COEFFICIENTS]");
+  text.erase(at, text.find("\n[", at) + 1 - at);
+  EXPECT_EQ(parse_tir(text, "a.tir").scaling.lmux, 1.0);
+}
+
+/// Damaged files are read or refused with a sentence, and nothing else.
+TEST(TirFile, survives_damage) {
+  std::mt19937 random(1);
+  const std::string text = whole();
+  const std::string odd = "[]={}$!'\n\t-+.eE0naif\x7f";
+  for (int n = 0; n < 3000; ++n) {
+    std::string damaged = text;
+    for (int k = 0; k < 1 + n % 4; ++k) {
+      const std::size_t at = random() % damaged.size(), length = random() % 40;
+      if (n % 3 == 0)
+        damaged.erase(at, length);
+      else if (n % 3 == 1)
+        damaged.insert(at, 1, odd[random() % odd.size()]);
+      else
+        damaged[at] = odd[random() % odd.size()];
+      if (damaged.empty()) break;
+    }
+    EXPECT_FALSE(complaint(damaged).empty());
+  }
+}
+
+}  // namespace
+}  // namespace furrow::tire::handling

@@ -1,0 +1,150 @@
+#include "tire/handling/handling_spec.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "protocol/core/error.hpp"
+#include "tire/capabilities.hpp"
+#include "tire/cylinder.hpp"
+#include "tire/handling/handling_press.hpp"
+#include "tire/handling/handling_tire.hpp"
+#include "tire/handling/tir_file.hpp"
+#include "tire/tire_file_reader.hpp"
+
+namespace furrow::tire {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kFacets = 96, kRows = 7;  // of the surface
+constexpr double kTreadFriction = 0.9;  // of ContactMaterial, which no ground uses: the file has its own
+
+class HandlingStatic final : public StaticTest {
+ public:
+  explicit HandlingStatic(const HandlingFile& file, const MassProperties& mass) : file_(file), mass_(mass) {}
+  PressResults press(const PressOptions& options, const ProgressCall&) const override {
+    return handling::press_handling(file_.formula, mass_, options);
+  }
+
+ private:
+  HandlingFile file_;
+  MassProperties mass_;
+};
+
+class HandlingSpec final : public TireSpec, public HasOwnContact, public NamesFiles {
+ public:
+  HandlingSpec(HandlingFile file, const TireOptions& options) : TireSpec(options), file_(std::move(file)) {}
+
+  TireDescription describe() const override;
+  std::unique_ptr<Tire> make(const TireContext& context) const override {
+    return std::make_unique<handling::HandlingTire>(file_.formula, shape(), context.gravity, file_.tir.string());
+  }
+  TireShape shape() const override;
+  std::unique_ptr<StaticTest> static_test() const override {
+    return std::make_unique<HandlingStatic>(file_, mass());
+  }
+  std::string own_contact() const override {
+    return "its forces are those of the Magic Formula, which holds for hard level ground";
+  }
+  std::vector<std::filesystem::path> files() const override {
+    return is_tir(options().file) ? std::vector<std::filesystem::path>{} : std::vector{file_.tir};
+  }
+  std::vector<std::pair<std::string, std::string>> unlikely_values() const override;
+
+ private:
+  MassProperties mass() const {
+    return {file_.mass, Vec3(file_.diametral_inertia, file_.spin_inertia, file_.diametral_inertia).asDiagonal()};
+  }
+
+  HandlingFile file_;
+};
+
+TireDescription HandlingSpec::describe() const {
+  const handling::MagicFormula& t = file_.formula;
+  const handling::RelaxationLengths s = handling::relaxation_lengths(t, t.vertical.fnomin, 0.0);
+  TireDescription d;
+  d.kind = "handling";
+  d.name = "handling (Magic Formula)";
+  d.details = fmt::format("{}, {:g} N, {:g} kN/m, relaxation {:.3g} m along, {:.3g} m across",
+                          file_.tir.filename().string(), t.vertical.fnomin, 1e-3 * t.vertical.vertical_stiffness,
+                          s.longitudinal, s.lateral);
+  d.radius = t.dimension.unloaded_radius;
+  d.width = d.tread_width = t.dimension.width;
+  d.coordinates = 2;
+  d.vertices = kFacets * kRows + 2;
+  d.facets = kFacets;
+  d.mass = mass();
+  d.memory = 1e6;
+  d.saved_bytes = 1e4;
+  return d;
+}
+
+TireShape HandlingSpec::shape() const {
+  const handling::Dimensions& size = file_.formula.dimension;
+  TireShape shape = cylinder(kFacets, size.unloaded_radius, size.width, kRows);
+  // For tire.rigid alone, on any ground: rubber.
+  shape.material = {.young_modulus = 2.47e7, .poisson_ratio = 0.45, .friction = kTreadFriction, .restitution = 0.2,
+                    .normal_stiffness = 2e6, .normal_damping = 13.0};
+  if (options().friction >= 0.0) shape.material.friction = options().friction;
+  shape.mass = mass();
+  return shape;
+}
+
+std::vector<std::pair<std::string, std::string>> HandlingSpec::unlikely_values() const {
+  std::vector<std::pair<std::string, std::string>> odd;
+  const handling::MagicFormula& t = file_.formula;
+  const std::string at = file_.tir.filename().string();
+  if (t.aligning.qtz1 != 0.0 && t.aligning.mbelt != 0.0)
+    odd.emplace_back("[ALIGNING_COEFFICIENTS] QTZ1", "of " + at + " is not used: the gyroscopic moment of the belt is left out");
+  if (t.vertical.vertical_stiffness < 1e4 || t.vertical.vertical_stiffness > 1e7)
+    odd.emplace_back("[VERTICAL] VERTICAL_STIFFNESS",
+                     fmt::format("of {} is {:g} N/m, usual are 1e5 to 1e6 N/m", at, t.vertical.vertical_stiffness));
+  return odd;
+}
+
+}  // namespace
+
+bool is_tir(const std::filesystem::path& file) {
+  std::string end = file.extension().string();
+  std::transform(end.begin(), end.end(), end.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+  return end == ".tir";
+}
+
+json tire_file_of_tir(const std::filesystem::path& file) {
+  return {{"format_version", 1}, {"model", "handling"}, {"tir", file.string()}};
+}
+
+HandlingFile read_handling_file(const json& document, const std::string& path) {
+  JsonReader reader(document, path);
+  take_common_keys(reader);
+  HandlingFile f;
+  f.path = path;
+  const std::filesystem::path named = reader.text("tir");
+  f.tir = named.is_absolute() ? named : std::filesystem::path(path).parent_path() / named;
+  if (is_tir(path)) f.tir = path;
+  f.formula = handling::read_tir(f.tir);
+  const handling::TireInertia& said = f.formula.inertia;
+  const auto take = [&](const char* key, double in_tir, const char* name) {
+    const double value = reader.has(key) ? reader.positive(key) : in_tir;
+    if (!(value > 0.0))
+      throw input_error(path, is_tir(path) ? fmt::format("[INERTIA] {}", name) : key,
+                        is_tir(path) ? "is missing, expected the tire's mass and inertia, or a tire file in JSON of the "
+                                       "model handling that names this file and says them"
+                                     : fmt::format("is missing, expected a number above 0 here or {} in [INERTIA] of {}",
+                                                   name, f.tir.string()));
+    return value;
+  };
+  f.mass = take("mass", said.mass, "MASS");
+  f.spin_inertia = take("spin_inertia", said.iyy, "IYY");
+  f.diametral_inertia = take("diametral_inertia", said.ixx, "IXX");
+  reader.finish();
+  return f;
+}
+
+std::unique_ptr<TireSpec> read_handling(const json& file, const TireOptions& options) {
+  return std::make_unique<HandlingSpec>(read_handling_file(file, options.file.string()), options);
+}
+
+}  // namespace furrow::tire

@@ -1,0 +1,35 @@
+// Tire files of handling tires: `"model": "handling"`, or a tire property file (.tir) itself.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "tire/handling/coefficients.hpp"
+#include "tire/tire_spec.hpp"
+
+namespace furrow::tire {
+
+/// The keys of a tire file of this model.
+struct HandlingFile {
+  std::string path;
+  std::filesystem::path tir;  // resolved: beside the tire file, or as it stands
+  handling::MagicFormula formula;
+  double mass = 0.0;               // kg
+  double spin_inertia = 0.0;       // about the axle, kg m²
+  double diametral_inertia = 0.0;  // kg m²
+};
+
+/// Mass and inertia are those of [INERTIA] where the tire file does not say them. @throws Error(bad_input)
+HandlingFile read_handling_file(const nlohmann::json& document, const std::string& path);
+
+std::unique_ptr<TireSpec> read_handling(const nlohmann::json& file, const TireOptions& options);
+
+/// Whether a tire's file is a tire property file, by its name (.tir).
+bool is_tir(const std::filesystem::path& file);
+/// The tire file that such a file stands for.
+nlohmann::json tire_file_of_tir(const std::filesystem::path& file);
+
+}  // namespace furrow::tire

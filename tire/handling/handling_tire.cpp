@@ -1,0 +1,199 @@
+#include "tire/handling/handling_tire.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Cholesky>
+#include <fmt/format.h>
+
+#include "protocol/core/archive_fields.hpp"
+#include "protocol/core/assert.hpp"
+#include "protocol/core/error.hpp"
+#include "protocol/core/mean_turn.hpp"
+
+namespace furrow::tire::handling {
+namespace {
+
+constexpr double kNear = 4e-3;   // ε of the weights, of the radius
+constexpr double kAhead = 1.5;   // communication steps from a statement to the middle of the interval in which it acts
+
+/// A rim that goes on as it does.
+RimState later(const RimState& rim, double duration) {
+  RimState out = rim;
+  out.position += duration * rim.velocity;
+  const Vec3 turn = duration * rim.angular_velocity;
+  const double angle = turn.norm();
+  if (angle > 0.0) out.orientation = Quat(Eigen::AngleAxisd(angle, turn / angle)) * rim.orientation;
+  out.orientation.normalize();
+  return out;
+}
+
+}  // namespace
+
+HandlingTire::HandlingTire(MagicFormula formula, TireShape shape, const Vec3& gravity, std::string file)
+    : formula_(std::move(formula)), shape_(std::move(shape)), file_(std::move(file)), body_(shape_, gravity) {
+  FURROW_ASSERT(shape_.radius == formula_.dimension.unloaded_radius, shape_.radius);
+  stated_.given = true;
+}
+
+void HandlingTire::place(const RimState& rim) {
+  body_.place(rim);
+  rim_ = rim;
+  spindle_ = {};
+  patch_ = {};
+  placed_ = true;
+  dissipation_ = 0.0;
+  stated_.forces.clear();
+}
+
+bool HandlingTire::on_ground(const ContactMotion& motion) const {
+  return !placed_ && motion.deflection > 0.0 &&
+         motion.deflection < formula_.dimension.unloaded_radius - formula_.dimension.rim_radius;
+}
+
+void HandlingTire::move(const RimState& rim, std::vector<Vec3>& position, std::vector<Vec3>* velocity) const {
+  const std::size_t count = shape_.vertex.size();
+  position.resize(count);
+  if (velocity) velocity->resize(count);
+  const Mat3 turn = rim.orientation.toRotationMatrix();
+  const bool flat = on_ground(contact_motion(formula_, rim));
+  for (std::size_t k = 0; k < count; ++k) {
+    const Vec3 arm = turn * shape_.vertex[k];
+    position[k] = rim.position + arm;
+    if (velocity) (*velocity)[k] = rim.velocity + rim.angular_velocity.cross(arm);
+    if (!flat || position[k].z() >= 0.0) continue;
+    position[k].z() = 0.0;
+    if (velocity) (*velocity)[k].z() = 0.0;
+  }
+}
+
+void HandlingTire::surface(SurfaceState& out) const { move(rim_, out.position, &out.velocity); }
+
+Outcome HandlingTire::advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) {
+  FURROW_ASSERT(substeps > 0, substeps);
+  const double duration = rim.duration();
+  const Outcome moved = body_.advance(rim, {}, 1);
+  if (!moved.ok) return moved;
+  spindle_ = body_.spindle_wrench();
+
+  move(rim.start(), before_, nullptr);
+  placed_ = false;
+  move(rim.end(), after_, nullptr);
+  const Vec3 centre = 0.5 * (rim.start().position + rim.end().position);
+  for (std::size_t i = 0; i < forces.vertex.size(); ++i) {
+    const int k = forces.vertex[i];
+    FURROW_ASSERT(in_range(k, shape_.vertex.size()), k, shape_.vertex.size());
+    spindle_.force += forces.force[i];
+    spindle_.moment += (0.5 * (before_[k] + after_[k]) - centre).cross(forces.force[i]);
+  }
+
+  rim_ = rim.end();
+  RimState middle = later(rim.start(), 0.5 * duration);
+  middle.velocity = 0.5 * (rim.start().velocity + rim_.velocity);
+  middle.angular_velocity = 0.5 * (rim.start().angular_velocity + rim_.angular_velocity);
+  patch_ = advanced(formula_, contact_motion(formula_, middle), patch_, duration);
+
+  const ContactMotion now = contact_motion(formula_, rim_);
+  const double most = formula_.dimension.unloaded_radius - formula_.dimension.rim_radius;
+  if (!std::isfinite(now.deflection + now.load))
+    return Outcome::failure("has a rim whose motion is not finite", "try a smaller run.step");
+  if (now.deflection >= most)
+    return Outcome::failure(fmt::format("is pressed by {:.4g} m, down to its rim", now.deflection),
+                            fmt::format("{}: [DIMENSION] RIM_RADIUS leaves {:.4g} m; expected less load or drop",
+                                        file_, most));
+  state_contact(kAhead * duration, duration);
+  return {};
+}
+
+void HandlingTire::state_contact(double ahead, double duration) {
+  stated_.forces.clear();
+  const RimState rim = later(rim_, ahead);
+  const ContactMotion motion = contact_motion(formula_, rim);
+  if (!on_ground(motion) || !(motion.load > 0.0)) return;
+  const HandlingForces f =
+      contact_forces(formula_, motion, advanced(formula_, motion, patch_, ahead));
+  const WheelAxes& axes = motion.axes;
+  const Wrench wanted{f.fx * axes.x + f.fy * axes.y + f.fz * axes.z,
+                      f.mx * axes.x + f.my * axes.y + f.mz * axes.z};
+  move(rim, before_, &moving_);
+  distribute(wanted, axes.origin);
+  double power = -formula_.vertical.vertical_stiffness * motion.deflection * motion.rate;
+  for (std::size_t i = 0; i < stated_.forces.vertex.size(); ++i) {
+    const int k = stated_.forces.vertex[i];
+    const Vec3 carried = rim.velocity + rim.angular_velocity.cross(before_[k] - rim.position);
+    power += stated_.forces.force[i].dot(moving_[k] - carried);
+  }
+  dissipation_ += power * duration;
+}
+
+void HandlingTire::distribute(const Wrench& wanted, const Vec3& centre) {
+  const double reach = kNear * shape_.radius;
+  double sum = 0.0;
+  Vec3 mean = Vec3::Zero();
+  const auto weight = [&](const Vec3& x) {
+    const double height = std::max(0.0, reach - x.z());
+    return height * height;
+  };
+  const int vertices = static_cast<int>(shape_.vertex.size()) - 2;  // without the middles of the discs
+  for (int k = 0; k < vertices; ++k) {
+    const double w = weight(before_[k]);
+    if (!(w > 0.0)) continue;
+    sum += w;
+    mean += w * before_[k];
+  }
+  FURROW_ASSERT(sum > 0.0, reach);
+  mean /= sum;
+  Mat3 spread = Mat3::Zero();
+  for (int k = 0; k < vertices; ++k) {
+    const double w = weight(before_[k]);
+    if (!(w > 0.0)) continue;
+    const Vec3 d = before_[k] - mean;
+    spread += w * (d.squaredNorm() * Mat3::Identity() - d * d.transpose());
+  }
+  const Vec3 turn = spread.ldlt().solve(wanted.moment + (centre - mean).cross(wanted.force));
+  for (int k = 0; k < vertices; ++k) {
+    const double w = weight(before_[k]);
+    if (!(w > 0.0)) continue;
+    stated_.forces.vertex.push_back(k);
+    stated_.forces.force.push_back(w * (wanted.force / sum + turn.cross(before_[k] - mean)));
+  }
+}
+
+TireDiagnostics HandlingTire::diagnostics() const {
+  TireDiagnostics d = body_.diagnostics();
+  const double deflection = placed_ ? 0.0 : std::max(0.0, contact_motion(formula_, rim_).deflection);
+  d.elastic_energy = 0.5 * formula_.vertical.vertical_stiffness * deflection * deflection;
+  d.dissipation = dissipation_;
+  return d;
+}
+
+NamedValues HandlingTire::figures() const {
+  return {{"patch_along_m", patch_.along}, {"patch_across_m", patch_.across}};
+}
+
+void HandlingTire::add_state(Hash& hash) const {
+  body_.add_state(hash);
+  hash.add(&patch_.along, sizeof patch_.along);
+  hash.add(&patch_.across, sizeof patch_.across);
+}
+
+void HandlingTire::save(Archive& archive) const {
+  body_.save(archive);
+  save_fields(archive, "handling", *this);
+  save_fields(archive, "handling/stated", stated_.forces);
+}
+
+void HandlingTire::restore(const Archive& archive) {
+  body_.restore(archive);
+  restore_fields(archive, "handling", *this);
+  restore_fields(archive, "handling/stated", stated_.forces);
+  const NodalForces& forces = stated_.forces;
+  if (forces.force.size() != forces.vertex.size() || !forces.tangent.empty() ||
+      !std::all_of(forces.vertex.begin(), forces.vertex.end(), [&](int k) { return in_range(k, shape_.vertex.size()); }))
+    throw Error(ExitCode::io, fmt::format("saved state 'handling/stated' has {} forces and {} vertices, expected one of "
+                                          "the {} vertices for each",
+                                          forces.force.size(), forces.vertex.size(), shape_.vertex.size()));
+}
+
+}  // namespace furrow::tire::handling

@@ -1,0 +1,84 @@
+// A tire that the Magic Formula describes: on level hard ground. It states its contact itself (StatesContact): the
+// terrain gives the forces that it asks for, on its own surface and in its own books, and adds none of its own.
+//
+// Over an interval of the length H from t the terrain moves what the tire said at t; what it then gives acts on the tire
+// from t + H to t + 2H. So the forces are those of the rim's motion extrapolated to t + 1.5 H, and their moments are
+// taken there: what they do to the rim is late by nothing that is constant.
+//
+// Surface: a cylinder of R_0, flattened where it would be below the ground. Its vertices otherwise move with the rim.
+// Force and moment about the contact centre C go to the vertices near the ground with the weights w = max(0, ε − z)²,
+//
+//   f_k = w_k [F/Σw + θ × (x_k − x̄)],   Σ w [d² I − d dᵀ] θ = M + (C − x̄) × F,   x̄ = Σ w x/Σ w, d = x − x̄,
+//
+// so that Σ f = F and Σ (x − C) × f = M; a vertex comes and goes with no force.
+//
+// Energy: ½ C_z ρ² is elastic; what the vertices' forces do on the surface beyond what they do on the rim is dissipated,
+// as far as it is not stored: by VERTICAL_DAMPING, by rolling resistance, and by what the formula itself loses between
+// R_e and the radius of the tread.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tire/capabilities.hpp"
+#include "tire/handling/rolling_contact.hpp"
+#include "tire/rigid/rigid_tire.hpp"
+
+namespace furrow::tire::handling {
+
+class HandlingTire final : public Tire, public StatesContact {
+ public:
+  /// @param shape with the radius R_0 @param file for messages
+  HandlingTire(MagicFormula formula, TireShape shape, const Vec3& gravity, std::string file);
+
+  const SurfaceMesh& mesh() const override { return shape_.mesh; }
+  ContactMaterial material() const override { return shape_.material; }
+  MassProperties mass_properties() const override { return shape_.mass; }
+  double radius() const override { return shape_.radius; }
+  double tread_width() const override { return shape_.tread_width; }
+  Vec3 gravity() const override { return body_.gravity(); }
+  int coordinates() const override { return 2; }
+
+  void set_pressure(double) override {}
+  void place(const RimState& rim) override;
+  void surface(SurfaceState& out) const override;
+  void stated_contact(StatedContact& out) const override { out = stated_; }
+  Outcome advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) override;
+  Wrench spindle_wrench() const override { return spindle_; }
+  TireDiagnostics diagnostics() const override;
+  NamedValues figures() const override;
+  void add_state(Hash& hash) const override;
+  void save(Archive& archive) const override;
+  void restore(const Archive& archive) override;
+
+ private:
+  template <class Visit>
+  friend void visit_fields(Visit&& visit, FieldsOf<HandlingTire> auto& s) {
+    visit(Field{"rim", ""}, s.rim_);
+    visit(Field{"spindle", ""}, s.spindle_);
+    visit(Field{"patch", ""}, s.patch_);
+    visit(Field{"dissipation", "J"}, s.dissipation_);
+    visit(Field{"placed", ""}, s.placed_);
+  }
+
+  /// Vertices of the wheel at a pose, flattened by the ground. @param velocity may be null
+  void move(const RimState& rim, std::vector<Vec3>& position, std::vector<Vec3>* velocity) const;
+  bool on_ground(const ContactMotion& motion) const;
+  void state_contact(double ahead, double duration);
+  /// Gives `wanted`, about `centre`, to the vertices near the ground.
+  void distribute(const Wrench& wanted, const Vec3& centre);
+
+  MagicFormula formula_;
+  TireShape shape_;
+  std::string file_;
+  RigidTire body_;  // its mass
+  RimState rim_;    // now
+  Wrench spindle_;  // of the last advance
+  PatchState patch_;
+  bool placed_ = false;       // and not yet moved: nothing is flattened
+  double dissipation_ = 0.0;  // J
+  StatedContact stated_;
+  std::vector<Vec3> before_, after_, moving_;  // work
+};
+
+}  // namespace furrow::tire::handling

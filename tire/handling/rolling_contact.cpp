@@ -1,0 +1,97 @@
+#include "tire/handling/rolling_contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "protocol/core/assert.hpp"
+#include "protocol/core/constants.hpp"
+
+namespace furrow::tire::handling {
+namespace {
+
+constexpr double kDampingRatio = 0.1;    // of the standing patch
+constexpr double kLeastLength = 1e-3;    // m, of a relaxation length under a light load
+constexpr double kSmall = 1e-9;          // exponent below which the exact solution is taken as a line
+
+/// x after `duration` of ẋ = −slide − speed x/length.
+double relaxed(double x, double slide, double speed, double length, double duration) {
+  const double exponent = speed * duration / length;
+  if (exponent < kSmall) return x - slide * duration;
+  const double end = -slide * length / speed;
+  return end + (x - end) * std::exp(-exponent);
+}
+
+RelaxationLengths lengths_of(const MagicFormula& tire, const ContactMotion& motion) {
+  const double load = std::clamp(motion.load, tire.load.least, tire.load.most);
+  RelaxationLengths s = relaxation_lengths(tire, load, motion.axes.camber_angle);
+  for (double* length : {&s.longitudinal, &s.lateral})
+    if (*length > 0.0) *length = std::max(*length, kLeastLength);
+  return s;
+}
+
+/// What κ (and tan α) gets of the sliding speed while the wheel hardly rolls, s/m: D/K.
+double standing(const MagicFormula& tire, const ContactMotion& motion, double stiffness, double length) {
+  const double speed = std::abs(motion.travel);
+  if (speed >= tire.low_speed || !(stiffness > 0.0)) return 0.0;
+  const double mass = motion.load / kStandardGravity;
+  const double critical = 2.0 * std::sqrt(stiffness / length * mass);
+  return kDampingRatio * critical / stiffness * 0.5 * (1.0 + std::cos(std::numbers::pi * speed / tire.low_speed));
+}
+
+}  // namespace
+
+ContactMotion contact_motion(const MagicFormula& tire, const RimState& rim) {
+  ContactMotion m;
+  const Vec3 axle = rim.orientation * Vec3::UnitY();
+  m.axes = wheel_axes(rim, axle.cross(Vec3::UnitZ()).normalized(), 0.0);
+  m.deflection = tire.dimension.unloaded_radius - m.axes.loaded_radius;
+  const double spin = rim.angular_velocity.dot(axle), cosine = std::cos(m.axes.camber_angle);
+  const Vec3 carried = rim.velocity + (rim.angular_velocity - spin * axle).cross(m.axes.origin - rim.position);
+  m.rate = -carried.z() / cosine;
+  m.travel = carried.dot(m.axes.x);
+  m.slip_x = m.travel - spin * rolling_radius(tire, std::max(0.0, m.deflection));
+  m.slip_y = carried.dot(m.axes.y);
+  if (m.deflection > 0.0)
+    m.load = std::max(0.0, tire.vertical.vertical_stiffness * m.deflection + tire.vertical.vertical_damping * m.rate) /
+             cosine;
+  return m;
+}
+
+PatchState advanced(const MagicFormula& tire, const ContactMotion& motion, const PatchState& patch, double duration) {
+  FURROW_ASSERT(duration >= 0.0, duration);
+  if (!(motion.load > 0.0)) return {};
+  const RelaxationLengths s = lengths_of(tire, motion);
+  const double speed = std::abs(motion.travel);
+  PatchState next;
+  if (s.longitudinal > 0.0)
+    next.along = std::clamp(relaxed(patch.along, motion.slip_x, speed, s.longitudinal, duration),
+                            tire.slip.least * s.longitudinal, tire.slip.most * s.longitudinal);
+  if (s.lateral > 0.0)
+    next.across = std::clamp(relaxed(patch.across, motion.slip_y, speed, s.lateral, duration),
+                             -std::tan(tire.slip_angle.most) * s.lateral, -std::tan(tire.slip_angle.least) * s.lateral);
+  return next;
+}
+
+HandlingForces contact_forces(const MagicFormula& tire, const ContactMotion& motion, const PatchState& patch) {
+  if (!(motion.load > 0.0)) return {};
+  const RelaxationLengths s = lengths_of(tire, motion);
+  SlipState at{.load = motion.load, .camber = motion.axes.camber_angle, .speed = motion.travel};
+  const double speed = std::max(std::abs(motion.travel), tire.low_speed);
+  const HandlingForces still = evaluate(tire, at);
+  at.slip = s.longitudinal > 0.0
+                ? patch.along / s.longitudinal -
+                      standing(tire, motion, still.slip_stiffness, s.longitudinal) * motion.slip_x
+                : -motion.slip_x / speed;
+  const double tangent =
+      s.lateral > 0.0 ? -patch.across / s.lateral +
+                            standing(tire, motion, -still.cornering_stiffness, s.lateral) * motion.slip_y
+                      : motion.slip_y / speed;
+  at.slip_angle = std::atan(tangent);
+  HandlingForces f = evaluate(tire, at);
+  // Rolling resistance turns with the wheel's direction, and is none at rest.
+  f.my *= std::clamp(motion.travel / tire.low_speed, -1.0, 1.0);
+  return f;
+}
+
+}  // namespace furrow::tire::handling

@@ -3,6 +3,7 @@
 
 #include "nodes/study/calibrate_kind.hpp"
 #include "nodes/study/calibrate_press.hpp"
+#include "nodes/study/calibrate_scm.hpp"
 #include "nodes/study/calibrate_smooth.hpp"
 
 namespace furrow::study {
@@ -11,6 +12,7 @@ namespace {
 constexpr auto kKinds = std::to_array<CalibrationKind>({
     {"ring", "a tire file", ring_parameters, read_ring_calibration, optimize_smooth},
     {"planar", "a tire file", planar_parameters, read_planar_calibration, optimize_smooth},
+    {"scm", "a soil file", scm_parameters, read_scm_calibration, optimize_smooth},
 });
 
 }  // namespace

@@ -12,6 +12,7 @@
 
 #include "protocol/files/data_files.hpp"
 #include "tests/nodes/calibrate_examples.hpp"
+#include "tire/press.hpp"
 #include "tire/ring/ring_spec.hpp"
 
 namespace furrow::study {
@@ -19,6 +20,7 @@ namespace {
 
 using namespace testing;
 using nlohmann::json;
+using Ordered = nlohmann::ordered_json;  // parameters in the order of the file
 
 /// The flexible ring on a plate from its energy alone (tire/ring/ring_mechanics.hpp, (1) to (4)), with dense matrices and a
 /// penalty in place of contact: nothing of tire/ring but the numbers of the file takes part.
@@ -92,7 +94,7 @@ class CalibrateRing : public ::testing::Test {
     file_["segments"] = 60;
     write("ring.json", file_);
   }
-  void write(const std::string& name, const json& content) { std::ofstream(folder_.path() / name) << content.dump(); }
+  void write(const std::string& name, const Ordered& content) { std::ofstream(folder_.path() / name) << content.dump(); }
   /// Forces of the other program with the file's values, and normal noise.
   void write_curve(const std::string& name, double pressure, double noise, std::uint64_t seed) {
     tire::RingParams p = tire::read_ring_file(file_, "ring.json").params;
@@ -105,7 +107,7 @@ class CalibrateRing : public ::testing::Test {
     for (const double x : steps(0.003, 0.045, 15))
       csv << fmt::format("{:.17g},{:.17g},{}\n", x, ring.press(x) + noise * normal(bits), noise > 0.0 ? noise : 1.0);
   }
-  Calibration study(const json& parameters, int starts = 1) {
+  Calibration study(const Ordered& parameters, int starts = 1) {
     write("study.json", {{"calibrate", "ring"},
                          {"start", "ring.json"},
                          {"parameters", parameters},
@@ -121,12 +123,11 @@ class CalibrateRing : public ::testing::Test {
 
 TEST_F(CalibrateRing, parameters_are_found_again_from_curves_of_another_program) {
   write_curve("low.csv", 1e5, 0.0, 1), write_curve("high.csv", 3e5, 0.0, 1);
-  const Calibration c = study({{"sidewall_1", {{"start", 3e5}}}, {"bending", {{"start", 1e3}}}, {"air_share", {{"start", 0.8}}}}, 3);
+  const Calibration c = study({{"sidewall_1", {{"start", 6e5}}}, {"air_share", {{"start", 0.7}}}}, 2);
   const CalibrationResults results = calibrated(c);
   EXPECT_NEAR(results.values[0] / 8.84e5, 1.0, 2e-3);
-  EXPECT_NEAR(results.values[1] / 146.0, 1.0, 5e-2);
-  EXPECT_NEAR(results.values[2] / 0.55, 1.0, 2e-2);
-  EXPECT_GT(joint_r_squared(c.model->targets(TargetSet::fitted), results.fitted.values), 0.999999);
+  EXPECT_NEAR(results.values[1] / 0.55, 1.0, 2e-2);
+  EXPECT_GT(joint_r_squared(c.model->targets(TargetSet::fitted), results.fitted.values), 0.99999);
 }
 
 TEST_F(CalibrateRing, intervals_cover_what_made_noisy_curves) {
@@ -156,7 +157,7 @@ TEST_F(CalibrateRing, the_fitted_file_presses_as_the_calibration_predicts) {
   options.file = folder_.path() / "fitted.json";
   options.pressure.knots = {{0.0, 1e5}};
   tire::PressOptions press;
-  press.unload = false, press.points = 15, press.deflection = 0.045, press.at = c.model->targets(TargetSet::fitted)[0].x;
+  press.unload = false, press.load = INFINITY, press.points = 15, press.deflection = 0.045, press.at = c.model->targets(TargetSet::fitted)[0].x;
   const auto curve = tire::read_ring(fitted, options)->static_test()->press(press, {}).loading;
   ASSERT_EQ(curve.size(), 16u);
   for (int k = 0; k < 15; ++k) EXPECT_EQ(curve[k + 1].force, results.fitted.values[k]);

@@ -193,7 +193,7 @@ class Noisy {
     const int count = std::min(3 * static_cast<int>(size_), options_.evaluations - 3);
     for (const Eigen::VectorXd& place : design(Eigen::Map<const Eigen::VectorXd>(start.data(), size_), count, draw_)) evaluate(place);
     require_answers();
-    Eigen::VectorXd before;  // the least before, where it was evaluated
+    Eigen::VectorXd before;  // the least before this one
     std::string ended;
     for (;;) {
       Misfit misfit = fit();
@@ -202,12 +202,10 @@ class Noisy {
       if (before.size() > 0 && stays(misfit, before, least.place)) ended = "converged";
       else if (asked_ >= options_.evaluations) ended = "all evaluations are used";
       if (!ended.empty()) return result(misfit, ended);
-      before.resize(0);
-      if (distance(least.place) < kSame) {
-        evaluate(least_certain(misfit, least.place));
-      } else if (evaluate(least.place)) {
-        before = least.place;
-      }
+      // Where the least is known already, what is around it tells more.
+      const bool known = distance(least.place) < kSame;
+      const bool answered = evaluate(known ? least_certain(misfit, least.place) : least.place);
+      before = known || answered ? least.place : Eigen::VectorXd();
     }
   }
 

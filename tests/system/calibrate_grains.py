@@ -34,7 +34,7 @@ class CalibrateGrains(SystemTest):
         # Before anything is computed.
         self.assertIn("janosi_K_m of 1 mm cannot be reached with grains of 20 mm diameter", err)
         before = table.read_text()
-        done = furrow("calibrate", "study.json", "--out", "out", cwd=self.folder)
+        done = furrow("calibrate", "study.json", "--out", "out", cwd=self.folder, timeout=300)
         self.assertEqual((done.returncode, done.stdout), (0, "out\n"), done.stderr)
         self.assertTrue(table.read_text().startswith(before))
         rows = self.rows()

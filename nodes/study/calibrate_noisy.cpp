@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <glog/logging.h>
 
+#include "nodes/study/calibrate_budget.hpp"
 #include "nodes/study/calibrate_surrogate.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
@@ -335,9 +336,6 @@ class Noisy {
 };
 
 }  // namespace
-
-int least_evaluations(std::size_t parameters) { return 2 * static_cast<int>(parameters) + 4; }
-int usual_evaluations(std::size_t parameters) { return 6 * static_cast<int>(parameters) + 4; }
 
 Optimum optimize_noisy(Objective& objective, const OptimizerOptions& options) {
   FURROW_ASSERT(options.evaluations >= least_evaluations(objective.parameters()), options.evaluations);

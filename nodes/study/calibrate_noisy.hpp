@@ -15,10 +15,6 @@
 
 namespace furrow::study {
 
-/// Evaluations that a study of so many parameters needs at least, and takes where it says nothing.
-int least_evaluations(std::size_t parameters);
-int usual_evaluations(std::size_t parameters);
-
 /// Asks for at most options.evaluations predictions of the fitted targets. The place that it ends at is one of them.
 /// @throws Error(stopped) from the objective, Error(physics) where the model answers at too few places
 Optimum optimize_noisy(Objective& objective, const OptimizerOptions& options);

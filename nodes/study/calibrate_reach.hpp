@@ -7,7 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "nodes/study/calibrate.hpp"
+#include "nodes/study/calibrate_kind.hpp"
+#include "nodes/study/calibrate_optimum.hpp"
 
 namespace furrow::study {
 

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "nodes/study/calibrate_noisy.hpp"
+#include "nodes/study/calibrate_budget.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/core/hash.hpp"
 #include "protocol/files/data_files.hpp"

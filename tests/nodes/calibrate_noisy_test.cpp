@@ -7,6 +7,7 @@
 #include <random>
 #include <set>
 
+#include "nodes/study/calibrate_budget.hpp"
 #include "nodes/study/calibrate_reach.hpp"
 #include "nodes/study/calibrate_surrogate.hpp"
 #include "protocol/core/error.hpp"

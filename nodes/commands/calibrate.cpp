@@ -51,9 +51,10 @@ std::string result_text(const Json& summary) {
   for (const auto& [name, p] : summary["parameters"].items()) {
     const double value = p["value"].get<double>();
     const Json& error = p["standard_error"];
-    text += fmt::format("furrow: {} {} {}{}\n", name,
+    const std::string unit = p["unit"].get<std::string>();
+    text += fmt::format("furrow: {} {}{}{}\n", name,
                         error.is_number() ? with_error(value, error.get<double>()) : digits(value),
-                        p["unit"].get<std::string>(),
+                        unit == "-" ? "" : " " + unit,
                         p["at_bound"].is_string() ? fmt::format(", its {} bound", p["at_bound"].get<std::string>())
                         : error.is_number()       ? ""
                                                   : ", not determined");

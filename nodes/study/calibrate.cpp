@@ -18,14 +18,13 @@ CalibrationResults calibrate(const Calibration& calibration, const std::filesyst
   std::vector<std::string> names;
   for (const Parameter& p : calibration.parameters) names.push_back(p.name);
   EvaluationTable table(folder, calibration.digest, names);
-  double share = 0.0, best = std::numeric_limits<double>::infinity();
+  double share = 0.0;
   const auto tell = [&](const std::string&, double) {
-    if (!progress) return;
-    progress(std::isfinite(best) ? fmt::format("calibrating, sum of squares {}", digits(best)) : "calibrating", share);
+    if (progress) progress("calibrating", share);
   };
   Objective objective(calibration, table, tell);
-  const OptimizerOptions options{calibration.starts, calibration.seed, calibration.evaluations, [&](double done, double squares) {
-                                   share = done, best = squares;
+  const OptimizerOptions options{calibration.starts, calibration.seed, calibration.evaluations, [&](double done) {
+                                   share = done;
                                    tell("", 0.0);
                                  }};
   CalibrationResults results;
@@ -51,10 +50,10 @@ std::vector<std::string> calibration_warnings(const Calibration& calibration, co
   for (std::size_t k = 0; k < calibration.parameters.size(); ++k) {
     const Parameter& p = calibration.parameters[k];
     if (c.estimates[k].at == Bound::none) continue;
-    warnings.push_back(fmt::format("{} ends at its {} bound of {} {}: its error is not known, and the data ask for more or do "
+    warnings.push_back(fmt::format("{} ends at its {} bound of {}{}: its error is not known, and the data ask for more or do "
                                    "not determine it",
                                    p.name, c.estimates[k].at == Bound::lower ? "lower" : "upper",
-                                   digits(c.estimates[k].value), p.unit));
+                                   digits(c.estimates[k].value), p.unit == "-" ? "" : " " + p.unit));
   }
   for (const Undetermined& u : c.undetermined)
     warnings.push_back(fmt::format(

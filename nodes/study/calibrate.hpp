@@ -33,7 +33,7 @@ struct CalibrationResults {
 };
 
 /// @param folder of the results; its table of evaluations is read and continued
-/// @param progress what is done, 0…1, and a line of words; called before each evaluation too, and may throw to stop
+/// @param progress what is done, 0…1; called before each evaluation too, and may throw to stop
 /// @throws Error(bad_input) when the folder holds another calibration or the model has no answer to the start's own
 /// values for a reason of input, Error(physics) when it has none anywhere, Error(stopped)
 CalibrationResults calibrate(const Calibration& calibration, const std::filesystem::path& folder,

@@ -5,6 +5,7 @@
 #include "nodes/study/calibrate_kind.hpp"
 #include "nodes/study/calibrate_noisy.hpp"
 #include "nodes/study/calibrate_press.hpp"
+#include "nodes/study/calibrate_scm.hpp"
 #include "nodes/study/calibrate_smooth.hpp"
 
 namespace furrow::study {
@@ -13,6 +14,7 @@ namespace {
 constexpr auto kKinds = std::to_array<CalibrationKind>({
     {"ring", "a tire file", ring_parameters, read_ring_calibration, optimize_smooth},
     {"planar", "a tire file", planar_parameters, read_planar_calibration, optimize_smooth},
+    {"scm", "a soil file", scm_parameters, read_scm_calibration, optimize_smooth},
     {"grains", "a scenario with grains", grain_parameters, read_grain_calibration, optimize_noisy, true, kGrainKeys},
 });
 

@@ -199,7 +199,7 @@ class Noisy {
     for (;;) {
       Misfit misfit = fit();
       Least least = minimise(misfit, before);
-      if (options_.progress) options_.progress(share(), least.squares);
+      if (options_.progress) options_.progress(share());
       if (before.size() > 0 && stays(misfit, before, least.place)) ended = "converged";
       else if (asked_ >= options_.evaluations) ended = "all evaluations are used";
       if (!ended.empty()) return result(misfit, ended);
@@ -216,7 +216,7 @@ class Noisy {
 
   /// @returns whether the model has an answer
   bool evaluate(const Eigen::VectorXd& place) {
-    if (options_.progress) options_.progress(share(), best_);
+    if (options_.progress) options_.progress(share());
     const Prediction& found = objective_.predict(list(place));
     ++asked_;
     all_.push_back(place);
@@ -271,7 +271,6 @@ class Noisy {
       }
       weighed = least.place;
     }
-    best_ = least.squares;
     return least;
   }
 
@@ -328,7 +327,6 @@ class Noisy {
   Draw draw_;
   Eigen::Index size_;
   int asked_ = 0;
-  double best_ = std::numeric_limits<double>::infinity();
   Places all_, places_;             // asked for; with an answer
   std::vector<Prediction> found_;   // at places_
   std::string problem_;

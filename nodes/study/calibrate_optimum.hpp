@@ -15,8 +15,7 @@ struct OptimizerOptions {
   int starts = 1;          // the first at the parameters' own start, the others anywhere within the bounds
   std::uint64_t seed = 1;  // of the others
   int evaluations = 0;     // of a noisy model at most
-  /// Called now and then with what is done, 0…1, and the smallest sum of squares so far.
-  std::function<void(double share, double best)> progress = {};
+  std::function<void(double share)> progress = {};  // called now and then with what is done, 0…1
 };
 
 /// How one start went. Places are on the scales from 0 to 1.

@@ -2,7 +2,8 @@
 //
 // A target names a CSV file with the columns deflection_m and force_N, as press.csv of `furrow press` has them, and maybe
 // sigma_N, the force's standard error. Lines of unloading are left out, and those without deflection. A prediction is
-// what `furrow press` gives for the fitted file, to the last bit: both go through the tire's reader and its static test.
+// what `furrow press` gives for the fitted file, to the tolerance of its solver: both go through the tire's reader and its
+// static test.
 #pragma once
 
 #include <memory>

@@ -17,8 +17,9 @@ namespace {
 constexpr int kMostIterations = 200;
 constexpr int kMostRounds = 8;       // of holding and letting go
 constexpr int kMostDraws = 100;      // for a random start where the model answers
+constexpr int kMostPolish = 3;       // undamped steps at the end
 constexpr double kAtBound = 1e-9;    // of the scale
-constexpr double kTolerance = 1e-12; // of the sum of squares
+constexpr double kTolerance = 1e-9;  // of the sum of squares
 
 /// Residuals for Ceres: every parameter a block of its own, so that each may be held.
 class Residuals final : public ceres::CostFunction {
@@ -56,10 +57,10 @@ class Residuals final : public ceres::CostFunction {
 };
 
 struct Told final : ceres::IterationCallback {
-  std::function<void(int iteration, double squares)> tell;
+  std::function<void(int iteration)> tell;
   std::exception_ptr thrown;
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override try {
-    if (tell) tell(summary.iteration, 2.0 * summary.cost);
+    if (tell) tell(summary.iteration);
     return ceres::SOLVER_CONTINUE;
   } catch (...) {  // not through Ceres
     thrown = std::current_exception();
@@ -74,7 +75,7 @@ bool pushed(double share, double gradient) {
 
 class Solver {
  public:
-  Solver(Objective& objective, std::function<void(int, double)> tell) : objective_(objective) {
+  Solver(Objective& objective, std::function<void(int)> tell) : objective_(objective) {
     told_.tell = std::move(tell);
   }
 
@@ -98,7 +99,10 @@ class Solver {
       const Eigen::VectorXd gradient = J->transpose() * *r;
       std::vector<bool> now(held.size());
       for (std::size_t k = 0; k < now.size(); ++k) now[k] = pushed(result.end[k], gradient[static_cast<Eigen::Index>(k)]);
-      if (now == held) break;
+      if (now == held) {
+        polish(result, held, *r, *J);
+        break;
+      }
       held = now;
       if (std::all_of(held.begin(), held.end(), [](bool h) { return h; })) break;
     }
@@ -106,6 +110,27 @@ class Solver {
   }
 
  private:
+  /// Steps of Gauss and Newton without damping, as long as they make it better: the last digits that damped steps leave.
+  void polish(StartResult& result, const std::vector<bool>& held, Eigen::VectorXd r, Eigen::MatrixXd J) {
+    for (int n = 0; n < kMostPolish; ++n) {
+      for (std::size_t k = 0; k < held.size(); ++k)
+        if (held[k]) J.col(static_cast<Eigen::Index>(k)).setZero();
+      const Eigen::VectorXd step = J.completeOrthogonalDecomposition().solve(-r);
+      std::vector<double> place = result.end;
+      bool inside = true;
+      for (std::size_t k = 0; k < place.size(); ++k) {
+        if (!held[k]) place[k] += step[static_cast<Eigen::Index>(k)];
+        inside = inside && place[k] >= 0.0 && place[k] <= 1.0;
+      }
+      const auto better = inside ? objective_.residuals(place) : std::nullopt;
+      if (!better || !(better->squaredNorm() < *result.squares)) return;
+      result.end = place, result.squares = better->squaredNorm();
+      const auto next = objective_.jacobian(place, *better);
+      if (!next) return;
+      r = *better, J = *next;
+    }
+  }
+
   std::string solve(std::vector<double>& place, const std::vector<bool>& held, int& iterations) {
     Residuals residuals(objective_);
     ceres::Problem::Options of_problem;
@@ -126,7 +151,7 @@ class Solver {
     options.linear_solver_type = ceres::DENSE_QR;
     options.max_num_iterations = kMostIterations;
     options.function_tolerance = kTolerance;
-    options.parameter_tolerance = 1e-10;
+    options.parameter_tolerance = 1e-9;
     options.gradient_tolerance = 1e-12;
     options.num_threads = 1;
     options.logging_type = ceres::SILENT;
@@ -169,10 +194,10 @@ Optimum optimize_smooth(Objective& objective, const OptimizerOptions& options) {
   Draw draw(options.seed);
   double best = std::numeric_limits<double>::infinity();
   for (int k = 0; k < options.starts; ++k) {
-    const auto tell = [&](int iteration, double squares) {
+    const auto tell = [&](int iteration) {
       // Few starts need many iterations: half of a start is done after 20 of them.
       const double part = iteration / (iteration + 20.0);
-      if (options.progress) options.progress((k + part) / options.starts, std::min(best, squares));
+      if (options.progress) options.progress((k + part) / options.starts);
     };
     std::vector<double> begin = k == 0 ? objective.start() : draw(objective);
     const StartResult result = Solver(objective, tell).from(std::move(begin));

@@ -18,7 +18,8 @@ constexpr double kAtBound = 1e-6;       // of the scale
 constexpr double kWide = 0.5;           // of the scale
 constexpr double kDegenerate = 1e-6;    // of the largest singular value: differences say no more
 constexpr double kNormal = 1.959964;    // 97.5 % point of the normal distribution
-constexpr double kNamed = 0.1;          // of a direction
+constexpr double kNoValue = 1.0;        // of the scale: an interval as wide says nothing
+constexpr double kNamed = 0.02;         // of a direction
 
 struct Sums {
   double off = 0.0, total = 0.0;
@@ -95,12 +96,11 @@ Confidence confidence(std::span<const Parameter> parameters, std::span<const dou
   for (std::size_t k = 0; k < free.size(); ++k) {
     const auto which = static_cast<std::size_t>(free[k]);
     const double error = std::sqrt(variance[static_cast<Eigen::Index>(k)]);
-    if (!std::isfinite(error)) continue;
+    if (!(t * error < kNoValue)) continue;
     Estimate& e = c.estimates[which];
     const Parameter& p = parameters[which];
     e.standard_error = error * p.slope(place[which]);
-    const double low = p.off_scale(place[which] - t * error), high = p.off_scale(place[which] + t * error);
-    if (std::isfinite(low) && std::isfinite(high)) e.low = low, e.high = high;
+    e.low = p.off_scale(place[which] - t * error), e.high = p.off_scale(place[which] + t * error);
   }
   return c;
 }

@@ -8,7 +8,8 @@
 // then these intervals are too narrow.
 //
 // The data do not determine a combination v where its 95 % interval t σ̂/w is half of the scale or more, or where w is
-// below 1e-6 of the largest: then even data without error would not.
+// below 1e-6 of the largest: then even data without error would not. A parameter whose own interval is as wide as its
+// scale on either side has none.
 //
 // [Seber & Wild 2003] Nonlinear Regression, Wiley.
 #pragma once
@@ -53,7 +54,7 @@ struct Confidence {
 Confidence confidence(std::span<const Parameter> parameters, std::span<const double> place,
                       const Eigen::VectorXd& residuals, const Eigen::MatrixXd& jacobian, bool known_errors = false);
 
-/// "0.71 bending − 0.70 shear": what is above a tenth, largest first.
+/// "0.71 bending − 0.70 shear": what is above a fiftieth, largest first.
 std::string combination_text(std::span<const Parameter> parameters, std::span<const double> direction);
 
 /// How well values meet data.

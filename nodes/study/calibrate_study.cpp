@@ -187,6 +187,7 @@ Calibration load_calibration(const std::filesystem::path& file) {
   c.name = file.stem().string();
   c.description = reader.text_or("description", "");
   c.kind = &kind;
+  if (!reader.given("start")) reader.fail("start", fmt::format("is missing, expected {}", c.kind->start));
   c.start = find_file(reader.text("start"), "start", file);
   (void)reader.child("parameters");
   c.parameters = parameters_of(reader, *c.kind);

@@ -25,7 +25,8 @@ class Calibration:
                         fontsize=11, x=0.01, ha="left", fontweight="bold")
 
     def targets(self):
-        """What calibration.json says of each target, with its points: x, data, sigma, model (NaN: no answer), labels."""
+        """What calibration.json says of each target, with x_name and y_name, and its points: x, data, sigma, model (NaN: no answer),
+        labels."""
         points = {}
         with open(self.directory / "fit.csv", newline="", encoding="utf-8") as file:
             for row in csv.DictReader(file):
@@ -37,7 +38,7 @@ class Calibration:
                 if not rows:
                     raise Missing(f"fit.csv has no points of {told.get('name')}")
                 columns = {name: np.array([float(row[name] or "nan") for row in rows]) for name in ("x", "data", "sigma", "model")}
-                found.append({**told, **columns, "held_out": key == "held_out_targets", "labels": [row["label"] for row in rows]})
+                found.append({**told, "x_name": told.get("x"), "y_name": told.get("y"), **columns, "held_out": key == "held_out_targets", "labels": [row["label"] for row in rows]})
         if not found:
             raise Missing("there are no targets")
         return found
@@ -57,7 +58,7 @@ def panels_of(targets):
     groups = {}
     for target in targets:
         alone = target["name"] if any(target["labels"]) else ""
-        groups.setdefault((target.get("x"), target.get("y"), alone), []).append(target)
+        groups.setdefault((target["x_name"], target["y_name"], alone), []).append(target)
     return groups
 
 

@@ -12,6 +12,7 @@
 
 #include "protocol/files/data_files.hpp"
 #include "tests/nodes/calibrate_examples.hpp"
+#include "tire/press.hpp"
 #include "tire/ring/ring_spec.hpp"
 
 namespace furrow::study {
@@ -19,6 +20,7 @@ namespace {
 
 using namespace testing;
 using nlohmann::json;
+using Ordered = nlohmann::ordered_json;  // parameters in the order of the file
 
 /// The flexible ring on a plate from its energy alone (tire/ring/ring_mechanics.hpp, (1) to (4)), with dense matrices and a
 /// penalty in place of contact: nothing of tire/ring but the numbers of the file takes part.
@@ -92,7 +94,7 @@ class CalibrateRing : public ::testing::Test {
     file_["segments"] = 60;
     write("ring.json", file_);
   }
-  void write(const std::string& name, const json& content) { std::ofstream(folder_.path() / name) << content.dump(); }
+  void write(const std::string& name, const Ordered& content) { std::ofstream(folder_.path() / name) << content.dump(); }
   /// Forces of the other program with the file's values, and normal noise.
   void write_curve(const std::string& name, double pressure, double noise, std::uint64_t seed) {
     tire::RingParams p = tire::read_ring_file(file_, "ring.json").params;
@@ -105,7 +107,7 @@ class CalibrateRing : public ::testing::Test {
     for (const double x : steps(0.003, 0.045, 15))
       csv << fmt::format("{:.17g},{:.17g},{}\n", x, ring.press(x) + noise * normal(bits), noise > 0.0 ? noise : 1.0);
   }
-  Calibration study(const json& parameters, int starts = 1) {
+  Calibration study(const Ordered& parameters, int starts = 1) {
     write("study.json", {{"calibrate", "ring"},
                          {"start", "ring.json"},
                          {"parameters", parameters},
@@ -156,7 +158,7 @@ TEST_F(CalibrateRing, the_fitted_file_presses_as_the_calibration_predicts) {
   options.file = folder_.path() / "fitted.json";
   options.pressure.knots = {{0.0, 1e5}};
   tire::PressOptions press;
-  press.unload = false, press.points = 15, press.deflection = 0.045, press.at = c.model->targets(TargetSet::fitted)[0].x;
+  press.unload = false, press.load = INFINITY, press.points = 15, press.deflection = 0.045, press.at = c.model->targets(TargetSet::fitted)[0].x;
   const auto curve = tire::read_ring(fitted, options)->static_test()->press(press, {}).loading;
   ASSERT_EQ(curve.size(), 16u);
   for (int k = 0; k < 15; ++k) EXPECT_EQ(curve[k + 1].force, results.fitted.values[k]);

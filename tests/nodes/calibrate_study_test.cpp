@@ -16,7 +16,7 @@ namespace furrow::study {
 namespace {
 
 using namespace testing;
-using nlohmann::json;
+using json = nlohmann::ordered_json;  // parameters in the order of the file
 
 std::string text_of(const std::filesystem::path& file) {
   std::ostringstream text;
@@ -28,7 +28,7 @@ class CalibrateStudy : public ::testing::Test {
  protected:
   void write(const std::string& name, const std::string& text) { std::ofstream(folder_.path() / name) << text; }
   void SetUp() override {
-    write("plate.csv", "# by hand\ndeflection_m,force_N\n0,0\n0.01,2000\n0.02,5000\n0.03,9000\n");
+    write("plate.csv", "# by hand\ndeflection_m,force_N\n0,0\n0.01,2000\n0.02,5000\n0.03,9000\n0.04,14000\n");
     write("cleat.csv", "deflection_m,force_N,sigma_N\n0.01,500,20\n0.02,1000,20\n0.03,1600,20\n");
   }
   static json good() {
@@ -64,8 +64,8 @@ TEST_F(CalibrateStudy, a_study_is_read_with_its_defaults) {
   EXPECT_EQ(c.parameters[0].start, 8.84e5);  // of the tire's file
   EXPECT_TRUE(c.parameters[0].logarithmic);
   const Target& plate = c.model->targets(TargetSet::fitted).front();
-  EXPECT_EQ(plate.x, (std::vector<double>{0.01, 0.02, 0.03}));  // a point without deflection tells nothing
-  EXPECT_EQ(plate.sigma, std::vector<double>(3, 90.0));         // a hundredth of the largest
+  EXPECT_EQ(plate.x, (std::vector<double>{0.01, 0.02, 0.03, 0.04}));  // a point without deflection tells nothing
+  EXPECT_EQ(plate.sigma, std::vector<double>(4, 140.0));        // a hundredth of the largest
   EXPECT_EQ(plate.what, "plate, 200 kPa");
   EXPECT_EQ(c.model->targets(TargetSet::held_out).front().sigma, std::vector<double>(3, 20.0));
 }
@@ -92,7 +92,7 @@ TEST_F(CalibrateStudy, wrong_studies_are_refused_with_file_and_key) {
       {"/parameters/bendin", json::object(), "key 'parameters.bendin': is unknown, expected 'bending'?"},
       {"/parameters/bending", 5, "key 'parameters.bending': is 5, expected an object"},
       {"/parameters/bending/low", 5, "key 'parameters.bending.low': is unknown, expected 'lower'?"},
-      {"/parameters/bending/lower", -5, "key 'parameters.bending.lower': is -5, expected 1e-09 to"},
+      {"/parameters/bending/lower", -5, "key 'parameters.bending.lower': is -5, expected 1e-9 to"},
       {"/parameters/bending/lower", "a", "key 'parameters.bending.lower'"},
       {"/parameters/bending/upper", 0.5, "key 'parameters.bending.upper': is 0.5, expected more than lower"},
       {"/parameters/bending/start", 1e7, "key 'parameters.bending.start': is 1e7, expected a value from lower to upper"},
@@ -104,12 +104,12 @@ TEST_F(CalibrateStudy, wrong_studies_are_refused_with_file_and_key) {
       {"/targets/0", "plate.csv", "key 'targets[0]': is 'plate.csv', expected an object"},
       {"/targets/0/data", "none.csv", "key 'targets[0].data'"},
       {"/targets/0/data", "empty.csv", "empty.csv: has no point of loading"},
-      {"/targets/0/data", "falling.csv", "falling.csv: line 3: deflection_m is 0.01, expected more"},
-      {"/targets/0/data", "words.csv", "words.csv: line 2"},
-      {"/targets/0/data", "columns.csv", "columns.csv: line 1: column 'force_kN' is unknown, expected 'force_N'?"},
-      {"/targets/0/data", "no_force.csv", "no_force.csv: line 2: has no column 'force_N'"},
-      {"/targets/0/data", "sigma.csv", "sigma.csv: line 2: sigma_N is 0, expected above 0"},
-      {"/targets/0/data", "deep.csv", "deep.csv: line 2: deflection_m is 0.3, expected 0 to 0.2"},
+      {"/targets/0/data", "falling.csv", "falling.csv: key 'line 3': deflection_m is 0.01, expected more"},
+      {"/targets/0/data", "words.csv", "words.csv: key 'line 2'"},
+      {"/targets/0/data", "columns.csv", "columns.csv: key 'line 1': column 'force_kN' is unknown, expected 'force_N'?"},
+      {"/targets/0/data", "no_force.csv", "no_force.csv: key 'line 2': has no column 'force_N'"},
+      {"/targets/0/data", "sigma.csv", "sigma.csv: key 'line 2': sigma_N is 0, expected above 0"},
+      {"/targets/0/data", "deep.csv", "deep.csv: key 'line 2': deflection_m is 0.3, expected 0 to 0.2"},
       {"/targets/0/on", "floor", "key 'targets[0].on': is 'floor', expected 'plate' or 'cleat'"},
       {"/targets/0/cleat_width", 0.05, "key 'targets[0].cleat_width': is given on a plate"},
       {"/targets/0/pressure", -1, "key 'targets[0].pressure'"},
@@ -141,7 +141,7 @@ TEST_F(CalibrateStudy, wrong_studies_are_refused_with_file_and_key) {
   EXPECT_NE(complaint(both).find("key 'parameters.softening': is given with sidewall_2"), std::string::npos);
   json many = good();
   for (const char* name : {"shear", "sidewall_3", "air_share"}) many["parameters"][name] = json::object();
-  EXPECT_NE(complaint(many).find("has 3 points, expected more than there are parameters, 5"), std::string::npos);
+  EXPECT_NE(complaint(many).find("has 4 points, expected more than there are parameters, 5"), std::string::npos);
   json planar = good();
   planar["calibrate"] = "planar", planar["start"] = "aligator_planar.json";
   planar["parameters"] = {{"young_modulus", json::object()}};

@@ -3,7 +3,7 @@
 which it predicts: tire/data/press_<tire>_<case>.csv, and the contact pressure along the shell's centre line,
 ring_targets_pressure.csv beside this script.
 
-usage: ring_targets.py [--run] [--tire lumped] [--mesh 180x48] [--only CASE …]
+usage: ring_targets.py [--run] [--tire lumped] [--mesh 90x24] [--only CASE …]
 
 --run presses first what this build of the program has not pressed yet (see CASES).
 """
@@ -86,7 +86,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--run", action="store_true")
     parser.add_argument("--tire", default="lumped", choices=("lumped", "layered"))
-    parser.add_argument("--mesh", default="180x48")
+    parser.add_argument("--mesh", default="90x24")
     parser.add_argument("--only", nargs="+", choices=CASES, default=list(CASES))
     arguments = parser.parse_args()
     made_at = provenance.commit()

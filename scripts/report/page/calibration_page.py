@@ -57,7 +57,7 @@ def curves(run, arrays):
     for target in run.targets():
         if any(target["labels"]):
             continue
-        groups.setdefault((target.get("x"), target.get("y")), []).append(target)
+        groups.setdefault((target["x_name"], target["y_name"]), []).append(target)
     items = []
     for (x, y), members in groups.items():
         (x_words, x_unit, x_factor), (words, unit, factor) = quantity(x), quantity(y)

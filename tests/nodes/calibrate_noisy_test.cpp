@@ -148,7 +148,8 @@ TEST(OptimizeNoisy, true_parameters_lie_within_its_intervals_as_often_as_they_sa
     for (std::size_t q = 0; q < 3; ++q) reached += reach_state(results.optimum.reach[q], data[q]) == ReachState::reached ? 1 : 0;
   }
   // 95 % of 80, less three standard deviations of a binomial count (1.9), and two for the choice of the surrogates' lengths.
-  EXPECT_GE(within, 68) << within;
+  RecordProperty("within", within);
+  EXPECT_GE(within, 68);
   EXPECT_NEAR(off / kTries, 0.0, 1.0);  // kPa; one calibration scatters by 2 to 3
   EXPECT_GE(reached, 3 * kTries - 12);
 }

@@ -21,7 +21,24 @@ using Json = nlohmann::ordered_json;
 
 std::string percent(const Json& share) { return share.is_number() ? digits(100.0 * share.get<double>()) + " %" : "-"; }
 
+/// Figures of a noisy model: what was reached beside what was wanted.
+std::string figure_lines(const Json& target, const char* how) {
+  std::string text;
+  for (const Json& f : target["figures"]) {
+    const Json& told = f.contains("surrogate") ? f["surrogate"] : f;
+    if (!f.contains("evaluated")) continue;
+    const double value = (f.contains("surrogate") ? told["value"] : f["evaluated"]).get<double>();
+    const Json& error = told["standard_error"];
+    text += fmt::format("furrow: {} {} {}, target {}{}\n", how, target["name"].get<std::string>(),
+                        error.is_number() ? with_error(value, error.get<double>()) : digits(value),
+                        with_error(f["target"].get<double>(), f["sigma"].get<double>()),
+                        f.contains("state") ? ": " + f["state"].get<std::string>() : "");
+  }
+  return text;
+}
+
 std::string target_line(const Json& target, const char* how) {
+  if (target.contains("figures") && !target.contains("problem")) return figure_lines(target, how);
   if (target.contains("problem")) return fmt::format("furrow: {} {}: no answer\n", how, target["name"].get<std::string>());
   const Json& r = target["r_squared"];
   return fmt::format("furrow: {} {} ({}): R² {}, largest error {} of the peak\n", how, target["name"].get<std::string>(),
@@ -45,6 +62,9 @@ std::string result_text(const Json& summary) {
   }
   for (const Json& target : summary["targets"]) text += target_line(target, "fitted");
   for (const Json& target : summary["held_out_targets"]) text += target_line(target, "predicted");
+  if (summary.contains("processor_s"))
+    text += fmt::format("furrow: {} evaluations, {:.2g} minutes of processor time: {}\n", summary["evaluations"].get<int>(),
+                        summary["processor_s"].get<double>() / 60.0, summary["ended"].get<std::string>());
   return text;
 }
 
@@ -63,6 +83,7 @@ ExitCode calibrate_command(const CalibrateArguments& arguments) {
       files.push_back(further.name);
   directory.add(files);
   launch::say(fmt::format("furrow: calibration {}, results in {}\n", calibration.name, folder.string()));
+  for (const std::string& note : calibration.model->notes()) print_warning(note);
   try {
     launch::ProgressDisplay display;
     const study::CalibrationResults results =

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "nodes/study/calibrate_objective.hpp"
+#include "nodes/study/calibrate_reach.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/digits.hpp"
 
@@ -22,24 +23,29 @@ CalibrationResults calibrate(const Calibration& calibration, const std::filesyst
     if (progress) progress("calibrating", share);
   };
   Objective objective(calibration, table, tell);
-  const OptimizerOptions options{calibration.starts, calibration.seed, [&](double done) {
+  const OptimizerOptions options{calibration.starts, calibration.seed, calibration.evaluations, [&](double done) {
                                    share = done;
                                    tell("", 0.0);
                                  }};
   CalibrationResults results;
   results.optimum = calibration.kind->optimize(objective, options);
   const std::vector<double>& place = results.optimum.place;
-  results.confidence = confidence(calibration.parameters, place, results.optimum.residuals, results.optimum.jacobian);
+  results.confidence = confidence(calibration.parameters, place, results.optimum.residuals, results.optimum.jacobian,
+                                  results.optimum.known_errors);
   results.values = objective.values(place);
   results.fitted = objective.predict(place);
   if (!calibration.model->targets(TargetSet::held_out).empty())
     results.held_out = objective.predict(place, TargetSet::held_out);
   results.asked = objective.asked(), results.computed = objective.computed();
+  results.processor_time = table.processor_time();
   return results;
 }
 
 std::vector<std::string> calibration_warnings(const Calibration& calibration, const CalibrationResults& results) {
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = calibration.model->notes();
+  const std::vector<std::string> missed =
+      reach_warnings(calibration.model->targets(TargetSet::fitted), results.optimum.reach);
+  warnings.insert(warnings.end(), missed.begin(), missed.end());
   const Confidence& c = results.confidence;
   for (std::size_t k = 0; k < calibration.parameters.size(); ++k) {
     const Parameter& p = calibration.parameters[k];

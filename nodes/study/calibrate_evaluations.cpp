@@ -59,7 +59,7 @@ EvaluationTable::EvaluationTable(const std::filesystem::path& folder, const std:
                                  const std::vector<std::string>& parameters)
     : file_(folder / kEvaluations), parameters_(parameters.size()) {
   const std::string mark = std::string(kMark) + digest + "\n";
-  const std::string head = fmt::format("set,{},problem,values,errors\n", fmt::join(parameters, ","));
+  const std::string head = fmt::format("set,{},problem,values,errors,processor_s\n", fmt::join(parameters, ","));
   std::error_code error;
   std::string text;
   if (std::filesystem::exists(file_, error)) {
@@ -107,16 +107,18 @@ void EvaluationTable::read(const std::string& text, const std::string& head) {
       if (comma == std::string_view::npos) break;
       from = comma + 1;
     }
-    if (cells.size() != parameters_ + 4) throw damaged(fmt::format("line {} is damaged", number));
+    if (cells.size() != parameters_ + 5) throw damaged(fmt::format("line {} is damaged", number));
     std::vector<double> values;
     for (std::size_t k = 0; k < parameters_; ++k) {
       const auto one = numbers_of(cells[k + 1]);
       if (!one || one->size() != 1) throw damaged(fmt::format("line {} is damaged", number));
       values.push_back(one->front());
     }
-    const auto found = numbers_of(cells[parameters_ + 2]), errors = numbers_of(cells[parameters_ + 3]);
-    if (!found || !errors) throw damaged(fmt::format("line {} is damaged", number));
-    known_[key_of(std::string(cells[0]), values)] = {*found, *errors, std::string(cells[parameters_ + 1])};
+    const auto found = numbers_of(cells[parameters_ + 2]), errors = numbers_of(cells[parameters_ + 3]),
+               time = numbers_of(cells[parameters_ + 4]);
+    if (!found || !errors || !time || time->size() > 1) throw damaged(fmt::format("line {} is damaged", number));
+    known_[key_of(std::string(cells[0]), values)] = {*found, *errors, std::string(cells[parameters_ + 1]),
+                                                       time->empty() ? 0.0 : time->front()};
   }
 }
 
@@ -130,12 +132,20 @@ const Prediction* EvaluationTable::find(const std::string& state, std::span<cons
   return found == known_.end() ? nullptr : &found->second;
 }
 
+double EvaluationTable::processor_time() const {
+  double sum = 0.0;
+  for (const auto& [key, prediction] : known_) sum += prediction.processor_time;
+  return sum;
+}
+
 const Prediction& EvaluationTable::add(const std::string& state, std::span<const double> values,
                                        Prediction prediction) {
   prediction.problem = cell(prediction.problem);
   const std::string key = key_of(state, values);
-  write(fmt::format("{},{},{},{}\n", key, prediction.problem, numbers_text(prediction.values),
-                    numbers_text(prediction.errors)));
+  write(fmt::format("{},{},{},{},{}\n", key, prediction.problem, numbers_text(prediction.values),
+                    numbers_text(prediction.errors),
+                    prediction.processor_time > 0.0 ? fmt::format("{:.3f}", prediction.processor_time) : ""));
+  prediction.processor_time = std::round(1e3 * prediction.processor_time) / 1e3;
   return known_[key] = std::move(prediction);
 }
 

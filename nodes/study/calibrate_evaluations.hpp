@@ -2,7 +2,9 @@
 // calibration that was interrupted takes from it what it computed before, and so ends with the same bits.
 //
 //   # furrow calibrate 1 <digest of the study>
-//   set,bending,shear,…,problem,values,errors      numbers with 17 digits; several of them with blanks between
+//   set,bending,shear,…,problem,values,errors,processor_s
+//
+// Numbers have 17 digits; several of them have blanks between. The processor's time is left out where it is not told.
 #pragma once
 
 #include <cstdio>
@@ -31,6 +33,8 @@ class EvaluationTable {
   /// Adds a line and gives it to the system. @throws Error(io)
   const Prediction& add(const std::string& state, std::span<const double> values, Prediction prediction);
   std::size_t size() const { return known_.size(); }
+  /// Of all evaluations, whenever they were made, s.
+  double processor_time() const;
 
  private:
   void read(const std::string& text, const std::string& head);

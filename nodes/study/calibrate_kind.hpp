@@ -68,6 +68,7 @@ struct Prediction {
   std::vector<double> values;  // in the units of the data
   std::vector<double> errors;  // their standard errors; empty: none
   std::string problem;         // why there are no values; empty: there are
+  double processor_time = 0.0; // that it took, s; 0: not told, as of quick models
 };
 
 /// A kind's model with its data, as a study asks for it.
@@ -86,6 +87,8 @@ class CalibrationModel {
   virtual Prediction predict(std::span<const double> values, TargetSet set, const ProgressCall& progress) = 0;
   /// The file of the fitted model. @param source one paragraph that says where it comes from
   virtual nlohmann::ordered_json fitted_file(std::span<const double> values, const std::string& source) const = 0;
+  /// What a user must know before anything is computed, such as targets that cannot be reached.
+  virtual std::vector<std::string> notes() const { return {}; }
 
  protected:
   std::vector<Target> fitted_, held_out_;
@@ -97,6 +100,7 @@ struct CalibrationInput {
   std::filesystem::path start;          // resolved
   std::vector<std::string> parameters;  // those to fit, all known to the kind, in the order of their values
   std::vector<OrderedJsonReader> targets, held_out;  // one object each; the kind takes its keys and calls finish()
+  OrderedJsonReader whole;              // the study, for the keys that are the kind's own
 };
 
 struct CalibrationKind {
@@ -107,6 +111,9 @@ struct CalibrationKind {
   std::unique_ptr<CalibrationModel> (*read)(CalibrationInput& input);
   /// The least of the objective: optimize_smooth() for models that answer within milliseconds and without noise.
   Optimum (*optimize)(Objective& objective, const OptimizerOptions& options);
+  /// Costly and noisy: the study may have the key `evaluations`, and as many parameters as points.
+  bool noisy = false;
+  std::span<const std::string_view> keys = {};  // of the study, that the kind reads from CalibrationInput::whole
 };
 
 std::span<const CalibrationKind> calibration_kinds();

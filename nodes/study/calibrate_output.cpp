@@ -8,6 +8,7 @@
 
 #include "nodes/study/calibrate.hpp"
 #include "nodes/study/calibrate_files.hpp"
+#include "nodes/study/calibrate_reach.hpp"
 #include "protocol/files/digits.hpp"
 #include "protocol/files/json_number.hpp"
 #include "protocol/files/text_file.hpp"
@@ -41,13 +42,16 @@ Json parameters_json(const Calibration& calibration, const Confidence& confidenc
   return all;
 }
 
-Json targets_json(const std::vector<Target>& targets, const Prediction& prediction) {
+Json targets_json(const std::vector<Target>& targets, const Prediction& prediction, const std::vector<Reach>& reach = {}) {
   Json all = Json::array();
   std::span<const double> rest = prediction.values;
+  std::size_t first = 0;
   for (const Target& target : targets) {
     Json json{{"name", target.name},     {"data", target.data.filename().string()},
               {"what", target.what},     {"points", target.y.size()},
               {"x", target.x_name},      {"y", target.y_name}};
+    if (!target.labels.empty()) json["figures"] = figures_json(target, prediction, first, reach);
+    first += target.y.size();
     if (!prediction.problem.empty()) {
       json["problem"] = prediction.problem;
     } else {
@@ -134,6 +138,14 @@ std::string list_of(const std::vector<Target>& targets) {
 std::string source_text(const Calibration& calibration, const CalibrationResults& results, const Json& summary) {
   std::string names;
   for (const Parameter& p : calibration.parameters) names += (names.empty() ? "" : ", ") + p.name;
+  const std::vector<Target>& fitted = calibration.model->targets(TargetSet::fitted);
+  if (!results.optimum.reach.empty()) {
+    std::string noisy = fmt::format("furrow calibrate {} of {} fitted {}: {}; {} evaluations, {:.2g} minutes of processor time. All other values are those of {}",
+                                    FURROW_VERSION, calibration.file.filename().string(), names, reach_text(fitted, results.optimum.reach),
+                                    results.optimum.evaluations, results.processor_time / 60.0, calibration.start.filename().string());
+    for (const std::string& warning : calibration_warnings(calibration, results)) noisy += ". Note: " + warning;
+    return noisy;
+  }
   std::string text = fmt::format(
       "furrow calibrate {} of {} fitted {} to {}: R² {:.5f}, largest error {:.2g} % of the peak. All other values are those of {}",
       FURROW_VERSION, calibration.file.filename().string(), names, list_of(calibration.model->targets(TargetSet::fitted)),
@@ -155,7 +167,7 @@ Json calibration_json(const Calibration& calibration, const CalibrationResults& 
             {"calibrate", calibration.kind->name},
             {"start", calibration.start.filename().string()},
             {"result", calibration.result}};
-  const Json of_fitted = targets_json(fitted, results.fitted), of_held_out = targets_json(held_out, results.held_out);
+  const Json of_fitted = targets_json(fitted, results.fitted, results.optimum.reach), of_held_out = targets_json(held_out, results.held_out);
   json["fitted"] = total_json(fitted, results.fitted, of_fitted);
   json["held_out"] = total_json(held_out, results.held_out, of_held_out);
   json["parameters"] = parameters_json(calibration, results.confidence);
@@ -166,6 +178,11 @@ Json calibration_json(const Calibration& calibration, const CalibrationResults& 
   json["deviation"] = results.confidence.deviation;
   json["degrees_of_freedom"] = results.confidence.freedom;
   json["evaluations"] = results.asked;
+  if (results.optimum.known_errors) {
+    json["evaluations"] = results.optimum.evaluations;
+    json["ended"] = results.optimum.ended;
+    json["processor_s"] = results.processor_time;
+  }
   json["starts"] = starts_json(calibration, results.optimum);
   json["warnings"] = calibration_warnings(calibration, results);
   return json;
@@ -175,7 +192,9 @@ void write_calibration(const Calibration& calibration, const CalibrationResults&
                        const std::filesystem::path& folder) {
   const Json summary = calibration_json(calibration, results);
   const std::string source = source_text(calibration, results, summary);
-  const Json file = calibration.model->fitted_file(results.values, source);
+  Json file = calibration.model->fitted_file(results.values, source);
+  if (results.optimum.known_errors)
+    file["measured"].update(measured_json(calibration.model->targets(TargetSet::fitted), results.fitted));
   write_whole_file(folder / "fit.csv", fit_table(calibration, results));
   write_whole_file(folder / calibration.result, file.dump(2) + "\n");
   if (const auto* leaves = dynamic_cast<const LeavesFiles*>(calibration.model.get()))

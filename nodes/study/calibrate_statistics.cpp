@@ -17,6 +17,7 @@ namespace {
 constexpr double kAtBound = 1e-6;       // of the scale
 constexpr double kWide = 0.5;           // of the scale
 constexpr double kDegenerate = 1e-6;    // of the largest singular value: differences say no more
+constexpr double kNormal = 1.959964;    // 97.5 % point of the normal distribution
 constexpr double kNoValue = 1.0;        // of the scale: an interval as wide says nothing
 constexpr double kNamed = 0.02;         // of a direction
 
@@ -48,7 +49,7 @@ double r_squared(const Sums& sums) {
 }  // namespace
 
 Confidence confidence(std::span<const Parameter> parameters, std::span<const double> place,
-                      const Eigen::VectorXd& residuals, const Eigen::MatrixXd& jacobian) {
+                      const Eigen::VectorXd& residuals, const Eigen::MatrixXd& jacobian, bool known_errors) {
   const auto all = static_cast<Eigen::Index>(parameters.size());
   FURROW_ASSERT(jacobian.cols() == all && jacobian.rows() == residuals.size(), jacobian.cols(), all);
   Confidence c;
@@ -61,14 +62,14 @@ Confidence confidence(std::span<const Parameter> parameters, std::span<const dou
     c.estimates.push_back(e);
   }
   c.freedom = static_cast<int>(residuals.size()) - static_cast<int>(free.size());
-  FURROW_ASSERT(c.freedom > 0, c.freedom);
-  c.deviation = residuals.norm() / std::sqrt(c.freedom);
+  FURROW_ASSERT(c.freedom > 0 || known_errors, c.freedom);
+  c.deviation = known_errors ? 1.0 : residuals.norm() / std::sqrt(c.freedom);
   if (free.empty()) return c;
   Eigen::MatrixXd J(residuals.size(), static_cast<Eigen::Index>(free.size()));
   for (std::size_t k = 0; k < free.size(); ++k) J.col(static_cast<Eigen::Index>(k)) = jacobian.col(free[k]);
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(J, Eigen::ComputeThinV);
   const Eigen::VectorXd& w = svd.singularValues();
-  const double t = student_t(c.freedom);
+  const double t = known_errors ? kNormal : student_t(c.freedom);
   Eigen::VectorXd variance = Eigen::VectorXd::Zero(J.cols());
   for (Eigen::Index i = 0; i < w.size(); ++i) {
     // A fit without residuals has no σ̂: singular values are then those of J.

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "nodes/study/calibrate_budget.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/core/hash.hpp"
 #include "protocol/files/data_files.hpp"
@@ -20,7 +21,7 @@ using Json = nlohmann::ordered_json;
 using Reader = OrderedJsonReader;
 
 constexpr int kFormatVersion = 1;
-constexpr int kMostStarts = 1000, kMostTargets = 1000, kLargestSeed = 2147483647;
+constexpr int kMostEvaluations = 1000, kMostStarts = 1000, kMostTargets = 1000, kLargestSeed = 2147483647;
 /// Names that results of a calibration have.
 constexpr const char* kTaken[] = {"calibration.json", "sweep.json", "summary.json", "scenario.json"};
 
@@ -135,6 +136,12 @@ void take_starts(std::vector<Parameter>& parameters, const CalibrationModel& mod
   }
 }
 
+int evaluations_of(Reader& reader, std::size_t parameters) {
+  const int least = least_evaluations(parameters);
+  return reader.given("evaluations") ? reader.count("evaluations", least, kMostEvaluations)
+                                     : usual_evaluations(parameters);
+}
+
 std::string result_name(Reader& reader, const Calibration& c) {
   const std::string name = reader.text_or("result", c.start.stem().string() + "_fitted.json");
   const bool taken = std::find(std::begin(kTaken), std::end(kTaken), name) != std::end(kTaken);
@@ -168,31 +175,36 @@ Calibration load_calibration(const std::filesystem::path& file) {
                       document.contains("scenario") ? "is missing: a study of runs is for 'furrow sweep'"
                                                     : "is missing, expected a calibration study");
   Reader reader(document, file.string());
-  reader.allow_only({"format_version", "description", "calibrate", "start", "parameters", "targets", "held_out", "starts",
-                     "seed", "result"});
+  const CalibrationKind& kind = kind_of(reader);
+  std::vector<std::string> keys{"format_version", "description", "calibrate", "start", "parameters", "targets",
+                                "held_out", "starts", "seed", "result"};
+  if (kind.noisy) keys.emplace_back("evaluations");
+  keys.insert(keys.end(), kind.keys.begin(), kind.keys.end());
+  reader.allow_only(keys);
   reader.check_version(kFormatVersion);
   Calibration c;
   c.file = file;
   c.name = file.stem().string();
   c.description = reader.text_or("description", "");
-  c.kind = &kind_of(reader);
+  c.kind = &kind;
   if (!reader.given("start")) reader.fail("start", fmt::format("is missing, expected {}", c.kind->start));
   c.start = find_file(reader.text("start"), "start", file);
   (void)reader.child("parameters");
   c.parameters = parameters_of(reader, *c.kind);
   c.starts = reader.given("starts") ? reader.count("starts", 1, kMostStarts) : c.starts;
   c.seed = reader.given("seed") ? static_cast<std::uint64_t>(reader.count("seed", 0, kLargestSeed)) : c.seed;
+  if (kind.noisy) c.evaluations = evaluations_of(reader, c.parameters.size());
   c.result = result_name(reader, c);
-  CalibrationInput input{file, c.start, {}, targets_of(reader, "targets", true), targets_of(reader, "held_out", false)};
+  CalibrationInput input{file, c.start, {}, targets_of(reader, "targets", true), targets_of(reader, "held_out", false), reader};
   for (const Parameter& p : c.parameters) input.parameters.push_back(p.name);
   c.model = c.kind->read(input);
   require_names(reader, *c.model);
   take_starts(c.parameters, *c.model, reader);
   std::size_t points = 0;
   for (const Target& target : c.model->targets(TargetSet::fitted)) points += target.y.size();
-  if (points <= c.parameters.size())
-    reader.fail("targets", fmt::format("has {} points, expected more than there are parameters, {}", points,
-                                       c.parameters.size()));
+  if (points < c.parameters.size() || (points == c.parameters.size() && !kind.noisy))
+    reader.fail("targets", fmt::format("has {} points, expected {} there are parameters, {}", points,
+                                       kind.noisy ? "as many as" : "more than", c.parameters.size()));
   c.digest = digest_of(c);
   return c;
 }

@@ -6,6 +6,7 @@
 //    "targets": [{"data": "plate.csv", "on": "plate", "pressure": 200e3}, …],    fitted
 //    "held_out": [{"data": "cleat_100.csv", "on": "cleat", "cleat_width": 0.1}], predicted only
 //    "starts": 8, "seed": 1,                           the start's own values and 7 random ones
+//    "evaluations": 20,                                 of a noisy model, at most
 //    "result": "my_ring.json"}                         the fitted file, in the folder of results
 #pragma once
 
@@ -29,6 +30,7 @@ struct Calibration {
   std::unique_ptr<CalibrationModel> model;
   int starts = 8;
   std::uint64_t seed = 1;
+  int evaluations = 0;  // of a noisy model at most
   std::string result;  // name of the fitted file
   /// Of all that a prediction depends on: start file, parameters, targets and the program's version.
   std::string digest;

@@ -64,7 +64,8 @@ def panels_of(targets):
 
 def figure_of(run, what):
     groups = panels_of(run.targets())
-    figure, axes = plt.subplots(1, len(groups), figsize=(7.6 if len(groups) == 1 else 5.6 * len(groups), 5.0), squeeze=False)
+    widths = [3.0 if alone else 7.6 if len(groups) == 1 else 5.6 for _, _, alone in groups]
+    figure, axes = plt.subplots(1, len(groups), figsize=(max(sum(widths), 6.0), 5.0), squeeze=False, gridspec_kw={"width_ratios": widths})
     run.title(figure, what)
     return groups, figure, axes[0]
 
@@ -78,7 +79,13 @@ def fit(run):
             if alone:
                 place = np.arange(len(target["x"]))
                 axis.errorbar(place, target["data"], target["sigma"], fmt="o", color=colour, ms=4, capsize=3, label="data")
-                axis.plot(place, target["model"], "_", ms=16, color=GREY, label="model")
+                spans = [figure.get("evaluations_span") for figure in target.get("figures") or []]
+                if len(spans) == len(place) and all(spans):
+                    axis.vlines(place + 0.15, *np.array(spans).T, color=GREY, lw=1.0, alpha=0.6, label="all evaluations")
+                errors = [figure.get("standard_error") or 0.0 for figure in target.get("figures") or []]
+                axis.errorbar(place + 0.15, target["model"], errors if len(errors) == len(place) else None, fmt="_", ms=16, capsize=3,
+                              color=GREY, label="model, held out" if target["held_out"] else "model")
+                axis.set_xlim(-0.6, len(place) - 0.4)
                 axis.set_xticks(place, target["labels"], rotation=30, ha="right")
                 axis.set(ylabel=target["name"])
                 continue

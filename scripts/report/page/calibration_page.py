@@ -37,9 +37,26 @@ def targets(run):
             "blocks": [blocks.table(["target", "what", "", "R²", "largest error", "% of the peak", ""], rows)]}
 
 
+def figures(run):
+    """What was reached of targets that are figures with names, beside what was wanted."""
+    rows = []
+    for key in ("targets", "held_out_targets"):
+        for told in run.values.get(key) or []:
+            for f in told.get("figures") or []:
+                surrogate, span = f.get("surrogate") or {}, f.get("evaluations_span") or []
+                rows.append([f.get("label", ""), text_of(f.get("target")), text_of(f.get("sigma"), ".2g"), text_of(f.get("evaluated")),
+                             text_of(f.get("standard_error"), ".2g"), text_of(surrogate.get("value")), text_of(surrogate.get("standard_error"), ".2g"),
+                             " … ".join(text_of(value) for value in span), str(f.get("state", "" if key == "targets" else "held out"))])
+    if not rows:
+        return None
+    return blocks.table(["figure", "target", "±", "evaluated", "±", "all evaluations together", "±", "evaluations span", ""], rows)
+
+
 def curves(run, arrays):
     groups = {}
     for target in run.targets():
+        if any(target["labels"]):
+            continue
         groups.setdefault((target["x_name"], target["y_name"]), []).append(target)
     items = []
     for (x, y), members in groups.items():
@@ -52,7 +69,8 @@ def curves(run, arrays):
                 lines.append({"label": f"{target['name']}, {'predicted' if target['held_out'] else 'fitted'}", "x": place,
                               "y": arrays.add(factor * target["model"]), "style": "line"})
         items.append({**blocks.chart(words.capitalize(), x_words, x_unit, unit, lines[:MOST_LINES]), "wide": True})
-    return {"id": "series", "title": "Data and model", "blocks": [blocks.charts(items)]}
+    table = figures(run)
+    return {"id": "series", "title": "Data and model", "blocks": ([table] if table else []) + ([blocks.charts(items)] if items else [])}
 
 
 def starts(run):

@@ -162,7 +162,7 @@ class Press(SystemTest):
             self.assertAlmostEqual(summary["footprint"]["force_N"], 8000, delta=8)
             self.assertAlmostEqual(summary["footprint"]["width_m"], 0.24)
             keys.append(sorted(summary) + sorted(summary["sticking_stiffness"]) + sorted(summary["footprint"]))
-            self.assertGreater(summary["sticking_stiffness"]["vertical_N_per_m"], 0.99 * summary["tangent_stiffness_N_per_m"])
+            self.assertGreater(summary["sticking_stiffness"]["vertical_N_per_m"], 0.9 * summary["tangent_stiffness_N_per_m"])
             self.assertGreater(summary["sticking_stiffness"]["longitudinal_N_per_m"], 0)
             self.assertIsNone(summary["sticking_stiffness"]["lateral_N_per_m"])
             self.assertAlmostEqual(summary["rim_force_N"][2], 8000, delta=8)

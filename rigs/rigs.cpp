@@ -10,7 +10,7 @@
 #include "rigs/drawbar_spec.hpp"
 #include "rigs/half_car_spec.hpp"
 #include "rigs/quarter_car_spec.hpp"
-#include "rigs/vehicle_spec.hpp"
+#include "rigs/vehicle/vehicle_spec.hpp"
 
 namespace furrow::rigs {
 namespace {

@@ -5,7 +5,7 @@
 #include <type_traits>
 
 #include "tire/modes.hpp"
-#include "tire/press.hpp"
+#include "tire/press/press.hpp"
 
 namespace furrow::tire {
 namespace {

@@ -14,7 +14,7 @@
 #include "protocol/core/clock.hpp"
 #include "protocol/files/digits.hpp"
 #include "protocol/files/text_file.hpp"
-#include "tire/press.hpp"
+#include "tire/press/press.hpp"
 
 namespace furrow::commands {
 namespace {

@@ -8,8 +8,8 @@
 #include "protocol/core/constants.hpp"
 #include "protocol/files/data_files.hpp"
 #include "protocol/files/json_text.hpp"
-#include "tire/press.hpp"
-#include "tire/press_curve.hpp"
+#include "tire/press/press.hpp"
+#include "tire/press/press_curve.hpp"
 #include "tire/tires.hpp"
 
 namespace furrow::scenario {

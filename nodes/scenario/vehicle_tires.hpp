@@ -26,7 +26,7 @@ bool is_vehicle(const std::string& name);
 /// which are pressed within seconds. @throws Error(bad_input) naming file and key
 std::vector<std::shared_ptr<const tire::TireSpec>> tires_of(const vehicle::VehicleSpec& vehicle);
 
-/// Each tire at rest, pressed up to more than its share of the weight; see tire/press_curve.hpp for what that costs.
+/// Each tire at rest, pressed up to more than its share of the weight; see tire/press/press_curve.hpp for what that costs.
 /// @pre one tire for each wheel. @throws Error
 std::vector<vehicle::StandingTire> standing_tires(
     const vehicle::VehicleSpec& vehicle, std::span<const std::shared_ptr<const tire::TireSpec>> tires,

@@ -11,7 +11,7 @@
 #include "protocol/files/csv_file.hpp"
 #include "protocol/files/json_text.hpp"
 #include "tire/planar/planar_spec.hpp"
-#include "tire/press.hpp"
+#include "tire/press/press.hpp"
 #include "tire/ring/ring_spec.hpp"
 
 namespace furrow::study {

@@ -12,7 +12,7 @@
 
 #include "protocol/files/data_files.hpp"
 #include "tests/nodes/calibrate_examples.hpp"
-#include "tire/press.hpp"
+#include "tire/press/press.hpp"
 #include "tire/ring/ring_spec.hpp"
 
 namespace furrow::study {

@@ -12,7 +12,7 @@
 
 #include "protocol/core/error.hpp"
 #include "protocol/files/data_files.hpp"
-#include "rigs/vehicle_rig.hpp"
+#include "rigs/vehicle/vehicle_rig.hpp"
 #include "vehicle/driver/read_driver.hpp"
 #include "vehicle/spec/read_vehicle.hpp"
 

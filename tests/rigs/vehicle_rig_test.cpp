@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "rigs/vehicle_start.hpp"
+#include "rigs/vehicle/vehicle_start.hpp"
 #include "tests/rigs/vehicle_fixture.hpp"
 #include "vehicle/driveline/torque_converter.hpp"
 

@@ -1,5 +1,5 @@
 // Press curves: those of the static test, kept and read again; none of a rigid tire.
-#include "tire/press_curve.hpp"
+#include "tire/press/press_curve.hpp"
 
 #include <cstdlib>
 #include <filesystem>
@@ -9,7 +9,7 @@
 #include "protocol/core/error.hpp"
 #include "protocol/files/text_file.hpp"
 #include "tests/nodes/temporary_folder.hpp"
-#include "tire/press.hpp"
+#include "tire/press/press.hpp"
 #include "tire/tires.hpp"
 
 using namespace furrow;

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "protocol/core/error.hpp"
-#include "tire/press.hpp"
+#include "tire/press/press.hpp"
 #include "tire/tires.hpp"
 
 namespace furrow::tire {

@@ -12,7 +12,7 @@
 #include "protocol/files/json_fields.hpp"
 #include "protocol/files/json_text.hpp"
 #include "tire/outward.hpp"
-#include "tire/press.hpp"
+#include "tire/press/press.hpp"
 
 namespace furrow::tire {
 namespace {

@@ -27,7 +27,7 @@
 
 #include "tire/ancf/rim_clearance.hpp"
 #include "tire/ancf/shell_carcass.hpp"
-#include "tire/press_obstacle.hpp"
+#include "tire/press/press_obstacle.hpp"
 
 namespace furrow::tire {
 

@@ -1,7 +1,7 @@
 // The static test of the layered shell.
 #pragma once
 
-#include "tire/press.hpp"
+#include "tire/press/press.hpp"
 #include "tire/tire_file.hpp"
 
 namespace furrow::tire {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tire/handling/coefficients.hpp"
-#include "tire/press.hpp"
+#include "tire/press/press.hpp"
 
 namespace furrow::tire::handling {
 

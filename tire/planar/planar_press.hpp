@@ -4,7 +4,7 @@
 #pragma once
 
 #include "tire/planar/planar_static.hpp"
-#include "tire/press.hpp"
+#include "tire/press/press.hpp"
 
 namespace furrow::tire {
 

@@ -10,7 +10,7 @@
 
 #include "tire/planar/planar_tangent.hpp"
 #include "tire/planar/planar_wheel.hpp"
-#include "tire/press_obstacle.hpp"
+#include "tire/press/press_obstacle.hpp"
 
 namespace furrow::tire {
 

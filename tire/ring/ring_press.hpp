@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "tire/press.hpp"
+#include "tire/press/press.hpp"
 #include "tire/ring/ring_solver.hpp"
 
 namespace furrow::tire {

@@ -11,7 +11,7 @@
 #include "protocol/core/error.hpp"
 #include "tests/tire/tire_file_checks.hpp"
 #include "tire/outward.hpp"
-#include "tire/press.hpp"
+#include "tire/press/press.hpp"
 #include "tire/tires.hpp"
 
 namespace furrow::tire {

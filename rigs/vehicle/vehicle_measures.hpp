@@ -1,7 +1,7 @@
 // What the vehicle rig measures of the vehicle as a whole: its table's columns, from the vehicle and its driver.
 #pragma once
 
-#include "rigs/vehicle_rows.hpp"
+#include "rigs/vehicle/vehicle_rows.hpp"
 #include "vehicle/driver/driver.hpp"
 #include "vehicle/parts/vehicle.hpp"
 

@@ -1,11 +1,11 @@
-#include "rigs/vehicle_measures.hpp"
+#include "rigs/vehicle/vehicle_measures.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "protocol/core/assert.hpp"
-#include "rigs/vehicle_driving.hpp"
+#include "rigs/vehicle/vehicle_driving.hpp"
 #include "vehicle/parts/vehicle_energy.hpp"
 
 namespace furrow::rigs {

@@ -1,4 +1,4 @@
-#include "rigs/vehicle_findings.hpp"
+#include "rigs/vehicle/vehicle_findings.hpp"
 
 #include <algorithm>
 #include <cmath>

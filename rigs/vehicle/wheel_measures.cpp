@@ -1,4 +1,4 @@
-#include "rigs/wheel_measures.hpp"
+#include "rigs/vehicle/wheel_measures.hpp"
 
 #include <cmath>
 

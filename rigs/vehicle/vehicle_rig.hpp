@@ -10,7 +10,7 @@
 #include <memory>
 
 #include "rigs/rig.hpp"
-#include "rigs/vehicle_options.hpp"
+#include "rigs/vehicle/vehicle_options.hpp"
 
 namespace furrow::rigs {
 

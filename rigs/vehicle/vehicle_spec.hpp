@@ -6,7 +6,7 @@
 
 #include "protocol/files/read_context.hpp"
 #include "rigs/rig_spec.hpp"
-#include "rigs/vehicle_options.hpp"
+#include "rigs/vehicle/vehicle_options.hpp"
 #include "rigs/wheel_tire.hpp"
 
 namespace furrow::rigs {

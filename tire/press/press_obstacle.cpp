@@ -1,4 +1,4 @@
-#include "tire/press_obstacle.hpp"
+#include "tire/press/press_obstacle.hpp"
 
 #include <algorithm>
 #include <charconv>

@@ -1,4 +1,4 @@
-#include "rigs/vehicle_driving.hpp"
+#include "rigs/vehicle/vehicle_driving.hpp"
 
 #include <algorithm>
 #include <cmath>

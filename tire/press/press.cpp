@@ -1,4 +1,4 @@
-#include "tire/press.hpp"
+#include "tire/press/press.hpp"
 
 #include <algorithm>
 #include <cmath>

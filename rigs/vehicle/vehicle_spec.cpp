@@ -1,4 +1,4 @@
-#include "rigs/vehicle_spec.hpp"
+#include "rigs/vehicle/vehicle_spec.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,8 @@
 #include "protocol/files/json_fields.hpp"
 #include "protocol/files/json_text.hpp"
 #include "rigs/lowering.hpp"
-#include "rigs/vehicle_rig.hpp"
-#include "rigs/vehicle_start.hpp"
+#include "rigs/vehicle/vehicle_rig.hpp"
+#include "rigs/vehicle/vehicle_start.hpp"
 #include "vehicle/analysis/kinematics.hpp"
 #include "vehicle/driver/driver_car.hpp"
 #include "vehicle/driver/path_shapes.hpp"

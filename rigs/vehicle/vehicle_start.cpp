@@ -1,4 +1,4 @@
-#include "rigs/vehicle_start.hpp"
+#include "rigs/vehicle/vehicle_start.hpp"
 
 #include <algorithm>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "rigs/vehicle_rig.hpp"
+#include "rigs/vehicle/vehicle_rig.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,11 +12,11 @@
 #include "protocol/core/error.hpp"
 #include "protocol/core/mean_turn.hpp"
 #include "rigs/rut_trace.hpp"
-#include "rigs/vehicle_driving.hpp"
-#include "rigs/vehicle_findings.hpp"
-#include "rigs/vehicle_measures.hpp"
-#include "rigs/vehicle_start.hpp"
-#include "rigs/wheel_measures.hpp"
+#include "rigs/vehicle/vehicle_driving.hpp"
+#include "rigs/vehicle/vehicle_findings.hpp"
+#include "rigs/vehicle/vehicle_measures.hpp"
+#include "rigs/vehicle/vehicle_start.hpp"
+#include "rigs/vehicle/wheel_measures.hpp"
 #include "vehicle/driver/driver_car.hpp"
 #include "vehicle/driver/file_driver.hpp"
 #include "vehicle/parts/vehicle_energy.hpp"

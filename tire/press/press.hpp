@@ -11,7 +11,7 @@
 
 #include "protocol/core/progress_call.hpp"
 #include "protocol/core/surface.hpp"
-#include "tire/press_obstacle.hpp"
+#include "tire/press/press_obstacle.hpp"
 
 namespace furrow::tire {
 

@@ -5,7 +5,7 @@
 
 #include "protocol/core/surface.hpp"
 #include "rigs/rig.hpp"
-#include "rigs/vehicle_rows.hpp"
+#include "rigs/vehicle/vehicle_rows.hpp"
 #include "vehicle/parts/vehicle.hpp"
 
 namespace furrow::rigs {

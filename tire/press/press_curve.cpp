@@ -1,4 +1,4 @@
-#include "tire/press_curve.hpp"
+#include "tire/press/press_curve.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -14,7 +14,7 @@
 #include "protocol/files/json_text.hpp"
 #include "protocol/files/text_file.hpp"
 #include "tire/capabilities.hpp"
-#include "tire/press.hpp"
+#include "tire/press/press.hpp"
 
 namespace furrow::tire {
 namespace {

@@ -126,6 +126,12 @@ class Misfit {
     }
     return sum;
   }
+  /// Whether no surrogate errs by more than its target there.
+  bool known(const Eigen::VectorXd& place) const {
+    for (std::size_t q = 0; q < points(); ++q)
+      if (surrogates_[q].at(place).variance > sigma_[q] * sigma_[q]) return false;
+    return true;
+  }
   /// How little is known at a place: the surrogates' variances over those of the targets.
   double doubt(const Eigen::VectorXd& place) const {
     double sum = 0.0;
@@ -200,7 +206,7 @@ class Noisy {
       Misfit misfit = fit();
       Least least = minimise(misfit, before);
       if (options_.progress) options_.progress(share());
-      if (before.size() > 0 && stays(misfit, before, least.place)) ended = "converged";
+      if (before.size() > 0 && stays(misfit, before, least.place) && misfit.known(least.place)) ended = "converged";
       else if (asked_ >= options_.evaluations) ended = "all evaluations are used";
       if (!ended.empty()) return result(misfit, ended);
       // Where the least is known already, what is around it tells more.

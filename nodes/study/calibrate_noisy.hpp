@@ -1,5 +1,6 @@
 // The optimizer for models that cost much and answer with noise: a space-filling design, a surrogate of every figure
-// (calibrate_surrogate.hpp), and evaluations at the least of the surrogates' misfit until that least stays where it is.
+// (calibrate_surrogate.hpp), and evaluations at the least of the surrogates' misfit until that least stays where it is and
+// the surrogates err less there than the targets.
 //
 // The design is the start and the Latin hypercube whose places are farthest from each other among some that a seed draws,
 // three times as many evaluations as parameters and one [Jones, Schonlau & Welch 1998, whose improvement is not needed:

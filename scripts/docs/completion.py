@@ -124,23 +124,23 @@ def zsh_text(text):
     return re.sub(r"([\[\]:\\])", r"\\\1", text).replace("'", "'\\''")
 
 
-def zsh_spec(entry):
+def zsh_spec(command, entry):
     """One option for _arguments, of each of its names."""
     for name in entry.names:
-        value = "" if not entry.kind else f": :{zsh_action(value_of(entry))}"
+        value = "" if not entry.kind else f": :{zsh_action(value_of(command, entry))}"
         yield f"'{'*' if entry.repeated else ''}{name}[{zsh_text(entry.text)}]{value}'"
 
 
 def zsh_command(command):
-    specs = [spec for entry in command.options for spec in zsh_spec(entry)]
+    specs = [spec for entry in command.options for spec in zsh_spec(command, entry)]
     if command.commands:
         words = " ".join(below.name.split()[-1] for below in command.commands)
         specs += [f"'1: :({words})'"]
         for below in command.commands:
-            specs += [spec for entry in below.options for spec in zsh_spec(entry) if spec not in specs]
+            specs += [spec for entry in below.options for spec in zsh_spec(below, entry) if spec not in specs]
     for number, entry in enumerate(command.arguments, 1):
         place = "*" if entry.repeated else number
-        specs.append(f"'{place}:{zsh_text(entry.names[-1])}:{zsh_action(value_of(entry))}'")
+        specs.append(f"'{place}:{zsh_text(entry.names[-1])}:{zsh_action(value_of(command, entry))}'")
     body = " \\\n        ".join(specs)
     return f"      {command.name})\n      _arguments -s : \\\n        {body} ;;"
 
@@ -180,8 +180,8 @@ if [[ $funcstack[1] == _furrow ]]; then _furrow "$@"; else compdef _furrow furro
 """
 
 
-def fish_value(entry):
-    what, _, rest = value_of(entry).partition(":")
+def fish_value(command, entry):
+    what, _, rest = value_of(command, entry).partition(":")
     return {"words": f"-x -a {quoted(rest)}", "list": f"-r -a '(__furrow_list {rest})'", "folder": "-x -a '(__fish_complete_directories)'",
             "file": "-r", "key": "-x -a '(__furrow_keys)'", "setting": "-x -a '(__furrow_keys)'", "free": "-x"}[what]
 
@@ -200,9 +200,9 @@ def fish(program):
             lines.append(f"{start} -a {below.name.split()[-1]} -d {quoted(below.purpose)}")
         for entry in command.options:
             names = " ".join(f"-l {name[2:]}" if name.startswith("--") else f"-s {name[1:]}" for name in entry.names)
-            lines.append(f"{start} {names} -d {quoted(entry.text)}" + (f" {fish_value(entry)}" if entry.kind else ""))
+            lines.append(f"{start} {names} -d {quoted(entry.text)}" + (f" {fish_value(command, entry)}" if entry.kind else ""))
         for entry in command.arguments:
-            value = fish_value(entry).replace("-x", "").replace("-r", "-F").strip()
+            value = fish_value(command, entry).replace("-x", "").replace("-r", "-F").strip()
             lines.append(f"{start} {value}" if value else f"{start} -F")
     return "\n".join(lines) + "\n"
 

@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 
 std::string percent(const Json& share) { return share.is_number() ? digits(100.0 * share.get<double>()) + " %" : "-"; }
 
-/// Figures of a noisy model: what was reached beside what was wanted.
+/// A single figure, as of a noisy model: what was reached beside what was wanted.
 std::string figure_lines(const Json& target, const char* how) {
   std::string text;
   for (const Json& f : target["figures"]) {
@@ -37,13 +37,17 @@ std::string figure_lines(const Json& target, const char* how) {
   return text;
 }
 
+/// Of a column such as force_N.
+std::string unit_of(const std::string& column) { return column.substr(column.rfind('_') + 1); }
+
 std::string target_line(const Json& target, const char* how) {
-  if (target.contains("figures") && !target.contains("problem")) return figure_lines(target, how);
   if (target.contains("problem")) return fmt::format("furrow: {} {}: no answer\n", how, target["name"].get<std::string>());
+  if (target.contains("figures") && target["points"] == 1) return figure_lines(target, how);
   const Json& r = target["r_squared"];
-  return fmt::format("furrow: {} {} ({}): R² {}, largest error {} of the peak\n", how, target["name"].get<std::string>(),
-                     target["what"].get<std::string>(), r.is_number() ? fmt::format("{:.4f}", r.get<double>()) : "-",
-                     percent(target["largest_error_of_peak"]));
+  return fmt::format("furrow: {} {} ({}): R² {}, largest error {:.3g} {}, {} of the peak\n", how,
+                     target["name"].get<std::string>(), target["what"].get<std::string>(),
+                     r.is_number() ? fmt::format("{:.4f}", r.get<double>()) : "-", target["largest_error"].get<double>(),
+                     unit_of(target["y"].get<std::string>()), percent(target["largest_error_of_peak"]));
 }
 
 /// The result for people.

@@ -43,7 +43,7 @@ class Calibrate(SystemTest):
         done = furrow("calibrate", self.study(), "--out", "out", cwd=self.folder)
         self.assertEqual((done.returncode, done.stdout), (0, "out\n"), done.stderr)
         self.assertRegex(done.stderr, r"furrow: sidewall_1 1000000 ± \S+ N/m\n")
-        self.assertRegex(done.stderr, r"furrow: predicted again \(plate\): R² 1\.0000, largest error \S+ % of the peak\n")
+        self.assertRegex(done.stderr, r"furrow: predicted again \(plate\): R² 1\.0000, largest error \S+ N, \S+ % of the peak\n")
         out = self.folder / "out"
         self.assertEqual({path.name for path in out.iterdir()} - {".furrow-run"}, FILES | {"fit.png", "residual.png", "report.html"})
         result = json.loads((out / "calibration.json").read_text())
@@ -67,6 +67,17 @@ class Calibrate(SystemTest):
             self.assertAlmostEqual(force / float(row["model"]), 1, delta=1e-9)
         done = furrow("report", "out", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_a_table_is_told_in_one_line_for_each_quantity(self):
+        study = {"calibrate": "handling", "start": "handling_start.tir", "parameters": {"PKX1": {"lower": 5, "upper": 60}},
+                 "targets": [{"data": "sweep_lumped.csv", "of": "fx"}, {"data": "sweep_lumped.csv", "of": "mz"}], "starts": 1}
+        (self.folder / "handling.json").write_text(json.dumps(study))
+        done = furrow("calibrate", "handling.json", "--out", "out", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        told = [line for line in done.stderr.splitlines() if line.startswith("furrow: fitted ")]
+        self.assertEqual(len(told), 2, done.stderr)
+        self.assertRegex(told[0], r"fitted sweep_lumped_fx \(fx of 11 rows\): R² -?\S+, largest error \S+ N, \S+ % of the peak$")
+        self.assertRegex(told[1], r"fitted sweep_lumped_mz \(mz of 11 rows\): R² -?\S+, largest error \S+ Nm, \S+ % of the peak$")
 
     def test_it_continues_to_the_same_bits_after_signals_and_damage(self):
         study = self.study()

@@ -6,9 +6,10 @@ import numpy as np
 
 from .run_data import Missing, check_types, read_object
 from .soil import COLOURS
-from .style import GREY
+from .style import GREY, RED
 
-SCALES = {"m": ("mm", 1e3), "N": ("kN", 1e-3), "Pa": ("kPa", 1e-3)}
+COLUMNS = 3  # panels side by side
+SCALES = {"m": ("mm", 1e3), "N": ("kN", 1e-3), "Pa": ("kPa", 1e-3), "Nm": ("N m", 1.0)}
 
 
 class Calibration:
@@ -63,53 +64,83 @@ def panels_of(targets):
 
 
 def figure_of(run, what):
+    """Panels in rows of COLUMNS or fewer."""
     groups = panels_of(run.targets())
-    widths = [3.0 if alone else 7.6 if len(groups) == 1 else 5.6 for _, _, alone in groups]
-    figure, axes = plt.subplots(1, len(groups), figsize=(max(sum(widths), 6.0), 5.0), squeeze=False, gridspec_kw={"width_ratios": widths})
+    columns = min(len(groups), COLUMNS)
+    rows = -(-len(groups) // columns)
+    wide = 7.6 if columns == 1 else 5.0
+    height = 5.0 if rows == 1 else 3.2 * rows
+    figure, axes = plt.subplots(rows, columns, figsize=(wide * columns, height), squeeze=False)
     run.title(figure, what)
-    return groups, figure, axes[0]
+    for axis in axes.flat[len(groups):]:
+        axis.set_visible(False)
+    return groups, figure, axes.flat
+
+
+def mark_places(axis, target):
+    """Writes at the axis what the places of figures are: rows of a table, or nothing of a single one. @returns them"""
+    place = target["x"]
+    axis.set_xlim(place[0] - 0.6, place[-1] + 0.6)
+    if len(place) == 1:
+        axis.set_xticks([])
+    else:
+        axis.set_xlabel(target["x_name"])
+        axis.xaxis.get_major_locator().set_params(integer=True)
+    return place
+
+
+def label_of(name):
+    words, unit, _ = quantity(name)
+    return f"{words}, {unit}" if unit else words
+
+
+def fit_of_figures(axis, target, colour):
+    single = len(target["x"]) == 1
+    factor = 1.0 if single else quantity(target["y_name"])[2]
+    place, told = mark_places(axis, target), target.get("figures") or []
+    axis.errorbar(place, factor * target["data"], factor * target["sigma"], fmt="o", color=colour, ms=4, capsize=3, label="data")
+    spans = [figure.get("evaluations_span") for figure in told]
+    if len(spans) == len(place) and all(spans):
+        axis.vlines(place + 0.15, *(factor * np.array(spans).T), color=GREY, lw=1.0, alpha=0.6, label="all evaluations")
+    errors = [factor * (figure.get("standard_error") or 0.0) for figure in told]
+    axis.errorbar(place + 0.15, factor * target["model"], errors if len(errors) == len(place) and any(errors) else None, fmt="_", ms=10,
+                  capsize=3, color=RED, label="model, held out" if target["held_out"] else "model")
+    axis.set(ylabel=target["y_name"] if single else label_of(target["y_name"]))
 
 
 def fit(run):
     groups, figure, axes = figure_of(run, "data (points) and model (lines; dashed: held out)")
     for axis, ((x, y, alone), targets) in zip(axes, groups.items()):
-        (x_words, x_unit, x_factor), (y_words, y_unit, y_factor) = quantity(x), quantity(y)
+        (_, _, x_factor), (_, _, y_factor) = quantity(x), quantity(y)
         for k, target in enumerate(targets):
             colour = COLOURS[k % len(COLOURS)]
             if alone:
-                place = np.arange(len(target["x"]))
-                axis.errorbar(place, target["data"], target["sigma"], fmt="o", color=colour, ms=4, capsize=3, label="data")
-                spans = [figure.get("evaluations_span") for figure in target.get("figures") or []]
-                if len(spans) == len(place) and all(spans):
-                    axis.vlines(place + 0.15, *np.array(spans).T, color=GREY, lw=1.0, alpha=0.6, label="all evaluations")
-                errors = [figure.get("standard_error") or 0.0 for figure in target.get("figures") or []]
-                axis.errorbar(place + 0.15, target["model"], errors if len(errors) == len(place) else None, fmt="_", ms=16, capsize=3,
-                              color=GREY, label="model, held out" if target["held_out"] else "model")
-                axis.set_xlim(-0.6, len(place) - 0.4)
-                axis.set_xticks(place, target["labels"], rotation=30, ha="right")
-                axis.set(ylabel=target["name"])
+                fit_of_figures(axis, target, colour)
                 continue
             axis.plot(x_factor * target["x"], y_factor * target["data"], "o", ms=3.5, color=colour)
             axis.plot(x_factor * target["x"], y_factor * target["model"], "--" if target["held_out"] else "-", color=colour,
                       label=f"{target['name']} ({target.get('what', '')})")
-        if not alone:
-            axis.set(xlabel=f"{x_words}, {x_unit}", ylabel=f"{y_words}, {y_unit}")
+        if alone:
+            axis.set_title(alone)
+        else:
+            axis.set(xlabel=label_of(x), ylabel=label_of(y))
         axis.legend(fontsize=7.5)
     return figure
 
 
 def residual(run):
-    groups, figure, axes = figure_of(run, "model less data, of the target's peak (dashed: held out)")
+    groups, figure, axes = figure_of(run, "model less data, of the target's peak (open: held out)")
     for axis, ((x, _, alone), targets) in zip(axes, groups.items()):
-        words, unit, factor = quantity(x)
         axis.axhline(0.0, color=GREY, lw=0.8)
         for k, target in enumerate(targets):
-            off = 100.0 * (target["model"] - target["data"]) / np.max(np.abs(target["data"]))
-            place = np.arange(len(target["x"])) if alone else factor * target["x"]
-            axis.plot(place, off, "o--" if target["held_out"] else "o-", ms=3, color=COLOURS[k % len(COLOURS)],
-                      label=f"{target['name']} ({target.get('what', '')})")
-            if alone:
-                axis.set_xticks(place, target["labels"], rotation=30, ha="right")
-        axis.set(xlabel="" if alone else f"{words}, {unit}", ylabel="model less data, % of the peak")
-        axis.legend(fontsize=7.5)
+            peak = np.max(np.abs(target["data"])) or 1.0
+            place = mark_places(axis, target) if alone else quantity(x)[2] * target["x"]
+            axis.plot(place, 100.0 * (target["model"] - target["data"]) / peak, "o", ms=3, color=COLOURS[k % len(COLOURS)],
+                      mfc="none" if target["held_out"] else None, label=f"{target['name']} ({target.get('what', '')})")
+        if alone:
+            axis.set_title(alone)
+        else:
+            axis.set_xlabel(label_of(x))
+            axis.legend(fontsize=7.5)
+        axis.set_ylabel("model less data, % of the peak" if len(groups) <= COLUMNS else "% of the peak")
     return figure

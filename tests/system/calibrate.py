@@ -3,6 +3,7 @@
 import csv
 import json
 import signal
+import struct
 import time
 
 from program import ROOT, SystemTest, furrow, main, start, wait_for
@@ -70,14 +71,17 @@ class Calibrate(SystemTest):
 
     def test_a_table_is_told_in_one_line_for_each_quantity(self):
         study = {"calibrate": "handling", "start": "handling_start.tir", "parameters": {"PKX1": {"lower": 5, "upper": 60}},
-                 "targets": [{"data": "sweep_lumped.csv", "of": "fx"}, {"data": "sweep_lumped.csv", "of": "mz"}], "starts": 1}
+                 "targets": [{"data": "sweep_lumped.csv", "of": of} for of in ("fx", "mz", "fy", "mx", "my")], "starts": 1}
         (self.folder / "handling.json").write_text(json.dumps(study))
         done = furrow("calibrate", "handling.json", "--out", "out", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         told = [line for line in done.stderr.splitlines() if line.startswith("furrow: fitted ")]
-        self.assertEqual(len(told), 2, done.stderr)
+        self.assertEqual(len(told), 5, done.stderr)
         self.assertRegex(told[0], r"fitted sweep_lumped_fx \(fx of 11 rows\): R² -?\S+, largest error \S+ N, \S+ % of the peak$")
         self.assertRegex(told[1], r"fitted sweep_lumped_mz \(mz of 11 rows\): R² -?\S+, largest error \S+ Nm, \S+ % of the peak$")
+        for plot in ("fit.png", "residual.png"):  # five panels in two rows
+            wide, high = struct.unpack(">II", (self.folder / "out" / plot).read_bytes()[16:24])
+            self.assertTrue(2 < wide / high < 3, (plot, wide, high))
 
     def test_it_continues_to_the_same_bits_after_signals_and_damage(self):
         study = self.study()

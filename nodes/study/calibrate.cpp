@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,6 +13,27 @@
 #include "protocol/files/digits.hpp"
 
 namespace furrow::study {
+namespace {
+
+constexpr double kLeastRSquared = 0.5;
+constexpr double kLittleError = 0.1;  // of the peak: R² of data that hardly vary says nothing against such a model
+
+/// Curves and tables that the fitted model does not describe.
+std::vector<std::string> misfit_warnings(const std::vector<Target>& targets, const Prediction& fitted) {
+  std::vector<std::string> warnings;
+  std::span<const double> rest = fitted.values;
+  for (const Target& target : targets) {
+    const Goodness g = goodness(target, rest.first(target.y.size()));
+    rest = rest.subspan(target.y.size());
+    if (target.y.size() == 1 || !(g.r_squared < kLeastRSquared) || g.largest_error < kLittleError * g.peak) continue;
+    warnings.push_back(fmt::format("the fitted model does not describe {} (R² {:.2g}): check the units of {}, and whether its other "
+                                   "keys are those of the test",
+                                   target.name, g.r_squared, target.data.filename().string()));
+  }
+  return warnings;
+}
+
+}  // namespace
 
 CalibrationResults calibrate(const Calibration& calibration, const std::filesystem::path& folder,
                              const ProgressCall& progress) {
@@ -46,6 +68,10 @@ std::vector<std::string> calibration_warnings(const Calibration& calibration, co
   const std::vector<std::string> missed =
       reach_warnings(calibration.model->targets(TargetSet::fitted), results.optimum.reach);
   warnings.insert(warnings.end(), missed.begin(), missed.end());
+  if (results.optimum.reach.empty()) {
+    const std::vector<std::string> misfits = misfit_warnings(calibration.model->targets(TargetSet::fitted), results.fitted);
+    warnings.insert(warnings.end(), misfits.begin(), misfits.end());
+  }
   const Confidence& c = results.confidence;
   for (std::size_t k = 0; k < calibration.parameters.size(); ++k) {
     const Parameter& p = calibration.parameters[k];

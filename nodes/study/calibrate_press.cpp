@@ -133,6 +133,8 @@ std::vector<double> read_curve(Target& target) {
                       {"deflection_m", "force_N", "sigma_N", "residual", "unloading", "moment_x_Nm", "moment_y_Nm"});
   if (!table.has("force_N")) throw table.wrong(0, "has no column 'force_N' above it, expected one");
   std::vector<double> sigma;
+  std::size_t last = 0;
+  double largest = 0.0;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     if (table.has("unloading") && table.number(row, "unloading") != 0.0) continue;
     const double deflection = table.number(row, "deflection_m");
@@ -143,13 +145,17 @@ std::vector<double> read_curve(Target& target) {
     if (!target.x.empty() && !(deflection > target.x.back()))
       throw table.wrong(row, fmt::format("deflection_m is {}, expected more than that of the line before, {}",
                                          number_text(deflection), number_text(target.x.back())));
-    target.x.push_back(deflection);
-    target.y.push_back(table.number(row, "force_N"));
+    const double force = table.number(row, "force_N");
+    if (force < 0.0)
+      throw table.wrong(row, fmt::format("force_N is {}, expected 0 or more: a tire is pressed, not pulled", number_text(force)));
+    last = row, largest = std::max(largest, force);
+    target.x.push_back(deflection), target.y.push_back(force);
     if (!table.has("sigma_N")) continue;
     sigma.push_back(table.number(row, "sigma_N"));
     if (!(sigma.back() > 0.0)) throw table.wrong(row, "sigma_N is " + number_text(sigma.back()) + ", expected above 0");
   }
   if (target.x.empty()) throw input_error(target.data.string(), "", "has no point of loading with a deflection above 0");
+  if (largest == 0.0) throw table.wrong(last, "force_N is 0 here and on all lines before, expected a force that rises with the deflection");
   return sigma;
 }
 

@@ -109,6 +109,18 @@ TEST(CalibrateStatistics, a_parameter_at_its_bound_is_held_and_the_others_are_th
       << calibration_warnings(study, results)[0];
 }
 
+TEST(CalibrateStatistics, data_that_the_model_does_not_describe_are_named) {
+  const auto warned = [](std::vector<double> y) {
+    const Calibration study = study_of([](double x, std::span<const double> p) { return p[0] * x; }, steps(1.0, 4.0, 4), std::move(y),
+                                       {{"a", "N", 1e-3, 1e6, 1.0, true}});
+    return calibration_warnings(study, calibrated(study));
+  };
+  const std::vector<std::string> falls = warned({9.0, 5.0, 4.0, 1.0});
+  ASSERT_EQ(falls.size(), 1u);
+  EXPECT_NE(falls[0].find("the fitted model does not describe curve (R² -"), std::string::npos) << falls[0];
+  EXPECT_TRUE(warned({1.1, 1.9, 3.1, 3.9}).empty());
+}
+
 TEST(CalibrateStatistics, starts_find_the_lower_of_two_leasts) {
   // Two leasts in p: near 1 and, lower, near 8.
   const auto wells = [](double x, std::span<const double> p) {

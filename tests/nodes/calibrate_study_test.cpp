@@ -78,6 +78,8 @@ TEST_F(CalibrateStudy, wrong_studies_are_refused_with_file_and_key) {
   write("columns.csv", "deflection_m,force_kN\n0.01,2\n");
   write("no_force.csv", "deflection_m,residual\n0.01,0\n");
   write("sigma.csv", "deflection_m,force_N,sigma_N\n0.01,5,0\n");
+  write("none.csv", "deflection_m,force_N\n0,0\n0.01,0\n0.02,0\n");
+  write("pulled.csv", "deflection_m,force_N\n0.01,500\n0.02,-1000\n");
   write("deep.csv", "deflection_m,force_N\n0.3,5\n");
   write("tire.json", R"({"format_version": 1, "model": "planar"})");
   write("soft.json", "{}");
@@ -102,7 +104,9 @@ TEST_F(CalibrateStudy, wrong_studies_are_refused_with_file_and_key) {
       {"/parameters/softening", json::object(), "no error"},
       {"/targets", json::array(), "key 'targets': has 0 entries"},
       {"/targets/0", "plate.csv", "key 'targets[0]': is 'plate.csv', expected an object"},
-      {"/targets/0/data", "none.csv", "key 'targets[0].data'"},
+      {"/targets/0/data", "nowhere.csv", "key 'targets[0].data'"},
+      {"/targets/0/data", "none.csv", "none.csv: key 'line 4': force_N is 0 here and on all lines before"},
+      {"/targets/0/data", "pulled.csv", "pulled.csv: key 'line 3': force_N is -1000, expected 0 or more"},
       {"/targets/0/data", "empty.csv", "empty.csv: has no point of loading"},
       {"/targets/0/data", "falling.csv", "falling.csv: key 'line 3': deflection_m is 0.01, expected more"},
       {"/targets/0/data", "words.csv", "words.csv: key 'line 2'"},

@@ -19,6 +19,7 @@
 #include "terrain/scm/pressure_sinkage.hpp"
 #include "terrain/scm/scm_options.hpp"
 #include "terrain/soil/fits.hpp"
+#include "terrain/terrains.hpp"
 
 namespace furrow::study {
 namespace {
@@ -111,6 +112,14 @@ class ScmModel final : public CalibrationModel {
   nlohmann::ordered_json fitted_file(std::span<const double> values, const std::string& source) const override {
     nlohmann::ordered_json file = load_json<nlohmann::ordered_json>(start_, "a soil in JSON");
     file["description"] = source;
+    // What the start says to other engines, and what was measured of them, is not of the fitted soil.
+    file.erase("measured");
+    nlohmann::ordered_json own = nlohmann::ordered_json::object();
+    for (const auto& [key, value] : file["terrain"].items()) {
+      const std::vector<std::string> engines = terrain::engines_of_key(key);
+      if (std::find(engines.begin(), engines.end(), "scm") != engines.end()) own[key] = value;
+    }
+    file["terrain"] = std::move(own);
     for (std::size_t k = 0; k < names_.size(); ++k) file["terrain"][names_[k]] = values[k];
     return file;
   }
@@ -136,9 +145,8 @@ class ScmModel final : public CalibrationModel {
     const char *one = plate ? "width" : "normal_stress", *other = plate ? "normal_stress" : "width";
     if (reader.has(other)) reader.fail(other, fmt::format("is given with \"on\": \"{}\", expected {}", on, one));
     reader.skip(one);
-    const double given = reader.has(one) ? reader.positive(one) : NAN;
     reader.finish();
-    for (const auto& [mark, points] : tests_of(keys.target.data, plate, given)) {
+    for (const auto& [mark, points] : tests_of(keys.target.data, plate, reader, one)) {
       TargetKeys of_curve = keys;
       Target& target = of_curve.target;
       target.name += plate ? fmt::format(" {:g} mm", 1e3 * mark) : fmt::format(" {:g} kPa", 1e-3 * mark);
@@ -156,7 +164,9 @@ class ScmModel final : public CalibrationModel {
 
   /// The points of a file by the plate's width or by the nominal normal stress, by rising x. As in `furrow soil` what has
   /// no sinkage or no pressure is left out.
-  static std::map<double, Points> tests_of(const std::filesystem::path& file, bool plate, double given) {
+  /// @param key of the target that says it where the file has no such column
+  static std::map<double, Points> tests_of(const std::filesystem::path& file, bool plate, OrderedJsonReader& reader,
+                                           const char* key) {
     const CsvFile table(file, plate ? "a plate-sinkage test in CSV" : "a shear test in CSV",
                         plate ? std::vector<std::string>{"sinkage_m", "pressure_Pa", "width_m", "seed", "sigma_Pa"}
                               : std::vector<std::string>{"travel_m", "shear_stress_Pa", "normal_stress_Pa",
@@ -165,9 +175,11 @@ class ScmModel final : public CalibrationModel {
                *mark = plate ? "width_m" : table.has("nominal_normal_stress_Pa") ? "nominal_normal_stress_Pa" : "normal_stress_Pa";
     if (!table.has(y)) throw table.wrong(0, fmt::format("has no column '{}' above it, expected one", y));
     const bool marked = table.has(mark);
-    if (!marked && !(given > 0.0))
-      throw table.wrong(0, fmt::format("has no column '{}' above it, expected one, or the key '{}' of the target", mark,
-                                       plate ? "width" : "normal_stress"));
+    if (marked && reader.has(key))
+      reader.fail(key, fmt::format("is given, and {} has the column '{}', expected one of them", file.filename().string(), mark));
+    if (!marked && !reader.has(key))
+      throw table.wrong(0, fmt::format("has no column '{}' above it, expected one, or the key '{}' of the target", mark, key));
+    const double given = marked ? NAN : reader.positive(key);
     std::map<double, Points> tests;
     for (std::size_t row = 0; row < table.row_count(); ++row) {
       const double at = table.number(row, x), value = table.number(row, y), which = marked ? table.number(row, mark) : given;

@@ -85,6 +85,18 @@ TEST_F(CalibrateScm, parameters_of_exact_curves_are_found_from_far) {
   EXPECT_EQ(fitted["description"], "where from");
 }
 
+TEST_F(CalibrateScm, the_fitted_soil_says_nothing_of_the_start_s_grains) {
+  write("soil.json", R"({"format_version": 1, "terrain": {"law": "mindlin", "friction": 0.5, "unloading_stiffness": 1e8, "bekker_n": 0.5},
+                         "measured": {"grain_radius_m": 0.01}})");
+  const Calibration c = load(good());
+  const json fitted = json::parse(c.model->fitted_file(std::vector<double>{kC, kPhi, kN, kCohesion, kAngle, kK}, "where from").dump());
+  EXPECT_FALSE(fitted.contains("measured"));
+  EXPECT_FALSE(fitted["terrain"].contains("law"));
+  EXPECT_FALSE(fitted["terrain"].contains("friction"));
+  EXPECT_EQ(fitted["terrain"]["unloading_stiffness"], 1e8);
+  EXPECT_EQ(fitted["terrain"]["bekker_n"], kN);
+}
+
 TEST_F(CalibrateScm, starts_are_the_fits_of_the_soil_tests) {
   const Calibration c = load(good());
   const double truth[] = {kC, kPhi, kN, kCohesion, kAngle, kK};
@@ -129,6 +141,9 @@ TEST_F(CalibrateScm, wrong_targets_are_refused) {
       {"/targets/0/data", "negative.csv", "negative.csv: key 'line 2': width_m is -0.05, expected above 0"},
       {"/targets/0/data", "empty.csv", "empty.csv: has no point with sinkage_m above 0"},
       {"/targets/0/normal_stress", 2e4, "key 'targets[0].normal_stress': is given with \"on\": \"plate\""},
+      {"/targets/0/width", 0.05, "key 'targets[0].width': is given, and plate.csv has the column 'width_m', expected one of them"},
+      {"/targets/1/normal_stress", 2e4,
+       "key 'targets[1].normal_stress': is given, and shear.csv has the column 'nominal_normal_stress_Pa'"},
       {"/targets/1/pressure", 2e4, "key 'targets[1].pressure': is unknown"},
       {"/start", "plate.csv", "plate.csv"},
   };

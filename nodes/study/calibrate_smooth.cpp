@@ -58,9 +58,10 @@ class Residuals final : public ceres::CostFunction {
 
 struct Told final : ceres::IterationCallback {
   std::function<void(int iteration)> tell;
+  int before = 0;  // iterations of the start's earlier rounds
   std::exception_ptr thrown;
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override try {
-    if (tell) tell(summary.iteration);
+    if (tell) tell(before + summary.iteration);
     return ceres::SOLVER_CONTINUE;
   } catch (...) {  // not through Ceres
     thrown = std::current_exception();
@@ -156,6 +157,7 @@ class Solver {
     options.num_threads = 1;
     options.logging_type = ceres::SILENT;
     options.callbacks = {&told_};
+    told_.before = iterations;
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem, &summary);
     residuals.rethrow();

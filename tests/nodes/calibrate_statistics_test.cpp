@@ -1,6 +1,7 @@
 // Errors, intervals and identifiability of fits, against closed forms of linear least squares and by repetition.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -119,6 +120,19 @@ TEST(CalibrateStatistics, data_that_the_model_does_not_describe_are_named) {
   ASSERT_EQ(falls.size(), 1u);
   EXPECT_NE(falls[0].find("the fitted model does not describe curve (R² -"), std::string::npos) << falls[0];
   EXPECT_TRUE(warned({1.1, 1.9, 3.1, 3.9}).empty());
+}
+
+TEST(CalibrateStatistics, what_is_done_never_falls_back_from_start_to_start) {
+  // The optimum lies at a bound: each start has several rounds.
+  const Calibration study = study_of([](double x, std::span<const double> p) { return p[0] * x * x + p[1] * x; }, steps(0.0, 4.0, 9),
+                                     {0.0, 1.4, 3.1, 4.4, 6.1, 7.4, 9.1, 10.4, 12.0}, {{"a", "N", 0.1, 10.0, 5.0, true}, {"b", "N", 1.0, 100.0, 50.0, true}}, 4);
+  std::vector<double> shares;
+  const furrow::testing::TemporaryFolder folder;
+  calibrate(study, folder.path(), [&](const std::string&, double share) { shares.push_back(share); });
+  ASSERT_GT(shares.size(), 8u);
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+  EXPECT_GT(shares.back(), 0.75);
+  EXPECT_LE(shares.back(), 1.0);
 }
 
 TEST(CalibrateStatistics, starts_find_the_lower_of_two_leasts) {

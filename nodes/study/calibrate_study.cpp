@@ -166,9 +166,18 @@ std::string digest_of(const Calibration& c) {
   return hash.hex();
 }
 
+/// The file that a name stands for: as it is, or one of those that come with the program.
+std::filesystem::path named_calibration(const std::filesystem::path& name) {
+  std::error_code error;
+  if (name.empty() || name.has_parent_path() || std::filesystem::exists(name, error)) return name;
+  const std::filesystem::path shipped = data_folder() / "rigs" / name;
+  return std::filesystem::is_regular_file(shipped, error) ? shipped : name;
+}
+
 }  // namespace
 
-Calibration load_calibration(const std::filesystem::path& file) {
+Calibration load_calibration(const std::filesystem::path& name) {
+  const std::filesystem::path file = named_calibration(name);
   const Json document = load_json<Json>(file, "a calibration study in JSON");
   if (!document.contains("calibrate"))
     throw input_error(file.string(), "calibrate",

@@ -36,7 +36,8 @@ struct Calibration {
   std::string digest;
 };
 
+/// @param name of a file, or of a calibration that comes with the program, as "calibrate_ring.json"
 /// @throws Error(bad_input) naming file and key
-Calibration load_calibration(const std::filesystem::path& file);
+Calibration load_calibration(const std::filesystem::path& name);
 
 }  // namespace furrow::study

@@ -156,6 +156,8 @@ class Calibrate(SystemTest):
             done = furrow("calibrate", path, "--out", "/proc/furrow", cwd=self.folder)
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn("key '--out': cannot be made", done.stderr)
+            # By its name alone, from any folder.
+            self.assertEqual(furrow("calibrate", path.name, "--out", "/proc/furrow", cwd=self.folder).stderr, done.stderr)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,5 @@
 // `furrow calibrate`: a model fitted to data.
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
 
@@ -87,7 +88,8 @@ ExitCode calibrate_command(const CalibrateArguments& arguments) {
       files.push_back(further.name);
   directory.add(files);
   launch::say(fmt::format("furrow: calibration {}, results in {}\n", calibration.name, folder.string()));
-  for (const std::string& note : calibration.model->notes()) print_warning(note);
+  const std::vector<std::string> notes = calibration.model->notes();
+  for (const std::string& note : notes) print_warning(note);
   try {
     launch::ProgressDisplay display;
     const study::CalibrationResults results =
@@ -102,7 +104,9 @@ ExitCode calibrate_command(const CalibrateArguments& arguments) {
     study::write_calibration(calibration, results, folder);
     const Json summary = study::calibration_json(calibration, results);
     launch::say(result_text(summary));
-    for (const Json& warning : summary["warnings"]) print_warning(warning.get<std::string>());
+    const auto warnings = summary["warnings"].get<std::vector<std::string>>();
+    for (const std::string& warning : warnings)
+      if (std::find(notes.begin(), notes.end(), warning) == notes.end()) print_warning(warning);
   } catch (const Error& error) {
     if (error.code() != ExitCode::stopped) throw;
     std::fprintf(stderr, "furrow: stopped by a signal; run the same command to continue\n");

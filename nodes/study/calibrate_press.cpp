@@ -7,9 +7,11 @@
 
 #include <fmt/format.h>
 
+#include "nodes/scenario/schema.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/csv_file.hpp"
 #include "protocol/files/json_text.hpp"
+#include "tire/planar/planar_press.hpp"
 #include "tire/planar/planar_spec.hpp"
 #include "tire/press/press.hpp"
 #include "tire/ring/ring_spec.hpp"
@@ -37,6 +39,8 @@ struct PressKind {
   /// After all places were written: parameters that are none of the file's.
   void (*derive)(json& file, const std::vector<std::string>& names, std::span<const double> values);
   double (*derived_start)(const json& file, const std::string& name);
+  double (*most_deflection)(const json& file);  // that the tire can be pressed by, m
+  const char* most_text;                        // what that is
 };
 
 // ---- flexible ring
@@ -77,7 +81,9 @@ double start_of_softening(const json& file, const std::string&) {
   return product > 0.0 ? std::min(k[1].get<double>() / std::sqrt(product), 1.0) : NAN;
 }
 
-constexpr PressKind kRing{"ring", true, kRingPlaces, tire::read_ring, derive_softening, start_of_softening};
+constexpr PressKind kRing{"ring", true, kRingPlaces, tire::read_ring, derive_softening, start_of_softening,
+                         [](const json& file) { return tire::kMostRingDeflection * tire::read_ring_file(file, "").params.radius; },
+                         "a quarter of the tire's radius"};
 
 // ---- planar finite elements
 
@@ -92,7 +98,13 @@ const auto kPlanarRules = std::to_array<ParameterRule>({
     {"contact_stiffness", "N/m²", 1.0, 1e12, 1e5, 1e9, true},
 });
 
-constexpr PressKind kPlanar{"planar", false, kPlanarPlaces, tire::read_planar, nullptr, nullptr};
+constexpr PressKind kPlanar{"planar", false, kPlanarPlaces, tire::read_planar, nullptr, nullptr,
+                           [](const json& file) {
+                             const auto& size = tire::read_planar_file(file, "").params.size;
+                             return tire::kMostPlanarDeflection * (size.radius - size.rim_radius);
+                           },
+                           "0.6 of the tire's height over its rim"};
+static_assert(tire::kMostRingDeflection == 0.25 && tire::kMostPlanarDeflection == 0.6, "as most_text says");
 
 // ---- both
 
@@ -128,7 +140,8 @@ tire::PressObstacle obstacle_of(OrderedJsonReader& reader, std::string& what) {
 }
 
 /// Deflections and forces of the loading, by rising deflection, with their errors where the file has them.
-std::vector<double> read_curve(Target& target) {
+/// @param most deflection that the tire can be pressed by, m @param most_text what that is
+std::vector<double> read_curve(Target& target, double most, const char* most_text) {
   const CsvFile table(target.data, "a load–deflection curve in CSV",
                       {"deflection_m", "force_N", "sigma_N", "residual", "unloading", "moment_x_Nm", "moment_y_Nm"});
   if (!table.has("force_N")) throw table.wrong(0, "has no column 'force_N' above it, expected one");
@@ -141,6 +154,8 @@ std::vector<double> read_curve(Target& target) {
     if (deflection < 0.0 || deflection > kMostDeflection)
       throw table.wrong(row, fmt::format("deflection_m is {}, expected 0 to {}", number_text(deflection),
                                          number_text(kMostDeflection)));
+    if (deflection > most)
+      throw table.wrong(row, fmt::format("deflection_m is {}, expected {:.4g} or less, {}", number_text(deflection), most, most_text));
     if (deflection == 0.0) continue;
     if (!target.x.empty() && !(deflection > target.x.back()))
       throw table.wrong(row, fmt::format("deflection_m is {}, expected more than that of the line before, {}",
@@ -171,6 +186,7 @@ class PressModel final : public CalibrationModel {
     tire::TireOptions options;
     options.file = start_;
     (void)kind_.read(file_, options);
+    most_deflection_ = kind_.most_deflection(file_);
     require_one_of_two(input);
     read(input.targets, input.study, fitted_, of_fitted_);
     read(input.held_out, input.study, held_out_, of_held_out_);
@@ -185,6 +201,8 @@ class PressModel final : public CalibrationModel {
     }
     return values;
   }
+
+  std::vector<std::string> notes() const override { return notes_; }
 
   Prediction predict(std::span<const double> values, TargetSet set, const ProgressCall& progress) override {
     Prediction found;
@@ -245,10 +263,12 @@ class PressModel final : public CalibrationModel {
           reader.fail("pressure", fmt::format("is {} Pa, expected 0 to {} Pa", number_text(*press.pressure),
                                               number_text(kMostPressure)));
         target.what += fmt::format(", {:g} kPa", 1e-3 * *press.pressure);
+        for (const scenario::Problem& odd : scenario::Schema::load().unusual({{"tire", {{"pressure", *press.pressure}}}}))
+          notes_.emplace_back(input_error(study.string(), reader.full("pressure"), odd.what).what());
       }
       reader.finish();
       target.x_name = "deflection_m", target.y_name = "force_N";
-      set_sigma(keys, read_curve(target));
+      set_sigma(keys, read_curve(target, most_deflection_, kind_.most_text));
       press.options.unload = false;
       press.options.at = target.x;
       press.options.points = static_cast<int>(target.x.size());
@@ -275,6 +295,8 @@ class PressModel final : public CalibrationModel {
   std::vector<std::string> names_;
   std::filesystem::path start_;
   json file_;
+  double most_deflection_ = 0.0;  // m
+  std::vector<std::string> notes_;
   std::vector<PressTarget> of_fitted_, of_held_out_;
 };
 

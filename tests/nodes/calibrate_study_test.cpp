@@ -68,6 +68,15 @@ TEST_F(CalibrateStudy, a_study_is_read_with_its_defaults) {
   EXPECT_EQ(plate.sigma, std::vector<double>(4, 140.0));        // a hundredth of the largest
   EXPECT_EQ(plate.what, "plate, 200 kPa");
   EXPECT_EQ(c.model->targets(TargetSet::held_out).front().sigma, std::vector<double>(3, 20.0));
+  EXPECT_TRUE(c.model->notes().empty());
+}
+
+TEST_F(CalibrateStudy, a_pressure_in_another_unit_is_warned_of) {
+  json study = good();
+  study["targets"][0]["pressure"] = 200;
+  const Calibration c = load(study);
+  ASSERT_EQ(c.model->notes().size(), 1u);
+  EXPECT_NE(c.model->notes()[0].find("key 'targets[0].pressure': 200 Pa is unusually small"), std::string::npos) << c.model->notes()[0];
 }
 
 TEST_F(CalibrateStudy, wrong_studies_are_refused_with_file_and_key) {
@@ -80,6 +89,7 @@ TEST_F(CalibrateStudy, wrong_studies_are_refused_with_file_and_key) {
   write("sigma.csv", "deflection_m,force_N,sigma_N\n0.01,5,0\n");
   write("none.csv", "deflection_m,force_N\n0,0\n0.01,0\n0.02,0\n");
   write("pulled.csv", "deflection_m,force_N\n0.01,500\n0.02,-1000\n");
+  write("beyond.csv", "deflection_m,force_N\n0.1,5000\n0.15,9000\n");
   write("deep.csv", "deflection_m,force_N\n0.3,5\n");
   write("tire.json", R"({"format_version": 1, "model": "planar"})");
   write("soft.json", "{}");
@@ -114,6 +124,7 @@ TEST_F(CalibrateStudy, wrong_studies_are_refused_with_file_and_key) {
       {"/targets/0/data", "no_force.csv", "no_force.csv: key 'line 2': has no column 'force_N'"},
       {"/targets/0/data", "sigma.csv", "sigma.csv: key 'line 2': sigma_N is 0, expected above 0"},
       {"/targets/0/data", "deep.csv", "deep.csv: key 'line 2': deflection_m is 0.3, expected 0 to 0.2"},
+      {"/targets/0/data", "beyond.csv", "beyond.csv: key 'line 3': deflection_m is 0.15, expected 0.1175 or less, a quarter of the tire's radius"},
       {"/targets/0/on", "floor", "key 'targets[0].on': is 'floor', expected 'plate' or 'cleat'"},
       {"/targets/0/cleat_width", 0.05, "key 'targets[0].cleat_width': is given on a plate"},
       {"/targets/0/pressure", -1, "key 'targets[0].pressure'"},

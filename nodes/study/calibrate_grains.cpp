@@ -71,19 +71,20 @@ struct Quantity {
   std::string_view name, of_file;
   Test test;
   Figure figure;
+  double least, most;  // of a target, in the unit of its name
 };
 constexpr auto kQuantities = std::to_array<Quantity>({
-    {"friction_angle_deg", "mohr_friction_angle", Test::shear, Figure::phi},
-    {"cohesion_Pa", "mohr_cohesion", Test::shear, Figure::cohesion},
-    {"friction_angle_without_cohesion_deg", "", Test::shear, Figure::phi_alone},
-    {"janosi_K_m", "janosi_k", Test::shear, Figure::K},
-    {"repose_angle_deg", "", Test::repose, Figure::repose},
-    {"repose_angle_without_cohesion_deg", "", Test::repose, Figure::repose_dry},
-    {"n", "bekker_n", Test::plate, Figure::n},
-    {"k_c", "bekker_k_c", Test::plate, Figure::k_c},
-    {"k_phi", "bekker_k_phi", Test::plate, Figure::k_phi},
-    {"cone_index_Pa", "", Test::cone, Figure::cone_index},
-    {"bulk_density_kg_m3", "", Test::any, Figure::bulk_density},
+    {"friction_angle_deg", "mohr_friction_angle", Test::shear, Figure::phi, 0.0, 60.0},
+    {"cohesion_Pa", "mohr_cohesion", Test::shear, Figure::cohesion, 0.0, 1e7},
+    {"friction_angle_without_cohesion_deg", "", Test::shear, Figure::phi_alone, 0.0, 85.0},
+    {"janosi_K_m", "janosi_k", Test::shear, Figure::K, 1e-6, 1.0},
+    {"repose_angle_deg", "", Test::repose, Figure::repose, 0.0, 85.0},
+    {"repose_angle_without_cohesion_deg", "", Test::repose, Figure::repose_dry, 0.0, 60.0},
+    {"n", "bekker_n", Test::plate, Figure::n, 1e-3, 5.0},
+    {"k_c", "bekker_k_c", Test::plate, Figure::k_c, -1e12, 1e12},
+    {"k_phi", "bekker_k_phi", Test::plate, Figure::k_phi, 0.0, 1e13},
+    {"cone_index_Pa", "", Test::cone, Figure::cone_index, 0.0, 1e9},
+    {"bulk_density_kg_m3", "", Test::any, Figure::bulk_density, 50.0, 2e4},
 });
 
 struct Found {
@@ -283,7 +284,16 @@ class GrainModel final : public CalibrationModel {
       reader.fail("value", "expected either 'value' or 'data', the name of a soil file that has it");
     target.data = study;
     target.what = "measured";
-    if (reader.given("value")) return reader.number("value");
+    const auto outside = [&](double value) { return !(value >= quantity.least && value <= quantity.most); };
+    const auto range = [&](double value) {
+      return fmt::format("is {}, expected {} to {} for {}", number_text(value), number_text(quantity.least),
+                         number_text(quantity.most), quantity.name);
+    };
+    if (reader.given("value")) {
+      const double value = reader.number("value");
+      if (outside(value)) reader.fail("value", range(value));
+      return value;
+    }
     target.data = find_file(reader.text("data"), reader.full("data"), study);
     target.what = target.data.filename().string();
     const nlohmann::json soil = scenario::read_soil_material(target.data);
@@ -291,7 +301,9 @@ class GrainModel final : public CalibrationModel {
       throw input_error(target.data.string(), quantity.of_file.empty() ? "terrain" : "terrain." + std::string(quantity.of_file),
                         fmt::format("is missing: soil files do not say {}, expected a 'value' in {} of {}", quantity.name,
                                     reader.full("value"), study.string()));
-    return soil[std::string(quantity.of_file)].get<double>();
+    const double value = soil[std::string(quantity.of_file)].get<double>();
+    if (outside(value)) throw input_error(target.data.string(), "terrain." + std::string(quantity.of_file), range(value));
+    return value;
   }
 
   void read(std::vector<OrderedJsonReader>& readers, const std::filesystem::path& study, std::vector<Target>& targets,

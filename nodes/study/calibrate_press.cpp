@@ -130,7 +130,7 @@ tire::PressObstacle obstacle_of(OrderedJsonReader& reader, std::string& what) {
 /// Deflections and forces of the loading, by rising deflection, with their errors where the file has them.
 std::vector<double> read_curve(Target& target) {
   const CsvFile table(target.data, "a load–deflection curve in CSV",
-                      {"deflection_m", "force_N", "sigma_N", "residual", "unloading"});
+                      {"deflection_m", "force_N", "sigma_N", "residual", "unloading", "moment_x_Nm", "moment_y_Nm"});
   if (!table.has("force_N")) throw table.wrong(0, "has no column 'force_N' above it, expected one");
   std::vector<double> sigma;
   for (std::size_t row = 0; row < table.row_count(); ++row) {

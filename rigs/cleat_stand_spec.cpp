@@ -48,6 +48,9 @@ class CleatStandSpec final : public RigSpec {
 
   RigDescription describe(std::span<const WheelSize> tires, double duration) const override {
     FURROW_ASSERT(tires.size() == 1, tires.size());
+    if (hold_from_ >= duration)
+      throw input_error(context_.file, context_.key("hold_axle_from"),
+                        fmt::format("is {:g} s, expected a time before the run ends at {:g} s", hold_from_, duration));
     RigDescription d;
     d.kind = "cleat_stand";
     d.text = fmt::format("1 cleat test stand, axle held from {:.4g} s on", hold_from_);

@@ -83,11 +83,12 @@ std::string result_line(const nlohmann::ordered_json& summary) {
     return digits(value.get<double>() / unit);
   };
   const auto& footprint = summary["footprint"];
-  return fmt::format(
-      "furrow: a load of {} N deflects the tire by {} mm: secant stiffness {} kN/m, footprint {} mm long{}\n",
-      in(summary["load_N"], 1.0), in(summary["deflection_m"], 1e-3),
-      in(summary["secant_stiffness_N_per_m"], 1e3), in(footprint["length_m"], 1e-3),
-      footprint["width_m"].is_number() ? fmt::format(", {} mm wide", in(footprint["width_m"], 1e-3)) : "");
+  std::string patch;
+  if (footprint["length_m"].is_number()) patch = fmt::format(", footprint {} mm long", in(footprint["length_m"], 1e-3));
+  if (footprint["width_m"].is_number()) patch += fmt::format(", {} mm wide", in(footprint["width_m"], 1e-3));
+  return fmt::format("furrow: a load of {} N deflects the tire by {} mm: secant stiffness {} kN/m{}\n",
+                     in(summary["load_N"], 1.0), in(summary["deflection_m"], 1e-3),
+                     in(summary["secant_stiffness_N_per_m"], 1e3), patch);
 }
 
 }  // namespace

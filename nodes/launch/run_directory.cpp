@@ -202,9 +202,10 @@ void RunDirectory::take_over(const fs::path& reads) {
   if (!listed) return begin();
   lock_ = FolderLock(path_, "--out", FolderLock::Mode::alone);
   const RunList list = RunList::read(path_);
-  if (list.holds(kStudy))
-    throw input_error(path_.string(), "--out",
-                      "holds a study, expected a run's folder to overwrite, or a new one");
+  for (const auto& [mark, name] : {std::pair{kStudy, "study"}, {kCalibration, "calibration"}})
+    if (list.holds(mark))
+      throw input_error(path_.string(), "--out",
+                        fmt::format("holds a {}, expected a run's folder to overwrite, or a new one", name));
   take_back(list);
   set_aside(RunList::read(path_), reads);
 }

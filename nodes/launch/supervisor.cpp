@@ -7,6 +7,7 @@
 #include <csignal>
 
 #include <array>
+#include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -22,6 +23,7 @@
 #include "nodes/launch/supervisor_lines.hpp"
 #include "nodes/launch/supervisor_text.hpp"
 #include "nodes/launch/thread_setup.hpp"
+#include "nodes/scenario/memory_check.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/clock.hpp"
 
@@ -298,9 +300,13 @@ LaunchResult Supervisor::lost_rank(int rank, const std::string& how) const {
 LaunchResult Supervisor::outcome() const {
   const bool exited = WIFEXITED(status_);
   const int status = exited ? WEXITSTATUS(status_) : -1;
-  if (late_ && stop_seen_ == 0.0)
-    return {ExitCode::io, fmt::format("{} within {:g} s (FURROW_START_TIMEOUT sets another time): mpirun {}",
-                                      start_.standing(), launch_.patience, launcher_said())};
+  if (late_ && stop_seen_ == 0.0) {
+    const std::string said = launcher_said();
+    const std::string text = fmt::format("{} within {:g} s (FURROW_START_TIMEOUT sets another time): mpirun {}",
+                                         start_.standing(), launch_.patience, said);
+    if (said.find(std::strerror(ENOMEM)) == std::string::npos) return {ExitCode::io, text};
+    return {ExitCode::limit, fmt::format("{}: {}", scenario::out_of_memory(0.0).what(), text)};
+  }
   if (error_ && error_->code != ExitCode::rank_lost) return {error_->code, error_->text};
   if (stop_seen_ > 0.0 && (status == static_cast<int>(ExitCode::stopped) || ended_ > 0.0))
     return {ExitCode::stopped,

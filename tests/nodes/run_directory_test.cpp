@@ -296,6 +296,14 @@ TEST_F(RunFolderTest, a_way_through_a_folder_that_is_not_there_is_refused) {
   EXPECT_TRUE(fs::exists(folder_.path() / "out"));
 }
 
+TEST_F(RunFolderTest, the_folder_of_a_calibration_is_never_overwritten_by_a_run) {
+  const fs::path calibration = folder_.path() / "calibration";
+  RunDirectory::of_calibration(calibration, false).add({"calibration.json", "evaluations.csv"});
+  write(calibration / "evaluations.csv", "");
+  EXPECT_NE(error_of([&] { RunDirectory("test", calibration, true); }).find("holds a calibration"), std::string::npos);
+  EXPECT_TRUE(fs::exists(calibration / "evaluations.csv"));
+}
+
 TEST_F(RunFolderTest, the_folder_of_a_study_is_no_runs_and_that_of_a_run_no_studys) {
   const fs::path study = folder_.path() / "study";
   RunDirectory::of_study(study).add({"sweep.json"});

@@ -165,6 +165,7 @@ SCENARIOS = [
     ("stop_of_a_drawbar_rig", text(rig={"hold_axle_from": 0.1}), [], "key 'rig.hold_axle_from': is a key of type 'cleat_stand', but rig.type is 'drawbar'"),
     ("load_beside_carrier_mass_of_a_cleat_stand", cleat_stand({"load": 4e3, "carrier_mass": 400}), [], "key 'rig.load': is given beside 'rig.carrier_mass', expected one of the two"),
     ("slip_of_a_cleat_stand", cleat_stand({"slip": 0.1}), [], "key 'rig.slip': is a key of type 'drawbar', but rig.type is 'cleat_stand'"),
+    ("stop_after_the_end", cleat_stand({"hold_axle_from": 5}), [], "key 'rig.hold_axle_from': is 5 s, expected a time before the run ends"),
     ("stop_as_text", cleat_stand({"hold_axle_from": "soon"}), [], "key 'rig.hold_axle_from': is 'soon', expected a number"),
 ]
 

@@ -93,9 +93,9 @@ class Launcher(EnvironmentTest):
         path.chmod(0o755)
         return {"FURROW_MPIRUN": str(path), "FURROW_START_TIMEOUT": "1"}
 
-    def check(self, script, words, longest):
+    def check(self, script, words, longest, code=5):
         begin = time.monotonic()
-        line = self.one_error(furrow("run", self.path, "--out", "out", cwd=self.folder, env=self.launcher(script)), 5)
+        line = self.one_error(furrow("run", self.path, "--out", "out", cwd=self.folder, env=self.launcher(script)), code)
         self.assertLess(time.monotonic() - begin, longest)
         self.assertIn("none of 3 ranks began within 1 s (FURROW_START_TIMEOUT sets another time)", line)
         self.assertIn(words, line)
@@ -107,6 +107,9 @@ class Launcher(EnvironmentTest):
 
     def test_words_on_standard_output_count_too(self):
         self.check("echo all nodes are busy; sleep 1000\n", "mpirun said: all nodes are busy", 30)
+
+    def test_that_has_no_memory_for_its_ranks_is_a_limit(self):
+        self.check("echo 'mmap(2): Cannot allocate memory (errno 12)' >&2; sleep 1000\n", "mpirun said: mmap(2)", 30, code=6)
 
     def test_that_hangs_and_will_not_end_is_killed(self):
         self.check("trap '' TERM; while true; do sleep 0.1; done\n", "mpirun said nothing", 40)
@@ -155,10 +158,10 @@ class Limits(EnvironmentTest):
         self.assertEqual(limited("-v 4000000", "validate", self.path, *large, cwd=self.folder).returncode, 0)
 
     def test_memory_that_runs_out_on_the_way_is_no_failure_of_the_physics(self):
-        # About 620,000 grains: half of the estimate is below the limit, so it is tried.
+        # About 620,000 grains: half of the estimate is below the limit, so it is tried. MPI itself needs about 0.3 GB.
         many = ["--set", "terrain.radius=0.006", "--set", "terrain.layers=15", "--set", "terrain.length=13.3", "--set", "terrain.width=0.6",
                 "--set", "run.step=2e-5", "--set", "terrain.bed_generator=lattice"]
-        done = limited("-v 300000", "run", self.path, *many, cwd=self.folder, timeout=300)
+        done = limited("-v 340000", "run", self.path, *many, cwd=self.folder, timeout=300)
         self.assertRegex(self.one_error(done, 6), r"out of memory: needs about \d+\.\d GB, limit 0.3 GB \(ulimit -v\)")
         self.assertEqual(survivors(self.folder), [])
 

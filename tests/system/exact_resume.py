@@ -159,12 +159,14 @@ def on_a_curb(rig, **tire):
 
 class QuarterCar(Exact, CheckpointTest):
     SCENARIO = on_a_curb({"type": "quarter_car", "body_mass": 400}, rigid=True, elements_circumference=40)
+    LOADED = 6
 
 
 class HalfCar(Exact, CheckpointTest):
     """The front wheel has met the curb, the rear one has not."""
     SCENARIO = on_a_curb({"type": "half_car", "body_mass": 800, "wheelbase": 1.5, "front_share": 0.6}, rigid=True, elements_circumference=40)
     WHEELS = 2
+    LOADED = 6
 
 
 class CleatStand(Exact, CheckpointTest):

@@ -101,6 +101,9 @@ std::vector<std::pair<std::string, std::string>> HandlingSpec::unlikely_values()
   if (t.vertical.vertical_stiffness < 1e4 || t.vertical.vertical_stiffness > 1e7)
     odd.emplace_back("[VERTICAL] VERTICAL_STIFFNESS",
                      fmt::format("of {} is {:g} N/m, usual are 1e5 to 1e6 N/m", at, t.vertical.vertical_stiffness));
+  if (t.dimension.unloaded_radius < 0.05 || t.dimension.unloaded_radius > 2.0)
+    odd.emplace_back("[DIMENSION] UNLOADED_RADIUS",
+                     fmt::format("of {} is {:g} m, usual are 0.1 to 1 m", at, t.dimension.unloaded_radius));
   return odd;
 }
 

@@ -190,13 +190,16 @@ nlohmann::ordered_json press_json(const PressOptions& options, const PressResult
     area += s.area;
     length.include(s.x), width.include(s.y);
   }
+  const auto of_patch = [&](double value) {  // of a model that knows a patch
+    return results.footprint.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(value);
+  };
   j["footprint"] = {{"deflection_m", p.deflection},
                     {"force_N", p.force},
-                    {"length_m", length.size()},
-                    {"width_m", results.footprint_width.value_or(width.size())},
-                    {"area_m2", area},
-                    {"mean_pressure_Pa", area > 0.0 ? force / area : 0.0},
-                    {"max_pressure_Pa", highest}};
+                    {"length_m", of_patch(length.size())},
+                    {"width_m", of_patch(results.footprint_width.value_or(width.size()))},
+                    {"area_m2", of_patch(area)},
+                    {"mean_pressure_Pa", of_patch(area > 0.0 ? force / area : 0.0)},
+                    {"max_pressure_Pa", of_patch(highest)}};
   return j;
 }
 

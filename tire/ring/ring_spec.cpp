@@ -75,7 +75,8 @@ class RingStatic final : public StaticTest {
 
 class RingSpec final : public TireSpec {
  public:
-  RingSpec(RingFile file, const TireOptions& options) : TireSpec(options), file_(std::move(file)) {}
+  RingSpec(RingFile file, int file_segments, const TireOptions& options)
+      : TireSpec(options), file_(std::move(file)), file_segments_(file_segments) {}
 
   TireDescription describe() const override;
   std::unique_ptr<Tire> make(const TireContext& context) const override {
@@ -90,6 +91,13 @@ class RingSpec final : public TireSpec {
     return std::make_unique<RingModes>(file_.params, file_.motion, mass());
   }
 
+  std::vector<std::pair<std::string, std::string>> unlikely_values() const override {
+    if (file_.params.segments >= file_segments_) return {};
+    return {{"segments", fmt::format("of the file is {}, the scenario's tire.elements_circumference makes it {}: the force of "
+                                     "fewer segments is rougher",
+                                     file_segments_, file_.params.segments)}};
+  }
+
  private:
   MassProperties mass() const {
     return {file_.motion.mass,
@@ -97,6 +105,7 @@ class RingSpec final : public TireSpec {
   }
 
   RingFile file_;
+  int file_segments_;  // before the scenario changed them
 };
 
 TireDescription RingSpec::describe() const {
@@ -179,9 +188,10 @@ RingFile read_ring_file(const nlohmann::json& document, const std::string& path)
 
 std::unique_ptr<TireSpec> read_ring(const nlohmann::json& file, const TireOptions& options) {
   RingFile ring = read_ring_file(file, options.file.string());
+  const int segments = ring.params.segments;
   apply(ring, options);
   if (!options.pressure.empty()) check_pressure(ring, options.pressure.highest(), "pressure");
-  return std::make_unique<RingSpec>(std::move(ring), options);
+  return std::make_unique<RingSpec>(std::move(ring), segments, options);
 }
 
 }  // namespace furrow::tire

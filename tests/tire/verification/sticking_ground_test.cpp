@@ -51,7 +51,7 @@ Eigen::Vector4d linear_stiffness(const InflatedCarcass& ring,
   for (int i = 0; i < 2 * kAside; ++i)
     for (int j = 0; j + 1 < rows; ++j)
       for (int p = 0; p < kAround * kAcross; ++p) {
-        const double u = double(p / kAcross) / kAround, v = double(p % kAcross) / kAcross;
+        const double u = (p / kAcross + 0.5) / kAround, v = (p % kAcross + 0.5) / kAcross;
         const double w[4] = {(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v};
         Vec3 x = Vec3::Zero();
         int node[4];

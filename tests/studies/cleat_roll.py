@@ -22,7 +22,6 @@ import argparse
 import csv
 import json
 import pathlib
-import subprocess
 import sys
 
 import matplotlib
@@ -37,6 +36,9 @@ RESULTS = ROOT / "results" / "studies" / "cleat_roll"
 sys.path.insert(0, str(ROOT / "scripts"))
 import plot.style as style  # noqa: E402
 import provenance  # noqa: E402
+from kept_results import KeptResults, furrow  # noqa: E402
+
+KEPT = KeptResults(RESULTS)
 
 LOAD, LENGTH, GRAVITY = 4562.0, 0.025, 9.80665  # N, m, m/s²
 SPEEDS, HEIGHTS = (10.0, 30.0, 60.0), (0.020, 0.025)  # km/h, m
@@ -60,26 +62,6 @@ PLANAR = {
                 "normal_damping": 13},
 }
 COLOURS = {"shell": style.BLUE, "light": style.SKY, "planar": style.ORANGE}
-finished_only = False
-
-
-def furrow(*arguments):
-    return subprocess.run([provenance.program(), *map(str, arguments)], check=True, capture_output=True, text=True).stdout
-
-
-def folder_of(name, made, command, *more):
-    """Of the results, made unless this build made them of the same input."""
-    folder, stamp = RESULTS / name, RESULTS / f"{name}.stamp"
-    key = json.dumps([provenance.build_of(provenance.program()), made, command, list(map(str, more))])
-    if (folder / "summary.json").exists() and stamp.exists() and stamp.read_text() == key:
-        return folder
-    if finished_only:
-        return None
-    (RESULTS / f"{name}.json").write_text(json.dumps(made))
-    furrow(command, RESULTS / f"{name}.json", *more, "--out", folder, "--overwrite", "--quiet")
-    stamp.write_text(key)
-    print(name, flush=True)
-    return folder
 
 
 def scenario(tire, speed, height, settled=SETTLED, friction=0.8):
@@ -108,7 +90,7 @@ def stiffness(tire, planar):
     made = scenario(tire, 10.0, 0.02)
     if tire == "planar":
         write_planar(planar)
-    folder = folder_of(f"plate_{tire}" + (f"_{planar:.0f}" if planar else ""), made, "press", "--on", "plate", "--deflection", 0.018 if tire == "shell" else 0.03, "--points", 6)
+    folder = KEPT.folder_of(f"plate_{tire}" + (f"_{planar:.0f}" if planar else ""), made, "press", "--on", "plate", "--deflection", 0.018 if tire == "shell" else 0.03, "--points", 6)
     rows = [row for row in csv.DictReader(open(folder / "press.csv", newline="")) if row["unloading"] == "0"]
     deflection, force = (np.array([float(row[key]) for row in rows]) for key in ("deflection_m", "force_N"))
     at = np.interp(LOAD, force, deflection)
@@ -223,7 +205,7 @@ def statically(axle_height, cleat_height, place):
     profile.write_text("x_m,z_m\n" + "".join(f"{x:.6f},{z:.6f}\n" for x, z in points))
     deflection = cleat_height + PLANAR["radius"] - axle_height
     made = scenario("planar", 10.0, cleat_height)
-    folder = folder_of(f"static_{1e3 * place:+.0f}", made, "press", "--on", "profile", "--profile", profile,
+    folder = KEPT.folder_of(f"static_{1e3 * place:+.0f}", made, "press", "--on", "profile", "--profile", profile,
                        "--deflection", f"{deflection:.7f}", "--points", 6)
     rows = [row for row in csv.DictReader(open(folder / "press.csv", newline="")) if row["unloading"] == "0"]
     return float(rows[-1]["force_N"])
@@ -262,18 +244,17 @@ def draw(passages, slow, still, modes):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("--finished", action="store_true", help="only what is there")
-    global finished_only
-    finished_only = parser.parse_args().finished
+    KEPT.finished_only = parser.parse_args().finished
     RESULTS.mkdir(parents=True, exist_ok=True)
     made = provenance.made_here()
     modulus, deflection = fitted_planar()
     modes = {tire: modes_of(tire) for tire in ("shell", "planar")}
     passages = {}
     for tire, speed, height in CASES:
-        folder = folder_of(f"{tire}_{1e3 * height:.0f}_{speed:.0f}", scenario(tire, speed / 3.6, height), "run", "--no-plots")
+        folder = KEPT.folder_of(f"{tire}_{1e3 * height:.0f}_{speed:.0f}", scenario(tire, speed / 3.6, height), "run", "--no-plots")
         if folder:
             passages[tire, speed, height] = Passage(folder, speed / 3.6)
-    folder = folder_of("planar_slow", scenario("planar", SLOW, HEIGHTS[0], friction=0.0), "run", "--no-plots")
+    folder = KEPT.folder_of("planar_slow", scenario("planar", SLOW, HEIGHTS[0], friction=0.0), "run", "--no-plots")
     slow = Passage(folder, SLOW) if folder else None
     still = {place: statically(slow.height, HEIGHTS[0], place) for place in (0.0, 0.04, 0.08, 0.12, 0.16)} if slow else {}
     still |= {-place: force for place, force in still.items()}  # the tire is alike in front and behind

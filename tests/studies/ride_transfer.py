@@ -23,7 +23,6 @@ import argparse
 import csv
 import json
 import pathlib
-import subprocess
 import sys
 
 import matplotlib
@@ -38,7 +37,10 @@ RESULTS = ROOT / "results" / "studies" / "ride_transfer"
 sys.path.insert(0, str(ROOT / "scripts"))
 import plot.style as style  # noqa: E402
 import provenance  # noqa: E402
+from kept_results import KeptResults  # noqa: E402
 from plot.ride_values import ride_values  # noqa: E402
+
+KEPT = KeptResults(RESULTS)
 
 GRAVITY = 9.80665
 SPEED, ROAD_FROM, ROAD_LENGTH, SPACING = 10.0, 8.0, 60.0, 0.05  # m/s, m
@@ -49,26 +51,6 @@ RADIUS, WIDTH, STIFFNESS, DAMPING = 0.522, 1.0, 2e7, 1e4  # of tire and the grou
 TIRE_DAMPER = 3e3  # N s/m, of the elastic tire
 BAND = 20.0  # Hz
 SETTLED = 1.5  # s on the road, by when the body has forgotten that it was let down
-finished_only = False
-
-
-def furrow(*arguments):
-    subprocess.run([provenance.program(), *map(str, arguments)], check=True, capture_output=True)
-
-
-def folder_of(name, made, command, *more):
-    """Of the results, made unless this build made them of the same input; None where it may not be made."""
-    folder, stamp = RESULTS / name, RESULTS / f"{name}.stamp"
-    key = json.dumps([provenance.build_of(provenance.program()), made, command, list(map(str, more))])
-    if (folder / "summary.json").exists() and stamp.exists() and stamp.read_text() == key:
-        return folder
-    if finished_only:
-        return None
-    (RESULTS / f"{name}.json").write_text(json.dumps(made))
-    furrow(command, RESULTS / f"{name}.json", *more, "--out", folder, "--overwrite", "--quiet")
-    stamp.write_text(key)
-    print(name, flush=True)
-    return folder
 
 
 def road():
@@ -228,7 +210,7 @@ class Case:
 def plate():
     """Static stiffness of the elastic tire at its load, N/m, and half the length of its footprint there, m."""
     load = (BODY + UNSPRUNG + RIM + 60.0) * GRAVITY
-    folder = folder_of("plate", scenario("quarter_car", False), "press", "--on", "plate", "--deflection", 0.04, "--points", 10, "--load", f"{load:.0f}")
+    folder = KEPT.folder_of("plate", scenario("quarter_car", False), "press", "--on", "plate", "--deflection", 0.04, "--points", 10, "--load", f"{load:.0f}")
     if folder is None:
         return None
     rows = [row for row in csv.DictReader(open(folder / "press.csv", newline="")) if row["unloading"] == "0"]
@@ -270,8 +252,7 @@ def draw(cases):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("--finished", action="store_true", help="only what is there")
-    global finished_only
-    finished_only = parser.parse_args().finished
+    KEPT.finished_only = parser.parse_args().finished
     RESULTS.mkdir(parents=True, exist_ok=True)
     made = provenance.made_here()
     x, z = road()
@@ -279,7 +260,7 @@ def main():
     cases = []
     for name, kind, rigid in (("quarter car, rigid wheel", "quarter_car", True), ("half car, rigid wheels", "half_car", True),
                               ("quarter car, planar tire", "quarter_car", False)):
-        folder = folder_of(f"{kind}_{'rigid' if rigid else 'planar'}", scenario(kind, rigid), "run", "--no-plots")
+        folder = KEPT.folder_of(f"{kind}_{'rigid' if rigid else 'planar'}", scenario(kind, rigid), "run", "--no-plots")
         if folder is None:
             continue
         wheel = UNSPRUNG + RIM + tire_mass(folder)

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """What a step of the engine liggghts costs on the bed of the small rig, part by part, and on several ranks.
 
-usage: liggghts_cost.py     takes about six minutes, prints a table and writes liggghts_cost.csv beside this script
+usage: liggghts_cost.py     takes about ten minutes, prints a table and writes liggghts_cost.csv beside this script
 
 Nothing else may run meanwhile. For each number of ranks, in turn: stock LIGGGHTS (hertz, tangential history, walls), our pair
 style with motion and lists alone in one `run N`, the same with walls and accounts, the same with a `run 1` and the sums of a
@@ -14,7 +14,11 @@ for each other. Of a whole run the rows are, each of the rank that has most of i
     whole_run          wall time of computing and communicating over the steps, as the table of the nodes has it
     whole_run_cpu      processor time; what a rank spends in polling for others is part of it
     whole_run_waiting  wall time of waiting for tire, rig and, outside of LIGGGHTS, other ranks of the terrain
-    whole_run: PART    processor time by part, from a run of its own under `perf record`, by the functions of PARTS
+    whole_run: PART    processor time by part, from runs of their own under `perf record`, by the functions of PARTS
+
+rigid_tire, rigid_tire: PART and so on are those of the run with the rigid tire. Of the parts, `over_pairs` is the ratio to pairs,
+lists, motion and border grains of the same run together, that is to what `one run N` does, in the very steps of that run; a bed at
+rest has fewer contacts and lists than one on which a wheel rolls, and the speed of a shared machine drifts from run to run.
 
 Ranks that are not --timed share cores: of these only the counts mean anything, and no time is given. ghosts and bytes are of
 the rank that has most: position, velocity and spin of each ghost cross in every step.
@@ -83,6 +87,7 @@ PARTS = [("pairs", r"PairFurrow::evaluate"),
          ("frames_and_files", r"Row\b|hdf5|H5|archive|checkpoint|add_file|state_hash"),
          ("messages_and_polling", r"mca_|libmpi|open-pal|open-rte|libevent|MpiWire|Transport|ByteWriter|ByteReader|PMPI|opal_|ompi_|MPI_|"
           r"share_reports|kernel|vdso|pthread_mutex")]
+ENGINE = ("pairs", "lists", "motion", "border_grains")  # what `one run N` does
 COLUMNS = ["part", "ranks", "grains", "steps", "rounds", "us_per_step", "lowest", "highest", "cpu_us_per_step", "ns_per_grain_step", "over_pairs",
            "grains_least", "grains_most", "ghosts_most", "bytes_per_step", "list_builds"]
 
@@ -117,10 +122,10 @@ def whole_run(ranks, out, rigid=False, before=()):
             "_waiting": each * max(row["wait_s"] for row in rows)}
 
 
-def profile(ranks, folder):
+def profile(ranks, folder, rigid):
     """The processor time of the busiest rank of a whole run, by part."""
     data = folder / "perf.data"
-    most = whole_run(ranks, folder / "run", before=("perf", "record", "-q", "-F", "499", "-o", str(data)))["_cpu"]
+    most = whole_run(ranks, folder / "run", rigid, before=("perf", "record", "-q", "-F", "499", "-o", str(data)))["_cpu"]
     text = subprocess.run(["perf", "report", "-i", str(data), "--stdio", "-g", "none", "--sort", "pid,dso,sym", "-F", "sample,pid,dso,sym", "-t", "|"],
                           capture_output=True, text=True, check=True).stdout
     found = {}
@@ -157,7 +162,7 @@ def stock(ranks, steps, folder):
 def show(rows):
     print(f"\n{rows[0]['ranks']} ranks".ljust(40) + "us a step   processor   over pairs alone", flush=True)
     for row in rows:
-        over = f"{100 * (float(row['over_pairs']) - 1):+.0f} %" if row["part"].startswith(("whole", "rigid")) and ": " not in row["part"] else ""
+        over = f"{100 * (float(row['over_pairs']) - 1):+.0f} %" if row["part"].endswith(": all") or row["part"].startswith(("whole", "rigid")) and ": " not in row["part"] else ""
         print(f"{row['part']:<38} {row['us_per_step']:>10} {row['cpu_us_per_step']:>11} {over:>18}", flush=True)
 
 
@@ -190,9 +195,13 @@ def main():
                     for kind, time in whole_run(ranks, folder / "run", rigid).items():
                         found.setdefault(name + kind, []).append({"us_per_step": time})
                 found.setdefault("stock_liggghts", []).append(stock(ranks, arguments.steps, folder))
-            if ranks in arguments.timed:
-                for part, time in sorted(profile(ranks, folder).items(), key=lambda one: -one[1]):
-                    found["whole_run: " + part] = [{"us_per_step": time}]
+            engines = {}
+            for name, rigid in (("whole_run", False), ("rigid_tire", True)) if ranks in arguments.timed else ():
+                runs = [profile(ranks, folder, rigid) for _ in range(rounds)]
+                engines[name] = statistics.median(sum(run.get(part, 0) for part in ENGINE) for run in runs)
+                for part in sorted(set().union(*runs), key=lambda part: -runs[0].get(part, 0)):
+                    found[f"{name}: {part}"] = [{"us_per_step": run.get(part, 0)} for run in runs]
+                found[f"{name}: all"] = [{"us_per_step": sum(run.values())} for run in runs]
             alone = statistics.median(float(row["us_per_step"]) for row in found["pairs"])
             alone_cpu = statistics.median(float(row["cpu_us_per_step"]) for row in found["pairs"])
             grains = int(found["pairs"][0]["grains"])
@@ -202,11 +211,11 @@ def main():
                                                                                     "rounds": len(measured)}
                 row["steps"] = round(RUN / STEP) if part.startswith(("whole_run", "rigid_tire")) else arguments.steps
                 median = statistics.median(times)
-                of_cpu = part.endswith("_cpu") or ": " in part
+                compared = engines[part.split(": ")[0]] if ": " in part else alone_cpu if part.endswith("_cpu") else alone
                 if row["cpu_us_per_step"] != "":
                     row["cpu_us_per_step"] = f"{statistics.median(float(one['cpu_us_per_step']) for one in measured):.0f}"
                 row |= {"us_per_step": f"{median:.0f}", "lowest": f"{min(times):.0f}", "highest": f"{max(times):.0f}",
-                        "ns_per_grain_step": f"{1e3 * median / grains:.0f}", "over_pairs": f"{median / (alone_cpu if of_cpu else alone):.3f}"}
+                        "ns_per_grain_step": f"{1e3 * median / grains:.0f}", "over_pairs": f"{median / compared:.3f}"}
                 if ranks not in arguments.timed:
                     row |= dict.fromkeys(("us_per_step", "lowest", "highest", "cpu_us_per_step", "ns_per_grain_step", "over_pairs"), "")
                 if row["ghosts_most"] != "":

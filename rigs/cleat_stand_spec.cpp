@@ -70,13 +70,12 @@ class CleatStandSpec final : public RigSpec {
   }
 
   void complete(json& section) const override {
-    for (const auto& [key, value] : {std::pair{"lowering_speed", rig_.lowering_speed},
-                                     {"rim_mass", rig_.rim_mass},
-                                     {"rim_spin_inertia", rig_.rim_spin_inertia},
-                                     {"rim_diametral_inertia", rig_.rim_diametral_inertia},
-                                     {"start", rig_.start}})
-      if (value >= 0.0 || std::string(key) == "start") section[key] = value;
-    if (!says(section, "load") && rig_.carrier_mass >= 0.0) section["carrier_mass"] = rig_.carrier_mass;
+    write_filled(section,
+                 {{"lowering_speed", rig_.lowering_speed},
+                  {"rim_mass", rig_.rim_mass},
+                  {"rim_spin_inertia", rig_.rim_spin_inertia},
+                  {"rim_diametral_inertia", rig_.rim_diametral_inertia}},
+                 {"carrier_mass", rig_.carrier_mass}, rig_.start);
   }
 
  private:

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -63,6 +65,19 @@ template <class Options>
 void mount_lowering(Options& rig, double radius) {
   take(rig.lowering_speed, kLoweringFroude * std::sqrt(kStandardGravity * radius));
   take(rig.touchdown_time, rig.move_from > 0.0 ? rig.move_from : kLoweringTime * std::sqrt(radius / kStandardGravity));
+}
+
+/// Writes what was filled in into the scenario's section, without what is still open. A mass that follows from a stated load
+/// is not written.
+/// @param values kg, m, s
+inline void write_filled(nlohmann::json& section, std::initializer_list<std::pair<const char*, double>> values,
+                         std::pair<const char*, double> mass, double start) {
+  const auto write = [&](const std::pair<const char*, double>& entry) {
+    if (!is_open(entry.second)) section[entry.first] = entry.second;
+  };
+  for (const auto& entry : values) write(entry);
+  if (!says(section, "load")) write(mass);
+  section["start"] = start;
 }
 
 /// A wheel that starts at rig.start, without what it carries.

@@ -15,6 +15,7 @@ import h5py
 from checkpoint_runs import FAULTY, CheckpointTest, steps, summary, table
 from exact_resume import Exact, kept
 from program import changed, furrow, main, write_scenario
+from scenarios import SMALL_BED, run_of  # found since exact_resume was imported
 
 LIBRARY = pathlib.Path(FAULTY).parent / "libfurrow_liggghts.so"
 
@@ -92,6 +93,30 @@ class SameNumbersOfTheReportsLaw(SameNumbers):
 
     def test_on_1_2_3_and_4_ranks(self):
         self.assertLess(self.differs_from_whole_by(on_liggghts(kept("rigid"), 2, **self.TERRAIN)), 1e-9)
+
+
+RING = {"file": "hmmwv_ring.json", "rigid": False, "elements_circumference": 60}
+PLANAR = {"file": "aligator_planar.json", "rigid": False}
+
+
+def under(tire, **terrain):
+    return run_of(0.06, rig={"touchdown_damping": 0}, checkpoint={"interval": 0.01, "keep": 1000}, tire=tire,
+                  terrain={**SMALL_BED, **terrain})
+
+
+class SameNumbersUnderARing(SameNumbers):
+    SCENARIO = on_dem(under(RING))
+
+    def test_on_1_2_3_and_4_ranks(self):
+        self.assertLess(self.differs_from_whole_by(on_liggghts(under(RING), 2)), 1e-9)
+
+
+class SameNumbersUnderAPlanarTire(SameNumbers):
+    """It is 1 m wide."""
+    SCENARIO = on_dem(under(PLANAR, length=1.6, width=1.1))
+
+    def test_on_1_2_3_and_4_ranks(self):
+        self.assertLess(self.differs_from_whole_by(on_liggghts(under(PLANAR, length=1.6, width=1.1), 2)), 1e-9)
 
 
 class BordersThatMove(CheckpointTest):

@@ -34,13 +34,18 @@ def build_of(file):
     return hashlib.sha256(pathlib.Path(file).read_bytes()).hexdigest()[:16]
 
 
+TABLES = ("tests/studies/*.csv", "tests/studies/*.png", "tests/benchmarks/*.csv")  # what the scripts write
+
+
 def commit(folder=ROOT):
-    """The commit of the sources, with -dirty where files differ from it."""
-    done = subprocess.run(["git", "describe", "--always", "--dirty", "--abbrev=8", "--exclude=*"], cwd=folder, capture_output=True,
-                          text=True)
-    if done.returncode != 0:
+    """The commit of the sources, with -dirty where files other than the tables of the scripts differ from it."""
+    def git(*words):
+        return subprocess.run(["git", *words], cwd=folder, capture_output=True, text=True)
+    named = git("describe", "--always", "--abbrev=8", "--exclude=*")
+    differs = git("diff", "--quiet", "HEAD", "--", ":/", *(f":(top,exclude){tables}" for tables in TABLES))
+    if named.returncode != 0 or differs.returncode > 1:
         sys.exit(f"{folder}: is no checkout of git, expected one: a table names the commit of its program")
-    return done.stdout.strip()
+    return named.stdout.strip() + ("-dirty" if differs.returncode else "")
 
 
 def compiler_of(file):

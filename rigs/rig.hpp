@@ -106,6 +106,8 @@ class Rig {
   virtual void place(std::span<const double> axle_height) = 0;
 
   virtual RimState rim(int wheel) const = 0;
+  /// Whether it lies on its side or its roof: bodies do not touch the ground, so the run ends there.
+  virtual bool overturned() const { return false; }
 
   /// Advances by `duration` in `substeps` steps with the tires' wrenches (about the rim centres, W) held
   /// constant.

@@ -93,6 +93,8 @@ class TerrainSpec {
   /// @throws Error(bad_input) for values out of range and for a step above the stable one.
   virtual std::unique_ptr<Terrain> make(const TerrainContext& context) const = 0;
   virtual std::vector<TerrainFile> files() const { return {}; }
+  /// What this program lacks to run it, and what is expected, for people; empty: nothing.
+  virtual std::string lacking() const { return {}; }
 
   /// What tools that need our grains (beds, soil tests, passes) work on; null: this terrain has none.
   virtual const dem::DemOptions* grains() const { return nullptr; }

@@ -78,7 +78,7 @@ ResumePoint newest_whole(const fs::path& run, std::vector<std::string>& problems
   if (problems.empty())
     throw input_error(run.string(), "",
                       "holds no checkpoint, expected one in " + checkpoints_folder(run).string() +
-                          "; start again with furrow run");
+                          "; start again with furrow run --overwrite");
   std::string text;
   for (const std::string& problem : problems) text += problem + "\n";
   throw Error(ExitCode::io, text + run.string() + ": no checkpoint is whole, nothing can be continued");
@@ -173,7 +173,7 @@ ResumePlan plan_resume(const fs::path& run,
   if (!fs::exists(file, error))
     throw input_error(
         run.string(), "",
-        "holds a run that never began to step, expected scenario.json in it; start again with furrow run");
+        "holds a run that never began to step, expected scenario.json in it; start again with furrow run --overwrite");
   ResumePlan plan;
   plan.scenario = scenario::load_scenario(file, settings);
   const std::int64_t steps = plan.scenario.run.steps(), ended = finished_at(run);

@@ -103,6 +103,7 @@ ExitCode validate_command(Typed& typed) {
 ExitCode ranks_command(Typed& typed, const SlurmArguments& slurm,
                        const std::vector<std::string>& command_line) {
   const scenario::Scenario scenario = load(typed);
+  scenario::require_runnable(scenario);
   if (typed.slurm) {
     std::cout << slurm_script(scenario, slurm, settings_of(typed));
     return ExitCode::done;

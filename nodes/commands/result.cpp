@@ -63,8 +63,8 @@ std::string ranks_text(const json& summary) {
   std::vector<std::string> parts;
   const json ranks = summary.value("ranks", json::array());
   if (ranks.size() > 3) {
-    std::string table = fmt::format("\nfurrow: {:<10} {:>9} {:>9} {:>7} {:>9} {:>9} {:>9} {:>6}\n", "node", "size",
-                                    "step, s", "threads", "comp., s", "comm., s", "wait, s", "busy");
+    std::string table = fmt::format("\nfurrow: {:<10} {:>9} {:>9} {:>7} {:>9} {:>9} {:>9} {:>6}\n", "node",
+                                    "size", "step, s", "threads", "comp., s", "comm., s", "wait, s", "busy");
     for (const json& rank : ranks)
       table += fmt::format("furrow: {:<10} {:>9} {:>9.3g} {:>7} {:>9.1f} {:>9.1f} {:>9.1f} {:>4.0f} %\n",
                            rank.value("node", std::string("?")), rank.value("size", std::int64_t{0}),
@@ -118,19 +118,22 @@ std::string subject_lines(const json& summary, double average_from) {
       text += fmt::format(
           "furrow: {}: {} m in all; from {:g} s on {} m/s on average, engine {} W, wheels {} W, tires and "
           "ground {} W\n",
-          name, told("distance_m"), average_from, told("speed_m_s"), told("power_W"),
-          told("wheel_power_W"), told("soil_power_W"));
+          name, told("distance_m"), average_from, told("speed_m_s"), told("power_W"), told("wheel_power_W"),
+          told("soil_power_W"));
   }
   return text;
 }
 
-/// Of a run that came near a wall.
+/// Of a run that ended before its planned end.
 std::string end_lines(const json& summary, const scenario::Scenario& scenario) {
   const std::string reason = summary.value("end_reason", std::string("run_end"));
   if (reason == "run_end") return "";
-  std::string text = fmt::format(
-      "furrow: the run ended at {:g} s, before {:g} s: a tire came near {} wall (rig.stop_before_wall)\n",
-      number(summary, "end_time_s"), scenario.run.end, reason == "end_wall" ? "the end" : "a side");
+  const std::string why = reason == "overturned"
+                              ? "the vehicle has turned over"
+                              : fmt::format("a tire came near {} wall (rig.stop_before_wall)",
+                                            reason == "end_wall" ? "the end" : "a side");
+  std::string text = fmt::format("furrow: the run ended at {:g} s, before {:g} s: {}\n",
+                                 number(summary, "end_time_s"), scenario.run.end, why);
   if (number(summary, "average_from_s") != scenario.run.average_from)
     text += fmt::format("furrow: so means are from {:.3g} s on, not from run.average_from = {:g} s\n",
                         number(summary, "average_from_s"), scenario.run.average_from);

@@ -61,9 +61,9 @@ void tell_how_to_continue(const std::filesystem::path& directory, const launch::
   const std::string folder = scenario::shell_quoted(directory.string());
   const bool physics = result.code == ExitCode::physics;
   if (physics && result.error.find(kNoStepHelps) != std::string::npos)
-    std::fputs("furrow: a resumed run would fail at the same step; start again with furrow run\n", stderr);
+    std::fputs("furrow: a resumed run would fail at the same step; start again with furrow run --overwrite\n", stderr);
   else if (checkpoint::list_checkpoints(directory).empty())
-    std::fprintf(stderr, "furrow: there is no checkpoint yet; start again with furrow run%s\n",
+    std::fprintf(stderr, "furrow: there is no checkpoint yet; start again with furrow run --overwrite%s\n",
                  physics ? ", perhaps with a smaller run.step" : "");
   else if (physics)
     std::fprintf(

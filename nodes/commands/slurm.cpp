@@ -3,6 +3,7 @@
 // (scripts/cluster/README.md).
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <regex>
 
 #include <fmt/format.h>
@@ -17,6 +18,7 @@ namespace {
 
 constexpr int kWarning =
     360;  // s before its end that Slurm signals the job: a checkpoint and Slurm's own delays
+constexpr int kLeastWork = 120;          // s that a start has before that
 constexpr int kMostRestarts = 3;         // of a job that never came to its first checkpoint
 constexpr double kMemoryMargin = 1.3;    // of the estimate
 constexpr double kMemoryOfRank = 256e6;  // bytes beside it, of libraries and files
@@ -32,16 +34,37 @@ void check_word(const std::string& option, const std::string& value) {
     throw wrong(option, "is '" + value + "', expected a name as Slurm has them");
 }
 
+/// Of a time as Slurm reads it, s: minutes[:seconds], hours:minutes:seconds or days-hours[:minutes[:seconds]]; none: it is no time.
+std::optional<double> seconds_of(const std::string& time) {
+  static const std::regex kShort("([0-9]{1,7})(?::([0-5]?[0-9]))?");
+  static const std::regex kHours("([0-9]{1,5}):([0-5]?[0-9]):([0-5]?[0-9])");
+  static const std::regex kDays("([0-9]{1,4})-([01]?[0-9]|2[0-3])(?::([0-5]?[0-9]))?(?::([0-5]?[0-9]))?");
+  std::smatch found;
+  const auto part = [&found](std::size_t k) { return found[k].matched ? std::stod(found[k].str()) : 0.0; };
+  if (std::regex_match(time, found, kShort)) return 60.0 * part(1) + part(2);
+  if (std::regex_match(time, found, kHours)) return 3600.0 * part(1) + 60.0 * part(2) + part(3);
+  if (std::regex_match(time, found, kDays))
+    return 86400.0 * part(1) + 3600.0 * part(2) + 60.0 * part(3) + part(4);
+  return {};
+}
+
 void check_time(const std::string& time) {
-  static const std::regex kTime("[0-9]+(:[0-9]{1,2}){0,2}|[0-9]+-[0-9]{1,2}(:[0-9]{1,2}){0,2}");
-  if (!time.empty() && !std::regex_match(time, kTime))
-    throw wrong("--time", "is '" + time + "', expected minutes, hh:mm:ss or days-hh:mm:ss");
+  if (time.empty()) return;
+  const std::optional<double> seconds = seconds_of(time);
+  if (!seconds) throw wrong("--time", "is '" + time + "', expected minutes, hh:mm:ss or days-hh:mm:ss");
+  if (*seconds < kWarning + kLeastWork)
+    throw wrong("--time",
+                fmt::format("is '{}', expected {} minutes or more: the run saves its state {} minutes before",
+                            time, (kWarning + kLeastWork) / 60, kWarning / 60));
 }
 
 /// How the ranks fall on the nodes: `each` on every one, in their order, fewer on the last.
 struct Layout {
   int ranks = 0, nodes = 1, each = 0;
 };
+
+/// As Slurm counts them: on one node furrow starts its ranks itself.
+int tasks_of_node(const Layout& layout) { return layout.nodes == 1 ? 1 : layout.each; }
 
 Layout layout_of(const scenario::Scenario& scenario, const SlurmArguments& job) {
   const int ranks = static_cast<int>(scenario::rank_table(scenario).size());
@@ -57,6 +80,11 @@ Layout layout_of(const scenario::Scenario& scenario, const SlurmArguments& job) 
   if (job.cores_per_node != 0 && job.cores_per_node < least)
     throw wrong("--cores-per-node", fmt::format("is {}, expected {} or more: {} ranks on each node",
                                                 job.cores_per_node, least, layout.each));
+  if (const int tasks = tasks_of_node(layout); job.cores_per_node % tasks != 0)
+    throw wrong("--cores-per-node",
+                fmt::format("is {}, expected {} or another multiple of the {} ranks on each node: "
+                            "Slurm gives each of them as many cores",
+                            job.cores_per_node, job.cores_per_node / tasks * tasks, tasks));
   return layout;
 }
 
@@ -107,7 +135,7 @@ std::string directives(const scenario::Scenario& scenario, const SlurmArguments&
     add("--exclusive");
     add("--mem=0");
   } else {
-    const int tasks = layout.nodes == 1 ? 1 : layout.each;
+    const int tasks = tasks_of_node(layout);
     const double memory = kMemoryMargin * scenario.memory.all / layout.nodes + kMemoryOfRank * layout.each;
     add(fmt::format("--ntasks-per-node={}", tasks));
     add(fmt::format("--cpus-per-task={}", job.cores_per_node / tasks));

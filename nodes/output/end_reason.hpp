@@ -6,15 +6,24 @@
 namespace furrow::output {
 
 enum class EndReason : std::int32_t {
-  run_end = 0,    // its planned end
-  end_wall = 1,   // a wheel came near an end wall of the bin
-  side_wall = 2,  // or a side wall
+  run_end = 0,     // its planned end
+  end_wall = 1,    // a wheel came near an end wall of the bin
+  side_wall = 2,   // or a side wall
+  overturned = 3,  // the vehicle lies on its side
 };
 
-/// As results say it: "run_end", "end_wall", "side_wall".
+/// As results say it: "run_end", "end_wall", "side_wall", "overturned".
 inline const char* to_string(EndReason reason) {
-  if (reason == EndReason::end_wall) return "end_wall";
-  return reason == EndReason::side_wall ? "side_wall" : "run_end";
+  switch (reason) {
+    case EndReason::end_wall:
+      return "end_wall";
+    case EndReason::side_wall:
+      return "side_wall";
+    case EndReason::overturned:
+      return "overturned";
+    default:
+      return "run_end";
+  }
 }
 
 }  // namespace furrow::output

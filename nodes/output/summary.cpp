@@ -311,8 +311,8 @@ void add_cost(const SummaryInput& in, std::span<const WheelRow> rows, Json& json
   json["cpu"] = checkpoint::cpu_model();
 }
 
-/// What is asked of a vehicle first; all of its columns are in `subjects`.
-void add_vehicle(std::span<const Table> tables, Json& json) {
+/// What is asked of a vehicle first; all of its columns are in `subjects`. @param gravity  against the ground, m/s²
+void add_vehicle(std::span<const Table> tables, double gravity, Json& json) {
   const auto table =
       std::find_if(tables.begin(), tables.end(), [](const Table& t) { return t.subject == "vehicle"; });
   if (table == tables.end()) return;
@@ -325,7 +325,7 @@ void add_vehicle(std::span<const Table> tables, Json& json) {
   for (const char* heat : {"converter", "clutch", "shift", "brake", "shock", "lowering"})
     energy[heat] = figures[std::string(heat) + "_heat_J"];
   energy["residual"] = json.contains("accounts") ? json["accounts"]["energy"]["residual_of"]["rig"] : Json();
-  json["vehicle"] = {{"mass_kg", json_number(weight / kStandardGravity)},
+  json["vehicle"] = {{"mass_kg", json_number(weight / gravity)},
                      {"distance_m", figures["distance_m"]},
                      {"mean_speed_m_s", figures["speed_m_s"]},
                      {"max_pitch_rad", json_number(pitch)},
@@ -380,7 +380,7 @@ std::string summary_text(const SummaryInput& in) {
     while (first < times.size() && times[first] < average_from(in)) ++first;
     json["subjects"][table.subject] = column_figures(table, first);
   }
-  add_vehicle(in.tables, json);
+  add_vehicle(in.tables, -in.scenario.rig->gravity().z(), json);
   add_findings(in.end.findings, json);
   return json.dump(2) + "\n";
 }

@@ -80,7 +80,7 @@ class RigNode : public Node {
   void synchronize(Transport& transport, const StepHeader& header) override {
     due_ = next_;
     next_ = order(header.step + 2);
-    watch_walls(header.step + 2);
+    watch_end(header.step + 2);
     if (wall_clock() - checked_ > kFolderInterval) check_folder();
     const int wheels = rig_->wheel_count();
     for (int k = 0; k < wheels; ++k)
@@ -189,9 +189,11 @@ class RigNode : public Node {
   }
 
   /// @param step at which all nodes can end if they are informed now
-  void watch_walls(std::int64_t step) {
-    if (!walls_ || ends_at_ != kNotYet) return;
-    const std::optional<output::EndReason> reason = walls_->near(wheel_places());
+  void watch_end(std::int64_t step) {
+    if (ends_at_ != kNotYet) return;
+    std::optional<output::EndReason> reason;
+    if (walls_) reason = walls_->near(wheel_places());
+    if (rig_->overturned()) reason = output::EndReason::overturned;
     if (!reason || step >= scenario_.run.steps()) return;
     ends_at_ = step;
     end_reason_ = *reason;

@@ -1,5 +1,7 @@
 #include "nodes/scenario/runnable.hpp"
 
+#include <string>
+
 #include <fmt/format.h>
 
 #include "protocol/core/error.hpp"
@@ -13,6 +15,8 @@ void require_runnable(const Scenario& scenario) {
       throw input_error(scenario.file.string(), scenario.tire_key(k, "file"),
                         fmt::format("is a {}, {}", tire.name, tire.static_only));
   }
+  if (const std::string lacking = scenario.terrain->lacking(); !lacking.empty())
+    throw input_error(scenario.file.string(), "terrain.engine", lacking);
 }
 
 }  // namespace furrow::scenario

@@ -164,7 +164,7 @@ std::vector<WheelScales> wheel_scales(const Scenario& s) {
   for (std::size_t k = 0; k < tires.size(); ++k) {
     const rigs::WheelDescription& wheel = rig.wheels[k];
     WheelScales w;
-    w.load = (wheel.carried_mass + tires[k].mass.mass) * kG;
+    w.load = -(wheel.carried_mass + tires[k].mass.mass) * s.rig->gravity().z();
     w.froude = std::max(std::abs(wheel.speed), std::abs(wheel.tread_speed)) / std::sqrt(kG * tires[k].radius);
     if (grains) w.grains = on_grains(s, *grains, tires[k], wheel, w.load, height);
     if (wheel.lowering_time > 0.0 && wheel.lowering_speed > 0.0)

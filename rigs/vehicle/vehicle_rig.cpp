@@ -55,6 +55,7 @@ class VehicleRig final : public Rig {
   void add_tire_mass(int wheel, const MassProperties& tire, double tire_radius) override;
   void place(std::span<const double> axle_height) override;
   RimState rim(int wheel) const override;
+  bool overturned() const override;
   Outcome advance(std::span<const Wrench> wrenches, double duration, int substeps) override;
   void observe(int wheel, double lowest_point, double ground) override;
   WheelReport report(int wheel) const override { return wheels_.at(wheel).report; }
@@ -134,7 +135,7 @@ void VehicleRig::place(std::span<const double> axle_height) {
     build();
     std::vector<double> radii;
     for (const MountedMass& tire : tires_) radii.push_back(tire.radius);
-    const vehicle::Trim trim = stand(*car_, radii);
+    const vehicle::Trim trim = stand(*car_, radii, plan_.options.heading);
     for (int k = 0; k < wheel_count(); ++k) wheels_[k].load = trim.wheels[k].load;
     car_->turn(plan_.options.heading, car_->origin());
     const Vec3 origin = car_->origin();
@@ -167,6 +168,8 @@ RimState VehicleRig::rim(int wheel) const {
   check_built();
   return car_->rim(wheel);
 }
+
+bool VehicleRig::overturned() const { return car_ && car_->system().body(car_->chassis()).R(2, 2) <= 0.0; }
 
 Vec3 VehicleRig::heading(int wheel) const {
   check_built();

@@ -192,7 +192,7 @@ void VehicleRigSpec::mount(std::span<const MountedTire> tires) {
       car.add_tire_mass(static_cast<int>(k), {tires[k].mass, Mat3::Zero()});
     car.system().assemble(0.0);
     mass = car.mass();
-    const vehicle::Trim trim = stand(car, radii);
+    const vehicle::Trim trim = stand(car, radii, plan_.options.heading);
     for (std::size_t k = 0; k < tires.size(); ++k) {
       const vehicle::WheelTrim& at = trim.wheels[k];
       wheels_[k] = {at.center, at.load, at.camber, at.toe, tires[k].mass};

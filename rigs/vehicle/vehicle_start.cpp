@@ -1,10 +1,12 @@
 #include "rigs/vehicle/vehicle_start.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "protocol/core/archive.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 
@@ -19,17 +21,14 @@ vehicle::TireCurve spring(double radius, double load) {
   return {radius, [stiffness](double deflection) { return stiffness * std::max(0.0, deflection); }};
 }
 
-}  // namespace
-
 // First with springs for the mean load, then with each wheel's own for the load that it was found to have: all tires are
 // deflected alike, and the wheels' heights differ by their radii alone.
-vehicle::Trim stand(vehicle::Vehicle& vehicle, std::span<const double> radii) {
-  FURROW_ASSERT(radii.size() == static_cast<std::size_t>(vehicle.wheel_count()), radii.size());
-  const double weight = vehicle.mass() * vehicle.system().gravity().norm(),
+vehicle::Trim stand_in(vehicle::Vehicle& vehicle, std::span<const double> radii, const Vec3& gravity) {
+  const double weight = vehicle.mass() * std::abs(gravity.z()),
                mean = weight / static_cast<double>(radii.size());
   std::vector<vehicle::TireCurve> tires;
   for (const double radius : radii) tires.push_back(spring(radius, mean));
-  const vehicle::Trim first = vehicle::trim(vehicle, tires);
+  const vehicle::Trim first = vehicle::trim(vehicle, tires, 0.0, gravity);
   for (std::size_t k = 0; k < radii.size(); ++k) {
     if (!(first.wheels[k].load > kLeastLoad * mean))
       throw physics_error(
@@ -38,7 +37,25 @@ vehicle::Trim stand(vehicle::Vehicle& vehicle, std::span<const double> radii) {
                       vehicle.spec().name, first.wheels[k].name, first.wheels[k].load));
     tires[k] = spring(radii[k], first.wheels[k].load);
   }
-  return vehicle::trim(vehicle, tires);
+  return vehicle::trim(vehicle, tires, 0.0, gravity);
+}
+
+}  // namespace
+
+vehicle::Trim stand(vehicle::Vehicle& vehicle, std::span<const double> radii, double heading) {
+  FURROW_ASSERT(radii.size() == static_cast<std::size_t>(vehicle.wheel_count()), radii.size());
+  const Vec3& gravity = vehicle.system().gravity();
+  const vehicle::Trim level = stand_in(vehicle, radii, Vec3(0.0, 0.0, gravity.z()));
+  if (gravity.x() == 0.0 && gravity.y() == 0.0) return level;
+  Archive posture;
+  vehicle.save(posture);
+  try {
+    return stand_in(vehicle, radii, Eigen::AngleAxisd(-heading, Vec3::UnitZ()) * gravity);
+  } catch (const Error& error) {
+    if (error.code() != ExitCode::physics) throw;
+    vehicle.restore(posture);
+    return level;
+  }
 }
 
 }  // namespace furrow::rigs

@@ -1,5 +1,5 @@
-// How a vehicle stands before it meets the ground: at rest in its static trim on hard level ground, each tire under its
-// static load, and lifted from there. The tires give way equally in this: they are placed undeformed, so their own
+// How a vehicle stands before it meets the ground: at rest in its static trim on hard ground at the slope of the run, each tire under its
+// static load, and lifted from there. Where it cannot stand on all its wheels on that slope, it starts as on level ground. The tires give way equally in this: they are placed undeformed, so their own
 // deflections come as the ground takes the vehicle over.
 #pragma once
 
@@ -11,7 +11,8 @@
 namespace furrow::rigs {
 
 /// Puts the vehicle into its trim. @param radii of the tires, m, one for each wheel
+/// @param heading that it will be turned by, against the way up the slope, rad
 /// @throws Error(physics) when there is no equilibrium, or a wheel that carries nothing
-vehicle::Trim stand(vehicle::Vehicle& vehicle, std::span<const double> radii);
+vehicle::Trim stand(vehicle::Vehicle& vehicle, std::span<const double> radii, double heading);
 
 }  // namespace furrow::rigs

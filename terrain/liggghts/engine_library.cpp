@@ -1,7 +1,10 @@
 #include "terrain/liggghts/engine_library.hpp"
 
 #include <dlfcn.h>
+#include <elf.h>
 
+#include <cstring>
+#include <fstream>
 #include <string>
 #include <system_error>
 
@@ -19,6 +22,22 @@ constexpr int kFoldersUp = 3;  // from a program of the tests to the build folde
 
 [[noreturn]] void refuse(const std::string& why) {
   throw input_error("scenario", "terrain.engine", "'liggghts' " + why);
+}
+
+std::uintmax_t size_of(const fs::path& file) {
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(file, error);
+  return error ? 0 : size;
+}
+
+/// Where the table of sections ends, which stands last in a file of the format ELF: loading a shorter one ends the process.
+std::uintmax_t least_size(const fs::path& file) {
+  Elf64_Ehdr head{};
+  std::ifstream in(file, std::ios::binary);
+  if (!in.read(reinterpret_cast<char*>(&head), sizeof head) ||
+      std::memcmp(head.e_ident, ELFMAG, SELFMAG) != 0)
+    return sizeof head;  // dlopen says what else may be wrong
+  return head.e_shoff + std::uintmax_t{head.e_shnum} * head.e_shentsize;
 }
 
 /// The library, kept until the program ends: LIGGGHTS' code must outlive its objects.
@@ -56,12 +75,23 @@ fs::path find_engine_library() {
   return {};
 }
 
+std::string engine_library_problem() {
+  const fs::path file = find_engine_library();
+  if (file.empty())
+    return fmt::format(
+        "'liggghts' is not part of this program: {} is not beside it; expected that file, which is made "
+        "where "
+        "LIGGGHTS 3.8 is installed (libliggghts-dev of Debian) when Furrow is built or installed",
+        kFile);
+  if (const std::uintmax_t least = least_size(file), size = size_of(file); size < least)
+    return fmt::format("'liggghts' cannot be used: {} has {} bytes, expected {} or more: it is cut short",
+                       file.string(), size, least);
+  return {};
+}
+
 void require_engine_library() {
-  if (find_engine_library().empty())
-    refuse(fmt::format(
-        "is not part of this program ({} is missing); expected LIGGGHTS 3.8 while Furrow is built: "
-        "install libliggghts-dev (Debian), then configure and build again",
-        kFile));
+  if (const std::string problem = engine_library_problem(); !problem.empty())
+    throw input_error("scenario", "terrain.engine", problem);
 }
 
 std::unique_ptr<Engine> make_engine(const EngineSetup& setup) {

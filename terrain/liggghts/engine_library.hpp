@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "terrain/liggghts/engine.hpp"
 
@@ -11,7 +12,10 @@ namespace furrow::terrain::liggghts {
 /// Beside the program, or above it for programs of the tests; empty: nowhere.
 std::filesystem::path find_engine_library();
 
-/// @throws Error(bad_input) that says what to install when there is none
+/// Why this program cannot use the engine, for people; empty: it can.
+std::string engine_library_problem();
+
+/// @throws Error(bad_input) with that
 void require_engine_library();
 
 /// @throws Error(bad_input) that says what to install when there is no such library, it cannot be loaded or is that of

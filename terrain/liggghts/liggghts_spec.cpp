@@ -4,6 +4,7 @@
 
 #include "terrain/dem/dem_spec.hpp"
 #include "terrain/dem/dem_terrain.hpp"
+#include "terrain/liggghts/engine_library.hpp"
 #include "terrain/liggghts/liggghts_terrain.hpp"
 #include "terrain/liggghts/saved_grains.hpp"
 
@@ -36,6 +37,7 @@ class LiggghtsSpec final : public TerrainSpec {
     return make_liggghts_terrain(dem::with_context(options_, context));
   }
   std::vector<TerrainFile> files() const override { return dem::bed_files(options_); }
+  std::string lacking() const override { return engine_library_problem(); }
   const dem::DemOptions* grains() const override { return &options_; }
   Archive grain_state(std::vector<Archive> parts, const TerrainContext& context) const override {
     return as_solver_state(parts, dem::with_context(options_, context));

@@ -68,6 +68,25 @@ class Vehicles(SystemTest):
         up, along = (sum(mean(wheel, key) for wheel in wheels) for key in ("vertical_force_N", "force_x_N"))
         self.assertAlmostEqual(along / up, 0.2, delta=0.01)
         self.assertGreater(mean(wheels[2], "vertical_force_N"), mean(wheels[0], "vertical_force_N"))
+        summary = self.summary()
+        for wheel, told in zip(wheels, summary["wheels"]):  # what it carries at rest there, by statics
+            self.assertAlmostEqual(mean(wheel, "vertical_force_N") / told["vertical_load_N"], 1.0, delta=0.02)
+        weight = summary["vehicle"]["mass_kg"] * 9.80665
+        self.assertAlmostEqual(up / weight, 0.98, delta=2e-3)  # the cosine of the slope
+        self.assertAlmostEqual(summary["vehicle"]["mass_kg"], 2470.4, delta=0.1)
+
+    def test_a_car_that_tips_over_on_a_side_slope_ends_its_run(self):
+        top_heavy = json.loads((ROOT / "vehicle/data/hmmwv.json").read_text())
+        top_heavy["chassis"]["center_of_mass"][2] = 1.3
+        for axle in top_heavy["axles"]:
+            axle["wheel"]["tire"] = str(ROOT / "tire/data" / axle["wheel"]["tire"])
+        (self.folder / "top_heavy.json").write_text(json.dumps(top_heavy))
+        told = self.run_it("hmmwv_rigid.json", *QUICK, "--set", f"rig.vehicle={self.folder}/top_heavy.json", "--set", "rig.driver=null",
+                           "--set", "rig.heading=1.5707963", "--set", "rig.slope=0.65", "--set", "run.step=5e-4",
+                           "--set", "run.end=2", "--set", "run.average_from=0.5")
+        self.assertIn("s, before 2 s: the vehicle has turned over", told.stderr)
+        self.assertEqual(self.summary()["end_reason"], "overturned")
+        self.assertLess(self.summary()["end_time_s"], 1.9)
 
     def test_grains_on_a_slope_carry_the_car_and_its_momentum_closes(self):
         coarse = ["--set", "terrain.radius=0.05", "--set", "terrain.layers=3", "--set", "terrain.length=6", "--set", "rig.driver=null",

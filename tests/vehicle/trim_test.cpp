@@ -105,6 +105,33 @@ TEST(Trim, struts_know_their_stops_and_the_vehicle_stays_where_it_was_put) {
   EXPECT_LT((car.origin() - before).norm(), 1e-7);
 }
 
+// The pull along a slope acts in the centre of mass, what holds it where the tires touch: it moves load down the slope.
+TEST(Trim, on_a_slope_axles_and_sides_carry_what_hand_statics_say) {
+  vehicle::VehicleSpec spec = shipped("hmmwv.json");
+  spec.driveline = {};
+  for (const double heading : {0.0, 0.5 * std::numbers::pi}) {
+    Vehicle car(spec);
+    const double slope = 0.3;  // rad, up along x where the heading is 0
+    const Vec3 gravity = kStandardGravity * Vec3(-std::sin(slope) * std::cos(heading),
+                                                 std::sin(slope) * std::sin(heading), -std::cos(slope));
+    const Trim trim = vehicle::trim(car, linear_tires(4, 0.4673, 5e5), 0.0, gravity);
+    const Vec3 weight = car.mass() * gravity, centre = center_of_mass(car);
+    Vec3 moment = centre.cross(weight);  // about the origin of the plane
+    double load = 0.0;
+    for (int k = 0; k < 4; ++k) {
+      const Vec3 touches(car.rim(k).position.x(), car.rim(k).position.y(), 0.0);
+      moment += touches.cross(Vec3(0.0, 0.0, trim.wheels[k].load));
+      load += trim.wheels[k].load;
+    }
+    EXPECT_NEAR(load, -weight.z(), 1e-6);
+    // Tires that lean touch the plane some millimetres beside the place below their centres.
+    EXPECT_NEAR(moment.x(), 0.0, 2e-3 * load) << heading;
+    EXPECT_NEAR(moment.y(), 0.0, 2e-3 * load) << heading;
+    EXPECT_GT(heading == 0.0 ? trim.axle_loads[1] - trim.axle_loads[0] : trim.wheels[0].load - trim.wheels[1].load,
+              0.1 * load);
+  }
+}
+
 // A chassis on four wheels in fixed bearings is one rigid body on four springs k at x = a, −b and y = ±s, whose centre of
 // mass lies h above the wheels' centres and H above the ground:
 //   heave and pitch  M = diag(m, J_y), K = [2(k + k), −2k(a − b); ., 2k(a² + b²) − W h]

@@ -158,18 +158,26 @@ std::string fault_as_drawn(const Vehicle& vehicle, double weight) {
 
 }  // namespace
 
-Trim trim(Vehicle& vehicle, std::span<const TireCurve> tires, double ground) {
+Trim trim(Vehicle& vehicle, std::span<const TireCurve> tires, double ground,
+          const std::optional<Vec3>& gravity) {
   FURROW_ASSERT(tires.size() == static_cast<std::size_t>(vehicle.wheel_count()), tires.size(),
                 vehicle.wheel_count());
   lower_to(vehicle, tires, ground);
   Statics statics(vehicle.system());
   hold_plane_motion(vehicle, statics);
-  statics.set_forces([&](const System&, Eigen::VectorXd& forces) {
+  const Vec3 own = vehicle.system().gravity(), felt = gravity.value_or(own);
+  const Vec3 held = Vec3(-felt.x(), -felt.y(), 0.0) * vehicle.mass() / vehicle.wheel_count();
+  statics.set_forces([&](const System& system, Eigen::VectorXd& forces) {
     for (int k = 0; k < vehicle.wheel_count(); ++k) {
+      const int spindle = vehicle.wheel(k).spindle;
       const Contact touching = contact(vehicle, k, tires[k], ground);
-      forces[6 * vehicle.wheel(k).spindle + 2] += touching.load;
-      forces.segment<3>(6 * vehicle.wheel(k).spindle + 3) += touching.moment;
+      const double z = system.body(spindle).state.position.z() - ground;
+      forces[6 * spindle + 2] += touching.load;
+      forces.segment<3>(6 * spindle) += held;
+      forces.segment<3>(6 * spindle + 3) += touching.moment + Vec3(z * held.y(), -z * held.x(), 0.0);
     }
+    for (int i = 0; i < system.body_count(); ++i)
+      forces.segment<3>(6 * i) += system.body(i).mass * (felt - own);
   });
   const double weight = vehicle.mass() * vehicle.system().gravity().norm();
   const std::string fault = fault_as_drawn(vehicle, weight);

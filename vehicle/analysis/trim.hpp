@@ -7,6 +7,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -91,7 +92,10 @@ void visit_fields(Visit&& visit, FieldsOf<Trim> auto& s) {
 }
 
 /// Puts the vehicle at rest on the plane z = `ground` and returns its posture.
+/// @param gravity  that it stands in, m/s², with the vehicle along x; none: its own. On a slope each wheel holds the same share
+///                 of the pull along the plane, where it touches.
 /// @pre one tire for each wheel; their masses were added. @throws Error(physics) when there is no equilibrium
-Trim trim(Vehicle& vehicle, std::span<const TireCurve> tires, double ground = 0.0);
+Trim trim(Vehicle& vehicle, std::span<const TireCurve> tires, double ground = 0.0,
+          const std::optional<Vec3>& gravity = {});
 
 }  // namespace furrow::vehicle

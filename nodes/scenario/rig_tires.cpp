@@ -26,7 +26,7 @@ void fill_rig_tires(json& document, const std::string& file) {
   if (!document.contains("rig")) return;
   const std::vector<rigs::WheelTire> own = rigs::tires_of_rig(document["rig"], {file, "rig"});
   const bool one = document.contains("tire"), many = document.contains("tires");
-  if (own.empty() || (one && many)) return;
+  if (own.empty()) return;
   if (one && !is_entry(document["tire"])) return;  // the schema says why
   json tires = json::array();
   for (const rigs::WheelTire& wheel : own) tires.push_back(wheel.section);

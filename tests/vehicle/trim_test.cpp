@@ -119,16 +119,17 @@ TEST(Trim, on_a_slope_axles_and_sides_carry_what_hand_statics_say) {
     Vec3 moment = centre.cross(weight);  // about the origin of the plane
     double load = 0.0;
     for (int k = 0; k < 4; ++k) {
-      const Vec3 touches(car.rim(k).position.x(), car.rim(k).position.y(), 0.0);
+      const Vec3 axle = car.rim(k).orientation * Vec3::UnitY();
+      const Vec3 touches = car.rim(k).position + car.rim(k).position.z() / (1.0 - axle.z() * axle.z()) *
+                                                     (axle.z() * axle - Vec3::UnitZ());
       moment += touches.cross(Vec3(0.0, 0.0, trim.wheels[k].load));
       load += trim.wheels[k].load;
     }
     EXPECT_NEAR(load, -weight.z(), 1e-6);
-    // Tires that lean touch the plane some millimetres beside the place below their centres.
-    EXPECT_NEAR(moment.x(), 0.0, 2e-3 * load) << heading;
-    EXPECT_NEAR(moment.y(), 0.0, 2e-3 * load) << heading;
+    EXPECT_NEAR(moment.x(), 0.0, 1e-5 * load) << heading;
+    EXPECT_NEAR(moment.y(), 0.0, 1e-5 * load) << heading;
     EXPECT_GT(heading == 0.0 ? trim.axle_loads[1] - trim.axle_loads[0] : trim.wheels[0].load - trim.wheels[1].load,
-              0.1 * load);
+              0.05 * load);
   }
 }
 

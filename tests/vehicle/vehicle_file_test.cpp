@@ -286,6 +286,20 @@ TEST(VehicleFile, mistakes_in_the_driveline_name_their_key) {
             "key 'driveline.skid_steer': is given without motors, expected a motor at each wheel");
 }
 
+TEST(VehicleFile, gears_and_drives_that_are_hardly_meant_are_named) {
+  const auto odd_key = [](const auto& change) {
+    vehicle::VehicleSpec spec = shipped("hmmwv.json");
+    change(spec.driveline);
+    const auto odd = vehicle::unlikely_values(spec, vehicle::mass_without_tires(spec));
+    return odd.size() == 1 ? odd.front().first : std::to_string(odd.size()) + " keys";
+  };
+  EXPECT_EQ(odd_key([](vehicle::DrivelineSpec& line) { line.gearbox->ratios = {0.8, 0.4, 0.2}; }),
+            "driveline.gearbox.ratios");
+  EXPECT_EQ(odd_key([](vehicle::DrivelineSpec& line) { line.gearbox->shift_time = 400.0; }),
+            "driveline.gearbox.shift_time");
+  EXPECT_EQ(odd_key([](vehicle::DrivelineSpec& line) { line.gears[1].ratio *= -1.0; }), "driveline.gears");
+}
+
 TEST(VehicleFile, a_gearbox_whose_mark_the_engine_does_not_reach_is_unlikely) {
   vehicle::VehicleSpec spec = shipped("hmmwv.json");
   const double mass = vehicle::mass_without_tires(spec);

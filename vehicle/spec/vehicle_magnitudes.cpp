@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <optional>
 #include <set>
@@ -11,11 +12,13 @@
 #include "protocol/core/assert.hpp"
 #include "protocol/files/json_text.hpp"
 #include "vehicle/multibody/table.hpp"
+#include "vehicle/spec/shaft_speeds.hpp"
 
 namespace furrow::vehicle {
 namespace {
 
 constexpr double kLeastChassis = 0.05;  // of the mass of all other parts
+constexpr double kMostShift = 3.0;      // s
 constexpr double kLeastGyration = 0.05,
                  kMostGyration = 1.5;  // radius, of the largest distance between wheels
 
@@ -43,6 +46,38 @@ std::optional<double> highest_speed(const DrivelineSpec& driveline) {
   return highest_speed(*driveline.engine);
 }
 
+/// Gears whose ratios or time for a change are hardly meant; keys below `driveline`.
+std::vector<std::pair<std::string, std::string>> unlikely_gears(const GearboxSpec& box) {
+  std::vector<std::pair<std::string, std::string>> odd;
+  if (std::adjacent_find(box.ratios.begin(), box.ratios.end(), std::greater_equal<>()) != box.ratios.end())
+    odd.emplace_back("gearbox.ratios",
+                     "do not rise from gear to gear, expected speed of the output over that of the input, "
+                     "lowest gear first");
+  if (box.shift_time > kMostShift)
+    odd.emplace_back("gearbox.shift_time", fmt::format("is {} s, usual is up to {:g} s: another unit?",
+                                                       number_text(box.shift_time), kMostShift));
+  return odd;
+}
+
+/// An axle whose wheels the engine turns against those of the first one, in the lowest gear; empty: there is none.
+std::string against_the_first(const DrivelineSpec& line) {
+  if (!line.engine) return {};
+  const std::vector<double> speeds = shaft_speeds(line, 0);
+  const WheelShaftSpec* first = nullptr;
+  double forward = 0.0;
+  for (const WheelShaftSpec& wheel : line.wheels) {
+    const auto shaft = std::find_if(line.shafts.begin(), line.shafts.end(),
+                                    [&](const ShaftSpec& s) { return s.name == wheel.shaft; });
+    if (shaft == line.shafts.end()) continue;
+    const double speed = speeds[static_cast<std::size_t>(shaft - line.shafts.begin())];
+    if (!first && speed != 0.0) first = &wheel, forward = speed;
+    if (first && speed * forward < 0.0)
+      return fmt::format("turn '{} {}' against '{} {}': they would fight each other", wheel.axle, wheel.side,
+                         first->axle, first->side);
+  }
+  return {};
+}
+
 /// Largest distance between the centres of two wheels, m.
 double size_of(const VehicleSpec& spec) {
   std::vector<Vec3> centers;
@@ -66,6 +101,11 @@ std::vector<std::pair<std::string, std::string>> unlikely_values(const VehicleSp
         fmt::format("is {}, above the {:.4g} rpm to which the engine drives it: it will not shift "
                     "up by itself",
                     number_text(spec.driveline.gearbox->up_rpm), *highest));
+  if (spec.driveline.gearbox)
+    for (auto& [key, what] : unlikely_gears(*spec.driveline.gearbox))
+      odd.emplace_back("driveline." + key, what);
+  if (const std::string fight = against_the_first(spec.driveline); !fight.empty())
+    odd.emplace_back("driveline.gears", fight);
   const double others = mass - spec.chassis.mass;
   if (spec.chassis.mass < kLeastChassis * others) {
     odd.emplace_back("chassis.mass", fmt::format("is {} kg, all other parts have {:.4g} kg: another unit?",

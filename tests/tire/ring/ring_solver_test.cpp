@@ -276,7 +276,7 @@ TEST(RingSolver, forces_are_consistent_from_120_to_1920_segments) {
       for (const int n : {120, 240, 480, 960, 1920}) {
         const RingParams p = with_tension(truck_ring(n), tension);
         RingSolver solver(p, width > 0.0 ? RingGround::bar(width, 0.0) : plate(p));
-        force.push_back(pressed(solver, 0.08, 4));
+        force.push_back(pressed(solver, 0.08, tension > 0.0 ? 16 : 4));  // a taut belt peels off segment by segment
       }
       EXPECT_NEAR(force[0] / force[4], 1.0, 1e-2) << width;
       EXPECT_NEAR(force[2] / force[4], 1.0, 1e-3) << width;

@@ -115,7 +115,9 @@ class CalibrateRing : public ::testing::Test {
  protected:
   void SetUp() override {
     file_ = json::parse(std::ifstream(data_folder() / "tire" / "data" / "hmmwv_ring.json"));
-    file_["segments"] = 60;
+    file_["segments"] = 60, file_["bending"] = 146, file_["shear"] = 5e3, file_["tangential"] = 5e4;
+    file_["sidewall"] = {8.84e5, 5e5, 1e6}, file_["air_share"] = 0.55;
+    file_.erase("tension_share");
     write("ring.json", file_);
   }
   void write(const std::string& name, const Ordered& content) { std::ofstream(folder_.path() / name) << content.dump(); }

@@ -17,39 +17,25 @@
 // (3) is the sidewall's polynomial in w = u + q about the draw q (ring_params.hpp), with s₀ = p R T, p = p₀ − p_a, of
 // which the share σ is what the belt's tension adds to the sidewall's (1 − σ) p R T; so the inflated ring is in balance
 // exactly. With σ = 0 the belt carries no hoop tension: the whole resultant of the pressure goes to the sidewall. σ > 0
-// leaves the rigid motions free, and holds waves of the orders n ≥ 2. Air of the kind `linearised` has the second-order expansion of (4). Its tangent in either kind is a
-// constant times the outer product of (1, …, 1) on u with itself: a rank of one, given apart (RingTangent::gas).
+// leaves the rigid motions free, and holds waves of the orders n ≥ 2.
+//
+// Air of the kind `linearised` has the second-order expansion of (4). Its tangent in either kind is a constant times the
+// outer product of (1, …, 1) on u with itself: a rank of one, given apart (RingTangent::gas).
 #pragma once
 
 #include <array>
 #include <vector>
 
+#include "tire/ring/ring_field.hpp"
 #include "tire/ring/ring_params.hpp"
 #include "tire/ring/ring_tension.hpp"
 
 namespace furrow::tire {
 
-/// Displacements, or forces on them, of all segments.
-struct RingField {
-  std::vector<double> u, v;  // radial, outwards; tangential, towards growing θ: m or N
-};
-
 /// Force on the rim by the tire, or on the belt by the ground, N.
 struct RingForce {
   double x = 0.0, z = 0.0;  // forward, up
 };
-
-/// Symmetric tangent without air: the 2 × 2 blocks of segments j and j + d, d = 0, 1, 2, indices modulo N.
-struct RingTangent {
-  std::array<std::vector<double>, 3> uu, uv, vu, vv;  // uv[d][j]: of u_j with v_{j+d}; N/m
-  double gas = 0.0;                                   // of every u with every u, N/m
-};
-
-/// Adds factor × a symmetric matrix in (u, v) of three neighbouring segments, row by row, from segment `first` on.
-void add_local(RingTangent& tangent, int first, const std::array<double, 36>& matrix, double factor);
-
-/// Tangent × change on segment j, N. @param sum of all change.u
-std::array<double, 2> tangent_row(const RingTangent& tangent, const RingField& change, double sum, int j);
 
 class RingMechanics {
  public:

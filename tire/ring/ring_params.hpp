@@ -29,7 +29,7 @@ struct RingParams {
   double sidewall_1 = 0.0;    // k₁, N/m per radian
   double sidewall_2 = 0.0;    // k₂, N/m² per radian
   double sidewall_3 = 0.0;    // k₃, N/m³ per radian
-  double tension_share = 0.0; // σ, 0 to 1
+  double tension_share = 0.0;  // σ, 0 to 1
   double tangential = 0.0;    // k_t, sidewall against tangential displacement, N/m per radian
   RingGas gas = RingGas::exact;
   RingKinematics kinematics = RingKinematics::exact;

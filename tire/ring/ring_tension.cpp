@@ -3,8 +3,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "tire/ring/ring_mechanics.hpp"
-
 namespace furrow::tire {
 
 RingTension::RingTension(int segments, double radius) : n_(segments) {

@@ -13,13 +13,9 @@
 // terms in σ_θ⁰ and p₀ of Gong 1993, A study of in-plane dynamics of tires, TU Delft, ch. 3, with σ_θ⁰ A = p₀ b R].
 #pragma once
 
-#include <array>
-#include <vector>
+#include "tire/ring/ring_field.hpp"
 
 namespace furrow::tire {
-
-struct RingField;
-struct RingTangent;
 
 class RingTension {
  public:

@@ -91,8 +91,8 @@ class RingMechanics {
   RingParams params_;
   int n_;
   double phi_, draw_ = 0.0, radius_, volume_;
-  double first_, second_;                      // 1 / (2 sin φ), 1 / (2 (1 − cos φ))
-  double share_;                               // RφT, m²
+  double first_, second_;  // 1 / (2 sin φ), 1 / (2 (1 − cos φ))
+  double share_;           // RφT, m²
   RingTension tension_;
   std::array<double, 4> s_;                    // of (3), per radian
   std::array<std::array<double, 4>, 3> belt_;  // uu, uv, vu, vv of the belt's blocks d = 0, 1, 2

@@ -18,19 +18,19 @@ enum class RingKinematics { radial, exact };
 enum class RingGas { linearised, exact };
 
 struct RingParams {
-  int segments = 480;         // N
-  double radius = 0.0;        // R, inflated, m
-  double width = 0.0;         // T, m
-  double air_share = 1.0;     // η: inflated volume / (π R² T)
-  double pressure = 0.0;      // p, gauge, Pa
-  double ambient = 101325.0;  // of the atmosphere, Pa
-  double bending = 0.0;       // A, N/m per radian
-  double shear = 0.0;         // B, N/m per radian
-  double sidewall_1 = 0.0;    // k₁, N/m per radian
-  double sidewall_2 = 0.0;    // k₂, N/m² per radian
-  double sidewall_3 = 0.0;    // k₃, N/m³ per radian
+  int segments = 480;          // N
+  double radius = 0.0;         // R, inflated, m
+  double width = 0.0;          // T, m
+  double air_share = 1.0;      // η: inflated volume / (π R² T)
+  double pressure = 0.0;       // p, gauge, Pa
+  double ambient = 101325.0;   // of the atmosphere, Pa
+  double bending = 0.0;        // A, N/m per radian
+  double shear = 0.0;          // B, N/m per radian
+  double sidewall_1 = 0.0;     // k₁, N/m per radian
+  double sidewall_2 = 0.0;     // k₂, N/m² per radian
+  double sidewall_3 = 0.0;     // k₃, N/m³ per radian
   double tension_share = 0.0;  // σ, 0 to 1
-  double tangential = 0.0;    // k_t, sidewall against tangential displacement, N/m per radian
+  double tangential = 0.0;     // k_t, sidewall against tangential displacement, N/m per radian
   RingGas gas = RingGas::exact;
   RingKinematics kinematics = RingKinematics::exact;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -28,6 +29,7 @@ constexpr double kMostPressure = 1e8;    // Pa
 struct Place {
   const char* parameter;
   const char* pointer;
+  std::optional<double> otherwise = {};  // where a file may leave it out
 };
 
 /// What a model whose tire is pressed needs to be told.
@@ -52,6 +54,7 @@ constexpr auto kRingPlaces = std::to_array<Place>({{"bending", "/bending"},
                                                    {"sidewall_2", "/sidewall/1"},
                                                    {"sidewall_3", "/sidewall/2"},
                                                    {"air_share", "/air_share"},
+                                                   {"tension_share", "/tension_share", 0.0},
                                                    {"width", "/width"}});
 const auto kRingRules = std::to_array<ParameterRule>({
     {"bending", "N/m", 1e-9, 1e12, 1.0, 1e6, true},
@@ -62,6 +65,7 @@ const auto kRingRules = std::to_array<ParameterRule>({
     {"sidewall_3", "N/m³", 0.0, 1e18, 1e4, 1e11, true},
     {"softening", "-", 0.0, 1.0, 0.0, 1.0, false},
     {"air_share", "-", 1e-6, 1.0, 0.05, 1.0, false},
+    {"tension_share", "-", 0.0, 1.0, 0.0, 1.0, false},
     {"width", "m", 1e-3, 5.0, 0.05, 0.5, false},
 });
 
@@ -196,8 +200,12 @@ class PressModel final : public CalibrationModel {
     std::vector<double> values;
     for (const std::string& name : names_) {
       const Place* place = place_of(name);
-      values.push_back(place ? file_.at(json::json_pointer(place->pointer)).get<double>()
-                             : kind_.derived_start(file_, name));
+      if (!place)
+        values.push_back(kind_.derived_start(file_, name));
+      else if (const json::json_pointer at(place->pointer); place->otherwise && !file_.contains(at))
+        values.push_back(*place->otherwise);
+      else
+        values.push_back(file_.at(at).get<double>());
     }
     return values;
   }
@@ -228,7 +236,7 @@ class PressModel final : public CalibrationModel {
     // The start file's keys in their order, with the fitted values.
     nlohmann::ordered_json ordered = load_json<nlohmann::ordered_json>(start_, "a tire file in JSON");
     const json fitted = document(values);
-    for (auto& [key, value] : ordered.items()) value = fitted.at(key);
+    for (const auto& [key, value] : fitted.items()) ordered[key] = value;
     ordered["source"] = source;
     return ordered;
   }
@@ -286,7 +294,7 @@ class PressModel final : public CalibrationModel {
   json document(std::span<const double> values) const {
     json file = file_;
     for (std::size_t k = 0; k < names_.size(); ++k)
-      if (const Place* place = place_of(names_[k])) file.at(json::json_pointer(place->pointer)) = values[k];
+      if (const Place* place = place_of(names_[k])) file[json::json_pointer(place->pointer)] = values[k];
     if (kind_.derive) kind_.derive(file, names_, values);
     return file;
   }

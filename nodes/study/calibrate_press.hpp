@@ -14,7 +14,7 @@
 namespace furrow::study {
 
 /// Of tire files with `"model": "ring"`: bending, shear, tangential, sidewall_1, sidewall_2 or softening, sidewall_3,
-/// air_share, width. `softening` is k₂/√(3 k₁k₃), from 0 to 1, where the sidewall's force would begin to fall.
+/// air_share, tension_share, width. `softening` is k₂/√(3 k₁k₃), from 0 to 1, where the sidewall's force would begin to fall.
 std::span<const ParameterRule> ring_parameters();
 std::unique_ptr<CalibrationModel> read_ring_calibration(CalibrationInput& input);
 

@@ -16,11 +16,12 @@ RingParams truck_ring(int segments) {
   return p;
 }
 
-/// @param state segments; width of a cleat in mm, 0 for a plate
+/// @param state segments; width of a cleat in mm, 0 for a plate; percent of the pressure that the belt holds
 void loading_curve(benchmark::State& state) {
   constexpr int kPoints = 40;
   constexpr double kDeflection = 0.095;  // m
-  const RingParams params = truck_ring(static_cast<int>(state.range(0)));
+  RingParams params = truck_ring(static_cast<int>(state.range(0)));
+  params.tension_share = 1e-2 * static_cast<double>(state.range(2));
   const double width = 1e-3 * static_cast<double>(state.range(1));
   int systems = 0;
   for (auto _ : state) {
@@ -36,11 +37,14 @@ void loading_curve(benchmark::State& state) {
   state.counters["systems"] = systems;
 }
 BENCHMARK(loading_curve)
-    ->Args({480, 0})
-    ->Args({480, 25})
-    ->Args({480, 51})
-    ->Args({480, 100})
-    ->Args({1920, 0})
+    ->ArgNames({"segments", "cleat_mm", "tension_percent"})
+    ->Args({480, 0, 0})
+    ->Args({480, 25, 0})
+    ->Args({480, 51, 0})
+    ->Args({480, 100, 0})
+    ->Args({1920, 0, 0})
+    ->Args({480, 0, 40})
+    ->Args({480, 51, 40})
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -112,6 +112,8 @@ TEST_F(CalibrateStudy, wrong_studies_are_refused_with_file_and_key) {
       {"/parameters/sidewall_1/lower", 1e6, "key 'parameters.sidewall_1': begins at 884e3 N/m"},
       {"/parameters/sidewall_2", {{"scale", "log"}}, "key 'parameters.sidewall_2.lower': is 0, expected above 0"},
       {"/parameters/softening", json::object(), "no error"},
+      {"/parameters/tension_share", json::object(), "no error"},
+      {"/parameters/tension_share", {{"upper", 1.5}}, "key 'parameters.tension_share.upper': is 1.5, expected 0 to 1"},
       {"/targets", json::array(), "key 'targets': has 0 entries"},
       {"/targets/0", "plate.csv", "key 'targets[0]': is 'plate.csv', expected an object"},
       {"/targets/0/data", "nowhere.csv", "key 'targets[0].data'"},

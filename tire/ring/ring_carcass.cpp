@@ -102,13 +102,14 @@ void RingCarcass::aim(double h, double turn, double middle, PlanarPoint accelera
   }
 }
 
-/// A = m/h² + (½ + τ/h) K at q_m, and A⁻¹ 1 of the air. @returns whether A is positive definite
+/// A = m/h² + ½ ∂²Π + (τ/h) K at q_m, and A⁻¹ 1 of the air. @returns whether A is positive definite
 bool RingCarcass::factorize(double h) {
   ring_.tangent(middle_, tangent_);
   const double share = 0.5 + damping_ / h, stiff = node_mass_ / (h * h);
   for (auto* blocks : {&tangent_.uu, &tangent_.uv, &tangent_.vu, &tangent_.vv})
     for (std::vector<double>& one : *blocks)
       for (double& value : one) value *= share;
+  ring_.tension().add_tangent(middle_, -damping_ / h, tangent_);  // hoop tension is not damped
   for (int j = 0; j < n_; ++j) tangent_.uu[0][j] += stiff, tangent_.vv[0][j] += stiff;
   if (!band_.factorize(tangent_)) return false;
   std::fill(lanes_.begin(), lanes_.end(), 0.0);

@@ -10,31 +10,6 @@
 
 namespace furrow::tire {
 
-void add_local(RingTangent& t, int first, const std::array<double, 36>& matrix, double factor) {
-  const int n = static_cast<int>(t.uu[0].size());
-  for (int a = 0; a < 3; ++a)
-    for (int b = a; b < 3; ++b) {
-      const int j = (first + a) % n, d = b - a;
-      const double* const at = &matrix[12 * a + 2 * b];
-      t.uu[d][j] += factor * at[0], t.uv[d][j] += factor * at[1];
-      t.vu[d][j] += factor * at[6], t.vv[d][j] += factor * at[7];
-    }
-}
-
-std::array<double, 2> tangent_row(const RingTangent& k, const RingField& change, double sum, int j) {
-  const int n = static_cast<int>(change.u.size());
-  double u = k.gas * sum, v = 0.0;
-  for (int d = 0; d < 3; ++d) {
-    const int after = (j + d) % n, before = (j + n - d) % n;
-    u += k.uu[d][j] * change.u[after] + k.uv[d][j] * change.v[after];
-    v += k.vu[d][j] * change.u[after] + k.vv[d][j] * change.v[after];
-    if (d == 0) continue;
-    u += k.uu[d][before] * change.u[before] + k.vu[d][before] * change.v[before];
-    v += k.uv[d][before] * change.u[before] + k.vv[d][before] * change.v[before];
-  }
-  return {u, v};
-}
-
 RingMechanics::RingMechanics(const RingParams& params)
     : params_(params),
       n_(params.segments),
@@ -43,7 +18,8 @@ RingMechanics::RingMechanics(const RingParams& params)
       volume_(params.air_share * std::numbers::pi * radius_ * radius_ * params.width),
       first_(0.5 / std::sin(phi_)),
       second_(0.25 / (std::sin(0.5 * phi_) * std::sin(0.5 * phi_))),
-      share_(radius_ * phi_ * params.width) {
+      share_(radius_ * phi_ * params.width),
+      tension_(params.segments, params.radius) {
   FURROW_ASSERT(n_ >= kMinSegments, n_);
   FURROW_ASSERT(params.ambient > 0.0 && params.air_share > 0.0, params.ambient, params.air_share);
   set_pressure(params.pressure);
@@ -68,6 +44,7 @@ void RingMechanics::set_pressure(double pressure) {
   const double q = draw_ = sidewall_draw(params_);
   const double k1 = params_.sidewall_1, k2 = params_.sidewall_2, k3 = params_.sidewall_3;
   s_ = {pressure * radius_ * params_.width, k1 + q * (2.0 * k2 + 3.0 * k3 * q), k2 + 3.0 * k3 * q, k3};
+  tension_.set(params_.tension_share * pressure * params_.width);
 }
 
 RingField RingMechanics::zero() const { return {std::vector<double>(n_), std::vector<double>(n_)}; }
@@ -104,7 +81,7 @@ double RingMechanics::energy(const RingField& q) const {
     sidewall += u * (s_[0] + u * (s_[1] / 2.0 + u * (s_[2] / 3.0 + u * s_[3] / 4.0))) +
                 0.5 * params_.tangential * q.v[j] * q.v[j];
   }
-  return belt_energy(q) + phi_ * sidewall + air_energy(q);
+  return belt_energy(q) + phi_ * sidewall + air_energy(q) + tension_.energy(q);
 }
 
 double RingMechanics::pressure(const RingField& q) const {
@@ -134,6 +111,7 @@ void RingMechanics::gradient(const RingField& q, RingField& out) {
     out.u[j] += phi_ * u * (s_[1] + u * (s_[2] + u * s_[3])) + lift;
     out.v[j] += phi_ * params_.tangential * q.v[j];
   }
+  tension_.add_gradient(q, out);
 }
 
 void RingMechanics::without_air(const RingField& q, const RingField& x, RingField& out) {
@@ -160,6 +138,7 @@ void RingMechanics::tangent(const RingField& q, RingTangent& out) const {
   const double absolute = params_.pressure + params_.ambient, volume = volume_ + share_ * sum;
   out.gas = params_.gas == RingGas::exact ? absolute * volume_ * share_ * share_ / (volume * volume)
                                           : absolute * share_ * share_ / volume_;
+  tension_.add_tangent(q, 1.0, out);
 }
 
 // A segment's sidewall pulls the rim outwards, along (sin θ, −cos θ), and after its tangential displacement, along
@@ -185,7 +164,7 @@ double RingMechanics::spindle_moment(const RingField& q) const {
 double RingMechanics::rounding(const RingField& q) const {
   double largest = 0.0;
   for (int j = 0; j < n_; ++j) largest = std::max({largest, std::abs(q.u[j]), std::abs(q.v[j])});
-  const double stiffest = std::max(belt_[0][0], belt_[0][3]) + phi_ * std::abs(s_[1]);
+  const double stiffest = std::max(belt_[0][0], belt_[0][3]) + phi_ * std::abs(s_[1]) + tension_.stiffest();
   return std::numeric_limits<double>::epsilon() * stiffest * largest;
 }
 

@@ -7,46 +7,35 @@
 //   Π = φ Σ ½A (D₁v − D₂u)² + ½B (D₁u + D₂v)²                                     belt                        (2)
 //     + φ Σ ∫₀ᵘ (s₀ + s₁u + s₂u² + s₃u³) du + ½ k_t v²                             sidewall                    (3)
 //     − p₀V₀ ln(V/V₀) + p_a (V − V₀),   V = V₀ + RφT Σu,   V₀ = η π R² T           air                         (4)
+//     + Π_t                                          hoop tension of the belt, (1) of ring_tension.hpp
 // A resists the change of the belt's curvature, (v − u')'. B resists shear between its plies, which is as the gradient
 // of the hoop strain, (u + v')' (shear lag); B → ∞ is the inextensible ring, whose bending energy is ½A (u'' + u)². The
 // belt's null space is exactly of dimension four, also of (1): both translations (u, v) = (cos θ, −sin θ) and
 // (sin θ, cos θ), the rotation v = 1, and the uniform growth u = 1; no alternating mode is free. Translations and growth
 // are held by the sidewall, the rotation by k_t > 0 alone: its torsional stiffness is 2π R² k_t.
 //
-// (3) is the sidewall's polynomial in w = u + q about the draw q, with s₀ = p R T (ring_params.hpp), p = p₀ − p_a; so
-// the inflated ring is in balance exactly. The belt carries no hoop tension: the whole resultant of the pressure goes to
-// the sidewall. Air of the kind `linearised` has the second-order expansion of (4). Its tangent in either kind is a
-// constant times the outer product of (1, …, 1) on u with itself: a rank of one, given apart (RingTangent::gas).
+// (3) is the sidewall's polynomial in w = u + q about the draw q (ring_params.hpp), with s₀ = p R T, p = p₀ − p_a, of
+// which the share σ is what the belt's tension adds to the sidewall's (1 − σ) p R T; so the inflated ring is in balance
+// exactly. With σ = 0 the belt carries no hoop tension: the whole resultant of the pressure goes to the sidewall. σ > 0
+// leaves the rigid motions free, and holds waves of the orders n ≥ 2.
+//
+// Air of the kind `linearised` has the second-order expansion of (4). Its tangent in either kind is a constant times the
+// outer product of (1, …, 1) on u with itself: a rank of one, given apart (RingTangent::gas).
 #pragma once
 
 #include <array>
 #include <vector>
 
+#include "tire/ring/ring_field.hpp"
 #include "tire/ring/ring_params.hpp"
+#include "tire/ring/ring_tension.hpp"
 
 namespace furrow::tire {
-
-/// Displacements, or forces on them, of all segments.
-struct RingField {
-  std::vector<double> u, v;  // radial, outwards; tangential, towards growing θ: m or N
-};
 
 /// Force on the rim by the tire, or on the belt by the ground, N.
 struct RingForce {
   double x = 0.0, z = 0.0;  // forward, up
 };
-
-/// Symmetric tangent without air: the 2 × 2 blocks of segments j and j + d, d = 0, 1, 2, indices modulo N.
-struct RingTangent {
-  std::array<std::vector<double>, 3> uu, uv, vu, vv;  // uv[d][j]: of u_j with v_{j+d}; N/m
-  double gas = 0.0;                                   // of every u with every u, N/m
-};
-
-/// Adds factor × a symmetric matrix in (u, v) of three neighbouring segments, row by row, from segment `first` on.
-void add_local(RingTangent& tangent, int first, const std::array<double, 36>& matrix, double factor);
-
-/// Tangent × change on segment j, N. @param sum of all change.u
-std::array<double, 2> tangent_row(const RingTangent& tangent, const RingField& change, double sum, int j);
 
 class RingMechanics {
  public:
@@ -59,6 +48,7 @@ class RingMechanics {
   double draw() const { return draw_; }      // q, m
   double volume() const { return volume_; }  // inflated, V₀, m³
   const RingParams& params() const { return params_; }
+  const RingTension& tension() const { return tension_; }
 
   /// Gauge pressure of the inflated ring from now on, Pa.
   void set_pressure(double pressure);
@@ -71,8 +61,9 @@ class RingMechanics {
   void gradient(const RingField& q, RingField& out);
   /// The part of the air, J.
   double air_energy(const RingField& q) const;
-  /// Tangent at q of belt and sidewall, without air, times x.
+  /// Tangent at q of belt and sidewall, without air and hoop tension, times x: what a structure damps.
   void without_air(const RingField& q, const RingField& x, RingField& out);
+  /// Of all; the part of the air apart.
   void tangent(const RingField& q, RingTangent& out) const;
   /// Gauge pressure, Pa.
   double pressure(const RingField& q) const;
@@ -100,8 +91,9 @@ class RingMechanics {
   RingParams params_;
   int n_;
   double phi_, draw_ = 0.0, radius_, volume_;
-  double first_, second_;                      // 1 / (2 sin φ), 1 / (2 (1 − cos φ))
-  double share_;                               // RφT, m²
+  double first_, second_;  // 1 / (2 sin φ), 1 / (2 (1 − cos φ))
+  double share_;           // RφT, m²
+  RingTension tension_;
   std::array<double, 4> s_;                    // of (3), per radian
   std::array<std::array<double, 4>, 3> belt_;  // uu, uv, vu, vv of the belt's blocks d = 0, 1, 2
   std::vector<double> a_, b_;                  // of belt_gradient(): B (D₁u + D₂v), A (D₁v − D₂u)

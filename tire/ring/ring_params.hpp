@@ -4,10 +4,10 @@
 // The belt is a ring of radius R and width T whose displacements u (radial, outwards) and v (tangential) count from its
 // inflated, circular shape. The sidewall pulls it inwards with k₁w + k₂w² + k₃w³, w = u + q, where the draw q is how far
 // inflation holds it from the length at which it is at rest:
-//   k₁q + k₂q² + k₃q³ = p R T                                                                                 (1)
-// balances the gauge pressure p, so that q is no number of its own. R is that of the inflated tire whatever the
-// pressure: a belt hardly stretches. k₂ > 0 makes the sidewall stiffen with pressure and soften when pressed; its force
-// grows with w everywhere while k₂² < 3 k₁k₃.
+//   k₁q + k₂q² + k₃q³ = (1 − σ) p R T                                                                         (1)
+// balances the gauge pressure p, so that q is no number of its own. The share σ of p R T is held by the belt, as hoop
+// tension: that of a membrane. R is that of the inflated tire whatever the pressure: a belt hardly stretches. k₂ > 0 makes
+// the sidewall stiffen with pressure and soften when pressed; its force grows with w everywhere while k₂² < 3 k₁k₃.
 #pragma once
 
 namespace furrow::tire {
@@ -18,18 +18,19 @@ enum class RingKinematics { radial, exact };
 enum class RingGas { linearised, exact };
 
 struct RingParams {
-  int segments = 480;         // N
-  double radius = 0.0;        // R, inflated, m
-  double width = 0.0;         // T, m
-  double air_share = 1.0;     // η: inflated volume / (π R² T)
-  double pressure = 0.0;      // p, gauge, Pa
-  double ambient = 101325.0;  // of the atmosphere, Pa
-  double bending = 0.0;       // A, N/m per radian
-  double shear = 0.0;         // B, N/m per radian
-  double sidewall_1 = 0.0;    // k₁, N/m per radian
-  double sidewall_2 = 0.0;    // k₂, N/m² per radian
-  double sidewall_3 = 0.0;    // k₃, N/m³ per radian
-  double tangential = 0.0;    // k_t, sidewall against tangential displacement, N/m per radian
+  int segments = 480;          // N
+  double radius = 0.0;         // R, inflated, m
+  double width = 0.0;          // T, m
+  double air_share = 1.0;      // η: inflated volume / (π R² T)
+  double pressure = 0.0;       // p, gauge, Pa
+  double ambient = 101325.0;   // of the atmosphere, Pa
+  double bending = 0.0;        // A, N/m per radian
+  double shear = 0.0;          // B, N/m per radian
+  double sidewall_1 = 0.0;     // k₁, N/m per radian
+  double sidewall_2 = 0.0;     // k₂, N/m² per radian
+  double sidewall_3 = 0.0;     // k₃, N/m³ per radian
+  double tension_share = 0.0;  // σ, 0 to 1
+  double tangential = 0.0;     // k_t, sidewall against tangential displacement, N/m per radian
   RingGas gas = RingGas::exact;
   RingKinematics kinematics = RingKinematics::exact;
 };
@@ -52,7 +53,7 @@ struct RingMotion {
 /// m_b of (2), kg. @pre m ρ² < I < m R²
 double belt_mass(const RingMotion& motion, double radius);
 
-/// Draw q of (1), m. @pre radius, width, k₁ > 0; k₂, k₃, pressure ≥ 0
+/// Draw q of (1), m. @pre radius, width, k₁ > 0; k₂, k₃, pressure ≥ 0; σ from 0 to 1
 double sidewall_draw(const RingParams& params);
 
 }  // namespace furrow::tire

@@ -42,6 +42,8 @@ void check(const RingFile& f) {
                                   m.spin_inertia, least, most));
   if (p.air_share > 1.0)
     throw input_error(f.path, "air_share", fmt::format("is {:g}, expected above 0 up to 1", p.air_share));
+  if (p.tension_share > 1.0)
+    throw input_error(f.path, "tension_share", fmt::format("is {:g}, expected 0 to 1", p.tension_share));
   if (p.sidewall_2 * p.sidewall_2 > 3.0 * p.sidewall_1 * p.sidewall_3)
     throw input_error(
         f.path, "sidewall",
@@ -168,6 +170,7 @@ RingFile read_ring_file(const nlohmann::json& document, const std::string& path)
   p.bending = reader.positive("bending");
   p.shear = reader.positive("shear");
   p.tangential = reader.positive("tangential");
+  p.tension_share = reader.not_negative_or("tension_share", 0.0);
   const std::vector<double> k = reader.numbers("sidewall", 3);
   if (!(k[0] > 0.0 && k[1] >= 0.0 && k[2] >= 0.0))
     reader.fail("sidewall", fmt::format("is {:g}, {:g}, {:g}, expected k1 above 0, k2 and k3 of 0 or more",

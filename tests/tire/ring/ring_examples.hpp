@@ -18,6 +18,12 @@ inline RingParams truck_ring(int segments = 480) {
   return p;
 }
 
+/// Its belt holds a share of the pressure by hoop tension.
+inline RingParams with_tension(RingParams p, double share = 0.5) {
+  p.tension_share = share;
+  return p;
+}
+
 /// Its forces are linear in displacements: no pressure, a linear sidewall and linearised air.
 inline RingParams linear_ring(int segments = 480) {
   RingParams p = truck_ring(segments);

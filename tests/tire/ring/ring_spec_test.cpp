@@ -47,6 +47,9 @@ TEST(RingSpec, wrong_files_are_refused_with_file_and_key) {
                                                         {"bending", -140},
                                                         {"shear", json::array()},
                                                         {"tangential", 0},
+                                                        {"tension_share", -0.1},
+                                                        {"tension_share", 1.5},
+                                                        {"tension_share", "all"},
                                                         {"sidewall", 8e5},
                                                         {"sidewall", {8e5, 1e6}},
                                                         {"sidewall", {0, 0, 0}},
@@ -79,11 +82,12 @@ TEST(RingSpec, wrong_files_are_refused_with_file_and_key) {
     EXPECT_EQ(complaint(file).rfind("tire.json: key '" + std::string(key), 0), 0U) << complaint(file);
   }
   json file = file_text();
-  file.erase("gas"), file.erase("kinematics"), file.erase("structural_damping");
+  for (const char* key : {"gas", "kinematics", "structural_damping", "tension_share"}) file.erase(key);
   EXPECT_EQ(complaint(file), "no error");
   TireOptions o;
   o.file = "tire.json";
   EXPECT_EQ(read_ring(file, o)->describe().damping_time, 5e-3);
+  EXPECT_EQ(read_ring_file(file, "tire.json").params.tension_share, 0.0);
 }
 
 TEST(RingSpec, a_scenario_may_change_pressure_friction_segments_and_damping) {

@@ -27,8 +27,8 @@ protocol/files/json_text.cpp protocol/files/printable.cpp protocol/files/text_fi
 rigs/drawbar_spec.cpp rigs/rigs.cpp
 terrain/dem/beds/bed_cache.cpp terrain/dem/beds/bed_csv.cpp terrain/dem/beds/bed_format_4.cpp terrain/dem/beds/bed_positions_h5.cpp
 terrain/dem/dem_spec.cpp terrain/dem/grain_solver_state.cpp terrain/dem/solver_state_check.cpp terrain/soil/soil_estimate.cpp
-terrain/terrains.cpp
-tire/ancf/shell_spec.cpp tire/planar/planar_spec.cpp tire/pressure_schedule.cpp tire/read_tire_file.cpp tire/ring/ring_spec.cpp
+terrain/rigid/roads/open_crg.cpp terrain/rigid/roads/read_road.cpp terrain/terrains.cpp
+tire/ancf/shell_spec.cpp tire/handling/sweep_table.cpp tire/handling/tir_file.cpp tire/planar/planar_spec.cpp tire/pressure_schedule.cpp tire/read_tire_file.cpp tire/ring/ring_spec.cpp
 tire/tire_file.cpp tire/tire_file_chrono.cpp tire/tire_file_reader.cpp tire/tire_profile.cpp tire/tires.cpp
 vehicle/driver/csv_file.cpp vehicle/driver/read_driver.cpp vehicle/driver/read_points.cpp vehicle/spec/driveline_rules.cpp
 vehicle/spec/read_vehicle.cpp vehicle/spec/spec_reader.cpp vehicle/spec/spec_rules.cpp vehicle/spec/value_rules.cpp

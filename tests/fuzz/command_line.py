@@ -26,7 +26,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("FURROW", str(ROOT / "build" / "furrow"))
 CODES = {0, 2, 3, 4, 5, 6, 75}
 PATIENCE = 10.0  # s of the processor until a case is asked to stop: the same on a busy machine
-HANGS = 600.0    # s by the clock until a case is asked to stop, and as long again until it is a finding
+HANGS = 600.0    # s by the clock, without those in which it waits for a processor, until a case is asked to stop, and as long
+#                  again until it is a finding
 LOOKED_AT = 0.2  # s by the clock between two looks at the processor time
 FRESH_CACHE = 50  # cases
 
@@ -144,6 +145,17 @@ def processor_time(pid):
     return sum(map(int, fields[11:15])) / os.sysconf("SC_CLK_TCK")
 
 
+def starved(pid):
+    """What the thread that waited longest has waited for a processor, s."""
+    waited = 0.0
+    for task in pathlib.Path(f"/proc/{pid}/task").glob("*/schedstat"):
+        try:
+            waited = max(waited, 1e-9 * int(task.read_text().split()[1]))
+        except (OSError, IndexError):
+            continue
+    return waited
+
+
 def answer_within(process, patience, by_clock):
     """(stdout, stderr), or None when the process has taken so many seconds of the processor, or by the clock"""
     begin, used = time.monotonic(), processor_time(process.pid)
@@ -151,7 +163,7 @@ def answer_within(process, patience, by_clock):
         try:
             return process.communicate(timeout=LOOKED_AT)
         except subprocess.TimeoutExpired:
-            if time.monotonic() - begin > by_clock or used + patience < processor_time(process.pid) < float("inf"):
+            if time.monotonic() - begin > by_clock + starved(process.pid) or used + patience < processor_time(process.pid) < float("inf"):
                 return None
 
 

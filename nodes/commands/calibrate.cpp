@@ -6,11 +6,13 @@
 #include <fmt/format.h>
 
 #include "nodes/commands/commands.hpp"
+#include "nodes/commands/questions.hpp"
 #include "nodes/launch/messages.hpp"
 #include "nodes/launch/progress.hpp"
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
 #include "nodes/study/calibrate.hpp"
+#include "nodes/study/calibrate_check.hpp"
 #include "nodes/study/calibrate_files.hpp"
 #include "nodes/study/calibrate_evaluations.hpp"
 #include "protocol/files/digits.hpp"
@@ -74,6 +76,13 @@ std::string result_text(const Json& summary) {
 }
 
 }  // namespace
+
+ExitCode validate_calibration(const std::string& name, bool json) {
+  const study::Calibration calibration = study::load_calibration(name);
+  for (const std::string& note : calibration.model->notes()) print_warning(note);
+  std::cout << (json ? study::calibration_check_json(calibration).dump(2) + "\n" : study::calibration_check_text(calibration));
+  return ExitCode::done;
+}
 
 ExitCode calibrate_command(const CalibrateArguments& arguments) {
   const study::Calibration calibration = study::load_calibration(arguments.study);

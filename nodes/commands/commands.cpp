@@ -15,12 +15,12 @@
 
 #include "nodes/commands/bench.hpp"
 #include "nodes/commands/options.hpp"
+#include "nodes/commands/questions.hpp"
 #include "nodes/launch/messages.hpp"
 #include "nodes/launch/progress.hpp"
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
 #include "nodes/scenario/calibration.hpp"
-#include "nodes/scenario/explain.hpp"
 #include "nodes/scenario/load_scenario.hpp"
 #include "nodes/scenario/memory_check.hpp"
 #include "nodes/scenario/rank_table.hpp"
@@ -28,6 +28,7 @@
 #include "nodes/scenario/runnable.hpp"
 #include "nodes/scenario/validate.hpp"
 #include "nodes/scenario/vehicle_tires.hpp"
+#include "nodes/study/calibrate_study.hpp"
 #include "protocol/files/nearest_words.hpp"
 #include "protocol/files/printable.hpp"
 #include "protocol/mpi_transport.hpp"
@@ -86,11 +87,13 @@ scenario::Scenario load(Typed& typed) {
 }
 
 ExitCode validate_command(Typed& typed) {
-  if (scenario::is_vehicle(typed.scenario)) {
+  const bool vehicle = scenario::is_vehicle(typed.scenario), calibration = study::is_calibration(typed.scenario);
+  if (vehicle || calibration) {
     if (!settings_of(typed).empty())
       throw input_error("command line", typed.threads.empty() ? "--set" : "--threads",
-                        "is given with the file of a vehicle, expected a scenario");
-    return validate_vehicle(typed.scenario, typed.json);
+                        fmt::format("is given with {}, expected a scenario",
+                                    vehicle ? "the file of a vehicle" : "a calibration study"));
+    return vehicle ? validate_vehicle(typed.scenario, typed.json) : validate_calibration(typed.scenario, typed.json);
   }
   const scenario::Scenario scenario = load(typed);
   scenario::require_runnable(scenario);
@@ -374,11 +377,11 @@ void CommandLine::add_runs() {
 
 void CommandLine::add_questions() {
   CLI::App& validate = add("validate",
-                           "Check a scenario and estimate what a run of it will need, or check a vehicle and "
-                           "print its state at rest.",
+                           "Check a scenario and estimate what a run of it will need, check a vehicle and print "
+                           "its state at rest, or check a calibration study and print what it fits.",
                            [this] { return validate_command(typed_); });
   add_scenario(validate, typed_);
-  validate.get_option("SCENARIO")->description("Check this scenario file or vehicle file (JSON).");
+  validate.get_option("SCENARIO")->description("Check this scenario, vehicle or calibration study (JSON).");
   validate.add_flag("--json", typed_.json, "Print JSON.");
 
   CLI::App& ranks = add(
@@ -389,14 +392,12 @@ void CommandLine::add_questions() {
   add_scenario(ranks, typed_);
   add_slurm_options(ranks, typed_.slurm, slurm_);
 
-  add("explain", "Explain a scenario key, or list all keys.",
-      [this] {
-        std::cout << scenario::explain(typed_.key);
-        return ExitCode::done;
-      })
+  add("explain", "Explain a key of a scenario or of a calibration study, or list all keys of a scenario.",
+      [this] { return explain_command(typed_.key); })
       .add_option(
           "KEY", typed_.key,
-          "Explain the key of this dotted path, for example terrain.cohesion (default: list all keys).");
+          "Explain the key of this dotted path, for example terrain.cohesion, or calibrate for calibration studies "
+          "(default: list all keys of a scenario).");
 }
 
 void CommandLine::add_virtual_tests() {

@@ -90,6 +90,18 @@ void forget_launcher() {
   for (const std::string& name : names) unsetenv(name.c_str());
 }
 
+std::vector<std::string> launcher_settings() {
+  constexpr std::array kChosen{"OMPI_MCA_", "PMIX_MCA_", "OPAL_", "MPIEXEC_"};
+  std::vector<std::string> names;
+  for (char** entry = environ; *entry; ++entry) {
+    const std::string_view variable(*entry);
+    const bool chosen = std::any_of(kChosen.begin(), kChosen.end(), [&](const char* beginning) { return variable.starts_with(beginning); });
+    if (chosen && !is_of_launcher(variable)) names.emplace_back(variable.substr(0, variable.find('=')));
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
 pid_t start_child(Child child) {
   std::vector<char*> arguments;
   for (std::string& argument : child.command) arguments.push_back(argument.data());

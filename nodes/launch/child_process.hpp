@@ -38,6 +38,9 @@ struct Child {
 /// started with a launcher of its own, or that is no rank, must not find it.
 void forget_launcher();
 
+/// Variables with which users choose how mpirun works: OMPI_MCA_btl and the like.
+std::vector<std::string> launcher_settings();
+
 /// @returns its process id. A program that cannot be run ends with status 127, after a line on its standard error.
 /// @throws Error(limit) when no process can be made
 pid_t start_child(Child child);

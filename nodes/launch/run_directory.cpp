@@ -31,6 +31,19 @@ Error no_list(const fs::path& folder, const std::string& key, const std::string&
                      fmt::format("holds no run's list of its files ({}): {}", kRunList, why));
 }
 
+/// What one command makes, and what the list of its folder holds from the start.
+struct Kind {
+  const char* mark;
+  const char* holds;
+  const char* continued;  // by what
+};
+constexpr Kind kOthers[] = {
+    {kCalibration, "a calibration", "the command that began it, 'furrow calibrate' with the same study, continues it"},
+    {kKinematics, "the results of 'furrow kc'", "they are made anew, not continued"},
+    {kModes, "the results of 'furrow modes'", "they are made anew, not continued"},
+    {"soil.json", "the results of 'furrow soil'", "they are made anew, not continued"},
+    {"press.csv", "the results of 'furrow press'", "they are made anew, not continued"}};
+
 bool is_run(const fs::path& folder) {
   std::error_code error;
   return fs::exists(folder / "run.log", error) || fs::exists(folder / "scenario.json", error) ||
@@ -105,6 +118,10 @@ RunDirectory::RunDirectory(const fs::path& existing) : existing_(true), path_(ex
                   "an earlier version of furrow made it; continue it with that version, or start again with "
                   "furrow run in a new folder");
   require_writable("");
+  const RunList list = RunList::read(path_);
+  for (const Kind& kind : kOthers)
+    if (list.holds(kind.mark))
+      throw input_error(path_.string(), "", fmt::format("holds {}, expected a run; {}", kind.holds, kind.continued));
   lock_ = FolderLock(path_, "", FolderLock::Mode::alone);
   take_back(RunList::read(path_));
 }
@@ -321,8 +338,11 @@ void require_run_directory(const fs::path& folder) {
     throw input_error(folder.string(), "", "does not exist, expected the folder of a run");
   if (!fs::is_directory(folder, error))
     throw input_error(folder.string(), "", "is not a folder, expected the folder of a run");
-  if (!is_run(folder))
-    throw input_error(folder.string(), "", "holds no run, expected scenario.json or run.log in it");
+  if (is_run(folder)) return;
+  if (has_run_list(folder) && RunList::read(folder).holds(kCalibration))
+    throw input_error(folder.string(), "",
+                      fmt::format("holds a calibration that has not ended; {}", kOthers[0].continued));
+  throw input_error(folder.string(), "", "holds no run, expected scenario.json or run.log in it");
 }
 
 }  // namespace furrow::launch

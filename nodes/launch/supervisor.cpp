@@ -13,8 +13,10 @@
 #include <fstream>
 #include <optional>
 #include <sstream>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "nodes/launch/child_process.hpp"
 #include "nodes/launch/limits.hpp"
@@ -326,8 +328,10 @@ LaunchResult Supervisor::outcome() const {
                                  : "mpirun was " + signal_name(WTERMSIG(status_));
   const std::string text = how + " and " + launcher_said();
   if (start_.count() > 0) return {ExitCode::rank_lost, text};
-  return {ExitCode::io,
-          "no rank could be started (are PATH and TMPDIR right, is FURROW_MPIRUN Open MPI's?): " + text};
+  std::vector<std::string> suspects = launcher_settings();
+  suspects.insert(suspects.begin(), {"PATH", "TMPDIR"});
+  return {ExitCode::io, fmt::format("no rank could be started (are {} right, is FURROW_MPIRUN Open MPI's?): {}",
+                                    fmt::join(suspects, ", "), text)};
 }
 
 }  // namespace

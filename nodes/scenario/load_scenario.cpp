@@ -113,6 +113,8 @@ json read_document(const std::string& file, const Settings& settings) {
     throw input_error(file, "", "is " + value_text(document) + ", expected an object { }");
   if (document.contains("scenario"))
     throw input_error(file, "", "is a study, expected a scenario ('furrow sweep' takes studies)");
+  if (document.contains("calibrate"))
+    throw input_error(file, "", "is a calibration study, expected a scenario ('furrow calibrate' takes calibrations)");
   if (document.contains("chassis") && document.contains("axles"))
     throw input_error(
         file, "",

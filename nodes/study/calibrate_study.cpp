@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "nodes/study/calibrate_budget.hpp"
+#include "nodes/study/calibrate_explain.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/core/hash.hpp"
 #include "protocol/files/data_files.hpp"
@@ -176,6 +177,14 @@ std::filesystem::path named_calibration(const std::filesystem::path& name) {
 
 }  // namespace
 
+bool is_calibration(const std::filesystem::path& name) {
+  std::error_code error;
+  const std::filesystem::path file = named_calibration(name);
+  if (!std::filesystem::is_regular_file(file, error)) return false;
+  const Json document = read_json_if_whole(file);
+  return document.is_object() && document.contains("calibrate");
+}
+
 Calibration load_calibration(const std::filesystem::path& name) {
   const std::filesystem::path file = named_calibration(name);
   const Json document = load_json<Json>(file, "a calibration study in JSON");
@@ -185,8 +194,9 @@ Calibration load_calibration(const std::filesystem::path& name) {
                                                     : "is missing, expected a calibration study");
   Reader reader(document, file.string());
   const CalibrationKind& kind = kind_of(reader);
-  std::vector<std::string> keys{"format_version", "description", "calibrate", "start", "parameters", "targets",
-                                "held_out", "starts", "seed", "result"};
+  std::vector<std::string> keys;
+  for (const CalibrationKey& key : calibration_keys())
+    if (key.of_every_kind) keys.emplace_back(key.name);
   if (kind.noisy) keys.emplace_back("evaluations");
   keys.insert(keys.end(), kind.keys.begin(), kind.keys.end());
   reader.allow_only(keys);

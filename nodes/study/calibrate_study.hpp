@@ -36,6 +36,9 @@ struct Calibration {
   std::string digest;
 };
 
+/// Whether a file, or a calibration that comes with the program, says of itself that it is one.
+bool is_calibration(const std::filesystem::path& name);
+
 /// @param name of a file, or of a calibration that comes with the program, as "calibrate_ring.json"
 /// @throws Error(bad_input) naming file and key
 Calibration load_calibration(const std::filesystem::path& name);

@@ -4,7 +4,8 @@ MAY_DIFFER below must be equal. HDF5 files are compared dataset for dataset with
 floating-point numbers by their bits; all other files byte for byte.
 
 usage: compare_runs.py DIR_A DIR_B
-Either folder is that of a run or of a study. Prints every difference and exits with 1 if there is one.
+Either folder is that of a run or of a study. Prints every difference and exits with 1 if there is one, with 2 if a
+Python module is missing.
 """
 import argparse
 import csv
@@ -14,8 +15,13 @@ import json
 import pathlib
 import sys
 
-import h5py
-import numpy as np
+try:
+    import h5py
+    import numpy as np
+except ImportError as missing:
+    sys.stderr.write(f"compare_runs.py: the Python module {missing.name} is missing, expected python3-h5py and python3-numpy of the "
+                     "system: run it with /usr/bin/python3\n")
+    sys.exit(2)
 
 # What a run that was disturbed and continued need not have in common with one that was not, and why.
 MAY_DIFFER = [

@@ -1,8 +1,11 @@
 #!/usr/bin/python3
 """compare_runs.py sees every difference that counts, and none of those that it lists."""
 import json
+import os
 import pathlib
 import shutil
+import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -132,6 +135,20 @@ class CompareRuns(unittest.TestCase):
         (self.b / "runs" / "1f" / "scenario.json").write_text("{}")
         self.found("runs/1f/scenario.json: only in")
         self.assertEqual(differences(self.a, self.b, ["scenario.json"]), [])
+
+    def compared(self, *folders, **environment):
+        return subprocess.run([sys.executable, pathlib.Path(__file__).with_name("compare_runs.py"), *folders], capture_output=True, text=True,
+                              env={**os.environ, **environment})
+
+    def test_a_missing_module_is_told_in_one_line(self):
+        self.assertEqual(self.compared(self.a, self.b).returncode, 0)
+        for module in ("h5py", "numpy"):  # as with a Python that lacks it
+            place = self.a.with_name(module)
+            place.mkdir()
+            (place / f"{module}.py").write_text(f"raise ImportError('No module named {module}', name='{module}')")
+            done = self.compared(self.a, self.b, PYTHONPATH=str(place))
+            self.assertEqual((done.returncode, done.stdout), (2, ""))
+            self.assertRegex(done.stderr, rf"^compare_runs.py: the Python module {module} is missing, expected [^\n]*/usr/bin/python3\n$")
 
 
 if __name__ == "__main__":

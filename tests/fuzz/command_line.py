@@ -5,7 +5,8 @@ message; never a crash, never silence.
 usage: command_line.py [--cases N] [--seed S] [--state FILE] [--only CASE] [--patience S]
 
 Case k of a seed is always the same. With --state a series goes on where it left off, and what was found stays in that file.
-The program is $FURROW. No ranks are started: the launcher is one that does not exist.
+The program is $FURROW. No ranks are started: the launcher is one that does not exist. Cases share a cache, which is empty
+before every fiftieth: a user has one too, and measuring the machine anew takes seconds of each `validate`.
 """
 import argparse
 import collections
@@ -14,6 +15,7 @@ import os
 import pathlib
 import random
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -23,7 +25,11 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("FURROW", str(ROOT / "build" / "furrow"))
 CODES = {0, 2, 3, 4, 5, 6, 75}
-PATIENCE = 10.0  # s until a case is asked to stop, and as long again until it is a finding; more on a busy machine
+PATIENCE = 10.0  # s of the processor until a case is asked to stop: the same on a busy machine
+HANGS = 600.0    # s by the clock, without those in which it waits for a processor, until a case is asked to stop, and as long
+#                  again until it is a finding
+LOOKED_AT = 0.2  # s by the clock between two looks at the processor time
+FRESH_CACHE = 50  # cases
 
 SMALL = {
     "rig": {"slip": 0.3, "ramp": 0.01},
@@ -130,25 +136,54 @@ def finding(arguments, code, out, err):
     return None
 
 
-def run_case(arguments, folder, patience):
+def processor_time(pid):
+    """Of a process and of those that it has waited for, s; infinite when it is gone."""
+    try:
+        fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
+    except OSError:
+        return float("inf")
+    return sum(map(int, fields[11:15])) / os.sysconf("SC_CLK_TCK")
+
+
+def starved(pid):
+    """What the thread that waited longest has waited for a processor, s."""
+    waited = 0.0
+    for task in pathlib.Path(f"/proc/{pid}/task").glob("*/schedstat"):
+        try:
+            waited = max(waited, 1e-9 * int(task.read_text().split()[1]))
+        except (OSError, IndexError):
+            continue
+    return waited
+
+
+def answer_within(process, patience, by_clock):
+    """(stdout, stderr), or None when the process has taken so many seconds of the processor, or by the clock"""
+    begin, used = time.monotonic(), processor_time(process.pid)
+    while True:
+        try:
+            return process.communicate(timeout=LOOKED_AT)
+        except subprocess.TimeoutExpired:
+            if time.monotonic() - begin > by_clock + starved(process.pid) or used + patience < processor_time(process.pid) < float("inf"):
+                return None
+
+
+def run_case(arguments, folder, cache, patience):
     """(exit code, stdout, stderr, whether it had to be asked to stop)"""
-    environment = {**os.environ, "FURROW_MPIRUN": "/no/mpirun", "FURROW_HOME": str(ROOT), "XDG_CACHE_HOME": str(folder / "cache"),
+    environment = {**os.environ, "FURROW_MPIRUN": "/no/mpirun", "FURROW_HOME": str(ROOT), "XDG_CACHE_HOME": str(cache),
                    "OMP_NUM_THREADS": "2"}
     raw = [argument.encode("utf-8", "surrogateescape") for argument in arguments]
     with subprocess.Popen([PROGRAM.encode(), *raw], cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                           env=environment, start_new_session=True) as process:
-        asked = False
-        try:
-            out, err = process.communicate(timeout=patience)
-        except subprocess.TimeoutExpired:
-            asked = True
+        answer = answer_within(process, patience, HANGS)
+        asked = answer is None
+        if asked:
             process.terminate()
-            try:
-                out, err = process.communicate(timeout=patience)
-            except subprocess.TimeoutExpired:
+            answer = answer_within(process, patience, HANGS)
+            if answer is None:
                 os.killpg(process.pid, signal.SIGKILL)
-                out, err = process.communicate()
+                process.communicate()
                 return -signal.SIGKILL, "", "does not answer TERM", True
+        out, err = answer
         return process.returncode, out.decode(errors="replace"), err.decode(errors="replace"), asked
 
 
@@ -159,7 +194,7 @@ def main():
     parser.add_argument("--state", type=pathlib.Path, help="JSON file of what is done; made, or gone on from")
     parser.add_argument("--seconds", type=float, default=float("inf"), help="stop after this time")
     parser.add_argument("--only", type=int, help="this case, with its output")
-    parser.add_argument("--patience", type=float, default=PATIENCE, help="s until a case is asked to stop")
+    parser.add_argument("--patience", type=float, default=PATIENCE, help="s of the processor until a case is asked to stop")
     options = parser.parse_args()
     schema = json.loads((ROOT / "rigs" / "scenario.schema.json").read_text())
     keys = sorted(set(leaves(schema, schema)))
@@ -169,15 +204,18 @@ def main():
     codes = collections.Counter(state["codes"])
     cases = [options.only] if options.only is not None else range(state["done"], options.cases)
     begin = time.monotonic()
+    caches = tempfile.TemporaryDirectory(prefix="furrow fuzz cache ")
     for k in cases:
         if time.monotonic() - begin > options.seconds:
             break
+        cache = pathlib.Path(caches.name) / str(k // FRESH_CACHE)
+        shutil.rmtree(cache.with_name(str(k // FRESH_CACHE - 1)), ignore_errors=True)
         chance = random.Random(f"{state['seed']}:{k}")
         arguments = arguments_of(chance, keys)
         with tempfile.TemporaryDirectory(prefix="furrow fuzz ") as name:
             folder = pathlib.Path(name)
             make_files(folder)
-            code, out, err, asked = run_case(arguments, folder, options.patience)
+            code, out, err, asked = run_case(arguments, folder, cache, options.patience)
         wrong = finding(arguments, code, out, err)
         codes[str(code)] += 1
         state["done"] = k + 1

@@ -15,6 +15,7 @@ import subprocess
 import sys
 import tempfile
 
+from hours import provenance
 from run_targets import ROOT, TARGETS, environment
 
 READERS = """
@@ -22,15 +23,16 @@ nodes/checkpoint/checkpoint.cpp nodes/checkpoint/resume.cpp nodes/checkpoint/run
 nodes/launch/run_list.cpp nodes/output/table.cpp
 nodes/scenario/load_scenario.cpp nodes/scenario/model_keys.cpp nodes/scenario/scenario_checks.cpp nodes/scenario/schema.cpp
 nodes/scenario/soil_material.cpp nodes/study/study.cpp
-protocol/files/archive_file.cpp protocol/files/data_files.cpp protocol/files/hdf5_reader.cpp protocol/files/json_reader.cpp
+protocol/files/archive_file.cpp protocol/files/csv_file.cpp protocol/files/data_files.cpp protocol/files/hdf5_reader.cpp protocol/files/json_reader.cpp
 protocol/files/json_text.cpp protocol/files/printable.cpp protocol/files/text_file.cpp
 rigs/drawbar_spec.cpp rigs/rigs.cpp
 terrain/dem/beds/bed_cache.cpp terrain/dem/beds/bed_csv.cpp terrain/dem/beds/bed_format_4.cpp terrain/dem/beds/bed_positions_h5.cpp
 terrain/dem/dem_spec.cpp terrain/dem/grain_solver_state.cpp terrain/dem/solver_state_check.cpp terrain/soil/soil_estimate.cpp
-terrain/terrains.cpp
-tire/ancf/shell_spec.cpp tire/planar/planar_spec.cpp tire/pressure_schedule.cpp tire/read_tire_file.cpp tire/ring/ring_spec.cpp
+terrain/rigid/roads/open_crg.cpp terrain/rigid/roads/read_road.cpp terrain/terrains.cpp
+tire/ancf/shell_spec.cpp tire/handling/sweep_table.cpp tire/handling/tir_file.cpp tire/planar/planar_spec.cpp tire/pressure_schedule.cpp tire/read_tire_file.cpp
+tire/ring/ring_spec.cpp
 tire/tire_file.cpp tire/tire_file_chrono.cpp tire/tire_file_reader.cpp tire/tire_profile.cpp tire/tires.cpp
-vehicle/driver/csv_file.cpp vehicle/driver/read_driver.cpp vehicle/driver/read_points.cpp vehicle/spec/driveline_rules.cpp
+vehicle/driver/read_driver.cpp vehicle/driver/read_points.cpp vehicle/spec/driveline_rules.cpp
 vehicle/spec/read_vehicle.cpp vehicle/spec/spec_reader.cpp vehicle/spec/spec_rules.cpp vehicle/spec/value_rules.cpp
 """.split()
 
@@ -71,13 +73,17 @@ def main():
         objects = [argument for program in programs[1:] for argument in ("-object", program)]
         shown = subprocess.run(["llvm-cov", "export", "-summary-only", f"-instr-profile={merged}", programs[0], *objects,
                                 *(str(ROOT / reader) for reader in READERS)], check=True, capture_output=True, text=True).stdout
-    lines = ["file,lines,covered,percent"]
+    lines = []
     files = {os.path.relpath(file["filename"], ROOT): file["summary"]["lines"] for file in json.loads(shown)["data"][0]["files"]}
     for name, of in sorted(files.items()):
         lines.append(f"{name},{of['count']},{of['covered']},{of['percent']:.0f}")
     if absent := sorted(set(READERS) - set(files)):
         print(f"coverage.py: in no target: {', '.join(absent)}", file=sys.stderr)
-    options.table.write_text("\n".join(lines) + "\n")
+    made = {"commit": provenance.commit(), "compiler": provenance.compiler_of(programs[0]), "processor": provenance.processor(),
+            "command": provenance.command(), "note": f"of the corpora of {', '.join(targets)}"}
+    with open(options.table, "w", newline="", encoding="utf-8") as table:
+        provenance.write_header(table, made)
+        table.write("\n".join(["file,lines,covered,percent", *lines]) + "\n")
     print(options.table.read_text(), end="")
 
 

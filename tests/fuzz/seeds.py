@@ -23,6 +23,11 @@ MANIFEST = {
     "step": 10, "time_s": 1e-3, "bytes": 6, "write_s": 0.01, "frames": {"every": 5, "first_step": 0, "first_index": 0},
     "segments": [{"from_step": 0, "to_step": 10, "wall_s": 1.0, "threads": 2, "changed": {"run.threads": 1}}], "file_hashes": [],
 }
+ROAD = ("$ROAD_CRG\nREFERENCE_LINE_START_U = 2.0\nREFERENCE_LINE_END_U = 4.0 ! m\nREFERENCE_LINE_INCREMENT = 1\nLONG_SECTION_V_RIGHT = -0.5\n"
+        "LONG_SECTION_V_INCREMENT = 0.5\n$!***\n$KD_DEFINITION\n")
+CUTS = "".join(f"D:long section {k},m\n" for k in (1, 2, 3)) + "D:reference line slope,m/m\n$\n$$$$\n"
+ROWS = {"LRFI": 3 * " 0.0000000 0.0100000 0.0200000 0.0300000\n", "LDFI": 3 * (4 * "                0.01" + "\n"), "KRBI": 48 * "\0",
+        "KDBI": 96 * "\0"}
 
 
 def documents(root, *patterns):
@@ -59,6 +64,10 @@ def texts(target, root):
     """JSON documents, or texts, or nothing where a target makes its files of random bytes."""
     if target == "bed":
         return ["x_m,y_m,z_m\n0.1,0,0.1\n0.2,0,0.1\n", "\ufeffx_m,y_m,z_m,radius_m\r\n0.1, -1e-3,0.1,0.03\r\n\r\n"]
+    if target == "road":
+        return ["cx_m,z_m\n-1,0\n6,0\n6,0.2\n", *(f"k{ROAD}#:{form}\n{CUTS}{rows}" for form, rows in ROWS.items())]
+    if target == "handling":
+        return [(root / "tire" / "data" / name).read_text() for name in ("handling_start.tir", "sweep_lumped.csv")]
     if target == "run_list":
         return ["furrow-run 1\nsummary.json\nframes/\nframes/tire0_%06d.h5\ncheckpoints/\ncheckpoints/%012d/\ncheckpoints/%012d/rig.h5\n"]
     found = {

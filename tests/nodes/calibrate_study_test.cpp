@@ -3,12 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "nodes/study/calibrate_evaluations.hpp"
+#include "nodes/study/calibrate_explain.hpp"
 #include "protocol/core/error.hpp"
 #include "tests/nodes/calibrate_examples.hpp"
 
@@ -69,6 +71,26 @@ TEST_F(CalibrateStudy, a_study_is_read_with_its_defaults) {
   EXPECT_EQ(plate.what, "plate, 200 kPa");
   EXPECT_EQ(c.model->targets(TargetSet::held_out).front().sigma, std::vector<double>(3, 20.0));
   EXPECT_TRUE(c.model->notes().empty());
+}
+
+TEST(CalibrateExplain, every_key_kind_and_parameter_is_explained) {
+  const auto explained = [](const std::string& key) { return explain_calibration(key).starts_with(key + "\n  "); };
+  std::vector<std::string_view> names;
+  for (const CalibrationKey& key : calibration_keys()) {
+    EXPECT_TRUE(explained("calibrate." + std::string(key.name)));
+    names.push_back(key.name);
+  }
+  for (const CalibrationKind& kind : calibration_kinds()) {
+    const std::string name = "calibrate." + std::string(kind.name);
+    EXPECT_TRUE(explained(name));
+    for (const ParameterRule& rule : kind.parameters()) EXPECT_TRUE(explained(name + "." + rule.name));
+    for (const std::string_view key : kind.keys)
+      EXPECT_NE(std::find(names.begin(), names.end(), key), names.end()) << key;
+  }
+  EXPECT_TRUE(explains_calibrations("calibrate"));
+  EXPECT_FALSE(explains_calibrations("calibrates"));
+  EXPECT_THROW(explain_calibration("calibrate."), Error);
+  EXPECT_THROW(explain_calibration("calibrate.ring."), Error);
 }
 
 TEST_F(CalibrateStudy, a_pressure_in_another_unit_is_warned_of) {

@@ -151,6 +151,66 @@ class Calibrate(SystemTest):
         self.assertEqual(done.returncode, 3, done.stderr)
         self.assertIn("the model has no answer at any of the 2 starts", done.stderr)
 
+    def test_commands_for_runs_say_what_a_calibration_is_and_what_continues_it(self):
+        study = self.study()
+        self.assertEqual(furrow("calibrate", study, "--out", "out", "--no-plots", cwd=self.folder).returncode, 0)
+        done = furrow("resume", "out", cwd=self.folder)
+        self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+        self.assertEqual(done.stderr, "furrow: error: out: holds a calibration, expected a run; the command that began it, 'furrow calibrate' "
+                                      "with the same study, continues it\n")
+        (self.folder / "out" / "calibration.json").unlink()  # as after a signal or kill −9
+        before = set(self.names())
+        for command in (("report",), ("resume",), ("events",), ("report", "--vtk", "vtk")):
+            done = furrow(command[0], "out", *command[1:], cwd=self.folder)
+            self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+            self.assertEqual(done.stderr, "furrow: error: out: holds a calibration that has not ended; the command that began it, "
+                                          "'furrow calibrate' with the same study, continues it\n")
+        self.assertEqual(set(self.names()), before)
+        self.assertEqual(furrow("calibrate", study, "--out", "out", "--no-plots", cwd=self.folder).returncode, 0)
+
+    def test_validate_checks_a_study_and_says_what_is_fitted(self):
+        study = self.study()
+        done = furrow("validate", study, cwd=self.folder)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        lines = done.stdout.splitlines()
+        self.assertEqual(lines[0], "calibration  study.json, kind ring")
+        self.assertIn("parameter    sidewall_1: 100e3 to 1e7 N/m, logarithmic, from 884e3", lines)
+        self.assertRegex(done.stdout, r"\ntarget       plate \(plate[^)]*\): 8 points, deflection_m \S+ to \S+, force_N \S+ to \S+\n")
+        self.assertRegex(done.stdout, r"\nheld out     again \(")
+        self.assertIn("starts       3, seed 1", lines)
+        self.assertIn("result       soft_ring_fitted.json", lines)
+        told = json.loads(furrow("validate", study, "--json", cwd=self.folder).stdout)
+        self.assertEqual(told["parameters"]["air_share"], {"unit": "-", "lower": 0.1, "upper": 1.0, "scale": told["parameters"]["air_share"]["scale"], "start": told["parameters"]["air_share"]["start"]})
+        self.assertEqual([target["name"] for target in told["targets"]], ["plate", "cleat"])
+        done = furrow("validate", study, "--set", "rig.slip=0.1", cwd=self.folder)
+        self.assertEqual(done.stderr, "furrow: error: command line: key '--set': is given with a calibration study, expected a scenario\n")
+        self.study("wrong.json", starts=0)
+        self.assertEqual(furrow("validate", "wrong.json", cwd=self.folder).stderr, furrow("calibrate", "wrong.json", cwd=self.folder).stderr)
+        self.assertNotIn("results", self.names())
+
+    def test_commands_for_scenarios_point_to_calibrate(self):
+        for command in ("run", "ranks", "press", "bed", "soil"):
+            done = furrow(command, "calibrate_ring.json", cwd=self.folder)
+            self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+            self.assertRegex(done.stderr, r"^furrow: error: \S+calibrate_ring.json: is a calibration study, expected a scenario "
+                                          r"\('furrow calibrate' takes calibrations\)\n$")
+
+    def test_explain_knows_the_keys_of_calibrations(self):
+        def told(key):
+            done = furrow("explain", key, cwd=self.folder)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            return done.stdout
+        for key in ("calibrate.targets", "calibrate.evaluations", "calibrate.grains"):
+            self.assertIn(key, told("calibrate"))
+        self.assertIn("a list of objects, each with data", told("calibrate.targets"))
+        self.assertRegex(told("calibrate.ring"), r"\nbending +\S+ to \S+")
+        self.assertRegex(told("calibrate.ring.softening"), r"\n  default  0 to 1\n")
+        for key, what in (("calibrate.ring.bendin", "expected 'bending'?"), ("calibrate.target", "expected 'targets'?"),
+                          ("calibrate_ring.json", "is the name of a file, expected a key; 'furrow validate' checks a file")):
+            done = furrow("explain", key, cwd=self.folder)
+            self.assertEqual((done.returncode, done.stdout), (2, ""))
+            self.assertIn(what, done.stderr)
+
     def test_shipped_calibrations_are_valid(self):
         for path in sorted((ROOT / "rigs").glob("calibrate_*.json")):
             done = furrow("calibrate", path, "--out", "/proc/furrow", cwd=self.folder)
@@ -158,6 +218,7 @@ class Calibrate(SystemTest):
             self.assertIn("key '--out': cannot be made", done.stderr)
             # By its name alone, from any folder.
             self.assertEqual(furrow("calibrate", path.name, "--out", "/proc/furrow", cwd=self.folder).stderr, done.stderr)
+            self.assertEqual(furrow("validate", path.name, cwd=self.folder).returncode, 0)
 
 
 if __name__ == "__main__":

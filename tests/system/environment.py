@@ -114,6 +114,12 @@ class Launcher(EnvironmentTest):
     def test_that_hangs_and_will_not_end_is_killed(self):
         self.check("trap '' TERM; while true; do sleep 0.1; done\n", "mpirun said nothing", 40)
 
+    def test_what_the_user_has_set_for_it_is_named(self):
+        done = furrow("run", self.path, "--out", "out", cwd=self.folder, env={"OMPI_MCA_btl": "bogus", "OMPI_MCA_orte_jobid": "left over"})
+        line = self.one_error(done, 5)
+        self.assertIn("no rank could be started (are PATH, TMPDIR, OMPI_MCA_btl right, is FURROW_MPIRUN Open MPI's?): mpirun ended", line)
+        self.assertIn("Component: bogus", line)
+
     def test_bad_time_out(self):
         done = furrow("run", self.path, "--out", "out", cwd=self.folder, env={"FURROW_START_TIMEOUT": "soon"})
         self.assertIn("key 'FURROW_START_TIMEOUT': is 'soon', expected a number of seconds", self.one_error(done, 2))

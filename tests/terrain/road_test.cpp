@@ -183,6 +183,10 @@ TEST_F(RoadFile, mistakes_of_an_open_crg_file_are_told_by_line_and_parameter) {
   const std::string rows =
       "$$\n 0.0000000 0.0000000 0.0000000\n 0.0000000 0.0000000 0.0000000\n 0.0000000 0.0000000 0.0000000\n";
   const std::string text = "$KD_DEFINITION\n#:LRFI\n" + kCuts;
+  const auto with = [](const std::string& from, const std::string& to) {
+    std::string road = kRoad;
+    return road.replace(road.find(from), from.size(), to);
+  };
   const std::pair<std::string, std::string> wrong[] = {
       {"", "has no road data"},
       {"{}\n", "has no road data"},
@@ -202,7 +206,10 @@ TEST_F(RoadFile, mistakes_of_an_open_crg_file_are_told_by_line_and_parameter) {
        "REFERENCE_LINE_INCREMENT': is missing"},
       {"$ROAD_CRG\nREFERENCE_LINE_INCREMENT = -1\n$\n$KD_DEFINITION\n#:LRFI\nD:long section at v = "
        "0,m\n$\n$$\n 0.0000000\n 0.0000000\n",
-       "is -1, expected above 0 m"},
+       "is -1, expected 1e-06 to 1e+06 m"},
+      {with("INCREMENT = 1", "INCREMENT = 1e-300") + text + rows, "is 1e-300, expected 1e-06 to 1e+06 m"},
+      {with("INCREMENT = 1", "INCREMENT = 1e300") + text + rows, "is 1e+300, expected 1e-06 to 1e+06 m"},
+      {with("START_U = 2.0", "START_U = 1e300") + text + rows, "leads the road from u = 1e+300 to 1e+300 m"},
       {"$ROAD_CRG\nREFERENCE_LINE_INCREMENT = wide\n$\n", "line 2': is 'REFERENCE_LINE_INCREMENT = wide'"},
       {"$ROAD_CRG\nREFERENCE_LINE_INCREMENT = 1\nREFERENCE_LINE_INCREMENT = 1\n$\n",
        "line 3': gives a parameter twice"},
@@ -225,6 +232,9 @@ TEST_F(RoadFile, mistakes_of_an_open_crg_file_are_told_by_line_and_parameter) {
             std::string::npos);
   EXPECT_NE(refusal([&] { read_road(file, -0.2); }).find("has no height at u = 2 m, v = -0.2 m"),
             std::string::npos);
+  const std::filesystem::path high =
+      put("high.crg", kRoad + text + "$$\n 0.0000000 0.0000000 0.0000000\n 0.0000000  9.00e+08 0.0000000\n");
+  EXPECT_NE(refusal([&] { read_road(high, 0.0); }).find("has the height 9e+08 m at u = 3 m, v = 0 m"), std::string::npos);
 }
 
 TEST_F(RoadFile, a_profile_in_csv_is_read_and_its_mistakes_are_told_by_line) {

@@ -18,6 +18,8 @@ namespace furrow::tire::handling {
 namespace {
 
 constexpr double kStraight = 1e-6;  // rad
+constexpr double kMostLoad = 1e9;                         // N
+constexpr double kLeastRadius = 1e-3, kMostRadius = 1e3;  // m
 constexpr auto kColumns = std::to_array<const char*>(
     {"iso_w.force_N.0", "iso_w.force_N.1", "iso_w.force_N.2", "iso_w.moment_Nm.0", "iso_w.moment_Nm.1",
      "iso_w.moment_Nm.2", "iso_w.slip_angle_rad", "iso_w.camber_angle_rad", "iso_w.loaded_radius_m",
@@ -91,8 +93,10 @@ std::vector<SweepPoint> read_sweep_table(const std::filesystem::path& file) {
     p.state = {.load = v[2], .slip_angle = v[6], .camber = v[7]};
     p.loaded_radius = v[8];
     p.rolling_radius = v[9];
-    if (!(p.state.load > 0.0 && p.rolling_radius > 0.0))
-      throw wrong("has a load or a rolling radius of 0 or less, expected a wheel that rolls on the ground");
+    if (!(p.state.load > 0.0 && p.state.load <= kMostLoad && p.rolling_radius >= kLeastRadius && p.rolling_radius <= kMostRadius))
+      throw wrong(fmt::format("has a load of {:g} N and a rolling radius of {:g} m, expected a wheel that rolls on the ground: "
+                              "above 0 to {:g} N, {:g} to {:g} m",
+                              p.state.load, p.rolling_radius, kMostLoad, kLeastRadius, kMostRadius));
     const bool free = cells[at("rig.mode")] == "free_rolling";
     p.rolls_freely = free && std::abs(p.state.slip_angle) < kStraight && std::abs(p.state.camber) < kStraight;
     p.state.slip = free ? 0.0 : std::numeric_limits<double>::quiet_NaN();

@@ -25,6 +25,7 @@ constexpr std::uintmax_t kMostBytes = 512u << 20;
 constexpr std::size_t kHeaderColumns = 72;  // what stands beyond is left out
 constexpr std::size_t kTextRecord = 80, kSingleField = 10, kDoubleField = 20;  // characters
 constexpr double kSameCut = 1e-6;                                              // m
+constexpr double kLeastIncrement = 1e-6, kFarthest = 1e6;                      // m; the latter as of terrain.profile
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::string upper(std::string_view text) {
@@ -200,7 +201,7 @@ class Reader {
       const double wanted = (std::floor(steps + 0.5) + 1.0) * static_cast<double>(channels_.size());
       if (!(wanted >= 1.0) || wanted > static_cast<double>(count))
         throw wrong(
-            "", fmt::format("holds {} numbers, expected {:.0f}: the file is cut short, or its header is of "
+            "", fmt::format("holds {} numbers, expected {:g}: the file is cut short, or its header is of "
                             "another road",
                             count, wanted));
       count = static_cast<std::size_t>(wanted);
@@ -227,8 +228,13 @@ class Reader {
     OpenCrg road;
     road.start = parameter("REFERENCE_LINE_START_U", 0.0);
     road.increment = needed("REFERENCE_LINE_INCREMENT");
-    if (!(road.increment > 0.0))
-      throw wrong("REFERENCE_LINE_INCREMENT", fmt::format("is {:g}, expected above 0 m", road.increment));
+    if (!(road.increment >= kLeastIncrement && road.increment <= kFarthest))
+      throw wrong("REFERENCE_LINE_INCREMENT",
+                  fmt::format("is {:g}, expected {:g} to {:g} m", road.increment, kLeastIncrement, kFarthest));
+    const double end = road.start + static_cast<double>(rows.size() / channels_.size()) * road.increment;
+    if (!(std::abs(road.start) <= kFarthest && end <= kFarthest))
+      throw wrong("REFERENCE_LINE_START_U", fmt::format("leads the road from u = {:g} to {:g} m, expected {:g} to {:g} m",
+                                                        road.start, end, -kFarthest, kFarthest));
     std::vector<std::size_t> order(cuts_.size());
     for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return cuts_[a] < cuts_[b]; });
@@ -311,6 +317,10 @@ ProfilePoints profile_of(const OpenCrg& road, double v, const std::filesystem::p
     const double z = share == 0.0   ? row[right]
                      : share == 1.0 ? row[left]
                                     : row[right] + share * (row[left] - row[right]);
+    if (std::abs(z) > kFarthest)
+      throw input_error(file.string(), "",
+                        fmt::format("has the height {:g} m at u = {:g} m, v = {:g} m, expected {:g} to {:g} m", z, u, v,
+                                    -kFarthest, kFarthest));
     if (!std::isfinite(z))
       throw input_error(
           file.string(), "",

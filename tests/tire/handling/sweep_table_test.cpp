@@ -62,6 +62,9 @@ TEST(SweepTable, wrong_tables_are_refused_by_line) {
   EXPECT_NE(complaint(changed(head, "rig.mode", "x") + rows).find("has no column 'rig.mode'"), std::string::npos);
   EXPECT_NE(complaint(head + changed(rows, "1500", "nan")).find("line 3': iso_w.force_N.0 is 'nan'"), std::string::npos);
   EXPECT_NE(complaint(head + changed(rows, "3000", "-3000")).find("line 3': has a load"), std::string::npos);
+  EXPECT_NE(complaint(head + changed(rows, "0.3415", "1e-300")).find("line 3': has a load of 3000 N and a rolling radius of 1e-300 m"),
+            std::string::npos);
+  EXPECT_NE(complaint(head + changed(rows, "3000", "1e300")).find("line 3': has a load of 1e+300 N"), std::string::npos);
   EXPECT_NE(complaint(head + changed(rows, "1500,", "")).find("line 3': has 12 values, expected 13"), std::string::npos);
   EXPECT_NE(complaint(head + "done,fixed_speed,1500,0,3000,0,-10,0,0,0,0.342,0.3415,\n").find("expected one at each load"),
             std::string::npos);

@@ -1,0 +1,18 @@
+// `furrow explain`: what a key of a scenario or of a calibration study means.
+#include <iostream>
+
+#include "nodes/commands/questions.hpp"
+#include "nodes/scenario/explain.hpp"
+#include "nodes/study/calibrate_explain.hpp"
+#include "protocol/core/error.hpp"
+
+namespace furrow::commands {
+
+ExitCode explain_command(const std::string& key) {
+  if (key.ends_with(".json"))
+    throw input_error("explain", key, "is the name of a file, expected a key; 'furrow validate' checks a file");
+  std::cout << (study::explains_calibrations(key) ? study::explain_calibration(key) : scenario::explain(key));
+  return ExitCode::done;
+}
+
+}  // namespace furrow::commands

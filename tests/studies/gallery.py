@@ -65,12 +65,14 @@ def made(name):
         return folder
     RESULTS.mkdir(parents=True, exist_ok=True)
     before, begin = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
-    subprocess.run([provenance.program(), command, f"{name}.json", "--out", folder, "--overwrite", "--quiet"], check=True,
+    later = [] if command == "press" else ["--no-plots"]
+    subprocess.run([provenance.program(), command, f"{name}.json", "--out", folder, "--overwrite", "--quiet", *later], check=True,
                    stdout=subprocess.DEVNULL)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
     taken.write_text(json.dumps({"build": build, "commit": provenance.commit(), "processor_s": round(seconds, 1),
                                  "wall_s": round(time.monotonic() - begin, 1)}) + "\n")
+    subprocess.run([provenance.program(), "report", folder, "--quiet"], check=True, stdout=subprocess.DEVNULL)
     return folder
 
 

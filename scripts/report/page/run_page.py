@@ -165,7 +165,7 @@ def answer(run):
         made.append(blocks.text(f"The run failed at t = {failed.get('time_s')} s: {failed.get('error')}.", "bad"))
         made.append(blocks.text("Everything below is what it left until then. There are no means and no intervals.", "note"))
     elif not run.summary:
-        made.append(blocks.text("This run has no summary: it is still going on, or it was stopped before its end.", "warn"))
+        made.append(blocks.text("This run has no summary: it is still running, or it was stopped before its end.", "warn"))
     made += pull_answer(run)
     if len(run.summary.get("wheels") or []) < 2 and (items := answer_cards(run)):
         if not run.summary.get("drawbar_pull_N"):

@@ -39,7 +39,7 @@ CASES = {
     "rough_road": ("run", "ride", ()),
     "half_car": ("run", "ride", ()),
     "cleat_roll": ("run", "forces", ("vertical_load_N",)),
-    "cleat_press": ("press", "press", ("load_N", "deflection_m", "secant_stiffness_N_per_m", "footprint.length_m", "footprint.width_m")),
+    "cleat_press": ("press", "load_deflection", ("load_N", "deflection_m", "secant_stiffness_N_per_m", "footprint.length_m", "footprint.width_m")),
     "four_wheels": ("run", "scene", ("wheels.0.sinkage_m", "wheels.1.sinkage_m", "wheels.2.sinkage_m", "wheels.3.sinkage_m")),
     "hmmwv_turn": ("run", "scene", VEHICLE),
     "rover_small": ("run", "scene", VEHICLE),
@@ -99,6 +99,8 @@ def figures_of(folder, keys):
 
 
 def picture_of(folder, name, plot):
+    if not (folder / f"{plot}.png").exists():
+        sys.exit(f"{folder}: has no {plot}.png, expected that `furrow report` draws it")
     picture = Image.open(folder / f"{plot}.png").convert("RGB")
     picture = picture.resize((WIDTH, round(picture.height * WIDTH / picture.width)), Image.Resampling.LANCZOS)
     PICTURES.mkdir(exist_ok=True)

@@ -92,8 +92,8 @@ def figures_of(folder, keys):
     found = [(f"{name} fitted", entry["value"]) for name, entry in fitted.get("parameters", {}).items()]
     for what, key in (("fitted", "targets"), ("predicted", "held_out_targets")):
         found += [(f"{what} {entry['name']}: R²", entry["r_squared"]) for entry in fitted.get(key, []) if entry.get("r_squared") is not None]
-        found += [(f"{what} {entry['name']}", entry["figures"][0].get("surrogate", {}).get("value")) for entry in fitted.get(key, [])
-                  if entry.get("figures")]
+        found += [(f"{what} {entry['name']}", entry["figures"][0]["surrogate"]["value"]) for entry in fitted.get(key, [])
+                  if entry["points"] == 1 and "surrogate" in entry["figures"][0]]
     summary = provenance.read_json(folder / "summary.json")
     return found + [(key, value_of(summary, key)) for key in keys]
 

@@ -91,8 +91,9 @@ def answer_cards(run):
         items.append(blocks.card("drawbar pull", value, unit, "95 %" if half is not None else "", "good" if pull.get("steady") else "warn",
                                  "steady" if pull.get("steady") else "not steady"))
     hard = run.told.get("terrain_engine") == "rigid"  # ground into which nothing sinks
+    rigid = (run.scenario.get("tire") or {}).get("rigid") is True  # what is left is the polygon of its mesh
     for key, sem, count, name in CARDS:
-        if not is_number(summary.get(key)) or (hard and key == "sinkage_m"):
+        if not is_number(summary.get(key)) or (hard and key == "sinkage_m") or (rigid and key == "tire_deflection_m"):
             continue
         half = blocks.half_95(summary.get(sem), summary.get(count)) if sem else None
         value, unit = blocks.quantity(key, summary[key], half)

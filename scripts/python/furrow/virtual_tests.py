@@ -118,4 +118,4 @@ class Calibration(Tests):
     @property
     def file(self) -> pathlib.Path:
         """The fitted tire or soil."""
-        return self.directory / self.summary["result"]
+        return self.directory / str(self.summary["result"])

@@ -27,7 +27,7 @@ WIDTH, MOST_BYTES = 800, 100_000  # of a picture: pixels, bytes
 TIMES = "time.json"  # in a folder of results: what it took
 
 PULL = ("drawbar_pull_N.mean", "drawbar_pull_N.sem", "drawbar_pull_N.steady", "vertical_load_N", "sinkage_m", "rut_depth_m")
-VEHICLE = ("vehicle.distance_m", "vehicle.speed_m_s", "figures.gear_changes", "end_reason", "end_time_s")
+VEHICLE = ("vehicle.distance_m", "vehicle.mean_speed_m_s", "figures.gear_changes", "end_reason", "end_time_s")
 # name → (command, picture of its folder, keys of the summary)
 CASES = {
     "first_look": ("run", "scene", PULL),

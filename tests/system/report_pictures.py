@@ -58,13 +58,13 @@ def show(driver, name, page, out):
     if results:
         wait(driver, READY)
     figures["ready_s"] = round(time.monotonic() - begin, 2)
-    keep(driver, out / f"{name}.jpg")
     if results and driver.execute_script("return Boolean(document.querySelector('.playback'))"):
         driver.execute_script("document.querySelector('.playback').scrollIntoView(); window.scrollBy(0, -90)")
         figures["playback_s"] = round(wait(driver, PLAYBACK), 2)
         driver.execute_script(LATE)
         keep(driver, out / f"{name}_playback.jpg")
         driver.execute_script("window.scrollTo(0, 0)")
+    keep(driver, out / f"{name}.jpg")
     if results:
         driver.execute_script("if (matchMedia('(prefers-color-scheme: dark)').matches === false) document.querySelector('.theme').click()")
     else:

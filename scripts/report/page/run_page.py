@@ -42,6 +42,12 @@ def window_of(run):
     return None
 
 
+def all_rigid(run):
+    """Whether no tire deflects: what its mesh, a polygon, leaves of a deflection is not shown."""
+    tires = run.scenario.get("tires") or [run.scenario.get("tire")]
+    return isinstance(tires, list) and all(isinstance(tire, dict) and tire.get("rigid") is True for tire in tires)
+
+
 def pull_words(run, pull):
     """Sentences on the pull, its interval, and whether it is steady."""
     half = blocks.half_95(pull.get("sem"), pull.get("n_eff"))
@@ -91,7 +97,7 @@ def answer_cards(run):
         items.append(blocks.card("drawbar pull", value, unit, "95 %" if half is not None else "", "good" if pull.get("steady") else "warn",
                                  "steady" if pull.get("steady") else "not steady"))
     hard = run.told.get("terrain_engine") == "rigid"  # ground into which nothing sinks
-    rigid = (run.scenario.get("tire") or {}).get("rigid") is True  # what is left is the polygon of its mesh
+    rigid = all_rigid(run)
     for key, sem, count, name in CARDS:
         if not is_number(summary.get(key)) or (hard and key == "sinkage_m") or (rigid and key == "tire_deflection_m"):
             continue
@@ -126,7 +132,8 @@ def vehicle_answer(run):
 
 def wheels_table(run):
     wheels = [wheel for wheel in run.summary.get("wheels") or [] if isinstance(wheel, dict)]
-    names = [name for name in OF_WHEELS if any(is_number(wheel.get(name)) for wheel in wheels)]
+    names = [name for name in OF_WHEELS if any(is_number(wheel.get(name)) for wheel in wheels)
+             and not (name == "tire_deflection_m" and all_rigid(run))]
     if len(wheels) < 2 or not names:
         return []
     columns = ["wheel"] + [", ".join(filter(None, (words, unit.replace(" ", "\u00a0")))) for words, unit, _ in map(naming, names)]

@@ -9,12 +9,15 @@ playback are ready, and what the browser complained about.
 """
 import io
 import json
+import os
 import pathlib
+import subprocess
 import sys
 import time
 
 from PIL import Image
 
+from program import ROOT
 from report_browser import browser
 
 WIDTH, MOST_BYTES = 900, 100_000  # of a picture: pixels, bytes
@@ -87,7 +90,10 @@ def main():
             found[name] = show(driver, name, place / "report.html" if place.is_dir() else place, out)
     finally:
         driver.quit()
-    print(json.dumps(found, indent=2))
+    commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], text=True, capture_output=True).stdout.strip()
+    version = subprocess.run(["chromium", "--version"], text=True, capture_output=True).stdout.strip()
+    print(json.dumps({"format_version": 1, "commit": commit, "command": " ".join(["tests/system/report_pictures.py", *sys.argv[1:]]),
+                      "browser": version, "cores": os.cpu_count(), "pages": found}, indent=2))
 
 
 if __name__ == "__main__":

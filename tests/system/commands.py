@@ -110,6 +110,20 @@ class Commands(SystemTest):
         self.assertIn("// Kind of rig. drawbar: pulls", (self.folder / "truck.json").read_text())
         self.assertIn("// Grain radius", (self.folder / "truck.json").read_text())
 
+    def test_new_scenarios_have_the_ground_that_tire_and_soil_ask_for(self):
+        for options, engine in ((["--tire", "hmmwv_handling.json"], "rigid"), (["--soil", "lete_sand.json"], "scm"),
+                                (["--soil", "cohesive_sand.json"], "dem"), (["--tire", "hmmwv_ring.json"], "dem"),
+                                (["--tire", "aligator_planar.json", "--soil", "lete_sand.json"], "scm")):
+            with self.subTest(options):
+                name = "_".join(options).replace("--", "")
+                self.output("new", name, *options)
+                report = json.loads(self.output("validate", f"{name}.json", "--json"))
+                self.assertEqual(report["warnings"], [])
+                self.assertIn(f'"engine": "{engine}"', (self.folder / f"{name}.json").read_text())
+        done = furrow("new", "wrong", "--tire", "hmmwv_handling.json", "--soil", "loose_sand.json", cwd=self.folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--soil': is given, expected none: the file of 'hmmwv_handling.json' holds for hard level ground", done.stderr)
+
     def test_new_leaves_no_file_where_it_fails_and_none_of_yours_is_touched(self):
         for options, said in ((["--tire", "no_such.json"], "'no_such.json' does not exist"), (["--soil", "no_such.json"], "no_such.json"),
                               (["--vehicle", "no_such.json"], "no_such.json"), (["--load", "-1"], "--load"),

@@ -66,7 +66,7 @@ TireDescription HandlingSpec::describe() const {
   const handling::RelaxationLengths s = handling::relaxation_lengths(t, t.vertical.fnomin, 0.0);
   TireDescription d;
   d.kind = "handling";
-  d.name = "handling tire (Magic Formula)";
+  d.name = "handling (Magic Formula)";
   d.details = fmt::format("{}, {:g} N, {:g} kN/m, relaxation {:.3g} m along, {:.3g} m across",
                           file_.tir.filename().string(), t.vertical.fnomin, 1e-3 * t.vertical.vertical_stiffness,
                           s.longitudinal, s.lateral);

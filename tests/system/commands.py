@@ -115,7 +115,7 @@ class Commands(SystemTest):
                                 (["--soil", "cohesive_sand.json"], "dem"), (["--tire", "hmmwv_ring.json"], "dem"),
                                 (["--tire", "aligator_planar.json", "--soil", "lete_sand.json"], "scm")):
             with self.subTest(options):
-                name = "_".join(options).replace("--", "")
+                name = "_".join(options).replace("--", "").replace(".json", "")
                 self.output("new", name, *options)
                 report = json.loads(self.output("validate", f"{name}.json", "--json"))
                 self.assertEqual(report["warnings"], [])

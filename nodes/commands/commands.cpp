@@ -333,7 +333,7 @@ void CommandLine::add_beginnings() {
       ->required();
   CLI::Option* tire =
       starter.add_option("--tire", new_.tire, "Use this tire file (default: the layered HMMWV tire).");
-  starter.add_option("--soil", new_.soil, "Use this soil file (default: cohesive grains).");
+  starter.add_option("--soil", new_.soil, "Use this soil file; one of empirical soil gives engine scm (default: cohesive grains).");
   starter.add_flag("--rigid", new_.rigid, "Make the tires rigid (tire.rigid).");
   CLI::Option* load =
       starter.add_option("--load", new_.load, "Set the load on the wheel, N (default: by the tire's size).")

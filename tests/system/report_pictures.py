@@ -52,9 +52,8 @@ def keep(driver, file):
             return
 
 
-def show(driver, name, page, out):
-    """Pictures of one page, and its figures."""
-    results = page.name == "report.html"
+def show(driver, name, page, results, out):
+    """Pictures of one page, of results or another, and its figures."""
     begin = time.monotonic()
     driver.get(page.as_uri())
     figures = {"MB": round(page.stat().st_size / 1e6, 2)}
@@ -87,7 +86,8 @@ def main():
         for one in sys.argv[2:]:
             name, _, place = one.partition("=")
             place = pathlib.Path(place).resolve()
-            found[name] = show(driver, name, place / "report.html" if place.is_dir() else place, out)
+            results = place.is_dir()
+            found[name] = show(driver, name, place / "report.html" if results else place, results, out)
     finally:
         driver.quit()
     commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], text=True, capture_output=True).stdout.strip()

@@ -55,8 +55,8 @@ void mount_body(Options& rig, double rest, const ReadContext& context) {
   rig.body_mass = rig.load / kStandardGravity - rest;
   if (!(rig.body_mass > 0.0))
     throw input_error(context.file, context.key("load"),
-                      fmt::format("is {} N, expected above {:.6g} N: what is unsprung, rims and tires ({:.4g} kg) weigh "
-                                  "that by themselves",
+                      fmt::format("is {} N, expected above {:.6g} N: the weight of unsprung masses, rims and tires "
+                                  "({:.4g} kg) alone",
                                   number_text(rig.load), rest * kStandardGravity, rest));
 }
 

@@ -51,7 +51,7 @@ inline void require_masses(const RimMasses& rim, bool load_missing, const char* 
   missing.erase(missing.begin());
   throw input_error(
       context.file, first,
-      fmt::format("is missing{}{}, expected here ({} in place of {} if you like), or as mass, spin_inertia and "
+      fmt::format("is missing{}{}, expected here (or {} in place of {}), or as mass, spin_inertia and "
                   "carrier_mass in a block 'rim' of the tire file {}",
                   missing.empty() ? "" : " and so is ", fmt::join(missing, ", "), context.key(mass_key),
                   context.key("load"), tire.file));

@@ -8,9 +8,9 @@ somewhere. The figures of the headline run stand in README.md as its scenario st
 names at least one file, and every recipe of CONTRIBUTING.md at most five; what a step names in parentheses is to be
 read, not touched, and does not count.
 
-The tables likewise: every CSV file under tests/, every JSON file of results under tests/studies, tests/benchmarks and
-tests/peers, and what a soil file says was measured, names commit, compiler, processor and command of its making
-(tests/studies/provenance.py), and some page names the file.
+The lists of shipped scenarios, studies and calibrations leave out none. Every CSV file under tests/, every JSON file of
+results under tests/studies, tests/benchmarks and tests/peers, and what a soil file says was measured, names commit,
+compiler, processor and command of its making (tests/studies/provenance.py), and some page names the file.
 
 usage: scripts/check_docs.py [--root FOLDER] [PAGE ...]
 Prints every mistake as PAGE:LINE and exits with 1 if there is one. Without arguments it reads all pages.
@@ -30,6 +30,7 @@ ORIGIN = ("commit", "compiler", "processor", "command")  # of a table
 TOP = {"nodes", "protocol", "tire", "terrain", "vehicle", "rigs", "tests", "scripts"}
 PATH = re.compile(r"([\w.<>*{},-]+(?:/[\w.<>*{},-]+)+/?)(?::(\d+))?$")
 BARE = re.compile(r"[\w-]+\.(cpp|hpp|py|sh)$")
+LISTS = ("rigs/README.md", "scripts/docs/gallery.md")  # of all that rigs/ ships
 HEADLINE = "rigs/drawbar_pull_small.json"
 STATED = (("drawbar_pull", 1.0, "N"), ("sinkage", 1e3, "mm"), ("rut_depth", 1e3, "mm"))  # keys of its `expected`
 
@@ -193,6 +194,15 @@ def table_problems(root):
             yield file, "is named on no page"
 
 
+def unlisted(root):
+    """(page, file) of every shipped scenario, study and calibration that a list of them leaves out."""
+    shipped = [file.name for file in sorted((root / "rigs").glob("*.json")) if not file.name.endswith(".schema.json")]
+    for page in map(root.joinpath, LISTS):
+        if page.exists():
+            text = page.read_text()
+            yield from ((page, name) for name in shipped if f"`{name}`" not in text)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parent.parent)
@@ -208,6 +218,7 @@ def main():
         found += [f"README.md: {text}" for text in headline_problems(root)]
     if not options.pages:
         found += [f"{file.relative_to(root)}:1: {text}" for file, text in table_problems(root)]
+        found += [f"{page.relative_to(root)}:1: does not list rigs/{name}" for page, name in unlisted(root)]
     print("\n".join(found), end="\n" if found else "")
     return 1 if found else 0
 

@@ -65,7 +65,8 @@ VEHICLE_PLOTS = {
     "momentum": accounts.momentum,
     "scene": of_vehicle(vehicle_scene.vehicle_scene),
 }
-SWEEP_PLOTS = {"curve": sweep.curve, "passes": sweep.passes, "rut_along": sweep.rut_along}
+CURVE_PLOTS = {"curve": sweep.curve}
+SWEEP_PLOTS = {**CURVE_PLOTS, "passes": sweep.passes, "rut_along": sweep.rut_along}
 BEDS_PLOTS = {"beds": sweep.beds}
 SOIL_PLOTS = {"plate": soil.plate, "shear": soil.shear, "cone": soil.cone, "repose": soil.repose}
 KINEMATICS_PLOTS = {"parallel": kinematics.parallel, "opposite": kinematics.opposite, "steering": kinematics.steering}
@@ -151,7 +152,9 @@ def main():
         return 5
     written = []
     of_beds = of_sweep and run.values.get("beds")
-    plots = (CALIBRATION_PLOTS if of_calibration else SOIL_PLOTS if of_soil else BEDS_PLOTS if of_beds else SWEEP_PLOTS if of_sweep else PRESS_PLOTS if of_press
+    plots = (CALIBRATION_PLOTS if of_calibration else SOIL_PLOTS if of_soil
+             else BEDS_PLOTS if of_beds else SWEEP_PLOTS if of_sweep and run.values.get("passes")
+             else CURVE_PLOTS if of_sweep else PRESS_PLOTS if of_press
              else MODES_PLOTS if of_modes else KINEMATICS_PLOTS if of_kinematics else VEHICLE_PLOTS if run.has_vehicle
              else RIDE_PLOTS if ride.COLUMN in run.series else PLOTS)
     for name in arguments.only or plots:

@@ -31,8 +31,8 @@ bool is_calibration(const Json& file) { return file.contains("calibrate"); }
 
 constexpr Kind kKinds[] = {
     {"scenarios", "rigs", "furrow run NAME", [](const Json& file) { return !is_study(file) && !is_calibration(file); }},
-    {"studies", "rigs", "furrow sweep FILE", is_study},
-    {"calibrations", "rigs", "furrow calibrate FILE", is_calibration},
+    {"studies", "rigs", "furrow sweep NAME", is_study},
+    {"calibrations", "rigs", "furrow calibrate NAME", is_calibration},
     {"tires", "tire/data", "tire.file of a scenario", [](const Json&) { return true; }},
     {"soils", "terrain/data", "terrain.material of a scenario", [](const Json&) { return true; }},
     {"vehicles", "vehicle/data", "rig.vehicle of a scenario", [](const Json&) { return true; }},
@@ -66,7 +66,7 @@ Json catalogue(const std::string& only) {
     if (!std::filesystem::is_directory(folder))
       throw io_error(
           folder.string(),
-          "is missing, expected the folder that comes with furrow (FURROW_HOME names where it stands)");
+          "is missing, expected the folder that comes with furrow (FURROW_HOME names the folder above it)");
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::directory_iterator(folder))
       if (entry.path().extension() == ".json" && !entry.path().stem().string().ends_with(".schema"))

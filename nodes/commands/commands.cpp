@@ -20,8 +20,8 @@
 #include "nodes/launch/progress.hpp"
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
-#include "nodes/scenario/calibration.hpp"
 #include "nodes/scenario/load_scenario.hpp"
+#include "nodes/scenario/machine_speed.hpp"
 #include "nodes/scenario/memory_check.hpp"
 #include "nodes/scenario/rank_table.hpp"
 #include "nodes/scenario/run_time.hpp"
@@ -62,7 +62,7 @@ void add_settings(CLI::App& command, Typed& typed) {
 }
 
 void add_scenario(CLI::App& command, Typed& typed) {
-  command.add_option("SCENARIO", typed.scenario, "Read this scenario file (JSON).")->required();
+  command.add_option("SCENARIO", typed.scenario, "Read this scenario file (JSON), as given or in rigs/.")->required();
   add_settings(command, typed);
 }
 
@@ -97,7 +97,7 @@ ExitCode validate_command(Typed& typed) {
   }
   const scenario::Scenario scenario = load(typed);
   scenario::require_runnable(scenario);
-  const scenario::RunTime time = scenario::run_time(scenario, scenario::calibration());
+  const scenario::RunTime time = scenario::run_time(scenario, scenario::machine_speed());
   std::cout << (typed.json ? scenario::validation_report(scenario, &time).dump(2) + "\n"
                            : scenario::validation_text(scenario, &time));
   return ExitCode::done;
@@ -337,7 +337,7 @@ void CommandLine::add_beginnings() {
       ->required();
   CLI::Option* tire =
       starter.add_option("--tire", new_.tire, "Use this tire file (default: the layered HMMWV tire).");
-  starter.add_option("--soil", new_.soil, "Use this soil file (default: cohesive grains).");
+  starter.add_option("--soil", new_.soil, "Use this soil file; one of empirical soil gives engine scm (default: cohesive grains).");
   starter.add_flag("--rigid", new_.rigid, "Make the tires rigid (tire.rigid).");
   CLI::Option* load =
       starter.add_option("--load", new_.load, "Set the load on the wheel, N (default: by the tire's size).")
@@ -381,7 +381,8 @@ void CommandLine::add_questions() {
                            "its state at rest, or check a calibration study and print what it fits.",
                            [this] { return validate_command(typed_); });
   add_scenario(validate, typed_);
-  validate.get_option("SCENARIO")->description("Check this scenario, vehicle or calibration study (JSON).");
+  validate.get_option("SCENARIO")->description(
+      "Check this scenario, vehicle or calibration study (JSON), as given, in rigs/ or in vehicle/data/.");
   validate.add_flag("--json", typed_.json, "Print JSON.");
 
   CLI::App& ranks = add(
@@ -415,7 +416,8 @@ void CommandLine::add_virtual_tests() {
 
   CLI::App& press = add(
       "press",
-      "Press the tire of a scenario on a plate or a cleat, statically, and print the folder of the results.",
+      "Press the tire of a scenario on a plate, a cleat or a profile, statically, and print the folder of the "
+      "results.",
       [this] { return press_command(load(typed_), press_); });
   add_scenario(press, typed_);
   add_press_options(press, press_);
@@ -456,7 +458,7 @@ void CommandLine::add_vehicles() {
 void CommandLine::add_studies() {
   CLI::App& sweep = add("sweep", "Run a parameter study, or continue an interrupted one.",
                         [this] { return sweep_command(sweep_); });
-  sweep.add_option("STUDY", sweep_.study, "Read this study file (JSON).")->required();
+  sweep.add_option("STUDY", sweep_.study, "Read this study file (JSON), as given or in rigs/.")->required();
   sweep.add_option("--out", sweep_.out, "Keep the study in this folder (default: results/<study>).");
   sweep
       .add_option("--jobs", sweep_.jobs, "Run this number of runs at once, each with its share of the cores.")
@@ -469,18 +471,18 @@ void CommandLine::add_studies() {
                               calibrate_.plots = !typed_.no_plots;
                               return calibrate_command(calibrate_);
                             });
-  calibrate.add_option("STUDY", calibrate_.study, "Read this calibration study (JSON).")->required();
+  calibrate.add_option("STUDY", calibrate_.study, "Read this calibration study (JSON), as given or in rigs/.")->required();
   calibrate.add_option("--out", calibrate_.out, "Keep the calibration in this folder (default: results/<study>).");
   calibrate.add_flag("--overwrite", calibrate_.overwrite,
                      "Begin again: remove what an earlier calibration wrote into the folder.");
   calibrate.add_flag("--no-plots", typed_.no_plots, "Make no plots; 'furrow report' makes them later.");
 
   CLI::App& report =
-      add("report", "Plot a finished run: PNG files and report.html, a page with plots and 3-D playback.",
+      add("report", "Plot results of any command: PNG files and report.html, a page with plots and, of a run, 3-D playback.",
           [this] { return report_command(typed_); });
   report
       .add_option("DIR", typed_.directory,
-                  "Read the results in this folder: of a run, of its beds, of a study or of tests.")
+                  "Read the results in this folder: of a run, of its beds, of a study, of a calibration or of tests.")
       ->required();
   report.add_option("OTHERS", typed_.others,
                     "Compare the run of DIR with the runs in these folders, on one page.");

@@ -102,7 +102,7 @@ ExitCode modes_command(const ModesArguments& arguments) {
   if (!test)
     throw refused(
         "TIRE",
-        fmt::format("is '{}', a {}, which has no masses that vibrate",
+        fmt::format("is '{}', a {} tire: it has no masses that vibrate; expected a shell, a flexible ring or a planar tire",
                     spec->options().file.filename().string(), spec->describe().name));
   const tire::ModesOptions options = modes_options(arguments, *test);
   const tire::ModesResults results = compute(*test, options);

@@ -65,7 +65,7 @@ Json pull_statistics(const WheelInput& in, const Window& w, const SeriesStatisti
   if (rolled < kLeastRolled * radius && !w.rows.empty())
     reasons.push_back(fmt::format(
         "the wheel neither rolls nor slips: {:.2g} mm in the averaging window, expected at least {:g} % of "
-        "its radius; so the share of load × speed that late contact forces feed is not told",
+        "its radius; so the share of load × speed that late contact forces feed is not known",
         1e3 * rolled, 100.0 * kLeastRolled));
   else if (late > kMaxLate * rolling)
     reasons.push_back(fmt::format(

@@ -88,16 +88,6 @@ Error all_problems(const std::string& file, const std::vector<Problem>& problems
   return Error(ExitCode::bad_input, text);
 }
 
-/// The file that a scenario's name stands for: as it is, or one of those that come with the program.
-std::filesystem::path named_scenario(const std::filesystem::path& name) {
-  std::error_code error;
-  if (name.empty() || name.has_parent_path() || std::filesystem::exists(name, error)) return name;
-  // A vehicle's name is found too, and then refused for what it is.
-  for (const std::filesystem::path& folder : {data_folder() / "rigs", data_folder() / "vehicle" / "data"})
-    if (std::filesystem::is_regular_file(folder / name, error)) return folder / name;
-  return name;
-}
-
 /// The engine that the scenario will have once all settings are made.
 std::string engine_to_be(json document, const std::string& file, const Settings& settings) {
   for (const auto& [key, text] : settings)
@@ -302,7 +292,8 @@ void make_movable(json& document, const Scenario& s) {
 }  // namespace
 
 Scenario load_scenario(const std::filesystem::path& name, const Settings& settings) {
-  const std::filesystem::path file = named_scenario(name);
+  // A vehicle's name is found too, and then refused for what it is.
+  const std::filesystem::path file = named_file(name, {"rigs", "vehicle/data"});
   Scenario s;
   s.file = file;
   s.name = file.stem().string();

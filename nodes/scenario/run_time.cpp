@@ -20,7 +20,7 @@
 namespace furrow::scenario {
 namespace {
 
-// Measured runs against the rates of the calibration, whose bed fits a cache and whose tire rolls on hard ground.
+// Measured runs against the rates of the machine, whose bed fits a cache and whose tire rolls on hard ground.
 constexpr double kLargeBed = 1.8;      // a grain-step of a bed that is settled or rolled on
 constexpr double kOnSoil = 1.2;        // a step of a tire
 constexpr double kDouble = 1.5;        // what a grain-step takes in double precision, of one in mixed
@@ -77,7 +77,7 @@ double settling(const terrain::dem::DemOptions& o) {
 
 }  // namespace
 
-RunTime run_time(const Scenario& s, const Calibration& machine) {
+RunTime run_time(const Scenario& s, const MachineSpeed& machine) {
   FURROW_ASSERT(machine.cores > 0 && machine.tire_coordinates > 0, machine.cores, machine.tire_coordinates);
   RunTime t;
   t.cores = machine.cores;

@@ -7,7 +7,7 @@
 // contacts are expected to be too hard for its step it is taken in parts (grain_loads.hpp).
 #pragma once
 
-#include "nodes/scenario/calibration.hpp"
+#include "nodes/scenario/machine_speed.hpp"
 #include "nodes/scenario/scenario.hpp"
 
 namespace furrow::scenario {
@@ -29,6 +29,6 @@ struct RunTime {
   double all() const { return bed + run; }
 };
 
-RunTime run_time(const Scenario& scenario, const Calibration& machine);
+RunTime run_time(const Scenario& scenario, const MachineSpeed& machine);
 
 }  // namespace furrow::scenario

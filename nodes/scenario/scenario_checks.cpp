@@ -147,6 +147,11 @@ void Checks::tires() {
                      number_text(s_.run.average_from), rig.speeds_up_key, number_text(rig.speeds_up_until)));
 }
 
+/// "flexible ring tire"
+std::string in_words(const tire::TireDescription& tire) {
+  return tire.name.ends_with("tire") ? tire.name : tire.name + " tire";
+}
+
 /// What the scenario says of the tire of one wheel must be something to its model and to the terrain.
 void Checks::tire_options(std::size_t wheel) {
   const tire::TireSpec& tire = *s_.tires[wheel];
@@ -156,7 +161,7 @@ void Checks::tire_options(std::size_t wheel) {
                             terrain_.name, terrain_.engine));
   if (const auto* own = dynamic_cast<const tire::HasOwnContact*>(&tire)) require_level_ground(wheel, own->own_contact());
   for (const std::string& key : tire::idle_keys(tire))
-    warn(s_.tire_key(wheel, key), fmt::format("is ignored: a {} tire does not use it", tires_[wheel].name));
+    warn(s_.tire_key(wheel, key), fmt::format("is ignored: a {} does not use it", in_words(tires_[wheel])));
 }
 
 /// A tire that states its contact needs a terrain that lets it.
@@ -167,7 +172,7 @@ void Checks::require_level_ground(std::size_t wheel, const std::string& why) {
              : terrain::AllowsStatedContacts::Refusal{"engine", fmt::format("is '{}', expected 'rigid'", terrain_.engine)};
   if (!refusal.text.empty())
     throw wrong("terrain." + refusal.key,
-                fmt::format("{}: {} is a {} tire, {}", refusal.text, s_.tire_key(wheel, "file"), tires_[wheel].name, why));
+                fmt::format("{}: {} is a {}, {}", refusal.text, s_.tire_key(wheel, "file"), in_words(tires_[wheel]), why));
 }
 
 void Checks::room() {

@@ -12,14 +12,18 @@
 
 #include "nodes/scenario/load_scenario.hpp"
 #include "nodes/scenario/schema.hpp"
+#include "nodes/scenario/soil_material.hpp"
 #include "nodes/scenario/vehicle_tires.hpp"
 #include "nodes/scenario/wheel_geometry.hpp"
 #include "nodes/scenario/wheel_scales.hpp"
 #include "protocol/core/constants.hpp"
 #include "protocol/core/error.hpp"
+#include "protocol/files/data_files.hpp"
 #include "protocol/files/json_text.hpp"
 #include "protocol/files/text_file.hpp"
 #include "terrain/dem/dem_options.hpp"
+#include "terrain/terrains.hpp"
+#include "tire/capabilities.hpp"
 #include "vehicle/driver/driver_car.hpp"
 #include "vehicle/spec/read_vehicle.hpp"
 
@@ -39,12 +43,14 @@ constexpr int kLayers = 14, kMostLayers = 120;
 constexpr double kDepth = 8.5;        // sinkages
 constexpr double kTreadSpeed = 0.93;  // √(g R)
 constexpr double kLowering = 0.18;    // √(g R)
-constexpr double kSlip = 0.3;
+constexpr double kSlip = 0.3, kHardSlip = 0.1;  // on soil, on hard ground
 // In √(R/kRadius) s.
 constexpr double kMoveFrom = 0.4, kRamp = 0.15, kAverageFrom = 1.2, kEnd = 3.0;
 constexpr double kVehicleEnd = 2.5, kThrottleFrom = 0.5, kThrottleAt = 0.7, kThrottle = 0.7;
 constexpr double kStepShare = 0.8;     // of the stable step
 constexpr double kTinyStep = 1e-7;     // s, that any terrain takes
+constexpr double kLargestStep = 2e-4;  // s, where neither grains nor tire ask for a smaller one
+constexpr double kNodes = 20.0;        // of empirical soil across a tread
 constexpr std::size_t kColumns = 110;  // of a comment
 
 /// The number that a person would have typed.
@@ -56,14 +62,18 @@ double rounded(double value) {
   return typed(std::round(value / unit) * unit);
 }
 
+/// What the tires are to roll on.
+enum class Ground { grains, empirical, hard };
+
 /// What the sizes of a scenario follow from.
 struct Scales {
+  Ground ground = Ground::grains;
   double radius = 0.0, tread = 0.0;  // of the smallest tire, m
   double largest = 0.0;              // radius, m
   double first = 0.0, last = 0.0;    // axles, x, m
   double across = 0.0;               // of the outermost point of any wheel, |y|, m
   double tire_step = 0.0;            // s; 0: any
-  bool meshed = false;               // the tire takes a mesh from the scenario
+  bool meshed = false;               // the tire is a shell, whose mesh the scenario may choose
   // On the soil; first guesses until a bed has been described.
   double pressure = kPressure;  // under the wheel that presses most, Pa
   double sinkage = 0.0;         // of the wheel that sinks most, m
@@ -90,16 +100,32 @@ Scales scales_of(const Scenario& s) {
     scales.across = std::max(scales.across, std::abs(wheel.lateral) + wheel.across);
     if (tire.step_share > 0.0)
       scales.tire_step = tire.step_share * tire.damping_time;  // none where it is rigid
-    scales.meshed =
-        std::find(tire.takes.begin(), tire.takes.end(), "elements_circumference") != tire.takes.end();
+    scales.meshed = std::find(tire.takes.begin(), tire.takes.end(), "elements_width") != tire.takes.end();
   }
   return scales;
 }
 
+/// A tire whose file holds for hard level ground gets that; a soil file without properties of grains is empirical soil.
+Ground ground_of(const StarterOptions& o, const std::filesystem::path& file, const Scenario& s) {
+  const bool hard = std::ranges::any_of(s.tires, [](const auto& tire) {
+    return dynamic_cast<const tire::HasOwnContact*>(tire.get()) != nullptr;
+  });
+  if (hard && !o.soil.empty())
+    throw input_error("command line", "--soil",
+                      fmt::format("is given, expected none: the file of '{}' holds for hard level ground", o.tire));
+  if (hard) return Ground::hard;
+  if (o.soil.empty()) return Ground::grains;
+  const nlohmann::json soil = read_soil_material(find_file(o.soil, "terrain.material", file));
+  for (const auto& [key, value] : soil.items())
+    if (std::ranges::count(terrain::engines_of_key(key), "dem") > 0) return Ground::grains;
+  return Ground::empirical;
+}
+
 void add_soil(Scales& scales, const Scenario& s) {
-  const terrain::dem::DemOptions& grains = *s.terrain->grains();
-  scales.layer = s.terrain->estimate(s.terrain_context()).expected_height / (grains.layers * grains.radius);
-  scales.pressure = 0.0, scales.contact = 1e300;
+  if (const terrain::dem::DemOptions* grains = s.terrain->grains()) {
+    scales.layer = s.terrain->estimate(s.terrain_context()).expected_height / (grains->layers * grains->radius);
+    scales.pressure = 0.0, scales.contact = 1e300;
+  }
   const std::vector<rigs::WheelDescription> wheels = describe_rig(s).wheels;
   const std::vector<WheelScales> all = wheel_scales(s);
   for (std::size_t k = 0; k < all.size(); ++k) {
@@ -115,6 +141,7 @@ void add_soil(Scales& scales, const Scenario& s) {
 
 double tread_speed(const Scales& s) { return kTreadSpeed * std::sqrt(kStandardGravity * s.radius); }
 double time_scale(const Scales& s) { return std::sqrt(s.radius / kRadius); }
+double slip_of(const Scales& s) { return s.ground == Ground::hard ? kHardSlip : kSlip; }
 /// When a drawbar rig begins to move, s.
 double begin(const Scales& s) { return std::max(kMoveFrom * time_scale(s), 1.1 * s.lowered); }
 
@@ -138,7 +165,7 @@ Json rig_section(const StarterOptions& o, const Scales& s) {
   rig["type"] = "drawbar";
   rig["mode"] = "fixed_angular_speed";
   rig["angular_speed"] = rounded(tread_speed(s) / s.radius);
-  rig["slip"] = kSlip;
+  rig["slip"] = slip_of(s);
   rig["load"] = o.load > 0.0 ? o.load : rounded(kLoad * std::pow(s.radius / kRadius, 3));
   rig["lowering_speed"] = rounded(kLowering * std::sqrt(kStandardGravity * s.radius));
   rig["move_from"] = rounded(begin(s));
@@ -161,6 +188,15 @@ Json tire_section(const StarterOptions& o, const Scales& s) {
 
 Json terrain_section(const StarterOptions& o, const Scales& s, double travel) {
   Json terrain;
+  const double length = rounded(1.02 * (travel + s.first - s.last + (kAhead + kBehind) * s.largest + s.near_wall));
+  const double width = rounded(1.02 * 2.0 * (s.across + std::max(kBeside * s.radius, 0.55 * s.tread)));
+  if (s.ground == Ground::hard) return Json::object({{"engine", "rigid"}});
+  if (s.ground == Ground::empirical)
+    return Json::object({{"engine", "scm"},
+                         {"material", o.soil},
+                         {"length", length},
+                         {"width", width},
+                         {"grid_spacing", rounded(s.tread / kNodes)}});
   terrain["engine"] = "dem";
   if (o.soil.empty()) {
     terrain["friction"] = 0.9;
@@ -177,9 +213,8 @@ Json terrain_section(const StarterOptions& o, const Scales& s, double travel) {
   terrain["layers"] = std::clamp(
       static_cast<int>(std::ceil(kDepth * s.sinkage / (s.layer * terrain["radius"].get<double>()))), kLayers,
       kMostLayers);
-  terrain["length"] =
-      rounded(1.02 * (travel + s.first - s.last + (kAhead + kBehind) * s.largest + s.near_wall));
-  terrain["width"] = rounded(1.02 * 2.0 * (s.across + std::max(kBeside * s.radius, 0.55 * s.tread)));
+  terrain["length"] = length;
+  terrain["width"] = width;
   return terrain;
 }
 
@@ -260,7 +295,7 @@ Scenario checked(const std::filesystem::path& file, const Json& document) {
 /// As it is typed: 1, 2, 4, 5 or 8 times a power of ten, so that usual times are whole numbers of it.
 double step_of(const Scenario& s, const Scales& scales) {
   const double stable = kStepShare * s.terrain->estimate(s.terrain_context()).stable_step;
-  const double largest = scales.tire_step > 0.0 ? std::min(stable, scales.tire_step) : stable;
+  const double largest = std::min({stable, scales.tire_step > 0.0 ? scales.tire_step : kLargestStep, kLargestStep});
   const double unit = std::pow(10.0, std::floor(std::log10(largest)));
   double step = unit;
   for (const double digit : {2.0, 4.0, 5.0, 8.0})
@@ -277,19 +312,23 @@ void fit(Json& section, std::initializer_list<const char*> keys, double step) {
 void write(const std::filesystem::path& file, const StarterOptions& o) {
   Json document;
   document["format_version"] = 1;
-  document["description"] =
-      o.vehicle.empty() ? "A wheel on soil: drawbar pull and sinkage." : "A vehicle on soil.";
+  document["description"] = "";
   Scales scales;
   scales.radius = kRadius;
   document["rig"] = rig_section(o, scales);
   if (const Json tire = tire_section(o, scales); !tire.empty()) document["tire"] = tire;
   document["terrain"]["engine"] = "rigid";
-  scales = scales_of(checked(file, document));
+  const Scenario first = checked(file, document);
+  const Ground ground = ground_of(o, file, first);
+  scales = scales_of(first);
+  document["description"] = std::string(o.vehicle.empty() ? "A wheel on " : "A vehicle on ") +
+                            (ground == Ground::hard ? "hard ground." : "soil.");
 
   if (const Json tire = tire_section(o, scales); !tire.empty()) document["tire"] = tire;
   scales = scales_of(checked(file, document));  // the mesh decides how wide the tread is
+  scales.ground = ground;
   const double travel = o.vehicle.empty()
-                            ? (1.0 - kSlip) * tread_speed(scales) * (kEnd - kMoveFrom) * time_scale(scales)
+                            ? (1.0 - slip_of(scales)) * tread_speed(scales) * (kEnd - kMoveFrom) * time_scale(scales)
                             : 8.0 * scales.radius;
   for (int pass = 0; pass < 2; ++pass) {  // the sinkage on the first bed decides the depth of the second
     document["rig"] = rig_section(o, scales);

@@ -70,7 +70,7 @@ EvaluationTable::EvaluationTable(const std::filesystem::path& folder, const std:
                         std::string(text.starts_with(kMark)
                                         ? "holds the evaluations of another calibration: its start file, parameters, "
                                           "targets or program differ"
-                                        : "holds an evaluations.csv that is none of a calibration") +
+                                        : "holds an evaluations.csv that no calibration wrote") +
                             ", expected a new folder or --overwrite");
   }
   const std::size_t whole = text.empty() ? 0 : text.rfind('\n') + 1;

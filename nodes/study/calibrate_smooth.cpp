@@ -94,7 +94,7 @@ class Solver {
       result.ended = ended;
       const auto J = objective_.jacobian(result.end, *r);
       if (!J) {
-        result.ended = "stands where the model has no answer on either side";
+        result.ended = "ends where the model has no answer on either side";
         return result;
       }
       const Eigen::VectorXd gradient = J->transpose() * *r;

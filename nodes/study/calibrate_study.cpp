@@ -167,14 +167,6 @@ std::string digest_of(const Calibration& c) {
   return hash.hex();
 }
 
-/// The file that a name stands for: as it is, or one of those that come with the program.
-std::filesystem::path named_calibration(const std::filesystem::path& name) {
-  std::error_code error;
-  if (name.empty() || name.has_parent_path() || std::filesystem::exists(name, error)) return name;
-  const std::filesystem::path shipped = data_folder() / "rigs" / name;
-  return std::filesystem::is_regular_file(shipped, error) ? shipped : name;
-}
-
 }  // namespace
 
 bool is_calibration(const std::filesystem::path& name) {
@@ -186,12 +178,12 @@ bool is_calibration(const std::filesystem::path& name) {
 }
 
 Calibration load_calibration(const std::filesystem::path& name) {
-  const std::filesystem::path file = named_calibration(name);
+  const std::filesystem::path file = named_file(name, {"rigs"});
   const Json document = load_json<Json>(file, "a calibration study in JSON");
   if (!document.contains("calibrate"))
-    throw input_error(file.string(), "calibrate",
-                      document.contains("scenario") ? "is missing: a study of runs is for 'furrow sweep'"
-                                                    : "is missing, expected a calibration study");
+    throw document.contains("scenario")
+        ? input_error(file.string(), "", "is a study of runs, expected a calibration ('furrow sweep' takes studies)")
+        : input_error(file.string(), "calibrate", "is missing, expected a calibration study");
   Reader reader(document, file.string());
   const CalibrationKind& kind = kind_of(reader);
   std::vector<std::string> keys;

@@ -27,6 +27,8 @@ Json load_document(const std::filesystem::path& file) {
   Json document = load_json<Json>(file, "a study in JSON");
   if (document.contains("terrain") || document.contains("tire"))
     throw input_error(file.string(), "", "is a scenario, expected a study ('furrow run' takes scenarios)");
+  if (document.contains("calibrate"))
+    throw input_error(file.string(), "", "is a calibration, expected a study ('furrow calibrate' takes calibrations)");
   return document;
 }
 
@@ -129,7 +131,8 @@ Study study_of_beds(const std::filesystem::path& scenario, const std::string& na
   return study;
 }
 
-Study load_study(const std::filesystem::path& file) {
+Study load_study(const std::filesystem::path& name) {
+  const std::filesystem::path file = named_file(name, {"rigs"});
   const Json document = load_document(file);
   Reader reader(document, file.string());
   reader.allow_only({std::begin(kKeys), std::end(kKeys)});

@@ -35,8 +35,8 @@ struct Study {
   double rest = 0.2;  // s, simulated, that the bed lies between passes
 };
 
-/// @throws Error(bad_input) naming file and key
-Study load_study(const std::filesystem::path& file);
+/// @param name of a file, as given or of one that comes with the program. @throws Error(bad_input) naming file and key
+Study load_study(const std::filesystem::path& name);
 
 /// A scenario on several beds, made with the seeds `seed`, `seed` + 1, …: runs in the folders seed1, seed2, ….
 /// @param settings of the command line, for all runs

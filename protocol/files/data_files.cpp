@@ -5,12 +5,14 @@
 #include <vector>
 
 #include "protocol/core/error.hpp"
+#include "protocol/files/nearest_words.hpp"
 #include "protocol/files/printable.hpp"
 
 namespace furrow {
 namespace {
 
 constexpr std::size_t kMaxPath = 4095;  // bytes: PATH_MAX
+constexpr std::size_t kMaxName = 255;   // bytes: NAME_MAX
 
 }  // namespace
 
@@ -25,6 +27,24 @@ std::filesystem::path data_folder() {
       return folder / "share" / "furrow";
   }
   return FURROW_SOURCE_FOLDER;  // of the build: programs run from another build folder
+}
+
+std::filesystem::path named_file(const std::filesystem::path& name, const std::vector<std::string>& folders) {
+  std::error_code error;
+  if (name.empty() || name.has_parent_path() || std::filesystem::exists(name, error)) return name;
+  std::vector<std::string> known;
+  for (const std::string& folder : folders) {
+    const std::filesystem::path place = data_folder() / folder;
+    if (std::filesystem::is_regular_file(place / name, error)) return place / name;
+    for (const auto& entry : std::filesystem::directory_iterator(place, error))
+      if (entry.path().extension() == ".json") known.push_back(entry.path().filename().string());
+  }
+  std::sort(known.begin(), known.end());
+  const std::string typed = name.string(), whole = typed + ".json";
+  const bool short_of = std::find(known.begin(), known.end(), whole) != known.end();
+  const std::vector<std::string> similar = short_of ? std::vector{whole} : nearest_words(typed, known);
+  if (similar.empty() || typed.size() > kMaxName) return name;
+  throw input_error(typed, "", "does not exist, expected '" + similar.front() + "'?");
 }
 
 std::filesystem::path find_file(const std::string& name, const std::string& key,

@@ -17,6 +17,8 @@ from stage import write_if_changed
 TABLES = (  # header with the list of columns, struct, heading
     ("nodes/output/wheel_row.hpp", "WheelRow", "Every wheel", "`timeseries.csv`, or `timeseries_wheel<k>.csv` of several wheels"),
     ("rigs/drawbar_rig.cpp", "DrawbarRow", "A wheel of the drawbar rig, besides", "the same tables"),
+    ("rigs/ride_row.hpp", "RideRow", "A wheel of a quarter car or a half car, besides", "the same tables"),
+    ("rigs/half_car_rig.hpp", "HalfCarBodyRow", "The body of a half car", "`timeseries_body.csv`"),
     ("rigs/vehicle/vehicle_rows.hpp", "VehicleWheelRow", "A wheel of a vehicle, besides", "the same tables"),
     ("rigs/vehicle/vehicle_rows.hpp", "VehicleRow", "A vehicle", "`timeseries_vehicle.csv`"),
 )

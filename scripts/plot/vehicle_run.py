@@ -64,7 +64,7 @@ class VehicleRun:
         self.run = run
         self.columns = run.table("timeseries_vehicle.csv")
         if not self.columns:
-            raise Missing("there is no timeseries_vehicle.csv")
+            raise Missing("is not the run of a vehicle (there is no timeseries_vehicle.csv)")
         self.wheels = []
         while columns := run.table(f"timeseries_wheel{len(self.wheels)}.csv"):
             self.wheels.append(Wheel(len(self.wheels), columns))

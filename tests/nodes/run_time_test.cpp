@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "nodes/scenario/calibration.hpp"
+#include "nodes/scenario/machine_speed.hpp"
 #include "nodes/scenario/grain_loads.hpp"
 #include "nodes/scenario/run_time.hpp"
 #include "nodes/scenario/validate.hpp"
@@ -20,11 +20,11 @@ namespace {
 
 using Settings = std::vector<std::pair<std::string, std::string>>;
 
-constexpr scenario::Calibration kMachine{
+constexpr scenario::MachineSpeed kMachine{
     .grain_step = 5e-8, .tire_step = 2e-3, .tire_coordinates = 4680, .cores = 2};
 
 scenario::RunTime time_of(const char* name, Settings settings = {},
-                          scenario::Calibration machine = kMachine) {
+                          scenario::MachineSpeed machine = kMachine) {
   if (std::string(name) != "rigid_ground.json") settings.emplace_back("terrain.cache", "false");
   const scenario::Scenario s = scenario::load_scenario(data_folder() / "rigs" / name, settings);
   return scenario::run_time(s, machine);
@@ -43,7 +43,7 @@ TEST(RunTime, the_slowest_node_decides_where_there_are_cores_for_all) {
 
 TEST(RunTime, tires_share_the_cores_that_there_are) {
   const Settings flexible{{"tire.elements_circumference", "60"}, {"tire.elements_width", "12"}};
-  scenario::Calibration machine = kMachine;
+  scenario::MachineSpeed machine = kMachine;
   const double on_two = time_of(
                             "four_wheels.json",
                             [&] {
@@ -141,23 +141,23 @@ TEST(RunTime, a_report_tells_it_where_it_is_known) {
 }
 
 /// What was kept is taken, whatever it says; what is damaged is measured again and kept.
-TEST(Calibration, is_kept_and_made_anew_when_damaged) {
+TEST(MachineSpeed, is_kept_and_measured_again_when_damaged) {
   const testing::TemporaryFolder folder;
   const char* const set = std::getenv("XDG_CACHE_HOME");
   const std::string before = set ? set : "";
   setenv("XDG_CACHE_HOME", folder.path().c_str(), 1);
-  const scenario::Calibration first = scenario::calibration();
+  const scenario::MachineSpeed first = scenario::machine_speed();
   EXPECT_GT(first.grain_step, 1e-9);
   EXPECT_LT(first.grain_step, 1e-5);
   EXPECT_GT(first.tire_step, 1e-5);
   EXPECT_EQ(first.tire_coordinates, 4680);
   const std::filesystem::path kept =
-      std::filesystem::directory_iterator(folder.path() / "furrow" / "calibration")->path();
+      std::filesystem::directory_iterator(folder.path() / "furrow" / "speed")->path();
   std::ofstream(kept) << R"({"grain_step_s": 1e-7, "tire_step_s": 1e-3, "tire_coordinates": 4680})";
-  EXPECT_EQ(scenario::calibration().grain_step, 1e-7);
+  EXPECT_EQ(scenario::machine_speed().grain_step, 1e-7);
   std::ofstream(kept) << R"({"grain_step_s": "fast)";
-  EXPECT_NE(scenario::calibration().grain_step, 1e-7);
-  EXPECT_NE(scenario::calibration().tire_step, 1e-3);
+  EXPECT_NE(scenario::machine_speed().grain_step, 1e-7);
+  EXPECT_NE(scenario::machine_speed().tire_step, 1e-3);
   before.empty() ? unsetenv("XDG_CACHE_HOME") : setenv("XDG_CACHE_HOME", before.c_str(), 1);
 }
 

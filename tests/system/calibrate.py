@@ -140,7 +140,7 @@ class Calibrate(SystemTest):
             self.assertIn(expected, done.stderr)
             self.assertEqual(set(self.names()), before | {"wrong.json"}, expected)
         done = furrow("calibrate", ROOT / "rigs" / "study_slip.json", cwd=self.folder)
-        self.assertIn("a study of runs is for 'furrow sweep'", done.stderr)
+        self.assertIn("is a study of runs, expected a calibration ('furrow sweep' takes studies)", done.stderr)
         done = furrow("calibrate", ROOT / "rigs" / "first_look.json", cwd=self.folder)
         self.assertIn("key 'calibrate': is missing, expected a calibration study", done.stderr)
         # A tire that no pressure of the study can hold.

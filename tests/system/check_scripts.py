@@ -122,6 +122,11 @@ class Docs(Check):
         self.assertEqual(self.told(**{results: '{"scenario": "a.json", "cases": {}}'}), "")
         self.assertIn("tests/x/a.csv:1: is named on no page", self.told(**{table: head + "x\n1\n"}))
 
+    def test_shipped_scenarios_that_the_lists_leave_out(self):
+        files = {"rigs__a_dot_json": "{}", "rigs__scenario_dot_schema_dot_json": "{}"}
+        self.assertEqual(self.told(rigs__README_dot_md="`a.json`", **files), "")
+        self.assertIn("rigs/README.md:1: does not list rigs/a.json", self.told(rigs__README_dot_md="a page", **files))
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -66,6 +66,20 @@ class Commands(SystemTest):
         (self.folder / "first_look.json").write_text(json.dumps(changed(run={"end": 0.04})))
         self.assertIn("0.04 s in 400 steps", self.output("validate", "first_look.json"), "a file that is here comes first")
 
+    def test_shipped_files_are_found_by_name_and_taken_for_what_they_are(self):
+        for arguments, expected in ((("run", "first_look"), "first_look: does not exist, expected 'first_look.json'?"),
+                                    (("validate", "frist_look.json"), "frist_look.json: does not exist, expected 'first_look.json'?"),
+                                    (("sweep", "study_slop.json"), "study_slop.json: does not exist, expected 'study_slip.json'?"),
+                                    (("run", "nothing_like_it.json"), "does not exist, expected a scenario in JSON"),
+                                    (("run", "calibrate_ring.json"), "is a calibration study, expected a scenario ('furrow calibrate' takes calibrations)"),
+                                    (("sweep", "calibrate_ring.json"), "is a calibration, expected a study ('furrow calibrate' takes calibrations)"),
+                                    (("calibrate", "study_slip.json"), "is a study of runs, expected a calibration ('furrow sweep' takes studies)"),
+                                    (("sweep", "first_look.json"), "is a scenario, expected a study")):
+            done = furrow(*arguments, cwd=self.folder)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(expected, done.stderr)
+        self.assertEqual(self.names(), [])
+
     def test_list_names_what_comes_with_the_program(self):
         listed = json.loads(self.output("list", "--json"))
         self.assertEqual(sorted(listed["scenarios"]["files"]), SHIPPED)
@@ -95,6 +109,20 @@ class Commands(SystemTest):
         self.assertAlmostEqual(reports["lab"]["wheels"][0]["load_N"], 24.5)
         self.assertIn("// Kind of rig. drawbar: pulls", (self.folder / "truck.json").read_text())
         self.assertIn("// Grain radius", (self.folder / "truck.json").read_text())
+
+    def test_new_scenarios_have_the_ground_that_tire_and_soil_ask_for(self):
+        for options, engine in ((["--tire", "hmmwv_handling.json"], "rigid"), (["--soil", "lete_sand.json"], "scm"),
+                                (["--soil", "cohesive_sand.json"], "dem"), (["--tire", "hmmwv_ring.json"], "dem"),
+                                (["--tire", "aligator_planar.json", "--soil", "lete_sand.json"], "scm")):
+            with self.subTest(options):
+                name = "_".join(options).replace("--", "").replace(".json", "")
+                self.output("new", name, *options)
+                report = json.loads(self.output("validate", f"{name}.json", "--json"))
+                self.assertEqual(report["warnings"], [])
+                self.assertIn(f'"engine": "{engine}"', (self.folder / f"{name}.json").read_text())
+        done = furrow("new", "wrong", "--tire", "hmmwv_handling.json", "--soil", "loose_sand.json", cwd=self.folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--soil': is given, expected none: the file of 'hmmwv_handling.json' holds for hard level ground", done.stderr)
 
     def test_new_leaves_no_file_where_it_fails_and_none_of_yours_is_touched(self):
         for options, said in ((["--tire", "no_such.json"], "'no_such.json' does not exist"), (["--soil", "no_such.json"], "no_such.json"),

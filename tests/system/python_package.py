@@ -186,6 +186,16 @@ class Package(SystemTest):
         self.assertGreater(len(soil.repose), 0)
         self.assertRaisesRegex(furrow.Missing, "no plate.csv", lambda: soil.plate)
 
+    def test_calibrations_and_suspensions_are_opened(self):
+        fitted = furrow.calibrate("calibrate_handling", out=self.folder / "fit", progress=False)
+        self.assertIsInstance(furrow.open(self.folder / "fit"), furrow.Calibration)
+        self.assertAlmostEqual(fitted.parameters.loc["PKX1", "value"], fitted.summary["parameters"]["PKX1"]["value"])
+        self.assertIn("model", fitted.fit.columns)
+        self.assertTrue(fitted.file.is_file())
+        self.assertEqual(fitted.warnings, fitted.summary["warnings"])
+        moved = furrow.kc("rover.json", out=self.folder / "kc", points=3, progress=False)
+        self.assertGreater(len(moved.curves), 3)
+
     def test_examples_and_types(self):
         self.assertEqual(doctest.testmod(units).failed, 0)
         if not importlib.util.find_spec("mypy"):

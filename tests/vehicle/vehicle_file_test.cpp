@@ -312,7 +312,7 @@ TEST(VehicleFile, a_gearbox_whose_mark_the_engine_does_not_reach_is_unlikely) {
   ASSERT_EQ(odd.size(), 1U);
   EXPECT_EQ(odd[0].first, "driveline.gearbox.up_rpm");
   EXPECT_EQ(odd[0].second,
-            "is 2600, above the 2599 rpm to which the engine drives it: it will not shift up by itself");
+            "is 2600, above the 2599 rpm to which the engine drives it: it will never shift up");
   spec.driveline.engine->torque.back().second = 500;  // an engine without a highest speed
   EXPECT_TRUE(vehicle::unlikely_values(spec, mass).empty());
 }

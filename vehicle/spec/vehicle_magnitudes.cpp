@@ -98,8 +98,8 @@ std::vector<std::pair<std::string, std::string>> unlikely_values(const VehicleSp
       highest && spec.driveline.gearbox->ratios.size() > 1 && spec.driveline.gearbox->up_rpm >= *highest)
     odd.emplace_back(
         "driveline.gearbox.up_rpm",
-        fmt::format("is {}, above the {:.4g} rpm to which the engine drives it: it will not shift "
-                    "up by itself",
+        fmt::format("is {}, above the {:.4g} rpm to which the engine drives it: it will never "
+                    "shift up",
                     number_text(spec.driveline.gearbox->up_rpm), *highest));
   if (spec.driveline.gearbox)
     for (auto& [key, what] : unlikely_gears(*spec.driveline.gearbox))

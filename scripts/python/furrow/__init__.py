@@ -14,18 +14,18 @@ from types import ModuleType
 
 from . import _needs  # noqa: F401  first: it names the packages that are missing
 from ._scripts import Damaged, Missing
-from .commands import modes, press, resume, run, soil, sweep
+from .commands import calibrate, kc, modes, press, resume, run, soil, sweep
 from .errors import BadInput, FurrowError, InputOutputError, LimitReached, PhysicsFailed, RankLost, Stopped
 from .frames import Frame, Frames, GrainFrame, TireFrame
 from .opening import Opened, open
 from .runs import Run
 from .studies import Study
-from .virtual_tests import Kinematics, Modes, Press, Soil
+from .virtual_tests import Calibration, Kinematics, Modes, Press, Soil
 
 __all__ = [
-    "BadInput", "Damaged", "Frame", "Frames", "FurrowError", "GrainFrame", "InputOutputError", "Kinematics", "LimitReached",
-    "Missing", "Modes", "Opened", "PhysicsFailed", "Press", "RankLost", "Run", "Soil", "Stopped", "Study", "TireFrame", "plots",
-    "modes", "press", "resume", "run", "soil", "sweep"]
+    "BadInput", "Calibration", "Damaged", "Frame", "Frames", "FurrowError", "GrainFrame", "InputOutputError", "Kinematics",
+    "LimitReached", "Missing", "Modes", "Opened", "PhysicsFailed", "Press", "RankLost", "Run", "Soil", "Stopped", "Study",
+    "TireFrame", "calibrate", "kc", "modes", "open", "plots", "press", "resume", "run", "soil", "sweep"]
 
 
 def __getattr__(name: str) -> ModuleType:

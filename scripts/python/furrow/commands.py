@@ -11,7 +11,7 @@ from ._settings import arguments
 from .opening import open
 from .runs import Run
 from .studies import Study
-from .virtual_tests import Modes, Press, Soil
+from .virtual_tests import Calibration, Kinematics, Modes, Press, Soil
 
 
 def _out(out: File | None, overwrite: bool) -> list[str]:
@@ -81,16 +81,28 @@ def sweep(study: File | Content, *, out: File | None = None, jobs: int = 1, prog
     return opened
 
 
-def press(scenario: File | Content, *, out: File | None = None, overwrite: bool = False, on: str | None = None,
-          deflection: float | None = None, load: float | None = None, points: int | None = None, progress: bool = True,
-          settings: Mapping[str, Any] | None = None, **keys: Any) -> Press:
-    """Presses the tire of a scenario on a plate or a cleat, statically, and opens what was measured.
+def calibrate(study: File, *, out: File | None = None, overwrite: bool = False, plots: bool = False, progress: bool = True) -> Calibration:
+    """Fits a model to data and opens the result. The same call continues a calibration that was interrupted.
 
-    on           "plate" or "cleat"; where this and the others are not given, the section `press` of the scenario counts
+    study   a file, or the name of a shipped one ("calibrate_ring"); its results are in results/study unless `out` says
+    """
+    options = _out(out, overwrite) + ([] if plots else ["--no-plots"])
+    printed, _ = call(["calibrate", *options, "--", os.fspath(named_file(study))], progress)
+    opened: Calibration = _opened(printed)
+    return opened
+
+
+def press(scenario: File | Content, *, out: File | None = None, overwrite: bool = False, on: str | None = None,
+          deflection: float | None = None, load: float | None = None, points: int | None = None, camber: float | None = None,
+          progress: bool = True, settings: Mapping[str, Any] | None = None, **keys: Any) -> Press:
+    """Presses the tire of a scenario on a plate, a cleat or a profile, statically, and opens what was measured.
+
+    on           "plate", "cleat" or "profile"; where this and the others are not given, the section `press` of the scenario counts
     deflection   the largest one, m; `points` of the curve
     load         of the footprint, N
+    camber       of the wheel, rad; shells only
     """
-    given = {"on": on, "deflection": deflection, "load": load, "points": points}
+    given = {"on": on, "deflection": deflection, "load": load, "points": points, "camber": camber}
     options = [f"--{name}={value}" for name, value in given.items() if value is not None]
     with as_file(scenario, "scenario") as path:
         printed, _ = call(["press", *_out(out, overwrite), *options, *arguments(settings, keys), "--", os.fspath(path)], progress)
@@ -110,6 +122,20 @@ def modes(tire: File, *, out: File | None = None, overwrite: bool = False, order
     options = [f"--{name}={value}" for name, value in given.items() if value is not None] + ([] if plots else ["--no-plots"])
     printed, _ = call(["modes", *_out(out, overwrite), *options, "--", os.fspath(tire)], progress)
     opened: Modes = _opened(printed)
+    return opened
+
+
+def kc(vehicle: File, *, out: File | None = None, overwrite: bool = False, travel: float | None = None, points: int | None = None,
+       plots: bool = False, progress: bool = True) -> Kinematics:
+    """Moves the suspensions of a vehicle and opens what was tabulated.
+
+    vehicle   a vehicle file, as given or one that comes with the program
+    travel    of the wheels up and down, m; `points` of each motion
+    """
+    given = {"travel": travel, "points": points}
+    options = [f"--{name}={value}" for name, value in given.items() if value is not None] + ([] if plots else ["--no-plots"])
+    printed, _ = call(["kc", *_out(out, overwrite), *options, "--", os.fspath(vehicle)], progress)
+    opened: Kinematics = _opened(printed)
     return opened
 
 

@@ -6,13 +6,15 @@ import pathlib
 
 from .runs import Run
 from .studies import Study
-from .virtual_tests import Kinematics, Modes, Press, Soil
+from .virtual_tests import Calibration, Kinematics, Modes, Press, Soil
 
-Opened = Run | Study | Soil | Press | Modes | Kinematics
+Opened = Run | Study | Soil | Press | Modes | Kinematics | Calibration
 
 
 def open(directory: str | os.PathLike[str]) -> Opened:
-    """Opens what any command of furrow left: a Run, Study, Soil, Press, Modes or Kinematics. Runs may have failed or not have ended.
+    """Opens what any command of furrow left: a Run, Study, Soil, Press, Modes, Kinematics or Calibration.
+
+    Runs may have failed or not have ended.
 
     Raises FileNotFoundError when there is no such folder, Damaged (a ValueError) for a file that does not hold what it
     should, ValueError for a folder without results.
@@ -22,7 +24,7 @@ def open(directory: str | os.PathLike[str]) -> Opened:
         raise FileNotFoundError(f"{folder}: is not a folder")
     kinds: tuple[tuple[str, type[Opened]], ...] = (
         ("soil.json", Soil), ("sweep.json", Study), ("press.csv", Press), ("modes.csv", Modes),
-        ("kinematics.csv", Kinematics))
+        ("kinematics.csv", Kinematics), ("calibration.json", Calibration))
     for name, kind in kinds:
         if (folder / name).is_file():
             return kind(folder)

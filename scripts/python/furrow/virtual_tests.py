@@ -1,4 +1,4 @@
-"""Soil tests, pressed tires, frequencies and suspensions: what `furrow soil`, `press`, `modes` and `kc` leave."""
+"""Soil tests, pressed tires, frequencies, suspensions and fits: what `furrow soil`, `press`, `modes`, `kc` and `calibrate` leave."""
 from __future__ import annotations
 
 import pathlib
@@ -93,3 +93,29 @@ class Kinematics(Tests):
     def curves(self) -> pd.DataFrame:
         """Camber, toe, rates and more of each wheel, by motion."""
         return self.table("kinematics")
+
+
+class Calibration(Tests):
+    """A model fitted to data. `summary["parameters"]` holds value, standard error and 95 % interval of each parameter."""
+
+    FIGURES = "calibration.json"
+
+    @cached_property
+    def parameters(self) -> pd.DataFrame:
+        """A row for each parameter: value, standard_error, interval_95, unit, at_bound."""
+        return pd.DataFrame.from_dict(self.summary["parameters"], orient="index")
+
+    @cached_property
+    def fit(self) -> pd.DataFrame:
+        """Data, their standard errors and the model at every point of every target."""
+        return self.table("fit")
+
+    @property
+    def warnings(self) -> list[str]:
+        """What the data do not determine, parameters at a bound, and targets that the model does not describe."""
+        return list(self.summary["warnings"])
+
+    @property
+    def file(self) -> pathlib.Path:
+        """The fitted tire or soil."""
+        return self.directory / str(self.summary["result"])

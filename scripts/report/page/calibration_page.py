@@ -13,6 +13,28 @@ def text_of(value, form=".4g"):
     return f"{value:{form}}" if is_number(value) else "–"
 
 
+def shares(entries):
+    """Largest errors over the peaks, %, of the targets that have one."""
+    found = [entry.get("largest_error_of_peak") for entry in entries]
+    return [100.0 * share for share in found if is_number(share)]
+
+
+def counted(entries, what):
+    return f"{len(entries)} {what}{'' if len(entries) == 1 else 's'}"
+
+
+def words(run):
+    """The result in one or two sentences."""
+    fitted, predicted = (run.values.get(key) or [] for key in ("targets", "held_out_targets"))
+    parameters = run.values.get("parameters") or {}
+    text = f"{counted(parameters, 'parameter')} fitted to {counted(fitted, 'target')}"
+    text += f": the largest error is {max(shares(fitted)):.2g} % of the peak." if shares(fitted) else "."
+    if shares(predicted):
+        text += (f" {counted(predicted, 'held-out target')} predicted, which were not fitted: "
+                 f"the largest error is {max(shares(predicted)):.2g} % of the peak.")
+    return text
+
+
 def answer(run):
     rows = []
     for name, p in (run.values.get("parameters") or {}).items():
@@ -20,29 +42,31 @@ def answer(run):
         rows.append([name, text_of(p.get("value")), text_of(p.get("standard_error"), ".2g"),
                      f"{interval[0]:.4g} … {interval[1]:.4g}" if isinstance(interval, list) and all(map(is_number, interval)) else "–",
                      p.get("unit", ""), f"at its {p['at_bound']} bound" if p.get("at_bound") else ""])
-    made = [blocks.text(str(warning), "warn") for warning in run.values.get("warnings") or []]
+    made = [blocks.text(words(run), "lead")]
+    made += [blocks.text(str(warning), "warn") for warning in run.values.get("warnings") or []]
     made.append(blocks.table(["parameter", "value", "standard error", "95 % interval", "unit", ""], rows))
-    return {"id": "answer", "title": "Parameters", "blocks": made}
+    return {"id": "answer", "title": "Result", "blocks": made}
 
 
 def targets(run):
     rows = []
     for key, how in (("targets", "fitted"), ("held_out_targets", "predicted")):
-        for told in run.values.get(key) or []:
-            share = told.get("largest_error_of_peak")
-            rows.append([told.get("name", ""), told.get("what", ""), how, text_of(told.get("r_squared"), ".5f"),
-                         text_of(told.get("largest_error")), text_of(100.0 * share if is_number(share) else None, ".2g"),
-                         str(told.get("problem", ""))])
+        for target in run.values.get(key) or []:
+            share, error = target.get("largest_error_of_peak"), target.get("largest_error")
+            _, unit, factor = quantity(str(target.get("y", "")))
+            rows.append([target.get("name", ""), target.get("what", ""), how, text_of(target.get("r_squared"), ".5f"),
+                         text_of(factor * error if is_number(error) else None, ".3g"), unit,
+                         text_of(100.0 * share if is_number(share) else None, ".2g"), str(target.get("problem", ""))])
     return {"id": "targets", "title": "Targets",
-            "blocks": [blocks.table(["target", "what", "", "R²", "largest error", "% of the peak", ""], rows)]}
+            "blocks": [blocks.table(["target", "what", "", "R²", "largest error", "unit", "% of the peak", ""], rows)]}
 
 
 def figures(run):
     """What was reached of targets that are figures with names, beside what was wanted."""
     rows = []
     for key in ("targets", "held_out_targets"):
-        for told in run.values.get(key) or []:
-            for f in told.get("figures") or []:
+        for target in run.values.get(key) or []:
+            for f in target.get("figures") or []:
                 surrogate, span = f.get("surrogate") or {}, f.get("evaluations_span") or []
                 rows.append([f.get("label", ""), text_of(f.get("target")), text_of(f.get("sigma"), ".2g"), text_of(f.get("evaluated")),
                              text_of(f.get("standard_error"), ".2g"), text_of(surrogate.get("value")), text_of(surrogate.get("standard_error"), ".2g"),

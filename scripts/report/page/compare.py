@@ -50,7 +50,7 @@ def results(runs, arrays):
         if is_number(pull.get("mean")) and not pull.get("steady"):
             made.append(blocks.text(f"The pull of {name} is not steady: its interval is too small.", "warn"))
     if missing:
-        made.append(blocks.text(f"Without a summary (failed, stopped or still going on): {', '.join(missing)}.", "warn"))
+        made.append(blocks.text(f"Without a summary (failed, stopped or still running): {', '.join(missing)}.", "warn"))
     if items:
         made.append(blocks.charts(items, "Whiskers: 95 % interval of each run's own mean. It does not cover the scatter between beds."))
     return {"id": "answer", "title": "Results", "blocks": made}

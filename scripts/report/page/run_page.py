@@ -42,6 +42,12 @@ def window_of(run):
     return None
 
 
+def all_rigid(run):
+    """Whether no tire deflects: what its mesh, a polygon, leaves of a deflection is not shown."""
+    tires = run.scenario.get("tires") or [run.scenario.get("tire")]
+    return isinstance(tires, list) and all(isinstance(tire, dict) and tire.get("rigid") is True for tire in tires)
+
+
 def pull_words(run, pull):
     """Sentences on the pull, its interval, and whether it is steady."""
     half = blocks.half_95(pull.get("sem"), pull.get("n_eff"))
@@ -91,8 +97,9 @@ def answer_cards(run):
         items.append(blocks.card("drawbar pull", value, unit, "95 %" if half is not None else "", "good" if pull.get("steady") else "warn",
                                  "steady" if pull.get("steady") else "not steady"))
     hard = run.told.get("terrain_engine") == "rigid"  # ground into which nothing sinks
+    rigid = all_rigid(run)
     for key, sem, count, name in CARDS:
-        if not is_number(summary.get(key)) or (hard and key == "sinkage_m"):
+        if not is_number(summary.get(key)) or (hard and key == "sinkage_m") or (rigid and key == "tire_deflection_m"):
             continue
         half = blocks.half_95(summary.get(sem), summary.get(count)) if sem else None
         value, unit = blocks.quantity(key, summary[key], half)
@@ -125,7 +132,8 @@ def vehicle_answer(run):
 
 def wheels_table(run):
     wheels = [wheel for wheel in run.summary.get("wheels") or [] if isinstance(wheel, dict)]
-    names = [name for name in OF_WHEELS if any(is_number(wheel.get(name)) for wheel in wheels)]
+    names = [name for name in OF_WHEELS if any(is_number(wheel.get(name)) for wheel in wheels)
+             and not (name == "tire_deflection_m" and all_rigid(run))]
     if len(wheels) < 2 or not names:
         return []
     columns = ["wheel"] + [", ".join(filter(None, (words, unit.replace(" ", "\u00a0")))) for words, unit, _ in map(naming, names)]
@@ -165,7 +173,7 @@ def answer(run):
         made.append(blocks.text(f"The run failed at t = {failed.get('time_s')} s: {failed.get('error')}.", "bad"))
         made.append(blocks.text("Everything below is what it left until then. There are no means and no intervals.", "note"))
     elif not run.summary:
-        made.append(blocks.text("This run has no summary: it is still going on, or it was stopped before its end.", "warn"))
+        made.append(blocks.text("This run has no summary: it is still running, or it was stopped before its end.", "warn"))
     made += pull_answer(run)
     if len(run.summary.get("wheels") or []) < 2 and (items := answer_cards(run)):
         if not run.summary.get("drawbar_pull_N"):

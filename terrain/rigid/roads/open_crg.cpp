@@ -137,7 +137,7 @@ class Reader {
             ? std::nullopt
             : number_of(text.substr(placed ? equals + 1 : 0, comma - (placed ? equals + 1 : 0)));
     if (!value || trimmed(text.substr(comma + 1)) != "M")
-      throw wrong_line("is no cut, expected 'D:long section at v = X,m' or 'D:long section N,m'");
+      throw wrong_line("is not a cut, expected 'D:long section at v = X,m' or 'D:long section N,m'");
     if (!cuts_.empty() && placed != placed_)
       throw wrong_line("mixes cuts by number with cuts at v, expected one kind");
     placed_ = placed;

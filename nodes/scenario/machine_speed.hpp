@@ -5,7 +5,7 @@
 namespace furrow::scenario {
 
 /// Processor time of one core, so that it holds on a busy machine too.
-struct Calibration {
+struct MachineSpeed {
   double grain_step = 0.0;   // of one grain in one step, law mindlin with cohesion, s
   double tire_step = 0.0;    // of the reference tire in one step, s
   int tire_coordinates = 0;  // of the reference tire
@@ -14,6 +14,6 @@ struct Calibration {
 
 /// Takes rates that were kept where there are any, otherwise measures and keeps them. @throws Error when the program's own
 /// data files are missing
-Calibration calibration();
+MachineSpeed machine_speed();
 
 }  // namespace furrow::scenario

@@ -1,4 +1,4 @@
-#include "nodes/scenario/calibration.hpp"
+#include "nodes/scenario/machine_speed.hpp"
 
 #include <ctime>
 #include <fstream>
@@ -59,7 +59,7 @@ double measured_grain_step() {
   return time_of(kGrainTime, [&] { solver.step(dt); }) / solver.grains().count;
 }
 
-void measure_tire(Calibration& found) {
+void measure_tire(MachineSpeed& found) {
   tire::TireOptions options;
   options.file = data_folder() / "tire" / "data" / "hmmwv_layered.json";
   options.elements_circumference = kColumns;
@@ -89,7 +89,7 @@ std::string digest() {
   return hash.hex();
 }
 
-bool kept(const std::filesystem::path& file, Calibration& found) {
+bool kept(const std::filesystem::path& file, MachineSpeed& found) {
   const nlohmann::ordered_json json = read_json_if_whole(file);
   if (!json.is_object()) return false;
   const auto positive = [&](const char* key) {
@@ -104,10 +104,10 @@ bool kept(const std::filesystem::path& file, Calibration& found) {
 
 }  // namespace
 
-Calibration calibration() {
-  Calibration found;
+MachineSpeed machine_speed() {
+  MachineSpeed found;
   found.cores = static_cast<int>(allowed_cores().size());
-  std::filesystem::path file = cache_folder("calibration");
+  std::filesystem::path file = cache_folder("speed");
   if (!file.empty()) file /= digest() + ".json";
   if (!file.empty() && kept(file, found)) return found;
   found.grain_step = measured_grain_step();

@@ -1,0 +1,146 @@
+#!/usr/bin/python3
+"""Runs the shipped files and keeps what the gallery shows of each: pictures (scripts/docs/pictures/) and gallery.csv, with the
+figures that the program found, the processor time of all ranks and the wall time.
+
+usage: gallery.py [NAME...]     (needs Debian's python3-pil; FURROW names another program than build/furrow)
+
+NAME is one of CASES without its ending. Without names all are made. A case that this program has made is not run again; other
+rows of gallery.csv stay as they are where the same program made them.
+"""
+import csv
+import json
+import pathlib
+import resource
+import subprocess
+import sys
+import time
+
+import provenance
+from PIL import Image
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+RESULTS = ROOT / "results" / "studies" / "gallery"
+TABLE, PICTURES = HERE / "gallery.csv", ROOT / "scripts" / "docs" / "pictures"
+COLUMNS = ("case", "processor_s", "wall_s", "figure", "value")
+WIDTH, MOST_BYTES = 800, 100_000  # of a picture: pixels, bytes
+TIMES = "time.json"  # in a folder of results: what it took
+
+PULL = ("drawbar_pull_N.mean", "drawbar_pull_N.sem", "drawbar_pull_N.steady", "vertical_load_N", "sinkage_m", "rut_depth_m")
+VEHICLE = ("vehicle.distance_m", "vehicle.mean_speed_m_s", "figures.gear_changes", "end_reason", "end_time_s")
+# name → (command, picture of its folder, keys of the summary)
+CASES = {
+    "first_look": ("run", "scene", PULL),
+    "small_wheel": ("run", "scene", PULL),
+    "drawbar_pull_small": ("run", "pull_slip_sinkage", PULL),
+    "drawbar_pull_scm": ("run", "pull_slip_sinkage", PULL),
+    "rigid_ground": ("run", "pull_slip_sinkage", PULL[:4]),
+    "curb": ("run", "scene", ("wheels.0.columns.body_acceleration_m_per_s2",)),
+    "rough_road": ("run", "ride", ()),
+    "half_car": ("run", "ride", ()),
+    "cleat_roll": ("run", "forces", ("vertical_load_N",)),
+    "cleat_press": ("press", "load_deflection", ("load_N", "deflection_m", "secant_stiffness_N_per_m", "footprint.length_m", "footprint.width_m")),
+    "four_wheels": ("run", None,  # its scene.png shows one wheel; the picture is the playback of its page (report_pictures.py)
+                    ("wheels.0.sinkage_m", "wheels.1.sinkage_m", "wheels.2.sinkage_m", "wheels.3.sinkage_m")),
+    "hmmwv_turn": ("run", "scene", VEHICLE),
+    "rover_small": ("run", "scene", VEHICLE),
+    "hmmwv_small": ("run", "scene", VEHICLE),
+    "hmmwv_rigid": ("run", "gear", VEHICLE),
+    "hmmwv_slope": ("run", "vehicle", VEHICLE),
+    "hmmwv_lane_change": ("run", "path", VEHICLE + ("figures.lane_margin_least_m", "figures.path_error_largest_m")),
+    "calibrate_ring": ("calibrate", "fit", ()),
+    "calibrate_scm": ("calibrate", "fit", ()),
+    "calibrate_handling": ("calibrate", "fit", ()),
+    "calibrate_lete_sand": ("calibrate", "fit", ()),
+    "calibrate_sandy_loam": ("calibrate", "fit", ()),
+}
+
+
+def made(name):
+    """The folder of results of a case, made unless this program made it."""
+    command = CASES[name][0]
+    folder = RESULTS / name
+    taken = folder / TIMES
+    build = provenance.build_of(provenance.program())
+    if provenance.read_json(taken).get("build") == build:
+        return folder
+    RESULTS.mkdir(parents=True, exist_ok=True)
+    before, begin = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
+    later = [] if command == "press" else ["--no-plots"]
+    subprocess.run([provenance.program(), command, f"{name}.json", "--out", folder, "--overwrite", "--quiet", *later], check=True,
+                   stdout=subprocess.DEVNULL)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    taken.write_text(json.dumps({"build": build, "commit": provenance.commit(), "processor_s": round(seconds, 1),
+                                 "wall_s": round(time.monotonic() - begin, 1)}) + "\n")
+    subprocess.run([provenance.program(), "report", folder, "--quiet"], check=True, stdout=subprocess.DEVNULL)
+    return folder
+
+
+def value_of(summary, path):
+    """What the summary says at a dotted path; None where it says nothing."""
+    for part in path.split("."):
+        if isinstance(summary, list):
+            summary = summary[int(part)] if int(part) < len(summary) else None
+        else:
+            summary = summary.get(part) if isinstance(summary, dict) else None
+    return len(summary) if isinstance(summary, list) else summary
+
+
+def figures_of(folder, keys):
+    """[(name, value)] of a run or a press, or of a calibration."""
+    fitted = provenance.read_json(folder / "calibration.json")
+    found = [(f"{name} fitted", entry["value"]) for name, entry in fitted.get("parameters", {}).items()]
+    for what, key in (("fitted", "targets"), ("predicted", "held_out_targets")):
+        found += [(f"{what} {entry['name']}: R²", entry["r_squared"]) for entry in fitted.get(key, []) if entry.get("r_squared") is not None]
+        found += [(f"{what} {entry['name']}", entry["figures"][0]["surrogate"]["value"]) for entry in fitted.get(key, [])
+                  if entry["points"] == 1 and "surrogate" in entry["figures"][0]]
+    summary = provenance.read_json(folder / "summary.json")
+    return found + [(key, value_of(summary, key)) for key in keys]
+
+
+def picture_of(folder, name, plot):
+    if plot is None:
+        return
+    if not (folder / f"{plot}.png").exists():
+        sys.exit(f"{folder}: has no {plot}.png, expected that `furrow report` draws it")
+    picture = Image.open(folder / f"{plot}.png").convert("RGB")
+    picture = picture.resize((WIDTH, round(picture.height * WIDTH / picture.width)), Image.Resampling.LANCZOS)
+    PICTURES.mkdir(exist_ok=True)
+    file = PICTURES / f"{name}.jpg"
+    for quality in range(88, 30, -6):
+        picture.save(file, quality=quality, optimize=True)
+        if file.stat().st_size <= MOST_BYTES:
+            return
+
+
+def rows_of(name, folder):
+    times = provenance.read_json(folder / TIMES)
+    rows = figures_of(folder, CASES[name][2]) or [("", "")]
+    return [{"case": name, "processor_s": times["processor_s"], "wall_s": times["wall_s"], "figure": figure, "value": value}
+            for figure, value in rows]
+
+
+def origin(folders):
+    """Of the table; all its cases are of one program."""
+    commits = sorted({provenance.read_json(folder / TIMES)["commit"] for folder in folders})
+    return {"commit": ", ".join(commits), "compiler": provenance.compiler_of(provenance.program()), "processor": provenance.processor(),
+            "command": "gallery.py", "note": "wall times of a machine that ran other programs too"}
+
+
+def main():
+    names = sys.argv[1:] or list(CASES)
+    if unknown := [name for name in names if name not in CASES]:
+        sys.exit(f"{unknown[0]}: is no case, expected one of: {', '.join(CASES)}")
+    for name in names:
+        folder = made(name)
+        picture_of(folder, name, CASES[name][1])
+        build = provenance.build_of(provenance.program())
+        done = [case for case in CASES if provenance.read_json(RESULTS / case / TIMES).get("build") == build]
+        provenance.write_table(TABLE, COLUMNS, [row for case in done for row in rows_of(case, RESULTS / case)],
+                               origin([RESULTS / case for case in done]))
+        print(name, flush=True)
+
+
+if __name__ == "__main__":
+    main()

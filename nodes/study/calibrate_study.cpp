@@ -171,7 +171,7 @@ std::string digest_of(const Calibration& c) {
 
 bool is_calibration(const std::filesystem::path& name) {
   std::error_code error;
-  const std::filesystem::path file = named_calibration(name);
+  const std::filesystem::path file = named_file(name, {"rigs"});
   if (!std::filesystem::is_regular_file(file, error)) return false;
   const Json document = read_json_if_whole(file);
   return document.is_object() && document.contains("calibrate");

@@ -241,5 +241,21 @@ class Commands(SystemTest):
         self.output("validate", write_scenario(self.folder, scenario))
 
 
+class BatchScripts(SystemTest):
+    def test_times_and_cores_that_slurm_cannot_give_are_refused(self):
+        scenario = ROOT / "rigs" / "first_look.json"
+        for options, told in ((["--time", "4"], "'--time': is '4', expected 8 minutes or more: the run saves its state 6 minutes before"),
+                              (["--time", "25:61:99"], "'--time': is '25:61:99', expected minutes, hh:mm:ss or days-hh:mm:ss"),
+                              (["--nodes", "2", "--cores-per-node", "5"], "'--cores-per-node': is 5, expected 4 or another multiple of the 2 ranks")):
+            with self.subTest(options):
+                done = furrow("ranks", "--slurm", *options, scenario, cwd=self.folder)
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertIn(told, done.stderr)
+        for time in ("8", "12:00:00", "1-12", "2-12:30"):
+            done = furrow("ranks", "--slurm", "--time", time, scenario, cwd=self.folder)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn(f"#SBATCH --time={time}\n", done.stdout)
+
+
 if __name__ == "__main__":
     main()

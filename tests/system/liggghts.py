@@ -231,10 +231,18 @@ class Refused(CheckpointTest):
         program = self.folder / "alone" / "in" / "some" / "folder" / "furrow"
         program.parent.mkdir(parents=True)
         shutil.copy2(FAULTY, program)
+        for command in (["run", self.path, "--out", self.run_folder], ["validate", self.path], ["ranks", "--slurm", self.path]):
+            done = furrow(*command, cwd=self.folder, program=str(program))
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertRegex(done.stderr, "key 'terrain.engine': 'liggghts' is not part of this program: .*libliggghts-dev")
+            self.assertEqual(len(re.findall("error", done.stderr)), 1, done.stderr)
+        self.assertFalse(self.run_folder.exists())
+        with open(LIBRARY, "rb") as whole:
+            (program.parent / LIBRARY.name).write_bytes(whole.read(100_000))
         done = furrow("run", self.path, "--out", self.run_folder, cwd=self.folder, program=str(program))
         self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertRegex(done.stderr, "key 'terrain.engine': 'liggghts' is not part of this program .*libliggghts-dev")
-        self.assertEqual(len(re.findall("error", done.stderr)), 1, done.stderr)
+        self.assertRegex(done.stderr, f"{LIBRARY.name} has 100000 bytes, expected [0-9]+ or more: it is cut short")
+        self.assertFalse(self.run_folder.exists())
 
 
 if __name__ == "__main__":

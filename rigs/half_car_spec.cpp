@@ -62,19 +62,10 @@ class HalfCarSpec final : public RigSpec {
   }
 
   void complete(json& section) const override {
-    write_filled(section,
-                 {{"pitch_inertia", rig_.pitch_inertia},
-                  {"unsprung_mass", rig_.unsprung_mass},
-                  {"suspension_stiffness", rig_.suspension_stiffness},
-                  {"suspension_damping", rig_.suspension_damping},
-                  {"rear_suspension_stiffness", rig_.rear_suspension_stiffness},
-                  {"rear_suspension_damping", rig_.rear_suspension_damping},
-                  {"rim_mass", rig_.rim_mass},
-                  {"rim_spin_inertia", rig_.rim_spin_inertia},
-                  {"rim_diametral_inertia", rig_.rim_diametral_inertia},
-                  {"touchdown_time", rig_.touchdown_time},
-                  {"lowering_speed", rig_.lowering_speed}},
-                 {"body_mass", rig_.body_mass}, rig_.start);
+    write_car(section, rig_,
+              {{"pitch_inertia", rig_.pitch_inertia},
+               {"rear_suspension_stiffness", rig_.rear_suspension_stiffness},
+               {"rear_suspension_damping", rig_.rear_suspension_damping}});
   }
 
  private:

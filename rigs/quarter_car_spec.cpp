@@ -50,16 +50,7 @@ class QuarterCarSpec final : public RigSpec {
   }
 
   void complete(json& section) const override {
-    write_filled(section,
-                 {{"unsprung_mass", rig_.unsprung_mass},
-                  {"suspension_stiffness", rig_.suspension_stiffness},
-                  {"suspension_damping", rig_.suspension_damping},
-                  {"rim_mass", rig_.rim_mass},
-                  {"rim_spin_inertia", rig_.rim_spin_inertia},
-                  {"rim_diametral_inertia", rig_.rim_diametral_inertia},
-                  {"touchdown_time", rig_.touchdown_time},
-                  {"lowering_speed", rig_.lowering_speed}},
-                 {"body_mass", rig_.body_mass}, rig_.start);
+    write_car(section, rig_);
   }
 
  private:

@@ -80,6 +80,24 @@ inline void write_filled(nlohmann::json& section, std::initializer_list<std::pai
   section["start"] = start;
 }
 
+/// The same for a rig of a body on suspensions. @param values that it has beside what both cars have
+template <class Options>
+void write_car(nlohmann::json& section, const Options& rig,
+               std::initializer_list<std::pair<const char*, double>> values = {}) {
+  write_filled(section,
+               {{"unsprung_mass", rig.unsprung_mass},
+                {"suspension_stiffness", rig.suspension_stiffness},
+                {"suspension_damping", rig.suspension_damping},
+                {"rim_mass", rig.rim_mass},
+                {"rim_spin_inertia", rig.rim_spin_inertia},
+                {"rim_diametral_inertia", rig.rim_diametral_inertia},
+                {"touchdown_time", rig.touchdown_time},
+                {"lowering_speed", rig.lowering_speed}},
+               {"body_mass", rig.body_mass}, rig.start);
+  for (const auto& [key, value] : values)
+    if (!is_open(value)) section[key] = value;
+}
+
 /// A wheel that starts at rig.start, without what it carries.
 template <class Options>
 WheelDescription ride_wheel(const Options& rig, const WheelSize& tire, double duration) {

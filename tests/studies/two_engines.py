@@ -2,7 +2,9 @@
 """The small rig on both engines of grains, from the same beds: engine dem in double precision without sleep, and engine
 liggghts on 1, 2 and 4 ranks.
 
-usage: two_engines.py [--seeds 1 2 3 4 5] [--ranks 1 2 4]     writes two_engines.csv beside this script, line by line
+usage: two_engines.py [--seeds 1 2 3 4 5] [--ranks 1 2 4] [--keep]     writes two_engines.csv beside this script, line by line
+
+--keep: the table's lines of other numbers of ranks stay; the column commit says which program made each line.
 
 A line for each run: drawbar pull with its standard error over the averaging window, resistance of the terrain, sinkage,
 residuals, and how long the forces on the tire are those of engine dem from the same bed: largest difference over the load in
@@ -11,6 +13,7 @@ two programs differ. Lines without a seed are means over the beds with half the 
 the difference to engine dem of the same bed. processor_s is that of all processes; other work may have run beside.
 """
 import argparse
+import csv
 import math
 import os
 import pathlib
@@ -32,7 +35,8 @@ FIGURES = {"pull_N": ("drawbar_pull_N", 1.0), "resistance_N": ("terrain_resistan
 EARLY = 0.1  # s after the first contact
 COLUMNS = ["engine", "ranks", "seed", "pull_N", "pull_sem_N", "resistance_N", "sinkage_mm", "steady", "energy_residual",
            "momentum_residual", "transfer_force_residual", "transfer_moment_residual", "early_difference", "above_1e-9_s",
-           "above_1e-3_s", "wall_s", "processor_s"]
+           "above_1e-3_s", "wall_s", "processor_s", "commit"]
+TABLE = HERE / "two_engines.csv"
 
 
 def folder(engine, ranks, seed):
@@ -67,11 +71,12 @@ def mean_of(value):
     return value["mean"] if isinstance(value, dict) else value
 
 
-def row_of(engine, ranks, seed, processor_s):
+def row_of(engine, ranks, seed, processor_s, commit):
     out = folder(engine, ranks, seed)
     summary = provenance.read_json(out / "summary.json")
     row = {"engine": engine, "ranks": ranks, "seed": seed, "pull_sem_N": summary["drawbar_pull_N"]["sem"],
-           "steady": summary["drawbar_pull_N"].get("steady", ""), "wall_s": summary["wall_s"], "processor_s": processor_s}
+           "steady": summary["drawbar_pull_N"].get("steady", ""), "wall_s": summary["wall_s"], "processor_s": processor_s,
+           "commit": commit}
     for column, (key, factor) in FIGURES.items():
         row[column] = factor * mean_of(summary[key])
     for column in ("transfer_force_residual", "transfer_moment_residual"):
@@ -88,6 +93,20 @@ def row_of(engine, ranks, seed, processor_s):
             above = difference > float(bound)
             row[f"above_{bound}_s"] = time[np.argmax(above)] - first if above.any() else math.inf
     return row
+
+
+def kept_rows(cases):
+    """Of the table, of those runs that are not made again; mean lines are made of them anew."""
+    with open(TABLE, newline="", encoding="utf-8") as file:
+        lines = file.read().splitlines()
+    commit = next(line.split()[2] for line in lines if line.startswith("# commit:"))
+    rows = []
+    for line in csv.DictReader(line for line in lines if not line.startswith("#")):
+        if line["seed"].isdigit() and (line["engine"], int(line["ranks"])) not in cases:
+            numbers = {key: float(value) for key, value in line.items() if value and key in (*FIGURES, "wall_s", "processor_s")}
+            rows.append({"commit": commit, **{key: value for key, value in line.items() if value}, **numbers,
+                         "ranks": int(line["ranks"]), "seed": int(line["seed"])})
+    return rows
 
 
 def pooled(rows, engine, ranks):
@@ -110,22 +129,24 @@ def write(rows, cases, made):
     text = [{key: f"{value:.4g}" if isinstance(value, float) else value for key, value in row.items()} for row in rows]
     for case in cases:
         text += pooled(rows, *case)
-    provenance.write_table(HERE / "two_engines.csv", COLUMNS, [{c: row.get(c, "") for c in COLUMNS} for row in text], made)
+    provenance.write_table(TABLE, COLUMNS, [{c: row.get(c, "") for c in COLUMNS} for row in text], made)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seeds", nargs="+", type=int, default=[1, 2, 3, 4, 5])
     parser.add_argument("--ranks", nargs="+", type=int, default=[1, 2, 4])
+    parser.add_argument("--keep", action="store_true")
     arguments = parser.parse_args()
     made = provenance.made_here()
     cases = [("dem", 1), *(("liggghts", ranks) for ranks in arguments.ranks)]
-    rows = []
+    rows = kept_rows(cases) if arguments.keep else []
+    all_cases = sorted({*cases, *((row["engine"], row["ranks"]) for row in rows)})
     for case in cases:
         for seed in arguments.seeds:
-            rows.append(row_of(*case, seed, run(*case, seed, made["commit"])))
+            rows.append(row_of(*case, seed, run(*case, seed, made["commit"]), made["commit"]))
             print(rows[-1], flush=True)
-            write(rows, cases, made)
+            write(sorted(rows, key=lambda row: (row["engine"], row["ranks"], row["seed"])), all_cases, made)
 
 
 if __name__ == "__main__":

@@ -113,13 +113,13 @@ def pooled(rows, engine, ranks):
     mine = {row["seed"]: row for row in rows if (row["engine"], row["ranks"]) == (engine, ranks)}
     dem = {row["seed"]: row for row in rows if row["engine"] == "dem"}
     out = []
-    for what, values_of in (("beds", lambda c: [mine[s][c] for s in mine]),
-                            ("less dem", lambda c: [mine[s][c] - dem[s][c] for s in mine])):
-        if (what == "less dem" and engine == "dem") or len(mine) < 2:
+    for what, beds, value in (("beds", mine.keys(), lambda bed, column: mine[bed][column]),
+                              ("less dem", mine.keys() & dem.keys(), lambda bed, column: mine[bed][column] - dem[bed][column])):
+        if (what == "less dem" and engine == "dem") or len(beds) < 2:
             continue
-        line = {"engine": engine, "ranks": ranks, "seed": f"{len(mine)} {what}"}
+        line = {"engine": engine, "ranks": ranks, "seed": f"{len(beds)} {what}"}
         for column in FIGURES:
-            values = values_of(column)
+            values = [value(bed, column) for bed in sorted(beds)]
             line[column] = f"{statistics.mean(values):.4g} ± {half_interval(values):.2g}"
         out.append(line)
     return out

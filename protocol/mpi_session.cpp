@@ -74,7 +74,8 @@ class Deadline {
 MpiSession::MpiSession(int* argc, char*** argv) {
   [[maybe_unused]] const bool readable = choose_copy_mechanism();
   // Under --oversubscribe Open MPI yields in every test that finds nothing. We sleep between tests, and who yields on a
-  // busy machine waits until all others have had their time.
+  // busy machine waits until all others have had their time. Ranks that poll inside an engine and share cores are the
+  // exception: the supervisor sets this for them.
   setenv("OMPI_MCA_mpi_yield_when_idle", "0", 0);
   int provided = 0;
   MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided);

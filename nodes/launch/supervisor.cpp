@@ -28,6 +28,7 @@
 #include "nodes/scenario/memory_check.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/clock.hpp"
+#include "protocol/host.hpp"
 
 namespace furrow::launch {
 namespace {
@@ -90,12 +91,13 @@ std::optional<std::filesystem::path> on_path(const std::string& program) {
   return std::nullopt;
 }
 
-void set_environment(const std::string& supervisor) {
+void set_environment(const std::string& supervisor, bool yield) {
   forget_launcher();
   setenv(kSupervisedVariable, supervisor.c_str(), 1);
   setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
   setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
   setenv("OMPI_MCA_orte_forward_job_control", "1", 0);  // mpirun hands stops and continuations on
+  if (yield) setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0);  // protocol/mpi_session.cpp sets 0 otherwise
   // Open MPI will not begin without a way to other machines, even where it needs none.
   if (!on_path("ssh") && !on_path("rsh")) setenv("OMPI_MCA_plm_rsh_agent", "/bin/false", 0);
   for (const std::string& pair : passive_environment()) {
@@ -172,6 +174,7 @@ class Supervisor {
 };
 
 void Supervisor::start() {
+  const bool polls_share_cores = launch_.polling > allowed_cores().size();
   const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
   // When this process is killed the ranks save their state and stop: mpirun hands USR1 on at once, and TERM after two
   // seconds in which they would continue.
@@ -181,8 +184,8 @@ void Supervisor::start() {
                         .err = err_.write,
                         .own_group = true,
                         .death_signal = SIGUSR1,
-                        .prepare = [hold = launch_.hold, self = supervisor_name()] {
-                          set_environment(self);
+                        .prepare = [hold = launch_.hold, yield = polls_share_cores, self = supervisor_name()] {
+                          set_environment(self, yield);
                           if (hold >= 0) fcntl(hold, F_SETFD, 0);
                         }});
   close(nothing);

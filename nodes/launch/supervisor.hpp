@@ -16,6 +16,7 @@ namespace furrow::launch {
 struct Launch {
   std::vector<std::string> arguments;  // of this program in every rank, without its name
   std::vector<scenario::RankEntry> ranks;
+  std::size_t polling = 0;    // ranks of one terrain of several: they poll for each other inside its engine
   std::filesystem::path log;  // everything that ranks and launcher say
   int hold = -1;  // descriptor of the folder's lock, which the launcher keeps as long as it lives; −1: none
   double patience = 120.0;    // s without news of ranks that are to start

@@ -8,6 +8,7 @@ import os
 import pathlib
 import re
 import shutil
+import subprocess
 import sys
 
 import h5py
@@ -226,6 +227,17 @@ class Refused(CheckpointTest):
         self.assertGreater(told["time"]["ghosts_per_rank"], 0)
         if len(os.sched_getaffinity(0)) < 3:
             self.assertIn("key 'terrain.ranks': is 3, this machine has ", done.stderr)
+
+    def test_ranks_that_share_cores_yield_while_they_poll(self):
+        launcher, told = self.folder / "launcher", self.folder / "told"
+        launcher.write_text(f'#!/bin/sh\necho "$OMPI_MCA_mpi_yield_when_idle" > "{told}"\nexit 1\n')
+        launcher.chmod(0o755)
+        core = str(min(os.sched_getaffinity(0)))
+        for ranks, yields in ((1, ""), (2, "1")):
+            with self.subTest(ranks):
+                subprocess.run(["taskset", "-c", core, FAULTY, "run", self.path, "--set", f"terrain.ranks={ranks}", "--out", self.run_folder,
+                                "--overwrite"], env={**os.environ, "FURROW_MPIRUN": str(launcher)}, capture_output=True, check=False)
+                self.assertEqual(told.read_text().strip(), yields)
 
     def test_without_its_library(self):
         program = self.folder / "alone" / "in" / "some" / "folder" / "furrow"

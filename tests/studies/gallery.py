@@ -4,8 +4,8 @@ figures that the program found, the processor time of all ranks and the wall tim
 
 usage: gallery.py [NAME...]     (needs Debian's python3-pil; FURROW names another program than build/furrow)
 
-NAME is one of CASES without its ending. Without names all are made. A case that this program has made is not run again; other
-rows of gallery.csv stay as they are where the same program made them.
+NAME is one of CASES without its ending. Without names all are made. A case that this program has made is not run again. The
+rows of other cases stay as they are: the column commit says which program made each row.
 """
 import csv
 import json
@@ -22,7 +22,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 RESULTS = ROOT / "results" / "studies" / "gallery"
 TABLE, PICTURES = HERE / "gallery.csv", ROOT / "scripts" / "docs" / "pictures"
-COLUMNS = ("case", "processor_s", "wall_s", "figure", "value")
+COLUMNS = ("case", "processor_s", "wall_s", "figure", "value", "commit")
 WIDTH, MOST_BYTES = 800, 100_000  # of a picture: pixels, bytes
 TIMES = "time.json"  # in a folder of results: what it took
 
@@ -117,15 +117,22 @@ def picture_of(folder, name, plot):
 def rows_of(name, folder):
     times = provenance.read_json(folder / TIMES)
     rows = figures_of(folder, CASES[name][2]) or [("", "")]
-    return [{"case": name, "processor_s": times["processor_s"], "wall_s": times["wall_s"], "figure": figure, "value": value}
-            for figure, value in rows]
+    return [{"case": name, "processor_s": times["processor_s"], "wall_s": times["wall_s"], "figure": figure, "value": value,
+             "commit": times["commit"]} for figure, value in rows]
 
 
-def origin(folders):
-    """Of the table; all its cases are of one program."""
-    commits = sorted({provenance.read_json(folder / TIMES)["commit"] for folder in folders})
-    return {"commit": ", ".join(commits), "compiler": provenance.compiler_of(provenance.program()), "processor": provenance.processor(),
-            "command": "gallery.py", "note": "wall times of a machine that ran other programs too"}
+def kept_rows(name):
+    """Of gallery.csv, of cases that are not `name`."""
+    if not TABLE.exists():
+        return []
+    lines = [line for line in TABLE.read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
+    return [row for row in csv.DictReader(lines) if row["case"] in CASES and row["case"] != name]
+
+
+def origin(rows):
+    """Of the table."""
+    return {"commit": ", ".join(sorted({row["commit"] for row in rows})), "compiler": provenance.compiler_of(provenance.program()),
+            "processor": provenance.processor(), "command": "gallery.py", "note": "wall times of a machine that ran other programs too"}
 
 
 def main():
@@ -135,10 +142,8 @@ def main():
     for name in names:
         folder = made(name)
         picture_of(folder, name, CASES[name][1])
-        build = provenance.build_of(provenance.program())
-        done = [case for case in CASES if provenance.read_json(RESULTS / case / TIMES).get("build") == build]
-        provenance.write_table(TABLE, COLUMNS, [row for case in done for row in rows_of(case, RESULTS / case)],
-                               origin([RESULTS / case for case in done]))
+        rows = sorted(kept_rows(name) + rows_of(name, folder), key=lambda row: list(CASES).index(row["case"]))
+        provenance.write_table(TABLE, COLUMNS, rows, origin(rows))
         print(name, flush=True)
 
 

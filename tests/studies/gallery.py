@@ -28,12 +28,16 @@ TIMES = "time.json"  # in a folder of results: what it took
 
 PULL = ("drawbar_pull_N.mean", "drawbar_pull_N.sem", "drawbar_pull_N.steady", "vertical_load_N", "sinkage_m", "rut_depth_m")
 VEHICLE = ("vehicle.distance_m", "vehicle.mean_speed_m_s", "figures.gear_changes", "end_reason", "end_time_s")
-# name → (command, picture of its folder, keys of the summary)
+# Simulated time of the two scenarios at full size, which take hours to a steady pull.
+START = ("--set", "run.end=0.5", "--set", "run.average_from=0.4")
+# name → (command, picture of its folder, keys of the summary, options)
 CASES = {
     "first_look": ("run", "scene", PULL),
     "small_wheel": ("run", "scene", PULL),
     "drawbar_pull_small": ("run", "pull_slip_sinkage", PULL),
     "drawbar_pull_scm": ("run", "pull_slip_sinkage", PULL),
+    "drawbar_pull": ("run", "scene", PULL, *START),
+    "drawbar_pull_tr": ("run", "scene", PULL, *START),
     "rigid_ground": ("run", "pull_slip_sinkage", PULL[:4]),
     "curb": ("run", "scene", ("wheels.0.columns.body_acceleration_m_per_s2",)),
     "rough_road": ("run", "ride", ()),
@@ -58,7 +62,7 @@ CASES = {
 
 def made(name):
     """The folder of results of a case, made unless this program made it."""
-    command = CASES[name][0]
+    command, _, _, *options = CASES[name]
     folder = RESULTS / name
     taken = folder / TIMES
     build = provenance.build_of(provenance.program())
@@ -67,7 +71,7 @@ def made(name):
     RESULTS.mkdir(parents=True, exist_ok=True)
     before, begin = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
     later = [] if command == "press" else ["--no-plots"]
-    subprocess.run([provenance.program(), command, f"{name}.json", "--out", folder, "--overwrite", "--quiet", *later], check=True,
+    subprocess.run([provenance.program(), command, f"{name}.json", *options, "--out", folder, "--overwrite", "--quiet", *later], check=True,
                    stdout=subprocess.DEVNULL)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime

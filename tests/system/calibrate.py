@@ -174,7 +174,7 @@ class Calibrate(SystemTest):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         lines = done.stdout.splitlines()
         self.assertEqual(lines[0], "calibration  study.json, kind ring")
-        self.assertIn("parameter    sidewall_1: 100e3 to 1e7 N/m, logarithmic, from 884e3", lines)
+        self.assertIn("parameter    sidewall_1: 100e3 to 1e7 N/m, logarithmic, from 235340", lines)
         self.assertRegex(done.stdout, r"\ntarget       plate \(plate[^)]*\): 8 points, deflection_m \S+ to \S+, force_N \S+ to \S+\n")
         self.assertRegex(done.stdout, r"\nheld out     again \(")
         self.assertIn("starts       3, seed 1", lines)

@@ -21,9 +21,10 @@ GROUNDS = {
     "scm": {"engine": "scm", "material": "dry_sand.json", "length": 2.5, "width": 0.5, "grid_spacing": 0.02},
     "dem": {"engine": "dem", "radius": 0.03, "cohesion": 20e3, "layers": 3, "length": 2.1, "width": 0.5},
 }
+# The damper holds on to the end: the tire's own damping lets the load bounce for seconds.
 STAND = {**ROLLING, "rig": {"type": "drawbar", "slip": 0.0, "angular_speed": 0, "ramp": 0, "carrier_mass": 450,
-                            "touchdown_damping": 20e3, "touchdown_time": 0.3},
-         "terrain": GROUNDS["rigid"], "run": {"step": 1e-4, "end": 0.7, "average_from": 0.6}}
+                            "touchdown_damping": 20e3, "touchdown_time": 10},
+         "terrain": GROUNDS["rigid"], "run": {"step": 1e-4, "end": 1.2, "average_from": 1.1}}
 
 
 class RingRuns(SystemTest):
@@ -34,12 +35,14 @@ class RingRuns(SystemTest):
         return json.loads((self.folder / name / "summary.json").read_text()), done.stderr
 
     def test_at_rest_on_hard_ground_it_is_deflected_as_by_press(self):
-        """On a ground that hardly gives way: 5e7 N/m³ takes up 7 % of the deflection, 2e8 N/m³ 2 %."""
-        hard = {**STAND, "terrain": {"engine": "rigid", "ground_stiffness": 1e9, "ground_shear_stiffness": 1e8, "ground_damping": 5e4},
+        """On a ground that hardly gives way: 5e7 N/m³ takes up 7 % of the deflection, 2e8 N/m³ 2 %. Of 120 segments the
+        middles lie 0.16 mm above the nodes, 1.2 % of the deflection."""
+        ring = {**RING, "elements_circumference": 240}
+        hard = {**STAND, "tire": ring, "terrain": {"engine": "rigid", "ground_stiffness": 1e9, "ground_shear_stiffness": 1e8, "ground_damping": 5e4},
                 "run": {"step": 2e-5, "end": 0.5, "average_from": 0.45}}
         path = write_scenario(self.folder, hard, "stand.json")
         told, _ = self.run_of("sticks", hard)
-        slides, _ = self.run_of("slides", {**hard, "tire": {**RING, "friction": 0.0}})
+        slides, _ = self.run_of("slides", {**hard, "tire": {**ring, "friction": 0.0}})
         done = furrow("press", path, "--out", self.folder / "press", "--deflection", "0.03", "--load", told["vertical_load_N"],
                       cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -75,7 +78,7 @@ class RingRuns(SystemTest):
             deflections.append(told["tire_deflection_m"])
             self.assertTrue(told["accounts"]["energy"]["closes"], told["accounts"]["energy"])
         full, low, down = deflections
-        self.assertGreater(down, 1.01 * full)  # this ring's stiffnesses tell little of its pressure
+        self.assertGreater(down, 1.4 * full)
         self.assertAlmostEqual(down / low, 1.0, delta=0.01)
 
     def test_a_load_beyond_the_model_ends_the_run(self):

@@ -39,10 +39,10 @@ struct Kind {
 };
 constexpr Kind kOthers[] = {
     {kCalibration, "a calibration", "the command that began it, 'furrow calibrate' with the same study, continues it"},
-    {kKinematics, "the results of 'furrow kc'", "they are made anew, not continued"},
-    {kModes, "the results of 'furrow modes'", "they are made anew, not continued"},
-    {"soil.json", "the results of 'furrow soil'", "they are made anew, not continued"},
-    {"press.csv", "the results of 'furrow press'", "they are made anew, not continued"}};
+    {kKinematics, "the results of 'furrow kc'", "the same command makes them again and cannot continue them"},
+    {kModes, "the results of 'furrow modes'", "the same command makes them again and cannot continue them"},
+    {"soil.json", "the results of 'furrow soil'", "the same command makes them again and cannot continue them"},
+    {"press.csv", "the results of 'furrow press'", "the same command makes them again and cannot continue them"}};
 
 bool is_run(const fs::path& folder) {
   std::error_code error;

@@ -11,6 +11,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr std::size_t kListed = 4;  // values of a target that are named one by one
+
 std::string span_of(const std::vector<double>& values, const std::string& name) {
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
   return fmt::format("{} {} to {}", name, number_text(*least), number_text(*most));
@@ -18,8 +20,12 @@ std::string span_of(const std::vector<double>& values, const std::string& name) 
 
 std::string target_text(const Target& target) {
   std::string text = fmt::format("{} ({}): ", target.name, target.what);
+  const auto [least, most] = std::minmax_element(target.sigma.begin(), target.sigma.end());
   if (target.labels.empty())
     text += fmt::format("{} points, {}, {}", target.y.size(), span_of(target.x, target.x_name), span_of(target.y, target.y_name));
+  else if (target.y.size() > kListed)
+    text += span_of(target.y, fmt::format("{} values,", target.y.size())) +
+            (*least < *most ? ", " + span_of(target.sigma, "each ±") : ", each ± " + number_text(*least));
   else
     for (std::size_t k = 0; k < target.y.size(); ++k)
       text += fmt::format("{}{} {} ± {}", k == 0 ? "" : ", ", target.labels[k], number_text(target.y[k]),

@@ -188,6 +188,11 @@ class Calibrate(SystemTest):
         self.assertEqual(furrow("validate", "wrong.json", cwd=self.folder).stderr, furrow("calibrate", "wrong.json", cwd=self.folder).stderr)
         self.assertNotIn("results", self.names())
 
+    def test_validate_sums_up_a_target_of_many_values(self):
+        done = furrow("validate", "calibrate_handling.json", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, r"\ntarget       sweep_lumped_fx \(fx of 11 rows\): 11 values, -2090\.46 to 3962\.101, each ± 40\n")
+
     def test_commands_for_scenarios_point_to_calibrate(self):
         for command in ("run", "ranks", "press", "bed", "soil"):
             done = furrow(command, "calibrate_ring.json", cwd=self.folder)

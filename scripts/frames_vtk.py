@@ -36,6 +36,19 @@ def kinds_of(directory):
     return found
 
 
+def counted(kinds):
+    """The same frames; each that is taken prints the share of those before it, for `furrow` to show."""
+    done, total = 0, sum(len(frames) for frames in kinds.values())
+
+    def taken(frames):
+        nonlocal done
+        for frame in frames:
+            print(f"progress {done / total:.4f}", flush=True)
+            done += 1
+            yield frame
+    return {kind: taken(frames) for kind, frames in kinds.items()}
+
+
 def fail(what, code):
     print(f"furrow: error: {what}", file=sys.stderr)
     return code
@@ -45,6 +58,7 @@ def main():
     parser = argparse.ArgumentParser(description="Frames of a run as VTP files.")
     parser.add_argument("directory", type=pathlib.Path)
     parser.add_argument("--out", type=pathlib.Path, required=True, help="new folder for the files")
+    parser.add_argument("--progress", action="store_true", help="print the share that is done, 'progress 0.25', now and then")
     arguments = parser.parse_args()
     out = arguments.out
     try:
@@ -53,7 +67,7 @@ def main():
         kinds = kinds_of(arguments.directory)
         if not kinds:
             return fail(f"{arguments.directory}: has no frames, expected a run with output.frame_interval above 0", 2)
-        module("vtk").write_kinds(out, kinds)
+        module("vtk").write_kinds(out, counted(kinds) if arguments.progress else kinds)
     except (OSError, RuntimeError, ValueError) as error:  # h5py's errors for a damaged file are among them
         return fail(f"{arguments.directory}: {error}", 5)
     for kind in kinds:

@@ -2,7 +2,7 @@
 """Plots of a run, of soil tests, of a pressed tire, of its natural frequencies, of a vehicle's suspensions, of a study or of a calibration: PNG files in the run
 directory, and report.html, a page with all of it; their names, without the folder, as a JSON list on stdout.
 
-usage: report.py DIR [--out FOLDER] [--only NAME]... [--quiet]
+usage: report.py DIR [--out FOLDER] [--only NAME]... [--quiet] [--progress]
        report.py DIR DIR... --out FOLDER    one report.html that compares the runs
 
 Every plot is made from what the directory holds; a plot whose data are missing is left out, and a message on stderr says so.
@@ -72,6 +72,7 @@ SOIL_PLOTS = {"plate": soil.plate, "shear": soil.shear, "cone": soil.cone, "repo
 KINEMATICS_PLOTS = {"parallel": kinematics.parallel, "opposite": kinematics.opposite, "steering": kinematics.steering}
 MODES_PLOTS = {"frequencies": modes.frequencies, "mode_shapes": modes.mode_shapes, "mode_sections": modes.mode_sections}
 CALIBRATION_PLOTS = {"fit": calibrate.fit, "residual": calibrate.residual}
+WORK = {"scene": 20, "page": 10}  # of most plots: 1; the shares of the progress follow from it
 PRESS_PLOTS = {"load_deflection": press.load_deflection, "footprint": press.footprint}
 
 
@@ -96,6 +97,12 @@ def note(text):
     """A message that is no error: --quiet leaves it out."""
     if not quiet:
         print(f"report: {text}", file=sys.stderr)
+
+
+def tell_share(names, k):
+    """How much is done before plot `k` of `names`, for `furrow` to show."""
+    work = [WORK.get(name, 1) for name in names]
+    print(f"progress {sum(work[:k]) / sum(work):.4f}", flush=True)
 
 
 def words(run):
@@ -126,6 +133,7 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, help="folder for the plots (default: the run directory)")
     parser.add_argument("--only", action="append", choices=RIDE_PLOTS | VEHICLE_PLOTS | SOIL_PLOTS | PRESS_PLOTS | MODES_PLOTS | KINEMATICS_PLOTS | SWEEP_PLOTS | BEDS_PLOTS | CALIBRATION_PLOTS, help="this plot only; may be repeated")
     parser.add_argument("--quiet", action="store_true", help="print errors only")
+    parser.add_argument("--progress", action="store_true", help="print the share that is done, 'progress 0.25', before each plot")
     arguments = parser.parse_args()
     global quiet
     quiet = arguments.quiet
@@ -157,7 +165,10 @@ def main():
              else CURVE_PLOTS if of_sweep else PRESS_PLOTS if of_press
              else MODES_PLOTS if of_modes else KINEMATICS_PLOTS if of_kinematics else VEHICLE_PLOTS if run.has_vehicle
              else RIDE_PLOTS if ride.COLUMN in run.series else PLOTS)
-    for name in arguments.only or plots:
+    names = [*(arguments.only or plots), "page"]
+    for k, name in enumerate(names[:-1]):
+        if arguments.progress:
+            tell_share(names, k)
         try:
             figure = plots[name](run)
         except Missing as reason:
@@ -193,6 +204,8 @@ def main():
             print(f"furrow: error: {arguments.directory}: {printable(error)}", file=sys.stderr)
             return 5
     if (written or (arguments.directory / "summary_failed.json").is_file()) and not arguments.only:
+        if arguments.progress:
+            tell_share(names, len(names) - 1)
         import page
         written += page.write(out, [run], may_write)
     print(json.dumps(written))

@@ -8,6 +8,8 @@
 
 #include <array>
 #include <cerrno>
+#include <cstdlib>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -24,34 +26,70 @@ using Clock = std::chrono::steady_clock;
 
 constexpr const char* kPython = "/usr/bin/python3";
 
-Finished run_program(std::vector<std::string> command, bool quiet,
-                     std::optional<Clock::time_point> deadline) {
-  launch::Pipe pipe;
+constexpr std::string_view kShare = "progress ";  // begins a line of standard output that says how far it is
+
+/// A stream of the script, read line by line.
+class Lines {
+ public:
+  using Call = std::function<void(const std::string& line)>;
+  explicit Lines(Call call) : call_(std::move(call)) {}
+
+  /// Reads what there is. @returns false at the end of the stream
+  bool read_from(int stream) {
+    std::array<char, 4096> bytes;
+    const ssize_t count = read(stream, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) return true;
+    if (count > 0) rest_.append(bytes.data(), static_cast<std::size_t>(count));
+    std::size_t from = 0;
+    for (std::size_t end; (end = rest_.find('\n', from)) != std::string::npos; from = end + 1)
+      call_(rest_.substr(from, end - from));
+    rest_.erase(0, from);
+    if (count > 0) return true;
+    if (!rest_.empty()) call_(rest_);
+    return false;
+  }
+
+ private:
+  Call call_;
+  std::string rest_;  // of a line whose end has not come yet
+};
+
+Finished run_program(std::vector<std::string> command, const PythonScript& script) {
+  launch::Pipe out, err;
+  const bool watched = script.progress && script.message;
   const int nothing = open("/dev/null", O_WRONLY | O_CLOEXEC);
   const pid_t child = launch::start_child({.command = std::move(command),
-                                           .out = pipe.write,
-                                           .err = quiet ? nothing : -1,
+                                           .out = out.write,
+                                           .err = script.quiet ? nothing : watched ? err.write : -1,
                                            .death_signal = SIGKILL});
   close(nothing);
-  pipe.close_write();
+  out.close_write();
+  err.close_write();
   Finished finished;
-  std::array<char, 4096> bytes;
-  for (;;) {
-    pollfd readable{.fd = pipe.read, .events = POLLIN, .revents = 0};
-    const int ready = poll(&readable, 1, deadline ? 500 : -1);  // ms
+  Lines printed([&](const std::string& line) {
+    if (watched && line.starts_with(kShare))
+      script.progress(std::strtod(line.c_str() + kShare.size(), nullptr));
+    else
+      finished.output += line + "\n";
+  });
+  Lines said([&](const std::string& line) {
+    if (watched) script.message(line);
+  });
+  std::array<pollfd, 2> streams{pollfd{.fd = out.read, .events = POLLIN, .revents = 0},
+                                pollfd{.fd = err.read, .events = POLLIN, .revents = 0}};
+  while (streams[0].fd >= 0 || streams[1].fd >= 0) {  // poll() passes over what is below 0
+    const int ready = poll(streams.data(), streams.size(), script.deadline ? 500 : -1);  // ms
     if (launch::stop_signalled()) kill(child, SIGTERM);
-    if (deadline && !finished.too_late && Clock::now() > *deadline) {
+    if (script.deadline && !finished.too_late && Clock::now() > *script.deadline) {
       finished.too_late = true;
       kill(child, SIGKILL);
     }
     if (ready <= 0) continue;
-    const ssize_t count = read(pipe.read, bytes.data(), bytes.size());
-    if (count > 0)
-      finished.output.append(bytes.data(), static_cast<std::size_t>(count));
-    else if (count == 0 || errno != EINTR)
-      break;
+    if (streams[0].revents != 0 && !printed.read_from(streams[0].fd)) streams[0].fd = -1;
+    if (streams[1].revents != 0 && !said.read_from(streams[1].fd)) streams[1].fd = -1;
   }
-  pipe.close_read();
+  out.close_read();
+  err.close_read();
   while (waitpid(child, &finished.status, 0) < 0 && errno == EINTR)
     if (launch::stop_signalled()) kill(child, SIGTERM);
   return finished;
@@ -73,9 +111,10 @@ Finished run_python(const PythonScript& script) {
                                   limit.bytes / 1e6, limit.name));
   std::vector<std::string> command{kPython, "-I", path.string()};
   command.insert(command.end(), script.arguments.begin(), script.arguments.end());
+  if (script.progress && script.message) command.emplace_back("--progress");
   command.emplace_back("--");
   for (const auto& folder : script.folders) command.push_back(folder.string());
-  return run_program(std::move(command), script.quiet, script.deadline);
+  return run_program(std::move(command), script);
 }
 
 }  // namespace furrow::commands

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,11 +19,14 @@ struct PythonScript {
   double address_space = 0.0;                                     // bytes that it must have
   bool quiet = false;                                             // nothing on standard error
   std::optional<std::chrono::steady_clock::time_point> deadline;  // when it is ended
+  /// Given both, the script is asked to say how far it is, and its standard error comes line by line.
+  std::function<void(double share)> progress = {};
+  std::function<void(const std::string& line)> message = {};
 };
 
 struct Finished {
   int status = 0;         // of waitpid
-  std::string output;     // standard output
+  std::string output;     // standard output, without the lines of progress
   bool too_late = false;  // it was ended at the deadline
 };
 

@@ -11,6 +11,7 @@
 #include "nodes/commands/commands.hpp"
 #include "nodes/commands/python_script.hpp"
 #include "nodes/launch/messages.hpp"
+#include "nodes/launch/progress.hpp"
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
 #include "nodes/scenario/rank_table.hpp"
@@ -23,6 +24,16 @@ using Clock = std::chrono::steady_clock;
 constexpr double kAddressSpace =
     512e6;  // bytes; a plot takes 300 MB, and numpy's BLAS waits forever for less
 constexpr std::chrono::seconds kPatience{60};  // for plots that nobody asked for
+constexpr std::chrono::seconds kShort{5};      // what takes no longer needs no progress, unless it was asked for
+
+/// Shows how far the script is. `display` outlives it.
+void show_progress(PythonScript& script, launch::ProgressDisplay& display, const std::string& phase, bool unasked) {
+  const Clock::time_point shown_from = Clock::now() + (unasked ? kShort : std::chrono::seconds{0});
+  script.progress = [&display, phase, shown_from](double share) {
+    if (Clock::now() >= shown_from) display.show({.phase = phase, .share = share});
+  };
+  script.message = [&display](const std::string& line) { display.say_error(line); };
+}
 
 }  // namespace
 
@@ -38,7 +49,10 @@ std::vector<std::filesystem::path> make_report(const ReportArguments& report) {
                       .deadline = report.unasked ? std::optional(Clock::now() + kPatience) : std::nullopt};
   if (!report.out.empty()) script.arguments = {"--out", report.out.string()};
   if (launch::messages_are_silenced()) script.arguments.emplace_back("--quiet");
+  launch::ProgressDisplay display;
+  show_progress(script, display, "plotting", report.unasked);
   const Finished finished = run_python(script);
+  display.clear();
   const auto list = nlohmann::json::parse(finished.output, nullptr, false);
   if (finished.too_late)
     throw io_error(run.string(),
@@ -67,13 +81,17 @@ std::vector<std::filesystem::path> make_report_or_warn(const std::filesystem::pa
 }
 
 ExitCode write_vtk(const std::filesystem::path& run, const std::filesystem::path& folder) {
-  const Finished finished = run_python({.name = "frames_vtk.py",
-                                        .arguments = {"--out", folder.string()},
-                                        .folders = {run},
-                                        .what = "VTP files",
-                                        .address_space = kAddressSpace,
-                                        .quiet = false,
-                                        .deadline = std::nullopt});
+  PythonScript script{.name = "frames_vtk.py",
+                      .arguments = {"--out", folder.string()},
+                      .folders = {run},
+                      .what = "VTP files",
+                      .address_space = kAddressSpace,
+                      .quiet = false,
+                      .deadline = std::nullopt};
+  launch::ProgressDisplay display;
+  show_progress(script, display, "writing the frames", false);
+  const Finished finished = run_python(script);
+  display.clear();
   std::cout << finished.output << std::flush;
   const int code = WIFEXITED(finished.status) ? WEXITSTATUS(finished.status) : -1;
   for (const ExitCode said : {ExitCode::done, ExitCode::bad_input, ExitCode::io})

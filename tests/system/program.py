@@ -1,12 +1,16 @@
 """What the system tests share: the program under test, a scenario that runs in a second, and how to look at processes."""
 import copy
+import fcntl
 import json
 import os
 import pathlib
+import pty
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
+import termios
 import time
 import unittest
 
@@ -47,6 +51,23 @@ def furrow(*arguments, cwd, timeout=120, env=None, program=PROGRAM):
     """Runs the program to its end."""
     return subprocess.run([program, *map(str, arguments)], cwd=cwd, timeout=timeout, text=True, errors="replace",
                           stdin=subprocess.DEVNULL, capture_output=True, env={**os.environ, **(env or {})})
+
+
+def on_terminal(*arguments, cwd, columns=100, env=None, program=PROGRAM):
+    """Runs the program to its end on a terminal of this width; the exit code and what it printed, both streams."""
+    ours, terminal = pty.openpty()
+    fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
+    process = subprocess.Popen([program, *map(str, arguments)], cwd=cwd, stdin=subprocess.DEVNULL, stdout=terminal, stderr=terminal,
+                               env={**os.environ, "TERM": "xterm", **(env or {})})
+    os.close(terminal)
+    printed = b""
+    try:
+        while part := os.read(ours, 65536):
+            printed += part
+    except OSError:  # the program has ended
+        pass
+    os.close(ours)
+    return process.wait(), printed.decode(errors="replace").replace("\r\n", "\n")
 
 
 def attend_to_signals():

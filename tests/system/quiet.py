@@ -2,8 +2,10 @@
 """`--quiet`, which means the same of every command: nothing but errors on standard error, the same result on standard
 output."""
 import json
+import re
+import subprocess
 
-from program import ROOT, SystemTest, changed, furrow, main, write_scenario
+from program import ROOT, SystemTest, changed, furrow, main, on_terminal, write_scenario
 
 PRESSED = changed(rig={"slip": 0.1, "ramp": 0.1}, tire={"file": "hmmwv_lumped.json", "rigid": False, "elements_circumference": 30, "elements_width": 6})
 WITH_QUIET = ("run", "resume", "sweep", "calibrate", "bed", "soil", "press", "modes", "kc", "report", "validate", "ranks", "new")
@@ -45,6 +47,24 @@ class Quiet(SystemTest):
         self.assertEqual(len(set(self.both("report", "results/small-001"))), 1)
         done = furrow("resume", "results/small-001", "--until", "0.06", "--quiet", cwd=self.folder, env=self.env)
         self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "results/small-001\n", ""))
+
+    def test_a_report_says_how_far_it_is_unless_it_is_quiet(self):
+        self.assertEqual(furrow("run", write_scenario(self.folder), "--out", "out", "--no-plots", cwd=self.folder, env=self.env).returncode, 0)
+        code, text = on_terminal("report", "out", "--vtk", "vtk", cwd=self.folder, env=self.env)
+        self.assertEqual(code, 0, text)
+        self.assertIn("\rfurrow: writing the frames", text)
+        self.assertIn("\nvtk/terrain.pvd\n", text.replace("\r\033[K", "\n"))
+        shares = [int(share) for share in re.findall(r"furrow: plotting (\d+) %", text)]
+        self.assertGreater(len(shares), 1, text)
+        self.assertEqual(shares, sorted(shares))
+        done = subprocess.run(["/usr/bin/python3", "-B", ROOT / "scripts" / "frames_vtk.py", "--out", "more", "--progress", "out"], cwd=self.folder,
+                              text=True, capture_output=True)
+        shares = [float(line.split()[1]) for line in done.stdout.splitlines() if line.startswith("progress ")]
+        self.assertEqual((len(shares), shares[0], shares), (6, 0.0, sorted(shares)), done)
+        self.assertRegex(text, r"plotting \d+ %   \d+:\d\d left")
+        self.assertTrue(text.endswith("out/report.html\n"), text)
+        code, text = on_terminal("report", "out", "--quiet", cwd=self.folder, env=self.env)
+        self.assertEqual((code, {line.split("/")[0] for line in text.splitlines()}), (0, {"out"}), text)
 
     def test_several_beds_and_a_study(self):
         write_scenario(self.folder)

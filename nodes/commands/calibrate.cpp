@@ -7,6 +7,7 @@
 
 #include "nodes/commands/commands.hpp"
 #include "nodes/commands/questions.hpp"
+#include "nodes/commands/wrapped.hpp"
 #include "nodes/launch/messages.hpp"
 #include "nodes/launch/progress.hpp"
 #include "nodes/launch/run_directory.hpp"
@@ -80,7 +81,10 @@ std::string result_text(const Json& summary) {
 ExitCode validate_calibration(const std::string& name, bool json) {
   const study::Calibration calibration = study::load_calibration(name);
   for (const std::string& note : calibration.model->notes()) print_warning(note);
-  std::cout << (json ? study::calibration_check_json(calibration).dump(2) + "\n" : study::calibration_check_text(calibration));
+  if (json)
+    std::cout << study::calibration_check_json(calibration).dump(2) << "\n";
+  else
+    print_text(study::calibration_check_text(calibration), Piped::whole_lines);
   return ExitCode::done;
 }
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "nodes/commands/commands.hpp"
+#include "nodes/commands/wrapped.hpp"
 #include "nodes/launch/messages.hpp"
 #include "nodes/scenario/starter.hpp"
 #include "protocol/files/data_files.hpp"
@@ -105,7 +106,7 @@ ExitCode list_command(const std::string& only, bool json) {
     for (const auto& [name, line] : listed["files"].items())
       text += fmt::format("  {:<26} {}\n", name, line.get<std::string>());
   }
-  std::cout << text;
+  print_text(text, Piped::whole_lines);
   return ExitCode::done;
 }
 

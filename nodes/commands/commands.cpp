@@ -6,6 +6,7 @@
 #include <iostream>
 #include <new>
 #include <optional>
+#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -16,6 +17,7 @@
 #include "nodes/commands/bench.hpp"
 #include "nodes/commands/options.hpp"
 #include "nodes/commands/questions.hpp"
+#include "nodes/commands/wrapped.hpp"
 #include "nodes/launch/messages.hpp"
 #include "nodes/launch/progress.hpp"
 #include "nodes/launch/run_directory.hpp"
@@ -98,8 +100,10 @@ ExitCode validate_command(Typed& typed) {
   const scenario::Scenario scenario = load(typed);
   scenario::require_runnable(scenario);
   const scenario::RunTime time = scenario::run_time(scenario, scenario::machine_speed());
-  std::cout << (typed.json ? scenario::validation_report(scenario, &time).dump(2) + "\n"
-                           : scenario::validation_text(scenario, &time));
+  if (typed.json)
+    std::cout << scenario::validation_report(scenario, &time).dump(2) << "\n";
+  else
+    print_text(scenario::validation_text(scenario, &time), Piped::whole_lines);
   return ExitCode::done;
 }
 
@@ -265,7 +269,9 @@ class CommandLine {
     try {
       app_.parse(argc_, argv_);
     } catch (const CLI::Success& asked) {  // --help, --version
-      app_.exit(asked);
+      std::ostringstream text;
+      app_.exit(asked, text);
+      print_text(text.str(), Piped::wrap);
       return ExitCode::done;
     } catch (const CLI::ParseError& error) {
       throw usage_error(parse_problem(app_, error, argc_, argv_));

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "nodes/commands/commands.hpp"
+#include "nodes/commands/wrapped.hpp"
 #include "nodes/launch/progress.hpp"
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
@@ -95,7 +96,10 @@ nlohmann::ordered_json summary(const vehicle::VehicleSpec& spec, const vehicle::
 ExitCode validate_vehicle(const std::string& name, bool json) {
   const vehicle::VehicleSpec spec = vehicle::read_vehicle(scenario::find_vehicle(name));
   const vehicle::VehiclePage page = stand(spec);
-  std::cout << (json ? vehicle::page_json(page).dump(2) + "\n" : vehicle::page_text(page));
+  if (json)
+    std::cout << vehicle::page_json(page).dump(2) << "\n";
+  else
+    print_text(vehicle::page_text(page), Piped::whole_lines);
   return ExitCode::done;
 }
 

@@ -97,8 +97,8 @@ def parse(name, text):
     for line in examples[1].splitlines() if examples else []:
         match = re.match(r"  (.*?)(?:  +|(?<=--seeds 5) )(\S.*)$", line)
         made.examples.append((match[1], match[2]) if match else (line.strip(), ""))
-    codes = re.search(r"^Exit codes: (.*)", text, re.MULTILINE)
-    for code in codes[1].rstrip(".").split(", ") if codes else []:
+    codes = re.search(r"^Exit codes: (.*)", text, re.MULTILINE | re.DOTALL)
+    for code in " ".join(codes[1].split()).rstrip(".").split(", ") if codes else []:
         number, _, meaning = code.partition(" ")
         made.exit_codes[int(number)] = meaning
     return made

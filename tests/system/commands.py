@@ -2,9 +2,10 @@
 """The commands that start nothing: validate, ranks, explain, --help, --version."""
 import json
 import pathlib
+import re
 import unittest
 
-from program import ROOT, SMALL, SystemTest, changed, furrow, main, write_scenario
+from program import ROOT, SMALL, SystemTest, changed, furrow, main, on_terminal, write_scenario
 
 STUDIES = ("study_slip.json", "study_slip_angle.json", "study_camber.json", "study_hard_slip.json", "study_handling.json", "multipass.json")  # for `furrow sweep`
 CALIBRATIONS = sorted(path.name for path in (ROOT / "rigs").glob("calibrate_*.json"))  # for `furrow calibrate`
@@ -27,6 +28,21 @@ class Commands(SystemTest):
             self.assertIn(command, text)
             self.assertIn("SCENARIO" if command in ("run", "validate", "ranks", "bed", "soil") else "KEY" if command == "explain" else "DIR",
                           self.output(command, "--help"))
+
+    def test_texts_for_people_are_as_wide_as_the_terminal_and_no_wider_than_120_columns(self):
+        for command in (*re.findall(r"^  ([a-z]+) {3,}", self.output("--help"), re.MULTILINE), "bench grains", "bench tire", ""):
+            for line in self.output(*command.split(), "--help").splitlines():
+                self.assertLessEqual(len(line), 120, command)
+        for arguments in (["press", "--help"], ["explain"], ["explain", "terrain.bed"], ["list"], ["validate", "first_look.json"],
+                          ["validate", "calibrate_handling.json"]):
+            with self.subTest(arguments):
+                code, text = on_terminal(*arguments, cwd=self.folder, columns=90)
+                self.assertEqual(code, 0, text)
+                words = text.replace("\r", "").split()
+                self.assertLessEqual(max(len(line) for line in text.splitlines() if len(line.split()) > 1), 90)
+                if arguments[0] != "validate":  # whose times differ
+                    self.assertEqual(words, self.output(*arguments).split())
+        self.assertRegex(on_terminal("list", "scenarios", cwd=self.folder, columns=90)[1], r"\n  half_car\.json              Ride: .*\n {29}\S")
 
     def test_shipped_scenarios_are_valid(self):
         self.assertIn("first_look.json", SHIPPED)

@@ -46,13 +46,13 @@ std::string pull_line(const json& summary, const scenario::Scenario& scenario) {
   if (pull.value("steady", false)) {
     text += "furrow: the pull is steady\n";
   } else {
-    std::string why;
-    for (const json& reason : pull.value("unsteady_because", json::array()))
-      why += (why.empty() ? "" : "; ") + reason.get<std::string>();
-    text += "furrow: the pull is not steady" + (why.empty() ? "" : ": " + why) + "\n";
+    const json reasons = pull.value("unsteady_because", json::array());
+    if (reasons.empty()) text += "furrow: the pull is not steady\n";
+    for (const json& reason : reasons)
+      text += "furrow: the pull is not steady: " + reason.get<std::string>() + "\n";
     text +=
-        "furrow: another stretch of the run may give another mean; average over more of it with a later "
-        "run.end and a longer terrain.length (rigs/README.md, \"Steady or not\")\n";
+        "furrow: another stretch of the run may give another mean (rigs/README.md, \"Steady or not\")\n"
+        "furrow: average over more of it: set a later run.end and a longer terrain.length\n";
   }
   return text + expected_text(scenario.expected, 1, mean, number(summary, "sinkage_m"),
                               number(summary, "rut_depth_m"));

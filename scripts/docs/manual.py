@@ -13,6 +13,8 @@ ENVIRONMENT = {
     "FURROW_HOME": "folder that holds rigs/, tire/ and scripts/, if it is not that of the program",
     "FURROW_MPIRUN": "another launcher: Open MPI's mpirun, or Slurm's srun",
     "FURROW_START_TIMEOUT": "seconds after which a launcher that starts no ranks is ended (120)",
+    "FURROW_LEVEL": "build that an installed furrow starts, such as x86-64-v3, if not the richest that the processor runs",
+    "XDG_CACHE_HOME": "folder of caches, whose furrow/ keeps settled beds and the speed of this machine (~/.cache)",
 }
 
 
@@ -50,8 +52,8 @@ def manual(program, version):
              f"furrow \\- {escaped(program.purpose.removeprefix('Furrow: ').rstrip('.'))}", ".SH SYNOPSIS"]
     for command in program.commands:
         lines += [f".B {escaped(command.usage.split(' [')[0])}", escaped(command.usage[len(command.usage.split(" [")[0]):].strip()), ".br"]
-    lines += [".SH DESCRIPTION", "Furrow simulates a flexible tire on soil made of grains.",
-              "A scenario, one JSON file, describes tire, soil and test rig.", "\\fBfurrow explain\\fR lists all its keys."]
+    lines += [".SH DESCRIPTION", "Furrow simulates flexible tires and whole vehicles on grains, empirical soil or hard ground.",
+              "A scenario, one JSON file, describes tires, terrain, and test rig or vehicle.", "\\fBfurrow explain\\fR lists all its keys."]
     for heading, group in program.groups.items():
         lines.append(f".SH {escaped(heading.upper())}")
         for command in group:

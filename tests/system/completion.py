@@ -83,6 +83,8 @@ class Completion(SystemTest):
                 self.assertIn(option.replace("-", "\\-"), page)
         for code in (0, 2, 3, 4, 5, 6, 75):
             self.assertIn(f"\n\\fB{code}\\fR\n", page)
+        for name in ("FURROW_HOME", "FURROW_LEVEL", "FURROW_MPIRUN", "FURROW_START_TIMEOUT", "XDG_CACHE_HOME"):
+            self.assertIn(f"\n\\fB{name}\\fR\n", page)
         if shutil.which("man"):
             file = self.folder / "furrow.1"
             file.write_text(page)

@@ -44,10 +44,11 @@ std::string progress_text(const Progress& p) {
     return fmt::format("{} {:.0f} %{}", p.phase, 100.0 * p.share, left);
   }
   std::string text = fmt::format("t {:.3f} of {:g} s", p.time, p.end);
+  if (p.eta >= 0.0 && p.share >= kShareForGuess)  // first: narrow terminals cut the end
+    text += fmt::format("   {} left", duration_text(p.eta));
   if (!std::isnan(p.pull)) text += fmt::format("   pull {} N", digits(p.pull));
   text += fmt::format("   sinkage {} mm   {} m/s", digits(1e3 * p.sinkage), digits(p.speed));
   if (!p.note.empty()) text += "   " + p.note;
-  if (p.eta >= 0.0 && p.share >= kShareForGuess) text += fmt::format("   {} left", duration_text(p.eta));
   return text;
 }
 

@@ -21,7 +21,7 @@ struct Progress {
 
 using ProgressSink = std::function<void(const Progress&)>;
 
-/// "t 0.512 of 1.5 s   pull 1432 N   sinkage 31 mm   1.40 m/s   1:23 left".
+/// "t 0.512 of 1.5 s   1:23 left   pull 1432 N   sinkage 31 mm   1.40 m/s".
 std::string progress_text(const Progress& progress);
 
 /// Share of the run in a line of progress_text(); NaN: it is no such line, or not of the phase "running".

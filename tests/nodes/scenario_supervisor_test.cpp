@@ -97,14 +97,14 @@ TEST(LauncherText, keeps_what_else_was_said_in_one_line) {
 
 TEST(Progress, tells_time_pull_sinkage_speed_and_what_is_left) {
   EXPECT_EQ(launch::progress_text({"running", 0.25, 0.5, 2.0, 1432.5, 0.0312, 1.4, 83.0}),
-            "t 0.500 of 2 s   pull 1432 N   sinkage 31.2 mm   1.40 m/s   1:23 left");
+            "t 0.500 of 2 s   1:23 left   pull 1432 N   sinkage 31.2 mm   1.40 m/s");
   EXPECT_EQ(launch::progress_text({"running", 0.0001, 0.0, 2.0, 0.0, 0.0, 0.0, 9e9}),
             "t 0.000 of 2 s   pull 0 N   sinkage 0 mm   0 m/s");
   // A wheel of a laboratory pulls with newtons and creeps.
   EXPECT_EQ(launch::progress_text({"running", 0.25, 0.5, 2.0, 2.534, 0.00712, 0.0141, -1.0}),
             "t 0.500 of 2 s   pull 2.53 N   sinkage 7.12 mm   0.0141 m/s");
   EXPECT_EQ(launch::progress_text({"running", 0.25, 0.5, 2.0, NAN, 0.00712, 1.4, 83.0, "gear 2"}),
-            "t 0.500 of 2 s   sinkage 7.12 mm   1.40 m/s   gear 2   1:23 left");
+            "t 0.500 of 2 s   1:23 left   sinkage 7.12 mm   1.40 m/s   gear 2");
   EXPECT_EQ(launch::progress_text({"settling the bed", 0.42, 0.0, 1.5, 0.0, 0.0, 0.0, -1.0}),
             "settling the bed 42 %");
   EXPECT_EQ(launch::progress_text({"settling the bed", 0.42, 0.0, 1.5, 0.0, 0.0, 0.0, 65.0}),

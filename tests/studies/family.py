@@ -32,7 +32,7 @@ MESH = ["--set", "tire.elements_circumference=60", "--set", "tire.elements_width
 GROUNDS = ("rigid", "scm", "dem")
 TESTS = ("plate", "cleat", "drawbar", "curb")
 COLUMNS = ("test", "ground", "tire", "file", "figure", "value", "unit", "beds", "standard_error", "beside", "cpu_s_per_s", "why_not")
-WIDE = 1.4  # m: a bed for the planar tire, which is 1 m wide
+WIDE = (1.4, 3.6)  # m: width and length of a bed for the planar tire, which is 1 m wide and rolls farther
 DEEP = 0.02  # m: the deflection on the cleat
 RIGS = {"rigid": "rigid_ground.json", "scm": "drawbar_pull_scm.json", "dem": "drawbar_pull_small.json"}
 CURB = ["--set", "terrain.profile=[[2, 0], [2.0001, 0.03]]", "--set", "rig.speed=2", "--set", "rig.body_mass=415", "--set",
@@ -80,7 +80,7 @@ def press_figures(folder, obstacle):
 def drawbar(folder, ground, tire, seed):
     more = ["--set", "rig.slip=0.3", "--set", "rig.angular_speed=4.28"] if ground == "rigid" else []
     if tire == "planar" and ground != "rigid":
-        more = ["--set", f"terrain.width={WIDE}"]
+        more = ["--set", f"terrain.width={WIDE[0]}", "--set", f"terrain.length={WIDE[1]}"]
     return furrow(folder, "run", ROOT / "rigs" / RIGS[ground], *tire_words(tire), "--set", "tire.pressure=null", "--set", f"run.seed={seed}",
                   "--set", "output.frame_interval=0", *more, "--no-plots")
 

@@ -9,8 +9,8 @@
 namespace furrow {
 
 /// The variables of the environment by which mpirun, srun and the like give a process its rank: of
-/// OMPI_COMM_WORLD_RANK, PMIX_RANK and PMI_RANK those that are set and not empty. They may be left over from a shell that
-/// a launcher started.
+/// OMPI_COMM_WORLD_RANK, PMIX_RANK and PMI_RANK those that are set and not empty. They may be left over from a shell
+/// that a launcher started.
 std::vector<std::string> launcher_variables();
 /// True when there is one of them.
 bool launched_by_mpi();

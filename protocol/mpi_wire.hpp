@@ -2,12 +2,12 @@
 // what it sends until MPI is done with it, and takes in whatever arrives at every opportunity, so that no peer waits
 // for this node to ask for just its message.
 //
-// Idling: a few tests for what is about to come, then sleep. A waiting rank leaves its core to a working one (more ranks
-// than cores is the usual case on a laptop). Whoever sends to a rank of the same machine rings its doorbell, which ends
-// its sleep. It must not look around on its own in between where others want the core: each time it would stand at the
-// end of their queue, for milliseconds; and sched_yield() is the same. Messages from other machines, and those that move
-// only while their sender is inside MPI, ring no bell: for them it sleeps in short pieces that grow with the wait, and
-// may notice them one piece late.
+// Idling: a few tests for what is about to come, then sleep. A waiting rank leaves its core to a working one (more
+// ranks than cores is the usual case on a laptop). Whoever sends to a rank of the same machine rings its doorbell,
+// which ends its sleep. It must not look around on its own in between where others want the core: each time it would
+// stand at the end of their queue, for milliseconds; and sched_yield() is the same. Messages from other machines, and
+// those that move only while their sender is inside MPI, ring no bell: for them it sleeps in short pieces that grow
+// with the wait, and may notice them one piece late.
 #pragma once
 
 #include <cstdint>

@@ -38,7 +38,10 @@ DrawbarRigOptions drawbar_of(const CleatStandOptions& stand) {
 class CleatStandSpec final : public RigSpec {
  public:
   CleatStandSpec(const CleatStandOptions& stand, bool start_given, ReadContext context)
-      : rig_(drawbar_of(stand)), hold_from_(stand.hold_axle_from), start_given_(start_given), context_(std::move(context)) {}
+      : rig_(drawbar_of(stand)),
+        hold_from_(stand.hold_axle_from),
+        start_given_(start_given),
+        context_(std::move(context)) {}
 
   std::size_t wheel_count() const override { return 1; }
   void mount(std::span<const MountedTire> tires) override {

@@ -58,7 +58,9 @@ class HalfCar final : public Rig {
   int wheel_count() const override { return 2; }
   Vec3 heading(int) const override { return Vec3::UnitX(); }
   std::vector<Subject> subjects() const override {
-    return {{"wheel0", columns_of<RideRow>()}, {"wheel1", columns_of<RideRow>()}, {"body", columns_of<HalfCarBodyRow>()}};
+    return {{"wheel0", columns_of<RideRow>()},
+            {"wheel1", columns_of<RideRow>()},
+            {"body", columns_of<HalfCarBodyRow>()}};
   }
   void measure(int subject, std::span<double> values) const override {
     if (subject < 2)
@@ -147,7 +149,8 @@ void HalfCar::build() {
     return vehicle::ramped_motion(t - o.move_from, o.speed, o.ramp);
   });
   for (HalfCarWheel& w : wheels_) add_wheel(w, state);
-  const double brake = (carried_mass(wheels_[0]) + carried_mass(wheels_[1])) * kStandardGravity / options_.lowering_speed;
+  const double brake =
+      (carried_mass(wheels_[0]) + carried_mass(wheels_[1])) * kStandardGravity / options_.lowering_speed;
   lowering_ = system_->add_joint_element(
       "lowering damper", guide_, [brake, until = options_.touchdown_time](double, double rate, double t) {
         return t < until ? vehicle::ElementForce{-brake * rate, brake} : vehicle::ElementForce{};
@@ -208,7 +211,8 @@ HalfCar::Stand HalfCar::stand() const {
 }
 
 Outcome HalfCar::advance(std::span<const Wrench> wrenches, double duration, int substeps) {
-  FURROW_ASSERT(wrenches.size() == 2 && substeps >= 1 && duration > 0.0 && system_, wrenches.size(), substeps, duration);
+  FURROW_ASSERT(wrenches.size() == 2 && substeps >= 1 && duration > 0.0 && system_, wrenches.size(), substeps,
+                duration);
   for (int k = 0; k < 2; ++k) {
     if (!wrenches[k].force.allFinite() || !wrenches[k].moment.allFinite())
       return Outcome::failure("was pulled with a wrench that is not finite",

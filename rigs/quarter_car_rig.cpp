@@ -100,8 +100,9 @@ void QuarterCar::build(double axle_height) {
   guide_ = system_->add_joint(JointKind::prismatic, "guide", trolley_, body_, along(Vec3::UnitZ()));
   suspension_ = system_->add_joint(JointKind::prismatic, "suspension", body_, carrier_, along(Vec3::UnitZ()));
   spindle_ = system_->add_joint(JointKind::revolute, "spindle", carrier_, rim_, along(Vec3::UnitY()));
-  drive_ = system_->add_motor("trolley drive", rail_,
-                              [o = options_](double t) { return vehicle::ramped_motion(t - o.move_from, o.speed, o.ramp); });
+  drive_ = system_->add_motor("trolley drive", rail_, [o = options_](double t) {
+    return vehicle::ramped_motion(t - o.move_from, o.speed, o.ramp);
+  });
   const double weight = options_.body_mass * kStandardGravity, k = options_.suspension_stiffness,
                c = options_.suspension_damping;
   spring_ = system_->add_joint_element("suspension", suspension_, [=](double s, double rate, double) {

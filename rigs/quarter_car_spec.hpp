@@ -11,8 +11,8 @@
 
 namespace furrow::rigs {
 
-/// Fills in what is open from the tire: rim and body as the block `rim` of its file says, a hundredth of the rim for the
-/// rest of what is unsprung, a body at 1.5 Hz with 0.3 of its critical damping, and how it is let down.
+/// Fills in what is open from the tire: rim and body as the block `rim` of its file says, a hundredth of the rim for
+/// the rest of what is unsprung, a body at 1.5 Hz with 0.3 of its critical damping, and how it is let down.
 /// @throws Error(bad_input) naming the keys where neither of them says a mass
 QuarterCarOptions mounted(QuarterCarOptions rig, const MountedTire& tire, const ReadContext& context);
 

@@ -67,8 +67,8 @@ void mount_lowering(Options& rig, double radius) {
   take(rig.touchdown_time, rig.move_from > 0.0 ? rig.move_from : kLoweringTime * std::sqrt(radius / kStandardGravity));
 }
 
-/// Writes what was filled in into the scenario's section, without what is still open. A mass that follows from a stated load
-/// is not written.
+/// Writes what was filled in into the scenario's section, without what is still open. A mass that follows from a stated
+/// load is not written.
 /// @param values kg, m, s
 inline void write_filled(nlohmann::json& section, std::initializer_list<std::pair<const char*, double>> values,
                          std::pair<const char*, double> mass, double start) {

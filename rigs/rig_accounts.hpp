@@ -9,9 +9,9 @@
 
 namespace furrow::rigs {
 
-/// Account of all bodies of a rig, the tires' added masses among them, each entry from its own formula; cumulative since
-/// the rig was placed unless "now" is said. A rig must set every member: what it forgets is not a number, and the rig's
-/// rank refuses that by name. What they leave over,
+/// Account of all bodies of a rig, the tires' added masses among them, each entry from its own formula; cumulative
+/// since the rig was placed unless "now" is said. A rig must set every member: what it forgets is not a number, and the
+/// rig's rank refuses that by name. What they leave over,
 ///   energy:    drive_work + pull_work + guide_work + tire_work − Δ(kinetic + potential) − damper_loss,
 ///   momentum:  Δmomentum − gravity_impulse − guide_impulse − tire_impulse,
 /// is the error of the rig's step, and round-off.

@@ -47,9 +47,9 @@ class Terrain {
   virtual void attach(const SurfaceMesh& mesh, const ContactMaterial& material,
                       const SurfaceState& start) = 0;
 
-  /// Advances by `duration` in `substeps` equal steps, or in more where its contacts need it. Each vertex moves linearly from where the terrain last had it
-  /// to x + v·duration of targets[k], and its contact velocity is that motion's.
-  /// forces[k] and contact[k] receive the interval's means.
+  /// Advances by `duration` in `substeps` equal steps, or in more where its contacts need it. Each vertex moves
+  /// linearly from where the terrain last had it to x + v·duration of targets[k], and its contact velocity is that
+  /// motion's. forces[k] and contact[k] receive the interval's means.
   /// @returns failure when a grain is lost, a surface leaves the terrain or is not finite, or no step is stable
   /// @pre targets, forces and contact have one entry for each attached surface; duration > 0, substeps > 0
   virtual Outcome advance(std::span<const SurfaceState> targets, double duration, int substeps,

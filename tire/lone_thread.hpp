@@ -1,5 +1,5 @@
-// CHOLMOD opens a team of four OpenMP threads for the columns of a supernode, whatever OMP_NUM_THREADS says. In factors of
-// the size of a tire's there is less work in each than it costs to wake them.
+// CHOLMOD opens a team of four OpenMP threads for the columns of a supernode, whatever OMP_NUM_THREADS says. In factors
+// of the size of a tire's there is less work in each than it costs to wake them.
 #pragma once
 
 #include <omp.h>

@@ -1,7 +1,7 @@
 // What `furrow modes` computes: the lowest natural frequencies of a tire on a rim at rest, by circumferential order.
 //
-// A tire whose sections are all alike vibrates in û e^{i n θ}, û in axes that turn with the sections: stiffness and mass
-// of the whole tire are one small Hermitian matrix for each order n,
+// A tire whose sections are all alike vibrates in û e^{i n θ}, û in axes that turn with the sections: stiffness and
+// mass of the whole tire are one small Hermitian matrix for each order n,
 //   K_n û = ω² M_n û,   K_n = Σ over the elements of one section T_eᴴ k_e T_e,
 // T_e with the turn and the phase of each node [Thomas 1979]. From order 1 on every frequency has two modes, one turned
 // by a quarter of a wave against the other.

@@ -45,13 +45,15 @@ std::string figure_lines(const Json& target, const char* how) {
 std::string unit_of(const std::string& column) { return column.substr(column.rfind('_') + 1); }
 
 std::string target_line(const Json& target, const char* how) {
-  if (target.contains("problem")) return fmt::format("furrow: {} {}: no answer\n", how, target["name"].get<std::string>());
+  if (target.contains("problem"))
+    return fmt::format("furrow: {} {}: no answer\n", how, target["name"].get<std::string>());
   if (target.contains("figures") && target["points"] == 1) return figure_lines(target, how);
   const Json& r = target["r_squared"];
   return fmt::format("furrow: {} {} ({}): R² {}, largest error {:.3g} {}, {} of the peak\n", how,
                      target["name"].get<std::string>(), target["what"].get<std::string>(),
-                     r.is_number() ? fmt::format("{:.4f}", r.get<double>()) : "-", target["largest_error"].get<double>(),
-                     unit_of(target["y"].get<std::string>()), percent(target["largest_error_of_peak"]));
+                     r.is_number() ? fmt::format("{:.4f}", r.get<double>()) : "-",
+                     target["largest_error"].get<double>(), unit_of(target["y"].get<std::string>()),
+                     percent(target["largest_error_of_peak"]));
 }
 
 /// The result for people.
@@ -71,8 +73,9 @@ std::string result_text(const Json& summary) {
   for (const Json& target : summary["targets"]) text += target_line(target, "fitted");
   for (const Json& target : summary["held_out_targets"]) text += target_line(target, "predicted");
   if (summary.contains("processor_s"))
-    text += fmt::format("furrow: {} evaluations, {:.2g} minutes of processor time: {}\n", summary["evaluations"].get<int>(),
-                        summary["processor_s"].get<double>() / 60.0, summary["ended"].get<std::string>());
+    text += fmt::format("furrow: {} evaluations, {:.2g} minutes of processor time: {}\n",
+                        summary["evaluations"].get<int>(), summary["processor_s"].get<double>() / 60.0,
+                        summary["ended"].get<std::string>());
   return text;
 }
 

@@ -343,7 +343,9 @@ void CommandLine::add_beginnings() {
       ->required();
   CLI::Option* tire =
       starter.add_option("--tire", new_.tire, "Use this tire file (default: the layered HMMWV tire).");
-  starter.add_option("--soil", new_.soil, "Use this soil file; one of empirical soil gives engine scm (default: cohesive grains).");
+  starter.add_option(
+      "--soil", new_.soil,
+      "Use this soil file; one of empirical soil gives engine scm (default: cohesive grains).");
   starter.add_flag("--rigid", new_.rigid, "Make the tires rigid (tire.rigid).");
   CLI::Option* load =
       starter.add_option("--load", new_.load, "Set the load on the wheel, N (default: by the tire's size).")
@@ -477,15 +479,18 @@ void CommandLine::add_studies() {
                               calibrate_.plots = !typed_.no_plots;
                               return calibrate_command(calibrate_);
                             });
-  calibrate.add_option("STUDY", calibrate_.study, "Read this calibration study (JSON), as given or in rigs/.")->required();
+  calibrate
+      .add_option("STUDY", calibrate_.study, "Read this calibration study (JSON), as given or in rigs/.")
+      ->required();
   calibrate.add_option("--out", calibrate_.out, "Keep the calibration in this folder (default: results/<study>).");
   calibrate.add_flag("--overwrite", calibrate_.overwrite,
                      "Begin again: remove what an earlier calibration wrote into the folder.");
   calibrate.add_flag("--no-plots", typed_.no_plots, "Make no plots; 'furrow report' makes them later.");
 
-  CLI::App& report =
-      add("report", "Plot results of any command: PNG files and report.html, a page with plots and, of a run, 3-D playback.",
-          [this] { return report_command(typed_); });
+  CLI::App& report = add("report",
+                         "Plot results of any command: PNG files and report.html, a page with plots and, of "
+                         "a run, 3-D playback.",
+                         [this] { return report_command(typed_); });
   report
       .add_option("DIR", typed_.directory,
                   "Read the results in this folder: of a run, of its beds, of a study, of a calibration or of tests.")

@@ -58,12 +58,13 @@ struct ReportArguments {
   bool unasked = false;                     // by another command: no messages, and no longer than a minute
 };
 
-/// `furrow report`: plots and page of a run, or the page of several. @returns none if the script said why. @throws Error
+/// `furrow report`: plots and page of a run, or the page of several. @returns none if the
+/// script said why. @throws Error
 std::vector<std::filesystem::path> make_report(const ReportArguments& report);
 /// The same after a command whose results stand without plots: what goes wrong is a warning.
 std::vector<std::filesystem::path> make_report_or_warn(const std::filesystem::path& run);
-/// `furrow report --vtk`: writes the frames of a run as VTP files into a new folder, and prints the names of the lists of
-/// these files (report.cpp). @returns how it ended; the script has said what was wrong. @throws Error
+/// `furrow report --vtk`: writes the frames of a run as VTP files into a new folder, and prints the names of the lists
+/// of these files (report.cpp). @returns how it ended; the script has said what was wrong. @throws Error
 ExitCode write_vtk(const std::filesystem::path& run, const std::filesystem::path& folder);
 
 struct EventsArguments {

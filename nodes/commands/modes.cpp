@@ -100,10 +100,9 @@ ExitCode modes_command(const ModesArguments& arguments) {
   const std::unique_ptr<tire::TireSpec> spec = tire_of(arguments);
   const std::unique_ptr<tire::ModalTest> test = spec->modal_test();
   if (!test)
-    throw refused(
-        "TIRE",
-        fmt::format("is '{}', a {} tire: it has no masses that vibrate; expected a shell, a flexible ring or a planar tire",
-                    spec->options().file.filename().string(), spec->describe().name));
+    throw refused("TIRE", fmt::format("is '{}', a {} tire: it has no masses that vibrate; expected a shell, "
+                                      "a flexible ring or a planar tire",
+                                      spec->options().file.filename().string(), spec->describe().name));
   const tire::ModesOptions options = modes_options(arguments, *test);
   const tire::ModesResults results = compute(*test, options);
   warn_of_unstable(results);

@@ -80,7 +80,8 @@ void add_press_options(CLI::App& command, PressArguments& press) {
                      "Compute this number of points of the load–deflection curve (press.points).");
   command.add_option("--load", press.load, "Compute the footprint at this load, N (press.load).");
   command.add_option("--camber", press.camber,
-                     "Tilt the wheel about its forward axis, rad; positive leans the top to the right of travel. Shell tires only (press.camber).");
+                     "Tilt the wheel about its forward axis, rad; positive leans the top to the right of "
+                     "travel. Shell tires only (press.camber).");
   command.add_option("--cleat-height", press.cleat_height,
                      "Set the height of the cleat, m (press.cleat_height).");
   command.add_option(

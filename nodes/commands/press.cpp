@@ -98,7 +98,8 @@ ExitCode press_command(const scenario::Scenario& scenario, const PressArguments&
   const tire::PressOptions options = press_options(scenario, arguments);
   const tire::PressureSchedule& pressure = scenario.tires.front()->options().pressure;
   if (pressure.varies())
-    print_warning(fmt::format("tire.pressure changes in time: the tire is pressed at that of t = 0, {:g} Pa", pressure.at(0.0)));
+    print_warning(fmt::format("tire.pressure changes in time: the tire is pressed at that of t = 0, {:g} Pa",
+                              pressure.at(0.0)));
   launch::RunDirectory directory(scenario.name + "-press", arguments.out, arguments.overwrite);
   launch::catch_stop_signals();
   std::string ended;

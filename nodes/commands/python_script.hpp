@@ -1,5 +1,5 @@
-// Scripts of scripts/, run by Debian's own Python, whatever python stands first on PATH, and isolated (-I) from what the
-// user's environment and folders have for Python.
+// Scripts of scripts/, run by Debian's own Python, whatever python stands first on PATH, and isolated (-I) from what
+// the user's environment and folders have for Python.
 #pragma once
 
 #include <chrono>

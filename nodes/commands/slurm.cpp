@@ -34,7 +34,8 @@ void check_word(const std::string& option, const std::string& value) {
     throw wrong(option, "is '" + value + "', expected a name as Slurm has them");
 }
 
-/// Of a time as Slurm reads it, s: minutes[:seconds], hours:minutes:seconds or days-hours[:minutes[:seconds]]; none: it is no time.
+/// Of a time as Slurm reads it, s: minutes[:seconds], hours:minutes:seconds or
+/// days-hours[:minutes[:seconds]]; none: it is no time.
 std::optional<double> seconds_of(const std::string& time) {
   static const std::regex kShort("([0-9]{1,7})(?::([0-5]?[0-9]))?");
   static const std::regex kHours("([0-9]{1,5}):([0-5]?[0-9]):([0-5]?[0-9])");

@@ -95,7 +95,8 @@ std::vector<std::string> launcher_settings() {
   std::vector<std::string> names;
   for (char** entry = environ; *entry; ++entry) {
     const std::string_view variable(*entry);
-    const bool chosen = std::any_of(kChosen.begin(), kChosen.end(), [&](const char* beginning) { return variable.starts_with(beginning); });
+    const bool chosen = std::any_of(kChosen.begin(), kChosen.end(),
+                                    [&](const char* beginning) { return variable.starts_with(beginning); });
     if (chosen && !is_of_launcher(variable)) names.emplace_back(variable.substr(0, variable.find('=')));
   }
   std::sort(names.begin(), names.end());

@@ -17,7 +17,8 @@ class FolderLock {
   static constexpr double kPatience = 10.0;  // s
 
   FolderLock() = default;  // of nothing
-  /// The list is made where the folder has none. Alone: waits up to `patience` seconds for those that have it, and says so.
+  /// The list is made where the folder has none. Alone: waits up to `patience` seconds for
+  /// those that have it, and says so.
   /// @param key for messages
   /// @throws Error(bad_input) when others keep it; they are named
   /// @throws Error(io) when the list cannot be opened

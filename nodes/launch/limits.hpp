@@ -34,8 +34,8 @@ void end_where_memory_runs_out(const std::string& line, int descriptor = 2);
 inline constexpr const char* kOutOfMemory = "furrow: error: out of memory\n";
 
 /// Likewise the line where OpenMP can start no thread, for which it ends the program by exit(1), a code that is none of
-/// ours. Said before whatever asked for the program's end until now, such as a session of MPI, is ended: that would wait
-/// for the other ranks.
+/// ours. Said before whatever asked for the program's end until now, such as a session of MPI, is ended: that would
+/// wait for the other ranks.
 void end_where_no_thread_starts(const std::string& line, int descriptor = 2);
 inline constexpr const char* kNoThread =
     "threads could not be started (ulimit -u, ulimit -v, or no memory), expected a higher limit or fewer "

@@ -143,7 +143,8 @@ RunDirectory::RunDirectory(const Continued& kind, const fs::path& folder, bool o
       if (!has_run_list(path_) && !fs::is_empty(path_, error))
         throw no_list(
             folder, "--out",
-            fmt::format("no {} made it, or an earlier version of furrow did; expected a new or empty folder", kind.name));
+            fmt::format("no {} made it, or an earlier version of furrow did; expected a new or empty folder",
+                        kind.name));
       require_writable("--out");
       lock_ = FolderLock(path_, "--out", FolderLock::Mode::alone);
       const RunList list = RunList::read(path_);

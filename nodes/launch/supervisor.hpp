@@ -28,8 +28,8 @@ struct LaunchResult {
   std::size_t started = 0;  // ranks that began to work
 };
 
-/// The launcher: FURROW_MPIRUN (Open MPI's, or Slurm's srun), else the one of the MPI that this program was built with, else the first on
-/// PATH.
+/// The launcher: FURROW_MPIRUN (Open MPI's, or Slurm's srun), else the one of the MPI that this program was built with,
+/// else the first on PATH.
 /// @throws Error(io) when there is none
 std::filesystem::path find_mpirun();
 

@@ -8,10 +8,10 @@
 //     apply(plan);
 //     run_node(scenario, *transport, {.threads = plan.threads, …});
 //
-// Rules. The terrain gets the cores that the others leave, with many grains those of the others too where they leave few; a tire computes on one thread; the rig, which hardly
-// computes, has a core of its own only where there are many. When the cores suffice each thread is bound to its own;
-// when they do not, or when the machine is busy with something else, nothing is bound and the system balances.
-// Results do not depend on any of this.
+// Rules. The terrain gets the cores that the others leave, with many grains those of the others too where they leave
+// few; a tire computes on one thread; the rig, which hardly computes, has a core of its own only where there are many.
+// When the cores suffice each thread is bound to its own; when they do not, or when the machine is busy with something
+// else, nothing is bound and the system balances. Results do not depend on any of this.
 #pragma once
 
 #include <cstddef>

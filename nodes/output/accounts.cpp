@@ -10,8 +10,8 @@ namespace furrow::output {
 namespace {
 
 // Of the energy turned over, what the residual may be, beside the error of sampled losses; and the latter in standard
-// errors. Of the largest impulse, what the residual of momentum may be, beside the impulse on sleeping grains, which is an
-// estimate: README.md, Accounts.
+// errors. Of the largest impulse, what the residual of momentum may be, beside the impulse on sleeping grains, which is
+// an estimate: README.md, Accounts.
 constexpr double kEnergyShare = 0.03, kSampleErrors = 3.0;
 constexpr double kMomentumShare = 1e-6;
 

@@ -167,8 +167,13 @@ void Results::write_hdf5(std::span<const FinalReport> reports) const {
 SummaryInput Results::summary_input(const RunEnd& end) const {
   std::int64_t steps = std::llround(end.time / scenario_.run.step);
   if (resume_) steps = std::max(steps, resume_->manifest.step);
-  return {scenario_, cards_, setup_,
-          tables_,   end,    checkpoint::segments_until(steps, end.wall, cards_[scenario::terrain_rank(scenario_)].threads, resume_)};
+  return {scenario_,
+          cards_,
+          setup_,
+          tables_,
+          end,
+          checkpoint::segments_until(steps, end.wall, cards_[scenario::terrain_rank(scenario_)].threads,
+                                     resume_)};
 }
 
 void Results::finish(const RunEnd& end, bool stopped) {

@@ -225,8 +225,8 @@ void add_plumbing(const WheelInput& in, Json& json) {
   json["transfer_moment_residual"] = json_number(end.transfer_moment_residual);
 }
 
-/// What a table says from line `first` on, by the names of its columns: the means of the lines, and where a column counts
-/// since the start of the run its last value. So every column reaches the summary, those of rigs too.
+/// What a table says from line `first` on, by the names of its columns: the means of the lines, and where a column
+/// counts since the start of the run its last value. So every column reaches the summary, those of rigs too.
 Json column_figures(const Table& table, std::size_t first) {
   Json json;
   for (const Column& column : table.columns) {
@@ -243,7 +243,8 @@ Json column_figures(const Table& table, std::size_t first) {
   return json;
 }
 
-/// Where a run ended so early that little is left of its averaging window, the window begins after the same share of it.
+/// Where a run ended so early that little is left of its averaging window, the window
+/// begins after the same share of it.
 double average_from(const SummaryInput& in) {
   const scenario::RunOptions& run = in.scenario.run;
   const bool enough = in.end.time - run.average_from >= kLeastWindow * (run.end - run.average_from);

@@ -20,7 +20,8 @@ namespace {
 
 constexpr Address kRig{Role::rig, 0};
 constexpr char kCost[] = "run/cost";
-constexpr char kCommunicate[] = "run/cost/communicate_s";  // checkpoints written before it was counted have it in computing
+constexpr char kCommunicate[] =
+    "run/cost/communicate_s";  // checkpoints written before it was counted have it in computing
 
 }  // namespace
 
@@ -99,8 +100,8 @@ checkpoint::CheckpointManifest CheckpointWriter::manifest(std::int64_t step,
     m.bytes += static_cast<std::int64_t>(std::filesystem::file_size(
         checkpoint::unfinished_checkpoint(context_.directory, step) / part.file, ignored));
   m.frames = frames_;
-  m.segments =
-      checkpoint::segments_until(step, wall_clock() - begin_, cards_[scenario::terrain_rank(scenario_)].threads, context_.resume);
+  m.segments = checkpoint::segments_until(step, wall_clock() - begin_,
+                                          cards_[scenario::terrain_rank(scenario_)].threads, context_.resume);
   m.write_s = wall_clock() - write_begin_;
   return m;
 }

@@ -24,7 +24,8 @@ nlohmann::json completed_now(const std::string& completed);
 /// Which keys may differ when a run is continued: they say how long, how it is computed and what is written, and leave
 /// the physics alone.
 bool may_change_on_resume(const std::string& key);
-/// Whether a run that has failed may be continued with another value of this key: it says how finely the run is stepped.
+/// Whether a run that has failed may be continued with another value of this key: it says
+/// how finely the run is stepped.
 bool steps_finer(const std::string& key);
 
 }  // namespace furrow::scenario

@@ -12,8 +12,8 @@ struct MachineSpeed {
   int cores = 1;             // that this process may use
 };
 
-/// Takes rates that were kept where there are any, otherwise measures and keeps them. @throws Error when the program's own
-/// data files are missing
+/// Takes rates that were kept where there are any, otherwise measures and keeps them. @throws Error when the program's
+/// own data files are missing
 MachineSpeed machine_speed();
 
 }  // namespace furrow::scenario

@@ -7,8 +7,8 @@
 namespace furrow::scenario {
 namespace {
 
-// Of the estimate, which is of the most: the solver takes 350 of its 900 bytes per grain, and another 300 while the bed is
-// handed over.
+// Of the estimate, which is of the most: the solver takes 350 of its 900 bytes per grain, and another 300 while the bed
+// is handed over.
 constexpr double kSure = 0.5;
 constexpr double kAddressSpace = 600e6;  // bytes that program, libraries and stacks of a rank take of it
 

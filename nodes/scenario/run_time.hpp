@@ -2,8 +2,8 @@
 //
 // A step takes as long as its slowest node, and not less than all processor time of the step over the cores:
 //   T = max(max tires, terrain/threads, (Σ tires + terrain + messages)/cores) + latency.
-// The terrain's is that of the grains awake: those within kAwake tire radii of an axle, where strips may sleep. A terrain
-// with a core for each rank takes the time of one of them (terrain/liggghts/rank_cost.hpp). Where
+// The terrain's is that of the grains awake: those within kAwake tire radii of an axle, where strips may sleep. A
+// terrain with a core for each rank takes the time of one of them (terrain/liggghts/rank_cost.hpp). Where
 // contacts are expected to be too hard for its step it is taken in parts (grain_loads.hpp).
 #pragma once
 

@@ -90,8 +90,8 @@ void visit_fields(Visit&& visit, FieldsOf<PressKeys> auto& s) {
   visit(Field{"cleat_position", "m", role::key | role::harmless}, s.cleat_position);
 }
 
-/// `expected.*`, optional: what the shipped scenarios print beside their result. A spread is of runs on one bed; the mean
-/// over n beds is expected within spread/√n. A spread of 0: nothing is expected of this figure.
+/// `expected.*`, optional: what the shipped scenarios print beside their result. A spread is of runs on one bed; the
+/// mean over n beds is expected within spread/√n. A spread of 0: nothing is expected of this figure.
 struct ExpectedResult {
   bool given = false;
   double drawbar_pull = 0.0;         // N

@@ -159,7 +159,8 @@ void Checks::tire_options(std::size_t wheel) {
     throw wrong(s_.tire_key(wheel, "contact_tangent"),
                 fmt::format("is true, expected false: {} (terrain.engine '{}') gives no contact tangents",
                             terrain_.name, terrain_.engine));
-  if (const auto* own = dynamic_cast<const tire::HasOwnContact*>(&tire)) require_level_ground(wheel, own->own_contact());
+  if (const auto* own = dynamic_cast<const tire::HasOwnContact*>(&tire))
+    require_level_ground(wheel, own->own_contact());
   for (const std::string& key : tire::idle_keys(tire))
     warn(s_.tire_key(wheel, key), fmt::format("is ignored: a {} does not use it", in_words(tires_[wheel])));
 }
@@ -169,10 +170,12 @@ void Checks::require_level_ground(std::size_t wheel, const std::string& why) {
   const auto* allows = dynamic_cast<const terrain::AllowsStatedContacts*>(s_.terrain.get());
   const terrain::AllowsStatedContacts::Refusal refusal =
       allows ? allows->refuses_stated_contacts()
-             : terrain::AllowsStatedContacts::Refusal{"engine", fmt::format("is '{}', expected 'rigid'", terrain_.engine)};
+             : terrain::AllowsStatedContacts::Refusal{
+                   "engine", fmt::format("is '{}', expected 'rigid'", terrain_.engine)};
   if (!refusal.text.empty())
     throw wrong("terrain." + refusal.key,
-                fmt::format("{}: {} is a {}, {}", refusal.text, s_.tire_key(wheel, "file"), in_words(tires_[wheel]), why));
+                fmt::format("{}: {} is a {}, {}", refusal.text, s_.tire_key(wheel, "file"),
+                            in_words(tires_[wheel]), why));
 }
 
 void Checks::room() {

@@ -1,5 +1,5 @@
-// Soil files: sets of values for the section `terrain`, with the strength that `furrow soil` measured for them. One file
-// may describe a soil to several engines: each takes those values that are its keys.
+// Soil files: sets of values for the section `terrain`, with the strength that `furrow soil` measured for them. One
+// file may describe a soil to several engines: each takes those values that are its keys.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,5 @@
-// A scenario to begin with: a wheel or a vehicle on soil, with a comment for every key. Whatever has a scale follows from
-// the tires: a rover's wheel gets smaller grains, a shorter bed and a shorter time than a truck's.
+// A scenario to begin with: a wheel or a vehicle on soil, with a comment for every key. Whatever has a scale follows
+// from the tires: a rover's wheel gets smaller grains, a shorter bed and a shorter time than a truck's.
 #pragma once
 
 #include <filesystem>

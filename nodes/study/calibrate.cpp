@@ -26,9 +26,10 @@ std::vector<std::string> misfit_warnings(const std::vector<Target>& targets, con
     const Goodness g = goodness(target, rest.first(target.y.size()));
     rest = rest.subspan(target.y.size());
     if (target.y.size() == 1 || !(g.r_squared < kLeastRSquared) || g.largest_error < kLittleError * g.peak) continue;
-    warnings.push_back(fmt::format("the fitted model does not describe {} (R² {:.2g}): check the units of {}, and whether its other "
-                                   "keys are those of the test",
-                                   target.name, g.r_squared, target.data.filename().string()));
+    warnings.push_back(fmt::format(
+        "the fitted model does not describe {} (R² {:.2g}): check the units of {}, and whether its other "
+        "keys are those of the test",
+        target.name, g.r_squared, target.data.filename().string()));
   }
   return warnings;
 }
@@ -69,17 +70,18 @@ std::vector<std::string> calibration_warnings(const Calibration& calibration, co
       reach_warnings(calibration.model->targets(TargetSet::fitted), results.optimum.reach);
   warnings.insert(warnings.end(), missed.begin(), missed.end());
   if (results.optimum.reach.empty()) {
-    const std::vector<std::string> misfits = misfit_warnings(calibration.model->targets(TargetSet::fitted), results.fitted);
+    const std::vector<std::string> misfits =
+        misfit_warnings(calibration.model->targets(TargetSet::fitted), results.fitted);
     warnings.insert(warnings.end(), misfits.begin(), misfits.end());
   }
   const Confidence& c = results.confidence;
   for (std::size_t k = 0; k < calibration.parameters.size(); ++k) {
     const Parameter& p = calibration.parameters[k];
     if (c.estimates[k].at == Bound::none) continue;
-    warnings.push_back(fmt::format("{} ends at its {} bound of {}{}: its error is not known, and the data ask for more or do "
-                                   "not determine it",
-                                   p.name, c.estimates[k].at == Bound::lower ? "lower" : "upper",
-                                   digits(c.estimates[k].value), p.unit == "-" ? "" : " " + p.unit));
+    warnings.push_back(fmt::format(
+        "{} ends at its {} bound of {}{}: its error is not known, and the data ask for more or do not determine it",
+        p.name, c.estimates[k].at == Bound::lower ? "lower" : "upper", digits(c.estimates[k].value),
+        p.unit == "-" ? "" : " " + p.unit));
   }
   for (const Undetermined& u : c.undetermined)
     warnings.push_back(fmt::format(

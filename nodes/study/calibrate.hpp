@@ -41,7 +41,8 @@ CalibrationResults calibrate(const Calibration& calibration, const std::filesyst
 
 /// calibration.json.
 nlohmann::ordered_json calibration_json(const Calibration& calibration, const CalibrationResults& results);
-/// What a reader must know before trusting the result: parameters at bounds, what is not determined, starts that differ.
+/// What a reader must know before trusting the result: parameters at bounds, what is not
+/// determined, starts that differ.
 std::vector<std::string> calibration_warnings(const Calibration& calibration, const CalibrationResults& results);
 /// calibration.json, fit.csv and the fitted file. @throws Error(io)
 void write_calibration(const Calibration& calibration, const CalibrationResults& results,

@@ -22,7 +22,8 @@ std::string target_text(const Target& target) {
   std::string text = fmt::format("{} ({}): ", target.name, target.what);
   const auto [least, most] = std::minmax_element(target.sigma.begin(), target.sigma.end());
   if (target.labels.empty())
-    text += fmt::format("{} points, {}, {}", target.y.size(), span_of(target.x, target.x_name), span_of(target.y, target.y_name));
+    text += fmt::format("{} points, {}, {}", target.y.size(), span_of(target.x, target.x_name),
+                        span_of(target.y, target.y_name));
   else if (target.y.size() > kListed)
     text += span_of(target.y, fmt::format("{} values,", target.y.size())) +
             (*least < *most ? ", " + span_of(target.sigma, "each ±") : ", each ± " + number_text(*least));
@@ -42,7 +43,9 @@ Json target_json(const Target& target) {
 
 std::string calibration_check_text(const Calibration& c) {
   std::string text;
-  const auto line = [&](const std::string& name, const std::string& value) { text += fmt::format("{:<12} {}\n", name, value); };
+  const auto line = [&](const std::string& name, const std::string& value) {
+    text += fmt::format("{:<12} {}\n", name, value);
+  };
   line("calibration", fmt::format("{}, kind {}", c.file.string(), c.kind->name));
   line("start", c.start.string());
   for (const Parameter& p : c.parameters)

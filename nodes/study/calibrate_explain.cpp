@@ -21,16 +21,21 @@ constexpr auto kKeys = std::to_array<CalibrationKey>({
     {"format_version", "Version of the form of this file: 1."},
     {"description", "What the calibration is for, for people and 'furrow list'."},
     {"calibrate", "Kind of the model that is fitted."},
-    {"start", "File that the fit begins from, relative to the study, then to the files that come with furrow. What is not "
-              "fitted stays as it is there."},
+    {"start",
+     "File that the fit begins from, relative to the study, then to the files that come with furrow. What is "
+     "not fitted stays as it is there."},
     {"set", "Settings of the scenario that grains begin from, by dotted path, as of a study.", false},
     {"tests", "The virtual soil tests of each evaluation: seeds, stresses (Pa) and speed (m/s).", false},
-    {"parameters", "What is fitted: an object of names, each with lower, upper, start and scale ('log' or 'linear')."},
-    {"targets", "What is fitted to: a list of objects, each with data (a CSV file), name, sigma, weight and keys of the kind."},
+    {"parameters",
+     "What is fitted: an object of names, each with lower, upper, start and scale ('log' or 'linear')."},
+    {"targets",
+     "What is fitted to: a list of objects, each with data (a CSV file), name, sigma, weight and keys of the kind."},
     {"held_out", "What is predicted with the result and never fitted: a list as of targets."},
-    {"starts", "Number of starts: that of the file, and random ones within the bounds. 1 to 1000, default 8."},
+    {"starts",
+     "Number of starts: that of the file, and random ones within the bounds. 1 to 1000, default 8."},
     {"seed", "Seed of the random starts. Default 1."},
-    {"evaluations", "How often a noisy model is evaluated at most. Default 6 for each parameter, and 4 more.", false},
+    {"evaluations", "How often a noisy model is evaluated at most. Default 6 for each parameter, and 4 more.",
+     false},
     {"result", "Name of the fitted file, in the folder of results. Default <start>_fitted.json."},
 });
 
@@ -53,8 +58,9 @@ std::vector<std::string> parameters_of(const CalibrationKind& kind) {
 }
 
 std::string explain_all() {
-  std::string text = "calibrate\n  A study that fits the parameters of a model to data, with the error of each: furrow calibrate "
-                     "STUDY.\n\nkeys of the file\n";
+  std::string text =
+      "calibrate\n  A study that fits the parameters of a model to data, with the error of each: furrow "
+      "calibrate STUDY.\n\nkeys of the file\n";
   for (const CalibrationKey& key : kKeys) text += row(with_root(key.name), key.meaning);
   text += "\nkinds\n";
   for (const CalibrationKind& kind : calibration_kinds())
@@ -71,8 +77,8 @@ std::string explain_kind(const CalibrationKind& kind) {
 
 std::string explain_parameter(const std::string& key, const ParameterRule& rule) {
   return fmt::format("{}\n  Parameter of a calibration.\n  {:<8} {}\n  {:<8} {}\n  {:<8} {}\n", key, "range",
-                     range(rule.least, rule.most, rule.unit), "default", range(rule.lower, rule.upper, rule.unit), "scale",
-                     rule.logarithmic ? "log" : "linear");
+                     range(rule.least, rule.most, rule.unit), "default",
+                     range(rule.lower, rule.upper, rule.unit), "scale", rule.logarithmic ? "log" : "linear");
 }
 
 }  // namespace

@@ -18,8 +18,8 @@ std::span<const CalibrationKey> calibration_keys();
 /// Whether `key` is "calibrate", or begins with "calibrate.".
 bool explains_calibrations(const std::string& key);
 
-/// Of "calibrate", all keys and kinds; of "calibrate.targets", that key; of "calibrate.ring", the parameters of that kind;
-/// of "calibrate.ring.bending", that parameter.
+/// Of "calibrate", all keys and kinds; of "calibrate.targets", that key; of "calibrate.ring", the parameters of that
+/// kind; of "calibrate.ring.bending", that parameter.
 /// @throws Error(bad_input) for what is not known, with what looks like it
 std::string explain_calibration(const std::string& key);
 

@@ -97,7 +97,8 @@ Found bulk_density(const SoilResults& results) {
   const auto take = [&](const auto& tests) {
     if (!beds.empty()) return;
     for (std::size_t k = 0; k < tests.size(); ++k)  // several tests stand on one bed
-      if (k == 0 || tests[k].specimen.seed != tests[k - 1].specimen.seed) beds.push_back(tests[k].specimen.bulk_density);
+      if (k == 0 || tests[k].specimen.seed != tests[k - 1].specimen.seed)
+        beds.push_back(tests[k].specimen.bulk_density);
   };
   take(results.shear), take(results.repose), take(results.plate), take(results.cone);
   const Measured mean = terrain::soil::mean_of(beds);
@@ -144,16 +145,22 @@ TestSettings read_tests(OrderedJsonReader& whole) {
   reader.skip("seeds"), reader.skip("speed"), reader.skip("stresses");
   if (reader.given("seeds")) tests.seeds = reader.count("seeds", 1, kMostSeeds);
   if (reader.given("speed")) tests.speed = reader.positive("speed");
-  if (tests.speed > kMostSpeed) reader.fail("speed", fmt::format("is {} m/s, expected above 0 up to {:g} m/s", number_text(tests.speed), kMostSpeed));
+  if (tests.speed > kMostSpeed)
+    reader.fail("speed", fmt::format("is {} m/s, expected above 0 up to {:g} m/s", number_text(tests.speed),
+                                     kMostSpeed));
   if (reader.given("stresses")) {
     tests.stresses = reader.numbers("stresses");
     std::sort(tests.stresses.begin(), tests.stresses.end());
     const auto same = std::adjacent_find(tests.stresses.begin(), tests.stresses.end());
     if (tests.stresses.size() < 2 || tests.stresses.size() > kMostStresses || same != tests.stresses.end())
-      reader.fail("stresses", fmt::format("expected two to {} different normal stresses, Pa: c and φ are of a line through them", kMostStresses));
+      reader.fail(
+          "stresses",
+          fmt::format("expected two to {} different normal stresses, Pa: c and φ are of a line through them",
+                      kMostStresses));
     if (!(tests.stresses.front() > 0.0 && tests.stresses.back() <= kMostStress))
       reader.fail("stresses", fmt::format("has {} Pa, expected each above 0 up to {} Pa",
-                                          number_text(tests.stresses.front() > 0.0 ? tests.stresses.back() : tests.stresses.front()),
+                                          number_text(tests.stresses.front() > 0.0 ? tests.stresses.back()
+                                                                                   : tests.stresses.front()),
                                           number_text(kMostStress)));
   }
   reader.finish();
@@ -217,7 +224,8 @@ class GrainModel final : public CalibrationModel {
  private:
   Settings settings(std::span<const double> values) const {
     Settings all = set_;
-    for (std::size_t k = 0; k < names_.size(); ++k) all.emplace_back("terrain." + names_[k], fmt::format("{:.17g}", values[k]));
+    for (std::size_t k = 0; k < names_.size(); ++k)
+      all.emplace_back("terrain." + names_[k], fmt::format("{:.17g}", values[k]));
     return all;
   }
   DemOptions grains_of(std::span<const double> values) const {
@@ -243,7 +251,8 @@ class GrainModel final : public CalibrationModel {
         const bool is = quantity.test == Test::any || needs(quantity.test);
         const Found figure = is ? figure_of(quantity.figure, p, results) : Found{NAN, NAN};
         found.values.push_back(figure.value), found.errors.push_back(figure.error);
-        if (is && needed(quantity) && !std::isfinite(figure.value)) found.problem = fmt::format("the tests give no {}", quantity.name);
+        if (is && needed(quantity) && !std::isfinite(figure.value))
+          found.problem = fmt::format("the tests give no {}", quantity.name);
       }
     } catch (const Error& error) {
       if (error.code() != ExitCode::bad_input && error.code() != ExitCode::physics) throw;
@@ -278,7 +287,8 @@ class GrainModel final : public CalibrationModel {
   }
 
   /// The value, of the study or of a soil file; sets the target's `data` and what it says.
-  double target_value(OrderedJsonReader& reader, const Quantity& quantity, const std::filesystem::path& study, Target& target) {
+  double target_value(OrderedJsonReader& reader, const Quantity& quantity, const std::filesystem::path& study,
+                      Target& target) {
     reader.skip("data"), reader.skip("value");
     if (reader.given("data") == reader.given("value"))
       reader.fail("value", "expected either 'value' or 'data', the name of a soil file that has it");
@@ -298,11 +308,13 @@ class GrainModel final : public CalibrationModel {
     target.what = target.data.filename().string();
     const nlohmann::json soil = scenario::read_soil_material(target.data);
     if (quantity.of_file.empty() || !soil.contains(quantity.of_file))
-      throw input_error(target.data.string(), quantity.of_file.empty() ? "terrain" : "terrain." + std::string(quantity.of_file),
-                        fmt::format("is missing: soil files do not say {}, expected a 'value' in {} of {}", quantity.name,
-                                    reader.full("value"), study.string()));
+      throw input_error(target.data.string(),
+                        quantity.of_file.empty() ? "terrain" : "terrain." + std::string(quantity.of_file),
+                        fmt::format("is missing: soil files do not say {}, expected a 'value' in {} of {}",
+                                    quantity.name, reader.full("value"), study.string()));
     const double value = soil[std::string(quantity.of_file)].get<double>();
-    if (outside(value)) throw input_error(target.data.string(), "terrain." + std::string(quantity.of_file), range(value));
+    if (outside(value))
+      throw input_error(target.data.string(), "terrain." + std::string(quantity.of_file), range(value));
     return value;
   }
 
@@ -310,13 +322,15 @@ class GrainModel final : public CalibrationModel {
             std::vector<const Quantity*>& quantities) {
     for (OrderedJsonReader& reader : readers) {
       const Quantity& quantity = quantity_of(reader);
-      if (needed(quantity)) reader.fail("quantity", fmt::format("is {} a second time, expected each once", quantity.name));
+      if (needed(quantity))
+        reader.fail("quantity", fmt::format("is {} a second time, expected each once", quantity.name));
       Target target;
       target.name = reader.text_or("name", std::string(quantity.name));
       if (target.name.empty() || target.name.find_first_of(",\"") != std::string::npos)
         reader.fail("name", "expected a name without commas and quotes");
       target.y.push_back(target_value(reader, quantity, study, target));
-      if (!reader.given("sigma")) reader.fail("sigma", "is missing, expected the standard error of the value, in its unit");
+      if (!reader.given("sigma"))
+        reader.fail("sigma", "is missing, expected the standard error of the value, in its unit");
       target.sigma.push_back(reader.positive("sigma"));
       reader.finish();
       target.x.push_back(0.0), target.x_name = "", target.y_name = quantity.name;
@@ -329,19 +343,26 @@ class GrainModel final : public CalibrationModel {
 
   /// A K that such grains cannot have is compared, and not fitted: it would spoil what can be.
   void leave_out_small_K(const CalibrationInput& input) {
-    const auto at = std::find_if(of_fitted_.begin(), of_fitted_.end(), [](const Quantity* q) { return q->figure == Figure::K; });
+    const auto at = std::find_if(of_fitted_.begin(), of_fitted_.end(),
+                                 [](const Quantity* q) { return q->figure == Figure::K; });
     if (at == of_fitted_.end() || std::find(names_.begin(), names_.end(), "radius") != names_.end()) return;
     const std::size_t k = static_cast<std::size_t>(at - of_fitted_.begin());
     const Target target = fitted_[k];
     const Quantity* const quantity = *at;
     const double least = kLeastK * 2.0 * grains_.radius;
     if (target.y.front() + 2.0 * target.sigma.front() >= least) return;
-    notes_.push_back(fmt::format("{} of {:g} mm cannot be reached with grains of {:g} mm diameter: it is not below {:g} mm, {:g} of the "
-                                 "diameter, in any soil that was tested. It is compared, not fitted; grains of {:.2g} mm or less could reach it",
-                                 target.name, 1e3 * target.y.front(), 2e3 * grains_.radius, 1e3 * least, kLeastK, 1e3 * target.y.front() / kLeastK));
+    notes_.push_back(
+        fmt::format("{} of {:g} mm cannot be reached with grains of {:g} mm diameter: it is not below {:g} "
+                    "mm, {:g} of the "
+                    "diameter, in any soil that was tested. It is compared, not fitted; grains of {:.2g} mm "
+                    "or less could reach it",
+                    target.name, 1e3 * target.y.front(), 2e3 * grains_.radius, 1e3 * least, kLeastK,
+                    1e3 * target.y.front() / kLeastK));
     fitted_.erase(fitted_.begin() + static_cast<std::ptrdiff_t>(k)), of_fitted_.erase(at);
     held_out_.push_back(target), of_held_out_.push_back(quantity);
-    if (fitted_.empty()) throw input_error(input.study.string(), "targets", "has no target that can be reached: " + notes_.back());
+    if (fitted_.empty())
+      throw input_error(input.study.string(), "targets",
+                        "has no target that can be reached: " + notes_.back());
   }
 
   std::vector<std::string> names_;
@@ -359,6 +380,8 @@ class GrainModel final : public CalibrationModel {
 
 std::span<const ParameterRule> grain_parameters() { return kRules; }
 
-std::unique_ptr<CalibrationModel> read_grain_calibration(CalibrationInput& input) { return std::make_unique<GrainModel>(input); }
+std::unique_ptr<CalibrationModel> read_grain_calibration(CalibrationInput& input) {
+  return std::make_unique<GrainModel>(input);
+}
 
 }  // namespace furrow::study

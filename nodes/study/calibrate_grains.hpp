@@ -7,8 +7,8 @@
 //               {"quantity": "bulk_density_kg_m3", "value": 1500, "sigma": 30}]
 //
 // A prediction is what `furrow soil` gives for the start with the parameters as settings, to the last bit, with its
-// standard errors between beds. Only those tests run that the targets need. What a test gives for held-out targets is kept
-// with the fitted ones of the same parameters.
+// standard errors between beds. Only those tests run that the targets need. What a test gives for held-out targets is
+// kept with the fitted ones of the same parameters.
 #pragma once
 
 #include <memory>

@@ -59,7 +59,8 @@ constexpr auto kQuantities = std::to_array<Quantity>({
      [](const MagicFormula& t, const SweepPoint& p) { return forces(t, p).my; }},
     {"mz", "Mz_Nm", "N m", false, [](const SweepPoint& p) { return p.forces.mz; },
      [](const MagicFormula& t, const SweepPoint& p) { return forces(t, p).mz; }},
-    {"loaded_radius", "loaded_radius_m", "m", false, [](const SweepPoint& p) { return p.loaded_radius; }, loaded_radius},
+    {"loaded_radius", "loaded_radius_m", "m", false, [](const SweepPoint& p) { return p.loaded_radius; },
+     loaded_radius},
     {"rolling_radius", "rolling_radius_m", "m", true, [](const SweepPoint& p) { return p.rolling_radius; },
      [](const MagicFormula& t, const SweepPoint& p) {
        return tire::handling::rolling_radius(t, p.state.load / t.vertical.vertical_stiffness);
@@ -132,7 +133,8 @@ class HandlingModel final : public CalibrationModel, public LeavesFiles {
   }
 
   nlohmann::ordered_json fitted_file(std::span<const double>, const std::string& source) const override {
-    nlohmann::ordered_json file{{"format_version", 1}, {"model", "handling"}, {"source", source}, {"tir", stem_ + ".tir"}};
+    nlohmann::ordered_json file{
+        {"format_version", 1}, {"model", "handling"}, {"source", source}, {"tir", stem_ + ".tir"}};
     return file;
   }
 
@@ -188,8 +190,9 @@ class HandlingModel final : public CalibrationModel, public LeavesFiles {
   }
 
   static std::string ranges_text(const MagicFormula& t) {
-    return fmt::format("slip to {:.3g}, slip angle to {:.3g} rad, camber to {:.3g} rad, load {:.0f} to {:.0f} N", t.slip.most,
-                       t.slip_angle.most, t.camber.most, t.load.least, t.load.most);
+    return fmt::format(
+        "slip to {:.3g}, slip angle to {:.3g} rad, camber to {:.3g} rad, load {:.0f} to {:.0f} N",
+        t.slip.most, t.slip_angle.most, t.camber.most, t.load.least, t.load.most);
   }
 
   static std::string residual_text(const MagicFormula& tire, const Rows& rows) {
@@ -200,9 +203,10 @@ class HandlingModel final : public CalibrationModel, public LeavesFiles {
       largest = std::max(largest, std::abs(residual));
       peak = std::max(peak, std::abs(measured));
     }
-    return fmt::format("residual of {}: root mean square {:.3g} {}, largest {:.3g} {} of a peak of {:.4g} {}, {} points",
-                       rows.target, std::sqrt(squares / static_cast<double>(rows.points.size())),
-                       rows.quantity->unit, largest, rows.quantity->unit, peak, rows.quantity->unit, rows.points.size());
+    return fmt::format(
+        "residual of {}: root mean square {:.3g} {}, largest {:.3g} {} of a peak of {:.4g} {}, {} points",
+        rows.target, std::sqrt(squares / static_cast<double>(rows.points.size())), rows.quantity->unit,
+        largest, rows.quantity->unit, peak, rows.quantity->unit, rows.points.size());
   }
 
   static const Quantity& quantity_of(OrderedJsonReader& reader) {
@@ -254,7 +258,8 @@ std::span<const ParameterRule> handling_parameters() {
   static const std::vector<ParameterRule> rules = [] {
     std::vector<ParameterRule> all;
     const MagicFormula none;
-    visit_coefficients([&](const Field& field, const double&) { all.push_back(rule_of(field.name, field.unit)); }, none);
+    visit_coefficients(
+        [&](const Field& field, const double&) { all.push_back(rule_of(field.name, field.unit)); }, none);
     return all;
   }();
   return rules;

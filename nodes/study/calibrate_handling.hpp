@@ -1,5 +1,6 @@
-// The kind of calibration that fits the Magic Formula of a tire property file (.tir) to tables of `furrow sweep` on hard
-// ground (tire/handling/sweep_table.hpp): longitudinal slip, slip angle, camber and load against forces and moments.
+// The kind of calibration that fits the Magic Formula of a tire property file (.tir) to tables of `furrow sweep` on
+// hard ground (tire/handling/sweep_table.hpp): longitudinal slip, slip angle, camber and
+// load against forces and moments.
 //
 // A target names a table and what of it is compared: "of": "fx", "fy", "mx", "my", "mz" (ISO-W axes), "loaded_radius",
 // or "rolling_radius" of the rows that roll freely. Parameters are coefficients by their names in the file. Beside the

@@ -118,8 +118,8 @@ struct CalibrationKind {
 
 std::span<const CalibrationKind> calibration_kinds();
 
-/// The keys that targets of every kind have: `data`, `name`, `sigma` and `weight`. @param state keys that the kind takes
-/// besides them. The points are the kind's to read; then set_sigma().
+/// The keys that targets of every kind have: `data`, `name`, `sigma` and `weight`. @param state keys that the kind
+/// takes besides them. The points are the kind's to read; then set_sigma().
 struct TargetKeys {
   Target target;        // name and data
   double sigma = 0.0;   // of every point, in the unit of y; 0: not given

@@ -193,12 +193,17 @@ Least least_from(const Misfit& misfit, Eigen::VectorXd place) {
 class Noisy {
  public:
   Noisy(Objective& objective, const OptimizerOptions& options)
-      : objective_(objective), options_(options), draw_(options.seed), size_(static_cast<Eigen::Index>(objective.parameters())) {}
+      : objective_(objective),
+        options_(options),
+        draw_(options.seed),
+        size_(static_cast<Eigen::Index>(objective.parameters())) {}
 
   Optimum run() {
     const std::vector<double> start = objective_.start();
     const int count = std::min(3 * static_cast<int>(size_), options_.evaluations - 3);
-    for (const Eigen::VectorXd& place : design(Eigen::Map<const Eigen::VectorXd>(start.data(), size_), count, draw_)) evaluate(place);
+    for (const Eigen::VectorXd& place :
+         design(Eigen::Map<const Eigen::VectorXd>(start.data(), size_), count, draw_))
+      evaluate(place);
     require_answers();
     Eigen::VectorXd before;  // the least before this one
     std::string ended;
@@ -237,9 +242,9 @@ class Noisy {
   void require_answers() const {
     const std::size_t least = static_cast<std::size_t>(size_) + 2;
     if (places_.size() < least)
-      throw physics_error(fmt::format("{}: the model answers at {} of the {} places of the design, expected {} or more; where it "
-                                      "does not: {}",
-                                      objective_.calibration().file.string(), places_.size(), all_.size(), least, problem_));
+      throw physics_error(fmt::format(
+          "{}: the model answers at {} of the {} places of the design, expected {} or more; where it does not: {}",
+          objective_.calibration().file.string(), places_.size(), all_.size(), least, problem_));
   }
 
   Misfit fit() const { return Misfit(objective_.calibration(), places_, found_); }

@@ -1,12 +1,12 @@
 // The optimizer for models that cost much and answer with noise: a space-filling design, a surrogate of every figure
-// (calibrate_surrogate.hpp), and evaluations at the least of the surrogates' misfit until that least stays where it is and
-// the surrogates err less there than the targets.
+// (calibrate_surrogate.hpp), and evaluations at the least of the surrogates' misfit until that least stays where it is
+// and the surrogates err less there than the targets.
 //
-// The design is the start and the Latin hypercube whose places are farthest from each other among some that a seed draws,
-// three times as many evaluations as parameters and one [Jones, Schonlau & Welch 1998, whose improvement is not needed:
-// here each figure has a surrogate of its own]. The misfit is Σ (ŷ − data)²/(σ² + σ̂²), σ the target's standard error and
-// σ̂ the surrogate's; Ceres finds its least from several starts. Both errors are known, so none is taken from the
-// residuals: cov s = (JᵀJ)⁻¹.
+// The design is the start and the Latin hypercube whose places are farthest from each other among some that a seed
+// draws, three times as many evaluations as parameters and one [Jones, Schonlau & Welch 1998, whose improvement is not
+// needed: here each figure has a surrogate of its own]. The misfit is Σ (ŷ − data)²/(σ² + σ̂²), σ the target's standard
+// error and σ̂ the surrogate's; Ceres finds its least from several starts. Both errors are known, so none is taken from
+// the residuals: cov s = (JᵀJ)⁻¹.
 //
 // [Jones, Schonlau & Welch 1998] Efficient global optimization of expensive black-box functions, J. Global Optim. 13.
 #pragma once

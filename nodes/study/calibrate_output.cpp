@@ -42,7 +42,8 @@ Json parameters_json(const Calibration& calibration, const Confidence& confidenc
   return all;
 }
 
-Json targets_json(const std::vector<Target>& targets, const Prediction& prediction, const std::vector<Reach>& reach = {}) {
+Json targets_json(const std::vector<Target>& targets, const Prediction& prediction,
+                  const std::vector<Reach>& reach = {}) {
   Json all = Json::array();
   std::span<const double> rest = prediction.values;
   std::size_t first = 0;
@@ -130,7 +131,8 @@ std::string fit_table(const Calibration& calibration, const CalibrationResults& 
 
 std::string list_of(const std::vector<Target>& targets) {
   std::string text;
-  for (const Target& target : targets) text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", target.name, target.what);
+  for (const Target& target : targets)
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", target.name, target.what);
   return text;
 }
 
@@ -140,17 +142,23 @@ std::string source_text(const Calibration& calibration, const CalibrationResults
   for (const Parameter& p : calibration.parameters) names += (names.empty() ? "" : ", ") + p.name;
   const std::vector<Target>& fitted = calibration.model->targets(TargetSet::fitted);
   if (!results.optimum.reach.empty()) {
-    std::string noisy = fmt::format("furrow calibrate {} of {} fitted {}: {}; {} evaluations, {:.2g} minutes of processor time. All other values are those of {}",
-                                    FURROW_VERSION, calibration.file.filename().string(), names, reach_text(fitted, results.optimum.reach),
-                                    results.optimum.evaluations, results.processor_time / 60.0, calibration.start.filename().string());
+    std::string noisy = fmt::format(
+        "furrow calibrate {} of {} fitted {}: {}; {} evaluations, {:.2g} minutes of processor time. All "
+        "other values are those of {}",
+        FURROW_VERSION, calibration.file.filename().string(), names,
+        reach_text(fitted, results.optimum.reach), results.optimum.evaluations, results.processor_time / 60.0,
+        calibration.start.filename().string());
     for (const std::string& warning : calibration_warnings(calibration, results)) noisy += ". Note: " + warning;
     return noisy;
   }
   std::string text = fmt::format(
-      "furrow calibrate {} of {} fitted {} to {}: R² {:.5f}, largest error {:.2g} % of the peak. All other values are those of {}",
-      FURROW_VERSION, calibration.file.filename().string(), names, list_of(calibration.model->targets(TargetSet::fitted)),
+      "furrow calibrate {} of {} fitted {} to {}: R² {:.5f}, largest error {:.2g} % of the peak. All other "
+      "values are those of {}",
+      FURROW_VERSION, calibration.file.filename().string(), names,
+      list_of(calibration.model->targets(TargetSet::fitted)),
       joint_r_squared(calibration.model->targets(TargetSet::fitted), results.fitted.values),
-      100.0 * summary["fitted"]["largest_error_of_peak"].get<double>(), calibration.start.filename().string());
+      100.0 * summary["fitted"]["largest_error_of_peak"].get<double>(),
+      calibration.start.filename().string());
   for (const std::string& warning : calibration_warnings(calibration, results)) text += ". Note: " + warning;
   return text;
 }
@@ -167,7 +175,8 @@ Json calibration_json(const Calibration& calibration, const CalibrationResults& 
             {"calibrate", calibration.kind->name},
             {"start", calibration.start.filename().string()},
             {"result", calibration.result}};
-  const Json of_fitted = targets_json(fitted, results.fitted, results.optimum.reach), of_held_out = targets_json(held_out, results.held_out);
+  const Json of_fitted = targets_json(fitted, results.fitted, results.optimum.reach),
+             of_held_out = targets_json(held_out, results.held_out);
   json["fitted"] = total_json(fitted, results.fitted, of_fitted);
   json["held_out"] = total_json(held_out, results.held_out, of_held_out);
   json["parameters"] = parameters_json(calibration, results.confidence);

@@ -85,9 +85,15 @@ double start_of_softening(const json& file, const std::string&) {
   return product > 0.0 ? std::min(k[1].get<double>() / std::sqrt(product), 1.0) : NAN;
 }
 
-constexpr PressKind kRing{"ring", true, kRingPlaces, tire::read_ring, derive_softening, start_of_softening,
-                         [](const json& file) { return tire::kMostRingDeflection * tire::read_ring_file(file, "").params.radius; },
-                         "a quarter of the tire's radius"};
+constexpr PressKind kRing{
+    "ring",
+    true,
+    kRingPlaces,
+    tire::read_ring,
+    derive_softening,
+    start_of_softening,
+    [](const json& file) { return tire::kMostRingDeflection * tire::read_ring_file(file, "").params.radius; },
+    "a quarter of the tire's radius"};
 
 // ---- planar finite elements
 
@@ -159,22 +165,27 @@ std::vector<double> read_curve(Target& target, double most, const char* most_tex
       throw table.wrong(row, fmt::format("deflection_m is {}, expected 0 to {}", number_text(deflection),
                                          number_text(kMostDeflection)));
     if (deflection > most)
-      throw table.wrong(row, fmt::format("deflection_m is {}, expected {:.4g} or less, {}", number_text(deflection), most, most_text));
+      throw table.wrong(row, fmt::format("deflection_m is {}, expected {:.4g} or less, {}",
+                                         number_text(deflection), most, most_text));
     if (deflection == 0.0) continue;
     if (!target.x.empty() && !(deflection > target.x.back()))
       throw table.wrong(row, fmt::format("deflection_m is {}, expected more than that of the line before, {}",
                                          number_text(deflection), number_text(target.x.back())));
     const double force = table.number(row, "force_N");
     if (force < 0.0)
-      throw table.wrong(row, fmt::format("force_N is {}, expected 0 or more: a tire is pressed, not pulled", number_text(force)));
+      throw table.wrong(row, fmt::format("force_N is {}, expected 0 or more: a tire is pressed, not pulled",
+                                         number_text(force)));
     last = row, largest = std::max(largest, force);
     target.x.push_back(deflection), target.y.push_back(force);
     if (!table.has("sigma_N")) continue;
     sigma.push_back(table.number(row, "sigma_N"));
     if (!(sigma.back() > 0.0)) throw table.wrong(row, "sigma_N is " + number_text(sigma.back()) + ", expected above 0");
   }
-  if (target.x.empty()) throw input_error(target.data.string(), "", "has no point of loading with a deflection above 0");
-  if (largest == 0.0) throw table.wrong(last, "force_N is 0 here and on all lines before, expected a force that rises with the deflection");
+  if (target.x.empty())
+    throw input_error(target.data.string(), "", "has no point of loading with a deflection above 0");
+  if (largest == 0.0)
+    throw table.wrong(
+        last, "force_N is 0 here and on all lines before, expected a force that rises with the deflection");
   return sigma;
 }
 
@@ -265,13 +276,16 @@ class PressModel final : public CalibrationModel {
       reader.skip("pressure");
       if (reader.has("pressure")) {
         if (!kind_.has_pressure)
-          reader.fail("pressure", fmt::format("is given for a {} tire, whose material stands for one pressure", kind_.model));
+          reader.fail(
+              "pressure",
+              fmt::format("is given for a {} tire, whose material stands for one pressure", kind_.model));
         press.pressure = reader.not_negative("pressure");
         if (*press.pressure > kMostPressure)
           reader.fail("pressure", fmt::format("is {} Pa, expected 0 to {} Pa", number_text(*press.pressure),
                                               number_text(kMostPressure)));
         target.what += fmt::format(", {:g} kPa", 1e-3 * *press.pressure);
-        for (const scenario::Problem& odd : scenario::Schema::load().unusual({{"tire", {{"pressure", *press.pressure}}}}))
+        for (const scenario::Problem& odd :
+             scenario::Schema::load().unusual({{"tire", {{"pressure", *press.pressure}}}}))
           notes_.emplace_back(input_error(study.string(), reader.full("pressure"), odd.what).what());
       }
       reader.finish();

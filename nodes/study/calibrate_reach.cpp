@@ -35,7 +35,8 @@ ReachState reach_state(const Reach& r, double data) {
   return beyond ? ReachState::out_of_range : ReachState::not_together;
 }
 
-Json figures_json(const Target& target, const Prediction& prediction, std::size_t first, const std::vector<Reach>& reach) {
+Json figures_json(const Target& target, const Prediction& prediction, std::size_t first,
+                  const std::vector<Reach>& reach) {
   Json all = Json::array();
   for (std::size_t k = 0; k < target.labels.size(); ++k) {
     Json json{{"label", target.labels[k]}, {"target", target.y[k]}, {"sigma", target.sigma[k]}};
@@ -62,10 +63,11 @@ std::vector<std::string> reach_warnings(const std::vector<Target>& fitted, const
     const Reach& r = reach[at];
     const ReachState state = reach_state(r, target.y[k]);
     if (state == ReachState::reached) return;
-    warnings.push_back(fmt::format("{} of {} is not reached but {}: {} ({} to {})", target.name, with_error(target.y[k], target.sigma[k]),
-                                   with_error(r.value, r.error),
-                                   state == ReachState::out_of_range ? "it is beyond all evaluations within these bounds"
-                                                                     : "the evaluations span it, but not where the other targets are met",
+    warnings.push_back(fmt::format("{} of {} is not reached but {}: {} ({} to {})", target.name,
+                                   with_error(target.y[k], target.sigma[k]), with_error(r.value, r.error),
+                                   state == ReachState::out_of_range
+                                       ? "it is beyond all evaluations within these bounds"
+                                       : "the evaluations span it, but not where the other targets are met",
                                    digits(r.low), digits(r.high)));
   });
   return warnings;
@@ -74,7 +76,8 @@ std::vector<std::string> reach_warnings(const std::vector<Target>& fitted, const
 std::string reach_text(const std::vector<Target>& targets, const std::vector<Reach>& reach) {
   std::string text;
   each_figure(targets, [&](const Target& target, std::size_t k, std::size_t at) {
-    text += fmt::format("{}{} {} (target {}, {})", text.empty() ? "" : ", ", target.name, with_error(reach[at].value, reach[at].error),
+    text += fmt::format("{}{} {} (target {}, {})", text.empty() ? "" : ", ", target.name,
+                        with_error(reach[at].value, reach[at].error),
                         with_error(target.y[k], target.sigma[k]), target.what);
   });
   return text;
@@ -84,8 +87,9 @@ Json measured_json(const std::vector<Target>& targets, const Prediction& predict
   Json json = Json::object();
   each_figure(targets, [&](const Target& target, std::size_t k, std::size_t at) {
     if (at >= prediction.values.size()) return;
-    json[target.labels[k]] = {{"mean", prediction.values[at]},
-                              {"standard_error", at < prediction.errors.size() ? json_number(prediction.errors[at]) : Json()}};
+    json[target.labels[k]] = {
+        {"mean", prediction.values[at]},
+        {"standard_error", at < prediction.errors.size() ? json_number(prediction.errors[at]) : Json()}};
   });
   return json;
 }

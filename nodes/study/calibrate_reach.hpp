@@ -12,8 +12,8 @@
 
 namespace furrow::study {
 
-/// reached: within two standard errors, of target and surrogate together. out_of_range: beyond what all evaluations span,
-/// by more than two. not_together: within that span, and still not met with the others.
+/// reached: within two standard errors, of target and surrogate together. out_of_range: beyond what all evaluations
+/// span, by more than two. not_together: within that span, and still not met with the others.
 enum class ReachState { reached, out_of_range, not_together };
 ReachState reach_state(const Reach& reach, double data);
 

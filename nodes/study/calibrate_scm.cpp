@@ -86,8 +86,12 @@ class ScmModel final : public CalibrationModel {
     if (progress) progress("", 0.0);
     ScmOptions soil = soil_;
     for (std::size_t k = 0; k < names_.size(); ++k) with(soil, names_[k], [&](double& own) { own = values[k]; });
-    const terrain::scm::PressureLaw pressure{
-        soil.bekker_k_c, soil.bekker_k_phi, soil.bekker_n, soil.unloading_stiffness, soil.unloading_stiffness_rate, 0.0};
+    const terrain::scm::PressureLaw pressure{soil.bekker_k_c,
+                                             soil.bekker_k_phi,
+                                             soil.bekker_n,
+                                             soil.unloading_stiffness,
+                                             soil.unloading_stiffness_rate,
+                                             0.0};
     const terrain::scm::ShearLaw shear{soil.mohr_cohesion, std::tan(soil.mohr_friction_angle * kDegree), soil.janosi_k,
                                        kNoSlip};
     Prediction found;
@@ -162,8 +166,8 @@ class ScmModel final : public CalibrationModel {
     }
   }
 
-  /// The points of a file by the plate's width or by the nominal normal stress, by rising x. As in `furrow soil` what has
-  /// no sinkage or no pressure is left out.
+  /// The points of a file by the plate's width or by the nominal normal stress, by rising x. As in `furrow soil` what
+  /// has no sinkage or no pressure is left out.
   /// @param key of the target that says it where the file has no such column
   static std::map<double, Points> tests_of(const std::filesystem::path& file, bool plate, OrderedJsonReader& reader,
                                            const char* key) {
@@ -172,25 +176,34 @@ class ScmModel final : public CalibrationModel {
                               : std::vector<std::string>{"travel_m", "shear_stress_Pa", "normal_stress_Pa",
                                                          "nominal_normal_stress_Pa", "seed", "rise_m", "sigma_Pa"});
     const char *x = plate ? "sinkage_m" : "travel_m", *y = plate ? "pressure_Pa" : "shear_stress_Pa",
-               *mark = plate ? "width_m" : table.has("nominal_normal_stress_Pa") ? "nominal_normal_stress_Pa" : "normal_stress_Pa";
+               *mark = plate                                   ? "width_m"
+                       : table.has("nominal_normal_stress_Pa") ? "nominal_normal_stress_Pa"
+                                                               : "normal_stress_Pa";
     if (!table.has(y)) throw table.wrong(0, fmt::format("has no column '{}' above it, expected one", y));
     const bool marked = table.has(mark);
     if (marked && reader.has(key))
-      reader.fail(key, fmt::format("is given, and {} has the column '{}', expected one of them", file.filename().string(), mark));
+      reader.fail(key, fmt::format("is given, and {} has the column '{}', expected one of them",
+                                   file.filename().string(), mark));
     if (!marked && !reader.has(key))
-      throw table.wrong(0, fmt::format("has no column '{}' above it, expected one, or the key '{}' of the target", mark, key));
+      throw table.wrong(
+          0,
+          fmt::format("has no column '{}' above it, expected one, or the key '{}' of the target", mark, key));
     const double given = marked ? NAN : reader.positive(key);
     std::map<double, Points> tests;
     for (std::size_t row = 0; row < table.row_count(); ++row) {
-      const double at = table.number(row, x), value = table.number(row, y), which = marked ? table.number(row, mark) : given;
+      const double at = table.number(row, x), value = table.number(row, y),
+                   which = marked ? table.number(row, mark) : given;
       if (!(which > 0.0)) throw table.wrong(row, fmt::format("{} is {}, expected above 0", mark, number_text(which)));
       if (!(at > 0.0) || (plate && !(value > 0.0))) continue;
       Points& points = tests[which];
       points.x.push_back(at), points.y.push_back(value);
-      if (!plate) points.normal.push_back(std::max(table.has("normal_stress_Pa") ? table.number(row, "normal_stress_Pa") : which, 0.0));
+      if (!plate)
+        points.normal.push_back(
+            std::max(table.has("normal_stress_Pa") ? table.number(row, "normal_stress_Pa") : which, 0.0));
       if (!table.has("sigma_Pa")) continue;
       points.sigma.push_back(table.number(row, "sigma_Pa"));
-      if (!(points.sigma.back() > 0.0)) throw table.wrong(row, "sigma_Pa is " + number_text(points.sigma.back()) + ", expected above 0");
+      if (!(points.sigma.back() > 0.0))
+        throw table.wrong(row, "sigma_Pa is " + number_text(points.sigma.back()) + ", expected above 0");
     }
     if (tests.empty()) throw input_error(file.string(), "", fmt::format("has no point with {} above 0", x));
     for (auto& [unused, points] : tests) sort_points(points);
@@ -200,7 +213,8 @@ class ScmModel final : public CalibrationModel {
   static void sort_points(Points& points) {
     std::vector<std::size_t> order(points.x.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return points.x[a] < points.x[b]; });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return points.x[a] < points.x[b]; });
     for (std::vector<double>* values : {&points.x, &points.y, &points.sigma, &points.normal}) {
       if (values->empty()) continue;
       std::vector<double> sorted;
@@ -226,8 +240,8 @@ class ScmModel final : public CalibrationModel {
       }
     }
     const auto differ = [](double a, double b) { return a != b; };
-    if (std::adjacent_find(plates.begin(), plates.end(), [](const auto& a, const auto& b) { return a.width != b.width; }) !=
-        plates.end()) {
+    if (std::adjacent_find(plates.begin(), plates.end(),
+                           [](const auto& a, const auto& b) { return a.width != b.width; }) != plates.end()) {
       const terrain::soil::BekkerFit fit = terrain::soil::fit_bekker(plates);
       fits["bekker_k_c"] = fit.k_c, fits["bekker_k_phi"] = fit.k_phi, fits["bekker_n"] = fit.n;
     }
@@ -250,6 +264,8 @@ class ScmModel final : public CalibrationModel {
 
 std::span<const ParameterRule> scm_parameters() { return kRules; }
 
-std::unique_ptr<CalibrationModel> read_scm_calibration(CalibrationInput& input) { return std::make_unique<ScmModel>(input); }
+std::unique_ptr<CalibrationModel> read_scm_calibration(CalibrationInput& input) {
+  return std::make_unique<ScmModel>(input);
+}
 
 }  // namespace furrow::study

@@ -1,8 +1,8 @@
 // Kind `scm` of calibrations: empirical soil (terrain/scm) from the curves of plate and shear tests.
 //
-// A target names plate.csv or shear.csv of `furrow soil`, or a measured table of the same columns. Each width of a plate and
-// each normal stress of a shear test is a target of its own, named after both. Starts that neither the study nor the soil
-// file gives are the fits of `furrow soil` to the same curves (terrain/soil/fits.hpp).
+// A target names plate.csv or shear.csv of `furrow soil`, or a measured table of the same columns. Each width of a
+// plate and each normal stress of a shear test is a target of its own, named after both. Starts that neither the study
+// nor the soil file gives are the fits of `furrow soil` to the same curves (terrain/soil/fits.hpp).
 #pragma once
 
 #include <memory>

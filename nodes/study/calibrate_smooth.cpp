@@ -99,7 +99,8 @@ class Solver {
       }
       const Eigen::VectorXd gradient = J->transpose() * *r;
       std::vector<bool> now(held.size());
-      for (std::size_t k = 0; k < now.size(); ++k) now[k] = pushed(result.end[k], gradient[static_cast<Eigen::Index>(k)]);
+      for (std::size_t k = 0; k < now.size(); ++k)
+        now[k] = pushed(result.end[k], gradient[static_cast<Eigen::Index>(k)]);
       if (now == held) {
         polish(result, held, *r, *J);
         break;
@@ -111,7 +112,8 @@ class Solver {
   }
 
  private:
-  /// Steps of Gauss and Newton without damping, as long as they make it better: the last digits that damped steps leave.
+  /// Steps of Gauss and Newton without damping, as long as they make it better: the last
+  /// digits that damped steps leave.
   void polish(StartResult& result, const std::vector<bool>& held, Eigen::VectorXd r, Eigen::MatrixXd J) {
     for (int n = 0; n < kMostPolish; ++n) {
       for (std::size_t k = 0; k < held.size(); ++k)

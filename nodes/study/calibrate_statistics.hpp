@@ -1,11 +1,11 @@
-// How well data determine parameters: standard errors, intervals, and combinations that they do not determine, of a least
-// squares fit linearised at its end.
+// How well data determine parameters: standard errors, intervals, and combinations that they do not determine, of a
+// least squares fit linearised at its end.
 //
 // With the Jacobian J = ∂r/∂s of the free parameters (s on scales from 0 to 1) and m points, p of them free,
-//   σ̂² = Σ r²/(m − p),   cov s = σ̂² (JᵀJ)⁻¹ = σ̂² Σ v v ᵀ/w²                                  [Seber & Wild 2003, §2.1]
-// w and v the singular values and right vectors of J. A parameter at a bound is held: it has no error of its own, and the
-// others' are for that value. Residuals that one cause moves together, such as a model's own error, are not independent:
-// then these intervals are too narrow.
+//   σ̂² = Σ r²/(m − p),   cov s = σ̂² (JᵀJ)⁻¹ = σ̂² Σ v v ᵀ/w²                                [Seber & Wild 2003, §2.1]
+// w and v the singular values and right vectors of J. A parameter at a bound is held: it has no error of its own, and
+// the others' are for that value. Residuals that one cause moves together, such as a model's own error, are not
+// independent: then these intervals are too narrow.
 //
 // The data do not determine a combination v where its 95 % interval t σ̂/w is half of the scale or more, or where w is
 // below 1e-6 of the largest: then even data without error would not. A parameter whose own interval is as wide as its

@@ -130,10 +130,11 @@ void take_starts(std::vector<Parameter>& parameters, const CalibrationModel& mod
     if (!std::isfinite(p.start))
       reader.fail("parameters." + p.name, "has no 'start', and the start file has no such value, expected a 'start'");
     if (p.start < p.lower || p.start > p.upper)
-      reader.fail("parameters." + p.name,
-                  fmt::format("begins at {} {}, which is the start file's, expected bounds around it or a 'start' within "
-                              "{} to {}",
-                              number_text(p.start), p.unit, number_text(p.lower), number_text(p.upper)));
+      reader.fail(
+          "parameters." + p.name,
+          fmt::format(
+              "begins at {} {}, which is the start file's, expected bounds around it or a 'start' within {} to {}",
+              number_text(p.start), p.unit, number_text(p.lower), number_text(p.upper)));
   }
 }
 
@@ -206,7 +207,8 @@ Calibration load_calibration(const std::filesystem::path& name) {
   c.seed = reader.given("seed") ? static_cast<std::uint64_t>(reader.count("seed", 0, kLargestSeed)) : c.seed;
   if (kind.noisy) c.evaluations = evaluations_of(reader, c.parameters.size());
   c.result = result_name(reader, c);
-  CalibrationInput input{file, c.start, {}, targets_of(reader, "targets", true), targets_of(reader, "held_out", false), reader};
+  CalibrationInput input{
+      file, c.start, {}, targets_of(reader, "targets", true), targets_of(reader, "held_out", false), reader};
   for (const Parameter& p : c.parameters) input.parameters.push_back(p.name);
   c.model = c.kind->read(input);
   require_names(reader, *c.model);

@@ -1,5 +1,5 @@
-// Contact that a tire computes by a law of its own, such as a handling tire on hard ground: the terrain gives the forces
-// that the tire asks for, and counts them as it counts its own.
+// Contact that a tire computes by a law of its own, such as a handling tire on hard ground: the terrain gives the
+// forces that the tire asks for, and counts them as it counts its own.
 #pragma once
 
 #include "protocol/core/fields.hpp"
@@ -8,7 +8,8 @@
 namespace furrow {
 
 struct StatedContact {
-  bool given = false;  // the tire states its contact: the terrain adds no force of its own, also where `forces` is empty
+  bool given =
+      false;  // the tire states its contact: the terrain adds no force of its own, also where `forces` is empty
   NodalForces forces;  // on the tire, for the terrain's next interval; without tangents
 };
 template <class Visit>

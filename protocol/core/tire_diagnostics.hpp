@@ -9,8 +9,9 @@
 
 namespace furrow {
 
-/// Account of what a tire holds and lost, each entry from its own formula. A model must set every member: what it forgets
-/// is not a number, and the tire's rank refuses that by name. With the works of its rim and of the terrain on it,
+/// Account of what a tire holds and lost, each entry from its own formula. A model must set every member: what it
+/// forgets is not a number, and the tire's rank refuses that by name. With the works of
+/// its rim and of the terrain on it,
 ///   residual = rim work + terrain work − Δ(kinetic + elastic + pressure + potential) − losses()
 /// is what the model's formulas leave over (tire/README.md, Accounts).
 struct TireDiagnostics {

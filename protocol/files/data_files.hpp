@@ -7,11 +7,12 @@
 
 namespace furrow {
 
-/// The folder that holds rigs/, tire/, terrain/, vehicle/ and scripts/: from FURROW_HOME, or found from the program's own place.
+/// The folder that holds rigs/, tire/, terrain/, vehicle/ and scripts/: from FURROW_HOME, or
+/// found from the program's own place.
 std::filesystem::path data_folder();
 
-/// The file that an argument names: `name` as it is, or the file of that name in one of these folders of the data folder,
-/// such as "rigs". A file that does not exist is returned as it is.
+/// The file that an argument names: `name` as it is, or the file of that name in one of these folders of the data
+/// folder, such as "rigs". A file that does not exist is returned as it is.
 /// @throws Error(bad_input) where there is no such file, but one of a similar name in these folders
 std::filesystem::path named_file(const std::filesystem::path& name, const std::vector<std::string>& folders);
 

@@ -15,8 +15,8 @@ inline constexpr std::size_t kMaxDepth = 64;
 
 /// @tparam Json nlohmann::json, or nlohmann::ordered_json where the order of keys matters
 /// @param name of the file, for messages
-/// @throws Error(bad_input): syntax and nesting with line and column; duplicate keys, keys that nobody could type or that
-/// are too many, and overflowing numbers by their key
+/// @throws Error(bad_input): syntax and nesting with line and column; duplicate keys, keys that nobody could type or
+/// that are too many, and overflowing numbers by their key
 template <class Json = nlohmann::json>
 Json parse_json(const std::string& text, const std::string& name);
 

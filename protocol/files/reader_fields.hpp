@@ -1,5 +1,5 @@
-// Reads structs with a list of fields (protocol/core/fields.hpp) from files that nothing has checked before: one key per
-// field, every one of them required. Complaints are JsonReader's.
+// Reads structs with a list of fields (protocol/core/fields.hpp) from files that nothing has checked before: one key
+// per field, every one of them required. Complaints are JsonReader's.
 #pragma once
 
 #include <limits>
@@ -11,7 +11,8 @@
 
 namespace furrow {
 
-/// Takes every field with role::key: numbers, whole numbers of 0 or more, switches, texts. Ranges are for the caller to check.
+/// Takes every field with role::key: numbers, whole numbers of 0 or more, switches, texts.
+/// Ranges are for the caller to check.
 /// @throws Error(bad_input) naming file and key when one is missing or of another type
 template <HasFields T>
 void read_required(JsonReader& reader, T& target) {

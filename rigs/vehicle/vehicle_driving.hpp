@@ -1,5 +1,5 @@
-// Between a driver and a vehicle: what the driver sees, and what its inputs are to the vehicle. Drivers count gears from 1,
-// 0 is neutral and −1 reverse; a gearbox counts them from 0.
+// Between a driver and a vehicle: what the driver sees, and what its inputs are to the vehicle. Drivers count gears
+// from 1, 0 is neutral and −1 reverse; a gearbox counts them from 0.
 #pragma once
 
 #include <optional>

@@ -26,7 +26,8 @@ struct VehicleRigOptions {
   double start_speed = 0.0;      // at t = 0, forward, m/s
   double lowering_speed = -1.0;  // at which the vehicle is let down, m/s; negative: open
   double touchdown_time = -1.0;  // how long the damper of the lowering acts, s; negative: open
-  double stop_before_wall = -1.0;  // left between a tire and the end wall when the run ends before it, m; negative: open
+  double stop_before_wall =
+      -1.0;  // left between a tire and the end wall when the run ends before it, m; negative: open
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<VehicleRigOptions> auto& s) {

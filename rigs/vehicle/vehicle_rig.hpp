@@ -1,10 +1,11 @@
 // A whole vehicle as a rig: it carries its tires, a driver drives it, and nothing else holds it.
 //
-// Start: in the trim of hard level ground (vehicle_start.hpp), turned to its heading, each tire just above the surface. A
-// damper above the chassis, c = weight/lowering_speed, lets it down until touchdown_time; with lowering_speed 0 it falls.
+// Start: in the trim of hard level ground (vehicle_start.hpp), turned to its heading, each tire just above the surface.
+// A damper above the chassis, c = weight/lowering_speed, lets it down until touchdown_time;
+// with lowering_speed 0 it falls.
 //
-// Slip of a wheel: 1 − v/(ω r) with the speed v of its centre along its own heading; 0 while it stands, which is while both
-// |v| and |ω r| are below 0.01 √(g r).
+// Slip of a wheel: 1 − v/(ω r) with the speed v of its centre along its own heading; 0 while it stands, which is while
+// both |v| and |ω r| are below 0.01 √(g r).
 #pragma once
 
 #include <memory>

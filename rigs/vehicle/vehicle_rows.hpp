@@ -1,4 +1,5 @@
-// What the vehicle rig measures beside the columns of every wheel: of each wheel, and of the vehicle (subject `vehicle`).
+// What the vehicle rig measures beside the columns of every wheel: of each wheel, and of
+// the vehicle (subject `vehicle`).
 #pragma once
 
 #include "protocol/core/column.hpp"

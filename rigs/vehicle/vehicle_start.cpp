@@ -21,8 +21,8 @@ vehicle::TireCurve spring(double radius, double load) {
   return {radius, [stiffness](double deflection) { return stiffness * std::max(0.0, deflection); }};
 }
 
-// First with springs for the mean load, then with each wheel's own for the load that it was found to have: all tires are
-// deflected alike, and the wheels' heights differ by their radii alone.
+// First with springs for the mean load, then with each wheel's own for the load that it was found to have: all tires
+// are deflected alike, and the wheels' heights differ by their radii alone.
 vehicle::Trim stand_in(vehicle::Vehicle& vehicle, std::span<const double> radii, const Vec3& gravity) {
   const double weight = vehicle.mass() * std::abs(gravity.z()),
                mean = weight / static_cast<double>(radii.size());

@@ -1,7 +1,7 @@
-// How a vehicle stands before it meets the ground: at rest in its static trim on hard ground at the slope of the run, each
-// tire under its static load, and lifted from there. Where it cannot stand on all its wheels on that slope, it starts as on
-// level ground. The tires give way equally in this: they are placed undeformed, so their own deflections come as the ground
-// takes the vehicle over.
+// How a vehicle stands before it meets the ground: at rest in its static trim on hard ground at the slope of the run,
+// each tire under its static load, and lifted from there. Where it cannot stand on all its wheels on that slope, it
+// starts as on level ground. The tires give way equally in this: they are placed undeformed, so their own deflections
+// come as the ground takes the vehicle over.
 #pragma once
 
 #include <span>

@@ -1,4 +1,5 @@
-// What the vehicle rig measures of each wheel: means over an advance from sums over its steps, and what holds at its end.
+// What the vehicle rig measures of each wheel: means over an advance from sums over its
+// steps, and what holds at its end.
 #pragma once
 
 #include <vector>

@@ -1,16 +1,16 @@
 // Which parcels are stepped: far from the tire a bed at rest costs nothing.
 //
-// A parcel (parcel.hpp; a narrow strip is one) sleeps when for `kCalmSteps` steps its grains were slow, the net force on
-// each stayed below a share of the mean contact force of the bed, and no tire was near. A step that is taken in parts
-// (step_refinement.hpp) counts once, and was calm if all its parts were. Spin does not count: a grain that only spins in
-// its place loads nobody. Its grains then stand still: they are not moved, contacts among them keep their forces and
-// histories. The parcels around it that are awake still feel it, with all contacts across, and it feels them: as long as
-// a neighbour is awake the net force on every sleeping grain is evaluated in every step, and since the grain stands
-// still that holds all that changed since it fell asleep. Above a limit the whole parcel wakes, before its grains have
-// moved at all; a front of waking runs one parcel per step, faster than any wave in the bed. A tire that comes near and
-// a moving grain that comes in wake it too. The mean contact force is sampled every `kSampleSteps` steps; what sleeps
-// counts as when it was last evaluated at such a step, or as it fell asleep. Decisions use sums of fixed order: they do
-// not depend on threads.
+// A parcel (parcel.hpp; a narrow strip is one) sleeps when for `kCalmSteps` steps its grains were slow, the net force
+// on each stayed below a share of the mean contact force of the bed, and no tire was near. A step that is taken in
+// parts (step_refinement.hpp) counts once, and was calm if all its parts were. Spin does not count: a grain that only
+// spins in its place loads nobody. Its grains then stand still: they are not moved, contacts among them keep their
+// forces and histories. The parcels around it that are awake still feel it, with all contacts across, and it feels
+// them: as long as a neighbour is awake the net force on every sleeping grain is evaluated in every step, and since the
+// grain stands still that holds all that changed since it fell asleep. Above a limit the whole parcel wakes, before its
+// grains have moved at all; a front of waking runs one parcel per step, faster than any wave in the bed. A tire that
+// comes near and a moving grain that comes in wake it too. The mean contact force is sampled every `kSampleSteps`
+// steps; what sleeps counts as when it was last evaluated at such a step, or as it fell asleep. Decisions use sums of
+// fixed order: they do not depend on threads.
 //
 // Pairs that touch belong to parcels beside each other, so that loads on a parcel come from its own list and those of
 // the parcels before it: the one across, and three in the strip before. What a step does with a parcel is one of
@@ -75,8 +75,8 @@ class Activity {
     FURROW_ASSERT(in_range(k, of_strip_.size()) && in_range(parcel, across_), k, parcel, across_);
     return need_[k * across_ + parcel] & what;
   }
-  /// Calls f(from, to) for each row of neighbouring parcels [from, to) of strip k that need it, as long as `together(p)`
-  /// holds for all of them; the others are rows of one.
+  /// Calls f(from, to) for each row of neighbouring parcels [from, to) of strip k that need it, as long as
+  /// `together(p)` holds for all of them; the others are rows of one.
   template <class Together, class F>
   void each_row(int k, Need what, const Together& together, const F& f) const {
     for (int p = 0; p < across_; ++p) {

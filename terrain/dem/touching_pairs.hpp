@@ -85,8 +85,8 @@ struct TellNobody {
 }  // namespace detail
 
 /// Fills `out` with the touching ones of the pairs [from, to) of `strip` and notes which they are; what pairs that
-/// parted left in their history is cleared, after `parts` was called with the number of each. `x` points to the position
-/// of the strip's first grain; those of the next strip follow.
+/// parted left in their history is cleared, after `parts` was called with the number of each. `x` points to the
+/// position of the strip's first grain; those of the next strip follow.
 /// diameter: of all grains, m, unless kSizes; width: of a bin with periodic sides, else 0, m.
 /// @pre the strip's lists are as Strips::size_lists makes them
 template <bool kSizes, class Real, class Parts = detail::TellNobody>

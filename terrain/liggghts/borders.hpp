@@ -1,5 +1,5 @@
-// Where along x the ranks' parts of the bin meet: so that all own about as many grains. The numbers of grains decide, not
-// measured times: the borders of a run are the same each time.
+// Where along x the ranks' parts of the bin meet: so that all own about as many grains. The numbers of grains decide,
+// not measured times: the borders of a run are the same each time.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
-// What Furrow asks of a distributed engine of grains, and what the engine asks of Furrow. The engine stands in a library
-// of its own (plugin/), which is loaded while the program runs (engine_library.hpp): this header is all that both sides
-// share, beside the laws of contact.
+// What Furrow asks of a distributed engine of grains, and what the engine asks of Furrow. The engine stands in a
+// library of its own (plugin/), which is loaded while the program runs (engine_library.hpp): this header is all that
+// both sides share, beside the laws of contact.
 //
 // Each rank of the terrain has an Engine and owns the grains in its part of the bin. A grain that moves into another
 // part moves to its rank, with what it carries. All verbs but those that say "own" are called by all ranks alike.

@@ -30,7 +30,8 @@ std::uintmax_t size_of(const fs::path& file) {
   return error ? 0 : size;
 }
 
-/// Where the table of sections ends, which stands last in a file of the format ELF: loading a shorter one ends the process.
+/// Where the table of sections ends, which stands last in a file of the format ELF: loading
+/// a shorter one ends the process.
 std::uintmax_t least_size(const fs::path& file) {
   Elf64_Ehdr head{};
   std::ifstream in(file, std::ios::binary);

@@ -12,8 +12,8 @@ namespace furrow::terrain::liggghts {
 namespace {
 
 constexpr int kMostRanks = 4096;
-// Of the rank that owns it, at the most: while the engine takes over the bed. Measured by the peak of the processes, which
-// grew by 1840 bytes for each grain from 24,340 to 97,684 on one rank, and by 1590 to 1770 on each of two.
+// Of the rank that owns it, at the most: while the engine takes over the bed. Measured by the peak of the processes,
+// which grew by 1840 bytes for each grain from 24,340 to 97,684 on one rank, and by 1590 to 1770 on each of two.
 constexpr double kBytesPerGrain = 1800.0;
 
 class LiggghtsSpec final : public TerrainSpec {

@@ -1,5 +1,5 @@
-// The walls and tires on the grains of one rank, and what that rank adds up: the work that Furrow does in each step of a
-// distributed engine (engine.hpp). The laws are those of terrain/dem; the histories are carried by the grains.
+// The walls and tires on the grains of one rank, and what that rank adds up: the work that Furrow does in each step of
+// a distributed engine (engine.hpp). The laws are those of terrain/dem; the histories are carried by the grains.
 #pragma once
 
 #include <cstdint>

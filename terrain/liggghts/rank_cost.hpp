@@ -1,5 +1,6 @@
-// What a step of a bed on several ranks costs one of them. A rank owns its share of the grains and keeps copies of those
-// within reach of its two borders, the ghosts: of a bed of N grains, L long and cut across, N reach/L at each border.
+// What a step of a bed on several ranks costs one of them. A rank owns its share of the grains and keeps copies of
+// those within reach of its two borders, the ghosts: of a bed of N grains, L long and cut
+// across, N reach/L at each border.
 //   ghosts = min(2, ranks − 1) N reach/L, at most all that others own
 //   t      = c (N/ranks + ghosts)
 // All grains are awake, and each rank has one core.

@@ -32,7 +32,8 @@ struct SharedReports {
   std::vector<StateReport> states;  // of all ranks, in their order, on the leader; the own one elsewhere
 };
 
-/// After an interval, in one message of each rank to the leader and one back. Adds up what tires felt on all ranks, in the
+/// After an interval, in one message of each rank to the leader and one back. Adds up what
+/// tires felt on all ranks, in the
 /// order of ranks; what it leaves in `forces` and `sums` counts on the leader. @param group  null: there is one rank
 SharedReports share_reports(RankGroup* group, const IntervalReport& interval, const StateReport& state,
                             std::span<NodalForces> forces, std::span<ContactSums> sums);

@@ -1,5 +1,5 @@
-// Contacts of grains with walls, four at a time: those of grains of the reference radius that touch no tire, in steps whose
-// losses are not wanted. They are most of what a rank has beside its pairs.
+// Contacts of grains with walls, four at a time: those of grains of the reference radius that touch no tire, in steps
+// whose losses are not wanted. They are most of what a rank has beside its pairs.
 #pragma once
 
 #include <array>

@@ -22,7 +22,8 @@ void add_shear_losses(const GroundLaw& law, const GroundShear& before, const Gro
   const Vec3 flat(velocity.x(), velocity.y(), 0.0);
   const Vec3 rate = (end.shear - begin.shear) / dt;  // ξ̇ = v − s
   losses.sliding -= force.dot(flat - rate) * dt;
-  // Backward Euler: the force is that of the shear at the substep's end, so ½ κ_t A |ξ' − ξ|² of its work is not stored.
+  // Backward Euler: the force is that of the shear at the substep's end, so ½ κ_t A |ξ' −
+  // ξ|² of its work is not stored.
   const double damping = law.damping + 0.5 * law.shear_stiffness * dt;
   losses.tangential_damping += damping * begin.area * rate.squaredNorm() * dt;
 }

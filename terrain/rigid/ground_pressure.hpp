@@ -43,7 +43,8 @@ using ProfilePointList = std::array<GroundPoint, 64>;
 int ground_points(const std::array<Vec3, 3>& x, std::array<GroundPoint, kMaxGroundPoints>& out);
 
 /// Integration points of the part of triangle x in the ground: as above where that is level, else the middles of 64
-/// equal parts of the triangle. Triangles that stand along x, such as the sides of a wheel, press nothing. Returns how many.
+/// equal parts of the triangle. Triangles that stand along x, such as the sides of a wheel,
+/// press nothing. Returns how many.
 int profile_points(const GroundProfile& profile, const std::array<Vec3, 3>& x, ProfilePointList& out);
 
 /// Normal force on the surface at one point that moves with velocity v; appends it to `contacts` unless there is none.

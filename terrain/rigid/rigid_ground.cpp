@@ -22,7 +22,8 @@ namespace {
 constexpr double kMaxStartDepth = 5e-3;
 // The plane has no end; one cell of this size stands for it in pictures of heights, m.
 constexpr double kFieldCell = 10.0;
-// A profile has so many cells from its first corner to its last, and half of them on either side, of this size at least.
+// A profile has so many cells from its first corner to its last, and half of them on
+// either side, of this size at least.
 constexpr int kFieldCells = 200;
 constexpr double kLeastFieldCell = 0.01;  // m
 

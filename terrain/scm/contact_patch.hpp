@@ -1,10 +1,10 @@
 // The width b of Bekker's law, from the patches in which a surface touches the grid.
 //
 // b is the smaller side of a long plate or the radius of a disc [Bekker 1969; Wong 2008, §2.4: both give the same
-// parameters]. b = 2 A/P, A area and P perimeter of a patch, is either: (w l)·2/(2 (w + l)) → w for l ≫ w, and r for a disc
-// (as Chrono's SCM has it). Of a compact patch it is less than the smaller side, of a square half of it. A patch is a
-// connected set of cells, neighbours at corners among them; area and perimeter are those of the convex hull of its cells,
-// which has no stairs.
+// parameters]. b = 2 A/P, A area and P perimeter of a patch, is either: (w l)·2/(2 (w + l)) → w for l ≫ w, and r for a
+// disc (as Chrono's SCM has it). Of a compact patch it is less than the smaller side, of a square half of it. A patch
+// is a connected set of cells, neighbours at corners among them; area and perimeter are those of the convex hull of its
+// cells, which has no stairs.
 #pragma once
 
 #include <array>

@@ -1,4 +1,5 @@
-// Shear stress between a surface and the soil under one node: Mohr and Coulomb's limit, mobilized after Janosi & Hanamoto.
+// Shear stress between a surface and the soil under one node: Mohr and Coulomb's limit,
+// mobilized after Janosi & Hanamoto.
 //
 //   τ = τ_max (1 − exp(−j/K)),   τ_max = min(c + p tan φ, μ p)                             [Janosi & Hanamoto 1961]
 //
@@ -6,9 +7,10 @@
 //
 //   ṁ = (v̂ − m) |v|/K
 //
-// for the sliding velocity v of the surface, v̂ = v/|v|. For a v of constant direction that is m = 1 − exp(−j/K), whatever
-// p does; |m| ≤ 1 always; on reversal the stress turns over the same length K, and sliding to and fro gives back no more
-// than was stored (Dahl's friction). μ is the friction of surface against soil: rubber cannot hand over more.
+// for the sliding velocity v of the surface, v̂ = v/|v|. For a v of constant direction that is m = 1 − exp(−j/K),
+// whatever p does; |m| ≤ 1 always; on reversal the stress turns over the same length K, and sliding to and fro gives
+// back no more than was stored (Dahl's friction). μ is the friction of surface against soil: rubber cannot hand
+// over more.
 //
 // What is stored per area is ½ K τ_max |m|². Of the work τ·v the rest, τ_max |m|² |v| ≥ 0, is lost by sliding. Where
 // τ_max changes, stored energy comes or goes without work: booked as opening.

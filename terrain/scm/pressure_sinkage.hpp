@@ -4,17 +4,17 @@
 //   un- and reloading  p = p_u − k_u (z_u − z),   k_u = k_0 + A_u z_u                    [Wong 2008, §2.4]
 //
 // z is the depth below the undisturbed surface, (z_u, p_u) where unloading began. The same as an elastic spring k_u
-// behind a plastic sinkage z_p that never shrinks, p = k_u (z − z_p), with p_u as its yield pressure: z_p = z_u − p_u/k_u
-// is the rut. What is loaded again follows the spring up to p_u and the curve from there: a second wheel in a rut meets
-// what the first one left.
+// behind a plastic sinkage z_p that never shrinks, p = k_u (z − z_p), with p_u as its yield pressure:
+// z_p = z_u − p_u/k_u is the rut. What is loaded again follows the spring up to p_u and the curve from there: a second
+// wheel in a rut meets what the first one left.
 //
 // Deviations. k_u is at least max(1, n) p_u/z_u: a softer spring would heave the soil above its undisturbed surface or
-// give back more work than was done. Where b shrinks the spring bears up to the stiffer curve; where b grows p_u is held.
-// Below the yield pressure a damper stands beside the spring, p = k_u (z − z_p) + d ż, cut at 0 and at p_u, so that
-// the curve of first loading has no rate in it.
+// give back more work than was done. Where b shrinks the spring bears up to the stiffer curve; where b grows p_u is
+// held. Below the yield pressure a damper stands beside the spring, p = k_u (z − z_p) + d ż, cut at 0 and at p_u, so
+// that the curve of first loading has no rate in it.
 //
-// Losses. With e = z − z_p the work per area p dz is d(½ k_u e²) + p dz_p − ½ e² dk_u + d ż dz; the middle two terms are
-// the compaction. Between two states they are ½ (p + p′)(z_p′ − z_p) − ½ e e′ (k_u′ − k_u), exact for trapezoids.
+// Losses. With e = z − z_p the work per area p dz is d(½ k_u e²) + p dz_p − ½ e² dk_u + d ż dz; the middle two terms
+// are the compaction. Between two states they are ½ (p + p′)(z_p′ − z_p) − ½ e e′ (k_u′ − k_u), exact for trapezoids.
 //
 // [Bekker 1969] M. G. Bekker, Introduction to Terrain–Vehicle Systems, University of Michigan Press.
 // [Wong 2008] J. Y. Wong, Theory of Ground Vehicles, 4th ed., Wiley.

@@ -1,20 +1,20 @@
-// Empirical soil: a grid of nodes that sink after Bekker and Wong and hold sideways after Mohr, Coulomb and Janosi. What it
-// knows of a soil are plate and shear tests; a run costs little more than its tire.
+// Empirical soil: a grid of nodes that sink after Bekker and Wong and hold sideways after Mohr, Coulomb and Janosi.
+// What it knows of a soil are plate and shear tests; a run costs little more than its tire.
 //
-// Each node of the grid under a surface (terrain/scm/footprint.hpp) carries the pressure p of its sinkage over the area A
-// of a cell, and shear τ (terrain/scm/pressure_sinkage.hpp, janosi_shear.hpp). With n the normal into the surface,
+// Each node of the grid under a surface (terrain/scm/footprint.hpp) carries the pressure p of its sinkage over the area
+// A of a cell, and shear τ (terrain/scm/pressure_sinkage.hpp, janosi_shear.hpp). With n the normal into the surface,
 //
 //   F = p A n/|n_z| − τ_max m A/|n_z|:
 //
-// pressure and shear act on the inclined area A/|n_z|, so that p's work is p A dz of the node, sideways motion included:
-// compaction makes the resistance of a wheel. F goes to the vertices of the triangle above the node.
+// pressure and shear act on the inclined area A/|n_z|, so that p's work is p A dz of the node, sideways motion
+// included: compaction makes the resistance of a wheel. F goes to the vertices of the triangle above the node.
 //
 // The mobilized share m belongs to the soil that clings to the surface and moves along with it over the nodes:
 //
 //   ∂m/∂t + w·∇m = (v̂ − m) |v|/K,  w the surface's velocity along the ground,
 //
-// first order upwind. In steady rolling that is Wong & Reece's j, counted along the wheel's rim from where it enters; m kept
-// at the node would give j/(1 − slip). Surface that comes down on a node brings m = 0.
+// first order upwind. In steady rolling that is Wong & Reece's j, counted along the wheel's rim from where it enters; m
+// kept at the node would give j/(1 − slip). Surface that comes down on a node brings m = 0.
 //
 // Everything is summed in one order by one thread: the bits do not depend on the number of threads.
 #pragma once

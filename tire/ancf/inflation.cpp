@@ -162,7 +162,8 @@ Field inflate(const ShellCarcass& shell, const ShellMesh& mesh, InflationReport&
         shell.pressure(), shell.pressure() * report.steps / kRampSteps, report.residual, report.steps, way_out));
   if (!(report.residual < kAccepted))
     throw physics_error(fmt::format(
-        "tire inflation to {:g} Pa did not converge: the pressure was reached, but the tire does not come to rest under "
+        "tire inflation to {:g} Pa did not converge: the pressure was reached, but the tire does not come to "
+        "rest under "
         "it; a residual of {:.3g} of the pressure force is left after {} steps, expected below {:g}; {}",
         shell.pressure(), report.residual, report.steps, kAccepted, way_out));
   return creep.q();

@@ -140,7 +140,8 @@ PressSolver::PressSolver(const TireFile& file, const ShellMesh& mesh, const Fiel
 
 PressSolver::~PressSolver() = default;
 
-/// visit(i, j, weights of the corners, position, share of the undeformed area), for points below the obstacle's top at least.
+/// visit(i, j, weights of the corners, position, share of the undeformed area), for points
+/// below the obstacle's top at least.
 template <class Visit>
 void PressSolver::contact_points(Visit visit) const {
   for (int j = 0; j + 1 < layout_.rows; ++j) {

@@ -38,7 +38,8 @@ class PressSolver {
   ~PressSolver();
 
   double largest_radius() const { return largest_radius_; }  // of the inflated tire, m
-  /// Of the rim's centre over a plate that the lowest node of the inflated tire just touches: where deflection starts, m.
+  /// Of the rim's centre over a plate that the lowest node of the inflated tire just
+  /// touches: where deflection starts, m.
   double start_height() const { return start_height_; }
   /// Moves the obstacle to a deflection and finds equilibrium; `each_step` is called before each step of creep and may
   /// throw. @throws Error(physics) when there is none, or when the tire would be in its rim.

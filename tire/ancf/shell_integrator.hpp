@@ -53,9 +53,9 @@ class ShellIntegrator {
   /// Gauge pressure from the next step on, Pa.
   void set_pressure(double pressure);
 
-  /// One step of size h from the rim state `start`, where the last one ended, to `end`. `force`: contact forces, padding
-  /// zero. `about`: moments are taken about this point. The wrench is what the tire exerts on the rim, the step's mean,
-  /// without forces on the bead discs. @pre started; h > 0; force has the layout's size
+  /// One step of size h from the rim state `start`, where the last one ended, to `end`. `force`: contact forces,
+  /// padding zero. `about`: moments are taken about this point. The wrench is what the tire exerts on the rim, the
+  /// step's mean, without forces on the bead discs. @pre started; h > 0; force has the layout's size
   Outcome step(double h, const RimState& start, const RimState& end, const Field& force, const Vec3& about,
                Wrench& on_rim);
 

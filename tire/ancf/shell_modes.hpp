@@ -1,5 +1,5 @@
-// An inflated shell on a fixed rim, order by order (tire/modes.hpp): displacements û e^{i n θ} in axes that turn with the
-// columns decouple, so that stiffness and mass of the whole ring are one Hermitian matrix of a single column per
+// An inflated shell on a fixed rim, order by order (tire/modes.hpp): displacements û e^{i n θ} in axes that turn with
+// the columns decouple, so that stiffness and mass of the whole ring are one Hermitian matrix of a single column per
 // circumferential order n. Positions and directors of the beads are held.
 #pragma once
 

@@ -178,8 +178,8 @@ Outcome ExtrudedTire::advance(const RimTrajectory& rim, const NodalForces& force
   const WheelPlane first = WheelPlane::of(rim.start().orientation), last = WheelPlane::of(rim.end().orientation);
   spread(forces, plane);
   spindle_ = {};
-  // Forces by the balance of momentum in space, which is that of the plane's steps where the plane does not turn. Moments
-  // across the plane with lever arms that are means of the interval's ends.
+  // Forces by the balance of momentum in space, which is that of the plane's steps where the plane does not turn.
+  // Moments across the plane with lever arms that are means of the interval's ends.
   const Vec3 before = momentum(first, rim.start()), turning = angular_momentum(first, rim.start());
   const PlanarPoint moment_before = model_->first_moment();
   std::vector<Vec3>& arms = arms_before_;
@@ -208,9 +208,9 @@ Outcome ExtrudedTire::advance(const RimTrajectory& rim, const NodalForces& force
   return {};
 }
 
-/// Losses of the interval: those of the steps; what mean force times way and mean moment times turn say of the rim's work
-/// otherwise than its steps, also through the force that a plane which turns adds to that of its steps; and what a rigid
-/// body's rule loses across the plane.
+/// Losses of the interval: those of the steps; what mean force times way and mean moment times turn say of the rim's
+/// work otherwise than its steps, also through the force that a plane which turns adds to that of its steps; and what a
+/// rigid body's rule loses across the plane.
 void ExtrudedTire::book(const RimTrajectory& rim, const WheelPlane& plane, const Vec3& by_turning,
                         const PlaneSums& sums) {
   const RimState &from = rim.start(), &to = rim.end();

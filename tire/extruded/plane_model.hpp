@@ -1,6 +1,6 @@
 // A tire that is alike across its width, in the plane of its wheel, on a rim with a given motion: what an extruded tire
-// (extruded_tire.hpp) moves in its plane. Positions and velocities of nodes count from the rim's centre, in axes that do
-// not turn with the rim. Angles are about +y: forward rolling increases them.
+// (extruded_tire.hpp) moves in its plane. Positions and velocities of nodes count from the rim's centre, in axes that
+// do not turn with the rim. Angles are about +y: forward rolling increases them.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
-// The coefficients of the Magic Formula as tire property files (.tir) name them, MF-Tyre 5.2: dimensionless unless a unit
-// is said. One list serves reading, writing and fitting.
+// The coefficients of the Magic Formula as tire property files (.tir) name them, MF-Tyre 5.2: dimensionless unless a
+// unit is said. One list serves reading, writing and fitting.
 //
 // Sources: [1] H. B. Pacejka, Tire and Vehicle Dynamics, 3rd edition, Butterworth-Heinemann 2012, section 4.3.2 (the
 // names of the coefficients: appendix 3); 2nd edition 2006 alike. [2] TNO Automotive, MF-Tyre User Manual, version 5.2,

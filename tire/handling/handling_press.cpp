@@ -11,9 +11,11 @@ PressResults press_handling(const MagicFormula& tire, const MassProperties& mass
     throw input_error("command line", "--on",
                       "is not 'plate', expected plate: a handling tire's file says nothing of other ground");
   if (options.obstacle.camber != 0.0)
-    throw input_error(options.camber_from, options.camber_key,
-                      fmt::format("is {:g} rad, expected 0: a handling tire's file says nothing of pressing at a camber angle",
-                                  options.obstacle.camber));
+    throw input_error(
+        options.camber_from, options.camber_key,
+        fmt::format(
+            "is {:g} rad, expected 0: a handling tire's file says nothing of pressing at a camber angle",
+            options.obstacle.camber));
   const double most = tire.dimension.unloaded_radius - tire.dimension.rim_radius;
   if (options.deflection >= most)
     throw input_error(options.deflection_from, options.deflection_key,

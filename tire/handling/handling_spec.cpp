@@ -97,7 +97,8 @@ std::vector<std::pair<std::string, std::string>> HandlingSpec::unlikely_values()
   const handling::MagicFormula& t = file_.formula;
   const std::string at = file_.tir.filename().string();
   if (t.aligning.qtz1 != 0.0 && t.aligning.mbelt != 0.0)
-    odd.emplace_back("[ALIGNING_COEFFICIENTS] QTZ1", "of " + at + " is not used: the gyroscopic moment of the belt is left out");
+    odd.emplace_back("[ALIGNING_COEFFICIENTS] QTZ1",
+                     "of " + at + " is not used: the gyroscopic moment of the belt is left out");
   if (t.vertical.vertical_stiffness < 1e4 || t.vertical.vertical_stiffness > 1e7)
     odd.emplace_back("[VERTICAL] VERTICAL_STIFFNESS",
                      fmt::format("of {} is {:g} N/m, usual are 1e5 to 1e6 N/m", at, t.vertical.vertical_stiffness));
@@ -111,7 +112,8 @@ std::vector<std::pair<std::string, std::string>> HandlingSpec::unlikely_values()
 
 bool is_tir(const std::filesystem::path& file) {
   std::string end = file.extension().string();
-  std::transform(end.begin(), end.end(), end.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+  std::transform(end.begin(), end.end(), end.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
   return end == ".tir";
 }
 
@@ -132,11 +134,12 @@ HandlingFile read_handling_file(const json& document, const std::string& path) {
   const auto take = [&](const char* key, double in_tir, const char* name) {
     const double value = reader.has(key) ? reader.positive(key) : in_tir;
     if (!(value > 0.0))
-      throw input_error(path, is_tir(path) ? fmt::format("[INERTIA] {}", name) : key,
-                        is_tir(path) ? "is missing, expected the tire's mass and inertia, or a tire file in JSON of the "
-                                       "model handling that names this file and says them"
-                                     : fmt::format("is missing, expected a number above 0 here or {} in [INERTIA] of {}",
-                                                   name, f.tir.string()));
+      throw input_error(
+          path, is_tir(path) ? fmt::format("[INERTIA] {}", name) : key,
+          is_tir(path) ? "is missing, expected the tire's mass and inertia, or a tire file in JSON of the "
+                         "model handling that names this file and says them"
+                       : fmt::format("is missing, expected a number above 0 here or {} in [INERTIA] of {}",
+                                     name, f.tir.string()));
     return value;
   };
   f.mass = take("mass", said.mass, "MASS");

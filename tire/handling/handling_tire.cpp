@@ -190,10 +190,12 @@ void HandlingTire::restore(const Archive& archive) {
   restore_fields(archive, "handling/stated", stated_.forces);
   const NodalForces& forces = stated_.forces;
   if (forces.force.size() != forces.vertex.size() || !forces.tangent.empty() ||
-      !std::all_of(forces.vertex.begin(), forces.vertex.end(), [&](int k) { return in_range(k, shape_.vertex.size()); }))
-    throw Error(ExitCode::io, fmt::format("saved state 'handling/stated' has {} forces and {} vertices, expected one of "
-                                          "the {} vertices for each",
-                                          forces.force.size(), forces.vertex.size(), shape_.vertex.size()));
+      !std::all_of(forces.vertex.begin(), forces.vertex.end(),
+                   [&](int k) { return in_range(k, shape_.vertex.size()); }))
+    throw Error(ExitCode::io,
+                fmt::format("saved state 'handling/stated' has {} forces and {} vertices, expected one of "
+                            "the {} vertices for each",
+                            forces.force.size(), forces.vertex.size(), shape_.vertex.size()));
 }
 
 }  // namespace furrow::tire::handling

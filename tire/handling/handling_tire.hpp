@@ -1,9 +1,9 @@
 // A tire that the Magic Formula describes: on level hard ground. It states its contact itself (StatesContact): the
 // terrain gives the forces that it asks for, on its own surface and in its own books, and adds none of its own.
 //
-// Over an interval of the length H from t the terrain moves what the tire said at t; what it then gives acts on the tire
-// from t + H to t + 2H. So the forces are those of the rim's motion extrapolated to t + 1.5 H, and their moments are
-// taken there: what they do to the rim is late by nothing that is constant.
+// Over an interval of the length H from t the terrain moves what the tire said at t; what it then gives acts on the
+// tire from t + H to t + 2H. So the forces are those of the rim's motion extrapolated to t + 1.5 H, and their moments
+// are taken there: what they do to the rim is late by nothing that is constant.
 //
 // Surface: a cylinder of R_0, flattened where it would be below the ground. Its vertices otherwise move with the rim.
 // Force and moment about the contact centre C go to the vertices near the ground with the weights w = max(0, ε − z)²,
@@ -12,9 +12,9 @@
 //
 // so that Σ f = F and Σ (x − C) × f = M; a vertex comes and goes with no force.
 //
-// Energy: ½ C_z ρ² is elastic; what the vertices' forces do on the surface beyond what they do on the rim is dissipated,
-// as far as it is not stored: by VERTICAL_DAMPING, by rolling resistance, and by what the formula itself loses between
-// R_e and the radius of the tread.
+// Energy: ½ C_z ρ² is elastic; what the vertices' forces do on the surface beyond what they do on the rim is
+// dissipated, as far as it is not stored: by VERTICAL_DAMPING, by rolling resistance, and by what the formula itself
+// loses between R_e and the radius of the tread.
 #pragma once
 
 #include <string>

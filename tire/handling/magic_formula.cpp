@@ -149,9 +149,9 @@ double aligning(const Terms& t, const Pure& x, const Pure& y, double fx, const C
   const double ct = q.qcz1;                                                            // (4.E41)
   const double dt = load * (q.qdz1 + q.qdz2 * t.dfz) * (1.0 + q.qdz3 * gamma + q.qdz4 * square(gamma)) *
                     (t.radius / t.tire.vertical.fnomin) * l.ltr;                       // (4.E42), (4.E43)
-  const double et =
-      std::min(1.0, (q.qez1 + q.qez2 * t.dfz + q.qez3 * square(t.dfz)) *
-                        (1.0 + (q.qez4 + q.qez5 * gamma) * 2.0 / std::numbers::pi * atan(bt * ct * alpha_t)));  // (4.E44)
+  const double et = std::min(1.0, (q.qez1 + q.qez2 * t.dfz + q.qez3 * square(t.dfz)) *
+                                      (1.0 + (q.qez4 + q.qez5 * gamma) * 2.0 / std::numbers::pi *
+                                                 atan(bt * ct * alpha_t)));            // (4.E44)
   const double trail = dt * cos(curve(bt, ct, et, alpha_t)) * cos_alpha;               // (4.E73)
 
   const double shift = y.shift + (y.stiffness != 0.0 ? y.lift / y.stiffness : 0.0);    // (4.E38)

@@ -10,10 +10,10 @@
 //   - M_x and M_y are linear in F_y, γ and F_x, of M_y (4.E70) with QSY3, QSY4 of the forward speed;
 //   - the trail uses the factors QDZ3, QDZ4 of γ, in place of the book's QDZ3 to QDZ11 of |γ|.
 //
-// Signs (ISO 8855, the W-axes of TYDEX; tire/wheel_axes.hpp): x forward, y left, z up at the contact centre. F and M act
-// on the tire. tan α = V_sy/|V_cx|, κ = −V_sx/|V_cx|, γ about x: positive α, γ give a negative F_y (PKY1 < 0), positive
-// κ drives. A positive QSY1 resists: M_y < 0 while the wheel rolls forward. Files of the adapted SAE axes of [1] have
-// PKY1 > 0, and are not meant.
+// Signs (ISO 8855, the W-axes of TYDEX; tire/wheel_axes.hpp): x forward, y left, z up at the contact centre. F and M
+// act on the tire. tan α = V_sy/|V_cx|, κ = −V_sx/|V_cx|, γ about x: positive α, γ give a negative F_y (PKY1 < 0),
+// positive κ drives. A positive QSY1 resists: M_y < 0 while the wheel rolls forward. Files of the adapted SAE axes of
+// [1] have PKY1 > 0, and are not meant.
 #pragma once
 
 #include "tire/handling/coefficients.hpp"
@@ -36,14 +36,15 @@ struct HandlingForces {
   double cornering_stiffness = 0.0;     // K_yα, N/rad; negative in these axes
 };
 
-/// Forces at the state, held within the file's ranges: beyond one of slips or camber its end counts, beyond one of loads
-/// the forces go on in proportion to the load. No load gives no force. @pre all of the state is finite
+/// Forces at the state, held within the file's ranges: beyond one of slips or camber its end counts, beyond one of
+/// loads the forces go on in proportion to the load. No load gives no force. @pre all of the state is finite
 HandlingForces evaluate(const MagicFormula& tire, const SlipState& state);
 
 /// Without the ranges: what the formula itself says. @pre load > 0
 HandlingForces evaluate_formula(const MagicFormula& tire, const SlipState& state);
 
-/// σ_κ = F_z (p_Tx1 + p_Tx2 df_z) exp(−p_Tx3 df_z) R_0/F_z0,  σ_α = p_Ty1 sin[2 atan(F_z/(p_Ty2 F_z0))] (1 − p_Ky3 |γ|) R_0 [2],
+/// σ_κ = F_z (p_Tx1 + p_Tx2 df_z) exp(−p_Tx3 df_z) R_0/F_z0,
+/// σ_α = p_Ty1 sin[2 atan(F_z/(p_Ty2 F_z0))] (1 − p_Ky3 |γ|) R_0 [2],
 /// m; 0 where the file has none.
 struct RelaxationLengths {
   double longitudinal = 0.0, lateral = 0.0;

@@ -1,5 +1,5 @@
-// How a handling tire stands and slips on level hard ground: what the Magic Formula needs of the rim's motion, with slips
-// that follow it over a relaxation length.
+// How a handling tire stands and slips on level hard ground: what the Magic Formula needs of the rim's motion, with
+// slips that follow it over a relaxation length.
 //
 // With the W-axes of tire/wheel_axes.hpp at the contact centre C, the loaded radius R_l and the camber angle γ:
 //
@@ -13,9 +13,9 @@
 //
 // u, v are the deflections of the contact patch against the rim; they stay within what the file's ranges of slip allow,
 // so that a spinning or sliding wheel does not wind them up. They are integrated exactly for a constant motion, and at
-// rest they are springs: a tire holds its place on a slope. D damps these springs below VXLOW, and fades with the cosine
-// of the speed, after [1, chapter 8]; it is a tenth of the critical damping of the mass that F_z carries. Sideways
-// likewise. A file without relaxation lengths takes κ = −V_sx/max(|V_Cx|, VXLOW).
+// rest they are springs: a tire holds its place on a slope. D damps these springs below VXLOW, and fades with the
+// cosine of the speed, after [1, chapter 8]; it is a tenth of the critical damping of the mass that F_z carries.
+// Sideways likewise. A file without relaxation lengths takes κ = −V_sx/max(|V_Cx|, VXLOW).
 //
 // Reference: [1] H. B. Pacejka, Tire and Vehicle Dynamics, 3rd edition, 2012.
 #pragma once

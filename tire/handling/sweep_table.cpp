@@ -93,10 +93,12 @@ std::vector<SweepPoint> read_sweep_table(const std::filesystem::path& file) {
     p.state = {.load = v[2], .slip_angle = v[6], .camber = v[7]};
     p.loaded_radius = v[8];
     p.rolling_radius = v[9];
-    if (!(p.state.load > 0.0 && p.state.load <= kMostLoad && p.rolling_radius >= kLeastRadius && p.rolling_radius <= kMostRadius))
-      throw wrong(fmt::format("has a load of {:g} N and a rolling radius of {:g} m, expected a wheel that rolls on the ground: "
-                              "above 0 to {:g} N, {:g} to {:g} m",
-                              p.state.load, p.rolling_radius, kMostLoad, kLeastRadius, kMostRadius));
+    if (!(p.state.load > 0.0 && p.state.load <= kMostLoad && p.rolling_radius >= kLeastRadius &&
+          p.rolling_radius <= kMostRadius))
+      throw wrong(fmt::format(
+          "has a load of {:g} N and a rolling radius of {:g} m, expected a wheel that rolls on the ground: "
+          "above 0 to {:g} N, {:g} to {:g} m",
+          p.state.load, p.rolling_radius, kMostLoad, kLeastRadius, kMostRadius));
     const bool free = cells[at("rig.mode")] == "free_rolling";
     p.rolls_freely = free && std::abs(p.state.slip_angle) < kStraight && std::abs(p.state.camber) < kStraight;
     p.state.slip = free ? 0.0 : std::numeric_limits<double>::quiet_NaN();

@@ -1,4 +1,5 @@
-// What a tire did on hard ground at many slips and loads, as `furrow sweep` tables it: what a handling tire is fitted to.
+// What a tire did on hard ground at many slips and loads, as `furrow sweep` tables it:
+// what a handling tire is fitted to.
 //
 // Columns, by the names of sweep.csv: iso_w.force_N.0 to .2, iso_w.moment_Nm.0 to .2, iso_w.slip_angle_rad,
 // iso_w.camber_angle_rad, iso_w.loaded_radius_m, effective_rolling_radius_m (V/Ω) and rig.mode; others are passed over,

@@ -170,8 +170,9 @@ void read_model(const Sections& sections, MagicFormula& tire) {
                                               fmt::join(kVersions, ", ")));
   } else if (const std::string format = model.text("PROPERTY_FILE_FORMAT");
              upper(format) != "PAC2002" && upper(format) != "MF-TYRE" && upper(format) != "MF_05")
-    throw model.wrong("PROPERTY_FILE_FORMAT",
-                      fmt::format("is '{}', expected 'MF-TYRE', 'MF_05' or 'PAC2002', or a FITTYP of 5", excerpt(format)));
+    throw model.wrong(
+        "PROPERTY_FILE_FORMAT",
+        fmt::format("is '{}', expected 'MF-TYRE', 'MF_05' or 'PAC2002', or a FITTYP of 5", excerpt(format)));
   if (model.has("TYRESIDE")) {
     const std::string side = upper(model.text("TYRESIDE"));
     if (side != "LEFT" && side != "RIGHT" && side != "SYMMETRIC" && side != "UNKNOWN")
@@ -186,7 +187,8 @@ Range read_range(const Sections& sections, const std::string& name, const std::s
   SectionReader reader(sections, name);
   const Range range{reader.number(prefix + "MIN"), reader.number(prefix + "MAX")};
   if (!(range.least < range.most))
-    throw reader.wrong(prefix + "MIN", fmt::format("is {:g}, expected less than {}MAX of {:g}", range.least, prefix, range.most));
+    throw reader.wrong(prefix + "MIN", fmt::format("is {:g}, expected less than {}MAX of {:g}", range.least,
+                                                   prefix, range.most));
   if (limit > 0.0 && (range.least < -limit || range.most > limit))
     throw reader.wrong(range.least < -limit ? prefix + "MIN" : prefix + "MAX",
                        fmt::format("is {:g}, expected between {:g} and {:g} rad",
@@ -227,10 +229,11 @@ void check(const Sections& sections, const MagicFormula& t) {
   positive("SCALING_COEFFICIENTS", "LMUX", t.scaling.lmux);
   positive("SCALING_COEFFICIENTS", "LMUY", t.scaling.lmuy);
   if (t.lateral.pky1 > 0.0)
-    throw sections.wrong("LATERAL_COEFFICIENTS", "PKY1",
-                         fmt::format("is {:g}, expected less than 0: these axes are those of ISO 8855, in which a positive "
-                                     "slip angle gives a negative force",
-                                     t.lateral.pky1));
+    throw sections.wrong(
+        "LATERAL_COEFFICIENTS", "PKY1",
+        fmt::format("is {:g}, expected less than 0: these axes are those of ISO 8855, in which a positive "
+                    "slip angle gives a negative force",
+                    t.lateral.pky1));
   not_negative("VERTICAL_FORCE_RANGE", "FZMIN", t.load.least);
 }
 
@@ -249,7 +252,9 @@ MagicFormula parse_tir(const std::string& text, const std::string& name) {
   }
   if (sections.has("INERTIA")) {
     SectionReader inertia(sections, "INERTIA");
-    visit_fields([&](const Field& field, double& value) { value = inertia.not_negative_or(field.name, value); }, t.inertia);
+    visit_fields(
+        [&](const Field& field, double& value) { value = inertia.not_negative_or(field.name, value); },
+        t.inertia);
   }
   t.slip = read_range(sections, "LONG_SLIP_RANGE", "KPU", 0.0);
   t.slip_angle = read_range(sections, "SLIP_ANGLE_RANGE", "ALP", kMostAngle);

@@ -1,11 +1,12 @@
-// Contact of a planar tire with rigid ground: the tire's outer nodes in the ground, and the ground's corners in the tire.
+// Contact of a planar tire with rigid ground: the tire's outer nodes in the ground, and
+// the ground's corners in the tire.
 //
-// A node at a depth h below the ground's nearest side gets the force c h along the way out. A corner at a depth h behind
-// the nearest side of the tire pushes that side away, its force shared by the side's two nodes as it lies between them;
-// its mass m is that of the point of the side, 1/m = (1 − s)²/m_a + s²/m_b. In motion, with a step Δt,
+// A node at a depth h below the ground's nearest side gets the force c h along the way out. A corner at a depth h
+// behind the nearest side of the tire pushes that side away, its force shared by the side's two nodes as it lies
+// between them; its mass m is that of the point of the side, 1/m = (1 − s)²/m_a + s²/m_b. In motion, with a step Δt,
 //   F = c h,   d = ½ F/m Δt² + v_n Δt,   F ← F h/d where d > h,   F_f = min(f F, |v_t| m/Δt),                   (1)
-// v_n > 0 separating: a force pushes no farther than out of the ground, and friction against the sliding velocity v_t no
-// more than to rest. At rest the force is that of the energy Σ ½ c h².
+// v_n > 0 separating: a force pushes no farther than out of the ground, and friction against the sliding velocity v_t
+// no more than to rest. At rest the force is that of the energy Σ ½ c h².
 #pragma once
 
 #include <vector>

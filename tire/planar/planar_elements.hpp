@@ -6,8 +6,8 @@
 // triangle pulls its nodes together. A node so receives ½ T n b of the side opposite to it, which is −∂(A b W)/∂x of
 // the energy. Nodal mass: ρ |F_I| b / 6 of each element.
 //
-// `averaged` replaces J in the volumetric part by its mean over the triangles around a node, weighted by their areas and
-// taken within one material,
+// `averaged` replaces J in the volumetric part by its mean over the triangles around a node, weighted by their areas
+// and taken within one material,
 //   J_a = Σ A_e J_e / Σ A_e,   Π = b Σ_e A_e W_μ(F_e) + b Σ_a ⅓ Σ_e A_e · κ/2 (J_a² − 1 − 2 ln J_a),            (2)
 // whose elements have the mean of their nodes' pressures [Bonet & Burton 1998]: constant-strain triangles lock when ν
 // approaches ½, and these do not.
@@ -15,8 +15,8 @@
 // Data flow of force(): elements read the positions of their nodes and write six numbers each, all in vectors; then
 // every node adds up what its elements wrote, in a fixed order. Nothing is allocated.
 //
-// Bonet, Burton, A simple average nodal pressure tetrahedral element, Communications in Numerical Methods in Engineering
-// 14 (1998) 437, doi:10.1002/(SICI)1099-0887(199805)14:5<437::AID-CNM162>3.0.CO;2-W.
+// Bonet, Burton, A simple average nodal pressure tetrahedral element, Communications in Numerical Methods in
+// Engineering 14 (1998) 437, doi:10.1002/(SICI)1099-0887(199805)14:5<437::AID-CNM162>3.0.CO;2-W.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
-// Natural frequencies of a planar tire whose inner nodes are held, order by order (tire/modes.hpp). The rings of nodes are
-// turned against each other: the phase of a node is that of its own angle, and K_n is the sum over all elements divided by
-// their number around. Viscosity is left out.
+// Natural frequencies of a planar tire whose inner nodes are held, order by order (tire/modes.hpp). The rings of nodes
+// are turned against each other: the phase of a node is that of its own angle, and K_n is the sum over all elements
+// divided by their number around. Viscosity is left out.
 #pragma once
 
 #include "tire/modes.hpp"

@@ -1,7 +1,7 @@
 // Explicit integration of planar triangles and whatever loads them.
 //
-// Semi-implicit Euler: v += (F/m) h, then x += v h. It keeps linear and angular momentum to round-off. Runge and Kutta's
-// method of fourth order is four times the work.
+// Semi-implicit Euler: v += (F/m) h, then x += v h. It keeps linear and angular momentum to round-off. Runge and
+// Kutta's method of fourth order is four times the work.
 #pragma once
 
 #include <functional>

@@ -81,7 +81,8 @@ PressResults press_planar(const PlanarParams& params, const MassProperties& mass
   PressResults results;
   model.stiffness = [&] {
     const GroundStiffness s = wheel.ground_stiffness();
-    results.stiffness_missing = std::isfinite(s(2, 2)) ? kAlikeAcross : "the tangent is not positive definite at this load";
+    results.stiffness_missing =
+        std::isfinite(s(2, 2)) ? kAlikeAcross : "the tangent is not positive definite at this load";
     return s;
   };
   results.start_height = params.size.radius;

@@ -126,7 +126,8 @@ TireDescription PlanarSpec::describe() const {
   d.mass = mass();
   d.memory = kBytesPerElement * mesh.elements();
   d.saved_bytes = kSavedBytes * carcass.mesh().nodes();
-  if (const std::string refused = not_in_motion(); !refused.empty()) d.static_only = "whose key 'integrator' " + refused;
+  if (const std::string refused = not_in_motion(); !refused.empty())
+    d.static_only = "whose key 'integrator' " + refused;
   d.takes = {"friction", "elements_circumference"};
   d.model = {{"elements", static_cast<double>(carcass.mesh().elements())}, {"step_limit_s", limit}};
   return d;

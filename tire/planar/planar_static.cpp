@@ -117,8 +117,8 @@ double PlanarStatic::gradient(const PlanarField& x) {
   return most;
 }
 
-/// Stiffness of a touch in x, z of its nodes a and b and of the ground. Of ½ c h²: c ∇h ∇hᵀ, and on a side of the length L,
-/// with its direction t, its normal m inwards and u the motion against the ground where it touches,
+/// Stiffness of a touch in x, z of its nodes a and b and of the ground. Of ½ c h²: c ∇h ∇hᵀ, and on a side of the
+/// length L, with its direction t, its normal m inwards and u the motion against the ground where it touches,
 /// c h d²h = c h [(2/L) m·(u_b − u_a) t·u − h/L² (m·(u_b − u_a))²]. A ground that sticks adds s c (t·u)².
 PlanarMatrix PlanarStatic::touch_stiffness(const PlanarTouch& t, double tangential) const {
   using Motion = Eigen::Matrix<double, 6, 1>;

@@ -2,8 +2,8 @@
 // against turning by a couple.
 //
 // The minimum of Π = elastic energy + Σ ½ c h² + ½ k θ² with the mean turn θ of the rim; Newton's method with a line
-// search on Π. Where the tangent is not positive definite a share of its diagonal at rest is added. The centre goes to a
-// new place in parts that are small enough to be followed.
+// search on Π. Where the tangent is not positive definite a share of its diagonal at rest is added. The centre goes to
+// a new place in parts that are small enough to be followed.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,5 @@
-// Tangent stiffness of the triangles of planar_elements.hpp, and the largest step that their explicit integration bears.
+// Tangent stiffness of the triangles of planar_elements.hpp, and the largest step that
+// their explicit integration bears.
 //
 // With P = μ (F − F⁻ᵀ) + p J F⁻ᵀ, p = κ (J − 1/J), undeformed and deformed shape gradients ∇N and q = F⁻ᵀ ∇N,
 //   K_ab = A b [ μ (∇N_a·∇N_b) I + α q_b q_aᵀ + β q_a q_bᵀ ],   α = μ − κ (J² − 1),   β = 2 κ J².               (1)

@@ -1,5 +1,5 @@
-// The planar finite-element tire in motion: planar_carcass.hpp, drawn out over its width (tire/extruded/extruded_tire.hpp). Its inner
-// nodes move with the rim, which stands for the disc.
+// The planar finite-element tire in motion: planar_carcass.hpp, drawn out over its width
+// (tire/extruded/extruded_tire.hpp). Its inner nodes move with the rim, which stands for the disc.
 #pragma once
 
 #include <memory>

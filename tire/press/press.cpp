@@ -85,33 +85,40 @@ void measure_press(const PressOptions& options, const PressModel& model,
     for (int k = options.points + 1; k <= total; ++k) results.unloading.push_back(at(k));
   } catch (const Error& error) {
     if (error.code() != ExitCode::physics || results.loading.empty()) throw;
-    results.ended =
-        fmt::format("{}; up to {:.4g} m it was found: see --deflection", error.what(), results.loading.back().deflection);
+    results.ended = fmt::format("{}; up to {:.4g} m it was found: see --deflection", error.what(),
+                                results.loading.back().deflection);
     if (!options.partial || results.footprint.empty()) throw physics_error(results.ended);
   }
 }
 
 void require_no_camber(const PressOptions& options, const char* name) {
   if (options.obstacle.camber == 0.0) return;
-  throw input_error(options.camber_from, options.camber_key,
-                    fmt::format("is {:g} rad, expected 0: a {} is alike across its width, so that camber would press no "
-                                "side of it more than the other",
-                                options.obstacle.camber, name));
+  throw input_error(
+      options.camber_from, options.camber_key,
+      fmt::format("is {:g} rad, expected 0: a {} is alike across its width, so that camber would press no "
+                  "side of it more than the other",
+                  options.obstacle.camber, name));
 }
 
 std::string press_caution(const PressResults& results) {
   const double difference = path_difference(results);
   const std::string end =
-      difference > kOnePath ? fmt::format("loading and unloading differ by {:.2g} % of the largest force", 100.0 * difference)
-                            : std::string("loading and unloading agree");
+      difference > kOnePath
+          ? fmt::format("loading and unloading differ by {:.2g} % of the largest force", 100.0 * difference)
+          : std::string("loading and unloading agree");
   if (!stable_unpressed(results))
-    return "this tire wrinkles under its pressure: the equilibrium was reached by creep and need not be the only one; " + end;
+    return "this tire wrinkles under its pressure: the equilibrium was reached by creep and need not be the "
+           "only one; " +
+           end;
   const auto failed = [](const PressPoint& point) { return point.failed_factorizations > 0; };
   if (const auto first = std::ranges::find_if(results.loading, failed);
       first != results.loading.end() || std::ranges::any_of(results.unloading, failed))
-    return fmt::format("this tire buckles while it is pressed{}: its equilibria were reached by creep and need not be the only "
-                       "ones; {}",
-                       first != results.loading.end() ? fmt::format(", first on the way to {:.3g} m", first->deflection) : "", end);
+    return fmt::format(
+        "this tire buckles while it is pressed{}: its equilibria were reached by creep and need not be the "
+        "only ones; {}",
+        first != results.loading.end() ? fmt::format(", first on the way to {:.3g} m", first->deflection)
+                                       : "",
+        end);
   return difference > kOnePath ? end + ": there is more than one equilibrium" : "";
 }
 
@@ -207,8 +214,9 @@ void write_press_tables(const std::filesystem::path& folder, const PressResults&
   std::string text = "deflection_m,force_N,residual,unloading,moment_x_Nm,moment_y_Nm\n";
   for (const auto* path : {&results.loading, &results.unloading})
     for (const PressPoint& p : *path)
-      fmt::format_to(std::back_inserter(text), "{:.9g},{:.12g},{:.3g},{},{:.9g},{:.9g}\n", p.deflection, p.force, p.residual,
-                     path == &results.unloading ? 1 : 0, p.rim.moment.x(), p.rim.moment.y());
+      fmt::format_to(std::back_inserter(text), "{:.9g},{:.12g},{:.3g},{},{:.9g},{:.9g}\n", p.deflection,
+                     p.force, p.residual, path == &results.unloading ? 1 : 0, p.rim.moment.x(),
+                     p.rim.moment.y());
   write_whole_file(folder / "press.csv", text);
   text = "x_m,y_m,area_m2,pressure_Pa\n";
   for (const PressSample& s : results.footprint)

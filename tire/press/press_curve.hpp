@@ -1,7 +1,7 @@
 // The force of an inflated tire on flat ground against its deflection, at rest: what a vehicle stands on.
 //
-// Pressing takes seconds, so the curve is kept in the user's cache (press/), by the tire's file and by what the scenario
-// changes of it. It is as exact as the mesh: see README.md, "Static pressing".
+// Pressing takes seconds, so the curve is kept in the user's cache (press/), by the tire's file and by what the
+// scenario changes of it. It is as exact as the mesh: see README.md, "Static pressing".
 #pragma once
 
 #include <optional>

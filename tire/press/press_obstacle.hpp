@@ -14,8 +14,8 @@ namespace furrow::tire {
 
 /// A flat plate, a flat-topped bar across the direction of travel with rounded edges, or a profile.
 ///
-/// The ground's axes are x forward, y left, z up from it; the rim's centre is over their origin. Camber turns the wheel in
-/// them about x. Seen from the wheel, whose x is the same, it is the ground that is tilted.
+/// The ground's axes are x forward, y left, z up from it; the rim's centre is over their origin. Camber turns the wheel
+/// in them about x. Seen from the wheel, whose x is the same, it is the ground that is tilted.
 struct PressObstacle {
   double height = 0.0;                         // of the bar's top above the base, m; 0: a plate
   double width = 0.0;                          // of the top along x, m
@@ -54,9 +54,9 @@ struct PressSample {
   double pressure = 0.0;    // Pa
 };
 
-/// How a pressed tire resists small motions of a ground to which it sticks wherever it touches: force and moment that move
-/// the ground, by its way along its x, y and z (m) and its turn about z through the rim's centre (rad). N/m, N, N m/rad.
-/// Not a number: the model has none.
+/// How a pressed tire resists small motions of a ground to which it sticks wherever it touches: force and moment that
+/// move the ground, by its way along its x, y and z (m) and its turn about z through the rim's centre (rad). N/m, N, N
+/// m/rad. Not a number: the model has none.
 using GroundStiffness = Eigen::Matrix4d;
 
 }  // namespace furrow::tire

@@ -192,8 +192,8 @@ Outcome RingCarcass::step(double h, const PlaneRimStep& rim, const PlanarField& 
   return {};
 }
 
-/// Goes on by the change that was found, and adds what (4) says of it. The rim's part is what remains of the balances of
-/// momentum and of angular momentum, with lever arms r_m; its work as the segments feel it is that of
+/// Goes on by the change that was found, and adds what (4) says of it. The rim's part is what remains of the balances
+/// of momentum and of angular momentum, with lever arms r_m; its work as the segments feel it is that of
 /// −Σ R F in the way and, by (3), −2 sin δ Σ F·R(−α_m) J r_m in the turn.
 void RingCarcass::move(double h, const PlaneRimStep& rim, double turn, const PlanarField& load, PlanarPoint gravity,
                        PlaneSums& sums) {

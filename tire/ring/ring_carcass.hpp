@@ -6,21 +6,24 @@
 //
 // Positions r_j and velocities w_j of the segments count from the rim's centre, in axes that do not turn with the rim;
 // their displacements q_j = (u, v) are seen from the rim, which is turned by α: r_j = R(α) (R e_r + q_j). So inertia is
-// complete, with centrifugal and Coriolis terms [Gong 1993, A study of in-plane dynamics of tires, TU Delft, ch. 3, writes
-// them out], and a rigid rotation strains nothing. A step h, in which the centre has the velocity V', after V before,
+// complete, with centrifugal and Coriolis terms [Gong 1993, A study of in-plane dynamics of tires, TU Delft, ch. 3,
+// writes them out], and a rigid rotation strains nothing. A step h, in which the centre has
+// the velocity V', after V before,
 //   r' = r + h w',   m_j (w' − w + V' − V)/h = −cos δ R(α_m) F + f + m_j g,                                   (2)
 //   F = ∂Π(q_m) + (τ/h) K(q_m) (q' − q),   q_m = ½ (q + q'),   α_m = ½ (α + α'),   δ = ½ (α' − α),
 // has the energy Π of ring_mechanics.hpp, the contact forces f, and K, the tangent of Π without air and hoop tension:
 // structural damping (Kelvin and Voigt) of belt and sidewall with the time constant τ. Exactly,
 //   q' − q = R(−α_m) [cos δ (r' − r) − 2 sin δ J r_m],   J a right angle,   r_m = ½ (r + r').                  (3)
 //
-// Momentum and angular momentum change by what acts, to round-off, whatever is left of (2). Energy, with Δx = Δr + h V':
+// Momentum and angular momentum change by what acts, to round-off, whatever is left of
+// (2). Energy, with Δx = Δr + h V':
 //   f·Δx + m g·Δx + rim = Δ(kinetic + Π) + ½ Σ m |Δv|² + (τ/h) Δqᵀ K Δq,                                      (4)
-// but for third order in h through the curvature of sidewall and hoop tension. The term in Δv is the loss of the rule, which acts like h/2
-// of additional τ; it cannot be negative. Stiff motion does not ring, as with the shell's rule (shell_integrator.hpp).
+// but for third order in h through the curvature of sidewall and hoop tension. The term in Δv is the loss of the rule,
+// which acts like h/2 of additional τ; it cannot be negative. Stiff motion does not ring, as with the
+// shell's rule (shell_integrator.hpp).
 //
-// (2) is solved for q' − q by Newton's method with one factor in a step: folded_band.hpp, the air's rank of one by Sherman
-// and Morrison, without the turn 2δ of a step.
+// (2) is solved for q' − q by Newton's method with one factor in a step: folded_band.hpp, the air's rank of one by
+// Sherman and Morrison, without the turn 2δ of a step.
 #pragma once
 
 #include <cstdint>

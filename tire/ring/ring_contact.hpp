@@ -1,8 +1,8 @@
 // Gaps between a flexible ring and the ground, and their derivatives.
 //
 // Angles θ count from straight down towards +x. With the displacement d_j = u e_r + v e_t of a segment,
-// e_r = (sin θ_j, −cos θ_j), e_t = (cos θ_j, sin θ_j), segments are at R e_r + d_j, seen from the axle, and between them
-// the belt is a smooth curve, in θ = θ_j + sφ, |s| ≤ ½,
+// e_r = (sin θ_j, −cos θ_j), e_t = (cos θ_j, sin θ_j), segments are at R e_r + d_j, seen from the axle, and between
+// them the belt is a smooth curve, in θ = θ_j + sφ, |s| ≤ ½,
 //   (x, z) = R (sin θ, −cos θ) + ½ (½ − s)² d_{j−1} + (¾ − s²) d_j + ½ (½ + s)² d_{j+1}.                       (1)
 // Gaps are g ≥ 0 where nothing penetrates. With the kinematics
 //   exact   a segment's gap is z − h(x), a corner's is that of (1), z − z_c where x = x_c;                     (2)

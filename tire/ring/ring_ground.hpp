@@ -1,6 +1,6 @@
-// What a ring stands on: a polyline z(x) seen from the side, rigid and without friction. Its faces carry segments of the
-// ring; its convex corners, and its two ends, carry the belt between segments. Beyond the ends there is nothing, so that
-// two points are a bar whose base is never touched, and two points far apart a plate.
+// What a ring stands on: a polyline z(x) seen from the side, rigid and without friction. Its faces carry segments of
+// the ring; its convex corners, and its two ends, carry the belt between segments. Beyond the ends there is nothing, so
+// that two points are a bar whose base is never touched, and two points far apart a plate.
 #pragma once
 
 #include <vector>

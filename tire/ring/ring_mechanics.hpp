@@ -11,16 +11,16 @@
 // A resists the change of the belt's curvature, (v − u')'. B resists shear between its plies, which is as the gradient
 // of the hoop strain, (u + v')' (shear lag); B → ∞ is the inextensible ring, whose bending energy is ½A (u'' + u)². The
 // belt's null space is exactly of dimension four, also of (1): both translations (u, v) = (cos θ, −sin θ) and
-// (sin θ, cos θ), the rotation v = 1, and the uniform growth u = 1; no alternating mode is free. Translations and growth
-// are held by the sidewall, the rotation by k_t > 0 alone: its torsional stiffness is 2π R² k_t.
+// (sin θ, cos θ), the rotation v = 1, and the uniform growth u = 1; no alternating mode is free. Translations and
+// growth are held by the sidewall, the rotation by k_t > 0 alone: its torsional stiffness is 2π R² k_t.
 //
 // (3) is the sidewall's polynomial in w = u + q about the draw q (ring_params.hpp), with s₀ = p R T, p = p₀ − p_a, of
 // which the share σ is what the belt's tension adds to the sidewall's (1 − σ) p R T; so the inflated ring is in balance
 // exactly. With σ = 0 the belt carries no hoop tension: the whole resultant of the pressure goes to the sidewall. σ > 0
 // leaves the rigid motions free, and holds waves of the orders n ≥ 2.
 //
-// Air of the kind `linearised` has the second-order expansion of (4). Its tangent in either kind is a constant times the
-// outer product of (1, …, 1) on u with itself: a rank of one, given apart (RingTangent::gas).
+// Air of the kind `linearised` has the second-order expansion of (4). Its tangent in either kind is a constant times
+// the outer product of (1, …, 1) on u with itself: a rank of one, given apart (RingTangent::gas).
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
-// Natural frequencies of a flexible ring at rest, inflated, on a rim that does not move, order by order (tire/modes.hpp).
-// Segments have displacements of their own axes, so that stiffness and mass of an order are the blocks of the tangent with
-// the phases of neighbours; the air answers in order 0 alone. Damping is left out.
+// Natural frequencies of a flexible ring at rest, inflated, on a rim that does not move, order by order
+// (tire/modes.hpp). Segments have displacements of their own axes, so that stiffness and mass of an order are the
+// blocks of the tangent with the phases of neighbours; the air answers in order 0 alone. Damping is left out.
 #pragma once
 
 #include "tire/modes.hpp"

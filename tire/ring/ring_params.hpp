@@ -2,12 +2,13 @@
 // to a segment, so that they mean the same for any number of segments.
 //
 // The belt is a ring of radius R and width T whose displacements u (radial, outwards) and v (tangential) count from its
-// inflated, circular shape. The sidewall pulls it inwards with k₁w + k₂w² + k₃w³, w = u + q, where the draw q is how far
-// inflation holds it from the length at which it is at rest:
+// inflated, circular shape. The sidewall pulls it inwards with k₁w + k₂w² + k₃w³, w = u + q, where the draw q is how
+// far inflation holds it from the length at which it is at rest:
 //   k₁q + k₂q² + k₃q³ = (1 − σ) p R T                                                                         (1)
 // balances the gauge pressure p, so that q is no number of its own. The share σ of p R T is held by the belt, as hoop
-// tension: that of a membrane. R is that of the inflated tire whatever the pressure: a belt hardly stretches. k₂ > 0 makes
-// the sidewall stiffen with pressure and soften when pressed; its force grows with w everywhere while k₂² < 3 k₁k₃.
+// tension: that of a membrane. R is that of the inflated tire whatever the pressure: a belt hardly stretches. k₂ > 0
+// makes the sidewall stiffen with pressure and soften when pressed; its force grows with w
+// everywhere while k₂² < 3 k₁k₃.
 #pragma once
 
 namespace furrow::tire {
@@ -40,8 +41,8 @@ inline constexpr int kMinSegments = 16, kMaxSegments = 20000;
 /// Largest deflection that the model is meant for, share of the radius.
 inline constexpr double kMostRingDeflection = 0.25;
 
-/// What a ring in motion needs besides. Mass and spin inertia are those of two thin rings: the belt, m_b at R, and a rest
-/// at the rim's radius ρ, which moves with the rim:
+/// What a ring in motion needs besides. Mass and spin inertia are those of two thin rings: the belt, m_b at R, and a
+/// rest at the rim's radius ρ, which moves with the rim:
 ///   m_b R² + (m − m_b) ρ² = I.                                                                              (2)
 struct RingMotion {
   double rim_radius = 0.0;    // ρ, m

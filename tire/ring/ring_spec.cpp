@@ -36,10 +36,11 @@ void check(const RingFile& f) {
         fmt::format("is {:g} m, expected less than the radius of {:g} m", m.rim_radius, p.radius));
   const double least = m.mass * m.rim_radius * m.rim_radius, most = m.mass * p.radius * p.radius;
   if (!(m.spin_inertia > least && m.spin_inertia < most))
-    throw input_error(f.path, "spin_inertia",
-                      fmt::format("is {:g} kg m², expected between {:.4g} and {:.4g} kg m²: the whole mass at the rim's "
-                                  "radius, and at the belt's",
-                                  m.spin_inertia, least, most));
+    throw input_error(
+        f.path, "spin_inertia",
+        fmt::format("is {:g} kg m², expected between {:.4g} and {:.4g} kg m²: the whole mass at the rim's "
+                    "radius, and at the belt's",
+                    m.spin_inertia, least, most));
   if (p.air_share > 1.0)
     throw input_error(f.path, "air_share", fmt::format("is {:g}, expected above 0 up to 1", p.air_share));
   if (p.tension_share > 1.0)
@@ -95,9 +96,11 @@ class RingSpec final : public TireSpec {
 
   std::vector<std::pair<std::string, std::string>> unlikely_values() const override {
     if (file_.params.segments >= file_segments_) return {};
-    return {{"segments", fmt::format("of the file is {}, the scenario's tire.elements_circumference makes it {}: the force of "
-                                     "fewer segments is rougher",
-                                     file_segments_, file_.params.segments)}};
+    return {{"segments",
+             fmt::format(
+                 "of the file is {}, the scenario's tire.elements_circumference makes it {}: the force of "
+                 "fewer segments is rougher",
+                 file_segments_, file_.params.segments)}};
   }
 
  private:

@@ -168,8 +168,8 @@ void RingStep::fill_border(const Problem& p, const ContactSet& set) {
   }
 }
 
-/// τ and μ, into border_right_: symmetric and positive definite but for corners that others hold already, whose force is
-/// left at zero.
+/// τ and μ, into border_right_: symmetric and positive definite but for corners that others hold already, whose force
+/// is left at zero.
 void RingStep::eliminate_border() {
   const int m = 1 + static_cast<int>(closed_.size());
   double* const a = border_.data();

@@ -1,16 +1,19 @@
 // Hoop tension of an inflated belt: the geometric stiffness of a ring that is stretched by the pressure within.
 //
-// A share σ of the pressure p is held by the belt as a membrane holds it, with the hoop tension H = σ p R T, of the same
-// size all around and however the belt is bent. With the length L and the enclosed area A of the polygon of segments,
-//   Π_t = H cos(φ/2) (L − L₀) − σ p T (A − A₀) = σ p T Σ R cos(φ/2) e − ½ (u u₊ + v v₊) sin φ − ½ (u v₊ − v u₊) cos φ,  (1)
+// A share σ of the pressure p is held by the belt as a membrane holds it, with the hoop tension H = σ p R T, of the
+// same size all around and however the belt is bent. With the length L and the enclosed
+// area A of the polygon of segments,
+//   Π_t = H cos(φ/2) (L − L₀) − σ p T (A − A₀)
+//       = σ p T Σ R cos(φ/2) e − ½ (u u₊ + v v₊) sin φ − ½ (u v₊ − v u₊) cos φ,                                    (1)
 //   e = n²/(l + l₀ + a),   l² = (l₀ + a)² + n²,   l₀ = 2 R sin(φ/2),                                            (2)
 //   n = (u₊ − u) cos(φ/2) − (v₊ + v) sin(φ/2),   a = (u₊ + u) sin(φ/2) + (v₊ − v) cos(φ/2),
-// where + marks the next segment, a and n are the stretch of a chord and its turn away from the circle's, and terms of first
-// order cancel: the circle is in balance exactly, H cos(φ/2) being the tension of a polygon. Any rigid motion is free, also
-// a large one, since L and A do not change. To second order, as φ → 0,
+// where + marks the next segment, a and n are the stretch of a chord and its turn away from the circle's, and terms of
+// first order cancel: the circle is in balance exactly, H cos(φ/2) being the tension of a polygon. Any rigid motion is
+// free, also a large one, since L and A do not change. To second order, as φ → 0,
 //   Π_t = ½ σ p T ∫ (u'² − u²) dθ:                                                                             (3)
-// the pressure follows the belt, and v drops out. A wave of the order n has the stiffness σ p T (n² − 1) per radian [the
-// terms in σ_θ⁰ and p₀ of Gong 1993, A study of in-plane dynamics of tires, TU Delft, ch. 3, with σ_θ⁰ A = p₀ b R].
+// the pressure follows the belt, and v drops out. A wave of the order n has the stiffness σ p T (n² − 1) per radian
+// [the terms in σ_θ⁰ and p₀ of Gong 1993, A study of in-plane dynamics of tires, TU
+// Delft, ch. 3, with σ_θ⁰ A = p₀ b R].
 #pragma once
 
 #include "tire/ring/ring_field.hpp"

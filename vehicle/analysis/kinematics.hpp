@@ -2,14 +2,15 @@
 // given in the chassis' frame. Derivatives d/dz are exact, from the constraints' Jacobian.
 //
 //   roll centre      height above the ground of the point about which the body rolls, y_c dy_c/dz for opposite travel
-//   brake slope      dx_c/dz of the contact point with the wheel locked to its carrier, positive where braking force keeps
-//                    the suspension from moving as the load does: in front against compression, behind against rebound
+//   brake slope      dx_c/dz of the contact point with the wheel locked to its carrier, positive where braking force
+//                    keeps the suspension from moving as the load does: in front against
+//                                     compression, behind against rebound
 //   anti-dive        its share of what holds the body level: brake slope × share of the braking × wheelbase / height of
 //                    the centre of mass
 //   motion ratio     −d(length)/dz of spring or shock absorber
 //   wheel rate       d/dz of the spring's force at the wheel
-//   Ackermann        (δ_i − δ_o)/(δ_i − δ_a), with cot δ_a = cot δ_i + track/wheelbase: 1 where both wheels roll about one
-//                    point on the line of the axles that are not steered
+//   Ackermann        (δ_i − δ_o)/(δ_i − δ_a), with cot δ_a = cot δ_i + track/wheelbase: 1 where both wheels roll about
+//                    one point on the line of the axles that are not steered
 #pragma once
 
 #include <limits>

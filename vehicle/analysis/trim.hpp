@@ -1,9 +1,9 @@
 // The static trim of a vehicle on level ground: where it comes to rest on its tires, and how it vibrates about it.
 //
-// A tire is known by its press curve F(δ), the vertical force at a deflection δ = R − z_c/cos γ of a wheel with its centre
-// at the height z_c and its axle at the angle γ to the ground. It stores ∫ F dδ, so that it pushes the wheel with F/cos γ
-// upward at the lowest point of its middle circle. Wheels do not turn, the steering is held straight, and the chassis is
-// held in x, y and about z.
+// A tire is known by its press curve F(δ), the vertical force at a deflection δ = R − z_c/cos γ of a wheel with its
+// centre at the height z_c and its axle at the angle γ to the ground. It stores ∫ F dδ, so that it pushes the wheel
+// with F/cos γ upward at the lowest point of its middle circle. Wheels do not turn, the steering is held straight, and
+// the chassis is held in x, y and about z.
 #pragma once
 
 #include <functional>
@@ -92,8 +92,8 @@ void visit_fields(Visit&& visit, FieldsOf<Trim> auto& s) {
 }
 
 /// Puts the vehicle at rest on the plane z = `ground` and returns its posture.
-/// @param gravity  that it stands in, m/s², with the vehicle along x; none: its own. On a slope each wheel holds the same share
-///                 of the pull along the plane, where it touches.
+/// @param gravity  that it stands in, m/s², with the vehicle along x; none: its own. On a slope each wheel holds the
+///                 same share of the pull along the plane, where it touches.
 /// @pre one tire for each wheel; their masses were added. @throws Error(physics) when there is no equilibrium
 Trim trim(Vehicle& vehicle, std::span<const TireCurve> tires, double ground = 0.0,
           const std::optional<Vec3>& gravity = {});

@@ -1,5 +1,5 @@
-// Angles of a wheel and its steering axis in the vehicle's frame. With the spin axis a (unit, to the left), the steering
-// axis u (unit, upward) and s = +1 on the left, −1 on the right:
+// Angles of a wheel and its steering axis in the vehicle's frame. With the spin axis a (unit, to the left), the
+// steering axis u (unit, upward) and s = +1 on the left, −1 on the right:
 //
 //   camber   asin(−s a_z)            positive: the top leans outward
 //   toe      s atan2(a_x, a_y)       positive: toe-in

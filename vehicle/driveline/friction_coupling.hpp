@@ -1,5 +1,6 @@
 // A brake or clutch: dry friction in a row in speeds. It holds the two sides together as long as that takes no more
-// than its capacity, and slips with its capacity beyond, as a set-valued law: what holds does not creep, whatever the step.
+// than its capacity, and slips with its capacity beyond, as a set-valued law: what holds
+// does not creep, whatever the step.
 #pragma once
 
 #include <string>

@@ -1,11 +1,12 @@
 // What a driver knows of a vehicle, from the vehicle's own data.
 //
 //   wheelbase      from the middle of the rear axle to that of the axle that steers, or without one to the foremost
-//   steering lock  mean angle of the steered wheels at steering 1. A vehicle that steers by the speeds of its sides turns
-//                  at full command with the curvature 2 s/b, s its skid_steer and b its track, if its wheels do not slip
-//                  sideways; its lock is that of a car with the same curvature, atan(2 s L/b)
-//   drive force    largest torque of the engine times the converter's ratio at stall through the lowest gear, or all motors
-//                  at stall; brake force: all brakes, or the motors where there are none; either at most kGrip × weight
+//   steering lock  mean angle of the steered wheels at steering 1. A vehicle that steers by the speeds of its sides
+//                  turns at full command with the curvature 2 s/b, s its skid_steer and b its track, if its wheels do
+//                  not slip sideways; its lock is that of a car with the same curvature, atan(2 s L/b)
+//   drive force    largest torque of the engine times the converter's ratio at stall through the lowest gear, or all
+//                  motors at stall; brake force: all brakes, or the motors where there are
+//                                 none; either at most kGrip × weight
 #pragma once
 
 #include <span>

@@ -46,7 +46,8 @@ class Path {
   /// The first position at or behind `from` that is at least `distance` from `point`.
   /// @pre behind the end of the path, the point is less than `distance` beside it
   Vec2 look_ahead(const PathPlace& from, const Vec2& point, double distance) const;
-  /// Mean curvature of the path between two distances ahead of a place, 1/m, positive to the left; straight behind its end.
+  /// Mean curvature of the path between two distances ahead of a place, 1/m, positive to the
+  /// left; straight behind its end.
   /// @pre 0 ≤ near < far
   double curvature(const PathPlace& from, double near, double far) const;
 

@@ -9,9 +9,10 @@
 //                   δ = −ψ − arctan(k e/(k_s + |v|))
 //   preview       feedforward of the path's curvature and feedback of the rear axle's error, after [Kapania & Gerdes
 //                 2015], eq. (4), (6) and §4: κ_p at the distance t_p |v| ahead, a mean over up to ±L/4, with the
-//                 understeer gradient K; and the heading error ψ against what a curve of κ_h, halfway there, takes with the
-//                 rear axle's slip angle S v² κ_h. k_r damps the yaw rate r as in [Hoffmann et al. 2007].
-//                   δ = atan(L (κ_p − (e + 2 d sin(ψ − S v² κ_h))/d²)) + K v² κ_p − k_r (r − v κ_h),  d = max(d₀, t_r |v|)
+//                 understeer gradient K; and the heading error ψ against what a curve of κ_h, halfway there, takes with
+//                 the rear axle's slip angle S v² κ_h. k_r damps the yaw rate r as in [Hoffmann et al. 2007].
+//                   δ = atan(L (κ_p − (e + 2 d sin(ψ − S v² κ_h))/d²)) + K v² κ_p − k_r (r − v κ_h),
+//                       d = max(d₀, t_r |v|)
 //                 Small errors of a kinematic vehicle decay critically damped in the distance d, (1 + s/d) e^(−s/d); of
 //                 large ones e counts up to √2 d, so that the vehicle comes back at 45°.
 //

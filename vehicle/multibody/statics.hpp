@@ -1,7 +1,7 @@
-// Postures and equilibria of a system: what a vehicle's trim and its suspension's kinematics are solved with. Coordinates
-// are, for each body in turn, a displacement (m, W) and a small rotation (rad, W) from its present pose. With the rows
-// φ(x) = target of the system and those held besides, G = ∂φ/∂x, forces Q(x) of bodies at rest and an orthonormal basis
-// N of the null space of G:
+// Postures and equilibria of a system: what a vehicle's trim and its suspension's kinematics are solved with.
+// Coordinates are, for each body in turn, a displacement (m, W) and a small rotation (rad, W) from its present pose.
+// With the rows φ(x) = target of the system and those held besides, G = ∂φ/∂x, forces Q(x) of bodies at rest and an
+// orthonormal basis N of the null space of G:
 //
 //   posture      φ(x) = target          Newton with the shortest step, δ = G⁺ (target − φ)
 //   equilibrium  Nᵀ Q = 0               Newton with K = −Nᵀ ∂(Q + Gᵀλ)/∂x N at constant λ, Gᵀλ ≈ −Q, by central

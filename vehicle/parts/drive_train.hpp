@@ -1,6 +1,6 @@
 // The driveline of a vehicle, built from its spec: shafts with what joins them, and what drives them. Reactions act on
-// the shafts' carriers: of engine, gearbox and gears on the chassis or an axle's housing, of wheel motors on what carries
-// the wheel's bearing.
+// the shafts' carriers: of engine, gearbox and gears on the chassis or an axle's housing, of wheel motors on what
+// carries the wheel's bearing.
 #pragma once
 
 #include <optional>

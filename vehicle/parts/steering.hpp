@@ -1,5 +1,5 @@
-// The steering of an axle: what the tie rods' inner ends are on, and how it follows the steering wheel. The input s runs
-// from −1 (fully to the right) to 1 (fully to the left) and follows its target s* as
+// The steering of an axle: what the tie rods' inner ends are on, and how it follows the steering wheel. The input s
+// runs from −1 (fully to the right) to 1 (fully to the left) and follows its target s* as
 //   T² s″ + 2 T s′ + s = s*,
 // which is solved exactly, so that s and s′ are continuous whatever the step.
 #pragma once

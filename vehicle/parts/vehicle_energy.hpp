@@ -1,5 +1,6 @@
-// Where the energy of a vehicle is and went, each entry from its own account: bodies and springs from their state, drives,
-// clutches, brakes and shock absorbers from impulse times the mean of the speeds before and after it (system.hpp).
+// Where the energy of a vehicle is and went, each entry from its own account: bodies and springs from their state,
+// drives, clutches, brakes and shock absorbers from impulse times the mean of the speeds
+// before and after it (system.hpp).
 #pragma once
 
 #include "protocol/core/fields.hpp"

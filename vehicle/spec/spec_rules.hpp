@@ -1,5 +1,5 @@
-// What must hold within each struct of a vehicle file, besides the types of its values. What several of them must agree on
-// is in read_vehicle.cpp and driveline_rules.cpp.
+// What must hold within each struct of a vehicle file, besides the types of its values. What several of them must agree
+// on is in read_vehicle.cpp and driveline_rules.cpp.
 #pragma once
 
 #include "protocol/files/json_reader.hpp"

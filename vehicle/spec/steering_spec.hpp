@@ -9,7 +9,8 @@
 namespace furrow::vehicle {
 
 /// An arm on the chassis and an idler carry a link between them; the tie rods' inner ends are on the link. Points are
-/// from `origin` in axes that are pitched about y (x downward for a positive angle), in which arm and idler turn about z.
+/// from `origin` in axes that are pitched about y (x downward for a positive angle), in
+/// which arm and idler turn about z.
 struct PitmanArmSpec {
   static constexpr const char* kType = "pitman_arm";
   Vec3 origin = Vec3::Zero();  // in the vehicle's frame, m

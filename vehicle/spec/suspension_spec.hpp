@@ -1,5 +1,6 @@
-// What a vehicle file says of bodies, suspensions, wheels and brakes. Points are in m, in the vehicle's frame: x forward,
-// y left, z up. A file gives them from the origin of their axle; the reader adds it. Every Vec3 in here is a point.
+// What a vehicle file says of bodies, suspensions, wheels and brakes. Points are in m, in the vehicle's frame: x
+// forward, y left, z up. A file gives them from the origin of their axle; the reader adds it.
+// Every Vec3 in here is a point.
 #pragma once
 
 #include <optional>
@@ -158,8 +159,8 @@ void visit_fields(Visit&& visit, FieldsOf<DoubleWishboneSpec> auto& s) {
   visit(Field{"shock", "", role::key}, s.shock);
 }
 
-/// An arm that is hinged to the chassis about the line through its two pivots and carries the wheel's bearing: trailing,
-/// semi-trailing, or without a spring one half of a walking beam (see FixedSpec).
+/// An arm that is hinged to the chassis about the line through its two pivots and carries the wheel's bearing:
+/// trailing, semi-trailing, or without a spring one half of a walking beam (see FixedSpec).
 struct TrailingArmSpec {
   static constexpr const char* kType = "trailing_arm";
   SpindleSpec spindle;

@@ -1,6 +1,6 @@
 // Energy of the grains by mechanism. What springs, damping and sliding take is too dear to be summed in every step:
-// contact_losses.hpp costs as much as the law itself. So every kLossSampleSteps-th step is a *sample*: in it the power of
-// each mechanism is summed over all contacts that are evaluated, with the forces and velocities of that step, and it
+// contact_losses.hpp costs as much as the law itself. So every kLossSampleSteps-th step is a *sample*: in it the power
+// of each mechanism is summed over all contacts that are evaluated, with the forces and velocities of that step, and it
 // stands for its own step and for the nearer half of those on either side. Were every step a sample, the sums would be
 // exact. Strips that sleep lose nothing. kLossSampleSteps is a prime: samples do not fall into step with substeps or
 // treads.

@@ -140,7 +140,8 @@ void check_positions(const DemOptions& o, const std::filesystem::path& file, std
                        what);
   };
   if (grains.size() > kMaxGrains)
-    throw input_error(file.string(), "", fmt::format("holds {} grains, expected at most {}", grains.size(), kMaxGrains));
+    throw input_error(file.string(), "",
+                      fmt::format("holds {} grains, expected at most {}", grains.size(), kMaxGrains));
   for (std::size_t g = 0; g < grains.size(); ++g) {
     double& radius = grains[g].w;
     if (radius == 0.0) radius = o.radius;
@@ -168,10 +169,12 @@ void check_positions(const DemOptions& o, const std::filesystem::path& file, std
   }
   const double fall = kMaxFall * largest_radius(o);
   if (const std::optional<Hanging> hanging = find_hanging(grains, fall))
-    throw wrong(hanging->grain,
-                fmt::format("the grain stands at {}, {:.4g} m above all that is below it, expected at most {:g} m, {:g} "
-                            "radii: it would fall too fast to be at rest as a bed",
-                            place_text(grains[hanging->grain]), hanging->height, fall, kMaxFall));
+    throw wrong(
+        hanging->grain,
+        fmt::format(
+            "the grain stands at {}, {:.4g} m above all that is below it, expected at most {:g} m, {:g} "
+            "radii: it would fall too fast to be at rest as a bed",
+            place_text(grains[hanging->grain]), hanging->height, fall, kMaxFall));
   const double reach = kMinDistance * largest_radius(o);
   const auto check_pair = [&](std::size_t a, std::size_t b, double distance) {
     const double mean = 0.5 * (grains[a].w + grains[b].w), least = kMinDistance * mean;

@@ -24,7 +24,8 @@ std::vector<double> numbers(const Hdf5Reader& file, const std::string& name, hsi
            (shape.size() == 2 ? shape[1] : 1) == columns;
   };
   if (!file.has(name) || !is_table())
-    throw wrong(columns == 1 ? "expected N numbers, m" : "expected N × 3 numbers, m, as frames/terrain_*.h5 of a run has them");
+    throw wrong(columns == 1 ? "expected N numbers, m"
+                             : "expected N × 3 numbers, m, as frames/terrain_*.h5 of a run has them");
   const auto values = file.get<double>(name);
   for (std::size_t k = 0; k < values.size(); ++k)
     if (!std::isfinite(values[k]))

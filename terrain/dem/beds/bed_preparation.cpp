@@ -65,8 +65,8 @@ bool from_cache(const std::filesystem::path& file, const DemOptions& options, Ar
   }
 }
 
-/// The grains while they fall. Smoother ones come to rest more closely packed, rougher ones more loosely [Agnolin & Roux
-/// 2007, doi:10.1103/PhysRevE.76.061302].
+/// The grains while they fall. Smoother ones come to rest more closely packed, rougher ones more loosely [Agnolin &
+/// Roux 2007, doi:10.1103/PhysRevE.76.061302].
 DemOptions falling(DemOptions o) {
   if (o.settling_friction < 0.0) return o;
   if (o.friction > 0.0) o.rolling_friction *= o.settling_friction / o.friction;

@@ -45,8 +45,8 @@ class Matching {
     return found;
   }
 
-  /// Follows the layers from `start`, an edge of each grain at most once in a round, and turns the path about if it ends
-  /// at a second grain without a mate.
+  /// Follows the layers from `start`, an edge of each grain at most once in a round, and turns the path about if it
+  /// ends at a second grain without a mate.
   void augment(int start) {
     std::vector<int> path{start};  // first grains; next_[a] − 1 is the edge by which a is left
     while (!path.empty()) {

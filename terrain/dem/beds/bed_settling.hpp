@@ -40,7 +40,8 @@ inline constexpr double kRestSpeed = 0.002;   // rms, m/s: slower counts as at r
 inline constexpr double kRestEnergy = 1e-3;   // kinetic, of m g r: less counts as at rest
 inline constexpr int kSettleCheckEvery = 40;  // steps
 
-/// Runs the solver until the bed is settled, all grains awake, or `most` seconds have passed. May throw what `progress` throws.
+/// Runs the solver until the bed is settled, all grains awake, or `most` seconds have passed.
+/// May throw what `progress` throws.
 /// @param drag of the beginning; that of grains which lie is at least kRestDrag
 /// @throws Error(physics) when a grain is lost.
 SettleResult settle(GrainSolver& solver, const DemOptions& options, const ProgressCall& progress,

@@ -8,13 +8,14 @@
 // parts grow again, one level at a time, after the overlap stayed below kRelaxShare of what the larger part bears for
 // kRelaxSteps steps: a contact that swings about the limit does not make the step flicker.
 //
-// What stays consistent when the step changes. Semi-implicit Euler is the leapfrog whose velocities belong to the middle
-// between two positions: where a part of dt follows one of dt′, forces act for ½ (dt + dt′) (StepPart::kick). Else the
-// energy would jump by ½ (dt′ − dt) F·v: elastic collisions caught half-way would part 3 to 13 % too fast, where now they
-// lose 0 to 5 %, the second order of the whole step at which they began. Impulses and work are booked for the same time, so that momentum and
-// energy balance as ever (the weight acts for the time between velocities). Tangential and rolling springs grow by the
-// way since their forces were last taken, which is v dt′. Means over an interval are impulses, surfaces stand where the
-// part begins. Sleep counts whole steps, and neighbour lists stay good for a whole one.
+// What stays consistent when the step changes. Semi-implicit Euler is the leapfrog whose velocities belong to the
+// middle between two positions: where a part of dt follows one of dt′, forces act for ½ (dt + dt′) (StepPart::kick).
+// Else the energy would jump by ½ (dt′ − dt) F·v: elastic collisions caught half-way would part 3 to 13 % too fast,
+// where now they lose 0 to 5 %, the second order of the whole step at which they began. Impulses and work are booked
+// for the same time, so that momentum and energy balance as ever (the weight acts for the time between velocities).
+// Tangential and rolling springs grow by the way since their forces were last taken, which is v dt′. Means over an
+// interval are impulses, surfaces stand where the part begins. Sleep counts whole steps, and neighbour
+// lists stay good for a whole one.
 //
 // Every decision follows from positions and velocities, in a fixed order: it is alike for any number of threads, and
 // `State` makes a continued run decide alike.

@@ -1,5 +1,6 @@
-// LIGGGHTS' errors become exceptions. Its own end the process, on a communicator of some of the ranks without the others.
-// The functions are not virtual; these definitions come before its own where the library's symbols are looked up.
+// LIGGGHTS' errors become exceptions. Its own end the process, on a communicator of some of the ranks without the
+// others. The functions are not virtual; these definitions come before its own where the
+// library's symbols are looked up.
 #include <string>
 
 #include <error.h>

@@ -1,19 +1,19 @@
-// What happens to grains in a step beside their contacts with each other: lists are made where they are due, Furrow adds
-// the forces of walls and tires, then the grains move. Keeps what each grain carries, also from rank to rank.
+// What happens to grains in a step beside their contacts with each other: lists are made where they are due, Furrow
+// adds the forces of walls and tires, then the grains move. Keeps what each grain carries, also from rank to rank.
 //
 // When lists are due. All ranks make their lists when a grain of any has moved by half the skin s since they were made:
-// then the ghosts of a continued run stand where they stood, as their owners know. How far grains moved is looked at only
-// when the fastest of each step could have come that far.
+// then the ghosts of a continued run stand where they stood, as their owners know. How far grains moved is looked at
+// only when the fastest of each step could have come that far.
 //
 // When grains change ranks. LIGGGHTS' exchange, which also renews the ghosts, is due on all ranks alike and seldom. Its
 // reach for ghosts is wider by kGhostRoom skins than that of the lists, so that grains may stray: in x from the rank's
-// part, in y from a periodic bin. With its part [lo, hi], the largest radius r, and m what the fastest grain moves in two
-// steps, a rank asks for it when, as it makes its lists, a grain of its own
+// part, in y from a periodic bin. With its part [lo, hi], the largest radius r, and m what the fastest grain moves in
+// two steps, a rank asks for it when, as it makes its lists, a grain of its own
 //   stands outside of [lo − s/2 + m, hi + s/2 − m],                                                           (1)
 //   or was not sent as a ghost over a border and has come as near to it as 2r + 3s/2 + m.                     (2)
 // Until the lists after these, and in the step that the exchange comes late, a grain moves by s/2 and what is in m at
-// most. So a grain is no farther than s beyond the border, and what is not among its ghosts no nearer to it than 2r + s:
-// they cannot touch. Ranks agree on it by one number, which travels while the pairs are evaluated.
+// most. So a grain is no farther than s beyond the border, and what is not among its ghosts no nearer to it than 2r +
+// s: they cannot touch. Ranks agree on it by one number, which travels while the pairs are evaluated.
 #pragma once
 
 #include <array>

@@ -197,8 +197,8 @@ class LiggghtsEngine final : public Engine {
   }
 
  private:
-  /// Exchanges grains. In the step after that LIGGGHTS would exchange them once more, for a restart file that nobody asked
-  /// for: there is no such step.
+  /// Exchanges grains. In the step after that LIGGGHTS would exchange them once more, for a restart file that nobody
+  /// asked for: there is no such step.
   void make_ready() {
     command("run 0 pre yes post no");
     ++lmp_->update->ntimestep;

@@ -1,8 +1,8 @@
 // Who may touch whom among a rank's grains and the copies of others' (ghosts), and what touching pairs remember.
 //
-// A pair of own grains is listed once; a pair with a ghost by this rank, and again by the ghost's. The rows of the list,
-// one for each own grain, have the order of the grid's cells: neighbours in space are neighbours in memory. Lists are
-// made anew where grains stand, when one has moved too far; numbers of grains stay the same meanwhile, and
+// A pair of own grains is listed once; a pair with a ghost by this rank, and again by the ghost's. The rows of the
+// list, one for each own grain, have the order of the grid's cells: neighbours in space are neighbours in memory. Lists
+// are made anew where grains stand, when one has moved too far; numbers of grains stay the same meanwhile, and
 // histories are carried from the old list to the new one. Where numbers change, they are taken out and put in by tags.
 #pragma once
 

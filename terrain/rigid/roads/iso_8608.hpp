@@ -7,7 +7,8 @@
 // n_k and φ_k random: the variance of every band is that of (1), for any seed.
 //
 // ISO 8608:2016, Mechanical vibration – Road surface profiles – Reporting of measured data, annex C, table C.1.
-// M. Shinozuka, C.-M. Jan, Digital simulation of random processes and its applications, J. Sound Vib. 25 (1972) 111–128.
+// M. Shinozuka, C.-M. Jan, Digital simulation of random processes and its applications,
+// J. Sound Vib. 25 (1972) 111–128.
 #pragma once
 
 #include <cstdint>

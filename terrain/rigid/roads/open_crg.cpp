@@ -233,8 +233,9 @@ class Reader {
                   fmt::format("is {:g}, expected {:g} to {:g} m", road.increment, kLeastIncrement, kFarthest));
     const double end = road.start + static_cast<double>(rows.size() / channels_.size()) * road.increment;
     if (!(std::abs(road.start) <= kFarthest && end <= kFarthest))
-      throw wrong("REFERENCE_LINE_START_U", fmt::format("leads the road from u = {:g} to {:g} m, expected {:g} to {:g} m",
-                                                        road.start, end, -kFarthest, kFarthest));
+      throw wrong("REFERENCE_LINE_START_U",
+                  fmt::format("leads the road from u = {:g} to {:g} m, expected {:g} to {:g} m", road.start,
+                              end, -kFarthest, kFarthest));
     std::vector<std::size_t> order(cuts_.size());
     for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return cuts_[a] < cuts_[b]; });

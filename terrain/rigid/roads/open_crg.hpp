@@ -1,9 +1,9 @@
 // Measured roads in the format ASAM OpenCRG 1.2: heights on a grid, u along a reference line and v to its left.
 //
-// Read are the road parameters, the data definition and the road data in the four formats (LRFI and LDFI as text, KRBI and
-// KDBI as big-endian numbers). The reference line is taken as straight: its heading, its position and those of the Earth
-// are left out, for a profile is alike across. Its slope is added to the heights. What changes the heights and is not
-// read here is refused: banking, modifiers, options, and references to other files.
+// Read are the road parameters, the data definition and the road data in the four formats (LRFI and LDFI as text, KRBI
+// and KDBI as big-endian numbers). The reference line is taken as straight: its heading, its position and those of the
+// Earth are left out, for a profile is alike across. Its slope is added to the heights. What changes the heights and is
+// not read here is refused: banking, modifiers, options, and references to other files.
 //
 // ASAM OpenCRG 1.2.0, chapter 6, "OpenCRG data format".
 #pragma once

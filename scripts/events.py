@@ -41,6 +41,10 @@ def as_json(v, found, compared, balance):
     means = {row.what: {"unit": row.unit, **{name: of(one) for name, one in zip(names, row.axles)},
                         **{f"{behind} - {before}": of(one) for before, behind, one in zip(names, names[1:], row.differences)}}
              for row in compared.rows}
+    for row in compared.rows:
+        for name, note in zip(names, row.notes):
+            if note:
+                means[row.what][name]["leaves_out"] = note
     return {"events": [{"time_s": e.time, "event": e.what, "of": e.subject, "value": number(float(e.value)), "unit": e.unit,
                         "threshold": e.threshold} for e in found],
             "weight_N": v.weight,

@@ -22,6 +22,7 @@ OF_SOIL = ("sinkage_m", "sinkage_in_rut_m", "terrain_resistance_N")
 JUDGED = {"iso_force_x_N": 0.005, "sinkage_m": 0.02}  # a drift below this share, of load or of sinkage, is none
 CANDIDATES, SHORTEST = 16, 0.5  # windows that are tried; s
 LEAST_SAMPLES = 10.0
+TURNS = 0.01  # in √(g R): a wheel whose circumference is slower stands or is locked, and has no slip
 
 
 @dataclasses.dataclass
@@ -30,6 +31,7 @@ class Row:
     unit: str
     axles: list  # Statistics by axle, from the front
     differences: list  # of each axle less the one before it
+    notes: list = dataclasses.field(default_factory=list)  # by axle: what the mean leaves out; empty: nothing
 
 
 @dataclasses.dataclass
@@ -46,6 +48,32 @@ class Comparison:
 def axle_series(v, axle, column, total):
     values = [wheel[column] for wheel in v.of_axle(axle)]
     return sum(values) if total else sum(values) / len(values)
+
+
+def turning(v, axle):
+    """Lines in which all wheels of an axle turn: the slip of others is not defined."""
+    return np.all([np.abs(wheel["spin_rad_per_s"]) * wheel.radius >= TURNS * math.sqrt(events.GRAVITY * wheel.radius)
+                   for wheel in v.of_axle(axle)], axis=0)
+
+
+def still_note(v, axle, chosen):
+    """How long wheels of an axle stand, or are locked while the vehicle moves; empty where all turn all the time."""
+    still = chosen & ~turning(v, axle)
+    if not still.any():
+        return ""
+    moves = np.any([np.abs(wheel["speed_m_per_s"]) >= TURNS * math.sqrt(events.GRAVITY * wheel.radius)
+                    for wheel in v.of_axle(axle)], axis=0)
+    shares = (("locked", (still & moves).sum() / chosen.sum()), ("standing", (still & ~moves).sum() / chosen.sum()))
+    return ", ".join(f"{what} for {100 * share:.0f} % of the time" for what, share in shares if share > 0.0)
+
+
+def slip_row(v, what, unit, chosen):
+    """Means over the lines in which wheels turn."""
+    turns = [chosen & turning(v, axle) for axle in v.order]
+    slips = [axle_series(v, axle, "slip", False) for axle in v.order]
+    return Row(what, unit, [statistics(slip[lines]) for slip, lines in zip(slips, turns)],
+               [statistics((slips[k + 1] - slips[k])[turns[k + 1] & turns[k]]) for k in range(len(slips) - 1)],
+               [still_note(v, axle, chosen) for axle in v.order])
 
 
 def reasons(v, chosen):
@@ -113,6 +141,9 @@ def compare(v, begin=None, end=None):
     for column, what, unit, factor, total in QUANTITIES:
         if not all(column in wheel for wheel in v.wheels) or (v.hard_ground and column in OF_SOIL):
             continue
+        if column == "slip":
+            rows.append(slip_row(v, what, unit, chosen))
+            continue
         series = [factor * axle_series(v, axle, column, total)[chosen] for axle in v.order]
         rows.append(Row(what, unit, [statistics(values) for values in series],
                         [statistics(behind - before) for before, behind in zip(series, series[1:])]))
@@ -122,6 +153,8 @@ def compare(v, begin=None, end=None):
 
 
 def told(found: Statistics):
+    if not math.isfinite(found.mean):
+        return "not defined"
     return with_error(found.mean, found.sem) if math.isfinite(found.sem) else f"{found.mean:.4g}"
 
 
@@ -138,6 +171,8 @@ def text(c):
     lines = [f"Axles from {c.begin:.3g} to {c.end:.3g} s ({c.chosen}); an axle has the sum of its wheels' forces"]
     lines += ["  ".join([f"{row[0]:<{widths[0]}}", *(f"{cell:>{width}}" for cell, width in zip(row[1:], widths[1:]))]).rstrip()
               for row in rows]
+    lines += [f"{row.what}, {name} axle: {note}; the mean leaves that out, a wheel that does not turn has no slip"
+              for row in c.rows for name, note in zip(names, row.notes) if note]
     if c.unsteady:
         lines += ["NOT STEADY:", *(f"  {reason}" for reason in c.unsteady)]
     return "\n".join(lines) + "\n"

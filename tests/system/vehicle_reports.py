@@ -52,10 +52,12 @@ def series(seed=1, **shape):
         net = np.where(time > MOVE, (1200.0 if rear else 1000.0) + shape.get("drift", 0.0) * time, 0.0)
         net = net + 30.0 * chance.normal(size=len(time))
         height = SURFACE - sinkage + RADIUS
-        wheels.append({"time_s": time, "slip": np.where(time > MOVE, 0.2, 0.0), "sinkage_m": sinkage, "sinkage_in_rut_m": in_rut,
+        locked = rear & (time > shape.get("locks", np.inf))
+        slip = np.where(locked, -1e6, np.where(time > MOVE, 0.2, 0.0))  # as the rig limits it
+        wheels.append({"time_s": time, "slip": slip, "sinkage_m": sinkage, "sinkage_in_rut_m": in_rut,
                        "force_z_N": vertical, "iso_force_x_N": net, "iso_force_y_N": zero, "iso_force_z_N": vertical,
                        "tractive_effort_N": net + (700.0 if rear else 900.0), "terrain_resistance_N": (700.0 if rear else 900.0) + zero,
-                       "spindle_torque_Nm": (net + 900.0) * RADIUS, "speed_m_per_s": speed, "spin_rad_per_s": 1.25 * speed / RADIUS,
+                       "spindle_torque_Nm": (net + 900.0) * RADIUS, "speed_m_per_s": speed, "spin_rad_per_s": np.where(locked, 0.0, 1.25 * speed / RADIUS),
                        "position_m": 2.5 + (-BASE / 2 if rear else BASE / 2) + way, "axle_height_m": height, "lowest_point_m": SURFACE - sinkage,
                        "sinkage_kinematic_m": SURFACE - (height - RADIUS), "suspension_travel_m": zero})
     return vehicle, wheels
@@ -166,6 +168,19 @@ class Events(SystemTest):
             self.assertAlmostEqual(net[axle]["mean"], force, delta=5.0 * expected)
             self.assertAlmostEqual(net[axle]["sem"] / expected, 1.0, delta=0.4)
         self.assertAlmostEqual(told["means"]["resistance"]["rear - front"]["mean"], -400.0, delta=1e-6)
+
+    def test_the_mean_slip_leaves_out_wheels_that_do_not_turn(self):
+        slip = json.loads(self.told("--json", "--from=2", locks=2.5).stdout)["axles"]["means"]["slip"]
+        self.assertAlmostEqual(slip["rear"]["mean"], 0.2, delta=1e-9)
+        self.assertEqual(slip["rear"]["leaves_out"], "locked for 50 % of the time")
+        self.assertNotIn("leaves_out", slip["front"])
+        self.assertAlmostEqual(slip["rear - front"]["mean"], 0.0, delta=1e-9)
+        done = self.told("--from=2", locks=1.0)
+        self.assertRegex(done.stdout, r"(?m)^slip +0\.2\S* .*not defined +not defined$")
+        self.assertIn("slip, rear axle: locked for 100 % of the time; the mean leaves that out", done.stdout)
+        self.assertIsNone(json.loads(self.told("--json", "--from=2", locks=1.0).stdout)["axles"]["means"]["slip"]["rear"]["mean"])
+        standing = json.loads(self.told("--json", "--from=0.1", "--to=0.4").stdout)["axles"]["means"]["slip"]["front"]
+        self.assertEqual((standing["mean"], standing["leaves_out"]), (None, "standing for 100 % of the time"))
 
     def test_a_drift_is_not_called_steady(self):
         done = self.told(drift=300.0)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks how the sources include each other: no circle, no arrow up, no folder that outgrew its purpose.
+"""Checks how the sources include each other: no circle, no arrow up, no folder that outgrew its purpose, no line too wide.
 
 A unit is a header together with its source. Rooms are the folders of FLOORS, lowest first; a file belongs to the longest entry
 that begins its path. A room may include itself, rooms of lower floors, and nothing else; of tests nothing. MPI is the
@@ -34,6 +34,7 @@ FLOORS = [
 # Physics rooms do not know what crosses ranks: of protocol/ they may include core and files alone.
 PHYSICS = ("tire", "terrain", "terrain/surface", "vehicle", "rigs")
 LARGEST_FOLDER = 45  # sources
+WIDTH = 120  # columns
 # Top-level folders that hold no room.
 NO_ROOMS = {"tests", "scripts"}
 # Dummies of models: the room that each would be in, and the unit with the table that would list it.
@@ -157,6 +158,13 @@ def folder_problems(root, files):
             yield f"{file}: is in no room of nodes/ that FLOORS lists; nodes/ itself holds main alone"
 
 
+def width_problems(root, files):
+    for file in files:
+        for number, line in enumerate((root / file).read_text().split("\n"), 1):
+            if len(line) > WIDTH:
+                yield f"{file}:{number}: has {len(line)} columns, expected at most {WIDTH}"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--summary", action="store_true", help="print the figures even if all is well")
@@ -166,7 +174,7 @@ def main():
     edges, lines = collections.defaultdict(set, {unit_of(file): set() for file in files}), {}
     arrows_up = list(include_problems(options.root, files, edges, lines))
     found = list(circle_problems(edges, lines))
-    problems = arrows_up + found + list(folder_problems(options.root, files))
+    problems = arrows_up + found + list(folder_problems(options.root, files)) + list(width_problems(options.root, files))
     for problem in problems:
         print(problem)
     if (options.summary or problems) and files:

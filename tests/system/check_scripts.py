@@ -38,6 +38,10 @@ class Includes(Check):
                                                                    protocol__core__a_dot_hpp=""))
         self.assertEqual(self.told(tire__a_dot_hpp='#include "protocol/core/a.hpp"', protocol__core__a_dot_hpp=""), "")
 
+    def test_lines_that_are_too_wide_are_named(self):
+        self.assertEqual(self.told(tire__a_dot_hpp="// " + "·" * 117), "")
+        self.assertIn("tire/a.hpp:2: has 121 columns, expected at most 120", self.told(tire__a_dot_hpp="\n// " + "·" * 118))
+
     def test_tests_and_mpi_stay_outside(self):
         self.assertIn("tire includes tests/x.hpp", self.told(tire__a_dot_hpp='#include "tests/x.hpp"', tests__x_dot_hpp=""))
         self.assertIn("only protocol/ and terrain/liggghts/plugin/ know MPI", self.told(rigs__a_dot_cpp="#include <mpi.h>"))

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "nodes/scenario/wheel_geometry.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/files/digits.hpp"
 #include "terrain/dem/grain_sizes.hpp"
@@ -85,11 +86,11 @@ GrainLoads grain_loads(const Scenario& s) {
   if (!keys || keys->allow_unstable_step) return loads;
   const dem::DemOptions o = dem::with_context(*keys, s.terrain_context());
   const std::vector<Pressed> wheels = pressed_grains(s, o);
-  for (const Pressed& wheel : wheels)
+  for (std::size_t k = 0; k < wheels.size(); ++k)
     for (const bool on_tire : {false, true}) {
-      const Contact& contact = on_tire ? wheel.tire : wheel.pair;
-      const double overlap = 0.5 * contact.overlap(kLargest * wheel.force) / o.radius;
-      if (overlap > loads.overlap) loads.overlap = overlap, loads.on_tire = on_tire;
+      const Contact& contact = on_tire ? wheels[k].tire : wheels[k].pair;
+      const double overlap = 0.5 * contact.overlap(kLargest * wheels[k].force) / o.radius;
+      if (overlap > loads.overlap) loads.overlap = overlap, loads.on_tire = on_tire, loads.wheel = k;
     }
   add_refinement(s, o, wheels, loads);
   return loads;
@@ -101,12 +102,15 @@ std::optional<Bound> too_hard(const Scenario& s, const GrainLoads& loads) {
       "the deepest contact between {} is expected to overlap by {:.0f} % of a grain's diameter, and a run "
       "ends above {:.0f} %: ",
       loads.on_tire ? "a grain and a tire" : "two grains", 100.0 * loads.overlap, 100.0 * dem::kDeepestShare);
+  std::vector<std::string> wheels;
+  if (const std::string label = wheel_label(describe_rig(s), loads.wheel); !label.empty()) wheels.push_back(label);
   // Under a given force Hertz's overlap goes with the modulus as E^(−2/3).
   const double stiffer = std::pow(loads.overlap / kSoundOverlap, 1.5);
   if (loads.on_tire)
-    return Bound{"tire.file",
-                 what + fmt::format("expected {} times the contact.young_modulus of the tire's file",
-                                    digits(stiffer))};
+    return Bound{
+        "tire.file",
+        what + fmt::format("expected {} times the contact.young_modulus of the tire's file", digits(stiffer)),
+        wheels};
   dem::DemOptions other = dem::with_context(*s.terrain->grains(), s.terrain_context());
   const bool hertz = dem::law_from(other.law) == dem::LawKind::mindlin;
   double& stiffness = hertz ? other.young_modulus : other.normal_stiffness;
@@ -115,7 +119,8 @@ std::optional<Bound> too_hard(const Scenario& s, const GrainLoads& loads) {
       hertz ? "terrain.young_modulus" : "terrain.normal_stiffness",
       what + fmt::format("expected about {:.2g} {}, which needs a step of the terrain of at most {:.2g} s",
                          stiffness, hertz ? "Pa" : "N/m^1.5",
-                         dem::stable_at(other, dem::stated_overlap(other)).step)};
+                         dem::stable_at(other, dem::stated_overlap(other)).step),
+      wheels};
 }
 
 }  // namespace furrow::scenario

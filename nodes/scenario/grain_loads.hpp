@@ -32,10 +32,11 @@
 namespace furrow::scenario {
 
 struct GrainLoads {
-  double overlap = 0.0;  // the largest in a run of some seconds, of a mean grain's diameter, -
-  bool on_tire = false;  // it is that of a grain and a tire
-  double refined = 0.0;  // share of the time in which the terrain's steps are taken in parts, -
-  double parts = 1.0;    // of one of its steps, on average
+  double overlap = 0.0;   // the largest in a run of some seconds, of a mean grain's diameter, -
+  bool on_tire = false;   // it is that of a grain and a tire
+  std::size_t wheel = 0;  // under which it is
+  double refined = 0.0;   // share of the time in which the terrain's steps are taken in parts, -
+  double parts = 1.0;     // of one of its steps, on average
 };
 
 /// Of no grains, and where an unstable step is allowed: no overlap, whole steps.

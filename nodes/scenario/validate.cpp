@@ -85,6 +85,12 @@ std::vector<Bound> all_bounds(const Scenario& s) {
   return bounds;
 }
 
+/// " (front_left, rear_left)"; empty where the rig has one wheel.
+std::string wheels_text(const Bound& bound, std::size_t all) {
+  if (bound.wheels.empty()) return "";
+  return bound.wheels.size() == all ? " (all wheels)" : fmt::format(" ({})", fmt::join(bound.wheels, ", "));
+}
+
 /// "about 2 min".
 std::string duration(double seconds) {
   if (seconds < 100.0) return digits(seconds) + " s";
@@ -145,7 +151,7 @@ nlohmann::ordered_json validation_report(const Scenario& s, const RunTime* time)
     json["ranks"].push_back({{"rank", rank.rank}, {"node", rank.node}, {"does", rank.does}});
   json["bound_by"] = nlohmann::ordered_json::array();
   for (const Bound& bound : all_bounds(s))
-    json["bound_by"].push_back({{"key", bound.key}, {"what", bound.what}});
+    json["bound_by"].push_back({{"key", bound.key}, {"what", bound.what}, {"wheels", bound.wheels}});
   json["warnings"] = s.warnings;
   return json;
 }
@@ -187,7 +193,8 @@ std::string validation_text(const Scenario& s, const RunTime* time) {
   line("memory", memory);
   line("disk", fmt::format("about {:.0f} MB of results", e.disk / kMegabyte));
   if (time) line("time", time_text(*time));
-  for (const Bound& bound : all_bounds(s)) line("bound by", bound.key + ": " + bound.what);
+  for (const Bound& bound : all_bounds(s))
+    line("bound by", bound.key + wheels_text(bound, rig.wheels.size()) + ": " + bound.what);
   return text + "ranks\n" + rank_table_text(s);
 }
 

@@ -104,14 +104,20 @@ WheelScales::OnGrains on_grains(const Scenario& s, const DemOptions& o, const ti
 /// Wheels that are alike say the same once.
 class Bounds {
  public:
+  /// Of the wheel that follows.
+  void begin(const std::string& wheel) { wheel_ = wheel; }
   void add(bool binds, const std::string& key, const std::string& what) {
-    const auto same = [&](const Bound& bound) { return bound.key == key && bound.what == what; };
-    if (binds && std::none_of(all_.begin(), all_.end(), same)) all_.push_back({key, what});
+    if (!binds) return;
+    auto at = std::find_if(all_.begin(), all_.end(),
+                           [&](const Bound& bound) { return bound.key == key && bound.what == what; });
+    if (at == all_.end()) at = all_.insert(all_.end(), {key, what});
+    if (!wheel_.empty()) at->wheels.push_back(wheel_);
   }
   std::vector<Bound> take() { return std::move(all_); }
 
  private:
   std::vector<Bound> all_;
+  std::string wheel_;
 };
 
 void add_bin(const WheelScales::OnGrains& g, double width, Bounds& to) {
@@ -175,6 +181,12 @@ std::vector<WheelScales> wheel_scales(const Scenario& s) {
   return all;
 }
 
+std::string wheel_label(const rigs::RigDescription& rig, std::size_t wheel) {
+  FURROW_ASSERT(wheel < rig.wheels.size(), wheel, rig.wheels.size());
+  if (rig.wheels.size() == 1) return "";
+  return rig.wheels[wheel].name.empty() ? fmt::format("wheel {}", wheel) : rig.wheels[wheel].name;
+}
+
 std::vector<Bound> scale_bounds(const Scenario& s) {
   const std::vector<WheelScales> scales = wheel_scales(s);
   const std::vector<tire::TireDescription> tires = describe_tires(s);
@@ -183,6 +195,7 @@ std::vector<Bound> scale_bounds(const Scenario& s) {
   for (std::size_t k = 0; k < scales.size(); ++k) {
     const WheelScales& w = scales[k];
     const double until = rig.wheels[k].lowering_time;
+    bounds.begin(wheel_label(rig, k));
     bounds.add(
         w.lowering_needs > until, "rig.move_from",
         fmt::format("the wheel moves from {} s on, but lowering it takes about {} s: expected to stand "

@@ -48,7 +48,11 @@ std::vector<WheelScales> wheel_scales(const Scenario& scenario);
 struct Bound {
   std::string key;  // of the scenario, that moves it
   std::string what;
+  std::vector<std::string> wheels = {};  // that it holds for, by name; none where the rig has one wheel
 };
 std::vector<Bound> scale_bounds(const Scenario& scenario);
+
+/// Of a wheel among several, as results name it: "front_left", "wheel 2"; empty where there is one.
+std::string wheel_label(const rigs::RigDescription& rig, std::size_t wheel);
 
 }  // namespace furrow::scenario

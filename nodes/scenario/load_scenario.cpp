@@ -81,6 +81,22 @@ void set_value(json& document, const std::string& key, const std::string& text, 
   *at = value;
 }
 
+/// Keys of a vehicle's file are not the scenario's: how they are changed.
+void refuse_vehicle_key(const json& document, const std::string& key, const std::string& file) {
+  std::string within = key;
+  for (const char* prefix : {"rig.vehicle.", "vehicle."})
+    if (key.starts_with(prefix)) within = key.substr(std::string(prefix).size());
+  const std::string top = within.substr(0, within.find_first_of(".["));
+  if (within == key && top != "chassis" && top != "axles" && top != "driveline") return;
+  const json rig = document.value("rig", json());
+  const json name = rig.is_object() ? rig.value("vehicle", json()) : json();
+  const std::string of = name.is_string() ? "'" + name.get<std::string>() + "'" : "the vehicle's file";
+  throw input_error(file, key,
+                    fmt::format("is a key of {}, which --set does not reach, expected a copy of that file with "
+                                "another '{}', and --set rig.vehicle=COPY",
+                                of, within));
+}
+
 Error all_problems(const std::string& file, const std::vector<Problem>& problems) {
   std::string text;
   for (const Problem& problem : problems)
@@ -114,6 +130,7 @@ json read_document(const std::string& file, const Settings& settings) {
   if (std::none_of(settings.begin(), settings.end(), [&](const auto& one) { return one.first == soil; }))
     apply_soil_material(document, file, engine);
   for (const auto& [key, text] : settings) {
+    refuse_vehicle_key(document, key, file);
     if (key.starts_with("tires.") && !document.contains("tires")) fill_rig_tires(document, file);
     set_value(document, key, text, file);
     if (key == soil) override_soil_material(document, file, engine);

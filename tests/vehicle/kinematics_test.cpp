@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "protocol/core/error.hpp"
 #include "tests/vehicle/double_wishbone.hpp"
 #include "tests/vehicle/shipped.hpp"
 #include "tests/verification/record.hpp"
@@ -128,6 +129,24 @@ TEST(Kinematics, positive_steering_turns_the_wheels_to_the_left_and_the_inner_on
     EXPECT_GT(right, 0.2) << name;
     EXPECT_EQ(left > right, ackermann > 0.0) << name;
     EXPECT_LT(std::abs(ackermann), 2.0) << name;
+  }
+}
+
+// A steering that asks for more than its linkage gives is told by demand, limit and the input at which it is reached.
+TEST(Kinematics, a_rack_beyond_its_linkage_is_told_with_travel_limit_and_demand) {
+  vehicle::VehicleSpec car = shipped("buggy.json");
+  std::get<vehicle::RackSpec>(*car.axles[0].steering).left_travel = -0.5;
+  const std::vector<double> radii(4, 0.3);
+  try {
+    vehicle::check_locks(car, radii);
+    FAIL() << "the rack goes to its end";
+  } catch (const Error& error) {
+    const std::string what = error.what();
+    EXPECT_NE(what.find("key 'axles[0].steering.left_travel': is -0.5 m, the travel of the rack that full steering "
+                        "asks for, expected at most 0.1 m in magnitude: steering -1 asks for 0.5 m, but the linkage "
+                        "of axle 'front' ends at 0.1 m, steering -0.2"),
+              std::string::npos)
+        << what;
   }
 }
 

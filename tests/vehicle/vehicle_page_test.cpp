@@ -60,6 +60,57 @@ TEST(VehiclePage, on_tires_that_do_not_deflect_tells_only_vibrations_of_the_vehi
   for (const std::string& name : names) EXPECT_EQ(name.find("hop"), std::string::npos) << name;
 }
 
+// The first seconds are quiet: of a vehicle that takes longer every phase is told, and the call may stop it.
+TEST(VehiclePage, of_many_axles_tells_its_progress_and_can_be_stopped) {
+  vehicle::VehicleSpec spec = shipped("hmmwv.json");
+  spec.driveline = {};
+  const vehicle::AxleSpec axle = spec.axles[1];
+  for (int k = 0; k < 14; ++k) {
+    spec.axles.push_back(axle);
+    spec.axles.back().name = "axle " + std::to_string(k);
+    for (vehicle::CornerSpec& corner : spec.axles.back().corners)
+      corner.suspension = std::visit(
+          [&](const auto& s) -> vehicle::SuspensionSpec { return vehicle::shifted(s, Vec3(-1.2 * (k + 1), 0, 0)); },
+          corner.suspension);
+  }
+  spec.chassis.mass *= 8.0;
+  spec.chassis.inertia *= 8.0;
+  spec.chassis.inertia.diagonal() += 1e5 * Vec3(0, 1, 1);
+  spec.chassis.center_of_mass.x() -= 8.0;
+  struct Stopped {};
+  std::string phase;
+  double share = -1.0;
+  const auto stop = [&](const std::string& what, double done) {
+    phase = what, share = done;
+    throw Stopped{};
+  };
+  EXPECT_THROW(vehicle::vehicle_page(spec, tires(32, 25.0, 0.4673, 3.3e5), stop), Stopped);
+  EXPECT_EQ(phase, "finding how it stands");
+  EXPECT_TRUE(share >= 0.0 && share <= 1.0) << share;
+}
+
+TEST(VehiclePage, springs_that_rest_in_their_stops_are_named_with_how_far) {
+  const auto stops = [](const vehicle::VehicleSpec& spec) {
+    const VehiclePage page = vehicle::vehicle_page(spec, tires(4, 25.0, 0.4673, 3.3e5));
+    return vehicle::stops_at_rest(spec, page.trim);
+  };
+  vehicle::VehicleSpec spec = shipped("hmmwv.json");
+  EXPECT_TRUE(stops(spec).empty()) << stops(spec)[0].second;
+  const double length =
+      vehicle::vehicle_page(spec, tires(4, 25.0, 0.4673, 3.3e5)).trim.wheels[2].spring->length;
+  for (vehicle::CornerSpec& corner : spec.axles[1].corners) {
+    vehicle::StopSpec& stop = *std::get<vehicle::DoubleWishboneSpec>(corner.suspension).spring->stop;
+    stop.shortest = length + 0.02;
+    stop.longest = stop.shortest + 0.1;
+  }
+  const auto found = stops(spec);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].first, "axles[1].suspension.spring.stop");
+  EXPECT_NE(found[0].second.find("holds the wheel 'rear left' at rest: its spring is "), std::string::npos)
+      << found[0].second;
+  EXPECT_NE(found[0].second.find(" mm beyond shortest, and pushes with "), std::string::npos) << found[0].second;
+}
+
 TEST(VehiclePage, of_a_vehicle_that_cannot_stand_is_an_error_of_its_file) {
   const auto complaint = [](const vehicle::VehicleSpec& spec) -> std::string {
     try {

@@ -20,6 +20,17 @@ namespace {
 constexpr double kRateStep = 5e-4;  // of the travel, for wheel rates, m
 constexpr double kQuiet = 2.0;      // before progress is told, s
 
+/// How far a steering goes to the left.
+struct SteeringEnd {
+  const char* key;
+  double value;
+  const char *what, *unit;
+};
+SteeringEnd end_of(const PitmanArmSpec& s) {
+  return {"left_angle_deg", s.left_angle_deg, "angle of the Pitman arm", "degrees"};
+}
+SteeringEnd end_of(const RackSpec& s) { return {"left_travel", s.left_travel, "travel of the rack", "m"}; }
+
 /// The vehicle with its chassis held, posture after posture.
 class Bench {
  public:
@@ -48,8 +59,16 @@ class Bench {
     if (steers(axle)) vehicle_.steering(axle)->put(steering);
     if (const Outcome outcome = statics_.close(); !outcome.ok)
       throw physics_error(outcome, "axle '" + vehicle_.spec().axles[axle].name + "'",
-                          fmt::format(" at a travel of {:.3g} and {:.3g} m", left, right) +
-                              (steering == 0.0 ? "" : fmt::format(", steering {:.3g}", steering)));
+                          fmt::format(" with its wheels lifted by {:.3g} and {:.3g} m", left, right) +
+                              steering_text(axle, steering));
+  }
+
+  /// What a steering input asks the axle's rack or arm for; empty where it stands straight ahead.
+  std::string steering_text(int axle, double steering) const {
+    const auto& spec = vehicle_.spec().axles[axle].steering;
+    if (steering == 0.0 || !spec) return "";
+    const SteeringEnd at = std::visit([](const auto& s) { return end_of(s); }, *spec);
+    return fmt::format(", steering {:.3g}: a {} of {:.3g} {}", steering, at.what, steering * at.value, at.unit);
   }
 
   /// Displacements for a rate 1 of the left wheel and `right` of the right wheel.
@@ -199,10 +218,6 @@ void add_ackermann(KinematicsRow* rows, double line) {
   rows[kLeft].ackermann = rows[kRight].ackermann = (inner - outer) / (inner - ideal);
 }
 
-/// Key and value of how far a steering goes to the left.
-std::pair<const char*, double> end_of(const PitmanArmSpec& s) { return {"left_angle_deg", s.left_angle_deg}; }
-std::pair<const char*, double> end_of(const RackSpec& s) { return {"left_travel", s.left_travel}; }
-
 /// Of so many equal steps from straight ahead to one end of the steering, those that an axle can take.
 int steps_reached(const VehicleSpec& spec, std::span<const double> radii, int axle, double end, int steps) {
   Bench bench(spec, radii);
@@ -289,20 +304,29 @@ std::vector<KinematicsRow> kinematics(const VehicleSpec& spec, std::span<const d
   return Sweep(spec, radii, options, progress).run();
 }
 
-void check_locks(const VehicleSpec& spec, std::span<const double> radii) {
+void check_locks(const VehicleSpec& spec, std::span<const double> radii, const ProgressCall& progress) {
   constexpr int kSteps = 8, kFineSteps = 50;
+  const auto steered = std::count_if(spec.axles.begin(), spec.axles.end(),
+                                     [](const AxleSpec& one) { return one.steering.has_value(); });
+  PacedCall tell(progress, kQuiet);
+  double ends = 0.0;
   for (std::size_t k = 0; k < spec.axles.size(); ++k) {
     if (!spec.axles[k].steering) continue;
     const int axle = static_cast<int>(k);
     for (const double end : {-1.0, 1.0}) {
+      tell("moving the steerings", ends++ / (2.0 * static_cast<double>(steered)));
       if (steps_reached(spec, radii, axle, end, kSteps) == kSteps) continue;
       const int reached = steps_reached(spec, radii, axle, end, kFineSteps);
       if (reached == kFineSteps) continue;
-      const auto [key, given] = std::visit([](const auto& s) { return end_of(s); }, *spec.axles[k].steering);
+      const SteeringEnd at = std::visit([](const auto& s) { return end_of(s); }, *spec.axles[k].steering);
+      const double share = end * reached / kFineSteps;
       throw input_error(
-          spec.file, fmt::format("axles[{}].steering.{}", k, key),
-          fmt::format("is {}, expected at most {:.3g} in magnitude: the linkage of axle '{}' goes no further",
-                      number_text(given), std::abs(given) * reached / kFineSteps, spec.axles[k].name));
+          spec.file, fmt::format("axles[{}].steering.{}", k, at.key),
+          fmt::format("is {0} {1}, the {2} that full steering asks for, expected at most {3:.3g} {1} in "
+                      "magnitude: steering {4:g} asks for {5:.3g} {1}, but the linkage of axle '{6}' ends at "
+                      "{7:.3g} {1}, steering {8:.2g}",
+                      number_text(at.value), at.unit, at.what, std::abs(at.value * share), end, end * at.value,
+                      spec.axles[k].name, share * at.value, share));
     }
   }
 }

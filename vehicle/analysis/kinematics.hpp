@@ -84,7 +84,7 @@ std::vector<KinematicsRow> kinematics(const VehicleSpec& spec, std::span<const d
 
 /// Every steered axle must reach both ends of its steering, step by step from straight ahead, as drawn.
 /// @throws Error(bad_input) naming the key that says where the ends are
-void check_locks(const VehicleSpec& spec, std::span<const double> radii);
+void check_locks(const VehicleSpec& spec, std::span<const double> radii, const ProgressCall& progress = {});
 
 /// Names with units, then one line for each row; empty where a quantity does not exist.
 std::string kinematics_csv(std::span<const KinematicsRow> rows);

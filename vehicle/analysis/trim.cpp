@@ -9,6 +9,7 @@
 
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
+#include "protocol/files/digits.hpp"
 #include "vehicle/analysis/held_vehicle.hpp"
 #include "vehicle/analysis/wheel_angles.hpp"
 
@@ -159,7 +160,7 @@ std::string fault_as_drawn(const Vehicle& vehicle, double weight) {
 }  // namespace
 
 Trim trim(Vehicle& vehicle, std::span<const TireCurve> tires, double ground,
-          const std::optional<Vec3>& gravity) {
+          const std::optional<Vec3>& gravity, const ProgressCall& progress) {
   FURROW_ASSERT(tires.size() == static_cast<std::size_t>(vehicle.wheel_count()), tires.size(),
                 vehicle.wheel_count());
   lower_to(vehicle, tires, ground);
@@ -181,7 +182,7 @@ Trim trim(Vehicle& vehicle, std::span<const TireCurve> tires, double ground,
   });
   const double weight = vehicle.mass() * vehicle.system().gravity().norm();
   const std::string fault = fault_as_drawn(vehicle, weight);
-  if (const Outcome outcome = statics.settle(weight); !outcome.ok)
+  if (const Outcome outcome = statics.settle(weight, progress); !outcome.ok)
     throw physics_error(outcome.message("vehicle '" + vehicle.spec().name + "'") + fault);
   Trim t;
   for (int k = 0; k < vehicle.wheel_count(); ++k) {
@@ -197,6 +198,26 @@ Trim trim(Vehicle& vehicle, std::span<const TireCurve> tires, double ground,
     t.modes.push_back({mode_name(vehicle, mode), mode.frequency, mode.damping});
   vehicle.system().assemble(vehicle.system().time());
   return t;
+}
+
+std::vector<std::pair<std::string, std::string>> stops_at_rest(const VehicleSpec& spec, const Trim& trim) {
+  FURROW_ASSERT(trim.wheels.size() == 2 * spec.axles.size(), trim.wheels.size(), spec.axles.size());
+  std::vector<std::pair<std::string, std::string>> found;
+  for (std::size_t k = 0; k < trim.wheels.size(); ++k) {
+    const WheelTrim& wheel = trim.wheels[k];
+    const std::string key = fmt::format("axles[{}].suspension.spring.stop", k / 2);
+    if (!wheel.spring || (!found.empty() && found.back().first == key)) continue;
+    const StrutTrim& s = *wheel.spring;
+    const bool pressed = s.to_shortest < 0.0;
+    if (!pressed && !(s.to_longest < 0.0)) continue;
+    found.emplace_back(
+        key, fmt::format("holds the wheel '{}' at rest: its spring is {} mm long, {} mm beyond {}, and pushes with "
+                         "{} N: a {} spring leaves it travel",
+                         wheel.name, digits(1e3 * s.length), digits(-1e3 * (pressed ? s.to_shortest : s.to_longest)),
+                         pressed ? "shortest" : "longest", digits(s.force),
+                         pressed ? "stiffer or longer" : "softer or shorter"));
+  }
+  return found;
 }
 
 }  // namespace furrow::vehicle

@@ -10,8 +10,10 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "protocol/core/progress_call.hpp"
 #include "vehicle/parts/vehicle.hpp"
 
 namespace furrow::vehicle {
@@ -96,6 +98,10 @@ void visit_fields(Visit&& visit, FieldsOf<Trim> auto& s) {
 ///                 same share of the pull along the plane, where it touches.
 /// @pre one tire for each wheel; their masses were added. @throws Error(physics) when there is no equilibrium
 Trim trim(Vehicle& vehicle, std::span<const TireCurve> tires, double ground = 0.0,
-          const std::optional<Vec3>& gravity = {});
+          const std::optional<Vec3>& gravity = {}, const ProgressCall& progress = {});
+
+/// Keys of stops in which a spring rests, and how far it is beyond them: the wheel has no travel left. One of an axle's
+/// two wheels is named.
+std::vector<std::pair<std::string, std::string>> stops_at_rest(const VehicleSpec& spec, const Trim& trim);
 
 }  // namespace furrow::vehicle

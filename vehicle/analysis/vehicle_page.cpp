@@ -46,10 +46,11 @@ std::vector<TireCurve> curves(std::span<const StandingTire> tires, double weight
   return made;
 }
 
-Trim stand(const VehicleSpec& spec, std::span<const StandingTire> tires, double harder) {
+Trim stand(const VehicleSpec& spec, std::span<const StandingTire> tires, double harder,
+           const ProgressCall& progress) {
   Vehicle car(spec);
   for (int k = 0; k < car.wheel_count(); ++k) car.add_tire_mass(k, tires[k].mass);
-  return trim(car, curves(tires, car.mass() * car.system().gravity().norm(), harder));
+  return trim(car, curves(tires, car.mass() * car.system().gravity().norm(), harder), 0.0, {}, progress);
 }
 
 /// A vehicle without springs lies on its chassis, and the equilibrium that was found is none of its suspension.
@@ -80,7 +81,8 @@ double mass_without_tires(const VehicleSpec& spec) {
   return of_file(spec, [&] { return Vehicle(spec).mass(); });
 }
 
-VehiclePage vehicle_page(const VehicleSpec& spec, std::span<const StandingTire> tires) {
+VehiclePage vehicle_page(const VehicleSpec& spec, std::span<const StandingTire> tires,
+                         const ProgressCall& progress) {
   FURROW_ASSERT(tires.size() == 2 * spec.axles.size(), tires.size(), spec.axles.size());
   return of_file(spec, [&] {
     const Vehicle car(spec);
@@ -97,13 +99,13 @@ VehiclePage vehicle_page(const VehicleSpec& spec, std::span<const StandingTire> 
     for (const AxleSpec& axle : spec.axles) page.axles.push_back(axle.name);
     for (const StandingTire& tire : tires)
       page.tires.push_back(tire.text), page.tire_masses.push_back(tire.mass.mass);
-    page.trim = stand(spec, tires, 1.0);
+    page.trim = stand(spec, tires, 1.0, progress);
     if (std::any_of(tires.begin(), tires.end(), [](const StandingTire& t) { return t.points.empty(); }))
-      page.trim.modes = lasting(page.trim.modes, stand(spec, tires, kHarder).modes);
+      page.trim.modes = lasting(page.trim.modes, stand(spec, tires, kHarder, progress).modes);
     for (std::size_t k = 0; k < tires.size(); ++k)
       page.loaded_radii.push_back(tires[k].radius - std::max(0.0, page.trim.wheels[k].deflection));
     check_travel(spec, page);
-    check_locks(spec, page.loaded_radii);
+    check_locks(spec, page.loaded_radii, progress);
     return page;
   });
 }

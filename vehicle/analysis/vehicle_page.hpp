@@ -7,6 +7,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "protocol/core/progress_call.hpp"
 #include "vehicle/analysis/trim.hpp"
 
 namespace furrow::vehicle {
@@ -52,7 +53,9 @@ double mass_without_tires(const VehicleSpec& spec);
 /// Builds the vehicle and lets it stand. Of a vehicle with a tire that does not deflect only those vibrations are
 /// listed that do not depend on how hard the ground below it is.
 /// @pre one tire for each wheel. @throws Error(bad_input) naming the vehicle's file when it cannot be built or stand
-VehiclePage vehicle_page(const VehicleSpec& spec, std::span<const StandingTire> tires);
+/// @param progress told of a vehicle of many axles, which takes long; may throw to stop it
+VehiclePage vehicle_page(const VehicleSpec& spec, std::span<const StandingTire> tires,
+                         const ProgressCall& progress = {});
 
 nlohmann::ordered_json page_json(const VehiclePage& page);
 std::string page_text(const VehiclePage& page);

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "protocol/core/progress_call.hpp"
 #include "vehicle/multibody/system.hpp"
 
 namespace furrow::vehicle {
@@ -50,8 +51,8 @@ class Statics {
 
   /// Brings the bodies into a posture that meets all rows; their velocities become zero.
   Outcome close();
-  /// Brings the bodies to rest in equilibrium. @param weight by which forces are judged, N
-  Outcome settle(double weight);
+  /// Brings the bodies to rest in equilibrium. @param weight by which forces are judged, N @param progress may stop it
+  Outcome settle(double weight, const ProgressCall& progress = {});
 
   int coordinate_count() const { return 6 * system_.body_count(); }
   int row_count() const { return system_.constraint_count() + static_cast<int>(held_.size()); }

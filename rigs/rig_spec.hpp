@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -30,6 +31,7 @@ struct MountedTire {
   tire::RimProperties rim;  // as its file says
   std::string file;         // for messages
   double width = 0.0;       // overall, m
+  double hopeless_load = std::numeric_limits<double>::infinity();  // that it never carries, N
 };
 
 /// A file that the section names, whose content decides results.

@@ -44,12 +44,21 @@ vehicle::VehiclePage stand(const vehicle::VehicleSpec& spec) {
   launch::catch_stop_signals();
   launch::ProgressDisplay display;
   const auto tires = scenario::tires_of(spec);
-  const auto standing = scenario::standing_tires(spec, tires, [&](const std::string& what, double share) {
+  const auto show = [&](const std::string& phase, double share, const char* doing) {
     if (launch::stop_signalled())
-      throw Error(ExitCode::stopped, "stopped by a signal while tires were pressed");
-    display.show({.phase = what + " the tires", .share = share});
+      throw Error(ExitCode::stopped, fmt::format("stopped by a signal while {}", doing));
+    display.show({.phase = phase, .share = share});
+  };
+  const auto standing = scenario::standing_tires(spec, tires, [&](const std::string& what, double share) {
+    show(what + " the tires", share, "tires were pressed");
   });
-  return vehicle::vehicle_page(spec, standing);
+  vehicle::VehiclePage page = vehicle::vehicle_page(
+      spec, standing,
+      [&](const std::string& what, double share) { show(what, share, "the vehicle was made to stand"); });
+  display.clear();
+  for (const auto& [key, what] : vehicle::stops_at_rest(spec, page.trim))
+    print_warning(input_error(spec.file, key, what).what());
+  return page;
 }
 
 std::vector<vehicle::KinematicsRow> sweep(const vehicle::VehicleSpec& spec, const vehicle::VehiclePage& page,

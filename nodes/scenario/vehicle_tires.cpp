@@ -11,6 +11,7 @@
 #include "tire/press/press.hpp"
 #include "tire/press/press_curve.hpp"
 #include "tire/tires.hpp"
+#include "vehicle/spec/part_magnitudes.hpp"
 
 namespace furrow::scenario {
 namespace {
@@ -102,6 +103,9 @@ std::vector<vehicle::StandingTire> standing_tires(
   double mass = vehicle::mass_without_tires(spec);
   for (const auto& tire : tires) mass += tire->describe().mass.mass;
   const double load = kMore * mass * kStandardGravity / static_cast<double>(tires.size());
+  for (const auto& tire : tires)
+    vehicle::check_load(spec, mass, tire->options().file.filename().string(),
+                        tire::hopeless_load(tire->describe()));
   std::vector<vehicle::StandingTire> all;
   for (std::size_t k = 0; k < tires.size(); ++k) {
     const auto first =

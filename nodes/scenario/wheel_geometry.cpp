@@ -4,6 +4,7 @@
 
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
+#include "tire/press/press_curve.hpp"
 
 namespace furrow::scenario {
 
@@ -28,7 +29,8 @@ std::vector<rigs::MountedTire> mounted_tires(const Scenario& scenario,
   std::vector<rigs::MountedTire> mounted;
   for (std::size_t k = 0; k < tires.size(); ++k)
     mounted.push_back({tires[k].radius, tires[k].mass.mass, scenario.tires[k]->rim(),
-                       scenario.tires[k]->options().file.string(), tires[k].width});
+                       scenario.tires[k]->options().file.string(), tires[k].width,
+                       tire::hopeless_load(tires[k])});
   return mounted;
 }
 

@@ -20,6 +20,7 @@
 #include "vehicle/driver/read_driver.hpp"
 #include "vehicle/driver/speed_control.hpp"
 #include "vehicle/driver/write_driver.hpp"
+#include "vehicle/spec/part_magnitudes.hpp"
 #include "vehicle/spec/read_vehicle.hpp"
 #include "vehicle/spec/vehicle_magnitudes.hpp"
 
@@ -127,6 +128,7 @@ class VehicleRigSpec final : public RigSpec {
   std::vector<WheelPlace> wheels_;
   int bodies_ = 0;
   double mass_ = 0.0;             // without tires, kg
+  std::vector<std::pair<std::string, std::string>> stops_;  // in which springs rest
   std::optional<double> length_;  // of the bin, m
   vehicle::DriverCar driven_;     // what a driver knows of it, if there is one
 };
@@ -136,12 +138,13 @@ void VehicleRigSpec::check_gears() const {
   const auto& gearbox = plan_.vehicle.driveline.gearbox;
   const int gears = gearbox ? static_cast<int>(gearbox->ratios.size()) : 1;
   for (const auto& [time, gear] : plan_.driver->inputs.gear) {
-    if (gear == vehicle::gear_request::reverse && gearbox && !gearbox->reverse)
+    const bool backward = gearbox ? gearbox->reverse.has_value() : !plan_.vehicle.driveline.motors.empty();
+    if (gear == vehicle::gear_request::reverse && !backward)
       throw input_error(
           context_.file, context_.key("driver"),
-          fmt::format(
-              "asks for gear -1 at {} s, expected 0 to {} or 'auto': the vehicle {} has no reverse gear",
-              number_text(time), gears, name));
+          fmt::format("asks for gear -1 at {} s, expected 0 to {} or 'auto': the vehicle {} has {}",
+                      number_text(time), gears, name,
+                      gearbox ? "no reverse gear" : "neither a gearbox nor motors, which turn backward in it"));
     if (gear > gears)
       throw input_error(
           context_.file, context_.key("driver"),
@@ -192,11 +195,15 @@ void VehicleRigSpec::mount(std::span<const MountedTire> tires) {
       car.add_tire_mass(static_cast<int>(k), {tires[k].mass, Mat3::Zero()});
     car.system().assemble(0.0);
     mass = car.mass();
+    for (const MountedTire& tire : tires)
+      vehicle::check_load(plan_.vehicle, mass, std::filesystem::path(tire.file).filename().string(),
+                          tire.hopeless_load);
     const vehicle::Trim trim = stand(car, radii, plan_.options.heading);
     for (std::size_t k = 0; k < tires.size(); ++k) {
       const vehicle::WheelTrim& at = trim.wheels[k];
       wheels_[k] = {at.center, at.load, at.camber, at.toe, tires[k].mass};
     }
+    stops_ = vehicle::stops_at_rest(plan_.vehicle, trim);
     vehicle::check_locks(plan_.vehicle, radii);
     if (plan_.driver) driven_ = vehicle::driver_car(plan_.vehicle, radii, plan_.tire_width, mass);
   });
@@ -279,7 +286,9 @@ RigDescription VehicleRigSpec::describe(std::span<const WheelSize> tires, double
 
 std::vector<std::pair<std::string, std::string>> VehicleRigSpec::unlikely_values() const {
   std::vector<std::pair<std::string, std::string>> odd;
-  for (const auto& [key, what] : vehicle::unlikely_values(plan_.vehicle, mass_))
+  auto of_file = vehicle::unlikely_values(plan_.vehicle, mass_);
+  of_file.insert(of_file.end(), stops_.begin(), stops_.end());
+  for (const auto& [key, what] : of_file)
     odd.emplace_back(context_.key("vehicle"),
                      fmt::format("is {}, whose key '{}' {}", file_.string(), key, what));
   const auto brakes = [](const vehicle::AxleSpec& axle) {

@@ -188,6 +188,89 @@ TEST(VehicleScenario, wrong_combinations_are_refused_by_key) {
             "keys of that type alone");
 }
 
+json vehicle_text(const char* name) {
+  return json::parse(std::ifstream(data_folder() / "vehicle" / "data" / name));
+}
+
+/// A scenario beside the file of its vehicle, mine.json.
+class OwnVehicle : public ScenarioFile {
+ public:
+  OwnVehicle(json scenario, const json& vehicle) : ScenarioFile(named(std::move(scenario))) {
+    std::ofstream(path().parent_path() / "mine.json") << vehicle.dump();
+  }
+
+ private:
+  static std::string named(json scenario) {
+    scenario["rig"]["vehicle"] = "mine.json";
+    return scenario.dump();
+  }
+};
+
+// Motors turn backward in gear -1 without a gearbox; without either nothing does.
+TEST(VehicleScenario, gear_minus_one_needs_motors_or_a_reverse_gear) {
+  json document = hmmwv();
+  document["rig"]["driver"] = {{"inputs", {{"gear", -1}}}};
+  document["rig"]["vehicle"] = "rover.json";
+  EXPECT_EQ(complaint(document), "");
+  document["rig"]["vehicle"] = "buggy.json";
+  EXPECT_EQ(complaint(document),
+            ": key 'rig.driver': asks for gear -1 at 0 s, expected 0 to 1 or 'auto': the vehicle Buggy has no reverse "
+            "gear");
+  json pushed = vehicle_text("rover.json");
+  pushed.erase("driveline");
+  EXPECT_EQ(OwnVehicle(document, pushed).complaint(),
+            ": key 'rig.driver': asks for gear -1 at 0 s, expected 0 to 1 or 'auto': the vehicle Rover has neither a "
+            "gearbox nor motors, which turn backward in it");
+}
+
+TEST(VehicleScenario, keys_of_the_vehicle_s_file_are_not_set_but_told_how_to_change) {
+  for (const char* key : {"vehicle.chassis.mass", "rig.vehicle.chassis.mass", "chassis.mass"})
+    EXPECT_EQ(complaint(hmmwv(), {{key, "2500"}}),
+              std::string(": key '") + key +
+                  "': is a key of 'hmmwv.json', which --set does not reach, expected a copy of that file with another "
+                  "'chassis.mass', and --set rig.vehicle=COPY");
+  EXPECT_EQ(complaint(hmmwv(), {{"rig.vehicle", "\"hmmwv_tr.json\""}}), "");
+}
+
+TEST(VehicleScenario, a_vehicle_that_no_tire_of_its_size_carries_is_refused_by_the_key_of_its_mass) {
+  json heavy = vehicle_text("hmmwv.json");
+  heavy["chassis"]["mass"] = 1e6;
+  heavy["chassis"]["inertia"] = {5e5, 1.4e6, 1.7e6};
+  const std::string told = OwnVehicle(hmmwv(), heavy).complaint();
+  EXPECT_NE(told.find("key 'chassis.mass': is 1e6 kg: on 4 wheels each tire would carry 2.45e+06 N, and no tire of "
+                      "the size of 'hmmwv_layered.json' carries "),
+            std::string::npos)
+      << told;
+  // Rigid wheels carry anything.
+  for (json& axle : heavy["axles"]) axle["wheel"]["rigid"] = true;
+  EXPECT_EQ(OwnVehicle(hmmwv(), heavy).complaint().find("no tire of the size"), std::string::npos);
+}
+
+TEST(VehicleScenario, springs_that_rest_in_their_stops_are_warned_of) {
+  json car = vehicle_text("hmmwv.json");
+  car["axles"][1]["suspension"]["spring"]["stop"]["shortest"] = 0.29;
+  car["axles"][1]["suspension"]["spring"]["stop"]["longest"] = 0.35;
+  const std::vector<std::string> warnings = OwnVehicle(hmmwv(), car).load().warnings;
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("whose key 'axles[1].suspension.spring.stop' holds the wheel 'rear left' at rest"),
+            std::string::npos)
+      << warnings[0];
+}
+
+TEST(VehicleScenario, what_binds_the_answer_names_its_wheels) {
+  const scenario::Scenario s = scenario::load_scenario(data_folder() / "rigs" / "four_wheels.json",
+                                                       {{"terrain.radius", "0.03"}, {"terrain.layers", "4"}});
+  const auto bounds = scenario::validation_report(s)["bound_by"];
+  ASSERT_FALSE(bounds.empty());
+  const std::string text = scenario::validation_text(s);
+  for (const auto& bound : bounds) {
+    EXPECT_FALSE(bound["wheels"].empty()) << bound.dump();
+    for (const auto& wheel : bound["wheels"])
+      EXPECT_TRUE(bound["wheels"].size() == s.tires.size() || text.find(wheel.get<std::string>()) != std::string::npos);
+  }
+  EXPECT_NE(text.find("\nbound by     " + bounds[0]["key"].get<std::string>() + " ("), std::string::npos) << text;
+}
+
 TEST(VehicleScenario, a_parked_vehicle_without_brakes_is_warned_of) {
   json rover = hmmwv();
   rover["rig"]["vehicle"] = "rover.json";

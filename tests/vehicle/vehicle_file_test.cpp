@@ -142,7 +142,7 @@ TEST(VehicleFile, the_right_side_is_the_mirror_image_unless_the_file_says_otherw
 TEST(VehicleFile, mistakes_in_bodies_and_suspensions_name_their_key) {
   const auto h = [](const char* pointer, const json& value) { return changed("hmmwv.json", pointer, value); };
   const std::string s = "/axles/0/suspension";
-  EXPECT_EQ(h("/chassis/mass", -5), "key 'chassis.mass': is -5, expected a number above zero");
+  EXPECT_EQ(h("/chassis/mass", -5), "key 'chassis.mass': is -5, expected a number above zero and at most 1e7");
   EXPECT_EQ(h("/chassis/inertia", {1, 2}),
             "key 'chassis.inertia': has 2 values, expected 3 (xx, yy, zz) or 6 (xx, yy, zz, xy, xz, yz)");
   EXPECT_EQ(h("/chassis/inertia", {1, 2, 4}),
@@ -157,7 +157,7 @@ TEST(VehicleFile, mistakes_in_bodies_and_suspensions_name_their_key) {
   EXPECT_EQ(h("/axles/1/name", "front"), "key 'axles[1].name': 'front' is taken, expected another name");
   EXPECT_EQ(h("/axles/0/wheel", nullptr), "key 'axles[0].wheel': is missing, expected an object { }");
   EXPECT_EQ(h("/axles/0/wheel/tire", nullptr), "key 'axles[0].wheel.tire': is missing, expected a text");
-  EXPECT_EQ(h("/axles/0/brake/torque", 0), "key 'axles[0].brake.torque': is 0, expected a number above zero");
+  EXPECT_EQ(h("/axles/0/brake/torque", 0), "key 'axles[0].brake.torque': is 0, expected a number above zero and at most 1e8");
   EXPECT_EQ(h((s + "/type").c_str(), "mcpherson"),
             "key 'axles[0].suspension.type': is 'mcpherson', expected 'double_wishbone', 'trailing_arm', "
             "'rigid_axle' or 'fixed'");
@@ -199,7 +199,7 @@ TEST(VehicleFile, mistakes_in_bodies_and_suspensions_name_their_key) {
   EXPECT_EQ(h((s + "/spring/stop/longest").c_str(), 0.1),
             "key 'axles[0].suspension.spring.stop.longest': is 0.1, expected more than shortest, 0.15");
   EXPECT_EQ(h((s + "/shock/rebound").c_str(), -1),
-            "key 'axles[0].suspension.shock.rebound': is -1, expected a number of zero or above");
+            "key 'axles[0].suspension.shock.rebound': is -1, expected a number from 0 to 1e8");
   EXPECT_EQ(h((s + "/shock/outer/blend_length").c_str(), 0.2),
             "key 'axles[0].suspension.shock.outer.blend_length': is 0.2, expected at most longest - "
             "shortest, 0.095");
@@ -257,7 +257,7 @@ TEST(VehicleFile, mistakes_in_the_driveline_name_their_key) {
   EXPECT_EQ(h("/driveline/differentials/1/share", 1.5),
             "key 'driveline.differentials[1].share': is 1.5, expected a number between 0 and 1");
   EXPECT_EQ(h("/driveline/shafts/2/inertia", 0),
-            "key 'driveline.shafts[2].inertia': is 0, expected a number above zero");
+            "key 'driveline.shafts[2].inertia': is 0, expected a number above zero and at most 1e6");
   EXPECT_EQ(h("/driveline/shafts/2/name", "crank"),
             "key 'driveline.shafts[2].name': 'crank' is given twice, expected another name");
   EXPECT_EQ(h("/driveline/shafts/2/carrier", "rear"),
@@ -279,11 +279,157 @@ TEST(VehicleFile, mistakes_in_the_driveline_name_their_key) {
   EXPECT_EQ(changed("buggy.json", "/driveline/clutch/closed_rpm", 1000),
             "key 'driveline.clutch.closed_rpm': is 1000, expected more than open_rpm, 1500");
   EXPECT_EQ(changed("rover.json", "/driveline/motors/1/stall_torque", -1),
-            "key 'driveline.motors[1].stall_torque': is -1, expected a number above zero");
+            "key 'driveline.motors[1].stall_torque': is -1, expected a number above zero and at most 1e8");
   EXPECT_EQ(changed("rover.json", "/driveline/motors/1/axle", "front"),
             "key 'driveline.motors[1].axle': 'front' is driven already, expected one drive per wheel");
   EXPECT_EQ(changed("rover.json", "/driveline/motors", nullptr),
             "key 'driveline.skid_steer': is given without motors, expected a motor at each wheel");
+}
+
+// What is far beyond any vehicle is refused by the reader and by the schema, which editors use.
+TEST(VehicleFile, magnitudes_beyond_any_vehicle_are_refused_as_the_schema_says) {
+  const json keys = shipped_text("vehicle.schema.json");
+  const SchemaCheck schema(keys);
+  const std::string s = "/axles/0/suspension";
+  const struct {
+    const char* file;
+    std::string pointer;
+    json value;
+    const char *expected, *of_schema;  // of_schema empty: a schema cannot say it
+  } kTable[] = {
+      {"hmmwv.json", "/chassis/mass", 1e9, "key 'chassis.mass': is 1e9, expected a number above zero and at most 1e7",
+       "/chassis/mass: is out of range"},
+      {"hmmwv.json", "/chassis/inertia", {1e9, 1e9, 1e9},
+       "key 'chassis.inertia': gives a body of 2086.52 kg a radius of gyration of 848 m, expected at most 100 m", ""},
+      {"hmmwv.json", "/axles/0/wheel/inertia", {1e9, 1e9, 1e9},
+       "key 'axles[0].wheel.inertia': gives a body of 18.8 kg a radius of gyration of 8.93e+03 m, expected at most "
+       "100 m",
+       ""},
+      {"hmmwv.json", "/axles/1/brake/torque", 1e30,
+       "key 'axles[1].brake.torque': is 1e30, expected a number above zero and at most 1e8",
+       "/axles/1/brake/torque: is out of range"},
+      {"hmmwv.json", s + "/shock/compression", 1e9,
+       "key 'axles[0].suspension.shock.compression': is 1e9, expected a number from 0 to 1e8", "definitions"},
+      {"buggy.json", s + "/spring/rate", 1e13,
+       "key 'axles[0].suspension.spring.rate': is 1e13, expected a number above zero and at most 1e10", "definitions"},
+      {"hmmwv.json", "/driveline/shafts/2/inertia", 1e9,
+       "key 'driveline.shafts[2].inertia': is 1e9, expected a number above zero and at most 1e6",
+       "/driveline/shafts/2/inertia: is out of range"},
+      {"hmmwv.json", "/driveline/engine/idle_rpm", 9000,
+       "key 'driveline.engine.idle_rpm': is 9000, expected at most 2700, the last speed of torque", ""},
+      {"rover.json", "/driveline/skid_steer", 5, "key 'driveline.skid_steer': is 5, expected a number from 0 to 1",
+       "/driveline/skid_steer: is out of range"},
+      {"rover.json", "/driveline/skid_steer", -0.5,
+       "key 'driveline.skid_steer': is -0.5, expected a number from 0 to 1", "/driveline/skid_steer: is out of range"},
+      {"buggy.json", "/axles/0/steering/left_travel", 50,
+       "key 'axles[0].steering.left_travel': is 50, expected a number from -10 to 10", "definitions"},
+  };
+  for (const auto& one : kTable) {
+    json document = shipped_text(one.file);
+    document[json::json_pointer(one.pointer)] = one.value;
+    EXPECT_EQ(complaint(document), one.expected);
+    const std::string said = schema.complaint(document);
+    EXPECT_NE(said.find(one.of_schema), std::string::npos) << one.pointer << ": " << said;
+    EXPECT_EQ(said.empty(), *one.of_schema == '\0') << one.pointer << ": " << said;
+  }
+}
+
+TEST(VehicleFile, names_that_are_given_twice_are_refused) {
+  const auto h = [](const char* pointer, const json& value) { return changed("hmmwv.json", pointer, value); };
+  const json gears = shipped_text("hmmwv.json")["driveline"]["gears"];
+  EXPECT_EQ(h("/driveline/gears/1/name", gears[0]["name"]),
+            "key 'driveline.gears[1].name': '" + gears[0]["name"].get<std::string>() +
+                "' is given twice, expected another name");
+  const json boxes = shipped_text("hmmwv.json")["driveline"]["differentials"];
+  EXPECT_EQ(h("/driveline/differentials/2/name", boxes[0]["name"]),
+            "key 'driveline.differentials[2].name': '" + boxes[0]["name"].get<std::string>() +
+                "' is given twice, expected another name");
+  const json links = shipped_text("buggy.json")["axles"][1]["suspension"]["links"];
+  EXPECT_EQ(changed("buggy.json", "/axles/1/suspension/links/1/name", links[0]["name"]),
+            "key 'axles[1].suspension.links[1].name': '" + links[0]["name"].get<std::string>() +
+                "' is given twice, expected another name");
+  json text = shipped_text("rover.json");
+  text["axles"][0]["name"] = "front pair", text["axles"][1]["name"] = "front_pair";
+  EXPECT_EQ(complaint(text),
+            "key 'axles[1].name': 'front_pair' is 'front pair' where results write it as one word, expected "
+            "another name");
+}
+
+TEST(VehicleFile, an_unknown_key_of_the_right_side_is_told_with_all_that_there_are) {
+  EXPECT_EQ(changed("hmmwv.json", "/axles/0/right", {{"tires", 1}}),
+            "key 'axles[0].right.tires': is unknown, expected one of: suspension, wheel, brake");
+  EXPECT_EQ(changed("hmmwv.json", "/axles/0/right", {{"wheels", 1}}),
+            "key 'axles[0].right.wheels': is unknown, expected 'wheel'?");
+}
+
+// Magnitudes that some vehicle may have, but not this one: each with what it would do.
+TEST(VehicleFile, parts_that_are_hardly_meant_are_named_with_what_they_would_do) {
+  const std::string s = "/axles/0/suspension";
+  const struct {
+    const char* file;
+    std::string pointer;
+    json value;
+    const char *key, *what;
+  } kTable[] = {
+      {"hmmwv.json", s + "/shock/compression", 1e6, "axles[0].suspension.shock.compression",
+       "is 1e6 N s/m, which alone takes about 0.00242 s to bring the whole vehicle of 2423 kg to rest"},
+      {"hmmwv.json", s + "/shock/rebound", 22.46, "axles[0].suspension.shock.rebound", "takes about 108 s"},
+      {"hmmwv.json", s + "/spindle/toe_deg", 44.9, "axles[0].suspension.spindle.toe_deg",
+       "is 44.9 degrees, usual is up to 10 in magnitude"},
+      {"hmmwv.json", s + "/upright/inertia", {1e6, 1e6, 1e6}, "", ""},  // refused
+      {"hmmwv.json", s + "/upright/inertia", {1656, 1934, 436.7}, "axles[0].suspension.upright.inertia",
+       "gives a part of 19.45 kg a radius of gyration of 10.2 m in a vehicle of "},
+      {"hmmwv.json", "/axles/0/brake/torque", 4e6, "axles[0].brake.torque",
+       "gives 4000000 N m: one wheel's brake would lift the whole vehicle of 2423 kg on a lever of 168 m"},
+      {"hmmwv.json", "/axles/0/steering/left_angle_deg", -0.52, "axles[0].steering.left_angle_deg",
+       "is -0.52, and is in degrees"},
+      {"hmmwv.json", "/driveline/shafts/2/inertia", 5e4, "driveline.shafts[2].inertia",
+       "is 50e3 kg m² in a vehicle of 2423 kg, usual is up to 242 kg m²"},
+      {"rover.json", "/driveline/motors/0/stall_torque", 30, "driveline.motors[0].stall_torque",
+       "gives 3000 N m: with its gear_ratio one motor would lift"},
+      {"hmmwv.json", "/driveline/engine/torque", json::parse("[[0, -50], [2700, -50]]"), "driveline.engine.torque",
+       "is -50.0 N m at the idle speed of 800 rpm, with the losses "},
+  };
+  for (const auto& one : kTable) {
+    json document = shipped_text(one.file);
+    document[json::json_pointer(one.pointer)] = one.value;
+    if (*one.key == '\0') {
+      EXPECT_NE(complaint(document).find("radius of gyration"), std::string::npos);
+      continue;
+    }
+    const vehicle::VehicleSpec spec = vehicle::read_vehicle(document, "car.json");
+    std::string said;
+    int found = 0;
+    for (const auto& [key, what] : vehicle::unlikely_values(spec, vehicle::mass_without_tires(spec))) {
+      if (key == one.key && what.find(one.what) != std::string::npos) ++found;
+      said += key + ": " + what + "\n";
+    }
+    EXPECT_EQ(found, 1) << one.pointer << "\n" << said;
+    EXPECT_EQ(said.find(".right."), std::string::npos) << "the mirrored side says it once:\n" << said;
+  }
+  // Of the right side alone.
+  json document = shipped_text("hmmwv.json");
+  document["axles"][0]["right"]["brake"]["torque"] = 4e6;
+  const vehicle::VehicleSpec spec = vehicle::read_vehicle(document, "car.json");
+  const auto odd = vehicle::unlikely_values(spec, vehicle::mass_without_tires(spec));
+  ASSERT_EQ(odd.size(), 1U);
+  EXPECT_EQ(odd[0].first, "axles[0].right.brake.torque");
+}
+
+TEST(VehicleFile, a_clutch_beside_the_converter_is_named) {
+  json document = shipped_text("hmmwv.json");
+  const json converter = document["driveline"]["converter"];
+  document["driveline"]["clutch"] = {{"in", converter["in"]},
+                                     {"out", converter["out"]},
+                                     {"torque", 500},
+                                     {"open_rpm", 1500},
+                                     {"closed_rpm", 2000}};
+  const vehicle::VehicleSpec spec = vehicle::read_vehicle(document, "car.json");
+  const auto odd = vehicle::unlikely_values(spec, vehicle::mass_without_tires(spec));
+  ASSERT_EQ(odd.size(), 1U);
+  EXPECT_EQ(odd[0].first, "driveline.clutch");
+  EXPECT_NE(odd[0].second.find("from closed_rpm, 2000 rpm, on it bridges the converter"), std::string::npos)
+      << odd[0].second;
 }
 
 TEST(VehicleFile, gears_and_drives_that_are_hardly_meant_are_named) {

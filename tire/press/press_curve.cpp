@@ -23,6 +23,8 @@ constexpr int kFormat = 2;             // raise when the bits of a curve or its 
 constexpr double kFirstShare = 0.048;  // of the radius, which is pressed first
 constexpr double kMore = 1.6;          // times the deflection when the load was not reached
 constexpr int kMostTrials = 4;
+constexpr double kSteepest = 2.0;          // exponent with which a tire's force rises with its deflection, at most
+constexpr double kMostPressure = 2e6;      // of any tire, Pa
 constexpr int kPoints = 4;                 // of the curve
 constexpr int kColumns = 48, kWidth = 12;  // elements of a coarse mesh
 
@@ -120,12 +122,19 @@ std::optional<PressCurve> press_curve(const TireSpec& tire, double load, const P
   for (int trial = 0;; ++trial) {
     PressCurve curve = press(*test, tire, deflection, progress);
     if (curve.points.back().second >= load) return curve;
-    if (trial == kMostTrials)
+    // What the trials that are left cannot reach needs no pressing.
+    const double reached = curve.points.back().second,
+                 rise = std::pow(kMore, kSteepest * static_cast<double>(kMostTrials - trial));
+    if (trial == kMostTrials || reached * rise < load)
       throw physics_error(fmt::format("{}: pressed by {:.4g} m this tire carries {:.4g} N, expected {:.4g} N",
-                                      tire.options().file.string(), deflection, curve.points.back().second,
-                                      load));
+                                      tire.options().file.string(), deflection, reached, load));
     deflection *= kMore;
   }
+}
+
+double hopeless_load(const TireDescription& tire) {
+  return tire.kind == "rigid" ? std::numeric_limits<double>::infinity()
+                              : kMostPressure * 2.0 * tire.radius * tire.width;
 }
 
 TireOptions coarse_for_pressing(TireOptions options) {

@@ -22,6 +22,10 @@ struct PressCurve {
 /// @pre load > 0. @throws Error(physics) naming the tire's file when it carries no such load
 std::optional<PressCurve> press_curve(const TireSpec& tire, double load, const ProgressCall& progress);
 
+/// A load that no tire of this size carries, N: a pressure beyond that of any tire, over its width and its diameter.
+/// Infinite for rigid tires.
+double hopeless_load(const TireDescription& tire);
+
 /// The options with a mesh that is coarse enough to be pressed within seconds.
 TireOptions coarse_for_pressing(TireOptions options);
 

@@ -63,8 +63,7 @@ double engine_force(const VehicleSpec& spec, double radius) {
   const std::vector<double> speeds = shaft_speeds(line, 0);
   double ratio = 0.0;
   for (const WheelShaftSpec& wheel : line.wheels)
-    for (std::size_t k = 0; k < line.shafts.size(); ++k)
-      if (line.shafts[k].name == wheel.shaft) ratio = std::max(ratio, std::abs(speeds[k]));
+    ratio = std::max(ratio, std::abs(speeds[line.shaft(wheel.shaft)]));
   return ratio > 0.0 ? torque / ratio / radius : 0.0;
 }
 

@@ -32,10 +32,9 @@ DriveTrain::DriveTrain(System& system, const VehicleSpec& vehicle, int chassis, 
 }
 
 int DriveTrain::shaft(const std::string& name) const {
-  const auto found = std::find_if(spec_.shafts.begin(), spec_.shafts.end(),
-                                  [&](const ShaftSpec& s) { return s.name == name; });
-  FURROW_ASSERT(found != spec_.shafts.end(), name);
-  return shafts_[found - spec_.shafts.begin()];
+  const int found = spec_.shaft(name);
+  FURROW_ASSERT(found >= 0, name);
+  return shafts_[found];
 }
 
 void DriveTrain::add_shafts(System& system, int chassis, std::span<const Wheel> wheels) {
@@ -149,10 +148,7 @@ void DriveTrain::begin_rolling(System& system, std::span<const double> spins, in
   for (const WheelShaftSpec& wheel : spec_.wheels)
     spin += spins[2 * vehicle_.axle(wheel.axle) + (wheel.side == "left" ? kLeft : kRight)] /
             static_cast<double>(spec_.wheels.size());
-  const auto index = [&](const std::string& name) {
-    return static_cast<std::size_t>(std::find(shafts_.begin(), shafts_.end(), shaft(name)) - shafts_.begin());
-  };
-  const std::size_t out = index(spec_.wheels.front().shaft);
+  const int out = spec_.shaft(spec_.wheels.front().shaft);
   const int count = gearbox_ ? static_cast<int>(spec_.gearbox->ratios.size()) : 1;
   std::vector<double> speeds;
   for (int g = gear > 0 ? std::min(gear, count) - 1 : 0; g < count; ++g) {
@@ -160,9 +156,9 @@ void DriveTrain::begin_rolling(System& system, std::span<const double> spins, in
     const double turns = speeds[out] != 0.0 ? spin / speeds[out] : 0.0;
     for (double& speed : speeds) speed *= turns;
     if (gearbox_) gearbox_->begin_in(system, g);
-    if (gear > 0 || !gearbox_ || speeds[index(spec_.gearbox->in)] < spec_.gearbox->up_rpm * kRpm) break;
+    if (gear > 0 || !gearbox_ || speeds[spec_.shaft(spec_.gearbox->in)] < spec_.gearbox->up_rpm * kRpm) break;
   }
-  double& engine = speeds[index(spec_.engine->shaft)];
+  double& engine = speeds[spec_.shaft(spec_.engine->shaft)];
   engine = std::max(engine, spec_.engine->idle_rpm * kRpm);
   for (std::size_t k = 0; k < speeds.size(); ++k) system.set_shaft_speed(shafts_[k], speeds[k]);
 }

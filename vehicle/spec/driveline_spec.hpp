@@ -157,6 +157,13 @@ struct DrivelineSpec {
   std::vector<WheelShaftSpec> wheels;
   std::vector<MotorSpec> motors;
   double skid_steer = 0.0;  // share of the motors' command that the steering wheel takes from the inner side
+
+  /// Index of a shaft, or −1.
+  int shaft(const std::string& wanted) const {
+    for (std::size_t k = 0; k < shafts.size(); ++k)
+      if (shafts[k].name == wanted) return static_cast<int>(k);
+    return -1;
+  }
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<DrivelineSpec> auto& s) {

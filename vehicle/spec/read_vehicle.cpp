@@ -62,6 +62,7 @@ CornerSpec read_right(JsonReader& reader, const CornerSpec& left, const Vec3& or
   reader.skip("right");
   if (!reader.given("right")) return corner;
   JsonReader right = reader.child("right");
+  for (const char* key : {"suspension", "wheel", "brake"}) right.skip(key);
   if (right.has("suspension")) {
     const auto suspension = read_type<SuspensionSpec>(right.child("suspension"));
     if (std::holds_alternative<RigidAxleSpec>(left.suspension) ||
@@ -73,7 +74,6 @@ CornerSpec read_right(JsonReader& reader, const CornerSpec& left, const Vec3& or
     corner.suspension = moved(suspension, origin);
   }
   if (right.has("wheel")) corner.wheel = read_spec<WheelSpec>(right.child("wheel"));
-  right.skip("brake");
   if (right.has("brake")) {
     corner.brake.reset();
     if (right.given("brake")) corner.brake = read_spec<BrakeSpec>(right.child("brake"));
@@ -99,6 +99,21 @@ AxleSpec read_axle(JsonReader reader) {
   }
   reader.finish();
   return axle;
+}
+
+/// Results write a name as one word.
+void check_name(const VehicleSpec& vehicle, const std::string& name, const JsonReader& reader,
+                const std::string& key) {
+  const auto word = [](std::string text) {
+    std::replace(text.begin(), text.end(), ' ', '_');
+    return text;
+  };
+  if (name == "chassis") reader.fail(key, "'chassis' is taken, expected another name");
+  for (const AxleSpec& axle : vehicle.axles)
+    if (word(axle.name) == word(name))
+      reader.fail(key, axle.name == name ? "'" + name + "' is taken, expected another name"
+                                         : "'" + name + "' is '" + axle.name +
+                                               "' where results write it as one word, expected another name");
 }
 
 /// An axle whose wheels sit on the arms of another.
@@ -132,8 +147,7 @@ VehicleSpec read_vehicle(const nlohmann::json& document, const std::string& file
     reader.fail("axles", fmt::format("has {} entries, expected 1 to {} axles", axles.size(), kMostAxles));
   for (std::size_t i = 0; i < axles.size(); ++i) {
     AxleSpec axle = read_axle(JsonReader(axles[i], file, detail::entry_path("axles", i)));
-    if (vehicle.axle(axle.name) >= 0 || axle.name == "chassis")
-      reader.fail(fmt::format("axles[{}].name", i), "'" + axle.name + "' is taken, expected another name");
+    check_name(vehicle, axle.name, reader, fmt::format("axles[{}].name", i));
     vehicle.axles.push_back(std::move(axle));
   }
   check_hosts(vehicle, reader);

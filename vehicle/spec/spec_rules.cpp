@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "protocol/files/json_text.hpp"
+#include "vehicle/spec/value_limits.hpp"
 #include "vehicle/spec/value_rules.hpp"
 
 namespace furrow::vehicle {
@@ -21,7 +22,7 @@ void apart(const JsonReader& reader, const char* key, const Vec3& point, const c
 }
 
 // A body has moments of inertia of which none is larger than the sum of the other two; equal for flat bodies.
-void check_inertia(const JsonReader& reader, const Mat3& inertia) {
+void check_inertia(const JsonReader& reader, const Mat3& inertia, double mass) {
   const Vec3 J = Eigen::SelfAdjointEigenSolver<Mat3>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
   if (!(J.x() > 0.0))
     reader.fail("inertia", fmt::format("has the principal moment {:.6g}, expected positive ones", J.x()));
@@ -29,6 +30,10 @@ void check_inertia(const JsonReader& reader, const Mat3& inertia) {
     reader.fail("inertia", fmt::format("has the principal moments {:.6g}, {:.6g}, {:.6g}, expected none "
                                        "larger than the sum of the other two",
                                        J.x(), J.y(), J.z()));
+  if (const double gyration = std::sqrt(0.5 * J.sum() / mass); gyration > most::kGyration)
+    reader.fail("inertia", fmt::format("gives a body of {} kg a radius of gyration of {:.3g} m, expected at "
+                                       "most {:g} m",
+                                       number_text(mass), gyration, most::kGyration));
 }
 
 void check_length(const JsonReader& reader, double shortest, double longest) {
@@ -64,27 +69,29 @@ void check_struts(const T& s, const JsonReader& reader, const std::vector<std::s
 }  // namespace
 
 void check_spec(const BodySpec& s, const JsonReader& reader) {
-  check_positive(reader, "mass", s.mass);
-  check_inertia(reader, s.inertia);
+  check_positive(reader, "mass", s.mass, most::kMass);
+  check_inertia(reader, s.inertia, s.mass);
 }
 
 void check_spec(const SpindleSpec& s, const JsonReader& reader) {
-  check_positive(reader, "mass", s.mass);
-  check_inertia(reader, s.inertia);
+  check_positive(reader, "mass", s.mass, most::kMass);
+  check_inertia(reader, s.inertia, s.mass);
   for (const auto& [key, angle] : {std::pair{"camber_deg", s.camber_deg}, std::pair{"toe_deg", s.toe_deg}})
-    check_within(reader, key, angle, -45.0, 45.0);
+    check_within(reader, key, angle, -most::kWheelAngle, most::kWheelAngle);
 }
 
 void check_spec(const WheelSpec& s, const JsonReader& reader) {
-  check_positive(reader, "mass", s.mass);
-  check_inertia(reader, s.inertia);
+  check_positive(reader, "mass", s.mass, most::kMass);
+  check_inertia(reader, s.inertia, s.mass);
 }
 
-void check_spec(const BrakeSpec& s, const JsonReader& reader) { check_positive(reader, "torque", s.torque); }
+void check_spec(const BrakeSpec& s, const JsonReader& reader) {
+  check_positive(reader, "torque", s.torque, most::kTorque);
+}
 
 void check_spec(const ArmSpec& s, const JsonReader& reader) {
-  check_positive(reader, "mass", s.mass);
-  check_inertia(reader, s.inertia);
+  check_positive(reader, "mass", s.mass, most::kMass);
+  check_inertia(reader, s.inertia, s.mass);
   apart(reader, "chassis_back", s.chassis_back, "chassis_front", s.chassis_front);
   const Vec3 hinge = (s.chassis_front - s.chassis_back).normalized();
   if (!(hinge.cross(s.upright - s.chassis_back).norm() > kSamePoint))
@@ -111,7 +118,7 @@ void check_spec(const SpringSpec& s, const JsonReader& reader) {
   if (s.rate && !s.force.empty()) reader.fail("force", "is given beside rate, expected one of the two");
   if (!s.rate && s.force.empty())
     reader.fail("force", "is missing, expected a table of forces, or the key rate");
-  if (s.rate) check_positive(reader, "rate", *s.rate);
+  if (s.rate) check_positive(reader, "rate", *s.rate, most::kRate);
   if (s.force.empty()) return;
   if (s.force.front() != std::pair{0.0, 0.0})
     reader.fail("force[0]", "is not [0, 0], expected the deflection and the force of the free spring");
@@ -124,14 +131,14 @@ void check_spec(const OuterShockSpec& s, const JsonReader& reader) {
   if (s.blend_length > s.longest - s.shortest)
     reader.fail("blend_length", fmt::format("is {}, expected at most longest - shortest, {:.6g}",
                                             number_text(s.blend_length), s.longest - s.shortest));
-  check_not_negative(reader, "compression", s.compression);
-  check_not_negative(reader, "rebound", s.rebound);
+  check_not_negative(reader, "compression", s.compression, most::kDamping);
+  check_not_negative(reader, "rebound", s.rebound, most::kDamping);
 }
 
 void check_spec(const ShockSpec& s, const JsonReader& reader) {
   apart(reader, "end", s.end, "chassis", s.chassis);
-  check_not_negative(reader, "compression", s.compression);
-  check_not_negative(reader, "rebound", s.rebound);
+  check_not_negative(reader, "compression", s.compression, most::kDamping);
+  check_not_negative(reader, "rebound", s.rebound, most::kDamping);
 }
 
 void check_spec(const DoubleWishboneSpec& s, const JsonReader& reader) {
@@ -151,7 +158,13 @@ void check_spec(const TrailingArmSpec& s, const JsonReader& reader) {
 void check_spec(const RigidAxleSpec& s, const JsonReader& reader) {
   check_struts(s, reader, {"housing"});
   int rods = 0;
-  for (const LinkSpec& link : s.links) rods += link.mirrored ? 2 : 1;
+  for (std::size_t i = 0; i < s.links.size(); ++i) {
+    rods += s.links[i].mirrored ? 2 : 1;
+    for (std::size_t k = 0; k < i; ++k)
+      if (s.links[k].name == s.links[i].name)
+        reader.fail(fmt::format("links[{}].name", i),
+                    "'" + s.links[i].name + "' is given twice, expected another name");
+  }
   if (rods != 4)
     reader.fail(
         "links",
@@ -159,19 +172,21 @@ void check_spec(const RigidAxleSpec& s, const JsonReader& reader) {
 }
 
 void check_spec(const PitmanArmSpec& s, const JsonReader& reader) {
+  check_within(reader, "pitch_deg", s.pitch_deg, -90.0, 90.0);
   apart(reader, "arm_end", s.arm_end, "pivot", s.pivot);
   apart(reader, "idler_end", s.idler_end, "idler", s.idler);
   apart(reader, "idler_end", s.idler_end, "arm_end", s.arm_end);
   if (!(std::abs(s.left_angle_deg) > 0.0 && std::abs(s.left_angle_deg) < 90.0))
     reader.fail("left_angle_deg", "is " + number_text(s.left_angle_deg) +
                                       ", expected -90 to 90, not 0: the arm at full lock to the left");
-  check_positive(reader, "response_time", s.response_time);
+  check_positive(reader, "response_time", s.response_time, most::kResponseTime);
 }
 
 void check_spec(const RackSpec& s, const JsonReader& reader) {
   if (s.left_travel == 0.0)
     reader.fail("left_travel", "is 0, expected the travel at full lock to the left in m");
-  check_positive(reader, "response_time", s.response_time);
+  check_within(reader, "left_travel", s.left_travel, -most::kTravel, most::kTravel);
+  check_positive(reader, "response_time", s.response_time, most::kResponseTime);
 }
 
 }  // namespace furrow::vehicle

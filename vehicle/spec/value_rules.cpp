@@ -23,8 +23,9 @@ void check_positive(const JsonReader& reader, const std::string& key, double val
          "a number above zero" + (std::isinf(most) ? "" : " and at most " + number_text(most)));
 }
 
-void check_not_negative(const JsonReader& reader, const std::string& key, double value) {
-  expect(value >= 0.0, reader, key, value, "a number of zero or above");
+void check_not_negative(const JsonReader& reader, const std::string& key, double value, double most) {
+  expect(value >= 0.0 && value <= most, reader, key, value,
+         std::isinf(most) ? "a number of zero or above" : "a number from 0 to " + number_text(most));
 }
 
 void check_within(const JsonReader& reader, const std::string& key, double value, double least, double most) {

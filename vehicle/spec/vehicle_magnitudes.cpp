@@ -10,8 +10,10 @@
 #include <fmt/format.h>
 
 #include "protocol/core/assert.hpp"
+#include "protocol/files/digits.hpp"
 #include "protocol/files/json_text.hpp"
 #include "vehicle/multibody/table.hpp"
+#include "vehicle/spec/part_magnitudes.hpp"
 #include "vehicle/spec/shaft_speeds.hpp"
 
 namespace furrow::vehicle {
@@ -59,6 +61,33 @@ std::vector<std::pair<std::string, std::string>> unlikely_gears(const GearboxSpe
   return odd;
 }
 
+/// An engine that cannot hold its idle speed, a clutch that bridges the converter; keys below `driveline`.
+std::vector<std::pair<std::string, std::string>> unlikely_drives(const DrivelineSpec& line) {
+  std::vector<std::pair<std::string, std::string>> odd;
+  if (line.engine && line.engine->idle_rpm > 0.0) {
+    const EngineSpec& engine = *line.engine;
+    const double full = Table("engine torque", engine.torque, TableCurve::linear, TableEnd::constant)
+                            .value(engine.idle_rpm),
+                 lost = Table("engine losses", engine.losses, TableCurve::linear, TableEnd::constant)
+                            .value(engine.idle_rpm);
+    if (full + lost <= 0.0)
+      odd.emplace_back("engine.torque",
+                       fmt::format("is {} N m at the idle speed of {} rpm, with the losses {} N m: the engine "
+                                   "does not hold its idle speed",
+                                   digits(full), number_text(engine.idle_rpm), digits(full + lost)));
+  }
+  const auto& clutch = line.clutch;
+  const auto& converter = line.converter;
+  if (clutch && converter &&
+      ((clutch->in == converter->in && clutch->out == converter->out) ||
+       (clutch->in == converter->out && clutch->out == converter->in)))
+    odd.emplace_back("clutch",
+                     fmt::format("lies beside the converter, between the same shafts '{}' and '{}': from "
+                                 "closed_rpm, {} rpm, on it bridges the converter",
+                                 clutch->in, clutch->out, number_text(clutch->closed_rpm)));
+  return odd;
+}
+
 /// An axle whose wheels the engine turns against those of the first one, in the lowest gear; empty: there is none.
 std::string against_the_first(const DrivelineSpec& line) {
   if (!line.engine) return {};
@@ -66,27 +95,15 @@ std::string against_the_first(const DrivelineSpec& line) {
   const WheelShaftSpec* first = nullptr;
   double forward = 0.0;
   for (const WheelShaftSpec& wheel : line.wheels) {
-    const auto shaft = std::find_if(line.shafts.begin(), line.shafts.end(),
-                                    [&](const ShaftSpec& s) { return s.name == wheel.shaft; });
-    if (shaft == line.shafts.end()) continue;
-    const double speed = speeds[static_cast<std::size_t>(shaft - line.shafts.begin())];
+    const int shaft = line.shaft(wheel.shaft);
+    if (shaft < 0) continue;
+    const double speed = speeds[static_cast<std::size_t>(shaft)];
     if (!first && speed != 0.0) first = &wheel, forward = speed;
     if (first && speed * forward < 0.0)
       return fmt::format("turn '{} {}' against '{} {}': they would fight each other", wheel.axle, wheel.side,
                          first->axle, first->side);
   }
   return {};
-}
-
-/// Largest distance between the centres of two wheels, m.
-double size_of(const VehicleSpec& spec) {
-  std::vector<Vec3> centers;
-  for (const AxleSpec& axle : spec.axles)
-    for (const CornerSpec& corner : axle.corners) centers.push_back(spindle_of(corner.suspension).center);
-  double size = 0.0;
-  for (const Vec3& a : centers)
-    for (const Vec3& b : centers) size = std::max(size, (a - b).norm());
-  return size;
 }
 
 }  // namespace
@@ -106,6 +123,8 @@ std::vector<std::pair<std::string, std::string>> unlikely_values(const VehicleSp
       odd.emplace_back("driveline." + key, what);
   if (const std::string fight = against_the_first(spec.driveline); !fight.empty())
     odd.emplace_back("driveline.gears", fight);
+  for (auto& [key, what] : unlikely_drives(spec.driveline)) odd.emplace_back("driveline." + key, what);
+  for (auto& one : unlikely_parts(spec, mass)) odd.push_back(std::move(one));
   const double others = mass - spec.chassis.mass;
   if (spec.chassis.mass < kLeastChassis * others) {
     odd.emplace_back("chassis.mass", fmt::format("is {} kg, all other parts have {:.4g} kg: another unit?",

@@ -1,5 +1,5 @@
-// What nothing forbids in a vehicle file, but is hardly meant: magnitudes that look like another unit, a gearbox whose
-// mark the engine never reaches.
+// What nothing forbids in a vehicle file, but is hardly meant: magnitudes that look like another unit
+// (part_magnitudes.hpp), a gearbox whose mark the engine never reaches, an engine that stalls.
 #pragma once
 
 #include <string>

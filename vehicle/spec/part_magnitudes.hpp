@@ -1,0 +1,29 @@
+// Values of bodies, shock absorbers, brakes, wheels and steerings that no rule forbids, but that are hardly meant: each
+// is compared with the mass and the size of the whole vehicle.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "vehicle/spec/vehicle_spec.hpp"
+
+namespace furrow::vehicle {
+
+/// Keys, and what is odd about their values. The right side is named where it is odd in another way than the left one.
+/// @param mass of the whole vehicle without tires, kg
+/// @pre mass > 0
+std::vector<std::pair<std::string, std::string>> unlikely_parts(const VehicleSpec& spec, double mass);
+
+/// Key of the heaviest body, and its mass, kg.
+std::pair<std::string, double> heaviest_body(const VehicleSpec& spec);
+
+/// Refuses a vehicle that is hopelessly heavy for a tire, by the key of its heaviest body.
+/// @param mass of the whole vehicle, kg @param most that the tire never carries, N
+/// @throws Error(bad_input)
+void check_load(const VehicleSpec& spec, double mass, const std::string& tire, double most);
+
+/// Largest distance between the centres of two wheels, m.
+double size_of(const VehicleSpec& spec);
+
+}  // namespace furrow::vehicle

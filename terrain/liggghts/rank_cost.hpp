@@ -11,8 +11,8 @@
 namespace furrow::terrain::liggghts {
 
 /// Processor time of a grain-step over that of the engine dem in the program's measure of this machine
-/// (nodes/scenario/machine_speed.hpp): 201, 235 and 232 against 58, 57 and 57 ns, measured in turn on 24,340 grains under
-/// a flexible tire with walls, accounts and reports.
+/// (nodes/scenario/machine_speed.hpp): 201, 235 and 232 against 58, 57 and 57 ns, measured in turn on 24,340 grains
+/// under a flexible tire with walls, accounts and reports.
 inline constexpr double kGrainStep = 3.9;
 
 struct RankLoad {

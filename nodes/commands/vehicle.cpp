@@ -11,6 +11,7 @@
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
 #include "nodes/scenario/vehicle_tires.hpp"
+#include "protocol/core/clock.hpp"
 #include "protocol/files/figures_json.hpp"
 #include "protocol/files/json_text.hpp"
 #include "protocol/files/text_file.hpp"
@@ -24,6 +25,7 @@ namespace {
 constexpr int kFormatVersion = 1;
 constexpr double kTravelShare = 0.2;  // of the smallest tire's radius
 constexpr double kMostTravel = 1.0;   // m
+constexpr double kQuiet = 2.0;        // in which most vehicles have come to stand: before progress is told, s
 constexpr int kLeastPoints = 3, kMostPoints = 1001;
 
 void check(const KinematicsArguments& arguments) {
@@ -44,17 +46,20 @@ vehicle::VehiclePage stand(const vehicle::VehicleSpec& spec) {
   launch::catch_stop_signals();
   launch::ProgressDisplay display;
   const auto tires = scenario::tires_of(spec);
-  const auto show = [&](const std::string& phase, double share, const char* doing) {
+  const auto stop_if_signalled = [](const char* doing) {
     if (launch::stop_signalled())
       throw Error(ExitCode::stopped, fmt::format("stopped by a signal while {}", doing));
-    display.show({.phase = phase, .share = share});
   };
   const auto standing = scenario::standing_tires(spec, tires, [&](const std::string& what, double share) {
-    show(what + " the tires", share, "tires were pressed");
+    stop_if_signalled("tires were pressed");
+    display.show({.phase = what + " the tires", .share = share});
   });
-  vehicle::VehiclePage page = vehicle::vehicle_page(
-      spec, standing,
-      [&](const std::string& what, double share) { show(what, share, "the vehicle was made to stand"); });
+  const double pressed = wall_clock();
+  vehicle::VehiclePage page =
+      vehicle::vehicle_page(spec, standing, [&](const std::string& what, double share) {
+        stop_if_signalled("the vehicle was made to stand");
+        if (wall_clock() - pressed > kQuiet) display.show({.phase = what, .share = share});
+      });
   display.clear();
   for (const auto& [key, what] : vehicle::stops_at_rest(spec, page.trim))
     print_warning(input_error(spec.file, key, what).what());

@@ -308,7 +308,7 @@ void check_locks(const VehicleSpec& spec, std::span<const double> radii, const P
   constexpr int kSteps = 8, kFineSteps = 50;
   const auto steered = std::count_if(spec.axles.begin(), spec.axles.end(),
                                      [](const AxleSpec& one) { return one.steering.has_value(); });
-  PacedCall tell(progress, kQuiet);
+  PacedCall tell(progress);
   double ends = 0.0;
   for (std::size_t k = 0; k < spec.axles.size(); ++k) {
     if (!spec.axles[k].steering) continue;

@@ -53,7 +53,8 @@ double mass_without_tires(const VehicleSpec& spec);
 /// Builds the vehicle and lets it stand. Of a vehicle with a tire that does not deflect only those vibrations are
 /// listed that do not depend on how hard the ground below it is.
 /// @pre one tire for each wheel. @throws Error(bad_input) naming the vehicle's file when it cannot be built or stand
-/// @param progress told of a vehicle of many axles, which takes long; may throw to stop it
+/// @param progress told from the beginning of each phase on; of a vehicle of many axles they take long; may throw to
+/// stop it
 VehiclePage vehicle_page(const VehicleSpec& spec, std::span<const StandingTire> tires,
                          const ProgressCall& progress = {});
 

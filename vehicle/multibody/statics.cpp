@@ -19,7 +19,6 @@ constexpr double kBalanced = 1e-12;    // of the weight
 constexpr double kLongestStep = 0.03;  // of one iteration, m or rad
 constexpr double kDifference = 1e-6;   // for stiffnesses, m or rad
 constexpr double kRank = 1e-10;        // of G
-constexpr double kQuiet = 2.0;         // before progress is told, s
 constexpr int kMaxIterations = 200, kMaxHalvings = 30;
 
 }  // namespace
@@ -202,13 +201,15 @@ Eigen::MatrixXd Statics::stiffness(const Eigen::MatrixXd& N) const {
 }
 
 Outcome Statics::settle(double weight, const ProgressCall& progress) {
-  PacedCall tell(progress, kQuiet);
+  PacedCall tell(progress);
   if (Outcome closed = close(); !closed.ok) return closed;
   double now = unbalance();
   const double first = now, last = kBalanced * weight;
+  double lowest = now;
   for (int iteration = 0; iteration < kMaxIterations && now > kBalanced * weight; ++iteration) {
     // Newton's steps shorten the way in decades.
-    tell("finding how it stands", std::clamp(std::log(first / now) / std::log(first / last), 0.0, 1.0));
+    lowest = std::min(lowest, now);
+    tell("finding how it stands", std::clamp(std::log(first / lowest) / std::log(first / last), 0.0, 1.0));
     const Eigen::MatrixXd N = freedoms();
     Eigen::MatrixXd K = stiffness(N);
     // Where it is not stable (a wheel in the air), as stiff as it takes to come down.

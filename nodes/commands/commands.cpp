@@ -89,7 +89,8 @@ scenario::Scenario load(Typed& typed) {
 }
 
 ExitCode validate_command(Typed& typed) {
-  const bool vehicle = scenario::is_vehicle(typed.scenario), calibration = study::is_calibration(typed.scenario);
+  const bool vehicle = scenario::is_vehicle(typed.scenario),
+             calibration = !vehicle && study::is_calibration(typed.scenario);
   if (vehicle || calibration) {
     if (!settings_of(typed).empty())
       throw input_error("command line", typed.threads.empty() ? "--set" : "--threads",

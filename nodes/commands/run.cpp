@@ -28,7 +28,6 @@ namespace furrow::commands {
 namespace {
 
 constexpr const char* kDone = "summary.json";  // is in the folder if and only if the run is done
-constexpr const char* kNoPlots = ".furrow-no-plots";  // is in the folder of a run that was started with --no-plots
 
 std::vector<std::string> rank_arguments(const RunArguments& arguments,
                                         const std::filesystem::path& directory) {
@@ -150,13 +149,6 @@ ExitCode supervise_run(const scenario::Scenario& scenario, launch::RunDirectory&
   return result.code;
 }
 
-/// A run that was started without plots has none when it is resumed either.
-void keep_choice_of_plots(const launch::RunDirectory& directory, bool plots) {
-  if (plots) return;
-  directory.add({kNoPlots});
-  write_whole_file(directory.path() / kNoPlots, "started with --no-plots; 'furrow report' makes the plots\n");
-}
-
 /// srun without MPI starts as many supervisors as ranks were wanted: they would fight for the folder.
 void refuse_tasks_without_mpi() {
   const char* tasks = std::getenv("SLURM_STEP_NUM_TASKS");
@@ -187,12 +179,6 @@ ExitCode run_supervised(const RunArguments& arguments) {
   for (const std::string& warning : scenario.warnings) print_warning(warning);
   require_launch(scenario);
   launch::RunDirectory directory(scenario.name, arguments.out, arguments.overwrite, arguments.scenario);
-  try {
-    keep_choice_of_plots(directory, arguments.plots);
-  } catch (const Error&) {
-    directory.discard();
-    throw;
-  }
   launch::catch_stop_signals();
   launch::say(fmt::format("furrow: {}, results in {}\n", scenario.name, directory.path().string()));
   return supervise_run(scenario, directory, arguments);
@@ -214,9 +200,7 @@ ExitCode resume_supervised(const RunArguments& arguments) {
   launch::catch_stop_signals();
   launch::say(fmt::format("furrow: continuing {} from t = {:g} s, results in {}\n", plan.scenario.name,
                           plan.point.manifest.time, directory.path().string()));
-  RunArguments as_started = arguments;
-  as_started.plots = arguments.plots && !std::filesystem::exists(directory.path() / kNoPlots);
-  return supervise_run(plan.scenario, directory, as_started);
+  return supervise_run(plan.scenario, directory, arguments);
 }
 
 }  // namespace furrow::commands

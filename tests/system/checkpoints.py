@@ -64,12 +64,6 @@ class Resume(CheckpointTest):
         self.same_as_whole(leave_out=["checkpoints/*/manifest.json"])  # those of the first part hold the earlier end
         self.assertEqual(summary(self.run_folder)["segments"][1]["changed"], {"run.end": 0.1})
 
-    def test_a_run_without_plots_stays_without_them(self):
-        self.program("run", self.path, "--out", self.run_folder, "--set", "run.end=0.06", "--no-plots")
-        done = self.program("resume", self.run_folder, "--until", "0.08")
-        self.assertNotIn("plots", done.stderr)
-        self.assertEqual([*self.run_folder.glob("*.png"), *self.run_folder.glob("*.html")], [])
-
     def test_another_output_rate_leaves_the_state_alone_and_numbers_frames_on(self):
         self.run_with_fault("step", 0, 250, "kill")
         self.resume("--set", "output.frame_interval=0.02", "--set", "output.series_interval=0.004")

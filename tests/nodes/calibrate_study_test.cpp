@@ -63,7 +63,7 @@ TEST_F(CalibrateStudy, a_study_is_read_with_its_defaults) {
   EXPECT_EQ(c.result, "hmmwv_ring_fitted.json");
   ASSERT_EQ(c.parameters.size(), 2u);
   EXPECT_EQ(c.parameters[0].name, "sidewall_1");
-  EXPECT_EQ(c.parameters[0].start, 8.84e5);  // of the tire's file
+  EXPECT_EQ(c.parameters[0].start, 2.3534e5);  // of the tire's file
   EXPECT_TRUE(c.parameters[0].logarithmic);
   const Target& plate = c.model->targets(TargetSet::fitted).front();
   EXPECT_EQ(plate.x, (std::vector<double>{0.01, 0.02, 0.03, 0.04}));  // a point without deflection tells nothing
@@ -131,7 +131,7 @@ TEST_F(CalibrateStudy, wrong_studies_are_refused_with_file_and_key) {
       {"/parameters/bending/upper", 0.5, "key 'parameters.bending.upper': is 0.5, expected more than lower"},
       {"/parameters/bending/start", 1e7, "key 'parameters.bending.start': is 1e7, expected a value from lower to upper"},
       {"/parameters/bending/scale", "logarithmic", "key 'parameters.bending.scale'"},
-      {"/parameters/sidewall_1/lower", 1e6, "key 'parameters.sidewall_1': begins at 884e3 N/m"},
+      {"/parameters/sidewall_1/lower", 1e6, "key 'parameters.sidewall_1': begins at 235340 N/m"},
       {"/parameters/sidewall_2", {{"scale", "log"}}, "key 'parameters.sidewall_2.lower': is 0, expected above 0"},
       {"/parameters/softening", json::object(), "no error"},
       {"/parameters/tension_share", json::object(), "no error"},

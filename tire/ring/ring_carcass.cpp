@@ -15,7 +15,7 @@ namespace furrow::tire {
 namespace {
 
 constexpr double kTolerance = 1e-11;  // of the force that moves a segment's sidewall by the radius
-constexpr double kRoundings = 16.0;   // round-offs of what (2) is summed from
+constexpr double kRoundings = 128.0;  // round-offs of what (2) is summed from; a stiff belt was found to stall at 55
 constexpr int kMostIterations = 40, kOneFactor = 8;
 constexpr double kLeastRadius = 1.02;  // in radii of the rim
 

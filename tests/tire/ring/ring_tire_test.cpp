@@ -73,7 +73,8 @@ TEST(RingTire, a_restored_tire_continues_bit_for_bit) {
     for (int k = 0; k < 50; ++k) {
       motion.extend(rim_at(k * kStep), kStep);
       tire.surface(surface);
-      ASSERT_TRUE(tire.advance(motion, loads(surface, motion.start(), k * kStep), 1).ok);
+      const Outcome outcome = tire.advance(motion, loads(surface, motion.start(), k * kStep), 1);
+      ASSERT_TRUE(outcome.ok) << outcome.message("tire") << " in step " << k;
     }
   };
   go(*one, rim);

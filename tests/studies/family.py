@@ -41,15 +41,16 @@ CURB = ["--set", "terrain.profile=[[2, 0], [2.0001, 0.03]]", "--set", "rig.speed
 
 
 def furrow(folder, *words):
-    """Runs the program once for each build. @returns what it said last where it failed, or None"""
-    if read_json(folder / provenance.RECORD).get("build") != provenance.build_of(provenance.program()):
-        done = subprocess.run([provenance.program(), *map(str, words), "--out", str(folder), "--overwrite"], stdout=subprocess.DEVNULL,
+    """Runs the program once for each build and words. @returns what it said last where it failed, or None"""
+    record, told = read_json(folder / provenance.RECORD), list(map(str, words))
+    if (record.get("build"), record.get("words")) != (provenance.build_of(provenance.program()), told):
+        done = subprocess.run([provenance.program(), *told, "--out", str(folder), "--overwrite"], stdout=subprocess.DEVNULL,
                               stderr=subprocess.PIPE, text=True)
         print(f"{folder.name}: exit {done.returncode}", file=sys.stderr, flush=True)
         said = [line for line in done.stderr.splitlines() if "error" in line] or done.stderr.splitlines()[-1:]
         folder.mkdir(parents=True, exist_ok=True)
         provenance.record_run(folder)
-        record = read_json(folder / provenance.RECORD) | {"failed": said[0].strip() if done.returncode else ""}
+        record = read_json(folder / provenance.RECORD) | {"failed": said[0].strip() if done.returncode else "", "words": told}
         (folder / provenance.RECORD).write_text(json.dumps(record) + "\n", encoding="utf-8")
     return read_json(folder / provenance.RECORD)["failed"] or None
 

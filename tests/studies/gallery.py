@@ -7,7 +7,6 @@ usage: gallery.py [NAME...]     (needs Debian's python3-pil; FURROW names anothe
 NAME is one of CASES without its ending. Without names all are made. A case that this program has made is not run again. The
 rows of other cases stay as they are: the column commit says which program made each row.
 """
-import csv
 import json
 import pathlib
 import resource
@@ -129,8 +128,7 @@ def kept_rows(name):
     """Of gallery.csv, of cases that are not `name`."""
     if not TABLE.exists():
         return []
-    lines = [line for line in TABLE.read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
-    return [row for row in csv.DictReader(lines) if row["case"] in CASES and row["case"] != name]
+    return [row for row in provenance.read_table(TABLE) if row["case"] in CASES and row["case"] != name]
 
 
 def origin(rows):

@@ -13,7 +13,6 @@ two programs differ. Lines without a seed are means over the beds with half the 
 the difference to engine dem of the same bed. processor_s is that of all processes; other work may have run beside.
 """
 import argparse
-import csv
 import math
 import os
 import pathlib
@@ -97,11 +96,9 @@ def row_of(engine, ranks, seed, processor_s, commit):
 
 def kept_rows(cases):
     """Of the table, of those runs that are not made again; mean lines are made of them anew."""
-    with open(TABLE, newline="", encoding="utf-8") as file:
-        lines = file.read().splitlines()
-    commit = next(line.split()[2] for line in lines if line.startswith("# commit:"))
+    commit = provenance.read_origin(TABLE)["commit"]
     rows = []
-    for line in csv.DictReader(line for line in lines if not line.startswith("#")):
+    for line in provenance.read_table(TABLE):
         if line["seed"].isdigit() and (line["engine"], int(line["ranks"])) not in cases:
             numbers = {key: float(value) for key, value in line.items() if value and key in (*FIGURES, "wall_s", "processor_s")}
             rows.append({"commit": commit, **{key: value for key, value in line.items() if value}, **numbers,

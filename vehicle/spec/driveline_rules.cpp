@@ -109,8 +109,8 @@ class ShaftGraph {
 
   void check() {
     name_shafts();
-    names_once("gears", spec_.gears);
-    names_once("differentials", spec_.differentials);
+    check_names_once(reader_, "gears", spec_.gears);
+    check_names_once(reader_, "differentials", spec_.differentials);
     join_all();
     check_wheels();
     check_outputs();
@@ -137,15 +137,6 @@ class ShaftGraph {
     }
     parent_.resize(names_.size());
     std::iota(parent_.begin(), parent_.end(), 0);
-  }
-
-  template <class Part>
-  void names_once(const char* list, const std::vector<Part>& parts) const {
-    std::set<std::string> names;
-    for (std::size_t i = 0; i < parts.size(); ++i)
-      if (!names.insert(parts[i].name).second)
-        reader_.fail(fmt::format("{}[{}].name", list, i),
-                     "'" + parts[i].name + "' is given twice, expected another name");
   }
 
   int shaft(const std::string& key, const std::string& name) const {

@@ -88,7 +88,7 @@ class PartMagnitudes {
       rotor(fmt::format("driveline.shafts[{}]", k), line.shafts[k].inertia, 1.0);
     for (std::size_t k = 0; k < line.motors.size(); ++k) {
       const MotorSpec& motor = line.motors[k];
-      const std::string key = mirrored_ = fmt::format("driveline.motors[{}]", k);
+      const std::string key = fmt::format("driveline.motors[{}]", k);
       rotor(key, motor.inertia, motor.gear_ratio);
       torque(key, "stall_torque", motor.stall_torque * std::abs(motor.gear_ratio),
              "with its gear_ratio one motor");

@@ -158,13 +158,8 @@ void check_spec(const TrailingArmSpec& s, const JsonReader& reader) {
 void check_spec(const RigidAxleSpec& s, const JsonReader& reader) {
   check_struts(s, reader, {"housing"});
   int rods = 0;
-  for (std::size_t i = 0; i < s.links.size(); ++i) {
-    rods += s.links[i].mirrored ? 2 : 1;
-    for (std::size_t k = 0; k < i; ++k)
-      if (s.links[k].name == s.links[i].name)
-        reader.fail(fmt::format("links[{}].name", i),
-                    "'" + s.links[i].name + "' is given twice, expected another name");
-  }
+  for (const LinkSpec& link : s.links) rods += link.mirrored ? 2 : 1;
+  check_names_once(reader, "links", s.links);
   if (rods != 4)
     reader.fail(
         "links",

@@ -1,9 +1,13 @@
 // Ranges of numbers that files of vehicles and drivers hold, each with the same words wherever it is broken.
 #pragma once
 
+#include <cstddef>
 #include <limits>
+#include <set>
 #include <string>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "protocol/files/json_reader.hpp"
 
@@ -15,6 +19,14 @@ void check_positive(const JsonReader& reader, const std::string& key, double val
 void check_not_negative(const JsonReader& reader, const std::string& key, double value,
                         double most = std::numeric_limits<double>::infinity());
 void check_within(const JsonReader& reader, const std::string& key, double value, double least, double most);
+/// Of the parts of a list, each with a `name`. @throws Error(bad_input) naming the second of two that are alike
+template <class Part>
+void check_names_once(const JsonReader& reader, const char* list, const std::vector<Part>& parts) {
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (!names.insert(parts[i].name).second)
+      reader.fail(fmt::format("{}[{}].name", list, i), "'" + parts[i].name + "' is given twice, expected another name");
+}
 void check_known(const JsonReader& reader, const std::string& key, const std::string& text,
                  const std::vector<std::string>& known);
 

@@ -52,8 +52,12 @@ void LauncherText::add(std::string_view line) {
 }
 
 std::string LauncherText::words() const {
-  std::string text;
-  for (const std::string& line : lines_) text += (text.empty() ? "" : " ") + line;
+  std::string text, internal;  // what it logs of itself hides the cause, but is better than nothing
+  for (const std::string& line : lines_) {
+    std::string& sort = line.find("ORTE_ERROR_LOG") == std::string::npos ? text : internal;
+    sort += (sort.empty() ? "" : " ") + line;
+  }
+  if (text.empty()) text = internal;
   if (text.size() > kMaxWords) text = text.substr(0, kMaxWords) + " …";
   return text;
 }

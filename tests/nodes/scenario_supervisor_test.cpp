@@ -95,6 +95,15 @@ TEST(LauncherText, keeps_what_else_was_said_in_one_line) {
   EXPECT_EQ(text.words(), "There are not enough slots available in the system");
 }
 
+TEST(LauncherText, passes_over_what_the_launcher_logs_of_itself_unless_there_is_nothing_else) {
+  launch::LauncherText text;
+  const std::string log = "[host:1] ORTE_ERROR_LOG: Data unpack would read past end of buffer in show_help.c";
+  text.add(log);
+  EXPECT_EQ(text.words(), log);
+  text.add("A requested component was not found.");
+  EXPECT_EQ(text.words(), "A requested component was not found.");
+}
+
 TEST(Progress, tells_time_pull_sinkage_speed_and_what_is_left) {
   EXPECT_EQ(launch::progress_text({"running", 0.25, 0.5, 2.0, 1432.5, 0.0312, 1.4, 83.0}),
             "t 0.500 of 2 s   1:23 left   pull 1432 N   sinkage 31.2 mm   1.40 m/s");

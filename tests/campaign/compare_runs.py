@@ -121,19 +121,24 @@ def attribute_of(thing, name):
     return np.array(json.dumps(named(value), default=str))
 
 
+def links_of(file):
+    """{path: whether the link stays in the file}"""
+    found = {}
+    file.id.links.visit(lambda name, info: found.update({name.decode(errors="surrogateescape"): info.type == h5py.h5l.TYPE_HARD}), info=True)
+    return found
+
+
 def h5_contents(file):
     """{path: the object}, groups too; a link that leads out of the file is no result."""
-    found = {"/": file}
+    return {"/": file} | {path: file[path] if inside else file.get(path, getlink=True) for path, inside in links_of(file).items()}
 
-    def visit(group, at):
-        for name in group:
-            link = group.get(name, getlink=True)
-            path = at + name
-            found[path] = group[name] if isinstance(link, h5py.HardLink) else link
-            if isinstance(found[path], h5py.Group):
-                visit(found[path], path + "/")
-    visit(file, "")
-    return found
+
+def same_bytes(a, b):
+    """Whether two HDF5 files are equal byte for byte and lead nowhere else, so that there is nothing to read."""
+    if a.stat().st_size != b.stat().st_size or a.read_bytes() != b.read_bytes():
+        return False
+    with h5py.File(a, "r") as file:
+        return all(links_of(file).values())
 
 
 def h5_file(leave_out=()):
@@ -149,6 +154,8 @@ def h5_file(leave_out=()):
                 yield f"attribute {path}@{name}: {shown(attribute_of(x, name), attribute_of(y, name))}"
 
     def compare(a, b):
+        if same_bytes(a, b):
+            return []
         found = []
         with h5py.File(a, "r") as first, h5py.File(b, "r") as second:
             left, right = h5_contents(first), h5_contents(second)

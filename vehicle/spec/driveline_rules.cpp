@@ -122,11 +122,9 @@ class ShaftGraph {
 
  private:
   void name_shafts() {
+    check_names_once(reader_, "shafts", spec_.shafts);
     for (std::size_t i = 0; i < spec_.shafts.size(); ++i) {
       const ShaftSpec& shaft = spec_.shafts[i];
-      if (std::find(names_.begin(), names_.end(), shaft.name) != names_.end())
-        reader_.fail(fmt::format("shafts[{}].name", i),
-                     "'" + shaft.name + "' is given twice, expected another name");
       names_.push_back(shaft.name);
       const int axle = vehicle_.axle(shaft.carrier);
       const bool housing =

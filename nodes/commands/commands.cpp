@@ -15,6 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include "nodes/commands/bench.hpp"
+#include "nodes/commands/examples.hpp"
 #include "nodes/commands/options.hpp"
 #include "nodes/commands/questions.hpp"
 #include "nodes/commands/wrapped.hpp"
@@ -241,6 +242,14 @@ void print_lines(const char* kind, const std::string& text) {
   }
 }
 
+/// What the help of a command ends with.
+std::string closing_words(std::string_view command) {
+  const std::string examples = examples_of(command);
+  return (examples.empty() ? "" : "Examples:\n" + examples + "\n") +
+         "Exit codes: 0 done, 2 bad input, 3 the physics failed, 4 a rank was lost, 5 input/output, "
+         "6 memory or another limit ran out, 75 stopped by a signal.";
+}
+
 /// The command line of `furrow`: what it understands, and what the user chose.
 class CommandLine {
  public:
@@ -248,13 +257,7 @@ class CommandLine {
     app_.set_help_flag("-h,--help", "Print this help and exit.");
     app_.set_version_flag("--version", "furrow " FURROW_VERSION, "Print the version and exit.");
     app_.require_subcommand(1);
-    app_.footer(
-        "Examples:\n"
-        "  furrow run first_look.json                        Run a wheel on soil, in seconds.\n"
-        "  furrow new mine --tire my_tire.json               Write a scenario of your own.\n"
-        "  furrow run mine.json --set rig.slip=0.2 --seeds 5 Get pull and sinkage with intervals.\n\n"
-        "Exit codes: 0 done, 2 bad input, 3 the physics failed, 4 a rank was lost, 5 input/output, "
-        "6 memory or another limit ran out, 75 stopped by a signal.");
+    app_.footer(closing_words(""));
     add_group("Begin", &CommandLine::add_beginnings);
     add_group("Run", &CommandLine::add_runs);
     add_group("Ask before a run", &CommandLine::add_questions);
@@ -288,6 +291,7 @@ class CommandLine {
   /// A command, and what is done when it is the one that was given.
   CLI::App& add(CLI::App& parent, const char* name, const char* purpose, std::function<ExitCode()> action) {
     CLI::App& command = *parent.add_subcommand(name, purpose);
+    command.footer(closing_words(&parent == &app_ ? name : parent.get_name() + " " + name));
     command.callback([this, action = std::move(action)] { chosen_ = action; });
     return command;
   }
@@ -521,6 +525,7 @@ void CommandLine::add_studies() {
 
 void CommandLine::add_benches() {
   CLI::App& bench = *app_.add_subcommand("bench", "Measure how fast this machine is, and print JSON.");
+  bench.footer(closing_words("bench"));
   bench.require_subcommand(1);
   add_grain_bench(
       add(bench, "grains", "Time the steps of a settled bed, with every grain integrated in every step.",

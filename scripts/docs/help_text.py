@@ -95,7 +95,7 @@ def parse(name, text):
             made.groups[heading] = [Command(f"{name} {left}".strip(), text) for left, text in rows]
     examples = re.search(r"^Examples:\n((?:  .*\n)+)", text, re.MULTILINE)
     for line in examples[1].splitlines() if examples else []:
-        match = re.match(r"  (.*?)(?:  +|(?<=--seeds 5) )(\S.*)$", line)
+        match = re.match(r"  (.*?)  +(\S.*)$", line)
         made.examples.append((match[1], match[2]) if match else (line.strip(), ""))
     codes = re.search(r"^Exit codes: (.*)", text, re.MULTILINE | re.DOTALL)
     for code in " ".join(codes[1].split()).rstrip(".").split(", ") if codes else []:

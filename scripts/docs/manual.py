@@ -37,11 +37,19 @@ def entry_lines(entry):
     return [".TP", f"{names}{value}", sentence(entry.text) + default + relations]
 
 
+def example_lines(command):
+    lines = []
+    for line, what in command.examples:
+        lines += [".TP", f"\\fB{escaped(line)}\\fR", sentence(what)]
+    return lines
+
+
 def command_lines(command):
     lines = [f".SS {escaped(command.usage.removeprefix('furrow '))}", sentence(command.purpose)]
     entries = command.arguments + [option for option in command.options if "--help" not in option.names]
     for entry in entries:
         lines += entry_lines(entry)
+    lines += example_lines(command)
     for below in command.commands:
         lines += command_lines(below)
     return lines
@@ -58,9 +66,7 @@ def manual(program, version):
         lines.append(f".SH {escaped(heading.upper())}")
         for command in group:
             lines += command_lines(command)
-    lines.append(".SH EXAMPLES")
-    for line, what in program.examples:
-        lines += [".TP", f"\\fB{escaped(line)}\\fR", sentence(what)]
+    lines += [".SH EXAMPLES", *example_lines(program)]
     lines.append(".SH EXIT STATUS")
     for number, meaning in program.exit_codes.items():
         lines += [".TP", f"\\fB{number}\\fR", sentence(meaning)]

@@ -198,6 +198,7 @@ def command_text(command, level):
     head = ["argument or option", "value", "default", "meaning"]
     rows = list(option_rows(command.arguments + [option for option in command.options if "--help" not in option.names]))
     text += table(head, rows) if rows else ""
+    text += "\n" + table(["example", "what it does"], [[code(line), cell(what)] for line, what in command.examples]) if command.examples else ""
     return text + "".join(command_text(below, level + 1) for below in command.commands)
 
 

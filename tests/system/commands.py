@@ -29,6 +29,23 @@ class Commands(SystemTest):
             self.assertIn("SCENARIO" if command in ("run", "validate", "ranks", "bed", "soil") else "KEY" if command == "explain" else "DIR",
                           self.output(command, "--help"))
 
+    def test_examples_in_the_help_name_options_and_files_that_there_are(self):
+        commands = re.findall(r"^  (\w+)  ", self.output("--help"), re.MULTILINE)
+        self.assertIn("calibrate", commands)
+        shipped = [name for kind in json.loads(self.output("list", "--json")).values() for name in kind["files"]]
+        for command in [*[name for name in commands if name != "bench"], "bench grains", "bench tire"]:
+            help_text = self.output(*command.split(), "--help")
+            options, examples = help_text.split("Examples:\n")
+            lines = re.findall(r"^  (furrow .*?)  +\S", examples, re.MULTILINE)
+            self.assertGreater(len(lines), 0, command)
+            for line in lines:
+                with self.subTest(line):
+                    self.assertTrue(line.startswith(f"furrow {command}"))
+                    for option in re.findall(r"--[\w-]+", line):
+                        self.assertRegex(options, rf"{option}\b")
+                    for name in re.findall(r"\S+\.json", line):
+                        self.assertTrue(name in shipped or name in ("mine.json", "my_tire.json"), name)
+
     def test_texts_for_people_are_as_wide_as_the_terminal_and_no_wider_than_120_columns(self):
         for command in (*re.findall(r"^  ([a-z]+) {3,}", self.output("--help"), re.MULTILINE), "bench grains", "bench tire", ""):
             for line in self.output(*command.split(), "--help").splitlines():

@@ -10,6 +10,7 @@
 #include "nodes/commands/commands.hpp"
 #include "nodes/commands/wrapped.hpp"
 #include "nodes/launch/messages.hpp"
+#include "nodes/scenario/rank_table.hpp"
 #include "nodes/scenario/starter.hpp"
 #include "protocol/files/data_files.hpp"
 #include "protocol/files/json_text.hpp"
@@ -122,9 +123,10 @@ ExitCode new_command(const NewArguments& arguments) {
                                  .rigid = arguments.rigid,
                                  .load = arguments.load.value_or(0.0)});
   std::cout << file.string() << "\n";
-  launch::say(fmt::format(
-      "furrow: '{}' is written; check it with 'furrow validate {}', run it with 'furrow run {}'\n",
-      file.string(), file.string(), file.string()));
+  const std::string name = scenario::shell_quoted(file.string());
+  launch::say(
+      fmt::format("furrow: '{}' is written; check it with: furrow validate {}; run it with: furrow run {}\n",
+                  file.string(), name, name));
   return ExitCode::done;
 }
 

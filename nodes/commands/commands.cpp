@@ -354,7 +354,7 @@ void CommandLine::add_beginnings() {
   starter.add_flag("--rigid", new_.rigid, "Make the tires rigid (tire.rigid).");
   CLI::Option* load =
       starter.add_option("--load", new_.load, "Set the load on the wheel, N (default: by the tire's size).")
-          ->check(CLI::PositiveNumber);
+          ->check(above_zero());
   starter
       .add_option("--vehicle", new_.vehicle, "Use this vehicle file: a whole vehicle in place of one wheel.")
       ->excludes(tire)

@@ -1,6 +1,19 @@
 #include "nodes/commands/options.hpp"
 
+#include <cmath>
+#include <cstdlib>
+
+#include "protocol/files/printable.hpp"
+
 namespace furrow::commands {
+
+CLI::Validator above_zero() {
+  const auto problem = [](const std::string& text) -> std::string {
+    const double value = std::strtod(text.c_str(), nullptr);
+    return std::isfinite(value) && value > 0.0 ? "" : "is " + excerpt(text) + ", expected a number above 0";
+  };
+  return {problem, "POSITIVE"};
+}
 
 CLI::Option* add_folder_options(CLI::App& command, std::filesystem::path& out, bool& overwrite,
                                 const std::string& usual) {
@@ -158,7 +171,7 @@ void add_slurm_options(CLI::App& command, bool& wanted, SlurmArguments& job) {
   of_slurm(command
                .add_option("--cores-per-node", job.cores_per_node,
                            "Use this number of cores on each node (default: all of them).")
-               ->check(CLI::PositiveNumber));
+               ->check(above_zero()));
   of_slurm(
       command.add_option("--partition", job.partition, "Submit to this partition (default: the cluster's)."));
   of_slurm(command.add_option("--time", job.time,

@@ -11,6 +11,8 @@
 
 namespace furrow::commands {
 
+/// A check of an option's value: finite and above 0.
+CLI::Validator above_zero();
 /// --out and --overwrite of a command that makes a folder. @param usual its name without --out: "<scenario>-NNN"
 /// @returns --out
 CLI::Option* add_folder_options(CLI::App& command, std::filesystem::path& out, bool& overwrite,

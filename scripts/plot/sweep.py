@@ -6,7 +6,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from .digits import with_error
-from .run_data import Missing, check_types, read_dataset, read_object
+from .run_data import Damaged, Missing, check_types, read_dataset, read_object
 from .student import half_interval
 from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY
 
@@ -21,7 +21,10 @@ class Sweep:
         self.values = read_object(directory / "sweep.json")
         check_types(self.values, "sweep.json", texts=("study", "description"), objects=("plot", "beds"), lists=("results",))
         with open(directory / "sweep.csv", newline="", encoding="utf-8") as file:
-            rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+            table = csv.DictReader(line for line in file if not line.startswith("#"))
+            rows = list(table)
+        if missing := {"state", "folder"} - set(table.fieldnames or ()):
+            raise Damaged(f"sweep.csv has no column '{min(missing)}', expected the table that furrow sweep wrote")
         self.rows = [row for row in rows if row["state"] == "done"]
         self.failed = [row for row in rows if row["state"] == "failed"]
         self.plot = self.values.get("plot") or {}

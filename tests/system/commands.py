@@ -159,12 +159,17 @@ class Commands(SystemTest):
 
     def test_new_leaves_no_file_where_it_fails_and_none_of_yours_is_touched(self):
         for options, said in ((["--tire", "no_such.json"], "'no_such.json' does not exist"), (["--soil", "no_such.json"], "no_such.json"),
-                              (["--vehicle", "no_such.json"], "no_such.json"), (["--load", "-1"], "--load"),
+                              (["--vehicle", "no_such.json"], "no_such.json"),
+                              (["--load", "-1"], "--load: is -1, expected a number above 0, see"), (["--load", "nan"], "--load: is nan"),
                               (["--vehicle", "rover.json", "--load", "5"], "excludes")):
             done = furrow("new", "mine", *options, cwd=self.folder)
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(said, done.stderr)
             self.assertEqual(self.names(), [])
+        done = furrow("new", "my drum", "--tire", "rigid_drum.json", cwd=self.folder)
+        self.assertIn("run it with: furrow run 'my drum.json'", done.stderr)
+        self.assertIn("set tire.rigid if the wheel is rigid", furrow("validate", "my drum.json", cwd=self.folder).stderr)
+        (self.folder / "my drum.json").unlink()
         done = furrow("new", "rover", "--vehicle", "rover.json", cwd=self.folder)
         self.assertIn("NAME': is 'rover.json': beside that scenario", done.stderr)
         for name in ("", "-", ".", "no_such_folder/x"):

@@ -74,7 +74,7 @@ class Package(SystemTest):
         self.assertLess(tire[0].triangle.max(), len(tire[0].position))
         self.assertEqual(grains[0].position.shape, (self.run_.summary["grains"], 3))
         self.assertAlmostEqual(float(grains[0].radius.max()), 0.03, places=5)
-        self.assertRaises(furrow.Missing, self.run_.tire(3).at, 0.0)
+        self.assertRaisesRegex(furrow.Missing, "has no wheel 3, expected 0 to 0", self.run_.tire, 3)
         patch = self.run_.footprint()
         self.assertGreater(len(patch), 0)
         np.testing.assert_allclose(patch["force_z_N"].sum(), tire[-1].force[:, 2].sum(dtype=float), rtol=1e-5)

@@ -229,6 +229,15 @@ class Page(SystemTest):
         (pull,) = (chart for chart in blocks_of(about, "charts")[1]["charts"] if chart["title"] == "Drawbar pull")
         self.assertEqual([line["label"] for line in pull["lines"]], ["run", "other"])
 
+    def test_a_table_of_a_study_that_is_none_is_named(self):
+        study = self.folder / "study"
+        study.mkdir()
+        (study / "sweep.json").write_text(json.dumps({"study": "slips", "plot": {}, "results": []}))
+        (study / "sweep.csv").write_text("garbage\n")
+        done = furrow("report", study, cwd=self.folder)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("sweep.csv has no column 'folder', expected the table that furrow sweep wrote", done.stderr)
+
     def test_the_page_of_a_study_does_not_tell_how_long_its_runs_took(self):
         pages = []
         for wall in ("1.25", "12.5"):

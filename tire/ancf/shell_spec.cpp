@@ -57,7 +57,10 @@ class ShellSpec final : public TireSpec {
   }
   TireShape shape() const override { return shell_shape(file_); }
   std::vector<std::pair<std::string, std::string>> unlikely_values() const override {
-    return tire::unlikely_values(given_);
+    auto found = tire::unlikely_values(given_);
+    if (!options().rigid && options().pressure.empty() && given_.pressure == 0.0)
+      found.emplace_back("pressure", "is 0: the shell carries the load alone; set tire.rigid if the wheel is rigid");
+    return found;
   }
   std::unique_ptr<StaticTest> static_test() const override { return std::make_unique<ShellPress>(file_); }
   std::unique_ptr<ModalTest> modal_test() const override { return std::make_unique<ShellModes>(file_); }

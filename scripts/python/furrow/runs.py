@@ -110,7 +110,13 @@ class Run:
         return self.series("accounts")
 
     def tire(self, wheel: int = 0) -> Frames[TireFrame]:
-        """Frames of a wheel's tire: `position`, `velocity`, `force` (n, 3), `triangle` (m, 3)."""
+        """Frames of a wheel's tire: `position`, `velocity`, `force` (n, 3), `triangle` (m, 3).
+
+        Raises Missing when the run has no such wheel.
+        """
+        wheels = [name for name in self.subjects if name.startswith("wheel")]
+        if f"wheel{wheel}" not in wheels and wheels:
+            raise Missing(f"{self.directory} has no wheel {wheel}, expected 0 to {len(wheels) - 1}")
         return Frames(TireFrame, self._run.frames(f"tire{wheel}"))
 
     @property

@@ -46,7 +46,7 @@ find_program(FURROW_PYTHON NAMES python3 HINTS /usr/bin DOC "makes completion sc
 mark_as_advanced(FURROW_PYTHON)
 function(furrow_install_made script argument target)
   install(CODE "
-    execute_process(COMMAND ${FURROW_PYTHON} -B ${CMAKE_SOURCE_DIR}/scripts/docs/${script} ${argument} --program $<TARGET_FILE:furrow>
+    execute_process(COMMAND \"${FURROW_PYTHON}\" -B \"${CMAKE_SOURCE_DIR}/scripts/docs/${script}\" ${argument} --program \"$<TARGET_FILE:furrow>\"
       OUTPUT_VARIABLE made RESULT_VARIABLE failed ERROR_QUIET)
     if(failed)
       message(STATUS \"Not made: ${target}\")

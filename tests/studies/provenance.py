@@ -15,6 +15,7 @@ import hashlib
 import json
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 
@@ -39,6 +40,9 @@ TABLES = ("tests/studies/*.csv", "tests/studies/*.png", "tests/benchmarks/*.csv"
 
 def commit(folder=ROOT):
     """The commit of the sources, with -dirty where files other than the tables of the scripts differ from it."""
+    if not shutil.which("git"):
+        sys.exit("git is not installed, expected it: a table names the commit of its program")
+
     def git(*words):
         return subprocess.run(["git", *words], cwd=folder, capture_output=True, text=True)
     named = git("describe", "--always", "--abbrev=8", "--exclude=*")

@@ -3,6 +3,7 @@
 import json
 import os
 import pathlib
+import shutil
 import stat
 import subprocess
 import sys
@@ -31,6 +32,7 @@ else:
 """
 
 
+@unittest.skipUnless(shutil.which("git"), "needs git: a table names the commit of its program")
 class RunStudy(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="furrow_study_")

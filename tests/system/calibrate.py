@@ -197,7 +197,7 @@ class Calibrate(SystemTest):
         for command in ("run", "ranks", "press", "bed", "soil"):
             done = furrow(command, "calibrate_ring.json", cwd=self.folder)
             self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
-            self.assertRegex(done.stderr, r"^furrow: error: \S+calibrate_ring.json: is a calibration study, expected a scenario "
+            self.assertRegex(done.stderr, r"^furrow: error: .+calibrate_ring.json: is a calibration study, expected a scenario "
                                           r"\('furrow calibrate' takes calibrations\)\n$")
 
     def test_explain_knows_the_keys_of_calibrations(self):

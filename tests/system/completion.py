@@ -54,7 +54,7 @@ class Completion(SystemTest):
     def test_names_of_shipped_files_keys_and_your_own_files(self):
         (self.folder / "first_mine.json").touch()
         (self.folder / "first_results").mkdir()
-        self.assertEqual(self.completed("run", "first_"), ["first_look.json", "first_mine.json", "first_results"])
+        self.assertEqual(sorted(self.completed("run", "first_")), ["first_look.json", "first_mine.json", "first_results"])
         self.assertEqual(self.completed("resume", "first_"), ["first_results"])
         self.assertEqual(self.completed("run", "a.json", "--set", "rig.sl"), ["rig.slip=", "rig.slope="])
         self.assertEqual(self.completed("run", "--no-plots", "first_l"), ["first_look.json"], "a flag has no value")

@@ -17,7 +17,7 @@ import help_text
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 # What an argument or the value of an option is, beyond the words that its description lists.
-KINDS = {"SCENARIO": "list:scenarios", "STUDY": "list:studies", "calibrate STUDY": "list:calibrations", "VEHICLE": "list:vehicles", "--tire": "list:tires",
+KINDS = {"SCENARIO": "list:scenarios", "validate SCENARIO": "list:scenarios vehicles calibrations", "STUDY": "list:studies", "calibrate STUDY": "list:calibrations", "VEHICLE": "list:vehicles", "--tire": "list:tires",
          "--soil": "list:soils", "--vehicle": "list:vehicles", "DIR": "folder", "OTHERS": "folder", "--out": "folder", "--vtk": "folder",
          "KEY": "key", "--set": "setting", "--profile": "file", "--bed": "file", "--save-bed": "file"}
 
@@ -66,7 +66,7 @@ _furrow_options() {
 @OPTIONS@
   esac
 }
-_furrow_list() { "${COMP_WORDS[0]}" list "$1" 2>/dev/null | awk '/^  [^ ]/ {print $1}'; }
+_furrow_list() { local kind; for kind; do "${COMP_WORDS[0]}" list "$kind"; done 2>/dev/null | awk '/^  [^ ]/ {print $1}'; }
 _furrow_keys() { "${COMP_WORDS[0]}" explain 2>/dev/null | awk '/^[^ ]/ {print $1}'; }
 _furrow() {
   local word=$2 previous=$3 command=${COMP_WORDS[1]} kind IFS=$' \t\n'
@@ -86,7 +86,7 @@ _furrow() {
   [[ -n $kind ]] || kind=$(_furrow_kind "$command #")
   case $kind in
     words:*) COMPREPLY=($(compgen -W "${kind#words:}" -- "$word")) ;;
-    list:*) compopt -o filenames; COMPREPLY=($(compgen -W "$(_furrow_list "${kind#list:}")" -- "$word") $(compgen -f -- "$word")) ;;
+    list:*) compopt -o filenames; COMPREPLY=($(compgen -W "$(_furrow_list ${kind#list:})" -- "$word") $(compgen -f -- "$word")) ;;
     folder) compopt -o filenames; COMPREPLY=($(compgen -d -- "$word")) ;;
     file) compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")) ;;
     key) COMPREPLY=($(compgen -W "$(_furrow_keys)" -- "$word")) ;;
@@ -152,7 +152,7 @@ def zsh(program):
 # Completion of furrow for zsh, made from its help.
 _furrow_list() {{
   local -a names
-  names=(${{(f)"$(furrow list $1 2>/dev/null | awk '/^  [^ ]/ {{print $1}}')"}})
+  names=(${{(f)"$(for kind; do furrow list $kind; done 2>/dev/null | awk '/^  [^ ]/ {{print $1}}')"}})
   compadd -- $names
   _files
 }}
@@ -188,7 +188,7 @@ def fish_value(command, entry):
 
 def fish(program):
     lines = ["# Completion of furrow for fish, made from its help.",
-             "function __furrow_list; furrow list $argv[1] 2>/dev/null | awk '/^  [^ ]/ {print $1}'; end",
+             "function __furrow_list; for kind in $argv; furrow list $kind; end 2>/dev/null | awk '/^  [^ ]/ {print $1}'; end",
              "function __furrow_keys; furrow explain 2>/dev/null | awk '/^[^ ]/ {print $1}'; end",
              "complete -c furrow -f"]
     for command in program.commands:

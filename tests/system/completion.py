@@ -49,6 +49,7 @@ class Completion(SystemTest):
         self.assertEqual(self.completed("bench", ""), ["grains", "tire"])
         self.assertEqual(self.completed("bench", "grains", "--pr"), ["--precision"])
         self.assertEqual(self.completed("bench", "grains", "--precision", "m"), ["mixed"])
+        self.assertIn("hmmwv.json", self.completed("validate", "hmm"))
         self.assertEqual(self.completed("list", "s"), ["scenarios", "studies", "soils"])
 
     def test_names_of_shipped_files_keys_and_your_own_files(self):

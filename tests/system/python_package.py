@@ -139,6 +139,7 @@ class Package(SystemTest):
             furrow.run(SMALL, out=self.folder / "bad", progress=False, rig__slip="fast")
         self.assertEqual(caught.exception.exit_code, 2)
         self.assertIn("key 'rig.slip': is 'fast', expected a number", str(caught.exception))
+        self.assertTrue(str(caught.exception).startswith("scenario: key"), caught.exception)
         self.assertIsNone(caught.exception.directory)
         self.assertEqual(self.names(), [])
         self.assertRaisesRegex(TypeError, "section__key", furrow.run, SMALL, slip=0.5)

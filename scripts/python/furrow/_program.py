@@ -16,7 +16,7 @@ from contextlib import contextmanager
 from typing import IO, Any, TypeAlias
 
 from ._settings import as_json
-from .errors import error_of
+from .errors import FurrowError, error_of
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 File: TypeAlias = str | os.PathLike[str]
@@ -53,7 +53,11 @@ def as_file(content: File | Content, name: str) -> Iterator[pathlib.Path]:
     with tempfile.TemporaryDirectory(prefix="furrow-") as folder:
         path = pathlib.Path(folder) / f"{name}.json"
         path.write_text(as_json(dict(content)), encoding="utf-8")
-        yield path
+        try:
+            yield path
+        except FurrowError as error:  # which names a file that the caller does not know
+            error.args = tuple(part.replace(str(path), name) if isinstance(part, str) else part for part in error.args)
+            raise
 
 
 class _Listener:

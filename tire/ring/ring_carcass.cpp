@@ -15,7 +15,7 @@ namespace furrow::tire {
 namespace {
 
 constexpr double kTolerance = 1e-11;  // of the force that moves a segment's sidewall by the radius
-constexpr double kRoundings = 128.0;  // round-offs of what (2) is summed from; a stiff belt was found to stall at 55
+constexpr double kStall = 128.0;      // round-offs of what (2) is summed from; a stiff belt was found to stall at 55
 constexpr double kGain = 0.5;         // an iteration that leaves more of the residual gains nothing
 constexpr int kMostIterations = 40, kOneFactor = 8;
 constexpr double kLeastRadius = 1.02;  // in radii of the rim
@@ -172,8 +172,9 @@ bool RingCarcass::solve(double h, double turn) {
   for (int k = 0; k <= kMostIterations; ++k) {
     const double left = residual(h, turn);
     residual_ = left / scale;
-    const bool near = left <= kTolerance * scale + kRoundings * (rounding + ring_.rounding(middle_));
-    if (left <= kTolerance * scale || (near && was_near && left > kGain * before)) return true;
+    const double round_off = rounding + ring_.rounding(middle_);
+    const bool near = left <= kTolerance * scale + kStall * round_off;
+    if (left <= kTolerance * scale + round_off || (near && was_near && left > kGain * before)) return true;
     was_near = near, before = left;
     if (!std::isfinite(left) || (k % kOneFactor == 0 && !factorize(h))) return false;
     correct();

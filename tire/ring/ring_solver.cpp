@@ -9,7 +9,8 @@ namespace furrow::tire {
 namespace {
 
 constexpr double kForceTolerance = 1e-11;  // of the force that moves a segment by the radius
-constexpr double kRoundings = 32.0;        // round-offs of an entry of the gradient, where a step gains nothing
+constexpr double kEnough = 4.0;            // round-offs of an entry of the gradient
+constexpr double kStall = 32.0;            // the same, where a step gains nothing
 constexpr double kGain = 0.5;              // a step that leaves more of the residual gains nothing
 constexpr double kGapTolerance = 1e-12;    // of the radius
 constexpr double kLongestStep = 0.3;       // of the radius
@@ -43,8 +44,9 @@ RingReport RingSolver::solve(const AxlePlace& axle) {
   for (report.steps = 0;; ++report.steps) {
     report.crowded = !evaluate();
     if (report.crowded) break;
-    const double aim = kForceTolerance * ring_.radius() * std::abs(ring_.slope(0.0));
-    const double force_tolerance = aim + kRoundings * ring_.rounding(q_);
+    const double smallest = kForceTolerance * ring_.radius() * std::abs(ring_.slope(0.0));
+    const double aim = smallest + kEnough * ring_.rounding(q_);
+    const double force_tolerance = smallest + kStall * ring_.rounding(q_);
     const double gap_tolerance = kGapTolerance * ring_.radius();
     report.residuals[report.steps] = report.residual = free_residual();
     judge(report);

@@ -242,14 +242,6 @@ void print_lines(const char* kind, const std::string& text) {
   }
 }
 
-/// What the help of a command ends with.
-std::string closing_words(std::string_view command) {
-  const std::string examples = examples_of(command);
-  return (examples.empty() ? "" : "Examples:\n" + examples + "\n") +
-         "Exit codes: 0 done, 2 bad input, 3 the physics failed, 4 a rank was lost, 5 input/output, "
-         "6 memory or another limit ran out, 75 stopped by a signal.";
-}
-
 /// The command line of `furrow`: what it understands, and what the user chose.
 class CommandLine {
  public:

@@ -46,8 +46,7 @@ constexpr Example kExamples[] = {
     {"bench tire", "bench tire --tire hmmwv_lumped.json", "Time the steps of this tire."},
 };
 
-}  // namespace
-
+/// A line each; empty where a command needs none.
 std::string examples_of(std::string_view command) {
   std::size_t width = 0;
   for (const Example& example : kExamples)
@@ -57,6 +56,15 @@ std::string examples_of(std::string_view command) {
     if (example.command == command)
       text += fmt::format("  furrow {:{}}  {}\n", example.line, width, example.purpose);
   return text;
+}
+
+}  // namespace
+
+std::string closing_words(std::string_view command) {
+  const std::string examples = examples_of(command);
+  return (examples.empty() ? "" : "Examples:\n" + examples + "\n") +
+         "Exit codes: 0 done, 2 bad input, 3 the physics failed, 4 a rank was lost, 5 input/output, "
+         "6 memory or another limit ran out, 75 stopped by a signal.";
 }
 
 }  // namespace furrow::commands

@@ -1,4 +1,4 @@
-// Examples of command lines, for the help of each command.
+// What the help of each command ends with: examples of command lines, and the exit codes.
 #pragma once
 
 #include <string>
@@ -7,7 +7,6 @@
 namespace furrow::commands {
 
 /// @param command "run", "bench tire"; empty: the program itself
-/// @returns what stands under "Examples:", a line each; empty where a command needs none
-std::string examples_of(std::string_view command);
+std::string closing_words(std::string_view command);
 
 }  // namespace furrow::commands

@@ -10,13 +10,13 @@
 
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
+#include "tire/ring/round_off_end.hpp"
 
 namespace furrow::tire {
 namespace {
 
 constexpr double kTolerance = 1e-11;  // of the force that moves a segment's sidewall by the radius
 constexpr double kStall = 128.0;      // round-offs of what (2) is summed from; a stiff belt was found to stall at 55
-constexpr double kGain = 0.5;         // an iteration that leaves more of the residual gains nothing
 constexpr int kMostIterations = 40, kOneFactor = 8;
 constexpr double kLeastRadius = 1.02;  // in radii of the rim
 
@@ -167,15 +167,13 @@ void RingCarcass::correct() {
 bool RingCarcass::solve(double h, double turn) {
   const double scale = ring_.radius() * ring_.slope(0.0);
   const double rounding = std::numeric_limits<double>::epsilon() * node_mass_ / (h * h) * ring_.radius();
-  bool was_near = false;
-  double before = 0.0;
+  RoundOffEnd end;
   for (int k = 0; k <= kMostIterations; ++k) {
     const double left = residual(h, turn);
     residual_ = left / scale;
     const double round_off = rounding + ring_.rounding(middle_);
-    const bool near = left <= kTolerance * scale + kStall * round_off;
-    if (left <= kTolerance * scale + round_off || (near && was_near && left > kGain * before)) return true;
-    was_near = near, before = left;
+    if (end.reached(left, kTolerance * scale + round_off, left <= kTolerance * scale + kStall * round_off))
+      return true;
     if (!std::isfinite(left) || (k % kOneFactor == 0 && !factorize(h))) return false;
     correct();
     ++iterations_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "protocol/core/assert.hpp"
+#include "tire/ring/round_off_end.hpp"
 
 namespace furrow::tire {
 namespace {
@@ -11,7 +12,6 @@ namespace {
 constexpr double kForceTolerance = 1e-11;  // of the force that moves a segment by the radius
 constexpr double kEnough = 4.0;            // round-offs of an entry of the gradient
 constexpr double kStall = 32.0;            // the same, where a step gains nothing
-constexpr double kGain = 0.5;              // a step that leaves more of the residual gains nothing
 constexpr double kGapTolerance = 1e-12;    // of the radius
 constexpr double kLongestStep = 0.3;       // of the radius
 constexpr int kFullSteps = 12;             // from then on steps are halved
@@ -39,22 +39,19 @@ void RingSolver::restart(const RingField& state, const std::vector<char>& closed
 RingReport RingSolver::solve(const AxlePlace& axle) {
   contact_.place(axle);
   RingReport report;
-  bool was_near = false;
-  double residual_before = 0.0;
+  RoundOffEnd end;
   for (report.steps = 0;; ++report.steps) {
     report.crowded = !evaluate();
     if (report.crowded) break;
     const double smallest = kForceTolerance * ring_.radius() * std::abs(ring_.slope(0.0));
-    const double aim = smallest + kEnough * ring_.rounding(q_);
+    const double enough = smallest + kEnough * ring_.rounding(q_);
     const double force_tolerance = smallest + kStall * ring_.rounding(q_);
     const double gap_tolerance = kGapTolerance * ring_.radius();
     report.residuals[report.steps] = report.residual = free_residual();
     judge(report);
     const bool near = report.residual <= force_tolerance && report.penetration <= gap_tolerance &&
                       report.pull <= force_tolerance;
-    report.converged =
-        near && (report.residual <= aim || (was_near && report.residual > kGain * residual_before));
-    was_near = near, residual_before = report.residual;
+    report.converged = end.reached(report.residual, enough, near);
     if (report.converged || report.steps == RingReport::kMostSteps) break;
     const int systems = step(force_tolerance, gap_tolerance);
     report.systems += systems;

@@ -97,7 +97,11 @@ class Run:
     @property
     def wheels(self) -> list[pd.DataFrame]:
         """The tables of all wheels."""
-        return [self.series(name) for name in self.subjects if name.startswith("wheel")]
+        return [self.series(name) for name in self._wheel_names]
+
+    @property
+    def _wheel_names(self) -> list[str]:
+        return [name for name in self.subjects if name.startswith("wheel")]
 
     @property
     def vehicle(self) -> pd.DataFrame:
@@ -114,9 +118,9 @@ class Run:
 
         Raises Missing when the run has no such wheel.
         """
-        wheels = [name for name in self.subjects if name.startswith("wheel")]
-        if f"wheel{wheel}" not in wheels and wheels:
-            raise Missing(f"{self.directory} has no wheel {wheel}, expected 0 to {len(wheels) - 1}")
+        names = self._wheel_names
+        if f"wheel{wheel}" not in names and names:
+            raise Missing(f"{self.directory} has no wheel {wheel}, expected 0 to {len(names) - 1}")
         return Frames(TireFrame, self._run.frames(f"tire{wheel}"))
 
     @property

@@ -9,6 +9,7 @@
 
 #include "protocol/core/error.hpp"
 #include "protocol/files/data_files.hpp"
+#include "protocol/files/file_kind.hpp"
 #include "protocol/files/json_fields.hpp"
 #include "protocol/files/json_reader.hpp"
 #include "protocol/files/json_text.hpp"
@@ -84,6 +85,7 @@ std::span<const TireModel> tire_models() { return kModels; }
 std::unique_ptr<TireSpec> read_tire(const TireOptions& options) {
   const json document =
       is_tir(options.file) ? tire_file_of_tir(options.file) : load_json(options.file, "a tire file in JSON");
+  refuse_other_kinds(document, FileKind::tire, options.file.string());
   std::unique_ptr<TireSpec> spec = model_of(document, options.file.string()).read(document, options);
   if (options.rigid) spec = make_rigid(std::move(spec));
   spec->set_rim(rim_of(document, options.file.string()));

@@ -13,6 +13,7 @@
 #include "nodes/scenario/rank_table.hpp"
 #include "nodes/scenario/starter.hpp"
 #include "protocol/files/data_files.hpp"
+#include "protocol/files/file_kind.hpp"
 #include "protocol/files/json_text.hpp"
 
 namespace furrow::commands {
@@ -24,20 +25,16 @@ struct Kind {
   const char* name;
   const char* folder;
   const char* use;
-  /// Whether a file of the folder is one of them.
-  bool (*holds)(const Json& file);
+  FileKind holds;  // files of the folder that are of another kind are listed elsewhere
 };
 
-bool is_study(const Json& file) { return file.contains("scenario"); }
-bool is_calibration(const Json& file) { return file.contains("calibrate"); }
-
 constexpr Kind kKinds[] = {
-    {"scenarios", "rigs", "furrow run NAME", [](const Json& file) { return !is_study(file) && !is_calibration(file); }},
-    {"studies", "rigs", "furrow sweep NAME", is_study},
-    {"calibrations", "rigs", "furrow calibrate NAME", is_calibration},
-    {"tires", "tire/data", "tire.file of a scenario", [](const Json&) { return true; }},
-    {"soils", "terrain/data", "terrain.material of a scenario", [](const Json&) { return true; }},
-    {"vehicles", "vehicle/data", "rig.vehicle of a scenario", [](const Json&) { return true; }},
+    {"scenarios", "rigs", "furrow run NAME", FileKind::scenario},
+    {"studies", "rigs", "furrow sweep NAME", FileKind::study},
+    {"calibrations", "rigs", "furrow calibrate NAME", FileKind::calibration},
+    {"tires", "tire/data", "tire.file of a scenario", FileKind::tire},
+    {"soils", "terrain/data", "terrain.material of a scenario", FileKind::soil},
+    {"vehicles", "vehicle/data", "rig.vehicle of a scenario", FileKind::vehicle},
 };
 
 /// The first sentence of a text, without its full stop. An initial, as in "J. Y. Wong", ends none.
@@ -77,7 +74,7 @@ Json catalogue(const std::string& only) {
     Json& listed =
         all[kind.name] = {{"folder", folder.string()}, {"use", kind.use}, {"files", Json::object()}};
     for (const std::filesystem::path& path : files)
-      if (const Json file = load_json<Json>(path, "a file that comes with furrow"); kind.holds(file))
+      if (const Json file = load_json<Json>(path, "a file that comes with furrow"); kind_of_file(file) == kind.holds)
         listed["files"][path.filename().string()] = line_of(file);
   }
   return all;

@@ -51,13 +51,16 @@ tire::PressOptions press_options(const scenario::Scenario& scenario, const Press
   const double height = arguments.cleat_height.value_or(keys.cleat_height),
                width = arguments.cleat_width.value_or(keys.cleat_width),
                position = arguments.cleat_position.value_or(keys.cleat_position);
-  require(o.deflection > 0.0 && o.deflection <= 0.2, "--deflection", "expected above 0 up to 0.2 m");
-  require(o.points >= 1 && o.points <= 1000, "--points", "expected 1 to 1000");
-  require(o.load > 0.0 && std::isfinite(o.load), "--load", "expected above 0 N");
-  require(std::abs(o.obstacle.camber) <= kMostCamber, "--camber", "expected -0.7 to 0.7 rad");
-  require(height > 0.0 && height <= 0.2, "--cleat-height", "expected above 0 up to 0.2 m");
-  require(width > 0.0 && width <= 1.0, "--cleat-width", "expected above 0 up to 1 m");
-  require(std::abs(position) <= 1.0, "--cleat-position", "expected -1 to 1 m");
+  const auto within = [&require](bool is, const char* key, double value, const char* range) {
+    require(is, key, fmt::format("is {:g}, expected {}", value, range));
+  };
+  within(o.deflection > 0.0 && o.deflection <= 0.2, "--deflection", o.deflection, "above 0 up to 0.2 m");
+  within(o.points >= 1 && o.points <= 1000, "--points", o.points, "1 to 1000");
+  within(o.load > 0.0 && std::isfinite(o.load), "--load", o.load, "above 0 N");
+  within(std::abs(o.obstacle.camber) <= kMostCamber, "--camber", o.obstacle.camber, "-0.7 to 0.7 rad");
+  within(height > 0.0 && height <= 0.2, "--cleat-height", height, "above 0 up to 0.2 m");
+  within(width > 0.0 && width <= 1.0, "--cleat-width", width, "above 0 up to 1 m");
+  within(std::abs(position) <= 1.0, "--cleat-position", position, "-1 to 1 m");
   if (on == "cleat") o.obstacle.height = height, o.obstacle.width = width, o.obstacle.position = position;
   if (profile) o.obstacle.profile = tire::read_press_profile(arguments.profile);
   if (!arguments.deflection)

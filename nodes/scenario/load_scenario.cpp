@@ -16,6 +16,7 @@
 #include "protocol/core/error.hpp"
 #include "protocol/core/hash.hpp"
 #include "protocol/files/data_files.hpp"
+#include "protocol/files/file_kind.hpp"
 #include "protocol/files/json_fields.hpp"
 #include "protocol/files/json_text.hpp"
 #include "protocol/files/printable.hpp"
@@ -117,14 +118,7 @@ json read_document(const std::string& file, const Settings& settings) {
   json document = parse_json(read_text_file(file, "a scenario in JSON"), file);
   if (!document.is_object())
     throw input_error(file, "", "is " + value_text(document) + ", expected an object { }");
-  if (document.contains("scenario"))
-    throw input_error(file, "", "is a study, expected a scenario ('furrow sweep' takes studies)");
-  if (document.contains("calibrate"))
-    throw input_error(file, "", "is a calibration study, expected a scenario ('furrow calibrate' takes calibrations)");
-  if (document.contains("chassis") && document.contains("axles"))
-    throw input_error(
-        file, "",
-        "is a vehicle, expected a scenario, whose key rig.vehicle names it beside rig.type 'vehicle'");
+  refuse_other_kinds(document, FileKind::scenario, file);
   // What is said later wins: a soil of the command line replaces what the file says of its soil.
   const std::string soil = "terrain.material", engine = engine_to_be(document, file, settings);
   if (std::none_of(settings.begin(), settings.end(), [&](const auto& one) { return one.first == soil; }))

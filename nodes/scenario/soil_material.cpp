@@ -7,6 +7,7 @@
 #include "nodes/scenario/schema.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/data_files.hpp"
+#include "protocol/files/file_kind.hpp"
 #include "protocol/files/json_reader.hpp"
 #include "protocol/files/json_text.hpp"
 #include "terrain/terrains.hpp"
@@ -58,6 +59,7 @@ json named_material(const json& document, const std::filesystem::path& scenario,
 json read_soil_material(const std::filesystem::path& file) {
   const std::string name = file.string();
   const json soil = load_json(file, "a soil in JSON");
+  refuse_other_kinds(soil, FileKind::soil, name);
   JsonReader reader(soil, name);
   reader.child("terrain");
   reader.allow_only({"format_version", "description", "terrain", "measured"});

@@ -11,6 +11,7 @@
 #include "protocol/core/error.hpp"
 #include "protocol/core/hash.hpp"
 #include "protocol/files/data_files.hpp"
+#include "protocol/files/file_kind.hpp"
 #include "protocol/files/json_text.hpp"
 #include "protocol/files/nearest_words.hpp"
 #include "protocol/files/text_file.hpp"
@@ -174,17 +175,15 @@ bool is_calibration(const std::filesystem::path& name) {
   std::error_code error;
   const std::filesystem::path file = named_file(name, {"rigs"});
   if (!std::filesystem::is_regular_file(file, error)) return false;
-  const Json document = read_json_if_whole(file);
-  return document.is_object() && document.contains("calibrate");
+  return kind_of_file(read_json_if_whole(file)) == FileKind::calibration;
 }
 
 Calibration load_calibration(const std::filesystem::path& name) {
   const std::filesystem::path file = named_file(name, {"rigs"});
   const Json document = load_json<Json>(file, "a calibration study in JSON");
+  refuse_other_kinds(document, FileKind::calibration, file.string());
   if (!document.contains("calibrate"))
-    throw document.contains("scenario")
-        ? input_error(file.string(), "", "is a study of runs, expected a calibration ('furrow sweep' takes studies)")
-        : input_error(file.string(), "calibrate", "is missing, expected a calibration study");
+    throw input_error(file.string(), "calibrate", "is missing, expected a calibration study");
   Reader reader(document, file.string());
   const CalibrationKind& kind = kind_of(reader);
   std::vector<std::string> keys;

@@ -7,6 +7,7 @@
 
 #include "protocol/core/error.hpp"
 #include "protocol/files/data_files.hpp"
+#include "protocol/files/file_kind.hpp"
 #include "protocol/files/json_reader.hpp"
 #include "protocol/files/json_text.hpp"
 
@@ -25,10 +26,7 @@ using Reader = OrderedJsonReader;
 
 Json load_document(const std::filesystem::path& file) {
   Json document = load_json<Json>(file, "a study in JSON");
-  if (document.contains("terrain") || document.contains("tire"))
-    throw input_error(file.string(), "", "is a scenario, expected a study ('furrow run' takes scenarios)");
-  if (document.contains("calibrate"))
-    throw input_error(file.string(), "", "is a calibration, expected a study ('furrow calibrate' takes calibrations)");
+  refuse_other_kinds(document, FileKind::study, file.string());
   return document;
 }
 

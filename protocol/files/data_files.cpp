@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "protocol/core/error.hpp"
@@ -13,6 +15,23 @@ namespace {
 
 constexpr std::size_t kMaxPath = 4095;  // bytes: PATH_MAX
 constexpr std::size_t kMaxName = 255;   // bytes: NAME_MAX
+
+/// Names of the JSON files in a folder; none where it cannot be read.
+void add_names(const std::filesystem::path& folder, std::vector<std::string>& names) {
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+    if (entry.path().extension() == ".json") names.push_back(entry.path().filename().string());
+}
+
+/// Of the files `known`, the one that a name without a file means: with ".json" behind it, or spelled alike.
+std::optional<std::string> meant(const std::string& typed, std::vector<std::string> known) {
+  if (typed.size() > kMaxName) return {};
+  std::sort(known.begin(), known.end());
+  const std::string whole = typed + ".json";
+  if (std::binary_search(known.begin(), known.end(), whole)) return whole;
+  const std::vector<std::string> similar = nearest_words(typed, known);
+  return similar.empty() ? std::nullopt : std::optional(similar.front());
+}
 
 }  // namespace
 
@@ -36,15 +55,11 @@ std::filesystem::path named_file(const std::filesystem::path& name, const std::v
   for (const std::string& folder : folders) {
     const std::filesystem::path place = data_folder() / folder;
     if (std::filesystem::is_regular_file(place / name, error)) return place / name;
-    for (const auto& entry : std::filesystem::directory_iterator(place, error))
-      if (entry.path().extension() == ".json") known.push_back(entry.path().filename().string());
+    add_names(place, known);
   }
-  std::sort(known.begin(), known.end());
-  const std::string typed = name.string(), whole = typed + ".json";
-  const bool short_of = std::find(known.begin(), known.end(), whole) != known.end();
-  const std::vector<std::string> similar = short_of ? std::vector{whole} : nearest_words(typed, known);
-  if (similar.empty() || typed.size() > kMaxName) return name;
-  throw input_error(typed, "", "does not exist, expected '" + similar.front() + "'?");
+  const std::optional<std::string> other = meant(name.string(), std::move(known));
+  if (!other) return name;
+  throw input_error(name.string(), "", "does not exist, expected '" + *other + "'?");
 }
 
 std::filesystem::path find_file(const std::string& name, const std::string& key,
@@ -69,14 +84,18 @@ std::filesystem::path find_file(const std::string& name, const std::string& key,
       throw input_error(scenario.string(), key,
                         "'" + place.string() + "' is not a regular file, expected one");
   std::vector<std::filesystem::path> looked;
+  std::vector<std::string> known;
   std::string list;
   for (const auto& place : places) {
+    if (!given.has_parent_path()) add_names(place.parent_path(), known);
     looked.push_back(std::filesystem::absolute(place, error).lexically_normal());
     if (std::find(looked.begin(), looked.end() - 1, looked.back()) == looked.end() - 1)
       list += (list.empty() ? "" : ", ") + looked.back().string();
   }
+  const std::optional<std::string> other = meant(name, std::move(known));
   throw input_error(scenario.string(), key,
-                    "'" + name + "' does not exist, expected a file at one of: " + list);
+                    "'" + name + "' does not exist, expected a file at one of: " + list +
+                        (other ? "; did you mean '" + *other + "'?" : ""));
 }
 
 }  // namespace furrow

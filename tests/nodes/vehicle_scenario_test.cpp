@@ -179,7 +179,7 @@ TEST(VehicleScenario, wrong_combinations_are_refused_by_key) {
             ": key 'rig.driver': gives brake 0.5 at 1 s, expected a driver that does not: the vehicle Rover "
             "has no brakes");
   EXPECT_EQ(complaint(json::parse(std::ifstream(data_folder() / "vehicle" / "data" / "hmmwv.json"))),
-            ": is a vehicle, expected a scenario, whose key rig.vehicle names it beside rig.type 'vehicle'");
+            ": is a vehicle, expected a scenario (the key rig.vehicle of a scenario takes vehicles)");
   json foreign = hmmwv();
   foreign["rig"] = {{"type", "drawbar"}, {"vehicle", "hmmwv.json"}};
   foreign["tire"] = {{"file", "hmmwv_layered.json"}};

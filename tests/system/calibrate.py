@@ -140,9 +140,9 @@ class Calibrate(SystemTest):
             self.assertIn(expected, done.stderr)
             self.assertEqual(set(self.names()), before | {"wrong.json"}, expected)
         done = furrow("calibrate", ROOT / "rigs" / "study_slip.json", cwd=self.folder)
-        self.assertIn("is a study of runs, expected a calibration ('furrow sweep' takes studies)", done.stderr)
+        self.assertIn("is a study, expected a calibration ('furrow sweep' takes studies)", done.stderr)
         done = furrow("calibrate", ROOT / "rigs" / "first_look.json", cwd=self.folder)
-        self.assertIn("key 'calibrate': is missing, expected a calibration study", done.stderr)
+        self.assertIn("is a scenario, expected a calibration ('furrow run' takes scenarios)", done.stderr)
         # A tire that no pressure of the study can hold.
         document = {**json.loads((self.folder / "study.json").read_text()), "starts": 2}
         document["targets"][0]["pressure"] = 5e7
@@ -197,7 +197,7 @@ class Calibrate(SystemTest):
         for command in ("run", "ranks", "press", "bed", "soil"):
             done = furrow(command, "calibrate_ring.json", cwd=self.folder)
             self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
-            self.assertRegex(done.stderr, r"^furrow: error: .+calibrate_ring.json: is a calibration study, expected a scenario "
+            self.assertRegex(done.stderr, r"^furrow: error: .+calibrate_ring.json: is a calibration, expected a scenario "
                                           r"\('furrow calibrate' takes calibrations\)\n$")
 
     def test_explain_knows_the_keys_of_calibrations(self):

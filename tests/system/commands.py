@@ -104,9 +104,9 @@ class Commands(SystemTest):
                                     (("validate", "frist_look.json"), "frist_look.json: does not exist, expected 'first_look.json'?"),
                                     (("sweep", "study_slop.json"), "study_slop.json: does not exist, expected 'study_slip.json'?"),
                                     (("run", "nothing_like_it.json"), "does not exist, expected a scenario in JSON"),
-                                    (("run", "calibrate_ring.json"), "is a calibration study, expected a scenario ('furrow calibrate' takes calibrations)"),
+                                    (("run", "calibrate_ring.json"), "is a calibration, expected a scenario ('furrow calibrate' takes calibrations)"),
                                     (("sweep", "calibrate_ring.json"), "is a calibration, expected a study ('furrow calibrate' takes calibrations)"),
-                                    (("calibrate", "study_slip.json"), "is a study of runs, expected a calibration ('furrow sweep' takes studies)"),
+                                    (("calibrate", "study_slip.json"), "is a study, expected a calibration ('furrow sweep' takes studies)"),
                                     (("sweep", "first_look.json"), "is a scenario, expected a study")):
             done = furrow(*arguments, cwd=self.folder)
             self.assertEqual(done.returncode, 2)

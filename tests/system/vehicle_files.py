@@ -157,7 +157,7 @@ class Wrong(SystemTest):
         self.assertIn("hmmwv_rigid.json: is a scenario, expected the file of a vehicle: its rig.vehicle is 'hmmwv.json'", done.stderr)
         done = furrow("run", "hmmwv.json", cwd=self.folder)
         self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn("hmmwv.json: is a vehicle, expected a scenario, whose key rig.vehicle names it", done.stderr)
+        self.assertIn("hmmwv.json: is a vehicle, expected a scenario (the key rig.vehicle of a scenario takes vehicles)", done.stderr)
         done = furrow("validate", "hmmwv_small.json", "--set", "rig.vehicle=none.json", cwd=self.folder)
         self.assertEqual(done.returncode, 2, done.stderr)
         places = done.stderr.split("expected a file at one of: ")[1].strip().split(", ")

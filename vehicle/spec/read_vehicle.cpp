@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "protocol/files/file_kind.hpp"
 #include "protocol/files/json_text.hpp"
 #include "vehicle/spec/spec_reader.hpp"
 #include "vehicle/spec/spec_rules.hpp"
@@ -135,6 +136,7 @@ VehicleSpec read_vehicle(const std::filesystem::path& file) {
 }
 
 VehicleSpec read_vehicle(const nlohmann::json& document, const std::string& file) {
+  refuse_other_kinds(document, FileKind::vehicle, file);
   JsonReader reader(document, file);
   reader.check_version(kFormatVersion, true);
   for (const char* key : {"source", "$schema"}) reader.skip(key);

@@ -1,0 +1,72 @@
+#include "protocol/files/file_kind.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "protocol/core/error.hpp"
+
+namespace furrow {
+namespace {
+
+struct Words {
+  FileKind kind;
+  const char* name;
+  const char* use;
+};
+
+constexpr Words kWords[] = {
+    {FileKind::scenario, "scenario", "'furrow run' takes scenarios"},
+    {FileKind::study, "study", "'furrow sweep' takes studies"},
+    {FileKind::calibration, "calibration", "'furrow calibrate' takes calibrations"},
+    {FileKind::tire, "tire", "the key tire.file of a scenario takes tires"},
+    {FileKind::soil, "soil", "the key terrain.material of a scenario takes soils"},
+    {FileKind::vehicle, "vehicle", "the key rig.vehicle of a scenario takes vehicles"},
+};
+
+constexpr std::string_view kOfSoils[] = {"format_version", "description", "terrain", "measured"};
+
+const Words& words_of(FileKind kind) {
+  return *std::find_if(std::begin(kWords), std::end(kWords),
+                       [&](const Words& one) { return one.kind == kind; });
+}
+
+template <class Json>
+bool has_only_keys_of_soils(const Json& document) {
+  for (const auto& [key, value] : document.items())
+    if (std::find(std::begin(kOfSoils), std::end(kOfSoils), key) == std::end(kOfSoils)) return false;
+  return document.contains("terrain") && !document["terrain"].empty();
+}
+
+}  // namespace
+
+template <class Json>
+std::optional<FileKind> kind_of_file(const Json& document) {
+  if (!document.is_object()) return {};
+  const auto has = [&](const char* key) { return document.contains(key); };
+  if (has("calibrate")) return FileKind::calibration;
+  if (has("scenario")) return FileKind::study;
+  if (has("chassis") && has("axles")) return FileKind::vehicle;
+  if (has("template") || has("Template") || (has("model") && has("contact")) || has("tir"))
+    return FileKind::tire;
+  if (has_only_keys_of_soils(document)) return FileKind::soil;
+  if (has("rig") || has("terrain") || has("tire") || has("tires")) return FileKind::scenario;
+  return {};
+}
+
+template <class Json>
+void refuse_other_kinds(const Json& document, FileKind expected, const std::string& file) {
+  const std::optional<FileKind> kind = kind_of_file(document);
+  if (!kind || *kind == expected || (expected == FileKind::scenario && *kind == FileKind::soil)) return;
+  const Words &is = words_of(*kind), &wanted = words_of(expected);
+  throw input_error(file, "", fmt::format("is a {}, expected a {} ({})", is.name, wanted.name, is.use));
+}
+
+template std::optional<FileKind> kind_of_file(const nlohmann::json&);
+template std::optional<FileKind> kind_of_file(const nlohmann::ordered_json&);
+template void refuse_other_kinds(const nlohmann::json&, FileKind, const std::string&);
+template void refuse_other_kinds(const nlohmann::ordered_json&, FileKind, const std::string&);
+
+}  // namespace furrow

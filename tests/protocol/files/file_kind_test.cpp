@@ -1,0 +1,62 @@
+#include "protocol/files/file_kind.hpp"
+
+#include <filesystem>
+#include <map>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "protocol/core/error.hpp"
+#include "protocol/files/data_files.hpp"
+#include "protocol/files/json_text.hpp"
+
+namespace furrow {
+namespace {
+
+using nlohmann::json;
+
+TEST(FileKind, every_file_that_comes_with_the_program_is_what_its_folder_says) {
+  const auto kinds_in = [](const char* folder) {
+    std::map<FileKind, int> found;
+    for (const auto& entry : std::filesystem::directory_iterator(data_folder() / folder)) {
+      const std::filesystem::path& path = entry.path();
+      if (path.extension() != ".json" || path.stem().extension() == ".schema") continue;
+      const auto kind = kind_of_file(load_json(path, "a file"));
+      EXPECT_TRUE(kind.has_value()) << path;
+      if (kind) ++found[*kind];
+    }
+    return found;
+  };
+  const auto rigs = kinds_in("rigs");
+  EXPECT_EQ(rigs.size(), 3u);
+  EXPECT_GT(rigs.at(FileKind::scenario), 15);
+  EXPECT_GE(rigs.at(FileKind::study), 5);
+  EXPECT_GE(rigs.at(FileKind::calibration), 5);
+  EXPECT_EQ(kinds_in("tire/data").size(), 1u);
+  EXPECT_EQ(kinds_in("terrain/data").size(), 1u);
+  EXPECT_EQ(kinds_in("vehicle/data").size(), 1u);
+}
+
+TEST(FileKind, only_what_is_certainly_of_another_kind_is_refused) {
+  const auto refused = [](const json& document, FileKind expected) -> std::string {
+    try {
+      refuse_other_kinds(document, expected, "x.json");
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const json soil = json::parse(R"({"format_version": 1, "terrain": {"friction": 0.5}})");
+  EXPECT_EQ(refused(soil, FileKind::tire),
+            "x.json: is a soil, expected a tire (the key terrain.material of a scenario takes soils)");
+  EXPECT_EQ(refused(soil, FileKind::soil), "");
+  EXPECT_EQ(refused(soil, FileKind::scenario), "");  // one that leaves all else as it is
+  EXPECT_EQ(refused(json::parse(R"({"terrain": {}})"), FileKind::study),
+            "x.json: is a scenario, expected a study ('furrow run' takes scenarios)");
+  EXPECT_EQ(refused(json::object(), FileKind::vehicle), "");
+  EXPECT_EQ(refused(json::array(), FileKind::vehicle), "");
+  EXPECT_EQ(refused(json::parse(R"({"format_version": 1})"), FileKind::tire), "");
+}
+
+}  // namespace
+}  // namespace furrow

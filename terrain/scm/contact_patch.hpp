@@ -15,11 +15,42 @@ namespace furrow::terrain::scm {
 
 using Cell = std::array<int, 2>;  // along x, along y
 
-/// 2 A/P of the convex hull of these cells, m. @pre there is one or more
-double patch_width(std::span<const Cell> cells, double spacing);
+/// Keeps its buffers from one set of cells to the next.
+class PatchFinder {
+ public:
+  /// Divides cells into patches. @pre cells in ascending order, no two alike
+  void find(std::span<const Cell> cells);
 
-/// Divides cells into patches: for each of them the number of its patch, from 0, in order of the first cell of each.
-/// @pre cells in ascending order, no two alike
-std::vector<int> patches(std::span<const Cell> cells);
+  /// For each cell the number of its patch, from 0, in order of the first cell of each.
+  const std::vector<int>& patch() const { return patch_; }
+  int count() const { return static_cast<int>(rows_.size()); }
+  /// 2 A/P of the convex hull of a patch, m. @param spacing of the cells, m
+  double width(int patch, double spacing);
+
+ private:
+  /// Neighbouring cells of one row.
+  struct Run {
+    int row, begin, end;  // along x; along y, `end` not included
+    int first;            // its place in the cells
+    int parent;           // a run of the same patch, not behind it
+  };
+  /// The rows of a patch, and where their ends stand in `low_` and `high_`.
+  struct Rows {
+    int begin, end, first;
+  };
+
+  void find_runs(std::span<const Cell> cells);
+  void join_runs();
+  int root_of(int run);
+  void find_ends();
+  void chain(std::span<const Cell> points);
+
+  std::vector<Run> runs_;
+  std::vector<int> number_;  // of the patch of each run
+  std::vector<int> patch_;
+  std::vector<Rows> rows_;            // of each patch
+  std::vector<int> low_, high_;       // of each row: its first cell along y, and the one behind its last
+  std::vector<Cell> corners_, hull_;  // of the patch at hand
+};
 
 }  // namespace furrow::terrain::scm

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "protocol/core/assert.hpp"
 
@@ -34,18 +35,22 @@ int Grid::first_y(double at) const { return first_at(at + 0.5 * ny * spacing, sp
 
 void FootprintFinder::find(std::span<const std::array<int, 3>> triangles, std::span<const Vec3> position,
                            double height, std::vector<NodeHit>& hits) {
-  hits.clear();
+  found_.clear();
+  low_ = {grid_.nx, grid_.ny}, high_ = {-1, -1};
   for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
     const auto& v = triangles[t];
     const std::array<Vec3, 3> corner{position[v[0]], position[v[1]], position[v[2]]};
-    if (std::min({corner[0].z(), corner[1].z(), corner[2].z()}) < height) cover(t, corner, height, hits);
+    if (std::min({corner[0].z(), corner[1].z(), corner[2].z()}) < height) cover(t, corner, height);
   }
-  for (const NodeHit& hit : hits) slot_[hit.node] = -1;
-  std::sort(hits.begin(), hits.end(), [](const NodeHit& a, const NodeHit& b) { return a.node < b.node; });
+  hits.clear();
+  for (int i = low_[0]; i <= high_[0]; ++i)
+    for (int j = low_[1]; j <= high_[1]; ++j) {
+      std::int32_t& slot = slot_[grid_.index(i, j)];
+      if (slot >= 0) hits.push_back(found_[std::exchange(slot, -1)]);
+    }
 }
 
-void FootprintFinder::cover(int triangle, const std::array<Vec3, 3>& corner, double height,
-                            std::vector<NodeHit>& hits) {
+void FootprintFinder::cover(int triangle, const std::array<Vec3, 3>& corner, double height) {
   const Vec3 ab = corner[1] - corner[0], ac = corner[2] - corner[0], outward = ab.cross(ac);
   if (!(outward.z() < -kLeastVertical * outward.norm())) return;
   const Vec3 push = outward / outward.z();  // its z is 1: into the surface
@@ -64,9 +69,11 @@ void FootprintFinder::cover(int triangle, const std::array<Vec3, 3>& corner, dou
       if (!(z < height)) continue;
       const int node = grid_.index(i, j);
       if (slot_[node] < 0) {
-        slot_[node] = static_cast<std::int32_t>(hits.size());
-        hits.push_back({node, triangle, {1.0 - v - w, v, w}, -z, push});
-      } else if (NodeHit& other = hits[slot_[node]]; - z > other.sinkage) {
+        slot_[node] = static_cast<std::int32_t>(found_.size());
+        found_.push_back({node, triangle, {1.0 - v - w, v, w}, -z, push});
+        low_ = {std::min(low_[0], i), std::min(low_[1], j)};
+        high_ = {std::max(high_[0], i), std::max(high_[1], j)};
+      } else if (NodeHit& other = found_[slot_[node]]; - z > other.sinkage) {
         other = {node, triangle, {1.0 - v - w, v, w}, -z, push};
       }
     }

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "protocol/core/vec.hpp"
-#include "terrain/scm/contact_patch.hpp"
 
 namespace furrow::terrain::scm {
 
@@ -22,7 +21,7 @@ struct Grid {
   double y(int j) const { return (j + 0.5 - 0.5 * ny) * spacing; }
   int index(int i, int j) const { return i * ny + j; }
   int count() const { return nx * ny; }
-  Cell cell(int index) const { return {index / ny, index % ny}; }
+  std::array<int, 2> cell(int index) const { return {index / ny, index % ny}; }
   /// The first cell whose node is not below the coordinate.
   int first_x(double at) const;
   int first_y(double at) const;
@@ -49,10 +48,12 @@ class FootprintFinder {
             std::vector<NodeHit>& hits);
 
  private:
-  void cover(int triangle, const std::array<Vec3, 3>& corner, double height, std::vector<NodeHit>& hits);
+  void cover(int triangle, const std::array<Vec3, 3>& corner, double height);
 
   Grid grid_;
-  std::vector<std::int32_t> slot_;  // of each node: its place in hits while find runs; −1: none
+  std::vector<std::int32_t> slot_;  // of each node: its place in found_ while find runs; −1: none
+  std::vector<NodeHit> found_;
+  std::array<int, 2> low_{}, high_{};  // the cells of all that is found: first and last along x and y
 };
 
 }  // namespace furrow::terrain::scm

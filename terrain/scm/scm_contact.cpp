@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "protocol/core/assert.hpp"
-#include "terrain/scm/contact_patch.hpp"
 
 namespace furrow::terrain::scm {
 namespace {
@@ -37,14 +36,11 @@ void SoilField::find_moduli() {
     std::fill(modulus_.begin(), modulus_.end(), law_.modulus(patch_width_));
     return;
   }
-  const std::vector<int> patch = patches(cells_);
-  const int count = patch.empty() ? 0 : *std::max_element(patch.begin(), patch.end()) + 1;
-  std::vector<std::vector<Cell>> members(count);
-  for (std::size_t k = 0; k < patch.size(); ++k) members[patch[k]].push_back(cells_[k]);
-  std::vector<double> of_patch;
-  for (const std::vector<Cell>& one : members)
-    of_patch.push_back(law_.modulus(scm::patch_width(one, grid_.spacing)));
-  for (std::size_t k = 0; k < patch.size(); ++k) modulus_[k] = of_patch[patch[k]];
+  patches_.find(cells_);
+  of_patch_.clear();
+  for (int p = 0; p < patches_.count(); ++p)
+    of_patch_.push_back(law_.modulus(patches_.width(p, grid_.spacing)));
+  for (std::size_t k = 0; k < modulus_.size(); ++k) modulus_[k] = of_patch_[patches_.patch()[k]];
 }
 
 /// m of the step before, moved along with the surface over the node for dt.
@@ -97,7 +93,17 @@ ContactNode SoilField::bear(const NodeHit& hit, double modulus, const Vec3& velo
   contact.weight = hit.weight;
   contact.normal = area * pressed.pressure * hit.push;
   contact.tangential = -now.limit * sheared.mean;
+  contact.tangent = tangent(normal, area * tilt * tilt, node, pressed.pressure, shear, now);
   return now;
+}
+
+/// The spring's answer, on the curve of first loading as well: a surface that goes back meets the spring there.
+/// @param area of the cell over n_z², m²: a motion along the normal sinks that much faster, and is pushed as much more
+SurfaceContactTangent SoilField::tangent(const Vec3& normal, double area, const SoilNode& node, double pressure,
+                                         const ShearLaw& shear, const ContactNode& now) const {
+  const bool damped = pressure > 0.0 && pressure < node.yield;
+  const double free = std::max(0.0, 1.0 - now.mobilized.squaredNorm());
+  return {normal, area * node.stiffness, now.limit / shear.K * free, damped ? area * law_.damping : 0.0, 0.0};
 }
 
 /// Nodes that bore the surface and do not any more: what their springs held is gone.

@@ -8,6 +8,7 @@
 #include "protocol/core/fields.hpp"
 #include "protocol/core/surface.hpp"
 #include "protocol/core/vec.hpp"
+#include "terrain/scm/contact_patch.hpp"
 #include "terrain/scm/footprint.hpp"
 #include "terrain/scm/janosi_shear.hpp"
 #include "terrain/scm/pressure_sinkage.hpp"
@@ -67,6 +68,8 @@ class SoilField {
   void find_moduli();
   ContactNode bear(const NodeHit& hit, double modulus, const Vec3& velocity, const ShearLaw& shear, double dt,
                    SurfaceContactForce& contact, SoilLosses& losses);
+  SurfaceContactTangent tangent(const Vec3& normal, double area, const SoilNode& node, double pressure,
+                                const ShearLaw& shear, const ContactNode& now) const;
   Vec3 carried(int node, const Vec3& velocity, double dt) const;
   void release(const ShearLaw& shear, SoilLosses& losses);
   double spring(const ContactNode& at) const;
@@ -80,7 +83,9 @@ class SoilField {
   std::vector<NodeHit> hits_;
   std::vector<int> touching_;  // places in hits_
   std::vector<Cell> cells_;    // of those
-  std::vector<double> modulus_;
+  PatchFinder patches_;
+  std::vector<double> of_patch_;  // Bekker's k
+  std::vector<double> modulus_;   // of each touching node
   std::vector<ContactNode> before_;
   std::vector<std::int32_t> mark_;  // of each node: its place in before_, or one of the two values below
   static constexpr std::int32_t kUncovered = -1, kCovered = -2;

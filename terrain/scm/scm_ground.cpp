@@ -28,6 +28,7 @@ struct GroundSurface {
   ContactMaterial material;
   ShearLaw shear;
   std::vector<Vec3> last;      // where the ground last had the vertices, m
+  std::vector<Vec3> end;       // where they will be at the end of the interval, m
   std::vector<Vec3> velocity;  // of the running interval, m/s
   std::vector<Vec3> position;  // at the middle of the running substep, m
   std::vector<ContactNode> bearing;
@@ -143,11 +144,12 @@ void ScmGround::add_surface(const SurfaceMesh& mesh, const ContactMaterial& mate
                        .material = material,
                        .shear = shear,
                        .last = std::move(last),
+                       .end = std::vector<Vec3>(mesh.vertex_count, Vec3::Zero()),
                        .velocity = std::vector<Vec3>(mesh.vertex_count, Vec3::Zero()),
                        .position = std::vector<Vec3>(mesh.vertex_count, Vec3::Zero()),
                        .bearing = {},
                        .contacts = {},
-                       .sum = NodalForceSum(mesh.vertex_count)});
+                       .sum = NodalForceSum(mesh.vertex_count, options_.contact_tangents)});
 }
 
 void ScmGround::attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) {
@@ -161,7 +163,7 @@ void ScmGround::attach(const SurfaceMesh& mesh, const ContactMaterial& material,
   add_surface(mesh, material, start.position);
 }
 
-/// Where the vertices will be at the end of the interval, in `position`, and their velocity.
+/// Where the vertices will be at the end of the interval, and their velocity.
 Outcome ScmGround::set_motion(GroundSurface& surface, const SurfaceState& target, double duration,
                               std::size_t k) const {
   const std::size_t count = surface.last.size();
@@ -178,7 +180,7 @@ Outcome ScmGround::set_motion(GroundSurface& surface, const SurfaceState& target
                               fmt::format("surface {} stands beside it, x = ({:.6g}, {:.6g}, {:.6g}) m", k,
                                           end.x(), end.y(), end.z()));
     surface.velocity[v] = (end - surface.last[v]) / duration;
-    surface.position[v] = end;
+    surface.end[v] = end;
   }
   return {};
 }
@@ -193,11 +195,10 @@ Outcome ScmGround::advance(std::span<const SurfaceState> targets, double duratio
   for (std::size_t k = 0; k < surfaces_.size(); ++k) {
     GroundSurface& surface = surfaces_[k];
     if (Outcome moved = set_motion(surface, targets[k], duration, k); !moved.ok) return moved;
-    const std::vector<Vec3> end = surface.position;
     for (int s = 0; s < substeps; ++s) {
       const double share = (s + 0.5) / substeps;
-      for (std::size_t v = 0; v < end.size(); ++v)
-        surface.position[v] = surface.last[v] + share * (end[v] - surface.last[v]);
+      for (std::size_t v = 0; v < surface.end.size(); ++v)
+        surface.position[v] = surface.last[v] + share * (surface.end[v] - surface.last[v]);
       const SurfaceNow now{surface.mesh.triangles, surface.position, surface.velocity};
       soil_.step(now, surface.shear, dt, surface.bearing, surface.contacts, losses_);
       surface.sum.add_substep(surface.contacts, now, dt);
@@ -207,7 +208,7 @@ Outcome ScmGround::advance(std::span<const SurfaceState> targets, double duratio
     surface_impulse_ -= surface.sum.impulse();
     surface.sum.finish(duration, forces[k], contact[k]);
     surface_work_ += contact[k].work;
-    surface.last = end;
+    surface.last = surface.end;
   }
   return {};
 }

@@ -5,10 +5,12 @@ all ranks, in runs that take turns. Writes soil_cost.csv beside this script. Not
 usage: soil_cost.py [--rigs small full] [--tires rigid ring lumped layered] [--rounds 1]
 
 The rig of drawbar_pull_small.json runs for 0.7 s, that of drawbar_pull.json, at full size, for 0.5 s; both engines have the
-step, the tire and the ground's plan of the file. The bed of grains is settled before and not counted. The empirical soil is
-that of drawbar_pull_scm.json: nodes 10 mm apart. `ratio_terrain` and `ratio_all` are grains over empirical soil.
+tire and the ground's plan of the file. The bed of grains is settled before and not counted. The empirical soil is that of
+drawbar_pull_scm.json, with nodes 10 mm apart; it runs with the step of the grains, and with its own, the step of that file,
+with contact tangents where the tire takes them. `ratio_terrain` and `ratio_all` are grains over empirical soil.
 """
 import argparse
+import copy
 import json
 import os
 import pathlib
@@ -23,12 +25,13 @@ import provenance  # noqa: E402
 
 RIGS = {"small": ("drawbar_pull_small.json", 0.7), "full": ("drawbar_pull.json", 0.5)}
 TIRES = {"rigid": {"tire.rigid": True}, "ring": {"tire.file": "hmmwv_ring.json"}, "lumped": {"tire.file": "hmmwv_lumped.json"}, "layered": {}}
-COLUMNS = ("rig", "tire", "round", "step_s", "grains", "nodes", "grains_terrain_cpu_s_per_s", "soil_terrain_cpu_s_per_s", "ratio_terrain",
+SHELLS = ("lumped", "layered")
+COLUMNS = ("rig", "tire", "round", "grains_step_s", "soil_step_s", "grains", "grains_terrain_cpu_s_per_s", "soil_terrain_cpu_s_per_s", "ratio_terrain",
            "grains_all_cpu_s_per_s", "soil_all_cpu_s_per_s", "ratio_all", "grains_wall_s_per_s", "soil_wall_s_per_s")
 
 
 def scenarios(rig, tire):
-    """{engine: scenario}: a rig on its grains, and on the soil of drawbar_pull_scm.json of the same length and width."""
+    """A rig on its grains, and on the soil of drawbar_pull_scm.json of the same length and width with both steps."""
     file, end = RIGS[rig]
     base = json.loads((ROOT / "rigs" / file).read_text())
     base.pop("expected", None)
@@ -38,9 +41,12 @@ def scenarios(rig, tire):
     if "tire.file" in words:  # meshes and pressures of the scenario are those of another tire
         base["tire"] = {"file": words["tire.file"]}
     base["tire"] |= {key.split(".")[1]: value for key, value in words.items()}
-    soil = json.loads((ROOT / "rigs" / "drawbar_pull_scm.json").read_text())["terrain"]
-    soil |= {key: base["terrain"][key] for key in ("length", "width")}
-    return {"grains": base, "soil": base | {"terrain": soil}}
+    scm = json.loads((ROOT / "rigs" / "drawbar_pull_scm.json").read_text())
+    same = base | {"terrain": scm["terrain"] | {key: base["terrain"][key] for key in ("length", "width")}}
+    own = copy.deepcopy(same)
+    own["run"]["step"] = scm["run"]["step"]
+    own["tire"]["contact_tangent"] = tire in SHELLS
+    return base, [same, own]
 
 
 def run(scenario, folder):
@@ -48,7 +54,7 @@ def run(scenario, folder):
     file = folder / "scenario.json"
     file.write_text(json.dumps(scenario), encoding="utf-8")
     subprocess.run([provenance.program(), "run", file, "--out", folder / "run", "--overwrite", "--no-plots"], check=True,
-                   stdout=subprocess.DEVNULL, env={**os.environ, "FURROW_HOME": str(ROOT)})
+                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env={**os.environ, "FURROW_HOME": str(ROOT)})
     return json.loads((folder / "run" / "summary.json").read_text())
 
 
@@ -59,17 +65,18 @@ def costs(summary, end):
     return [seconds / end for seconds in (terrain, sum(rank["cpu_s"] for rank in ranks), summary["wall_s"])]
 
 
-def row(rig, tire, number, folder):
-    made = scenarios(rig, tire)
-    end = made["grains"]["run"]["end"]
-    found = {engine: run(scenario, folder) for engine, scenario in made.items()}
-    grains, soil = (costs(found[engine], end) for engine in ("grains", "soil"))
-    size = {engine: next(rank["size"] for rank in found[engine]["ranks"] if rank["node"].startswith("terrain")) for engine in found}
-    values = (grains[0], soil[0], grains[0] / soil[0], grains[1], soil[1], grains[1] / soil[1], grains[2], soil[2])
-    line = {"rig": rig, "tire": tire, "round": number, "step_s": made["grains"]["run"]["step"], "grains": size["grains"], "nodes": size["soil"]}
-    line |= dict(zip(COLUMNS[6:], (f"{value:.4g}" for value in values)))
-    print(", ".join(f"{key} {value}" for key, value in line.items()), file=sys.stderr, flush=True)
-    return line
+def rows_of(rig, tire, number, folder):
+    on_grains, on_soil = scenarios(rig, tire)
+    end, summary = on_grains["run"]["end"], run(on_grains, folder)
+    grains = costs(summary, end)
+    for scenario in on_soil:
+        soil = costs(run(scenario, folder), end)
+        values = (grains[0], soil[0], grains[0] / soil[0], grains[1], soil[1], grains[1] / soil[1], grains[2], soil[2])
+        line = {"rig": rig, "tire": tire, "round": number, "grains_step_s": on_grains["run"]["step"], "soil_step_s": scenario["run"]["step"],
+                "grains": summary["grains"]}
+        line |= dict(zip(COLUMNS[6:], (f"{value:.4g}" for value in values)))
+        print(", ".join(f"{key} {value}" for key, value in line.items()), file=sys.stderr, flush=True)
+        yield line
 
 
 def main():
@@ -80,8 +87,8 @@ def main():
     arguments = parser.parse_args()
     made = provenance.made_here()
     with tempfile.TemporaryDirectory() as folder:
-        rows = [row(rig, tire, number, pathlib.Path(folder)) for rig in arguments.rigs for tire in arguments.tires
-                for number in range(1, arguments.rounds + 1)]
+        rows = [row for rig in arguments.rigs for tire in arguments.tires for number in range(1, arguments.rounds + 1)
+                for row in rows_of(rig, tire, number, pathlib.Path(folder))]
     provenance.write_table(HERE / "soil_cost.csv", COLUMNS, rows, made)
 
 

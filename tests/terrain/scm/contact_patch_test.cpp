@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace furrow::terrain::scm {
 namespace {
@@ -15,6 +16,13 @@ std::vector<Cell> cells_where(const auto& inside, int half = 120) {
     for (int j = -half; j <= half; ++j)
       if (inside(i, j)) cells.push_back({i, j});
   return cells;
+}
+
+double patch_width(const std::vector<Cell>& cells, double spacing) {
+  PatchFinder finder;
+  finder.find(cells);
+  EXPECT_EQ(finder.count(), 1);
+  return finder.width(0, spacing);
 }
 
 TEST(PatchWidth, of_a_long_plate_is_its_width_and_of_a_square_half_its_side) {
@@ -42,10 +50,15 @@ TEST(Patches, join_neighbours_and_corners_only) {
   std::sort(cells.begin(), cells.end());
   std::vector<int> expected;
   for (const Cell& c : cells) expected.push_back(c[0] <= 2 ? 0 : c[0] <= 6 ? 1 : 2);
-  EXPECT_EQ(patches(cells), expected);
+  PatchFinder finder;
+  finder.find(cells);
+  EXPECT_EQ(finder.patch(), expected);
+  EXPECT_EQ(finder.count(), 3);
+  EXPECT_NEAR(finder.width(1, 0.01), 0.01 * 6.0 / (4.0 + 2.0 * std::sqrt(2.0)), 1e-15);  // two cells at a corner
   // A spiral arm that meets its other end at the very last cell.
   const std::vector<Cell> fork{{0, 0}, {0, 4}, {1, 0}, {1, 4}, {2, 1}, {2, 2}, {2, 3}};
-  EXPECT_EQ(patches(fork), std::vector<int>(7, 0));
+  finder.find(fork);
+  EXPECT_EQ(finder.patch(), std::vector<int>(7, 0));
 }
 
 }  // namespace

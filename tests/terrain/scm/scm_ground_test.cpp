@@ -96,6 +96,52 @@ TEST(ScmGround, a_plate_unloads_and_reloads_along_wongs_line_and_leaves_a_rut) {
   EXPECT_NEAR(tool.sums.force.z() / (kArea * bekker(options, 0.1, 0.025 - 0.5 * speed * dt)), 1.0, 1e-9);
 }
 
+/// The tangents of all vertices: of a rigid surface.
+Mat3 stiffness(const DrivenSurface& tool) {
+  Mat3 sum = Mat3::Zero();
+  for (const ContactTangent& one : tool.forces.tangent) sum += one.stiffness;
+  return sum;
+}
+
+TEST(ScmGround, contact_tangents_are_the_derivative_of_what_an_inclined_plate_meets_on_its_way_back) {
+  ScmOptions options = small_bed();
+  options.contact_tangents = true;
+  const auto ground = make_scm_ground(options);
+  DrivenSurface tool = plate();
+  tool.turn = 0.3;
+  tool.position.z() = 0.2 * std::sin(0.3);
+  tool.attach(*ground, 0.0);
+  const double dt = 1e-3;
+  for (int i = 0; i < 400; ++i) tool.move(*ground, {0.0, 0.0, -0.1}, 0.0, dt);
+  tool.move(*ground, {0.0, 0.0, 1e-3}, 0.0, dt);
+  for (const Vec3& way : {Vec3(1.0, 0.0, 0.0), Vec3(0.0, 0.0, 1.0), Vec3(0.6, 0.0, 0.8)}) {
+    tool.move(*ground, Vec3::Zero(), 0.0, dt);
+    const Vec3 before = tool.sums.force, expected = -1e-7 * stiffness(tool) * way;
+    tool.move(*ground, 1e-4 * way, 0.0, dt);  // 1e-7 m, and no further
+    tool.move(*ground, Vec3::Zero(), 0.0, dt);
+    const Vec3 change = tool.sums.force - before;
+    EXPECT_GT(change.norm(), 0.01);
+    EXPECT_LT((change - expected).norm(), 1e-5 * change.norm()) << way.transpose();
+  }
+}
+
+TEST(ScmGround, the_tangent_of_shear_begins_at_tau_max_over_K_and_ends_at_nothing) {
+  ScmOptions options = small_bed();
+  options.contact_tangents = true;
+  options.janosi_k = 1.5e-3;
+  const auto ground = make_scm_ground(options);
+  DrivenSurface tool = plate();
+  tool.attach(*ground, 10.0);
+  for (int i = 0; i < 100; ++i) tool.move(*ground, {0.0, 0.0, -0.1}, 0.0, 1e-3);
+  tool.move(*ground, Vec3::Zero(), 0.0, 1e-3);
+  const double begin = stiffness(tool)(0, 0);
+  tool.move(*ground, {1e-4, 0.0, 0.0}, 0.0, 1e-3);
+  const double first = -tool.sums.force.x() / 0.5e-7;  // the force is that of the middle
+  EXPECT_NEAR(first / begin, 1.0, 1e-4);
+  for (int i = 0; i < 100; ++i) tool.move(*ground, {0.1, 0.0, 0.0}, 0.0, 1e-3);
+  EXPECT_LT(stiffness(tool)(0, 0), 1e-2 * begin);
+}
+
 TEST(ScmGround, a_plate_that_slides_meets_janosis_curve_under_mohr_coulombs_limit) {
   ScmOptions options = small_bed();
   options.janosi_k = 1.5e-3;  // fully mobilized before the plate's edge reaches other nodes

@@ -68,7 +68,7 @@ Spent step(rigs::RollingTire& rolling, double damper) {
 std::unique_ptr<tire::TireSpec> read_tire(const TireBench& bench) {
   tire::TireOptions options;
   options.file = bench.tire == "default" ? data_folder() / "tire" / "data" / "hmmwv_layered.json"
-                                         : std::filesystem::path(bench.tire);
+                                         : find_file(bench.tire, "--tire", "command line");
   options.pressure.knots = {{0.0, bench.pressure}};
   options.elements_circumference = bench.columns;
   options.elements_width = bench.width;

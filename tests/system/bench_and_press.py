@@ -33,6 +33,9 @@ class Bench(SystemTest):
         self.assertEqual(one["state_hash"], two["state_hash"])
         self.assertEqual(two["threads"], 2)
 
+    def test_a_shipped_tire_by_its_name(self):
+        self.assertEqual(self.bench("--tire", "hmmwv_lumped.json")["layers"], 1)
+
     def test_bad_input(self):
         done = furrow("bench", "tire", "--threads", "0", cwd=self.folder)
         self.assertEqual(done.returncode, 2)

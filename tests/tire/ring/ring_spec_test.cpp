@@ -92,7 +92,7 @@ TEST(RingSpec, wrong_files_are_refused_with_file_and_key) {
 
 TEST(RingSpec, a_scenario_may_change_pressure_friction_segments_and_damping) {
   TireOptions o = options(64);
-  EXPECT_EQ(read_tire(o)->describe().damping_time, 0.005);
+  EXPECT_EQ(read_tire(o)->describe().damping_time, 0.00216);
   o.structural_damping = 0.01;
   o.pressure.knots = {{0.0, 1e5}};
   o.friction = 0.4;

@@ -27,9 +27,9 @@ void add_names(const std::filesystem::path& folder, std::vector<std::string>& na
 std::optional<std::string> meant(const std::string& typed, std::vector<std::string> known) {
   if (typed.size() > kMaxName) return {};
   std::sort(known.begin(), known.end());
-  const std::string whole = typed + ".json";
+  const std::string whole = std::filesystem::path(typed).has_extension() ? typed : typed + ".json";
   if (std::binary_search(known.begin(), known.end(), whole)) return whole;
-  const std::vector<std::string> similar = nearest_words(typed, known);
+  const std::vector<std::string> similar = nearest_words(whole, known);
   return similar.empty() ? std::nullopt : std::optional(similar.front());
 }
 

@@ -6,8 +6,7 @@ usage: soil_cost.py [--rigs small full] [--tires rigid ring lumped layered] [--r
 
 The rig of drawbar_pull_small.json runs for 0.7 s, that of drawbar_pull.json, at full size, for 0.5 s; both engines have the
 tire and the ground's plan of the file. The bed of grains is settled before and not counted. The empirical soil is that of
-drawbar_pull_scm.json, with nodes 10 mm apart; it runs with the step of the grains, and with its own, the step of that file,
-with contact tangents where the tire takes them. `ratio_terrain` and `ratio_all` are grains over empirical soil.
+drawbar_pull_scm.json, with nodes 10 mm apart; it runs with the step of the grains, and with its own, that of that file. `ratio_terrain` and `ratio_all` are grains over empirical soil.
 """
 import argparse
 import copy
@@ -25,7 +24,6 @@ import provenance  # noqa: E402
 
 RIGS = {"small": ("drawbar_pull_small.json", 0.7), "full": ("drawbar_pull.json", 0.5)}
 TIRES = {"rigid": {"tire.rigid": True}, "ring": {"tire.file": "hmmwv_ring.json"}, "lumped": {"tire.file": "hmmwv_lumped.json"}, "layered": {}}
-SHELLS = ("lumped", "layered")
 COLUMNS = ("rig", "tire", "round", "grains_step_s", "soil_step_s", "grains", "grains_terrain_cpu_s_per_s", "soil_terrain_cpu_s_per_s", "ratio_terrain",
            "grains_all_cpu_s_per_s", "soil_all_cpu_s_per_s", "ratio_all", "grains_wall_s_per_s", "soil_wall_s_per_s")
 
@@ -45,7 +43,6 @@ def scenarios(rig, tire):
     same = base | {"terrain": scm["terrain"] | {key: base["terrain"][key] for key in ("length", "width")}}
     own = copy.deepcopy(same)
     own["run"]["step"] = scm["run"]["step"]
-    own["tire"]["contact_tangent"] = tire in SHELLS
     return base, [same, own]
 
 

@@ -33,11 +33,13 @@ const Words& words_of(FileKind kind) {
                        [&](const Words& one) { return one.kind == kind; });
 }
 
+/// It can be a soil, or a scenario that says nothing but its terrain.
 template <class Json>
-bool has_only_keys_of_soils(const Json& document) {
+bool reads_as_soil(const Json& document) {
+  if (!document.is_object() || !document.contains("terrain")) return false;
   for (const auto& [key, value] : document.items())
     if (std::find(std::begin(kOfSoils), std::end(kOfSoils), key) == std::end(kOfSoils)) return false;
-  return document.contains("terrain") && !document["terrain"].empty();
+  return true;
 }
 
 }  // namespace
@@ -47,11 +49,11 @@ std::optional<FileKind> kind_of_file(const Json& document) {
   if (!document.is_object()) return {};
   const auto has = [&](const char* key) { return document.contains(key); };
   if (has("calibrate")) return FileKind::calibration;
-  if (has("scenario")) return FileKind::study;
+  if (has("scenario") && !has("terrain") && !has("tire")) return FileKind::study;
   if (has("chassis") && has("axles")) return FileKind::vehicle;
   if (has("template") || has("Template") || (has("model") && has("contact")) || has("tir"))
     return FileKind::tire;
-  if (has_only_keys_of_soils(document)) return FileKind::soil;
+  if (reads_as_soil(document) && !document["terrain"].empty()) return FileKind::soil;
   if (has("rig") || has("terrain") || has("tire") || has("tires")) return FileKind::scenario;
   return {};
 }
@@ -59,7 +61,8 @@ std::optional<FileKind> kind_of_file(const Json& document) {
 template <class Json>
 void refuse_other_kinds(const Json& document, FileKind expected, const std::string& file) {
   const std::optional<FileKind> kind = kind_of_file(document);
-  if (!kind || *kind == expected || (expected == FileKind::scenario && *kind == FileKind::soil)) return;
+  if (!kind || *kind == expected) return;
+  if ((expected == FileKind::scenario || expected == FileKind::soil) && reads_as_soil(document)) return;
   const Words &is = words_of(*kind), &wanted = words_of(expected);
   throw input_error(file, "", fmt::format("is a {}, expected a {} ({})", is.name, wanted.name, is.use));
 }

@@ -1,4 +1,4 @@
-// What a user's JSON file is, by the keys at its top: a file of another kind is told by its kind, not by a key it lacks.
+// What a user's JSON file is, by the keys at its top: one of another kind is told by its kind, not by a key it lacks.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@ enum class FileKind { scenario, study, calibration, tire, soil, vehicle };
 template <class Json>
 std::optional<FileKind> kind_of_file(const Json& document);
 
-/// A scenario may say no more than a soil does, so that a soil is no wrong scenario.
+/// A scenario may say no more than a soil does: neither is refused as the other then.
 /// @throws Error(bad_input) where the document is of another kind: "is a soil, expected a tire (…)"
 template <class Json>
 void refuse_other_kinds(const Json& document, FileKind expected, const std::string& file);

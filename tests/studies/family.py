@@ -60,7 +60,7 @@ def table(file):
 
 
 def tire_words(tire):
-    return ["--set", f"tire.file={TIRES[tire]}", *(MESH if tire == "shell" else [])]
+    return ["--set", f"tire.file={TIRES[tire]}", *(MESH if tire == "shell" else ["--set", "tire.contact_tangent=false"])]
 
 
 def press(folder, obstacle, tire):

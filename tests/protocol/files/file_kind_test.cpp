@@ -53,6 +53,7 @@ TEST(FileKind, only_what_is_certainly_of_another_kind_is_refused) {
   EXPECT_EQ(refused(soil, FileKind::scenario), "");  // one that leaves all else as it is
   EXPECT_EQ(refused(json::parse(R"({"terrain": {}})"), FileKind::study),
             "x.json: is a scenario, expected a study ('furrow run' takes scenarios)");
+  EXPECT_EQ(refused(json::parse(R"({"terrain": {}})"), FileKind::soil), "");
   EXPECT_EQ(refused(json::object(), FileKind::vehicle), "");
   EXPECT_EQ(refused(json::array(), FileKind::vehicle), "");
   EXPECT_EQ(refused(json::parse(R"({"format_version": 1})"), FileKind::tire), "");

@@ -267,7 +267,8 @@ class Run:
             what.append(self.rig["vehicle"].removesuffix(".json"))
         if "terrain_engine" in self.summary:
             engine = self.summary["terrain_engine"]
-            what.append(f"{engine}, {self.summary.get('law', '?')}" if engine != "rigid" else "rigid ground")
+            law = self.summary.get("law")  # of grains
+            what.append({"rigid": "rigid ground", "scm": "empirical soil"}.get(engine, f"{engine}, {law}" if law else engine))
         if self.number("slip") is not None:
             what.append(f"slip {self.number('slip'):g}")
         if self.number("vertical_load_N") is not None and not self.has_vehicle:

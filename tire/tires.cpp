@@ -101,7 +101,8 @@ std::shared_ptr<const TireSpec> read_tire(const json& section, const ReadContext
   if (!options.contact_tangent) return spec;
   if (const TireDescription tire = spec->describe(); !tire.takes_tangents)
     throw input_error(context.file, context.key("contact_tangent"),
-                      fmt::format("is true, expected false for a {} tire", tire.name));
+                      fmt::format("is true, expected false for a {}{}", tire.name,
+                                  tire.name.ends_with("tire") ? "" : " tire"));
   return spec;
 }
 

@@ -13,6 +13,7 @@
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_text.hpp"
 #include "protocol/host.hpp"
+#include "terrain/bears_tires.hpp"
 #include "terrain/stated_contacts.hpp"
 #include "tire/capabilities.hpp"
 
@@ -135,7 +136,7 @@ void Checks::tires() {
       warn("run.step",
            fmt::format("{} s is more than {:g} of the tire's damping time of {} s: contact forces come one "
                        "step late and can feed the tire; expected at most {} s{}",
-                       number_text(s_.run.step), share, number_text(tau), number_text(0.5 * share * tau),
+                       number_text(s_.run.step), share, number_text(tau), number_text(short_decimal(share * tau)),
                        tires_[k].takes_tangents && !s_.tires[k]->options().contact_tangent
                            ? ", or tire.contact_tangent"
                            : ""));
@@ -179,6 +180,8 @@ void Checks::require_level_ground(std::size_t wheel, const std::string& why) {
 }
 
 void Checks::room() {
+  if (const auto* ground = dynamic_cast<const terrain::BearsTires*>(s_.terrain.get()))
+    for (const tire::TireDescription& tire : tires_) ground->check_tire_width(tire.width);
   if (!terrain_.bounds) return;
   const rigs::RigDescription rig = describe();
   for (std::size_t k = 0; k < tires_.size(); ++k) {

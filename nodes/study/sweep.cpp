@@ -124,7 +124,7 @@ void Sweep::load(Run& run) {
   all.update(run.passes_on);
   try {
     const scenario::Scenario scenario = scenario::load_scenario(study_.scenario, settings_of(all));
-    if (study_.passes > 1) (void)scenario.grains("passes need grains, which keep a rut");
+    if (study_.passes > 1) (void)scenario.grains("passes hand over a bed of grains");
     if (study_.passes > 1 && !scenario.checkpoint.at_end)
       throw input_error(study_.scenario.string(), "checkpoint.at_end",
                         "is false, expected true: the next pass begins on the checkpoint at the end");

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t kMaxPath = 4095;  // bytes: PATH_MAX
 constexpr std::size_t kMaxName = 255;   // bytes: NAME_MAX
+constexpr const char* kFolders[] = {"rigs", "tire/data", "terrain/data", "vehicle/data"};
 
 /// Names of the JSON files in a folder; none where it cannot be read.
 void add_names(const std::filesystem::path& folder, std::vector<std::string>& names) {
@@ -57,6 +58,9 @@ std::filesystem::path named_file(const std::filesystem::path& name, const std::v
     if (std::filesystem::is_regular_file(place / name, error)) return place / name;
     add_names(place, known);
   }
+  for (const char* folder : kFolders)  // of another kind, which its reader says
+    if (std::filesystem::is_regular_file(data_folder() / folder / name, error))
+      return data_folder() / folder / name;
   const std::optional<std::string> other = meant(name.string(), std::move(known));
   if (!other) return name;
   throw input_error(name.string(), "", "does not exist, expected '" + *other + "'?");
@@ -73,8 +77,8 @@ std::filesystem::path find_file(const std::string& name, const std::string& key,
     places = {given};
   } else {
     const std::filesystem::path data = data_folder();
-    places = {scenario.parent_path() / given, data / "rigs" / given, data / "tire" / "data" / given,
-              data / "terrain" / "data" / given, data / "vehicle" / "data" / given};
+    places = {scenario.parent_path() / given};
+    for (const char* folder : kFolders) places.push_back(data / folder / given);
   }
   std::error_code error;
   for (const auto& place : places)
@@ -95,7 +99,10 @@ std::filesystem::path find_file(const std::string& name, const std::string& key,
   const std::optional<std::string> other = meant(name, std::move(known));
   throw input_error(scenario.string(), key,
                     "'" + name + "' does not exist, expected a file at one of: " + list +
-                        (other ? "; did you mean '" + *other + "'?" : ""));
+                        (std::filesystem::exists(given, error)
+                             ? "; that in the current folder is not looked at: expected its whole path"
+                         : other ? "; did you mean '" + *other + "'?"
+                                 : ""));
 }
 
 }  // namespace furrow

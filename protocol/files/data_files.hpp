@@ -12,7 +12,8 @@ namespace furrow {
 std::filesystem::path data_folder();
 
 /// The file that an argument names: `name` as it is, or the file of that name in one of these folders of the data
-/// folder, such as "rigs". A file that does not exist is returned as it is.
+/// folder, such as "rigs"; or in another, whose reader then says what it is. A file that does not exist is returned as
+/// it is.
 /// @throws Error(bad_input) where there is no such file, but one of a similar name in these folders
 std::filesystem::path named_file(const std::filesystem::path& name, const std::vector<std::string>& folders);
 

@@ -20,6 +20,8 @@ namespace {
 // How deep a surface may be in the ground when it is attached, m: static contact, not a misplaced tire.
 constexpr double kMaxStartDepth = 5e-3;
 constexpr double kMostNodes = 1e8;
+constexpr double kLeastAcross =
+    4.0;  // nodes under the width of a surface: fewer give a fifth of error and more
 constexpr double kDegree = std::numbers::pi / 180.0;  // rad
 
 /// One attached surface and the buffers of its substeps.
@@ -294,6 +296,21 @@ void require(const ScmOptions& options, const char* key, double value, bool want
 }
 
 }  // namespace
+
+void check_scm_width(const ScmOptions& o, double width) {
+  if (o.grid_spacing > width / kLeastAcross)
+    throw input_error(
+        o.scenario, "terrain.grid_spacing",
+        fmt::format("is {:g} m, expected at most {:.3g} m, a quarter of the tire's width (a tenth is good)",
+                    o.grid_spacing, width / kLeastAcross));
+  const double least = -o.bekker_k_phi * width;
+  if (o.patch_width < 0.0 && o.bekker_k_c <= least)
+    throw input_error(
+        o.scenario, "terrain.bekker_k_c",
+        fmt::format("is {:g}, expected above {:.3g}: k_c/b + k_phi has to be above 0 for a b of the tire's "
+                    "width, {:.3g} m",
+                    o.bekker_k_c, least, width));
+}
 
 void check_scm_options(const ScmOptions& o) {
   const auto positive = [&](const char* key, double value) {

@@ -32,6 +32,10 @@ std::unique_ptr<Terrain> make_scm_ground(const ScmOptions& options);
 /// @throws Error(bad_input) likewise
 void check_scm_options(const ScmOptions& options);
 
+/// @param width of a surface that the ground has to bear, m
+/// @throws Error(bad_input) where the grid is too coarse for it, or the soil bears nothing of its width
+void check_scm_width(const ScmOptions& options, double width);
+
 /// Nodes of the grid. @pre check_scm_options found nothing wrong
 std::int64_t scm_nodes(const ScmOptions& options);
 

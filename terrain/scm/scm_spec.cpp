@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "protocol/files/json_fields.hpp"
+#include "terrain/bears_tires.hpp"
 #include "terrain/scm/scm_ground.hpp"
 
 namespace furrow::terrain::scm {
@@ -11,7 +12,7 @@ namespace {
 
 constexpr double kFrameBytes = 20.0;  // of each node: position, speed, radius in single precision
 
-class ScmSpec final : public TerrainSpec {
+class ScmSpec final : public TerrainSpec, public BearsTires {
  public:
   explicit ScmSpec(ScmOptions options) : options_(std::move(options)) {}
 
@@ -35,6 +36,7 @@ class ScmSpec final : public TerrainSpec {
     e.checkpoint_bytes = kSavedPerNode * nodes;
     return e;
   }
+  void check_tire_width(double width) const override { check_scm_width(options_, width); }
   std::unique_ptr<Terrain> make(const TerrainContext& context) const override {
     ScmOptions options = options_;
     static_cast<TerrainContext&>(options) = context;

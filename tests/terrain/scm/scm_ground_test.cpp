@@ -233,6 +233,32 @@ TEST(ScmGround, says_what_is_wrong_with_its_options) {
   EXPECT_NE(told([](ScmOptions& o) { o.rebound_damping = NAN; }).find("rebound_damping"), std::string::npos);
 }
 
+TEST(ScmGround, refuses_a_grid_too_coarse_for_a_surface_and_a_soil_that_cannot_bear_one_of_its_width) {
+  const auto refused = [](const ScmOptions& options) -> std::string {
+    try {
+      check_scm_width(options, 0.1);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  ScmOptions options = small_bed();
+  options.grid_spacing = 0.025;
+  EXPECT_EQ(refused(options), "");
+  options.grid_spacing = 0.03;
+  EXPECT_EQ(refused(options),
+            "scenario: key 'terrain.grid_spacing': is 0.03 m, expected at most 0.025 m, a quarter of the tire's width (a "
+            "tenth is good)");
+  options.grid_spacing = 0.01;
+  options.bekker_k_phi = 291e3;
+  options.bekker_k_c = -29e3;
+  EXPECT_EQ(refused(options), "");
+  options.bekker_k_c = -30e3;
+  EXPECT_EQ(refused(options),
+            "scenario: key 'terrain.bekker_k_c': is -30000, expected above -2.91e+04: k_c/b + k_phi has to be above 0 for "
+            "a b of the tire's width, 0.1 m");
+}
+
 TEST(ScmGround, stops_when_a_tire_leaves_it_and_refuses_one_that_starts_in_it) {
   const auto ground = make_scm_ground(small_bed());
   DrivenSurface tool = plate();

@@ -45,9 +45,8 @@ vehicle::StandingTire standing(const tire::TireSpec& tire, double load, const Pr
 }  // namespace
 
 std::filesystem::path find_vehicle(const std::string& name) {
-  std::filesystem::path file = candidate(name);
+  const std::filesystem::path file = named_file(name, {"vehicle/data"});
   std::error_code error;
-  if (!std::filesystem::exists(file, error)) file = named_file(name, {"vehicle/data"});
   if (!std::filesystem::exists(file, error))
     throw input_error("command line", "VEHICLE",
                       fmt::format("'{}' does not exist, expected a file at that place or in {}", name,

@@ -6,7 +6,8 @@ usage: soil_cost.py [--rigs small full] [--tires rigid ring lumped layered] [--r
 
 The rig of drawbar_pull_small.json runs for 0.7 s, that of drawbar_pull.json, at full size, for 0.5 s; both engines have the
 tire and the ground's plan of the file. The bed of grains is settled before and not counted. The empirical soil is that of
-drawbar_pull_scm.json, with nodes 10 mm apart; it runs with the step of the grains, and with its own, that of that file. `ratio_terrain` and `ratio_all` are grains over empirical soil.
+drawbar_pull_scm.json, with nodes 10 mm apart; it runs with the step of the grains, and with its own, that of that file.
+`ratio_terrain` and `ratio_all` are grains over empirical soil.
 """
 import argparse
 import copy
@@ -23,7 +24,7 @@ sys.path.insert(0, str(ROOT / "tests" / "studies"))
 import provenance  # noqa: E402
 
 RIGS = {"small": ("drawbar_pull_small.json", 0.7), "full": ("drawbar_pull.json", 0.5)}
-TIRES = {"rigid": {"tire.rigid": True}, "ring": {"tire.file": "hmmwv_ring.json"}, "lumped": {"tire.file": "hmmwv_lumped.json"}, "layered": {}}
+TIRES = {"rigid": {"rigid": True}, "ring": {"file": "hmmwv_ring.json"}, "lumped": {"file": "hmmwv_lumped.json"}, "layered": {}}
 COLUMNS = ("rig", "tire", "round", "grains_step_s", "soil_step_s", "grains", "grains_terrain_cpu_s_per_s", "soil_terrain_cpu_s_per_s", "ratio_terrain",
            "grains_all_cpu_s_per_s", "soil_all_cpu_s_per_s", "ratio_all", "grains_wall_s_per_s", "soil_wall_s_per_s")
 
@@ -35,10 +36,8 @@ def scenarios(rig, tire):
     base.pop("expected", None)
     base["output"] = {"frame_interval": 0}
     base["run"] |= {"end": end, "average_from": end - 0.2}
-    words = TIRES[tire]
-    if "tire.file" in words:  # meshes and pressures of the scenario are those of another tire
-        base["tire"] = {"file": words["tire.file"]}
-    base["tire"] |= {key.split(".")[1]: value for key, value in words.items()}
+    # Mesh and pressure of the scenario are those of its own tire.
+    base["tire"] = TIRES[tire] if "file" in TIRES[tire] else base["tire"] | TIRES[tire]
     scm = json.loads((ROOT / "rigs" / "drawbar_pull_scm.json").read_text())
     same = base | {"terrain": scm["terrain"] | {key: base["terrain"][key] for key in ("length", "width")}}
     own = copy.deepcopy(same)

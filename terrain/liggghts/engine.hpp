@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory_resource>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -26,7 +27,7 @@
 namespace furrow::terrain::liggghts {
 
 /// Changes with this header: a library made for another number is refused.
-inline constexpr int kEngineVersion = 2;
+inline constexpr int kEngineVersion = 3;
 /// What the library offers: kMakeEngine makes an engine, kEngineVersionOf tells kEngineVersion.
 inline constexpr char kMakeEngine[] = "furrow_make_engine";
 inline constexpr char kEngineVersionOf[] = "furrow_engine_version";
@@ -39,6 +40,7 @@ struct Carried {
   double root_overlap = 0.0;           // √δ of the step before, √m; 0: apart
   std::array<double, 3> rolling{};     // spring torque, N m
 };
+using CarriedList = std::pmr::vector<Carried>;
 inline constexpr int kMostCarried = 64;  // by one grain
 
 /// The grains that a rank owns now, in the engine's order. Pointers hold until the next step.
@@ -49,9 +51,9 @@ struct OwnGrains {
   const double (*spin)[3] = nullptr;      // rad/s
   const double* radius = nullptr;         // m
   const int* id = nullptr;
-  double (*force)[3] = nullptr;             // N, to be added to
-  double (*torque)[3] = nullptr;            // N m
-  std::vector<Carried>* carried = nullptr;  // of each grain
+  double (*force)[3] = nullptr;    // N, to be added to
+  double (*torque)[3] = nullptr;   // N m
+  CarriedList* carried = nullptr;  // of each grain
 };
 
 /// Sums over the pairs of grains that a rank evaluated in one step. A pair whose other grain belongs to another rank is

@@ -224,7 +224,7 @@ class LiggghtsTerrain final : public Terrain {
     const OwnGrains own = engine_->own();
     for (int g = 0; g < own.count; ++g)
       if (const auto found = carried.find(own.id[g] - 1); found != carried.end())
-        own.carried[g] = found->second;
+        own.carried[g].assign(found->second.begin(), found->second.end());
     std::int64_t all = own.count;
     if (group()) {
       const auto counts = gather_on_all<std::int64_t>(*group(), std::span<const std::int64_t>(&all, 1));

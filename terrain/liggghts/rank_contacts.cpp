@@ -21,7 +21,8 @@ namespace {
 constexpr double kRoom =
     10.0;                     // around a rank's grains for what they may move in one interval, largest radii
 constexpr double kFar = 1e6;  // farther than any wall, m; as in Bin::holds
-constexpr double kTireRoom = 3.0;  // around a tire within which grains are looked for, skins
+constexpr std::size_t kAhead = 10;  // grains for which memory is asked before they are looked at
+constexpr double kTireRoom = 3.0;   // around a tire within which grains are looked for, skins
 
 using dem::ContactForce;
 using dem::ContactHistory;
@@ -42,6 +43,22 @@ ContactHistory<double> history_of(const Carried& c) {
 bool inside(const SurfaceBox& box, const double* x) {
   return x[0] > box.lo.x() && x[0] < box.hi.x() && x[1] > box.lo.y() && x[1] < box.hi.y() &&
          x[2] > box.lo.z() && x[2] < box.hi.z();
+}
+
+/// Few grains touch walls, and they lie far from each other in memory: waiting for it is most of what they cost.
+void fetch(const OwnGrains& grains, int g) {
+  __builtin_prefetch(grains.carried + g);
+  __builtin_prefetch(grains.position[g]);
+  __builtin_prefetch(grains.velocity[g]);
+  __builtin_prefetch(grains.spin[g]);
+  __builtin_prefetch(grains.force[g], 1);
+  __builtin_prefetch(grains.torque[g], 1);
+}
+void fetch_histories(const OwnGrains& grains, int g) {
+  const CarriedList& carried = grains.carried[g];
+  if (carried.empty()) return;
+  const auto* const at = reinterpret_cast<const char*>(carried.data());
+  for (std::size_t line = 0; line < sizeof(Carried); line += 64) __builtin_prefetch(at + line, 1);
 }
 
 Carried carried_of(int partner, const Triple<double>& normal, const ContactHistory<double>& h) {
@@ -149,9 +166,13 @@ void RankContacts::add_forces_of(const OwnGrains& grains, bool losses) {
   const SurfaceBox apart = apart_from_walls(params_.largest_radius());
   const bool by_lanes = !losses && !params_.sizes();
   if (!looked_far_enough()) look_for_touchable(grains);
-  for (const int g : touchable_) {
+  const std::size_t touchable = touchable_.size();
+  for (std::size_t n = 0; n < touchable; ++n) {
+    const int g = touchable_[n];
+    if (n + 2 * kAhead < touchable) fetch(grains, touchable_[n + 2 * kAhead]);
+    if (n + kAhead < touchable) fetch_histories(grains, touchable_[n + kAhead]);
     const double* const x = grains.position[g];
-    std::vector<Carried>& mine = grains.carried[g];
+    CarriedList& mine = grains.carried[g];
     const bool wall = !inside(apart, x);
     bool tire = false;
     for (const Tire& t : tires_) tire |= inside(t.near, x);
@@ -253,7 +274,7 @@ void RankContacts::wait_for_walls(const OwnGrains& grains, int g) {
   const double* const x = grains.position[g];
   std::array<double, dem::kWalls> distance;
   const unsigned touched = walls_touched(params_.bin, {x[0], x[1], x[2], grains.radius[g]}, distance);
-  std::vector<Carried>& mine = grains.carried[g];
+  CarriedList& mine = grains.carried[g];
   keep_touched(mine, touched);
   for (std::size_t entry = 0; entry < mine.size(); ++entry) {
     const int wall = static_cast<int>(mine[entry].partner);

@@ -35,7 +35,7 @@ inline unsigned walls_touched(const dem::Bin& bin, const dem::Quad& at,
 }
 
 /// Leaves a grain the histories of the walls that it touches, and gives it those that it lacks.
-inline void keep_touched(std::vector<Carried>& carried, unsigned touched) {
+inline void keep_touched(CarriedList& carried, unsigned touched) {
   unsigned known = 0;
   bool others = false;
   for (const Carried& c : carried)

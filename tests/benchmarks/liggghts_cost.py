@@ -89,23 +89,27 @@ PARTS = [("pairs", r"PairFurrow::evaluate"),
           r"share_reports|kernel|vdso|pthread_mutex")]
 ENGINE = ("pairs", "lists", "motion", "border_grains")  # what `one run N` does
 COLUMNS = ["part", "ranks", "grains", "steps", "rounds", "us_per_step", "lowest", "highest", "cpu_us_per_step", "ns_per_grain_step", "over_pairs",
-           "grains_least", "grains_most", "ghosts_most", "bytes_per_step", "list_builds"]
+           "grains_least", "grains_most", "ghosts_most", "bytes_per_step", "list_builds", "contacts"]
 
 
 def mpirun(ranks, *words):
-    # One rank per core; more ranks than cores share them politely.
+    """The command line: one rank per core; more ranks than cores share them politely."""
     bound = ["--bind-to", "core"] if ranks <= (os.cpu_count() or 1) else ["--bind-to", "none", "--mca", "mpi_yield_when_idle", "1"]
+    return ["mpirun", "--oversubscribe", *bound, "-np", str(ranks), *words]
+
+
+def printed(command):
+    done = subprocess.run(command, env=ENVIRONMENT, capture_output=True, text=True)
     # Open MPI 4.1's mpirun at times dies of a signal on its way out: what was printed counts.
-    done = subprocess.run(["mpirun", "--oversubscribe", *bound, "-np", str(ranks), *words], env=ENVIRONMENT,
-                          capture_output=True, text=True)
     if done.returncode not in (0, 134):
-        sys.exit(f"{words[0]} ended with {done.returncode}: {done.stderr[-500:]}")
+        sys.exit(f"{' '.join(command)} ended with {done.returncode}: {done.stderr[-500:]}")
     return done.stdout
 
 
-def parts(ranks, steps):
+def bench_command(ranks, start, steps, rounds):
+    """bench_liggghts from a scenario or a run."""
     program = pathlib.Path(provenance.program()).parent / "bench_liggghts"
-    return list(csv.DictReader(io.StringIO(mpirun(ranks, str(program), RIG, str(steps), "1"))))
+    return mpirun(ranks, str(program), str(start), str(steps), str(rounds))
 
 
 def whole_run(ranks, out, rigid=False, before=()):
@@ -153,7 +157,7 @@ def write_data(frame, file):
 def stock(ranks, steps, folder):
     deck, log = folder / "deck.in", folder / "deck.log"
     deck.write_text(STOCK.format(ranks=ranks, data=folder / "bed.data", step=STEP, steps=steps), encoding="utf-8")
-    mpirun(ranks, "liggghts", "-in", str(deck), "-log", str(log), "-screen", "none")
+    printed(mpirun(ranks, "liggghts", "-in", str(deck), "-log", str(log), "-screen", "none"))
     seconds, done, _ = re.findall(r"Loop time of (\S+) on \d+ procs for (\d+) steps with (\d+) atoms", log.read_text())[-1]
     builds = re.findall(r"Neighbor list builds = (\d+)", log.read_text())[-1]
     return {"us_per_step": 1e6 * float(seconds) / int(done), "list_builds": builds}
@@ -187,7 +191,7 @@ def main():
             found = {}
             rounds = arguments.rounds if ranks in arguments.timed else 1
             for _ in range(rounds):
-                for row in parts(ranks, arguments.steps):
+                for row in csv.DictReader(io.StringIO(printed(bench_command(ranks, RIG, arguments.steps, 1)))):
                     found.setdefault(row["part"], []).append(row)
                 if ranks not in arguments.timed:
                     continue

@@ -221,7 +221,7 @@ void FixFurrow::copy_arrays(int from, int to, int) {
 }
 
 int FixFurrow::pack_exchange(int i, double* buffer) {
-  const std::vector<Carried>& mine = carried_[i];
+  const CarriedList& mine = carried_[i];
   const std::vector<PairOf>& pairs = pairs_[i];
   if (mine.size() > kMostCarried) error->one(FLERR, "a grain touches more surfaces than it can carry along");
   if (pairs.size() > kMostPairs) error->one(FLERR, "a grain touches more grains than it can carry along");

@@ -17,6 +17,7 @@
 #pragma once
 
 #include <array>
+#include <memory_resource>
 #include <vector>
 
 #include <mpi.h>
@@ -84,8 +85,9 @@ class FixFurrow final : public LAMMPS_NS::Fix {
   double way_ = 0.0;      // that no own grain has exceeded since the lists were made, m
   double fastest_ = 0.0;  // own grain, m/s
   MPI_Request asking_ = MPI_REQUEST_NULL;
-  int asks_ = 0, any_asks_ = 0;  // for an exchange: this rank, any rank
-  std::vector<std::vector<Carried>> carried_;
+  int asks_ = 0, any_asks_ = 0;                  // for an exchange: this rank, any rank
+  std::pmr::unsynchronized_pool_resource pool_;  // keeps what is carried together: few grains carry anything
+  std::pmr::vector<CarriedList> carried_{&pool_};
   std::vector<std::vector<PairOf>> pairs_;                 // while there are no lists
   std::vector<std::array<double, 3>> listed_, exchanged_;  // m
 };

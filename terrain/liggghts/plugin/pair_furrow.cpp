@@ -13,6 +13,9 @@ using dem::ContactForce;
 using dem::ContactHistory;
 using dem::ContactMotion;
 
+constexpr int kAhead =
+    8;  // pairs for whose grains memory is asked before they are looked at: waiting for it was a quarter
+
 Triple<double> triple(const double* v) { return {v[0], v[1], v[2]}; }
 Triple<double> triple(const dem::Quad& q) { return {q.x, q.y, q.z}; }
 void add(double* to, const Triple<double>& v) { to[0] += v.x, to[1] += v.y, to[2] += v.z; }
@@ -75,7 +78,7 @@ void PairFurrow::evaluate() {
   std::uint8_t* const touching = lists_.touching();
   dem::Quad* const tangential = lists_.tangential();
   dem::Quad* const rolling = lists_.rolling();
-  const int rows = lists_.rows();
+  const int rows = lists_.rows(), last = rows > 0 ? lists_.end(rows - 1) : 0;
   for (int row = 0; row < rows; ++row) {
     const int i = lists_.grain(row), end = lists_.end(row);
     const Triple<double> x_i = triple(x[i]), v_i = triple(v[i]), w_i = triple(w[i]);
@@ -83,6 +86,14 @@ void PairFurrow::evaluate() {
     Triple<double> force{0, 0, 0}, torque{0, 0, 0};
     for (int e = lists_.begin(row); e < end; ++e) {
       const int j = partner[e];
+      if (e + kAhead < last) {
+        const int next = partner[e + kAhead];
+        __builtin_prefetch(x[next]);
+        __builtin_prefetch(v[next]);
+        __builtin_prefetch(w[next]);
+        __builtin_prefetch(f[next], 1);
+        __builtin_prefetch(t[next], 1);
+      }
       const Triple<double> d = x_i - triple(x[j]);
       const double sum = r_i + radius[j], gap = sum * sum - dot(d, d);
       if (!(gap > 0.0)) {

@@ -151,12 +151,17 @@ def main():
         of = (calibrate.Calibration if of_calibration else soil.Soil if of_soil else sweep.Sweep if of_sweep else press.Press if of_press
               else modes.Modes if of_modes else kinematics.Kinematics if of_kinematics else Run)
         run = of(arguments.directory)
-        out.mkdir(parents=True, exist_ok=True)
     except (OSError, ValueError) as error:
         print(f"furrow: error: {arguments.directory}: {printable(error)}", file=sys.stderr)
         return 5
     except (AttributeError, LookupError, TypeError, csv.Error) as error:
         print(f"furrow: error: {arguments.directory}: a file in it is damaged: {printable(repr(error))}", file=sys.stderr)
+        return 5
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        what = "is a file, expected a folder" if out.is_file() else f"cannot be made: {error.strerror}"
+        print(f"furrow: error: {printable(out)}: {what}", file=sys.stderr)
         return 5
     written = []
     of_beds = of_sweep and run.values.get("beds")

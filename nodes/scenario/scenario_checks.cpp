@@ -136,7 +136,8 @@ void Checks::tires() {
       warn("run.step",
            fmt::format("{} s is more than {:g} of the tire's damping time of {} s: contact forces come one "
                        "step late and can feed the tire; expected at most {} s{}",
-                       number_text(s_.run.step), share, number_text(tau), number_text(short_decimal(share * tau)),
+                       number_text(s_.run.step), share, number_text(tau),
+                       number_text(short_decimal(share * tau)),
                        tires_[k].takes_tangents && !s_.tires[k]->options().contact_tangent
                            ? ", or tire.contact_tangent"
                            : ""));
@@ -205,6 +206,12 @@ void Checks::room() {
 }
 
 void Checks::ranks() {
+  if (!s_.terrain->grains()) {
+    if (s_.run.threads > 1)
+      warn("run.threads",
+           fmt::format("is {}: engine '{}' takes one thread", s_.run.threads, terrain_.engine));
+    s_.run.threads = 1;
+  }
   if (terrain_.core_per_rank) {
     if (s_.run.threads > 1)
       warn("run.threads",

@@ -62,7 +62,9 @@ template <class Json>
 void refuse_other_kinds(const Json& document, FileKind expected, const std::string& file) {
   const std::optional<FileKind> kind = kind_of_file(document);
   if (!kind || *kind == expected) return;
-  if ((expected == FileKind::scenario || expected == FileKind::soil) && reads_as_soil(document)) return;
+  const bool could_be =
+      expected == FileKind::soil || (expected == FileKind::scenario && !document.contains("measured"));
+  if (could_be && reads_as_soil(document)) return;
   const Words &is = words_of(*kind), &wanted = words_of(expected);
   throw input_error(file, "", fmt::format("is a {}, expected a {} ({})", is.name, wanted.name, is.use));
 }

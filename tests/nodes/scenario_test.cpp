@@ -196,6 +196,15 @@ TEST(Scenario, expected_result_is_void_once_the_physics_is_changed) {
   EXPECT_FALSE(file.load({{"rig.slip", "0.2"}}).expected.given);
 }
 
+TEST(Scenario, only_grains_take_threads) {
+  const testing::ScenarioFile file(R"({"tire": {"file": "hmmwv_layered.json"}, "terrain": {}})");
+  EXPECT_EQ(file.load({{"run.threads", "3"}}).run.threads, 3);
+  for (const std::string engine : {"scm", "rigid"})
+    EXPECT_EQ(file.load({{"run.threads", "3"}, {"run.step", "1e-4"}, {"terrain.engine", engine}}).run.threads,
+              1)
+        << engine;
+}
+
 TEST(Scenario, soil_file_gives_values_that_the_scenario_may_replace) {
   const testing::ScenarioFile soil(
       R"({"format_version": 1, "terrain": {"friction": 0.4, "size_spread": 0.2}})");
@@ -298,16 +307,21 @@ TEST(Scenario, magnitudes_of_another_unit_are_warned_of) {
 
 TEST(Scenario, times_that_are_no_whole_steps_are_told) {
   const testing::ScenarioFile file(testing::kSmallest);
-  const auto warnings = [&](const char* key, const char* value) { return file.load({{key, value}}).warnings; };
+  const auto warnings = [&](const char* key, const char* value) {
+    return file.load({{key, value}}).warnings;
+  };
   const auto only = [&](const char* key, const char* value, const std::string& expected) {
     const auto told = warnings(key, value);
     ASSERT_EQ(told.size(), 1U) << key;
     EXPECT_NE(told[0].find(std::string("key '") + key + "': " + expected), std::string::npos) << told[0];
   };
-  only("output.series_interval", "3.3e-4", "is 0.00033 s, not a whole number of steps of 4e-5 s: 0.00032 s is used");
+  only("output.series_interval", "3.3e-4",
+       "is 0.00033 s, not a whole number of steps of 4e-5 s: 0.00032 s is used");
   only("output.series_interval", "1e-9", "is 1e-9 s, not a whole number of steps of 4e-5 s: 4e-5 s is used");
-  only("output.frame_interval", "0.03001", "is 0.03001 s, not a whole number of steps of 4e-5 s: 0.03 s is used");
-  only("checkpoint.interval", "0.10001", "is 0.10001 s, not a whole number of steps of 4e-5 s: 0.1 s is used");
+  only("output.frame_interval", "0.03001",
+       "is 0.03001 s, not a whole number of steps of 4e-5 s: 0.03 s is used");
+  only("checkpoint.interval", "0.10001",
+       "is 0.10001 s, not a whole number of steps of 4e-5 s: 0.1 s is used");
   only("run.end", "1.50003", "is 1.50003 s, not a whole number of steps of 4e-5 s: 1.50004 s is used");
   EXPECT_TRUE(warnings("output.series_interval", "0.0012").empty());
   EXPECT_TRUE(warnings("output.frame_interval", "0").empty());
@@ -316,7 +330,9 @@ TEST(Scenario, times_that_are_no_whole_steps_are_told) {
 
 TEST(Scenario, disk_is_estimated_with_at_most_one_frame_and_one_line_per_step) {
   const testing::ScenarioFile file(testing::kSmallest);
-  const auto disk = [&](const char* key, const char* value) { return scenario::estimate(file.load({{key, value}})).disk; };
+  const auto disk = [&](const char* key, const char* value) {
+    return scenario::estimate(file.load({{key, value}})).disk;
+  };
   for (const char* key : {"output.frame_interval", "output.series_interval"}) {
     EXPECT_EQ(disk(key, "1e-12"), disk(key, "4e-5")) << key;
     EXPECT_GT(disk(key, "4e-5"), disk(key, "8e-5")) << key;
@@ -324,18 +340,21 @@ TEST(Scenario, disk_is_estimated_with_at_most_one_frame_and_one_line_per_step) {
 }
 
 TEST(Scenario, a_tire_that_damps_nothing_is_warned_of_with_a_damping_that_would_do) {
-  const auto warnings = testing::ScenarioFile(testing::kSmallest).load({{"tire.structural_damping", "0"}}).warnings;
+  const auto warnings =
+      testing::ScenarioFile(testing::kSmallest).load({{"tire.structural_damping", "0"}}).warnings;
   ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_NE(warnings[0].find("key 'tire.structural_damping': is 0 s: contact forces come one step late"), std::string::npos)
+  EXPECT_NE(warnings[0].find("key 'tire.structural_damping': is 0 s: contact forces come one step late"),
+            std::string::npos)
       << warnings[0];
-  EXPECT_NE(warnings[0].find("expected at least 0.002 s for a run.step of 4e-5 s"), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[0].find("expected at least 0.002 s for a run.step of 4e-5 s"), std::string::npos)
+      << warnings[0];
 }
 
 TEST(Scenario, wheels_that_share_a_tire_warn_of_it_once) {
-  const auto warnings =
-      testing::ScenarioFile(testing::kSmallest)
-          .load({{"rig.wheels", R"([{"start": 1}, {"start": 3}, {"start": 5}])"}, {"tire.structural_damping", "1e-4"}})
-          .warnings;
+  const auto warnings = testing::ScenarioFile(testing::kSmallest)
+                            .load({{"rig.wheels", R"([{"start": 1}, {"start": 3}, {"start": 5}])"},
+                                   {"tire.structural_damping", "1e-4"}})
+                            .warnings;
   ASSERT_EQ(warnings.size(), 1U);
 }
 
@@ -351,16 +370,20 @@ TEST(Scenario, settings_cannot_nest_without_end) {
   const testing::ScenarioFile file(testing::kSmallest);
   std::string key = "a";
   for (int k = 0; k < 200000; ++k) key += ".a";
-  EXPECT_NE(file.complaint({{key, "1"}}).find("': is not a key, expected --set section.key=value"), std::string::npos);
+  EXPECT_NE(file.complaint({{key, "1"}}).find("': is not a key, expected --set section.key=value"),
+            std::string::npos);
   EXPECT_LT(file.complaint({{key, "1"}}).size(), 200U);
   EXPECT_NE(file.complaint({{"rig.slip\n", "1"}}).find("key 'rig.slip\\n': is not a key"), std::string::npos);
-  EXPECT_NE(file.complaint({{"tire.pressure", std::string(100000, '[') + std::string(100000, ']')}}).find("nested deeper"),
+  EXPECT_NE(file.complaint({{"tire.pressure", std::string(100000, '[') + std::string(100000, ']')}})
+                .find("nested deeper"),
             std::string::npos);
 }
 
 TEST(Scenario, names_of_files_are_single_lines) {
-  for (const std::string& name : {std::string("hmmwv_layered.json\0x", 20), std::string("a\nb"), std::string(5000, 'x')}) {
-    const std::string told = testing::ScenarioFile(testing::kSmallest).complaint({{"tire.file", nlohmann::json(name).dump()}});
+  for (const std::string& name :
+       {std::string("hmmwv_layered.json\0x", 20), std::string("a\nb"), std::string(5000, 'x')}) {
+    const std::string told =
+        testing::ScenarioFile(testing::kSmallest).complaint({{"tire.file", nlohmann::json(name).dump()}});
     EXPECT_NE(told.find("key 'tire.file': is '"), std::string::npos) << told;
     EXPECT_NE(told.find("expected the name of a file"), std::string::npos) << told;
     EXPECT_LT(told.size(), 300U);

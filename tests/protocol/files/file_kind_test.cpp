@@ -51,6 +51,10 @@ TEST(FileKind, only_what_is_certainly_of_another_kind_is_refused) {
             "x.json: is a soil, expected a tire (the key terrain.material of a scenario takes soils)");
   EXPECT_EQ(refused(soil, FileKind::soil), "");
   EXPECT_EQ(refused(soil, FileKind::scenario), "");  // one that leaves all else as it is
+  const json measured = json::parse(R"({"terrain": {"friction": 0.5}, "measured": {}})");
+  EXPECT_EQ(refused(measured, FileKind::scenario),
+            "x.json: is a soil, expected a scenario (the key terrain.material of a scenario takes soils)");
+  EXPECT_EQ(refused(measured, FileKind::soil), "");
   EXPECT_EQ(refused(json::parse(R"({"terrain": {}})"), FileKind::study),
             "x.json: is a scenario, expected a study ('furrow run' takes scenarios)");
   EXPECT_EQ(refused(json::parse(R"({"terrain": {}})"), FileKind::soil), "");

@@ -19,12 +19,12 @@
 namespace furrow::study {
 namespace {
 
-constexpr int kDesigns = 300;       // Latin hypercubes that the best is chosen from
-constexpr int kRounds = 3;          // of the weights, which depend on the place
-constexpr int kLooks = 400;         // places among which the least certain one is looked for
-constexpr double kSame = 0.01;      // of a scale: two places that tell the same
-constexpr double kStays = 0.3;      // of a parameter's standard error: the least stays where it is
-constexpr double kNear = 0.15;      // of a scale: around the least
+constexpr int kDesigns = 300;   // Latin hypercubes that the best is chosen from
+constexpr int kRounds = 3;      // of the weights, which depend on the place
+constexpr int kLooks = 400;     // places among which the least certain one is looked for
+constexpr double kSame = 0.01;  // of a scale: two places that tell the same
+constexpr double kStays = 0.3;  // of a parameter's standard error: the least stays where it is
+constexpr double kNear = 0.15;  // of a scale: around the least
 
 using Places = std::vector<Eigen::VectorXd>;
 
@@ -69,7 +69,8 @@ Places design(const Eigen::VectorXd& start, int count, Draw& draw) {
       for (std::size_t i = 0; i < places.size(); ++i) places[i][k] = (order[i] + 0.5) / count;
     }
     places.insert(places.begin(), start);
-    if (const double least = least_distance(places); least > farthest) farthest = least, best = std::move(places);
+    if (const double least = least_distance(places); least > farthest)
+      farthest = least, best = std::move(places);
   }
   return best;
 }
@@ -86,15 +87,12 @@ class Misfit {
     for (std::size_t i = 0; i < places.size(); ++i) at.col(static_cast<Eigen::Index>(i)) = places[i];
     for (std::size_t q = 0; q < data_.size(); ++q) {
       Eigen::VectorXd values(at.cols());
-      double squares = 0.0;
-      int told = 0;
+      std::vector<double> errors;
       for (std::size_t i = 0; i < places.size(); ++i) {
         values[static_cast<Eigen::Index>(i)] = found[i].values[q];
-        const double error = found[i].errors.empty() ? NAN : found[i].errors[q];
-        if (std::isfinite(error)) squares += error * error, ++told;
+        errors.push_back(found[i].errors.empty() ? NAN : found[i].errors[q]);
       }
-      // Errors from few beds are themselves uncertain: all evaluations together say what one has.
-      surrogates_.emplace_back(at, values, told > 0 ? squares / told : NAN);
+      surrogates_.emplace_back(at, values, errors);
     }
     weigh(places.front());
   }
@@ -135,7 +133,8 @@ class Misfit {
   /// How little is known at a place: the surrogates' variances over those of the targets.
   double doubt(const Eigen::VectorXd& place) const {
     double sum = 0.0;
-    for (std::size_t q = 0; q < points(); ++q) sum += surrogates_[q].at(place).variance / (sigma_[q] * sigma_[q]);
+    for (std::size_t q = 0; q < points(); ++q)
+      sum += surrogates_[q].at(place).variance / (sigma_[q] * sigma_[q]);
     return sum;
   }
 
@@ -211,8 +210,10 @@ class Noisy {
       Misfit misfit = fit();
       Least least = minimise(misfit, before);
       if (options_.progress) options_.progress(share());
-      if (before.size() > 0 && stays(misfit, before, least.place) && misfit.known(least.place)) ended = "converged";
-      else if (asked_ >= options_.evaluations) ended = "all evaluations are used";
+      if (before.size() > 0 && stays(misfit, before, least.place) && misfit.known(least.place))
+        ended = "converged";
+      else if (asked_ >= options_.evaluations)
+        ended = "all evaluations are used";
       if (!ended.empty()) return result(misfit, ended);
       // Where the least is known already, what is around it tells more.
       const bool known = distance(least.place) < kSame;
@@ -242,9 +243,10 @@ class Noisy {
   void require_answers() const {
     const std::size_t least = static_cast<std::size_t>(size_) + 2;
     if (places_.size() < least)
-      throw physics_error(fmt::format(
-          "{}: the model answers at {} of the {} places of the design, expected {} or more; where it does not: {}",
-          objective_.calibration().file.string(), places_.size(), all_.size(), least, problem_));
+      throw physics_error(
+          fmt::format("{}: the model answers at {} of the {} places of the design, expected {} or more; "
+                      "where it does not: {}",
+                      objective_.calibration().file.string(), places_.size(), all_.size(), least, problem_));
   }
 
   Misfit fit() const { return Misfit(objective_.calibration(), places_, found_); }
@@ -324,8 +326,8 @@ class Noisy {
     optimum.ended = ended;
     for (std::size_t q = 0; q < misfit.points(); ++q) {
       const Surrogate::Answer answer = misfit.surrogate(q).at(place);
-      Reach reach{answer.value, std::sqrt(answer.variance), std::sqrt(misfit.surrogate(q).noise()), misfit.scale(q),
-                  found_.front().values[q], found_.front().values[q]};
+      Reach reach{answer.value,    std::sqrt(answer.variance), std::sqrt(misfit.surrogate(q).noise()),
+                  misfit.scale(q), found_.front().values[q],   found_.front().values[q]};
       for (const Prediction& found : found_)
         reach.low = std::min(reach.low, found.values[q]), reach.high = std::max(reach.high, found.values[q]);
       optimum.reach.push_back(reach);
@@ -338,8 +340,8 @@ class Noisy {
   Draw draw_;
   Eigen::Index size_;
   int asked_ = 0;
-  Places all_, places_;             // asked for; with an answer
-  std::vector<Prediction> found_;   // at places_
+  Places all_, places_;            // asked for; with an answer
+  std::vector<Prediction> found_;  // at places_
   std::string problem_;
   std::vector<StartResult> starts_;
 };

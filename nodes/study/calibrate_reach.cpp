@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kWithin = 2.0;  // standard errors
-constexpr std::array kStates{"reached", "out of range", "not together with the others"};
+constexpr std::array kStates{"reached", "out of range", "not together with the others", "not known"};
 
 const char* name_of(ReachState state) { return kStates[static_cast<std::size_t>(state)]; }
 
@@ -29,7 +29,8 @@ void each_figure(const std::vector<Target>& targets, Visit&& visit) {
 
 }  // namespace
 
-ReachState reach_state(const Reach& r, double data) {
+ReachState reach_state(const Reach& r, double data, double sigma) {
+  if (r.error > kWithin * sigma) return ReachState::not_known;
   if (std::abs(r.value - data) <= kWithin * r.scale) return ReachState::reached;
   const bool beyond = data > r.high + kWithin * r.scale || data < r.low - kWithin * r.scale;
   return beyond ? ReachState::out_of_range : ReachState::not_together;
@@ -49,7 +50,7 @@ Json figures_json(const Target& target, const Prediction& prediction, std::size_
       const Reach& r = reach[at];
       json["surrogate"] = {{"value", r.value}, {"standard_error", r.error}, {"noise", r.noise}};
       json["evaluations_span"] = {r.low, r.high};
-      json["state"] = name_of(reach_state(r, target.y[k]));
+      json["state"] = name_of(reach_state(r, target.y[k], target.sigma[k]));
     }
     all.push_back(json);
   }
@@ -61,8 +62,16 @@ std::vector<std::string> reach_warnings(const std::vector<Target>& fitted, const
   if (reach.empty()) return warnings;
   each_figure(fitted, [&](const Target& target, std::size_t k, std::size_t at) {
     const Reach& r = reach[at];
-    const ReachState state = reach_state(r, target.y[k]);
+    const ReachState state = reach_state(r, target.y[k], target.sigma[k]);
     if (state == ReachState::reached) return;
+    if (state == ReachState::not_known) {
+      warnings.push_back(
+          fmt::format("whether {} of {} is reached is not known: {}, expected an error of {} at most; "
+                      "more beds ('seeds') or evaluations, or closer bounds tell more",
+                      target.name, with_error(target.y[k], target.sigma[k]), with_error(r.value, r.error),
+                      digits(kWithin * target.sigma[k])));
+      return;
+    }
     warnings.push_back(fmt::format("{} of {} is not reached but {}: {} ({} to {})", target.name,
                                    with_error(target.y[k], target.sigma[k]), with_error(r.value, r.error),
                                    state == ReachState::out_of_range

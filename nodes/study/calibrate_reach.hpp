@@ -12,10 +12,12 @@
 
 namespace furrow::study {
 
-/// reached: within two standard errors, of target and surrogate together. out_of_range: beyond what all evaluations
-/// span, by more than two. not_together: within that span, and still not met with the others.
-enum class ReachState { reached, out_of_range, not_together };
-ReachState reach_state(const Reach& reach, double data);
+/// not_known: the surrogate errs by more than twice the target's standard error, so it cannot be told. reached: within
+/// two standard errors, of target and surrogate together. out_of_range: beyond what all evaluations span, by more than
+/// two. not_together: within that span, and still not met with the others.
+enum class ReachState { reached, out_of_range, not_together, not_known };
+/// @param sigma the target's standard error
+ReachState reach_state(const Reach& reach, double data, double sigma);
 
 /// Entries of calibration.json for the figures of a target. @param first of them among all points of the set
 nlohmann::ordered_json figures_json(const Target& target, const Prediction& prediction, std::size_t first,

@@ -97,12 +97,33 @@ TEST(Surrogate, gives_back_a_line_and_its_error) {
     square += (places(0, k) - 0.5) * (places(0, k) - 0.5);
     product += (places(0, k) - 0.5) * (values[k] - mean);
   }
-  const Surrogate surrogate(places, values, 0.01);
+  const Surrogate surrogate(places, values, std::vector<double>(n, 0.1));
   const auto answer = surrogate.at(Eigen::VectorXd::Constant(1, 0.25));
   EXPECT_NEAR(answer.value, mean + product / square * -0.25, 0.02);
   EXPECT_NEAR(answer.gradient[0], product / square, 0.05);
   EXPECT_NEAR(std::sqrt(answer.variance), std::sqrt(surrogate.noise() * (1.0 / n + 0.0625 / square)), 0.02);
   EXPECT_GE(surrogate.noise(), 0.01);
+}
+
+TEST(Surrogate, an_evaluation_that_tells_a_large_error_hardly_counts) {
+  const int n = 12;
+  Eigen::MatrixXd places(1, n);
+  Eigen::VectorXd values(n);
+  std::vector<double> errors(n, 0.1);
+  for (int k = 0; k < n; ++k) places(0, k) = k / 11.0, values[k] = 3.0 - 2.0 * places(0, k) + (k % 2 ? 0.1 : -0.1);
+  const Eigen::VectorXd middle = Eigen::VectorXd::Constant(1, 0.5);
+  const auto alone = Surrogate(places, values, errors).at(middle);
+  values[4] = -40.0, errors[4] = 30.0;
+  const auto told = Surrogate(places, values, errors).at(middle);
+  EXPECT_NEAR(told.value, alone.value, 0.05);
+  EXPECT_NEAR(std::sqrt(told.variance), std::sqrt(alone.variance), 0.05);
+  EXPECT_GT(std::abs(Surrogate(places, values).at(middle).value - alone.value), 1.0);
+}
+
+TEST(OptimizeNoisy, what_the_surrogate_does_not_know_is_not_called_reached) {
+  const Reach reach{3.0, 5.0, 5.0, 5.0, 0.0, 10.0};
+  EXPECT_EQ(reach_state(reach, 3.3, 0.4), ReachState::not_known);
+  EXPECT_EQ(reach_state(reach, 3.3, 4.0), ReachState::reached);
 }
 
 TEST(Surrogate, follows_a_bent_surface_and_its_gradient_is_that_of_its_value) {
@@ -116,7 +137,7 @@ TEST(Surrogate, follows_a_bent_surface_and_its_gradient_is_that_of_its_value) {
     places.col(k) << share(engine), share(engine);
     values[k] = surface(places(0, k), places(1, k));
   }
-  const Surrogate surrogate(places, values, NAN);
+  const Surrogate surrogate(places, values);
   for (const double a : {0.2, 0.5, 0.8}) {
     const Eigen::Vector2d place(a, 0.4);
     const auto answer = surrogate.at(place);
@@ -145,7 +166,7 @@ TEST(OptimizeNoisy, true_parameters_lie_within_its_intervals_as_often_as_they_sa
       if (e.low && *e.low <= truth[p] && truth[p] <= *e.high) ++within;
     }
     off += results.values[1] - truth[1];
-    for (std::size_t q = 0; q < 3; ++q) reached += reach_state(results.optimum.reach[q], data[q]) == ReachState::reached ? 1 : 0;
+    for (std::size_t q = 0; q < 3; ++q) reached += reach_state(results.optimum.reach[q], data[q], kSigma[q]) == ReachState::reached ? 1 : 0;
   }
   // 95 % of 80, less three standard deviations of a binomial count (1.9), and two for the choice of the surrogates' lengths.
   RecordProperty("within", within);
@@ -190,7 +211,7 @@ TEST(OptimizeNoisy, a_target_that_cannot_be_reached_is_told_with_the_range) {
   // The largest first figure within the bounds is 20 + 14 (1 − e⁻²) + 3 = 35.1.
   const Calibration c = noisy_study(soil_like, {45.0, 1500.0, 0.014}, kSigma, kNoise, soil_parameters(), 1, 18);
   const CalibrationResults results = calibrated(c);
-  EXPECT_EQ(reach_state(results.optimum.reach[0], 45.0), ReachState::out_of_range);
+  EXPECT_EQ(reach_state(results.optimum.reach[0], 45.0, 0.5), ReachState::out_of_range);
   EXPECT_LT(results.optimum.reach[0].high, 38.0);
   std::string all;
   for (const std::string& warning : calibration_warnings(c, results)) all += warning + "\n";

@@ -18,6 +18,8 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
+constexpr double kDeep = 0.5, kHigh = 0.05;  // sinkage, radii, beyond which a wheel is warned of
+
 double number(const json& object, const char* key) {
   return object.is_object() && object.contains(key) && object[key].is_number() ? object[key].get<double>()
                                                                                : NAN;
@@ -124,6 +126,27 @@ std::string subject_lines(const json& summary, double average_from) {
   return text;
 }
 
+/// Of a wheel that stands where no wheel drives. @param soil  not an obstacle that it can climb
+std::string place_warning(const json& wheel, bool soil) {
+  const double share = number(wheel, "sinkage_m") / number(wheel, "tire_radius_m");
+  if (share > kDeep)
+    return fmt::format(
+        "furrow: WARNING: the wheel has sunk in by {:.2g} radii: the ground does not bear its load, "
+        "or it "
+        "spins itself in; see whether it comes to rest with less load (rig.carrier_mass), slip or run.step, "
+        "or on "
+        "stronger soil\n",
+        share);
+  if (soil && share < -kHigh)
+    return fmt::format(
+        "furrow: WARNING: the wheel is {:.2g} radii above the ground as it was: it bounces or was "
+        "thrown "
+        "off; take a smaller run.step or ground less stiff for its step, and look at its height in the "
+        "plots\n",
+        -share);
+  return "";
+}
+
 /// Of a run that ended before its planned end.
 std::string end_lines(const json& summary, const scenario::Scenario& scenario) {
   const std::string reason = summary.value("end_reason", std::string("run_end"));
@@ -209,7 +232,7 @@ std::string result_text(const std::filesystem::path& run, const scenario::Scenar
                           digits(millimetres("rut_width_m")));
     else if (const json why = wheel.value("rut_missing_because", json()); why.is_string())
       text += ", no rut measured: " + why.get<std::string>();
-    text += "\n";
+    text += "\n" + place_warning(wheel, summary.value("terrain_engine", std::string()) != "rigid");
   }
   if (const double added = number(summary, "substeps_added"); added > 0.0)
     text += fmt::format(

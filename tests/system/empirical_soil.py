@@ -39,9 +39,19 @@ class EmpiricalSoil(SystemTest):
             deepest = file["position"][:, 2].min()
         self.assertLess(deepest, -0.005)
 
+    def test_a_wheel_that_no_ground_bears_or_holds_is_warned_of(self):
+        for stiffness, step, words in (("1e4", 2e-4, r"WARNING: the wheel has sunk in by \S+ radii: the ground does not bear its load"),
+                                       ("1e11", 5e-4, r"WARNING: the wheel is \S+ radii above the ground as it was: it bounces or was thrown off")):
+            _, told = self.run_of(stiffness, "--set", f"terrain.bekker_k_phi={stiffness}", "--set", "terrain.bekker_k_c=0",
+                                  "--set", "run.end=0.8", "--set", "run.average_from=0.7", "--set", "terrain.length=3.5", "--set", f"run.step={step}")
+            self.assertRegex(told, words)
+        _, told = self.run_of("usual")
+        self.assertNotIn("WARNING", told)
+
     def test_threads_change_nothing(self):
         self.run_of("one", "--set", "run.end=0.2", "--set", "run.average_from=0.1", "--set", "run.threads=1")
-        self.run_of("two", "--set", "run.end=0.2", "--set", "run.average_from=0.1", "--set", "run.threads=2")
+        _, told = self.run_of("two", "--set", "run.end=0.2", "--set", "run.average_from=0.1", "--set", "run.threads=2")
+        self.assertIn("key 'run.threads': is 2: engine 'scm' takes one thread", told)
         for name in ("timeseries.csv", "frames/terrain_000001.h5"):
             self.assertEqual((self.folder / "one" / name).read_bytes(), (self.folder / "two" / name).read_bytes(), name)
 

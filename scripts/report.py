@@ -26,7 +26,7 @@ sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent), str(pathlib.Path(_
 from plot import (accounts, calibrate, charts, ground, kinematics, modes, press, ride, scene, soil, sweep, vehicle_ground, vehicle_plots,  # noqa: E402
                   vehicle_run, vehicle_scene, wheels)
 from plot.digits import with_error  # noqa: E402
-from plot.run_data import Damaged, Missing, Run, printable  # noqa: E402
+from plot.run_data import Damaged, Missing, Run, printable, why_no_folder  # noqa: E402
 
 
 quiet = False  # set by --quiet
@@ -157,12 +157,9 @@ def main():
     except (AttributeError, LookupError, TypeError, csv.Error) as error:
         print(f"furrow: error: {arguments.directory}: a file in it is damaged: {printable(repr(error))}", file=sys.stderr)
         return 5
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        what = "is a file, expected a folder" if out.is_file() else f"cannot be made: {error.strerror}"
-        print(f"furrow: error: {printable(out)}: {what}", file=sys.stderr)
-        return 5
+    if why := why_no_folder(out):
+        print(f"furrow: error: {printable(out)}: {why}", file=sys.stderr)
+        return 2
     written = []
     of_beds = of_sweep and run.values.get("beds")
     plots = (CALIBRATION_PLOTS if of_calibration else SOIL_PLOTS if of_soil

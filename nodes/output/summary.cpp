@@ -70,8 +70,9 @@ Json pull_statistics(const WheelInput& in, const Window& w, const SeriesStatisti
   else if (late > kMaxLate * rolling)
     reasons.push_back(fmt::format(
         "contact forces that come one step late feed the tire: {:.3g} W at its interface, {:.0f} % of "
-        "load × speed; take a smaller run.step or tire.contact_tangent",
-        late, 100.0 * late / rolling));
+        "load × speed; take a smaller run.step{}",
+        late, 100.0 * late / rolling,
+        in.run.scenario.tires[in.wheel]->options().contact_tangent ? "" : " or tire.contact_tangent"));
   return {{"mean", json_number(s.mean)},
           {"std", json_number(s.std)},
           {"sem", json_number(s.sem)},

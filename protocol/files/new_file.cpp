@@ -69,7 +69,7 @@ void NewFile::publish() {
 }
 
 std::string name_in_the_making(std::string_view name) {
-  if (!name.starts_with('.') || !name.ends_with(kEnding)) return {};
+  if (name.size() <= kEnding.size() || !name.starts_with('.') || !name.ends_with(kEnding)) return {};
   name.remove_prefix(1);
   name.remove_suffix(kEnding.size());
   if (name.size() < kDigits + 2 || name[name.size() - kDigits - 1] != '.') return {};

@@ -29,6 +29,15 @@ def printable(text):
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in str(text))
 
 
+def why_no_folder(folder):
+    """Makes a folder of results. None: it is there."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        return "is a file, expected a folder" if folder.is_file() else f"cannot be made: {error.strerror}"
+    return None
+
+
 def read_object(path):
     """The object that a JSON file holds."""
     if path.stat().st_size > LARGEST:

@@ -221,9 +221,10 @@ class Page(SystemTest):
         self.assertEqual(done.returncode, 2)
         self.assertIn("'--out'", done.stderr)
         (self.folder / "file").write_text("")
-        done = furrow("report", self.run_folder, "--out", "file", cwd=self.folder)
-        self.assertEqual(done.returncode, 5)
-        self.assertIn("furrow: error: file: is a file, expected a folder", done.stderr)
+        for runs in ([self.run_folder], [self.run_folder, other]):
+            done = furrow("report", *runs, "--out", "file", cwd=self.folder)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("furrow: error: file: is a file, expected a folder", done.stderr)
         done = furrow("report", self.run_folder, other, "--out", "both", cwd=self.folder)
         self.assertEqual((done.returncode, done.stdout), (0, "both/report.html\n"), done.stderr)
         about, _ = document(self.folder / "both" / "report.html")

@@ -5,7 +5,7 @@ import os
 import pathlib
 import sys
 
-from plot.run_data import Damaged, Missing, Run, printable
+from plot.run_data import Damaged, Missing, Run, printable, why_no_folder
 
 from . import kinds, run_page
 from .blobs import Arrays
@@ -95,11 +95,9 @@ def compare(directories, folder, may_write):
         if not runs[-1].scenario or not run_page.wheel_tables(runs[-1]):
             print(f"furrow: error: {directory}: holds no results of a run, expected scenario.json and a table of a wheel", file=sys.stderr)
             return 5
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        print(f"furrow: error: {folder}: {printable(error)}", file=sys.stderr)
-        return 5
+    if why := why_no_folder(folder):
+        print(f"furrow: error: {printable(folder)}: {why}", file=sys.stderr)
+        return 2
     written = write(folder, runs, may_write)
     print(json.dumps(written))
     if not written:

@@ -159,7 +159,7 @@ def main():
         return 5
     if why := why_no_folder(out):
         print(f"furrow: error: {printable(out)}: {why}", file=sys.stderr)
-        return 2
+        return 5
     written = []
     of_beds = of_sweep and run.values.get("beds")
     plots = (CALIBRATION_PLOTS if of_calibration else SOIL_PLOTS if of_soil

@@ -24,10 +24,11 @@ using Clock = std::chrono::steady_clock;
 constexpr double kAddressSpace =
     512e6;  // bytes; a plot takes 300 MB, and numpy's BLAS waits forever for less
 constexpr std::chrono::seconds kPatience{60};  // for plots that nobody asked for
-constexpr std::chrono::seconds kShort{5};      // what takes no longer needs no progress, unless it was asked for
+constexpr std::chrono::seconds kShort{5};  // what takes no longer needs no progress, unless it was asked for
 
 /// Shows how far the script is. `display` outlives it.
-void show_progress(PythonScript& script, launch::ProgressDisplay& display, const std::string& phase, bool unasked) {
+void show_progress(PythonScript& script, launch::ProgressDisplay& display, const std::string& phase,
+                   bool unasked) {
   const Clock::time_point shown_from = Clock::now() + (unasked ? kShort : std::chrono::seconds{0});
   script.progress = [&display, phase, shown_from](double share) {
     if (Clock::now() >= shown_from) display.show({.phase = phase, .share = share});
@@ -40,6 +41,8 @@ void show_progress(PythonScript& script, launch::ProgressDisplay& display, const
 std::vector<std::filesystem::path> make_report(const ReportArguments& report) {
   for (const auto& run : report.runs) launch::require_run_directory(run);
   const std::filesystem::path& run = report.runs.front();
+  if (std::filesystem::exists(report.out) && !is_directory(report.out))
+    throw input_error(report.out.string(), "", "is a file, expected a folder");
   PythonScript script{.name = "report.py",
                       .arguments = {},
                       .folders = report.runs,

@@ -128,9 +128,7 @@ std::string subject_lines(const json& summary, double average_from) {
 
 /// Of a wheel that stands where no wheel drives. @param soil  not an obstacle that it can climb
 std::string place_warning(const json& wheel, bool soil) {
-  if (const json force = wheel.value("net_terrain_force_N", json::array());
-      force.size() != 3 || !force[2].is_number() || force[2].get<double>() == 0.0)
-    return "";  // it has not come down yet, which is said elsewhere
+  if (number(wheel, "interface_work_J") == 0.0) return "";  // it has not come down yet
   const double share = number(wheel, "sinkage_m") / number(wheel, "tire_radius_m");
   if (share > kDeep)
     return fmt::format(

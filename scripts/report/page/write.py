@@ -97,7 +97,7 @@ def compare(directories, folder, may_write):
             return 5
     if why := why_no_folder(folder):
         print(f"furrow: error: {printable(folder)}: {why}", file=sys.stderr)
-        return 2
+        return 5
     written = write(folder, runs, may_write)
     print(json.dumps(written))
     if not written:

@@ -1,13 +1,13 @@
 // A smooth stand-in for one figure of a model that is costly and noisy, from few evaluations: a Gaussian process with a
 // linear trend [Rasmussen & Williams 2006, §2.2 and §2.7]. On scales from 0 to 1,
 //   y(s) = β₀ + βᵀs + g(s) + ε,   cov g(s, s′) = τ² exp(−|s − s′|²/2ℓ²),   var ε = ν wᵢ
-// with β by generalised least squares. τ, ℓ and what ν has beyond the errors that the model tells of itself are those of
-// the greatest restricted likelihood [Patterson & Thompson 1971] on a fixed grid: the same evaluations give the same
+// with β by generalised least squares. τ, ℓ and what ν has beyond the errors that the model tells of itself are those
+// of the greatest restricted likelihood [Patterson & Thompson 1971] on a fixed grid: the same evaluations give the same
 // bits. Errors are those for the chosen τ, ℓ, ν.
 //
 // Errors from few beds are themselves uncertain. The variance of an evaluation is therefore the mean of its own and of
-// the median of all, which counts twice [Smyth 2004, eq. 5, with 4 and 2 degrees of freedom]: an evaluation that
-// went wrong, with an error of many times the others', hardly counts, and none counts much for a small error by chance.
+// the median of all, which counts twice [Smyth 2004, eq. 5, with 4 and 2 degrees of freedom]: an evaluation that went
+// wrong, with an error of many times the others', hardly counts, and none counts much for a small error by chance.
 //
 // [Rasmussen & Williams 2006] Gaussian Processes for Machine Learning, MIT Press.
 // [Patterson & Thompson 1971] Recovery of inter-block information when block sizes are unequal, Biometrika 58.

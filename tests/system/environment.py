@@ -173,7 +173,7 @@ class Limits(EnvironmentTest):
 
     def test_threads_that_cannot_be_started_are_no_rank_that_does_not_answer(self):
         # Of the 500 stacks of 8 MB a few fit.
-        done = limited("-v 600000", "run", self.path, "--threads", "500", *SHORT, "--out", "out", cwd=self.folder)
+        done = limited("-v 600000", "run", self.path, "--threads", "500", *SHORT, "--set", "terrain.engine=dem", "--out", "out", cwd=self.folder)
         self.assertIn("threads could not be started (ulimit -u, ulimit -v, or no memory), expected ", self.one_error(done, 6))
         self.assertEqual(survivors(self.folder), [])
 

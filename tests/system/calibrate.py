@@ -77,8 +77,8 @@ class Calibrate(SystemTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         told = [line for line in done.stderr.splitlines() if line.startswith("furrow: fitted ")]
         self.assertEqual(len(told), 5, done.stderr)
-        self.assertRegex(told[0], r"fitted sweep_lumped_fx \(fx of 11 rows\): R² -?\S+, largest error \S+ N, \S+ % of the peak$")
-        self.assertRegex(told[1], r"fitted sweep_lumped_mz \(mz of 11 rows\): R² -?\S+, largest error \S+ Nm, \S+ % of the peak$")
+        self.assertRegex(told[0], r"fitted sweep_lumped_fx \(fx of 41 rows\): R² -?\S+, largest error \S+ N, \S+ % of the peak$")
+        self.assertRegex(told[1], r"fitted sweep_lumped_mz \(mz of 41 rows\): R² -?\S+, largest error \S+ Nm, \S+ % of the peak$")
         for plot in ("fit.png", "residual.png"):  # five panels in two rows
             wide, high = struct.unpack(">II", (self.folder / "out" / plot).read_bytes()[16:24])
             self.assertTrue(2 < wide / high < 3, (plot, wide, high))
@@ -191,7 +191,7 @@ class Calibrate(SystemTest):
     def test_validate_sums_up_a_target_of_many_values(self):
         done = furrow("validate", "calibrate_handling.json", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertRegex(done.stdout, r"\ntarget       sweep_lumped_fx \(fx of 11 rows\): 11 values, -2090\.46 to 3962\.101, each ± 40\n")
+        self.assertRegex(done.stdout, r"\ntarget       sweep_lumped_fx \(fx of 41 rows\): 41 values, -4011\.897 to 5587\.121, each ± 40\n")
 
     def test_commands_for_scenarios_point_to_calibrate(self):
         for command in ("run", "ranks", "press", "bed", "soil"):

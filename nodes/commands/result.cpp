@@ -132,18 +132,14 @@ std::string place_warning(const json& wheel, bool soil) {
   const double share = number(wheel, "sinkage_m") / number(wheel, "tire_radius_m");
   if (share > kDeep)
     return fmt::format(
-        "furrow: WARNING: the wheel has sunk in by {:.2g} radii: the ground does not bear its load, "
-        "or it "
-        "spins itself in; see whether it comes to rest with less load (rig.carrier_mass), slip or run.step, "
-        "or on "
+        "furrow: WARNING: the wheel has sunk in by {:.2g} radii: the ground does not bear its load, or it spins "
+        "itself in; see whether it comes to rest with less load (rig.carrier_mass), slip or run.step, or on "
         "stronger soil\n",
         share);
   if (soil && share < -kHigh)
     return fmt::format(
-        "furrow: WARNING: the wheel is {:.2g} radii above the ground as it was: it bounces or was "
-        "thrown "
-        "off; take a smaller run.step or ground less stiff for its step, and look at its height in the "
-        "plots\n",
+        "furrow: WARNING: the wheel is {:.2g} radii above the ground as it was: it bounces or was thrown off; "
+        "take a smaller run.step or ground less stiff for its step, and look at its height in the plots\n",
         -share);
   return "";
 }

@@ -206,25 +206,21 @@ void Checks::room() {
 }
 
 void Checks::ranks() {
-  if (!s_.terrain->grains()) {
+  if (terrain_.core_per_rank || !s_.terrain->grains()) {
     if (s_.run.threads > 1)
       warn("run.threads",
-           fmt::format("is {}: engine '{}' takes one thread", s_.run.threads, terrain_.engine));
+           fmt::format("is {}: engine '{}' {}", s_.run.threads, terrain_.engine,
+                       terrain_.core_per_rank
+                           ? "uses them to make the bed, then one core on each of its ranks (terrain.ranks)"
+                           : "takes one thread"));
     s_.run.threads = 1;
   }
-  if (terrain_.core_per_rank) {
-    if (s_.run.threads > 1)
-      warn("run.threads",
-           fmt::format("is {}: engine '{}' uses them to make the bed, then one core on each of its ranks "
-                       "(terrain.ranks)",
-                       s_.run.threads, terrain_.engine));
-    s_.run.threads = 1;
+  if (terrain_.core_per_rank)
     if (const auto cores = static_cast<int>(allowed_cores().size()); s_.terrain_ranks > cores)
       warn("terrain.ranks",
            fmt::format("is {}, this machine has {} core{}: each rank needs one of its own, here or on other "
                        "nodes; more ranks than cores are slower",
                        s_.terrain_ranks, cores, cores > 1 ? "s" : ""));
-  }
   if (s_.terrain_ranks <= terrain_.most_ranks) return thin_parts();
   throw wrong(
       "terrain.ranks",

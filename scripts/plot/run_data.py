@@ -34,7 +34,7 @@ def why_no_folder(folder):
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        return "is a file, expected a folder" if folder.is_file() else f"cannot be made: {error.strerror}"
+        return f"cannot be made: {error.strerror}"
     return None
 
 

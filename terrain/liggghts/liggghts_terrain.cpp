@@ -5,7 +5,6 @@
 #include <memory>
 #include <numeric>
 #include <optional>
-#include <unordered_map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -219,12 +218,8 @@ class LiggghtsTerrain final : public Terrain {
     } catch (const EngineError& error) {
       engine_failed(error);
     }
-    std::unordered_map<int, std::vector<Carried>> carried;
-    for (const CarriedBy& one : bed.walls) carried[one.grain].push_back(one.contact);
     const OwnGrains own = engine_->own();
-    for (int g = 0; g < own.count; ++g)
-      if (const auto found = carried.find(own.id[g] - 1); found != carried.end())
-        own.carried[g].assign(found->second.begin(), found->second.end());
+    hand_out(bed.walls, own);
     std::int64_t all = own.count;
     if (group()) {
       const auto counts = gather_on_all<std::int64_t>(*group(), std::span<const std::int64_t>(&all, 1));

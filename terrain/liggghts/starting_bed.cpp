@@ -152,6 +152,14 @@ void begin_from(dem::GrainSolver& solver, const StartingBed& bed) {
   solver.reset_accounts();
 }
 
+void hand_out(std::span<const CarriedBy> carried, const OwnGrains& own) {
+  std::unordered_map<int, int> place;
+  for (int g = 0; g < own.count; ++g) place[own.id[g] - 1] = g;
+  for (const CarriedBy& one : carried)
+    if (const auto found = place.find(one.grain); found != place.end())
+      own.carried[found->second].push_back(one.contact);
+}
+
 void share(RankGroup* group, StartingBed& bed) {
   if (!group) return;
   share_all(*group, bed.grains);

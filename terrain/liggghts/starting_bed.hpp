@@ -28,6 +28,9 @@ StartingBed starting_bed(const dem::GrainSolver& solver);
 /// The other way round. @pre grains are in the order of their numbers, 0, 1, …
 void begin_from(dem::GrainSolver& solver, const StartingBed& bed);
 
+/// Gives a rank's own grains the histories that they carry.
+void hand_out(std::span<const CarriedBy> carried, const OwnGrains& own);
+
 /// The leader's bed on all ranks; null: there is one.
 void share(RankGroup* group, StartingBed& bed);
 

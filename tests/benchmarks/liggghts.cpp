@@ -70,12 +70,13 @@ struct Bench {
   std::int64_t grains = 0;                     // of all ranks
   int rank = 0, ranks = 1;
 
-  /// This rank's share of a run.
+  /// This rank's share of a run, without its tires.
   void take(const Archive& saved) {
     const Archive::Scope scope(saved, "terrain/");
     grains = saved.get_int("grains/all");
     borders = saved.get<double>("borders", static_cast<std::size_t>(ranks - 1));
     bed = read_grains(saved, grains, static_cast<int>(saved.get_int("tires/count")));
+    std::erase_if(bed.walls, [](const CarriedBy& one) { return one.contact.partner >= dem::kWalls; });
     bed.top = saved.get_double("top");
   }
 
@@ -95,17 +96,8 @@ struct Bench {
     engine->place(bed.grains, borders.has_value());
     engine->remember(bed.pairs);
     engine->begin(work, false);
-    if (&work == &contacts) carry(engine->own());
+    if (&work == &contacts) hand_out(bed.walls, engine->own());
     return engine;
-  }
-
-  /// The histories of contacts with walls; there are no tires.
-  void carry(const OwnGrains& own) const {
-    std::vector<int> place(static_cast<std::size_t>(grains), -1);
-    for (int g = 0; g < own.count; ++g) place[own.id[g] - 1] = g;
-    for (const CarriedBy& one : bed.walls)
-      if (place[one.grain] >= 0 && one.contact.partner < dem::kWalls)
-        own.carried[place[one.grain]].push_back(one.contact);
   }
 };
 

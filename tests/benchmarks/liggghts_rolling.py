@@ -19,7 +19,6 @@ both over the rounds, each with half of its 95 % interval.
 """
 import argparse
 import csv
-import os
 import pathlib
 import shutil
 import signal
@@ -34,6 +33,8 @@ import h5py
 from liggghts_cost import ENVIRONMENT, HERE, RIG, STEP, bench_command, provenance
 
 sys.path.insert(0, str(HERE.parents[1] / "scripts"))
+sys.path.insert(0, str(HERE.parent / "campaign"))
+import processes  # noqa: E402
 from plot.student import half_interval  # noqa: E402
 
 COLUMNS = ["part", "ranks", "tire", "grains", "steps", "rounds", "us_per_step", "over_pairs", "half_interval", "over_walls", "half_interval_of_it",
@@ -56,43 +57,25 @@ def terrain_times(run, ranks):
     return times
 
 
-def family(process):
-    """The numbers of a process and all that it started."""
-    children = {}
-    for folder in pathlib.Path("/proc").glob("[0-9]*"):
-        try:
-            parent = int((folder / "stat").read_text().rsplit(")", 1)[1].split()[1])
-        except OSError:
-            continue
-        children.setdefault(parent, []).append(int(folder.name))
-    found, left = [], [process.pid]
-    while left:
-        found.append(left.pop())
-        left += children.get(found[-1], [])
-    return found
+def tell(mark, sign):
+    for number in processes.living(mark):
+        processes.send(number, sign)
 
 
-def tell(process, sign):
-    for number in family(process):
-        try:
-            os.kill(number, sign)
-        except ProcessLookupError:
-            pass
-
-
-def in_turns(first, second):
-    """Until the first has ended; the second is ended with it. What the second printed."""
+def in_turns(first, of_first, second, of_second):
+    """Until the first command has ended; the second is ended with it. Each is known by a word of its command lines.
+    @returns what the second printed"""
     with tempfile.TemporaryFile("w+") as printed:
         quiet = {"env": ENVIRONMENT, "stderr": subprocess.DEVNULL}
         one, other = subprocess.Popen(first, stdout=subprocess.DEVNULL, **quiet), subprocess.Popen(second, stdout=printed, **quiet)
-        now, waits = other, one
+        now, waits = of_second, of_first
         while one.poll() is None:
             tell(waits, signal.SIGSTOP)
             tell(now, signal.SIGCONT)
             time.sleep(TURN)
             now, waits = waits, now
         for sign in (signal.SIGCONT, signal.SIGTERM):
-            tell(other, sign)
+            tell(of_second, sign)
         other.wait()
         if one.returncode != 0:
             sys.exit(f"{' '.join(first)} ended with {one.returncode}")
@@ -105,8 +88,8 @@ def one_round(run, copy, ranks, arguments):
     shutil.rmtree(copy, ignore_errors=True)
     shutil.copytree(run, copy)
     before = terrain_times(copy, ranks)
-    rows = in_turns(furrow("resume", copy, "--until", f"{arguments.at + arguments.steps * STEP:.9g}"),
-                    bench_command(ranks, run, arguments.alone, 1000))
+    rows = in_turns(furrow("resume", copy, "--until", f"{arguments.at + arguments.steps * STEP:.9g}"), str(copy),
+                    bench_command(ranks, run, arguments.alone, 1000), str(run))
     found, about = {}, {}
     for row in rows:
         found.setdefault(row["part"], []).append(float(row["cpu_us_per_step"]))

@@ -27,7 +27,7 @@
 namespace furrow::terrain::liggghts {
 
 /// Changes with this header: a library made for another number is refused.
-inline constexpr int kEngineVersion = 3;
+inline constexpr int kEngineVersion = 4;
 /// What the library offers: kMakeEngine makes an engine, kEngineVersionOf tells kEngineVersion.
 inline constexpr char kMakeEngine[] = "furrow_make_engine";
 inline constexpr char kEngineVersionOf[] = "furrow_engine_version";
@@ -104,8 +104,9 @@ class StepWork {
   /// The lists of pairs were made where these grains stand: until it is called again each moves by half a skin at most.
   virtual void lists_made(const OwnGrains& grains) = 0;
   virtual StepWish begin_step() = 0;
-  /// @param losses as begin_step said
-  virtual void add_forces(const OwnGrains& grains, bool losses) = 0;
+  /// Of the grains first ≤ g < last, which move thereafter: all of a rank's in rising parts, the first of which begins
+  /// with grain 0. A rank without grains is not asked. @param losses  as begin_step said
+  virtual void add_forces(const OwnGrains& grains, int first, int last, bool losses) = 0;
   /// The step's pairs, once all grains have moved. @param motion  where begin_step wanted it
   virtual void end_step(const PairSums& pairs, const MotionSums& motion, bool losses) = 0;
 };

@@ -150,24 +150,28 @@ StepWish RankContacts::begin_step() {
   return {energies_.due(), step_ + 1 == steps_};
 }
 
-void RankContacts::add_forces(const OwnGrains& grains, bool losses) {
+void RankContacts::add_forces(const OwnGrains& grains, int first, int last, bool losses) {
+  if (first == 0) {
+    if (!looked_far_enough()) look_for_touchable(grains);
+    next_ = 0;
+  }
   if (params_.law == dem::LawKind::hertz_tanh) {
-    params_.rolling ? add_forces_of<dem::HertzTanhLaw, true>(grains, losses)
-                    : add_forces_of<dem::HertzTanhLaw, false>(grains, losses);
+    params_.rolling ? add_forces_of<dem::HertzTanhLaw, true>(grains, last, losses)
+                    : add_forces_of<dem::HertzTanhLaw, false>(grains, last, losses);
   } else {
-    params_.rolling ? add_forces_of<dem::MindlinLaw, true>(grains, losses)
-                    : add_forces_of<dem::MindlinLaw, false>(grains, losses);
+    params_.rolling ? add_forces_of<dem::MindlinLaw, true>(grains, last, losses)
+                    : add_forces_of<dem::MindlinLaw, false>(grains, last, losses);
   }
 }
 
 template <class Law, bool kRolling>
-void RankContacts::add_forces_of(const OwnGrains& grains, bool losses) {
+void RankContacts::add_forces_of(const OwnGrains& grains, int last, bool losses) {
   const dem::Bin& bin = params_.bin;
   const SurfaceBox apart = apart_from_walls(params_.largest_radius());
   const bool by_lanes = !losses && !params_.sizes();
-  if (!looked_far_enough()) look_for_touchable(grains);
   const std::size_t touchable = touchable_.size();
-  for (std::size_t n = 0; n < touchable; ++n) {
+  for (; next_ < touchable && touchable_[next_] < last; ++next_) {
+    const std::size_t n = next_;
     const int g = touchable_[n];
     if (n + 2 * kAhead < touchable) fetch(grains, touchable_[n + 2 * kAhead]);
     if (n + kAhead < touchable) fetch_histories(grains, touchable_[n + kAhead]);
@@ -207,7 +211,6 @@ void RankContacts::add_forces_of(const OwnGrains& grains, bool losses) {
     evaluate_walls<Law, kRolling>(grains, floor_lanes_, coefficients_.floor);
     evaluate_walls<Law, kRolling>(grains, side_lanes_, coefficients_.side);
   }
-  for (Tire& tire : tires_) tire.sum->add_substep(tire.forces, *tire.collider, times_.kick, times_.dt);
 }
 
 /// Most grains touch nothing but each other. From one making of the lists to the next they move by a skin against where
@@ -383,6 +386,7 @@ void RankContacts::sum_motion(const OwnGrains& grains) {
 
 void RankContacts::end_step(const PairSums& pairs, const MotionSums& motion, bool losses) {
   const double dt = times_.kick;
+  for (Tire& tire : tires_) tire.sum->add_substep(tire.forces, *tire.collider, dt, times_.dt);
   sums_.elastic = pairs.elastic + now_.elastic;
   sums_.wall_impulse += dt * Vec3(now_.wall_force.x, now_.wall_force.y, now_.wall_force.z);
   sums_.surface_impulse += dt * on_grains_;

@@ -66,7 +66,7 @@ class RankContacts final : public StepWork {
   void set_times(const StepTimes& times) { times_ = times; }
   void lists_made(const OwnGrains& grains) override;
   StepWish begin_step() override;
-  void add_forces(const OwnGrains& grains, bool losses) override;
+  void add_forces(const OwnGrains& grains, int first, int last, bool losses) override;
   void end_step(const PairSums& pairs, const MotionSums& motion, bool losses) override;
   /// This rank's share of the interval's means.
   void end_interval(double duration, std::span<NodalForces> forces, std::span<ContactSums> sums);
@@ -108,7 +108,7 @@ class RankContacts final : public StepWork {
   };
 
   template <class Law, bool kRolling>
-  void add_forces_of(const OwnGrains& grains, bool losses);
+  void add_forces_of(const OwnGrains& grains, int last, bool losses);
   /// Its contacts with walls wait for others; at the latest they are evaluated at the end of add_forces_of.
   template <class Law, bool kRolling>
   void wait_for_walls(const OwnGrains& grains, int g);
@@ -144,6 +144,7 @@ class RankContacts final : public StepWork {
   std::array<double, 3> hardest_at_{};
   WallLanes floor_lanes_, side_lanes_;
   std::vector<int> touchable_;       // rising
+  std::size_t next_ = 0;             // of those, in this step
   bool looked_ = false;              // touchable_ still holds
   SurfaceBox box_;                   // of the centres, when lists were made
   std::vector<Carried> past_;        // of the grain at hand, as it was before this step

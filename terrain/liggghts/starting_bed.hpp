@@ -16,7 +16,7 @@ struct CarriedBy {
 };
 
 struct StartingBed {
-  std::vector<NewGrain> grains;  // in the order of their numbers
+  std::vector<NewGrain> grains;
   std::vector<PairRecord> pairs;
   std::vector<CarriedBy> walls;
   double top = 0.0;  // no grain stands higher, m
@@ -24,6 +24,7 @@ struct StartingBed {
   std::int64_t size() const { return static_cast<std::int64_t>(grains.size()); }
 };
 
+/// Grains in the order of cells.
 StartingBed starting_bed(const dem::GrainSolver& solver);
 /// The other way round. @pre grains are in the order of their numbers, 0, 1, …
 void begin_from(dem::GrainSolver& solver, const StartingBed& bed);

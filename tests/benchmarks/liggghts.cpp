@@ -39,7 +39,7 @@ class NoWork final : public StepWork {
  public:
   void lists_made(const OwnGrains&) override {}
   StepWish begin_step() override { return {}; }
-  void add_forces(const OwnGrains&, bool) override {}
+  void add_forces(const OwnGrains&, int, int, bool) override {}
   void end_step(const PairSums& pairs, const MotionSums&, bool) override { contacts = pairs.contacts; }
 
   double contacts = 0.0;  // of the last step

@@ -12,6 +12,8 @@
 #include <error.h>
 #include <update.h>
 
+#include "terrain/liggghts/plugin/grain_motion.hpp"
+
 namespace furrow::terrain::liggghts {
 namespace {
 
@@ -19,6 +21,7 @@ constexpr int kCarriedSize = sizeof(Carried) / sizeof(double);
 static_assert(kCarriedSize * sizeof(double) == sizeof(Carried));
 constexpr int kPairSize = 1 + sizeof(PairHistory) / sizeof(double);
 constexpr int kMostPairs = 256;  // of one grain
+constexpr int kTogether = 1024;  // grains, with what they have in about an eighth of a core's second cache
 constexpr double kForever = std::numeric_limits<double>::infinity();
 
 double distance2(const double* a, const std::array<double, 3>& b) {
@@ -42,7 +45,7 @@ FixFurrow::~FixFurrow() { atom->delete_callback(id, 0); }
 
 int FixFurrow::setmask() {
   namespace when = LAMMPS_NS::FixConst;
-  return when::PRE_EXCHANGE | when::PRE_NEIGHBOR | when::PRE_FORCE | when::POST_FORCE | when::FINAL_INTEGRATE;
+  return when::PRE_EXCHANGE | when::PRE_NEIGHBOR | when::PRE_FORCE | when::FINAL_INTEGRATE;
 }
 
 OwnGrains FixFurrow::own() {
@@ -160,7 +163,24 @@ void FixFurrow::pre_force(int) {
   pair_->want_losses(wish_.losses);
 }
 
-void FixFurrow::post_force(int) { work_->add_forces(own(), wish_.losses); }
+/// What walls and tires do to some grains is added just before these move: what a grain has is then in the cache.
+template <bool kSums, bool kSizes>
+void FixFurrow::move() {
+  const OwnGrains grains = own();
+  MovingGrains moving;
+  if (grains.count > 0)
+    moving = {reinterpret_cast<double(*)[3]>(atom->x[0]), reinterpret_cast<double(*)[3]>(atom->v[0]),
+              reinterpret_cast<double(*)[3]>(atom->omega[0]), grains.force, grains.torque, grains.radius};
+  GrainMotion motion(setup_, times_);
+  for (int first = 0; first < grains.count; first += kTogether) {
+    const int last = std::min(first + kTogether, grains.count);
+    work_->add_forces(grains, first, last, wish_.losses);
+    motion.move<kSums, kSizes>(moving, first, last);
+  }
+  fastest_ = motion.fastest();
+  way_ += times_.dt * fastest_;
+  if constexpr (kSums) sums_ = motion.sums();
+}
 
 void FixFurrow::final_integrate() {
   if (wish_.motion) {
@@ -171,38 +191,6 @@ void FixFurrow::final_integrate() {
   if (asking_ != MPI_REQUEST_NULL) MPI_Wait(&asking_, MPI_STATUS_IGNORE);
   if (any_asks_) set_exchange_due();
   work_->end_step(pair_->sums(), sums_, wish_.losses);
-}
-
-template <bool kSums, bool kSizes>
-void FixFurrow::move() {
-  const double kick = times_.kick, dt = times_.dt;
-  const double mass = setup_.grain.mass, inertia = setup_.grain.inertia, radius = setup_.grain.radius;
-  const std::array<double, 3> gravity = setup_.gravity;
-  double volume = 1.0, spread = 1.0, per_mass = 1.0 / mass, per_inertia = 1.0 / inertia;
-  double fastest2 = 0.0;
-  MotionSums sums;
-  const int count = atom->nlocal;
-  for (int g = 0; g < count; ++g) {
-    double *const x = atom->x[g], *const v = atom->v[g], *const w = atom->omega[g];
-    const double *const f = atom->f[g], *const t = atom->torque[g];
-    if constexpr (kSizes) {
-      const double size = atom->radius[g] / radius;
-      volume = size * size * size, spread = volume * size * size;
-      per_mass = 1.0 / (mass * volume), per_inertia = 1.0 / (inertia * spread);
-    }
-    for (int k = 0; k < 3; ++k) {
-      const double a = f[k] * per_mass + gravity[k], alpha = t[k] * per_inertia;
-      v[k] += kick * a;
-      w[k] += kick * alpha;
-      x[k] += dt * v[k];
-    }
-    const double speed2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-    if (!(speed2 <= fastest2)) fastest2 = speed2 < kForever ? speed2 : kForever;
-    if constexpr (kSums) sums.add(x, v, w, volume, spread);
-  }
-  fastest_ = std::sqrt(fastest2);
-  way_ += dt * fastest_;
-  sums_ = sums;
 }
 
 void FixFurrow::grow_arrays(int most) {

@@ -61,7 +61,6 @@ class FixFurrow final : public LAMMPS_NS::Fix {
   void setup_pre_neighbor() override { note_exchange(); }
   void pre_neighbor() override;
   void pre_force(int) override;
-  void post_force(int) override;
   void final_integrate() override;
   void grow_arrays(int most) override;
   void copy_arrays(int from, int to, int) override;

@@ -27,7 +27,7 @@
 namespace furrow::terrain::liggghts {
 
 /// Changes with this header: a library made for another number is refused.
-inline constexpr int kEngineVersion = 4;
+inline constexpr int kEngineVersion = 5;
 /// What the library offers: kMakeEngine makes an engine, kEngineVersionOf tells kEngineVersion.
 inline constexpr char kMakeEngine[] = "furrow_make_engine";
 inline constexpr char kEngineVersionOf[] = "furrow_engine_version";
@@ -39,6 +39,10 @@ struct Carried {
   std::array<double, 3> tangential{};  // spring force on the grain, N
   double root_overlap = 0.0;           // √δ of the step before, √m; 0: apart
   std::array<double, 3> rolling{};     // spring torque, N m
+};
+struct CarriedBy {
+  int grain = -1;  // its number
+  Carried contact;
 };
 using CarriedList = std::pmr::vector<Carried>;
 inline constexpr int kMostCarried = 64;  // by one grain
@@ -103,6 +107,8 @@ class StepWork {
   virtual ~StepWork() = default;
   /// The lists of pairs were made where these grains stand: until it is called again each moves by half a skin at most.
   virtual void lists_made(const OwnGrains& grains) = 0;
+  /// Places in OwnGrains will be others, and lists be made again: what is remembered of grains has to be `carried` now.
+  virtual void numbers_change(const OwnGrains& grains) = 0;
   virtual StepWish begin_step() = 0;
   /// Of the grains first ≤ g < last, which move thereafter: all of a rank's in rising parts, the first of which begins
   /// with grain 0. A rank without grains is not asked. @param losses  as begin_step said

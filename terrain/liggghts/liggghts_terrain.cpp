@@ -163,7 +163,7 @@ class LiggghtsTerrain final : public Terrain {
     archive.put("exchange_due", static_cast<std::int64_t>(engine_->exchange_due() ? 1 : 0));
     if (refinement_.used()) save_fields(archive, kRefinement, refinement_.state());
     contacts_.save(archive);
-    save_grains(*engine_, archive);
+    save_grains(*engine_, contacts_.carried(engine_->own()), archive);
   }
 
   void restore(const Archive& archive) override {

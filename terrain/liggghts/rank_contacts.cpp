@@ -45,20 +45,12 @@ bool inside(const SurfaceBox& box, const double* x) {
          x[2] > box.lo.z() && x[2] < box.hi.z();
 }
 
-/// Few grains touch walls, and they lie far from each other in memory: waiting for it is most of what they cost.
+/// Waiting for memory is most of what grains near a tire cost.
 void fetch(const OwnGrains& grains, int g) {
   __builtin_prefetch(grains.carried + g);
   __builtin_prefetch(grains.position[g]);
   __builtin_prefetch(grains.velocity[g]);
   __builtin_prefetch(grains.spin[g]);
-  __builtin_prefetch(grains.force[g], 1);
-  __builtin_prefetch(grains.torque[g], 1);
-}
-void fetch_histories(const OwnGrains& grains, int g) {
-  const CarriedList& carried = grains.carried[g];
-  if (carried.empty()) return;
-  const auto* const at = reinterpret_cast<const char*>(carried.data());
-  for (std::size_t line = 0; line < sizeof(Carried); line += 64) __builtin_prefetch(at + line, 1);
 }
 
 Carried carried_of(int partner, const Triple<double>& normal, const ContactHistory<double>& h) {
@@ -68,7 +60,10 @@ Carried carried_of(int partner, const Triple<double>& normal, const ContactHisto
 }  // namespace
 
 RankContacts::RankContacts(const dem::DemOptions& options)
-    : options_(options), params_(dem::solver_params(options)), energies_(params_.sample_every) {
+    : options_(options),
+      params_(dem::solver_params(options)),
+      energies_(params_.sample_every),
+      walls_(params_.bin, params_.grain.radius) {
   set_step(options.step);
 }
 
@@ -124,7 +119,7 @@ void RankContacts::begin_interval(std::span<const SurfaceState> targets, double 
 }
 
 void RankContacts::lists_made(const OwnGrains& grains) {
-  looked_ = false;
+  looked_ = walls_listed_ = false;
   box_ = {Vec3::Constant(-kFar),
           Vec3::Constant(kFar)};  // to a rank without grains they may come from anywhere
   if (grains.count == 0) return;
@@ -150,11 +145,13 @@ StepWish RankContacts::begin_step() {
   return {energies_.due(), step_ + 1 == steps_};
 }
 
+void RankContacts::numbers_change(const OwnGrains& grains) {
+  walls_.hand_back(grains);
+  looked_ = walls_listed_ = false;
+}
+
 void RankContacts::add_forces(const OwnGrains& grains, int first, int last, bool losses) {
-  if (first == 0) {
-    if (!looked_far_enough()) look_for_touchable(grains);
-    next_ = 0;
-  }
+  if (first == 0) look(grains);
   if (params_.law == dem::LawKind::hertz_tanh) {
     params_.rolling ? add_forces_of<dem::HertzTanhLaw, true>(grains, last, losses)
                     : add_forces_of<dem::HertzTanhLaw, false>(grains, last, losses);
@@ -166,57 +163,54 @@ void RankContacts::add_forces(const OwnGrains& grains, int first, int last, bool
 
 template <class Law, bool kRolling>
 void RankContacts::add_forces_of(const OwnGrains& grains, int last, bool losses) {
-  const dem::Bin& bin = params_.bin;
-  const SurfaceBox apart = apart_from_walls(params_.largest_radius());
-  const bool by_lanes = !losses && !params_.sizes();
+  WallContacts::Findings found;
+  walls_.add_forces<Law, kRolling>(grains, last, {coefficients_, times_.since, losses, params_.sizes()}, now_,
+                                   found);
+  if (found.lost >= 0) note_lost(grains, found.lost);
+  if (found.hardest >= 0) note(found.overlap, found.share, grains.position[found.hardest]);
   const std::size_t touchable = touchable_.size();
   for (; next_ < touchable && touchable_[next_] < last; ++next_) {
-    const std::size_t n = next_;
-    const int g = touchable_[n];
-    if (n + 2 * kAhead < touchable) fetch(grains, touchable_[n + 2 * kAhead]);
-    if (n + kAhead < touchable) fetch_histories(grains, touchable_[n + kAhead]);
+    const int g = touchable_[next_];
+    if (next_ + kAhead < touchable) fetch(grains, touchable_[next_ + kAhead]);
     const double* const x = grains.position[g];
     CarriedList& mine = grains.carried[g];
-    const bool wall = !inside(apart, x);
-    bool tire = false;
-    for (const Tire& t : tires_) tire |= inside(t.near, x);
-    if (!wall && !tire && mine.empty()) continue;
-    const double r = grains.radius[g];
-    if (wall && !lost_ && !bin.holds({x[0], x[1], x[2], r}))
-      lost_ = LostGrain{grains.id[g] - 1, {x[0], x[1], x[2]}};
-    if constexpr (Law::kHistory)
-      if (by_lanes && !tire) {
-        wait_for_walls<Law, kRolling>(grains, g);
-        continue;
-      }
+    bool near = false;
+    for (const Tire& t : tires_) near |= inside(t.near, x);
+    if (!near && mine.empty()) continue;
     past_.assign(mine.begin(), mine.end());
     mine.clear();
     taken_.assign(past_.size(), 0);
-    if (wall) touch_walls<Law, kRolling>(grains, g, losses);
-    if (tire)
+    if (near)
       for (int k = 0; k < tires(); ++k) touch_tire<Law, kRolling>(grains, g, k, losses);
     if (!losses) continue;
     for (std::size_t p = 0; p < past_.size(); ++p) {
       if (taken_[p]) continue;
-      const int partner = static_cast<int>(past_[p].partner);
+      const Tire& tire = tires_[static_cast<int>(past_[p].partner) - dem::kWalls];
       dem::ContactCoefficients room;
-      const auto& c =
-          partner < dem::kWalls ? of_wall(partner, r, room) : of_tire(tires_[partner - dem::kWalls], r, room);
-      now_.sample.power.opening += dem::held_by_springs(c, triple(past_[p].tangential), past_[p].root_overlap,
-                                                        triple(past_[p].rolling)) /
-                                   times_.since;
+      now_.sample.power.opening +=
+          dem::held_by_springs(of_tire(tire, grains.radius[g], room), triple(past_[p].tangential),
+                               past_[p].root_overlap, triple(past_[p].rolling)) /
+          times_.since;
     }
   }
-  if constexpr (Law::kHistory) {
-    evaluate_walls<Law, kRolling>(grains, floor_lanes_, coefficients_.floor);
-    evaluate_walls<Law, kRolling>(grains, side_lanes_, coefficients_.side);
-  }
+}
+
+void RankContacts::note_lost(const OwnGrains& grains, int g) {
+  const double* const x = grains.position[g];
+  if (!lost_) lost_ = LostGrain{grains.id[g] - 1, {x[0], x[1], x[2]}};
 }
 
 /// Most grains touch nothing but each other. From one making of the lists to the next they move by a skin against where
 /// they stand now at the most: half a skin from where they stood when lists were made, on either side.
-void RankContacts::look_for_touchable(const OwnGrains& grains) {
-  const SurfaceBox apart = apart_from_walls(params_.largest_radius() + params_.skin);
+void RankContacts::look(const OwnGrains& grains) {
+  if (!walls_listed_) {
+    if (const auto lost = walls_.list(grains, params_.largest_radius(), params_.skin))
+      note_lost(grains, *lost);
+    walls_listed_ = true;
+  }
+  walls_.begin();
+  next_ = 0;
+  if (looked_far_enough()) return;
   double low = 1e300;  // of all tires
   for (Tire& t : tires_) {
     t.looked_for = t.near;
@@ -226,7 +220,7 @@ void RankContacts::look_for_touchable(const OwnGrains& grains) {
   touchable_.clear();
   for (int g = 0; g < grains.count; ++g) {
     const double* const x = grains.position[g];
-    bool near = !inside(apart, x) || !grains.carried[g].empty();
+    bool near = !grains.carried[g].empty();
     if (x[2] > low)
       for (const Tire& t : tires_) near |= inside(t.looked_for, x);
     if (near) touchable_.push_back(g);
@@ -242,21 +236,6 @@ bool RankContacts::looked_far_enough() const {
          });
 }
 
-SurfaceBox RankContacts::apart_from_walls(double r) const {
-  const dem::Bin& bin = params_.bin;
-  SurfaceBox box{{r, r - 0.5 * bin.width, r}, {bin.length - r, 0.5 * bin.width - r, kFar}};
-  if (bin.periodic_x) box.lo.x() = -kFar, box.hi.x() = kFar;
-  if (bin.periodic_y) box.lo.y() = -kFar, box.hi.y() = kFar;
-  return box;
-}
-
-const dem::ContactCoefficients& RankContacts::of_wall(int wall, double radius,
-                                                      dem::ContactCoefficients& scaled) const {
-  const dem::ContactCoefficients& c = wall == dem::kFloor ? coefficients_.floor : coefficients_.side;
-  if (radius == params_.grain.radius) return c;
-  return scaled = dem::scaled(c, dem::surface_scale(radius / params_.grain.radius, 0.0));
-}
-
 const dem::ContactCoefficients& RankContacts::of_tire(const Tire& tire, double radius,
                                                       dem::ContactCoefficients& scaled) const {
   if (radius == params_.grain.radius) return tire.coefficients;
@@ -264,75 +243,11 @@ const dem::ContactCoefficients& RankContacts::of_tire(const Tire& tire, double r
                               dem::surface_scale(radius / params_.grain.radius, tire.mass_share));
 }
 
-void RankContacts::note(double overlap, double radius, const double* at) {
+void RankContacts::note(double overlap, double share, const double* at) {
   now_.max_overlap = std::max(now_.max_overlap, overlap);
-  const double share = 0.5 * overlap / radius;
   if (share <= hardest_share_) return;
   hardest_share_ = share;
   hardest_at_ = {at[0], at[1], at[2]};
-}
-
-template <class Law, bool kRolling>
-void RankContacts::wait_for_walls(const OwnGrains& grains, int g) {
-  const double* const x = grains.position[g];
-  std::array<double, dem::kWalls> distance;
-  const unsigned touched = walls_touched(params_.bin, {x[0], x[1], x[2], grains.radius[g]}, distance);
-  CarriedList& mine = grains.carried[g];
-  keep_touched(mine, touched);
-  for (std::size_t entry = 0; entry < mine.size(); ++entry) {
-    const int wall = static_cast<int>(mine[entry].partner);
-    WallLanes& lanes = wall == dem::kFloor ? floor_lanes_ : side_lanes_;
-    lanes.grain[lanes.count] = g, lanes.wall[lanes.count] = wall;
-    lanes.entry[lanes.count] = static_cast<int>(entry);
-    lanes.distance[lanes.count] = distance[wall];
-    if (++lanes.count == WallLanes::kLanes)
-      evaluate_walls<Law, kRolling>(grains, lanes,
-                                    wall == dem::kFloor ? coefficients_.floor : coefficients_.side);
-  }
-}
-
-template <class Law, bool kRolling>
-void RankContacts::evaluate_walls(const OwnGrains& grains, WallLanes& lanes,
-                                  const dem::ContactCoefficients& c) {
-  wall_forces<Law, kRolling>(
-      lanes, grains, c, params_.grain.radius, times_.since, now_,
-      [&](double overlap, int g) { note(overlap, params_.grain.radius, grains.position[g]); });
-}
-
-template <class Law, bool kRolling>
-void RankContacts::touch_walls(const OwnGrains& grains, int g, bool losses) {
-  const double r = grains.radius[g];
-  const Quad at{grains.position[g][0], grains.position[g][1], grains.position[g][2], r};
-  const Triple<double> v = triple(grains.velocity[g]);
-  for (int wall = 0; wall < dem::kWalls; ++wall) {
-    if (!params_.bin.has_wall(wall)) continue;
-    const double distance = params_.bin.distance(wall, at);
-    ContactMotion<double> motion;
-    motion.overlap = r - distance;
-    if (!(motion.overlap > 0.0)) continue;
-    motion.normal = dem::Bin::normal(wall);
-    motion.roll = triple(grains.spin[g]);
-    const Triple<double> arm = -distance * motion.normal;
-    motion.root_overlap = std::sqrt(motion.overlap);
-    motion.velocity = v + cross(motion.roll, arm);
-    motion.spin = 0.5 * dot(motion.roll, motion.normal);
-    ContactHistory<double> history{{0, 0, 0}, 0.0, {0, 0, 0}};
-    for (std::size_t p = 0; p < past_.size(); ++p)
-      if (static_cast<int>(past_[p].partner) == wall) history = history_of(past_[p]), taken_[p] = 1;
-    dem::ContactCoefficients room;
-    const dem::ContactCoefficients& c = of_wall(wall, r, room);
-    if (losses) add(now_.sample, dem::sample_of<Law, kRolling>(c, times_.since, motion, history));
-    const ContactForce<double> f = Law::template force<kRolling>(c, times_.since, motion, history);
-    if constexpr (Law::kHistory) grains.carried[g].push_back(carried_of(wall, motion.normal, history));
-    const Triple<double> force = f.normal * motion.normal + f.tangential;
-    add(grains.force[g], force);
-    add(grains.torque[g], cross(arm, f.tangential) + f.rolling);
-    now_.elastic += f.energy;
-    dem::add(now_.wall_force, dem::Double4{force.x, force.y, force.z, 0.0});
-    if (wall == dem::kFloor) now_.floor_force += force.z;
-    ++now_.contacts;
-    note(motion.overlap, r, grains.position[g]);
-  }
 }
 
 template <class Law, bool kRolling>
@@ -372,8 +287,20 @@ void RankContacts::touch_tire(const OwnGrains& grains, int g, int k, bool losses
     on_grains_ += dem::vec(push + drag);
     now_.elastic += hit.share * f.energy;
     ++now_.contacts;
-    note(hit.overlap, r, grains.position[g]);
+    note(hit.overlap, 0.5 * hit.overlap / r, grains.position[g]);
   }
+}
+
+std::vector<CarriedBy> RankContacts::carried(const OwnGrains& grains) const {
+  std::vector<CarriedBy> all;
+  for (int g = 0; g < grains.count; ++g)
+    for (const Carried& c : grains.carried[g]) all.push_back({g, c});
+  walls_.for_touching([&](int g, const Carried& c) { all.push_back({g, c}); });
+  std::stable_sort(all.begin(), all.end(), [](const CarriedBy& a, const CarriedBy& b) {
+    return std::pair(a.grain, a.contact.partner) < std::pair(b.grain, b.contact.partner);
+  });
+  for (CarriedBy& one : all) one.grain = grains.id[one.grain] - 1;
+  return all;
 }
 
 void RankContacts::sum_motion(const OwnGrains& grains) {

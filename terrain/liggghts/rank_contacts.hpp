@@ -16,7 +16,7 @@
 #include "terrain/dem/solver_setup.hpp"
 #include "terrain/dem/wall_forces.hpp"
 #include "terrain/liggghts/engine.hpp"
-#include "terrain/liggghts/wall_lanes.hpp"
+#include "terrain/liggghts/wall_contacts.hpp"
 #include "terrain/surface/surface_collider.hpp"
 #include "terrain/surface/surface_forces.hpp"
 
@@ -65,6 +65,7 @@ class RankContacts final : public StepWork {
   /// Of the coming steps.
   void set_times(const StepTimes& times) { times_ = times; }
   void lists_made(const OwnGrains& grains) override;
+  void numbers_change(const OwnGrains& grains) override;
   StepWish begin_step() override;
   void add_forces(const OwnGrains& grains, int first, int last, bool losses) override;
   void end_step(const PairSums& pairs, const MotionSums& motion, bool losses) override;
@@ -91,6 +92,9 @@ class RankContacts final : public StepWork {
   /// These are the rank's grains now, other ones than before.
   void sum_motion(const OwnGrains& grains);
 
+  /// What the grains remember of walls and tires, grain by grain.
+  std::vector<CarriedBy> carried(const OwnGrains& grains) const;
+
   void save(Archive& archive) const;
   void restore(const Archive& archive);
 
@@ -109,25 +113,16 @@ class RankContacts final : public StepWork {
 
   template <class Law, bool kRolling>
   void add_forces_of(const OwnGrains& grains, int last, bool losses);
-  /// Its contacts with walls wait for others; at the latest they are evaluated at the end of add_forces_of.
-  template <class Law, bool kRolling>
-  void wait_for_walls(const OwnGrains& grains, int g);
-  template <class Law, bool kRolling>
-  void evaluate_walls(const OwnGrains& grains, WallLanes& lanes, const dem::ContactCoefficients& c);
-  template <class Law, bool kRolling>
-  void touch_walls(const OwnGrains& grains, int g, bool losses);
   template <class Law, bool kRolling>
   void touch_tire(const OwnGrains& grains, int g, int k, bool losses);
-  /// The grains that may touch a wall or a tire before the next look.
-  void look_for_touchable(const OwnGrains& grains);
+  /// Finds the grains that may touch a wall or a tire, where what was found before holds no longer.
+  void look(const OwnGrains& grains);
   bool looked_far_enough() const;
-  /// Where no grain is as near to a wall as `reach`, m; where the bin is periodic, all of it.
-  SurfaceBox apart_from_walls(double reach) const;
+  void note_lost(const OwnGrains& grains, int g);
   /// Where the radius is not that of the reference, `scaled` takes the coefficients.
-  const dem::ContactCoefficients& of_wall(int wall, double radius, dem::ContactCoefficients& scaled) const;
   const dem::ContactCoefficients& of_tire(const Tire& tire, double radius,
                                           dem::ContactCoefficients& scaled) const;
-  void note(double overlap, double radius, const double* at);
+  void note(double overlap, double share, const double* at);
 
   dem::DemOptions options_;
   dem::SolverParams params_;
@@ -142,7 +137,8 @@ class RankContacts final : public StepWork {
   std::optional<LostGrain> lost_;
   double interval_overlap_ = 0.0, hardest_share_ = 0.0;
   std::array<double, 3> hardest_at_{};
-  WallLanes floor_lanes_, side_lanes_;
+  WallContacts walls_;
+  bool walls_listed_ = false;        // they still hold
   std::vector<int> touchable_;       // rising
   std::size_t next_ = 0;             // of those, in this step
   bool looked_ = false;              // touchable_ still holds

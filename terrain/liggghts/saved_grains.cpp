@@ -36,7 +36,7 @@ class Numbers {
 
 }  // namespace
 
-void save_grains(Engine& engine, Archive& archive) {
+void save_grains(Engine& engine, std::span<const CarriedBy> contacts, Archive& archive) {
   std::vector<std::int32_t> id, partners, carriers;
   std::vector<double> state, pairs, carried;
   for (const NewGrain& g : engine.own_state()) {
@@ -51,16 +51,15 @@ void save_grains(Engine& engine, Archive& archive) {
     pairs.push_back(p.root_overlap);
     put(pairs, p.rolling);
   }
-  const OwnGrains own = engine.own();
-  for (int g = 0; g < own.count; ++g)
-    for (const Carried& c : own.carried[g]) {
-      carriers.push_back(own.id[g] - 1);
-      carried.push_back(c.partner);
-      put(carried, c.normal);
-      put(carried, c.tangential);
-      carried.push_back(c.root_overlap);
-      put(carried, c.rolling);
-    }
+  for (const CarriedBy& by : contacts) {
+    const Carried& c = by.contact;
+    carriers.push_back(by.grain);
+    carried.push_back(c.partner);
+    put(carried, c.normal);
+    put(carried, c.tangential);
+    carried.push_back(c.root_overlap);
+    put(carried, c.rolling);
+  }
   archive.put("grains/id", id);
   archive.put("grains/state", state);
   archive.put("pairs/grains", partners);

@@ -10,7 +10,8 @@
 
 namespace furrow::terrain::liggghts {
 
-void save_grains(Engine& engine, Archive& archive);
+/// @param carried  by this rank's grains
+void save_grains(Engine& engine, std::span<const CarriedBy> carried, Archive& archive);
 
 /// @param size grains of all ranks  @throws Error(io) when they do not hold together
 StartingBed read_grains(const Archive& archive, std::int64_t size, int tires);

@@ -38,7 +38,8 @@ void put_in_order(std::vector<NewGrain>& grains, double cell) {
   FURROW_ASSERT(cell > 0.0, cell);
   const auto place = [per_cell = 1.0 / cell](const NewGrain& g) {
     const auto& x = g.position;
-    return std::tuple(std::floor(x[0] * per_cell), std::floor(x[1] * per_cell), std::floor(x[2] * per_cell), g.id);
+    return std::tuple(std::floor(x[0] * per_cell), std::floor(x[1] * per_cell), std::floor(x[2] * per_cell),
+                      g.id);
   };
   std::sort(grains.begin(), grains.end(),
             [&](const NewGrain& a, const NewGrain& b) { return place(a) < place(b); });

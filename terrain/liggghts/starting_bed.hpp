@@ -10,11 +10,6 @@
 
 namespace furrow::terrain::liggghts {
 
-struct CarriedBy {
-  int grain = -1;  // its number
-  Carried contact;
-};
-
 struct StartingBed {
   std::vector<NewGrain> grains;
   std::vector<PairRecord> pairs;

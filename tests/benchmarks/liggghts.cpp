@@ -38,6 +38,7 @@ namespace {
 class NoWork final : public StepWork {
  public:
   void lists_made(const OwnGrains&) override {}
+  void numbers_change(const OwnGrains&) override {}
   StepWish begin_step() override { return {}; }
   void add_forces(const OwnGrains&, int, int, bool) override {}
   void end_step(const PairSums& pairs, const MotionSums&, bool) override { contacts = pairs.contacts; }

@@ -65,6 +65,7 @@ OwnGrains FixFurrow::own() {
 
 /// The numbers of grains change: each grain takes along what it remembers. Of a pair of own grains either may leave.
 void FixFurrow::pre_exchange() {
+  work_->numbers_change(this->own());
   PairLists& lists = pair_->lists();
   if (!lists.valid()) return;
   const int own = atom->nlocal;
@@ -169,8 +170,12 @@ void FixFurrow::move() {
   const OwnGrains grains = own();
   MovingGrains moving;
   if (grains.count > 0)
-    moving = {reinterpret_cast<double(*)[3]>(atom->x[0]), reinterpret_cast<double(*)[3]>(atom->v[0]),
-              reinterpret_cast<double(*)[3]>(atom->omega[0]), grains.force, grains.torque, grains.radius};
+    moving = {reinterpret_cast<double(*)[3]>(atom->x[0]),
+              reinterpret_cast<double(*)[3]>(atom->v[0]),
+              reinterpret_cast<double(*)[3]>(atom->omega[0]),
+              grains.force,
+              grains.torque,
+              grains.radius};
   GrainMotion motion(setup_, times_);
   for (int first = 0; first < grains.count; first += kTogether) {
     const int last = std::min(first + kTogether, grains.count);

@@ -22,7 +22,7 @@ constexpr double kRoom =
     10.0;                     // around a rank's grains for what they may move in one interval, largest radii
 constexpr double kFar = 1e6;  // farther than any wall, m; as in Bin::holds
 constexpr std::size_t kAhead = 10;  // grains for which memory is asked before they are looked at
-constexpr double kTireRoom = 3.0;   // around a tire within which grains are looked for, skins
+constexpr double kTireRoom = 0.5;   // that a tire may move before grains near it are looked for again, skins
 
 using dem::ContactForce;
 using dem::ContactHistory;
@@ -89,7 +89,7 @@ void RankContacts::set_step(double dt) {
 void RankContacts::attach(const SurfaceMesh& mesh, const ContactMaterial& material,
                           const SurfaceState& start) {
   Tire tire;
-  tire.collider = std::make_unique<SurfaceCollider>(mesh, params_.largest_radius());
+  tire.collider = std::make_unique<SurfaceCollider>(mesh, params_.largest_radius() + look_room());
   tire.sum = std::make_unique<NodalForceSum>(mesh.vertex_count, options_.contact_tangents);
   tire.material = material;
   tire.coefficients = dem::surface_coefficients(options_, material, options_.step);
@@ -107,8 +107,12 @@ void RankContacts::begin_interval(std::span<const SurfaceState> targets, double 
   for (std::size_t k = 0; k < tires_.size(); ++k) {
     Tire& tire = tires_[k];
     tire.start.swap(tire.end);
-    for (std::size_t a = 0; a < tire.end.size(); ++a)
+    double way2 = 0.0;
+    for (std::size_t a = 0; a < tire.end.size(); ++a) {
       tire.end[a] = targets[k].position[a] + duration * targets[k].velocity[a];
+      way2 = std::max(way2, (tire.end[a] - tire.start[a]).squaredNorm());
+    }
+    tire.way = std::sqrt(way2) / steps;
     tire.collider->set_motion(tire.start, tire.end, duration);
     tire.collider->restrict_to(grains);
   }
@@ -138,6 +142,7 @@ StepWish RankContacts::begin_step() {
     tire.collider->move_to(static_cast<double>(step_) / steps_);
     tire.near = tire.collider->bounds();
     tire.near.lo -= r, tire.near.hi += r;
+    tire.moved += tire.way;
     tire.forces.clear();
   }
   now_ = {};
@@ -211,29 +216,25 @@ void RankContacts::look(const OwnGrains& grains) {
   walls_.begin();
   next_ = 0;
   if (looked_far_enough()) return;
+  const double room = look_room();
   double low = 1e300;  // of all tires
-  for (Tire& t : tires_) {
-    t.looked_for = t.near;
-    t.looked_for.lo.array() -= kTireRoom * params_.skin, t.looked_for.hi.array() += kTireRoom * params_.skin;
-    low = std::min(low, t.looked_for.lo.z());
-  }
+  for (Tire& t : tires_) t.moved = 0.0, low = std::min(low, t.near.lo.z() - room);
   touchable_.clear();
   for (int g = 0; g < grains.count; ++g) {
     const double* const x = grains.position[g];
     bool near = !grains.carried[g].empty();
     if (x[2] > low)
-      for (const Tire& t : tires_) near |= inside(t.looked_for, x);
+      for (const Tire& t : tires_) near = near || t.collider->near({x[0], x[1], x[2]}, grains.radius[g] + room);
     if (near) touchable_.push_back(g);
   }
   looked_ = true;
 }
 
+double RankContacts::look_room() const { return (1.0 + kTireRoom) * params_.skin; }
+
 bool RankContacts::looked_far_enough() const {
-  const double skin = params_.skin;
-  return looked_ && std::all_of(tires_.begin(), tires_.end(), [skin](const Tire& t) {
-           return (t.near.lo.array() - skin >= t.looked_for.lo.array()).all() &&
-                  (t.near.hi.array() + skin <= t.looked_for.hi.array()).all();
-         });
+  return looked_ && std::all_of(tires_.begin(), tires_.end(),
+                                [&](const Tire& t) { return t.moved <= kTireRoom * params_.skin; });
 }
 
 const dem::ContactCoefficients& RankContacts::of_tire(const Tire& tire, double radius,

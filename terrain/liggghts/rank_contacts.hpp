@@ -107,7 +107,7 @@ class RankContacts final : public StepWork {
     double mass_share = 0.0;       // of surface_scale
     std::vector<Vec3> start, end;  // m
     SurfaceBox near;               // bounds now, grown by the largest radius
-    SurfaceBox looked_for;         // while `near` stays inside, `touchable_` holds all grains in it
+    double way = 0.0, moved = 0.0;  // of the fastest vertex in a step, and since grains near it were looked for, m
     std::vector<SurfaceContactForce> forces;
   };
 
@@ -118,6 +118,8 @@ class RankContacts final : public StepWork {
   /// Finds the grains that may touch a wall or a tire, where what was found before holds no longer.
   void look(const OwnGrains& grains);
   bool looked_far_enough() const;
+  /// What a grain and a tire may come nearer to each other before the next look, m.
+  double look_room() const;
   void note_lost(const OwnGrains& grains, int g);
   /// Where the radius is not that of the reference, `scaled` takes the coefficients.
   const dem::ContactCoefficients& of_tire(const Tire& tire, double radius,

@@ -331,6 +331,13 @@ int SurfaceCollider::hits(const Vec3& centre, double radius, std::span<SurfaceHi
   return d.share_out(found, centre, radius, out);
 }
 
+bool SurfaceCollider::near(const Vec3& centre, double radius) const {
+  FURROW_ASSERT(radius > 0.0 && radius <= data_->reach, radius, data_->reach);
+  const std::span<const int> listed = data_->grid.candidates(centre);
+  return std::any_of(listed.begin(), listed.end(),
+                     [&](int t) { return !data_->off_plane(t, centre, radius); });
+}
+
 Vec3 SurfaceCollider::velocity_at(const SurfaceHit& hit) const {
   FURROW_ASSERT(in_range(hit.triangle, data_->mesh.triangles.size()), hit.triangle,
                 data_->mesh.triangles.size());

@@ -79,6 +79,10 @@ class SurfaceCollider {
   /// @pre 0 < radius ≤ reach
   int hits(const Vec3& centre, double radius, std::span<SurfaceHit> out) const;
 
+  /// Whether the sphere may touch the surface: where it says no, hits() finds nothing. Cheaper than hits().
+  /// @pre 0 < radius ≤ reach
+  bool near(const Vec3& centre, double radius) const;
+
   /// Velocity of the surface at a hit's point: Σ weight · vertex velocity, m/s.
   Vec3 velocity_at(const SurfaceHit& hit) const;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "terrain/dem/accounts/sample_lanes.hpp"
 #include "terrain/dem/size_scale.hpp"
 
 namespace furrow::terrain::liggghts {
@@ -78,6 +79,7 @@ void PairFurrow::evaluate() {
   std::uint8_t* const touching = lists_.touching();
   dem::Quad* const tangential = lists_.tangential();
   dem::Quad* const rolling = lists_.rolling();
+  dem::SampleLanes<Law, kRoll> samples(coefficients_, dt, sums_.sample);
   const int rows = lists_.rows(), last = rows > 0 ? lists_.end(rows - 1) : 0;
   for (int row = 0; row < rows; ++row) {
     const int i = lists_.grain(row), end = lists_.end(row);
@@ -120,7 +122,12 @@ void PairFurrow::evaluate() {
       if constexpr (kSizes) c = dem::scaled(c, dem::pair_scale(r_i / radius_, radius[j] / radius_));
       ContactHistory<double> history{triple(tangential[e]), tangential[e].w, {0, 0, 0}};
       if constexpr (kRoll) history.rolling = triple(rolling[e]);
-      if (losses_) dem::add(sums_.sample, dem::sample_of<Law, kRoll>(c, dt, m, history), share);
+      if (losses_) {
+        if constexpr (kSizes)
+          dem::add(sums_.sample, dem::sample_of<Law, kRoll>(c, dt, m, history), share);
+        else
+          samples.add(m, history, share);
+      }
       const ContactForce<double> at = Law::template force<kRoll>(c, dt, m, history);
       touching[e] = 1;
       if constexpr (Law::kHistory) {
@@ -150,6 +157,7 @@ void PairFurrow::evaluate() {
     add(f[i], force);
     add(t[i], torque);
   }
+  samples.finish();
 }
 
 }  // namespace furrow::terrain::liggghts

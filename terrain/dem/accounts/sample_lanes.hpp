@@ -1,0 +1,64 @@
+// Samples of contacts that come one by one (contact_losses.hpp), evaluated four at a time.
+#pragma once
+
+#include "protocol/core/assert.hpp"
+#include "terrain/dem/accounts/contact_losses.hpp"
+
+namespace furrow::terrain::dem {
+
+/// @tparam Law as contact_sample takes it. All contacts have the same coefficients.
+template <class Law, bool kRolling>
+class SampleLanes {
+ public:
+  /// @param sum  that samples are added to, at the latest by finish()  @pre dt > 0, s
+  SampleLanes(const ContactCoefficients& c, double dt, ContactSample& sum) : c_(c), dt_(dt), sum_(sum) {
+    FURROW_ASSERT(dt > 0.0, dt);
+  }
+
+  /// @param share  of the sample that counts
+  void add(const ContactMotion<double>& motion, const ContactHistory<double>& history, double share) {
+    put(motion_.normal, motion.normal), put(motion_.velocity, motion.velocity);
+    put(motion_.roll, motion.roll);
+    motion_.overlap[count_] = motion.overlap, motion_.root_overlap[count_] = motion.root_overlap;
+    motion_.spin[count_] = motion.spin;
+    put(history_.tangential, history.tangential), put(history_.rolling, history.rolling);
+    history_.root_overlap[count_] = history.root_overlap;
+    share_[count_] = share;
+    if (++count_ == kDoubleLanes) evaluate();
+  }
+  /// Evaluates what waits.
+  void finish() {
+    if (count_ > 0) evaluate();
+  }
+
+ private:
+  void put(Triple<Double4>& to, const Triple<double>& v) const {
+    to.x[count_] = v.x, to.y[count_] = v.y, to.z[count_] = v.z;
+  }
+  /// Out of line, as sample_of() is. Lanes that nobody waits in hold a contact of before, and count for nothing.
+  [[gnu::noinline]] void evaluate() {
+    for (int k = count_; k < kDoubleLanes; ++k) share_[k] = 0.0;
+    const ContactSampleOf<Double4> s = contact_sample<Law, kRolling>(c_, dt_, motion_, history_);
+    const auto of = [this](const Double4& v) { return sum(share_ * v); };
+    dem::add(sum_, {{of(s.power.sliding), of(s.power.normal_damping), of(s.power.tangential_damping),
+                     of(s.power.rolling), of(s.power.opening)},
+                    {of(s.stored.cohesion), of(s.stored.tangential)}});
+    count_ = 0;
+  }
+
+  /// Any that can be evaluated.
+  static ContactMotion<Double4> some_motion() {
+    const Double4 none{}, one = spread(1.0);
+    return {{none, none, one}, one, one, {none, none, none}, none, {none, none, none}};
+  }
+
+  ContactCoefficients c_;
+  double dt_;  // s
+  ContactSample& sum_;
+  int count_ = 0;
+  ContactMotion<Double4> motion_ = some_motion();
+  ContactHistory<Double4> history_{};
+  Double4 share_{};
+};
+
+}  // namespace furrow::terrain::dem

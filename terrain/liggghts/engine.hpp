@@ -27,7 +27,7 @@
 namespace furrow::terrain::liggghts {
 
 /// Changes with this header: a library made for another number is refused.
-inline constexpr int kEngineVersion = 5;
+inline constexpr int kEngineVersion = 6;
 /// What the library offers: kMakeEngine makes an engine, kEngineVersionOf tells kEngineVersion.
 inline constexpr char kMakeEngine[] = "furrow_make_engine";
 inline constexpr char kEngineVersionOf[] = "furrow_engine_version";
@@ -106,12 +106,14 @@ class StepWork {
  public:
   virtual ~StepWork() = default;
   /// The lists of pairs were made where these grains stand: until it is called again each moves by half a skin at most.
-  virtual void lists_made(const OwnGrains& grains) = 0;
+  /// @param order  places in OwnGrains: neighbours in it are neighbours in space
+  virtual void lists_made(const OwnGrains& grains, std::span<const std::int32_t> order) = 0;
   /// Places in OwnGrains will be others, and lists be made again: what is remembered of grains has to be `carried` now.
   virtual void numbers_change(const OwnGrains& grains) = 0;
   virtual StepWish begin_step() = 0;
-  /// Of the grains first ≤ g < last, which move thereafter: all of a rank's in rising parts, the first of which begins
-  /// with grain 0. A rank without grains is not asked. @param losses  as begin_step said
+  /// Of the grains at order[first] to order[last − 1], once their pairs are evaluated: what they have is then in the
+  /// cache. Parts rise from first = 0 and are all grains together; a rank without grains is not asked.
+  /// @param losses  as begin_step said
   virtual void add_forces(const OwnGrains& grains, int first, int last, bool losses) = 0;
   /// The step's pairs, once all grains have moved. @param motion  where begin_step wanted it
   virtual void end_step(const PairSums& pairs, const MotionSums& motion, bool losses) = 0;

@@ -21,8 +21,7 @@ namespace {
 constexpr double kRoom =
     10.0;                     // around a rank's grains for what they may move in one interval, largest radii
 constexpr double kFar = 1e6;  // farther than any wall, m; as in Bin::holds
-constexpr std::size_t kAhead = 10;  // grains for which memory is asked before they are looked at
-constexpr double kTireRoom = 0.5;   // that a tire may move before grains near it are looked for again, skins
+constexpr double kTireRoom = 0.5;  // that a tire may move before grains near it are looked for again, skins
 
 using dem::ContactForce;
 using dem::ContactHistory;
@@ -43,14 +42,6 @@ ContactHistory<double> history_of(const Carried& c) {
 bool inside(const SurfaceBox& box, const double* x) {
   return x[0] > box.lo.x() && x[0] < box.hi.x() && x[1] > box.lo.y() && x[1] < box.hi.y() &&
          x[2] > box.lo.z() && x[2] < box.hi.z();
-}
-
-/// Waiting for memory is most of what grains near a tire cost.
-void fetch(const OwnGrains& grains, int g) {
-  __builtin_prefetch(grains.carried + g);
-  __builtin_prefetch(grains.position[g]);
-  __builtin_prefetch(grains.velocity[g]);
-  __builtin_prefetch(grains.spin[g]);
 }
 
 Carried carried_of(int partner, const Triple<double>& normal, const ContactHistory<double>& h) {
@@ -122,7 +113,8 @@ void RankContacts::begin_interval(std::span<const SurfaceState> targets, double 
   interval_overlap_ = hardest_share_ = 0.0;
 }
 
-void RankContacts::lists_made(const OwnGrains& grains) {
+void RankContacts::lists_made(const OwnGrains& grains, std::span<const std::int32_t> order) {
+  order_ = order;
   looked_ = walls_listed_ = false;
   box_ = {Vec3::Constant(-kFar),
           Vec3::Constant(kFar)};  // to a rank without grains they may come from anywhere
@@ -152,7 +144,7 @@ StepWish RankContacts::begin_step() {
 
 void RankContacts::numbers_change(const OwnGrains& grains) {
   walls_.hand_back(grains);
-  looked_ = walls_listed_ = false;
+  numbered_ = looked_ = walls_listed_ = false;
 }
 
 void RankContacts::add_forces(const OwnGrains& grains, int first, int last, bool losses) {
@@ -174,29 +166,42 @@ void RankContacts::add_forces_of(const OwnGrains& grains, int last, bool losses)
   if (found.lost >= 0) note_lost(grains, found.lost);
   if (found.hardest >= 0) note(found.overlap, found.share, grains.position[found.hardest]);
   const std::size_t touchable = touchable_.size();
-  for (; next_ < touchable && touchable_[next_] < last; ++next_) {
-    const int g = touchable_[next_];
-    if (next_ + kAhead < touchable) fetch(grains, touchable_[next_ + kAhead]);
-    const double* const x = grains.position[g];
-    CarriedList& mine = grains.carried[g];
-    bool near = false;
-    for (const Tire& t : tires_) near |= inside(t.near, x);
-    if (!near && mine.empty()) continue;
+  for (; next_ < touchable && touchable_[next_].place < last; ++next_)
+    touch_tires<Law, kRolling>(grains, touchable_[next_], losses);
+}
+
+/// What a grain remembers is looked at only where it touches a tire or did so in the step before.
+template <class Law, bool kRolling>
+void RankContacts::touch_tires(const OwnGrains& grains, Touchable& t, bool losses) {
+  const double* const x = grains.position[t.grain];
+  const double r = grains.radius[t.grain];
+  CarriedList& mine = grains.carried[t.grain];
+  bool begun = false;
+  const auto begin = [&] {
     past_.assign(mine.begin(), mine.end());
     mine.clear();
     taken_.assign(past_.size(), 0);
-    if (near)
-      for (int k = 0; k < tires(); ++k) touch_tire<Law, kRolling>(grains, g, k, losses);
-    if (!losses) continue;
-    for (std::size_t p = 0; p < past_.size(); ++p) {
-      if (taken_[p]) continue;
-      const Tire& tire = tires_[static_cast<int>(past_[p].partner) - dem::kWalls];
-      dem::ContactCoefficients room;
-      now_.sample.power.opening +=
-          dem::held_by_springs(of_tire(tire, grains.radius[g], room), triple(past_[p].tangential),
-                               past_[p].root_overlap, triple(past_[p].rolling)) /
-          times_.since;
-    }
+    begun = true;
+  };
+  std::array<SurfaceHit, kMaxSurfaceHits> hits;
+  for (int k = 0; k < tires(); ++k) {
+    if (!inside(tires_[k].near, x)) continue;
+    const int count = tires_[k].collider->hits({x[0], x[1], x[2]}, r, hits);
+    if (count == 0) continue;
+    if (!begun) begin();
+    touch_tire<Law, kRolling>(grains, t.grain, k, std::span(hits).first(count), losses);
+  }
+  if (!begun && !t.carries) return;
+  if (!begun) begin();
+  t.carries = !mine.empty();
+  if (!losses) return;
+  for (std::size_t p = 0; p < past_.size(); ++p) {
+    if (taken_[p]) continue;
+    const Tire& tire = tires_[static_cast<int>(past_[p].partner) - dem::kWalls];
+    dem::ContactCoefficients room;
+    now_.sample.power.opening += dem::held_by_springs(of_tire(tire, r, room), triple(past_[p].tangential),
+                                                      past_[p].root_overlap, triple(past_[p].rolling)) /
+                                 times_.since;
   }
 }
 
@@ -209,25 +214,36 @@ void RankContacts::note_lost(const OwnGrains& grains, int g) {
 /// they stand now at the most: half a skin from where they stood when lists were made, on either side.
 void RankContacts::look(const OwnGrains& grains) {
   if (!walls_listed_) {
-    if (const auto lost = walls_.list(grains, params_.largest_radius(), params_.skin))
-      note_lost(grains, *lost);
+    if (const auto lost = walls_.list(grains, order_, params_.skin)) note_lost(grains, *lost);
     walls_listed_ = true;
   }
   walls_.begin();
   next_ = 0;
   if (looked_far_enough()) return;
   const double room = look_room();
-  double low = 1e300;  // of all tires
-  for (Tire& t : tires_) t.moved = 0.0, low = std::min(low, t.near.lo.z() - room);
-  touchable_.clear();
-  for (int g = 0; g < grains.count; ++g) {
-    const double* const x = grains.position[g];
-    bool near = !grains.carried[g].empty();
-    if (x[2] > low)
-      for (const Tire& t : tires_) near = near || t.collider->near({x[0], x[1], x[2]}, grains.radius[g] + room);
-    if (near) touchable_.push_back(g);
+  for (Tire& t : tires_) {
+    t.moved = 0.0;
+    t.looked_for.lo = t.near.lo.array() - room, t.looked_for.hi = t.near.hi.array() + room;
   }
-  looked_ = true;
+  // Whoever carries a history with a tire was found before, unless the numbers of grains were others then.
+  carries_.assign(grains.count, 0);
+  if (numbered_) {
+    for (const Touchable& t : touchable_) carries_[t.grain] = t.carries;
+  } else {
+    for (int g = 0; g < grains.count; ++g) carries_[g] = !grains.carried[g].empty();
+  }
+  touchable_.clear();
+  for (int place = 0; place < grains.count; ++place) {
+    const int g = order_[place];
+    const double* const x = grains.position[g];
+    const bool carries = carries_[g] != 0;
+    bool near = carries;
+    for (const Tire& t : tires_)
+      near =
+          near || (inside(t.looked_for, x) && t.collider->near({x[0], x[1], x[2]}, grains.radius[g] + room));
+    if (near) touchable_.push_back({place, g, carries});
+  }
+  numbered_ = looked_ = true;
 }
 
 double RankContacts::look_room() const { return (1.0 + kTireRoom) * params_.skin; }
@@ -252,19 +268,16 @@ void RankContacts::note(double overlap, double share, const double* at) {
 }
 
 template <class Law, bool kRolling>
-void RankContacts::touch_tire(const OwnGrains& grains, int g, int k, bool losses) {
+void RankContacts::touch_tire(const OwnGrains& grains, int g, int k, std::span<const SurfaceHit> hits,
+                              bool losses) {
   Tire& tire = tires_[k];
-  std::array<SurfaceHit, kMaxSurfaceHits> hits;
   const double r = grains.radius[g];
   const Vec3 centre(grains.position[g][0], grains.position[g][1], grains.position[g][2]);
-  const int count = tire.collider->hits(centre, r, hits);
-  if (count == 0) return;
   const int partner = dem::kWalls + k;
   dem::ContactCoefficients room;
   const dem::ContactCoefficients& c = of_tire(tire, r, room);
   const Triple<double> v = triple(grains.velocity[g]), w = triple(grains.spin[g]);
-  for (int h = 0; h < count; ++h) {
-    const SurfaceHit& hit = hits[h];
+  for (const SurfaceHit& hit : hits) {
     const Triple<double> arm = dem::triple(Vec3(hit.point - centre));
     const ContactMotion<double> motion = dem::motion_at(*tire.collider, hit, arm, v, w);
     ContactHistory<double> history{{0, 0, 0}, 0.0, {0, 0, 0}};

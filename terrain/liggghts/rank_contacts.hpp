@@ -64,7 +64,7 @@ class RankContacts final : public StepWork {
   void begin_interval(std::span<const SurfaceState> targets, double duration, int steps);
   /// Of the coming steps.
   void set_times(const StepTimes& times) { times_ = times; }
-  void lists_made(const OwnGrains& grains) override;
+  void lists_made(const OwnGrains& grains, std::span<const std::int32_t> order) override;
   void numbers_change(const OwnGrains& grains) override;
   StepWish begin_step() override;
   void add_forces(const OwnGrains& grains, int first, int last, bool losses) override;
@@ -107,14 +107,23 @@ class RankContacts final : public StepWork {
     double mass_share = 0.0;       // of surface_scale
     std::vector<Vec3> start, end;  // m
     SurfaceBox near;               // bounds now, grown by the largest radius
-    double way = 0.0, moved = 0.0;  // of the fastest vertex in a step, and since grains near it were looked for, m
+    SurfaceBox looked_for;         // where grains were looked for the last time
+    double way = 0.0;              // of the fastest vertex in a step, m
+    double moved = 0.0;            // by vertices at most since grains were looked for, m
     std::vector<SurfaceContactForce> forces;
+  };
+
+  struct Touchable {
+    int place, grain;      // in order_, in OwnGrains
+    bool carries = false;  // a history with a tire
   };
 
   template <class Law, bool kRolling>
   void add_forces_of(const OwnGrains& grains, int last, bool losses);
   template <class Law, bool kRolling>
-  void touch_tire(const OwnGrains& grains, int g, int k, bool losses);
+  void touch_tires(const OwnGrains& grains, Touchable& t, bool losses);
+  template <class Law, bool kRolling>
+  void touch_tire(const OwnGrains& grains, int g, int k, std::span<const SurfaceHit> hits, bool losses);
   /// Finds the grains that may touch a wall or a tire, where what was found before holds no longer.
   void look(const OwnGrains& grains);
   bool looked_far_enough() const;
@@ -140,13 +149,16 @@ class RankContacts final : public StepWork {
   double interval_overlap_ = 0.0, hardest_share_ = 0.0;
   std::array<double, 3> hardest_at_{};
   WallContacts walls_;
-  bool walls_listed_ = false;        // they still hold
-  std::vector<int> touchable_;       // rising
-  std::size_t next_ = 0;             // of those, in this step
-  bool looked_ = false;              // touchable_ still holds
-  SurfaceBox box_;                   // of the centres, when lists were made
-  std::vector<Carried> past_;        // of the grain at hand, as it was before this step
-  std::vector<std::uint8_t> taken_;  // of those: a point has taken it over
+  bool walls_listed_ = false;            // they still hold
+  std::span<const std::int32_t> order_;  // of lists_made
+  std::vector<Touchable> touchable_;     // in that order
+  std::size_t next_ = 0;                 // of those, in this step
+  std::vector<std::uint8_t> carries_;    // of each grain, while one looks
+  bool looked_ = false;                  // touchable_ still holds
+  bool numbered_ = false;                // the numbers of its grains still hold
+  SurfaceBox box_;                       // of the centres, when lists were made
+  std::vector<Carried> past_;            // of the grain at hand, as it was before this step
+  std::vector<std::uint8_t> taken_;      // of those: a point has taken it over
 };
 
 }  // namespace furrow::terrain::liggghts

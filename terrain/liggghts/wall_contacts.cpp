@@ -5,13 +5,15 @@ namespace furrow::terrain::liggghts {
 void WallContacts::Listed::clear() {
   count = 0;
   grain.clear();
+  place.clear();
   root.clear();
   for (int axis = 0; axis < 3; ++axis) tangential[axis].clear(), rolling[axis].clear();
 }
 
-void WallContacts::Listed::add(int g) {
-  FURROW_ASSERT(grain.empty() || g > grain.back(), g);
+void WallContacts::Listed::add(int g, int at) {
+  FURROW_ASSERT(place.empty() || at > place.back(), at);
   grain.push_back(g);
+  place.push_back(at);
   ++count;
 }
 
@@ -44,42 +46,52 @@ void WallContacts::Listed::take(std::size_t n, const Carried& c) {
     tangential[axis][n] = c.tangential[axis], rolling[axis][n] = c.rolling[axis];
 }
 
-std::optional<int> WallContacts::list(const OwnGrains& grains, double largest_radius, double room) {
-  FURROW_ASSERT(largest_radius > 0.0 && room >= 0.0, largest_radius, room);
+std::optional<int> WallContacts::list(const OwnGrains& grains, std::span<const std::int32_t> order,
+                                      double room) {
+  FURROW_ASSERT(room >= 0.0, room);
+  FURROW_ASSERT(order.size() == static_cast<std::size_t>(grains.count), order.size(), grains.count);
   std::swap(walls_, before_);
   for (Listed& listed : walls_) listed.clear();
   std::optional<int> lost;
-  for (int g = 0; g < grains.count; ++g) {
+  for (int place = 0; place < grains.count; ++place) {
+    const int g = order[place];
     const dem::Quad x = at(grains, g);
-    bool apart = x.w + room < x.z;
-    for (int wall = 0; wall < dem::kFloor && apart; ++wall)
-      apart = !bin_.has_wall(wall) || bin_.distance(wall, x) > largest_radius + room;
-    if (apart && bin_.holds(x)) continue;
     if (!lost && !bin_.holds(x)) lost = g;
     for (int wall = 0; wall < dem::kWalls; ++wall)
-      if (bin_.has_wall(wall) && !(bin_.distance(wall, x) > x.w + room)) walls_[wall].add(g);
+      if (bin_.has_wall(wall) && !(bin_.distance(wall, x) > x.w + room)) walls_[wall].add(g, place);
   }
+  for (Listed& listed : walls_) listed.make_room();
+  if (numbered_)
+    remember();
+  else
+    take_carried(grains);
+  numbered_ = true;
+  return lost;
+}
+
+/// Of the lists before.
+void WallContacts::remember() {
   for (int wall = 0; wall < dem::kWalls; ++wall) {
     Listed& now = walls_[wall];
     const Listed& before = before_[wall];
-    now.make_room();
-    for (std::size_t n = 0, old = 0; n < now.count; ++n) {
-      const int g = now.grain[n];
-      if (numbered_) {
-        while (old < before.count && before.grain[old] < g) ++old;
-        if (old < before.count && before.grain[old] == g) now.copy(n, before, old);
-        continue;
-      }
-      for (const Carried& c : grains.carried[g])
-        if (static_cast<int>(c.partner) == wall) now.take(n, c);
-    }
+    int most = -1;
+    for (std::size_t n = 0; n < now.count; ++n) most = std::max(most, now.grain[n]);
+    before_at_.assign(most + 1, -1);
+    for (std::size_t n = 0; n < before.count; ++n)
+      if (before.grain[n] <= most) before_at_[before.grain[n]] = static_cast<int>(n);
+    for (std::size_t n = 0; n < now.count; ++n)
+      if (const int old = before_at_[now.grain[n]]; old >= 0) now.copy(n, before, old);
   }
-  if (!numbered_)
-    for (int g = 0; g < grains.count; ++g)
-      if (!grains.carried[g].empty())
-        std::erase_if(grains.carried[g], [](const Carried& c) { return c.partner < dem::kWalls; });
-  numbered_ = true;
-  return lost;
+}
+
+void WallContacts::take_carried(const OwnGrains& grains) {
+  for (int wall = 0; wall < dem::kWalls; ++wall)
+    for (std::size_t n = 0; n < walls_[wall].count; ++n)
+      for (const Carried& c : grains.carried[walls_[wall].grain[n]])
+        if (static_cast<int>(c.partner) == wall) walls_[wall].take(n, c);
+  for (int g = 0; g < grains.count; ++g)
+    if (!grains.carried[g].empty())
+      std::erase_if(grains.carried[g], [](const Carried& c) { return c.partner < dem::kWalls; });
 }
 
 void WallContacts::hand_back(const OwnGrains& grains) {

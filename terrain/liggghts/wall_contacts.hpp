@@ -1,5 +1,5 @@
 // The contacts of one rank's grains with the walls of the bin. Who may touch which wall is listed when the lists of
-// pairs are made; the histories lie beside that list, wall by wall in the order of grains, so that four contacts are
+// pairs are made; the histories lie beside that list, wall by wall, so that four contacts are
 // evaluated at a time and nothing is looked for. Before grains change their numbers the histories go to the grains,
 // which carry them from rank to rank (engine.hpp).
 #pragma once
@@ -43,12 +43,12 @@ class WallContacts {
     FURROW_ASSERT(reference > 0.0, reference);
   }
 
-  /// Lists the grains that stand within `room` of touching a wall, m, and takes over what they carry of walls.
+  /// Lists, in this order, the grains that stand within `room` of touching a wall, m, and takes over what they carry of walls.
   /// @returns a grain whose centre is not within the walls
-  std::optional<int> list(const OwnGrains& grains, double largest_radius, double room);
+  std::optional<int> list(const OwnGrains& grains, std::span<const std::int32_t> order, double room);
   /// What is remembered goes to the grains; list() takes it back. Their numbers may change meanwhile.
   void hand_back(const OwnGrains& grains);
-  /// What is remembered, wall by wall in the order of grains: see(grain, history).
+  /// What is remembered, wall by wall: see(grain, history).
   template <class See>
   void for_touching(const See& see) const {
     for (int wall = 0; wall < dem::kWalls; ++wall)
@@ -56,8 +56,8 @@ class WallContacts {
         if (walls_[wall].root[n] > 0.0) see(walls_[wall].grain[n], walls_[wall].carried(wall, n));
   }
 
-  /// Adds what walls do to the grains before `last` that were not asked for since begin(). @pre radii of listed grains
-  /// are `reference` unless step.sizes; step.dt > 0
+  /// Adds what walls do to the grains before place `last` of that order that were not asked for since begin().
+  /// @pre radii of listed grains are `reference` unless step.sizes; step.dt > 0
   template <class Law, bool kRolling>
   void add_forces(const OwnGrains& grains, int last, const Step& step, dem::ContactTotals& sums,
                   Findings& found);
@@ -65,19 +65,16 @@ class WallContacts {
 
  private:
   static constexpr std::size_t kLanes = simd::kDoubleLanes;
-  static constexpr std::size_t kAhead =
-      12;  // contacts for whose grains memory is asked before they are looked at
 
-  /// The grains that may touch one wall, in rising order, and what they remember of it. Arrays have room for kLanes
-  /// more.
+  /// The grains that may touch one wall, and what they remember of it. Arrays have room for kLanes more.
   struct Listed {
     std::size_t count = 0;
-    std::vector<int> grain;
+    std::vector<int> grain, place;                           // in OwnGrains, in the order
     std::array<std::vector<double>, 3> tangential, rolling;  // springs on the grain, N, N m
     std::vector<double> root;                                // √δ of the step before, √m; 0: apart
 
     void clear();
-    void add(int g);
+    void add(int g, int at);
     void make_room();
     void copy(std::size_t to, const Listed& from, std::size_t n);
     Carried carried(int wall, std::size_t n) const;
@@ -96,13 +93,8 @@ class WallContacts {
   template <class Law, bool kRolling>
   void evaluate_one(const Grains& grains, int wall, std::size_t n, const Step& step, dem::ContactTotals& sums,
                     Findings& found);
-  static void fetch(const Grains& grains, int g) {
-    __builtin_prefetch(grains.position[g]);
-    __builtin_prefetch(grains.velocity[g]);
-    __builtin_prefetch(grains.spin[g]);
-    __builtin_prefetch(grains.force[g], 1);
-    __builtin_prefetch(grains.torque[g], 1);
-  }
+  void remember();
+  void take_carried(const OwnGrains& grains);
   const dem::ContactCoefficients& of(int wall, const Step& step) const {
     return wall == dem::kFloor ? step.coefficients.floor : step.coefficients.side;
   }
@@ -131,6 +123,7 @@ class WallContacts {
   std::array<Listed, dem::kWalls> walls_, before_;
   std::array<std::size_t, dem::kWalls> next_{};  // of each wall, in this step
   bool numbered_ = false;                        // the numbers in walls_ are those of the grains now
+  std::vector<int> before_at_;                   // of each grain, its place among those before; -1: none
 };
 
 template <class Law, bool kRolling>
@@ -141,7 +134,7 @@ void WallContacts::add_forces(const OwnGrains& grains, int last, const Step& ste
     const Listed& listed = walls_[wall];
     std::size_t& next = next_[wall];
     std::size_t end = next;
-    while (end < listed.count && listed.grain[end] < last) ++end;
+    while (end < listed.count && listed.place[end] < last) ++end;
     if (step.losses || step.sizes) {
       for (; next < end; ++next) evaluate_one<Law, kRolling>(grains, wall, next, step, sums, found);
       continue;
@@ -157,8 +150,6 @@ void WallContacts::evaluate_four(const Grains& grains, int wall, std::size_t n, 
                                  const Step& step, dem::ContactTotals& sums, Findings& found) {
   Listed& listed = walls_[wall];
   const int* const g = listed.grain.data() + n;
-  for (std::size_t k = 0; k < kLanes; ++k)
-    if (n + kAhead + k < listed.count) fetch(grains, g[kAhead + k]);
   const auto gather = [g](const double(*from)[3], int axis) {
     return Four{from[g[0]][axis], from[g[1]][axis], from[g[2]][axis], from[g[3]][axis]};
   };

@@ -37,7 +37,7 @@ namespace {
 
 class NoWork final : public StepWork {
  public:
-  void lists_made(const OwnGrains&) override {}
+  void lists_made(const OwnGrains&, std::span<const std::int32_t>) override {}
   void numbers_change(const OwnGrains&) override {}
   StepWish begin_step() override { return {}; }
   void add_forces(const OwnGrains&, int, int, bool) override {}

@@ -21,7 +21,6 @@ constexpr int kCarriedSize = sizeof(Carried) / sizeof(double);
 static_assert(kCarriedSize * sizeof(double) == sizeof(Carried));
 constexpr int kPairSize = 1 + sizeof(PairHistory) / sizeof(double);
 constexpr int kMostPairs = 256;  // of one grain
-constexpr int kTogether = 1024;  // grains, with what they have in about an eighth of a core's second cache
 constexpr double kForever = std::numeric_limits<double>::infinity();
 
 double distance2(const double* a, const std::array<double, 3>& b) {
@@ -100,7 +99,7 @@ void FixFurrow::make_lists() {
   }
   for (int i = 0; i < all; ++i) listed_[i] = {atom->x[i][0], atom->x[i][1], atom->x[i][2]};
   way_ = 0.0;
-  work_->lists_made(this->own());
+  work_->lists_made(this->own(), lists.grains());
 }
 
 void FixFurrow::look_again() {
@@ -161,10 +160,9 @@ void FixFurrow::pre_force(int) {
     if (comm->nprocs > 1) MPI_Iallreduce(&asks_, &any_asks_, 1, MPI_INT, MPI_MAX, world, &asking_);
   }
   wish_ = work_->begin_step();
-  pair_->want_losses(wish_.losses);
+  pair_->begin_step(*work_, own(), wish_.losses);
 }
 
-/// What walls and tires do to some grains is added just before these move: what a grain has is then in the cache.
 template <bool kSums, bool kSizes>
 void FixFurrow::move() {
   const OwnGrains grains = own();
@@ -177,11 +175,7 @@ void FixFurrow::move() {
               grains.torque,
               grains.radius};
   GrainMotion motion(setup_, times_);
-  for (int first = 0; first < grains.count; first += kTogether) {
-    const int last = std::min(first + kTogether, grains.count);
-    work_->add_forces(grains, first, last, wish_.losses);
-    motion.move<kSums, kSizes>(moving, first, last);
-  }
+  motion.move<kSums, kSizes>(moving, grains.count);
   fastest_ = motion.fastest();
   way_ += times_.dt * fastest_;
   if constexpr (kSums) sums_ = motion.sums();

@@ -34,19 +34,19 @@ class GrainMotion {
     for (int k = 0; k < 3 * kLanes; ++k) falls_[k / kLanes][k % kLanes] = gravity_[k % 3];
   }
 
-  /// Moves grains first ≤ g < last. @tparam kSums  adds them to sums()  @tparam kSizes  radii differ
+  /// @tparam kSums  adds them to sums()  @tparam kSizes  radii differ
   template <bool kSums, bool kSizes>
-  void move(const MovingGrains& grains, int first, int last) {
-    FURROW_ASSERT(first >= 0 && first <= last, first, last);
-    int g = first;
+  void move(const MovingGrains& grains, int count) {
+    FURROW_ASSERT(count >= 0, count);
+    int g = 0;
     if constexpr (!kSizes) {
       const Four four{times_.kick, times_.dt, 1.0 / mass_, 1.0 / inertia_, falls_};
       Lanes lanes = lanes_;  // a copy: what grains are written to might be these
-      for (; g + kLanes <= last; g += kLanes) four.move<kSums>(grains, g, lanes);
+      for (; g + kLanes <= count; g += kLanes) four.move<kSums>(grains, g, lanes);
       lanes_ = lanes;
-      if constexpr (kSums) sums_.volume += g - first;
+      if constexpr (kSums) sums_.volume += g;
     }
-    for (; g < last; ++g) move_one<kSums, kSizes>(grains, g);
+    for (; g < count; ++g) move_one<kSums, kSizes>(grains, g);
   }
 
   /// Of all that were moved, m/s; infinite where one is not a number.

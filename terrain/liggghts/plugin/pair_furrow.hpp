@@ -21,7 +21,10 @@ class PairFurrow final : public LAMMPS_NS::PairGran {
   void set_coefficients(const dem::ContactCoefficients& c) { coefficients_ = c; }
   /// The coming evaluations: histories grow for `since`, s.
   void set_since(double since) { since_ = since; }
-  void want_losses(bool yes) { losses_ = yes; }
+  /// The coming step. @param grains  of this rank
+  void begin_step(StepWork& work, const OwnGrains& grains, bool losses) {
+    work_ = &work, grains_ = grains, losses_ = losses;
+  }
   PairLists& lists() { return lists_; }
   /// The histories that this rank's lists hold, of its grains; a pair across a border by the rank of the lower number.
   std::vector<PairRecord> records();
@@ -45,6 +48,8 @@ class PairFurrow final : public LAMMPS_NS::PairGran {
   double radius_ = 0.0;  // for which the coefficients are, m
   double since_ = 0.0;   // s
   dem::ContactCoefficients coefficients_;
+  StepWork* work_ = nullptr;  // of this step, as are the grains
+  OwnGrains grains_;
   PairSums sums_;
   PairLists lists_;
 };

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "terrain/dem/quad.hpp"
@@ -58,6 +59,8 @@ class PairLists {
 
   int rows() const { return static_cast<int>(now_.grain.size()); }
   int grain(int row) const { return now_.grain[row]; }
+  /// Of all rows.
+  std::span<const std::int32_t> grains() const { return now_.grain; }
   int begin(int row) const { return now_.first[row]; }
   int end(int row) const { return now_.first[row + 1]; }
   const std::int32_t* partner() const { return now_.partner.data(); }

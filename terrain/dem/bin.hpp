@@ -13,9 +13,10 @@ inline constexpr int kWalls = 5;
 inline constexpr int kFloor = 4;
 
 struct Bin {
-  double length = 0.0;      // x from 0, m
-  double width = 0.0;       // y from −width/2, m
-  bool periodic_x = false;  // grains that leave at one end come back at the other
+  static constexpr double kHigh = 1e6;  // above any grain, m
+  double length = 0.0;                  // x from 0, m
+  double width = 0.0;                   // y from −width/2, m
+  bool periodic_x = false;              // grains that leave at one end come back at the other
   bool periodic_y = false;
 
   bool has_wall(int wall) const { return wall == kFloor || !(wall < 2 ? periodic_x : periodic_y); }
@@ -40,9 +41,14 @@ struct Bin {
   }
   /// Whether a centre is within the walls, and a number.
   bool holds(const Quad& p) const {
-    constexpr double kHigh = 1e6;  // m
     return (periodic_x ? std::isfinite(p.x) : p.x >= 0.0 && p.x <= length) &&
            (periodic_y ? std::isfinite(p.y) : std::abs(p.y) <= 0.5 * width) && p.z >= 0.0 && p.z < kHigh;
+  }
+  /// Whether it holds a centre that is farther than `distance` ≥ 0 from each wall, m.
+  bool holds_apart(const Quad& p, double distance) const {
+    return (periodic_x ? std::isfinite(p.x) : p.x > distance && length - p.x > distance) &&
+           (periodic_y ? std::isfinite(p.y) : 0.5 * width - std::abs(p.y) > distance) && p.z > distance &&
+           p.z < kHigh;
   }
   /// Brings a point back between the periodic sides.
   void wrap(Quad& p) const {

@@ -21,7 +21,8 @@ namespace {
 constexpr double kRoom =
     10.0;                     // around a rank's grains for what they may move in one interval, largest radii
 constexpr double kFar = 1e6;  // farther than any wall, m; as in Bin::holds
-constexpr double kTireRoom = 0.5;  // that a tire may move before grains near it are looked for again, skins
+constexpr int kPart = 256;    // grains whose box is known
+constexpr double kTireRoom = 1.0;  // that a tire may move before grains near it are looked for again, skins
 
 using dem::ContactForce;
 using dem::ContactHistory;
@@ -118,14 +119,19 @@ void RankContacts::lists_made(const OwnGrains& grains, std::span<const std::int3
   looked_ = walls_listed_ = false;
   box_ = {Vec3::Constant(-kFar),
           Vec3::Constant(kFar)};  // to a rank without grains they may come from anywhere
+  parts_.clear();
   if (grains.count == 0) return;
-  Vec3 lo = Vec3::Constant(1e300), hi = -lo;
-  for (int g = 0; g < grains.count; ++g)
-    for (int axis = 0; axis < 3; ++axis) {
-      lo[axis] = std::min(lo[axis], grains.position[g][axis]);
-      hi[axis] = std::max(hi[axis], grains.position[g][axis]);
-    }
-  box_ = {lo, hi};
+  for (int first = 0; first < grains.count; first += kPart) {
+    Vec3 lo = Vec3::Constant(1e300), hi = -lo;
+    for (int place = first; place < std::min(first + kPart, grains.count); ++place)
+      for (int axis = 0; axis < 3; ++axis) {
+        const double x = grains.position[order[place]][axis];
+        lo[axis] = std::min(lo[axis], x), hi[axis] = std::max(hi[axis], x);
+      }
+    parts_.push_back({lo, hi});
+  }
+  box_ = parts_.front();
+  for (const SurfaceBox& part : parts_) box_ = {box_.lo.cwiseMin(part.lo), box_.hi.cwiseMax(part.hi)};
 }
 
 StepWish RankContacts::begin_step() {
@@ -186,7 +192,9 @@ void RankContacts::touch_tires(const OwnGrains& grains, Touchable& t, bool losse
   std::array<SurfaceHit, kMaxSurfaceHits> hits;
   for (int k = 0; k < tires(); ++k) {
     if (!inside(tires_[k].near, x)) continue;
-    const int count = tires_[k].collider->hits({x[0], x[1], x[2]}, r, hits);
+    const int* const begin_of = &near_begin_[t.near + k];
+    const std::span<const int> among(near_.data() + begin_of[0], near_.data() + begin_of[1]);
+    const int count = tires_[k].collider->hits({x[0], x[1], x[2]}, r, among, hits);
     if (count == 0) continue;
     if (!begun) begin();
     touch_tire<Law, kRolling>(grains, t.grain, k, std::span(hits).first(count), losses);
@@ -223,34 +231,63 @@ void RankContacts::look(const OwnGrains& grains) {
   const double room = look_room();
   for (Tire& t : tires_) {
     t.moved = 0.0;
+    t.grid = t.collider->grid_rebuilds();
     t.looked_for.lo = t.near.lo.array() - room, t.looked_for.hi = t.near.hi.array() + room;
   }
   // Whoever carries a history with a tire was found before, unless the numbers of grains were others then.
+  bool all = !numbered_;
   carries_.assign(grains.count, 0);
-  if (numbered_) {
-    for (const Touchable& t : touchable_) carries_[t.grain] = t.carries;
-  } else {
-    for (int g = 0; g < grains.count; ++g) carries_[g] = !grains.carried[g].empty();
+  for (int g = 0; g < grains.count && !numbered_; ++g) carries_[g] = !grains.carried[g].empty();
+  for (const Touchable& t : touchable_) {
+    if (!t.carries || !numbered_) continue;
+    carries_[t.grain] = 1;
+    all |= std::none_of(tires_.begin(), tires_.end(), [x = grains.position[t.grain]](const Tire& tire) {
+      return inside(tire.looked_for, x);
+    });
   }
-  touchable_.clear();
-  for (int place = 0; place < grains.count; ++place) {
+  touchable_.clear(), near_.clear(), near_begin_.clear();
+  for (int first = 0; first < grains.count; first += kPart)
+    if (all || any_near(parts_[first / kPart])) look_at(grains, first, std::min(first + kPart, grains.count));
+  numbered_ = looked_ = true;
+}
+
+/// Whether grains that stood in this box when lists were made may stand where a tire is looked for.
+bool RankContacts::any_near(const SurfaceBox& part) const {
+  const double way = params_.skin;
+  return std::any_of(tires_.begin(), tires_.end(), [&](const Tire& t) {
+    return (part.lo.array() - way <= t.looked_for.hi.array()).all() &&
+           (part.hi.array() + way >= t.looked_for.lo.array()).all();
+  });
+}
+
+void RankContacts::look_at(const OwnGrains& grains, int first, int last) {
+  const double room = look_room();
+  for (int place = first; place < last; ++place) {
     const int g = order_[place];
     const double* const x = grains.position[g];
     const bool carries = carries_[g] != 0;
-    bool near = carries;
-    for (const Tire& t : tires_)
-      near =
-          near || (inside(t.looked_for, x) && t.collider->near({x[0], x[1], x[2]}, grains.radius[g] + room));
-    if (near) touchable_.push_back({place, g, carries});
+    bool beside = carries;
+    for (const Tire& t : tires_) beside |= inside(t.looked_for, x);
+    if (!beside) continue;
+    const std::size_t before = near_.size(), begin = near_begin_.size();
+    for (const Tire& t : tires_) {
+      near_begin_.push_back(static_cast<int>(near_.size()));
+      t.collider->near({x[0], x[1], x[2]}, grains.radius[g] + room, near_);
+    }
+    near_begin_.push_back(static_cast<int>(near_.size()));
+    if (carries || near_.size() > before)
+      touchable_.push_back({place, g, static_cast<int>(begin), carries});
+    else
+      near_begin_.resize(begin);
   }
-  numbered_ = looked_ = true;
 }
 
 double RankContacts::look_room() const { return (1.0 + kTireRoom) * params_.skin; }
 
 bool RankContacts::looked_far_enough() const {
-  return looked_ && std::all_of(tires_.begin(), tires_.end(),
-                                [&](const Tire& t) { return t.moved <= kTireRoom * params_.skin; });
+  return looked_ && std::all_of(tires_.begin(), tires_.end(), [&](const Tire& t) {
+           return t.moved <= kTireRoom * params_.skin && t.grid == t.collider->grid_rebuilds();
+         });
 }
 
 const dem::ContactCoefficients& RankContacts::of_tire(const Tire& tire, double radius,

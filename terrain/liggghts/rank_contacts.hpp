@@ -108,6 +108,7 @@ class RankContacts final : public StepWork {
     std::vector<Vec3> start, end;  // m
     SurfaceBox near;               // bounds now, grown by the largest radius
     SurfaceBox looked_for;         // where grains were looked for the last time
+    std::int64_t grid = 0;         // how often the collider had made its grid then
     double way = 0.0;              // of the fastest vertex in a step, m
     double moved = 0.0;            // by vertices at most since grains were looked for, m
     std::vector<SurfaceContactForce> forces;
@@ -115,6 +116,7 @@ class RankContacts final : public StepWork {
 
   struct Touchable {
     int place, grain;      // in order_, in OwnGrains
+    int near = 0;          // in near_begin_: where its triangles of each tire begin, and their end
     bool carries = false;  // a history with a tire
   };
 
@@ -127,6 +129,8 @@ class RankContacts final : public StepWork {
   /// Finds the grains that may touch a wall or a tire, where what was found before holds no longer.
   void look(const OwnGrains& grains);
   bool looked_far_enough() const;
+  bool any_near(const SurfaceBox& part) const;
+  void look_at(const OwnGrains& grains, int first, int last);
   /// What a grain and a tire may come nearer to each other before the next look, m.
   double look_room() const;
   void note_lost(const OwnGrains& grains, int g);
@@ -152,10 +156,12 @@ class RankContacts final : public StepWork {
   bool walls_listed_ = false;            // they still hold
   std::span<const std::int32_t> order_;  // of lists_made
   std::vector<Touchable> touchable_;     // in that order
+  std::vector<int> near_, near_begin_;   // triangles that touchable grains may touch
   std::size_t next_ = 0;                 // of those, in this step
   std::vector<std::uint8_t> carries_;    // of each grain, while one looks
   bool looked_ = false;                  // touchable_ still holds
   bool numbered_ = false;                // the numbers of its grains still hold
+  std::vector<SurfaceBox> parts_;        // of kPart grains in that order each, when lists were made
   SurfaceBox box_;                       // of the centres, when lists were made
   std::vector<Carried> past_;            // of the grain at hand, as it was before this step
   std::vector<std::uint8_t> taken_;      // of those: a point has taken it over

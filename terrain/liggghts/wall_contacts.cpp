@@ -56,6 +56,7 @@ std::optional<int> WallContacts::list(const OwnGrains& grains, std::span<const s
   for (int place = 0; place < grains.count; ++place) {
     const int g = order[place];
     const dem::Quad x = at(grains, g);
+    if (bin_.holds_apart(x, x.w + room)) continue;
     if (!lost && !bin_.holds(x)) lost = g;
     for (int wall = 0; wall < dem::kWalls; ++wall)
       if (bin_.has_wall(wall) && !(bin_.distance(wall, x) > x.w + room)) walls_[wall].add(g, place);

@@ -304,9 +304,13 @@ SurfaceBox SurfaceCollider::swept_bounds() const {
 }
 
 int SurfaceCollider::hits(const Vec3& centre, double radius, std::span<SurfaceHit> out) const {
+  return hits(centre, radius, data_->grid.candidates(centre), out);
+}
+
+int SurfaceCollider::hits(const Vec3& centre, double radius, std::span<const int> listed,
+                          std::span<SurfaceHit> out) const {
   FURROW_ASSERT(radius > 0.0 && radius <= data_->reach, radius, data_->reach);
   const Data& d = *data_;
-  const std::span<const int> listed = d.grid.candidates(centre);
   // Most grains near a tire do not touch it: they leave here, before the candidate list exists.
   std::size_t first = 0;
   while (first < listed.size() && d.off_plane(listed[first], centre, radius)) ++first;
@@ -331,11 +335,10 @@ int SurfaceCollider::hits(const Vec3& centre, double radius, std::span<SurfaceHi
   return d.share_out(found, centre, radius, out);
 }
 
-bool SurfaceCollider::near(const Vec3& centre, double radius) const {
+void SurfaceCollider::near(const Vec3& centre, double radius, std::vector<int>& triangles) const {
   FURROW_ASSERT(radius > 0.0 && radius <= data_->reach, radius, data_->reach);
-  const std::span<const int> listed = data_->grid.candidates(centre);
-  return std::any_of(listed.begin(), listed.end(),
-                     [&](int t) { return !data_->off_plane(t, centre, radius); });
+  for (const int t : data_->grid.candidates(centre))
+    if (!data_->off_plane(t, centre, radius)) triangles.push_back(t);
 }
 
 Vec3 SurfaceCollider::velocity_at(const SurfaceHit& hit) const {

@@ -79,9 +79,11 @@ class SurfaceCollider {
   /// @pre 0 < radius ≤ reach
   int hits(const Vec3& centre, double radius, std::span<SurfaceHit> out) const;
 
-  /// Whether the sphere may touch the surface: where it says no, hits() finds nothing. Cheaper than hits().
-  /// @pre 0 < radius ≤ reach
-  bool near(const Vec3& centre, double radius) const;
+  /// Appends the triangles that the sphere may touch, in their order, to `triangles`. @pre 0 < radius ≤ reach
+  void near(const Vec3& centre, double radius, std::vector<int>& triangles) const;
+  /// The same as hits(centre, radius, out) if all triangles that it may touch are `among` those.
+  /// @pre grid_rebuilds() is what it was when near() found them
+  int hits(const Vec3& centre, double radius, std::span<const int> among, std::span<SurfaceHit> out) const;
 
   /// Velocity of the surface at a hit's point: Σ weight · vertex velocity, m/s.
   Vec3 velocity_at(const SurfaceHit& hit) const;

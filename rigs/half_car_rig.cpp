@@ -8,6 +8,7 @@
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
+#include "protocol/core/saved_number.hpp"
 #include "protocol/core/mean_turn.hpp"
 #include "rigs/reported_slip.hpp"
 #include "rigs/ride_row.hpp"
@@ -341,7 +342,7 @@ void HalfCar::restore(const Archive& archive) {
     HalfCarWheel& w = wheels_[k];
     if (archive.get_double("mass") != wheel_mass(w) || archive.get_double("radius") != w.radius)
       throw Error(ExitCode::io, "saved rig state belongs to another tire (mass or radius differ)");
-    w.placed_height = archive.get_double("placed_height");
+    w.placed_height = saved_finite(archive, "placed_height");
     restore_fields(archive, "report", w.report);
     restore_fields(archive, "ride", w.row);
   }

@@ -7,6 +7,7 @@
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
+#include "protocol/core/saved_number.hpp"
 #include "protocol/core/mean_turn.hpp"
 #include "rigs/reported_slip.hpp"
 #include "rigs/ride_row.hpp"
@@ -230,7 +231,7 @@ void QuarterCar::save(Archive& archive) const {
 
 void QuarterCar::restore(const Archive& archive) {
   const Archive::Scope scope(archive, "rig/");
-  build(archive.get_double("placed_height"));
+  build(saved_finite(archive, "placed_height"));
   if (archive.get_double("mass") != system_->body(rim_).mass || archive.get_double("radius") != radius_)
     throw Error(ExitCode::io, "saved rig state belongs to another tire (mass or radius differ)");
   system_->restore(archive);

@@ -48,6 +48,18 @@ bool has_allowed_type(const json& node, const json& value) {
 
 bool is_whole(double value) { return value == std::round(value) && std::abs(value) <= kMaxWhole; }
 
+/// The same with numbers beyond 64-bit integers cut there: valijson converts them where a multiple is asked for, which is
+/// undefined. No bound of a schema is as large.
+json within_int64(json value) {
+  constexpr double kMost = 9e18;
+  if (value.is_structured()) {
+    for (json& inner : value) inner = within_int64(std::move(inner));
+  } else if (value.is_number_float() && !(std::abs(value.get<double>()) <= kMost)) {
+    value = std::copysign(kMost, value.get<double>());
+  }
+  return value;
+}
+
 bool in_range(const json& node, const json& value) {
   if (value.is_string()) {
     const auto text = value.get<std::string>();
@@ -205,7 +217,8 @@ std::vector<Problem> Schema::problems(const json& document) const {
   valijson::SchemaParser().populateSchema(schema_adapter, compiled);
   valijson::Validator validator;
   valijson::ValidationResults results;
-  const valijson::adapters::NlohmannJsonAdapter adapter(document);
+  const json bounded = within_int64(document);
+  const valijson::adapters::NlohmannJsonAdapter adapter(bounded);
   if (validator.validate(compiled, adapter, &results)) return {};
 
   std::vector<Problem> found;

@@ -11,6 +11,7 @@
 
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/error.hpp"
+#include "protocol/core/saved_number.hpp"
 #include "terrain/dem/bin.hpp"
 #include "terrain/dem/quad.hpp"
 
@@ -197,6 +198,12 @@ void require_same_parcels(const Archive& archive, const Strips& strips) {
         fmt::format("saved state '{}' is {}, expected {}: another version of the program cut the strips "
                     "of the bed otherwise, and what sleeps with them",
                     kAcross, across, strips.across()));
+}
+
+double saved_step(const Archive& archive, const char* name) {
+  const double step = saved_finite(archive, name);
+  require(step > 0.0, name, [&] { return fmt::format("is {} s", step); });
+  return step;
 }
 
 }  // namespace furrow::terrain::dem

@@ -21,6 +21,7 @@
 #include "terrain/dem/grain_sizes.hpp"
 #include "terrain/dem/refinement/step_refinement.hpp"
 #include "terrain/dem/solver_setup.hpp"
+#include "terrain/dem/solver_state_check.hpp"
 #include "terrain/dem/tires/bin_sides.hpp"
 #include "terrain/dem/tires/surface_start.hpp"
 #include "terrain/liggghts/borders.hpp"
@@ -169,7 +170,7 @@ class LiggghtsTerrain final : public Terrain {
   void restore(const Archive& archive) override {
     const Archive::Scope scope(archive, "terrain/");
     time_ = archive.get_double("time");
-    dt_ = archive.get_double("step");
+    dt_ = dem::saved_step(archive, "step");
     since_ = archive.get_double("since");
     surface_work_ = archive.get_double("surface_work");
     top_ = archive.get_double("top");
@@ -182,7 +183,7 @@ class LiggghtsTerrain final : public Terrain {
     contacts_.restore(archive);
     size_ = archive.get_int("grains/all");
     start(read_grains(archive, size_, contacts_.tires()), true, archive.get_int("exchange_due") != 0);
-    set_part(archive.get_double("part"));
+    set_part(dem::saved_step(archive, "part"));
   }
 
  private:

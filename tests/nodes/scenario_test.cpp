@@ -56,6 +56,16 @@ TEST(Scenario, a_setting_of_every_kind_arrives) {
   EXPECT_EQ(s.terrain_context().seed, 7U);
 }
 
+TEST(Scenario, numbers_that_no_arithmetic_can_bear_are_refused) {
+  const ScenarioFile file(kSmallest);
+  for (const auto& [key, value] : {std::pair{"terrain.young_modulus", "5e-324"},
+                                   {"terrain.density", "1e-300"},
+                                   {"terrain.normal_stiffness", "1e-300"},
+                                   {"tire.elements_width", "-1e308"},
+                                   {"tire.elements_width", "1e308"}})
+    EXPECT_NE(file.complaint({{key, value}}).find(key), std::string::npos) << key << ' ' << value;
+}
+
 TEST(Scenario, completed_text_is_a_scenario_that_gives_the_same_digest) {
   const scenario::Scenario s = testing::ScenarioFile(testing::kSmallest).load({{"rig.slip", "0.2"}});
   const scenario::Scenario again = testing::ScenarioFile(s.completed).load();

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <limits>
 
 #include "protocol/core/error.hpp"
 #include "tests/protocol/fields_of.hpp"
@@ -60,6 +61,14 @@ TEST(Restart, continues_bit_for_bit_whether_placed_before_or_not) {
     expect_equal(*original, *placed);
     expect_equal(*original, *fresh);
   }
+}
+
+TEST(Restart, a_saved_axle_without_a_height_is_refused) {
+  const auto rig = placed_rig(reference_options());
+  Archive archive;
+  rig->save(archive);
+  archive.put("rig/placed_height", std::numeric_limits<double>::quiet_NaN());
+  EXPECT_THROW(rig->restore(archive), Error);
 }
 
 TEST(Restart, continues_bit_for_bit_from_before_and_after_the_axle_is_held) {

@@ -86,6 +86,24 @@ TEST(System, restored_system_continues_bit_for_bit) {
   }
 }
 
+TEST(System, a_saved_state_that_counts_no_steps_is_refused) {
+  Swing swing;
+  EXPECT_TRUE(swing.system.step(1e-3).ok);
+  Archive good;
+  swing.system.save(good);
+  const auto restored = [&](const char* name, auto value) {
+    Archive archive = good;
+    archive.put(name, value);
+    Swing other;
+    other.system.restore(archive);
+  };
+  EXPECT_NO_THROW(restored("count", std::int64_t{5}));
+  EXPECT_THROW(restored("count", std::numeric_limits<std::int64_t>::max()), Error);
+  EXPECT_THROW(restored("count", std::int64_t{-1}), Error);
+  EXPECT_THROW(restored("step", -1.0), Error);
+  EXPECT_THROW(restored("start_time", std::numeric_limits<double>::quiet_NaN()), Error);
+}
+
 TEST(System, the_lists_of_what_is_saved_forget_no_member) {
   using furrow::testing::member_count, furrow::testing::names_of;
   EXPECT_EQ(names_of<vehicle::BodyState>().size(), member_count<vehicle::BodyState>());

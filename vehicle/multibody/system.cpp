@@ -9,9 +9,12 @@
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
+#include "protocol/core/saved_number.hpp"
 
 namespace furrow::vehicle {
 namespace {
+
+constexpr std::int64_t kMostSteps = std::int64_t{1} << 53;  // a double counts no further
 
 const Vec3 kGroundPosition = Vec3::Zero();
 const Mat3 kGroundAxes = Mat3::Identity();
@@ -225,9 +228,12 @@ void System::restore(const Archive& archive) {
   for (Reaction& reaction : reactions_) reactions.take(reaction);
   take_last_forces(archive.get<double>("motor_forces", motors_.size()), motors_);
   take_last_forces(archive.get<double>("element_forces", elements_.size()), elements_);
-  start_time_ = archive.get_double("start_time");
-  step_ = archive.get_double("step");
+  start_time_ = saved_finite(archive, "start_time");
+  step_ = saved_finite(archive, "step");
   count_ = archive.get_int("count");
+  if (step_ < 0.0 || count_ < 0 || count_ > kMostSteps)
+    throw Error(ExitCode::io, "saved state of the multibody system holds step " + std::to_string(count_) +
+                                  " of " + std::to_string(step_) + " s: it is damaged");
   prepare();
   restore_drives(archive);
   update_jacobians();

@@ -43,7 +43,8 @@ class WallContacts {
     FURROW_ASSERT(reference > 0.0, reference);
   }
 
-  /// Lists, in this order, the grains that stand within `room` of touching a wall, m, and takes over what they carry of walls.
+  /// Lists, in this order, the grains that stand within `room` of touching a wall, m. Takes over what they carry of
+  /// walls.
   /// @returns a grain whose centre is not within the walls
   std::optional<int> list(const OwnGrains& grains, std::span<const std::int32_t> order, double room);
   /// What is remembered goes to the grains; list() takes it back. Their numbers may change meanwhile.

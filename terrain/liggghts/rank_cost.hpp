@@ -11,9 +11,9 @@
 namespace furrow::terrain::liggghts {
 
 /// Processor time of a grain-step over that of the engine dem in the program's measure of this machine
-/// (nodes/scenario/machine_speed.hpp): 201, 235 and 232 against 58, 57 and 57 ns, measured in turn on 24,340 grains
+/// (nodes/scenario/machine_speed.hpp): 149 to 185 against 45 to 59 ns, six times in turn (2.9 to 3.4), on 24,340 grains
 /// under a flexible tire with walls, accounts and reports.
-inline constexpr double kGrainStep = 3.9;
+inline constexpr double kGrainStep = 3.2;
 
 struct RankLoad {
   double own = 0.0, ghosts = 0.0;  // grains

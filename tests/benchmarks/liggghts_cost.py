@@ -77,12 +77,12 @@ run {steps}
 # The first pattern that a function (or else its library) matches says to which part it belongs.
 PARTS = [("pairs", r"PairFurrow::evaluate"),
          ("lists", r"PairLists::|FixFurrow::(make_lists|lists_due|strayed|pre_exchange|pre_neighbor|note_exchange|copy|pack_e|unpack_e)|"
-          r"Neighbor::|Comm::(exchange|borders)|AtomVec.*(exchange|border|copy)|Atom::|RankContacts::(lists_made|look_for)"),
-         ("motion", r"FixFurrow::(move|final_integrate)|force_clear|memset|Verlet::"),
-         ("walls", r"touch_walls|wait_for_walls|evaluate_walls|wall_forces|keep_touched|RankContacts::add_forces|Carried"),
+          r"Neighbor::|Comm::(exchange|borders)|AtomVec.*(exchange|border|copy)|Atom::|RankContacts::lists_made"),
+         ("motion", r"FixFurrow::(move|final_integrate)|GrainMotion|force_clear|memset|Verlet::"),
+         ("walls", r"WallContacts|RankContacts::add_forces|Carried"),
          ("tire_contact", r"SurfaceCollider|SurfaceGrid|touch_tire|closest_point|solve_push_out|share_depth|NodalForceSum|SurfaceTopology|"
-          r"on_edge|spin_about|RankContacts::begin_"),
-         ("accounts", r"sample_of|LiggghtsTerrain::state|state_report|terrain_state|EnergyAccounts|RankContacts::end_step|held"),
+          r"on_edge|spin_about|RankContacts::(begin_|look|any_near)"),
+         ("accounts", r"sample_of|SampleLanes|LiggghtsTerrain::state|state_report|terrain_state|EnergyAccounts|RankContacts::end_step|held"),
          ("border_grains", r"Comm::forward_comm|pack_comm|unpack_comm"),
          ("frames_and_files", r"Row\b|hdf5|H5|archive|checkpoint|add_file|state_hash"),
          ("messages_and_polling", r"mca_|libmpi|open-pal|open-rte|libevent|MpiWire|Transport|ByteWriter|ByteReader|PMPI|opal_|ompi_|MPI_|"

@@ -48,8 +48,8 @@ bool has_allowed_type(const json& node, const json& value) {
 
 bool is_whole(double value) { return value == std::round(value) && std::abs(value) <= kMaxWhole; }
 
-/// The same with numbers beyond 64-bit integers cut there: valijson converts them where a multiple is asked for, which is
-/// undefined. No bound of a schema is as large.
+/// The same with numbers beyond 64-bit integers cut there: valijson converts them where a multiple is asked for, which
+/// is undefined. No bound of a schema is as large.
 json within_int64(json value) {
   constexpr double kMost = 9e18;
   if (value.is_structured()) {

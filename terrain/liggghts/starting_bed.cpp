@@ -32,8 +32,8 @@ void share_all(RankGroup& group, std::vector<T>& values) {
   }
 }
 
-/// By cells as wide as the largest grain, z fastest, then y, then x: neighbours in space are neighbours in memory. A bed
-/// numbers its grains as they were dropped, and then each contact waits for memory of its own.
+/// By cells as wide as the largest grain, z fastest, then y, then x: neighbours in space are neighbours in memory. A
+/// bed numbers its grains as they were dropped, and then each contact waits for memory of its own.
 void put_in_order(std::vector<NewGrain>& grains, double cell) {
   FURROW_ASSERT(cell > 0.0, cell);
   const auto place = [per_cell = 1.0 / cell](const NewGrain& g) {

@@ -1,5 +1,5 @@
-// How a rank's grains move in one step (engine.hpp), and the sums over them where they are wanted. Grains of one size go
-// four at a time: their vectors lie behind each other, twelve numbers in three registers.
+// How a rank's grains move in one step (engine.hpp), and the sums over them where they are wanted. Grains of one size
+// go four at a time: their vectors lie behind each other, twelve numbers in three registers.
 #pragma once
 
 #include <array>

@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <string>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -163,6 +165,7 @@ class LiggghtsEngine final : public Engine {
     lmp_->modify->setup_pre_exchange();
     set_borders(borders);
     LAMMPS_NS::Irregular(lmp_.get()).migrate_atoms();
+    put_in_order();
     make_ready();
     fix_->make_lists();
     fix_->look_again();
@@ -202,6 +205,30 @@ class LiggghtsEngine final : public Engine {
   void make_ready() {
     command("run 0 pre yes post no");
     ++lmp_->update->ntimestep;
+  }
+
+  /// Grains that came from several ranks stand in the order in which messages arrived: now by cells and numbers.
+  void put_in_order() {
+    LAMMPS_NS::Atom& atom = *lmp_->atom;
+    const double per_cell = 0.5 / setup_.largest;
+    const auto place = [&](int i) {
+      const double* const x = atom.x[i];
+      return std::tuple(std::floor(x[0] * per_cell), std::floor(x[1] * per_cell), std::floor(x[2] * per_cell),
+                        atom.tag[i]);
+    };
+    std::vector<int> from(atom.nlocal);
+    std::iota(from.begin(), from.end(), 0);
+    std::sort(from.begin(), from.end(), [&](int a, int b) { return place(a) < place(b); });
+    const int spare = atom.nlocal;
+    if (spare >= atom.nmax) atom.avec->grow(0);
+    for (int first = 0; first < spare; ++first) {
+      if (from[first] == first) continue;
+      atom.avec->copy(first, spare, 0);
+      int to = first;
+      for (; from[to] != first; to = std::exchange(from[to], to)) atom.avec->copy(from[to], to, 0);
+      atom.avec->copy(spare, to, 0);
+      from[to] = to;
+    }
   }
 
   /// What touching grains remember becomes that of this rank's own grains.

@@ -10,8 +10,8 @@
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
-#include "protocol/core/saved_number.hpp"
 #include "protocol/core/mean_turn.hpp"
+#include "protocol/core/saved_number.hpp"
 #include "rigs/reported_slip.hpp"
 #include "vehicle/multibody/system.hpp"
 
@@ -142,7 +142,7 @@ class DrawbarRig final : public Rig {
   int rail_ = 0, toe_lock_ = 0, slider_ = 0, spindle_ = 0;  // joints
   int drive_ = 0, spindle_motor_ = 0, steering_ = 0;        // motors
   int damper_ = 0;                                          // force element
-  std::optional<double> held_;  // travel of the slider at which the stop holds it, m
+  std::optional<double> held_;                              // travel of the slider at which the stop holds it, m
   WheelReport report_;
   DrawbarRow row_;
   RigAccounts accounts_ = RigAccounts::none();

@@ -209,6 +209,7 @@ class LiggghtsTerrain final : public Terrain {
   void start(const StartingBed& bed, bool own_only, bool exchange) {
     if (!own_only) size_ = bed.size(), top_ = bed.top;
     engine_.reset();
+    contacts_.forget_grains();
     states_.clear();
     try {
       engine_ = make_engine(setup());

@@ -150,6 +150,12 @@ StepWish RankContacts::begin_step() {
 
 void RankContacts::numbers_change(const OwnGrains& grains) {
   walls_.hand_back(grains);
+  forget_grains();
+}
+
+void RankContacts::forget_grains() {
+  walls_.forget();
+  touchable_.clear();
   numbered_ = looked_ = walls_listed_ = false;
 }
 

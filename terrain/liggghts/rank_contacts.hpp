@@ -64,6 +64,8 @@ class RankContacts final : public StepWork {
   void begin_interval(std::span<const SurfaceState> targets, double duration, int steps);
   /// Of the coming steps.
   void set_times(const StepTimes& times) { times_ = times; }
+  /// The grains are those of another engine.
+  void forget_grains();
   void lists_made(const OwnGrains& grains, std::span<const std::int32_t> order) override;
   void numbers_change(const OwnGrains& grains) override;
   StepWish begin_step() override;

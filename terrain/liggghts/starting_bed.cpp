@@ -1,13 +1,12 @@
 #include "terrain/liggghts/starting_bed.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
-#include <tuple>
 #include <unordered_map>
 #include <utility>
 
 #include "protocol/core/assert.hpp"
+#include "terrain/liggghts/cell_order.hpp"
 
 namespace furrow::terrain::liggghts {
 namespace {
@@ -30,19 +29,6 @@ void share_all(RankGroup& group, std::vector<T>& values) {
     const RankGroup::Bytes piece = send(values.data() + at, bytes);
     if (group.rank() != 0) std::memcpy(static_cast<void*>(values.data() + at), piece.data(), bytes);
   }
-}
-
-/// By cells as wide as the largest grain, z fastest, then y, then x: neighbours in space are neighbours in memory. A
-/// bed numbers its grains as they were dropped, and then each contact waits for memory of its own.
-void put_in_order(std::vector<NewGrain>& grains, double cell) {
-  FURROW_ASSERT(cell > 0.0, cell);
-  const auto place = [per_cell = 1.0 / cell](const NewGrain& g) {
-    const auto& x = g.position;
-    return std::tuple(std::floor(x[0] * per_cell), std::floor(x[1] * per_cell), std::floor(x[2] * per_cell),
-                      g.id);
-  };
-  std::sort(grains.begin(), grains.end(),
-            [&](const NewGrain& a, const NewGrain& b) { return place(a) < place(b); });
 }
 
 std::array<double, 3> array(const dem::Quad& q) { return {q.x, q.y, q.z}; }
@@ -125,7 +111,11 @@ StartingBed starting_bed(const dem::GrainSolver& solver) {
     }
   }
   bed.top = solver.top();
-  put_in_order(bed.grains, 2.0 * solver.params().largest_radius());
+  const auto place = [largest = solver.params().largest_radius()](const NewGrain& g) {
+    return place_in_order(g.position.data(), g.id, largest);
+  };
+  std::sort(bed.grains.begin(), bed.grains.end(),
+            [&](const NewGrain& a, const NewGrain& b) { return place(a) < place(b); });
   return bed;
 }
 

@@ -97,6 +97,10 @@ void WallContacts::take_carried(const OwnGrains& grains) {
 
 void WallContacts::hand_back(const OwnGrains& grains) {
   for_touching([&](int g, const Carried& c) { grains.carried[g].push_back(c); });
+  forget();
+}
+
+void WallContacts::forget() {
   for (Listed& listed : walls_) listed.clear();
   numbered_ = false;
 }

@@ -49,6 +49,8 @@ class WallContacts {
   std::optional<int> list(const OwnGrains& grains, std::span<const std::int32_t> order, double room);
   /// What is remembered goes to the grains; list() takes it back. Their numbers may change meanwhile.
   void hand_back(const OwnGrains& grains);
+  /// The grains are other ones: nothing is remembered.
+  void forget();
   /// What is remembered, wall by wall: see(grain, history).
   template <class See>
   void for_touching(const See& see) const {

@@ -4,7 +4,6 @@
 #include <memory>
 #include <numeric>
 #include <string>
-#include <tuple>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -23,6 +22,7 @@
 #include <modify.h>
 #include <update.h>
 
+#include "terrain/liggghts/cell_order.hpp"
 #include "terrain/liggghts/engine.hpp"
 #include "terrain/liggghts/plugin/fix_furrow.hpp"
 #include "terrain/liggghts/plugin/pair_furrow.hpp"
@@ -210,12 +210,7 @@ class LiggghtsEngine final : public Engine {
   /// Grains that came from several ranks stand in the order in which messages arrived: now by cells and numbers.
   void put_in_order() {
     LAMMPS_NS::Atom& atom = *lmp_->atom;
-    const double per_cell = 0.5 / setup_.largest;
-    const auto place = [&](int i) {
-      const double* const x = atom.x[i];
-      return std::tuple(std::floor(x[0] * per_cell), std::floor(x[1] * per_cell), std::floor(x[2] * per_cell),
-                        atom.tag[i]);
-    };
+    const auto place = [&](int i) { return place_in_order(atom.x[i], atom.tag[i], setup_.largest); };
     std::vector<int> from(atom.nlocal);
     std::iota(from.begin(), from.end(), 0);
     std::sort(from.begin(), from.end(), [&](int a, int b) { return place(a) < place(b); });

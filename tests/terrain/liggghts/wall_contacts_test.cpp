@@ -141,6 +141,17 @@ TEST(WallContacts, histories_outlive_new_lists_and_new_numbers) {
   expect_near(changed.torque, kept.torque, 1e-11);
 }
 
+TEST(WallContacts, grains_of_another_engine_get_nothing_of_those_before) {
+  Crowd crowd, fewer(3);
+  WallContacts walls(crowd.bin, kRadius);
+  walls.list(crowd.all(), crowd.order, kRoom);
+  dem::ContactTotals sums;
+  step(walls, crowd, sums, false, 64);
+  walls.forget();
+  walls.hand_back(fewer.all());
+  for (const CarriedList& list : fewer.carried) EXPECT_TRUE(list.empty());
+}
+
 TEST(WallContacts, a_centre_outside_of_the_walls_is_found) {
   Crowd crowd;
   crowd.position[17] = {0.2, 0.0, -1e-3};

@@ -6,7 +6,7 @@ usage: run_targets.py --out DIR [--seconds S] [--total S] [--only TARGET ...] [-
 
 Each target is built, and runs for S seconds more by the clock, unless it has had its total of processor time; on a busy
 machine that takes longer. DIR/<target>/ keeps corpus/, findings/ (inputs that ended in a crash, in silence, in too much time
-or memory) and log. What ran is added to FILE, tests/fuzz/hours.csv, every ten minutes; --table prints the totals of it. Interrupted, the same
+or memory) and log. What ran is added to FILE, tests/fuzz/hours.csv, every half hour; --table prints the totals of it. Interrupted, the same
 command goes on where it was. Several calls may run at a time, of different targets.
 """
 import argparse
@@ -30,7 +30,7 @@ LONGEST = 20  # s by the clock that an input may take; more on a busy machine
 MEMORY = 3000  # MB that a target may have
 INTERRUPTED = 72  # libFuzzer's exit code
 TRIES = 5  # to continue after a finding, within the seconds of a call
-PART = 600  # s by the clock, after which what ran is counted
+PART = 1800  # s by the clock, after which what ran is counted; each part begins by reading the corpus
 
 
 def environment(folder):

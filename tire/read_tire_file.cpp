@@ -158,7 +158,8 @@ TireFile read_tire_file(const json& document, const std::string& file) {
   for (const char* key : {"template", "Template"})
     if (reader.has(key))
       reader.fail(key, fmt::format("is '{}', expected one of: {}", reader.text(key), fmt::join(valid, ", ")));
-  reader.fail("template", fmt::format("is missing, expected one of: {}", fmt::join(valid, ", ")));
+  reader.fail("template", fmt::format("is missing, expected one of: {}; or 'model' in a tire of another kind",
+                                      fmt::join(valid, ", ")));
 }
 
 }  // namespace furrow::tire

@@ -11,6 +11,7 @@
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
 #include "nodes/scenario/scenario.hpp"
+#include "nodes/scenario/wheel_scales.hpp"
 #include "protocol/core/clock.hpp"
 #include "protocol/files/digits.hpp"
 #include "protocol/files/text_file.hpp"
@@ -45,7 +46,7 @@ tire::PressOptions press_options(const scenario::Scenario& scenario, const Press
   tire::PressOptions o;
   o.deflection = arguments.deflection.value_or(keys.deflection);
   o.points = arguments.points.value_or(keys.points);
-  o.load = arguments.load.value_or(keys.load);
+  o.load = arguments.load.value_or(keys.load < 0.0 ? scenario::wheel_loads(scenario).front() : keys.load);
   o.partial = true;
   o.obstacle.camber = arguments.camber.value_or(keys.camber);
   const double height = arguments.cleat_height.value_or(keys.cleat_height),

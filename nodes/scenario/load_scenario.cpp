@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "nodes/scenario/model_keys.hpp"
+#include "nodes/scenario/refused_scenario.hpp"
 #include "nodes/scenario/rig_tires.hpp"
 #include "nodes/scenario/scenario_checks.hpp"
 #include "nodes/scenario/schema.hpp"
@@ -311,6 +312,8 @@ Scenario load_scenario(const std::filesystem::path& name, const Settings& settin
   require_utf8(s.name, file.string(), "", "has a name");
   json document = read_document(file.string(), settings);
   s.warnings = complete(document, file.string(), settings);
+  if (const std::string warning = other_grains_warning(document, file); !warning.empty())
+    s.warnings.push_back(warning);
   take_run(document["run"], s);
   read_fields(document["output"], s.output);
   read_fields(document["checkpoint"], s.checkpoint);
@@ -326,9 +329,7 @@ Scenario load_scenario(const std::filesystem::path& name, const Settings& settin
     check_scenario(s, *rig);
     rig->complete(document["rig"]);
   } catch (const Error& error) {  // what looks wrong may be why it does not fit
-    std::string text = error.what();
-    for (const std::string& warning : unusual) text += "\n" + warning;
-    throw Error(error.code(), text);
+    throw RefusedScenario(error, unusual);
   }
   if (document.contains("expected")) {
     read_fields(document["expected"], s.expected);

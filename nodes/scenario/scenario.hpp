@@ -72,7 +72,7 @@ struct PressKeys {
   std::string on = "plate";  // plate | cleat
   double deflection = 0.02;  // largest, m
   int points = 10;           // of the curve up to it
-  double load = 4561.65;     // of the footprint, N
+  double load = -1.0;        // of the footprint, N; negative: what the scenario's first wheel carries
   double camber = 0.0;       // of the wheel, rad
   double cleat_height = 0.025, cleat_width = 0.025;  // m
   double cleat_position = 0.0;                       // of its middle, forward of the axle, m

@@ -1,5 +1,7 @@
 #include "nodes/scenario/soil_material.hpp"
 
+#include <cmath>
+
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -18,6 +20,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int kFormatVersion = 1;
+constexpr double kSameSize = 0.01;  // of radii, relative
 
 bool takes(const std::string& engine, const std::string& key) {
   const std::vector<std::string> engines = terrain::engines_of_key(key);
@@ -89,6 +92,26 @@ void override_soil_material(json& document, const std::filesystem::path& scenari
                             const std::string& engine) {
   const json soil = named_material(document, scenario, engine);
   for (const auto& [key, value] : soil.items()) document["terrain"][key] = value;
+}
+
+std::string other_grains_warning(const json& completed, const std::filesystem::path& scenario) {
+  const json& terrain = completed.at("terrain");
+  const json name = terrain.value(kSoilKey, json()), radius = terrain.value("radius", json());
+  if (!name.is_string() || !radius.is_number()) return {};
+  const std::filesystem::path file = find_file(name, "terrain.material", scenario);
+  const json measured = load_json(file, "a soil in JSON").value("measured", json());
+  const json with = measured.is_object() ? measured.value("grain_radius_m", json()) : json();
+  if (!with.is_number() || !(with.get<double>() > 0.0)) return {};
+  if (std::abs(radius.get<double>() / with.get<double>() - 1.0) <= kSameSize) return {};
+  const json soil = read_soil_material(file);
+  if (soil.value("cohesion", 0.0) == 0.0) return {};  // strength without a length in it
+  for (const auto& [key, value] : soil.items())
+    if (terrain.contains(key) && terrain[key] != value) return {};  // a soil of the scenario's own
+  return input_error(scenario.string(), "terrain.radius",
+                     fmt::format("is {} m, but the strength of '{}' was measured with grains of {} m: "
+                                 "cohesion changes with the size of grains",
+                                 number_text(radius), name.get<std::string>(), number_text(with)))
+      .what();
 }
 
 }  // namespace furrow::scenario

@@ -28,4 +28,8 @@ void apply_soil_material(nlohmann::json& document, const std::filesystem::path& 
 void override_soil_material(nlohmann::json& document, const std::filesystem::path& scenario,
                             const std::string& engine);
 
+/// What to say where the scenario takes a cohesive soil as it is, but with grains of another size than those that it
+/// was measured with; empty otherwise. `completed`: the scenario with its defaults.
+std::string other_grains_warning(const nlohmann::json& completed, const std::filesystem::path& scenario);
+
 }  // namespace furrow::scenario

@@ -41,6 +41,9 @@ struct WheelScales {
   std::optional<OnGrains> grains;
 };
 
+/// What each wheel carries when it stands, with the tire's own weight, N.
+std::vector<double> wheel_loads(const Scenario& scenario);
+
 /// Of each wheel.
 std::vector<WheelScales> wheel_scales(const Scenario& scenario);
 

@@ -44,8 +44,10 @@ CalibrationResults calibrate(const Calibration& calibration, const std::filesyst
   for (const Parameter& p : calibration.parameters) names.push_back(p.name);
   EvaluationTable table(folder, calibration.digest, names);
   double share = 0.0;
-  const auto tell = [&](const std::string&, double) {
-    if (progress) progress("calibrating", share);
+  // An evaluation of a noisy model takes minutes: its own progress counts.
+  const double evaluation = calibration.kind->noisy ? 1.0 / calibration.evaluations : 0.0;
+  const auto tell = [&](const std::string&, double done) {
+    if (progress) progress("calibrating", std::min(share + evaluation * done, 1.0));
   };
   Objective objective(calibration, table, tell);
   const OptimizerOptions options{calibration.starts, calibration.seed, calibration.evaluations,

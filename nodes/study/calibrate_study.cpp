@@ -214,9 +214,12 @@ Calibration load_calibration(const std::filesystem::path& name) {
   take_starts(c.parameters, *c.model, reader);
   std::size_t points = 0;
   for (const Target& target : c.model->targets(TargetSet::fitted)) points += target.y.size();
-  if (points < c.parameters.size() || (points == c.parameters.size() && !kind.noisy))
-    reader.fail("targets", fmt::format("has {} points, expected {} there are parameters, {}", points,
-                                       kind.noisy ? "as many as" : "more than", c.parameters.size()));
+  if (points < c.parameters.size() || (points == c.parameters.size() && !kind.noisy)) {
+    const std::vector<std::string> notes = c.model->notes();  // why a target was left out, where one was
+    reader.fail("targets", fmt::format("has {} points, expected {} there are parameters, {}{}{}", points,
+                                       kind.noisy ? "as many as" : "more than", c.parameters.size(),
+                                       notes.empty() ? "" : "; ", fmt::join(notes, "; ")));
+  }
   c.digest = digest_of(c);
   return c;
 }

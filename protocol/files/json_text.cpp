@@ -102,6 +102,9 @@ class Builder final : public nlohmann::json_sax<Json> {
                         "is a number too large for a double, expected at most 1.8e308 in magnitude");
     if (at < text_.size() && text_[at] == '#')
       throw input_error(where, "", "is a comment of another language, expected // or /* */");
+    if (std::filesystem::path(name_).extension() == ".tir")
+      throw input_error(where, "",
+                        "is a tire property file, expected JSON: the key 'tir' of a tire in JSON names such a file");
     std::string what = error.what();
     // "[json.exception.parse_error.101] parse error at line 1, column 2: syntax error while parsing value - …"
     if (const std::size_t from = what.find(" - "); from != std::string::npos) what = what.substr(from + 3);

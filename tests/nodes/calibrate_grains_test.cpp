@@ -119,6 +119,12 @@ TEST_F(CalibrateGrains, a_K_below_what_grains_of_the_size_have_is_told_and_not_f
   EXPECT_NE(c.model->notes()[0].find("janosi_K_m of 2 mm cannot be reached with grains of 20 mm diameter"), std::string::npos);
   EXPECT_EQ(c.model->targets(TargetSet::fitted).size(), 2u);
   EXPECT_EQ(c.model->targets(TargetSet::held_out).size(), 1u);
+  // Where too few are left, it is told why.
+  json few = study;
+  few["targets"].erase(std::size_t{0});
+  EXPECT_NE(complaint(few).find("has 1 points, expected as many as there are parameters, 2; janosi_K_m of 2 mm cannot"),
+            std::string::npos)
+      << complaint(few);
   // Where the size is a parameter, it can follow.
   study["parameters"]["radius"] = {{"lower", 1e-3}, {"upper", 0.012}, {"start", 0.01}};
   EXPECT_TRUE(load(study).model->notes().empty());

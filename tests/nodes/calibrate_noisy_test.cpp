@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <algorithm>
 #include <random>
 #include <set>
 
@@ -40,8 +41,9 @@ class NoisyModel final : public CalibrationModel {
     }
   }
   std::vector<double> start_values() const override { return {}; }
-  Prediction predict(std::span<const double> values, TargetSet, const ProgressCall&) override {
+  Prediction predict(std::span<const double> values, TargetSet, const ProgressCall& progress) override {
     asked.insert(std::vector<double>(values.begin(), values.end()));
+    if (progress) progress("half of it", 0.5);
     Prediction found{figures_(values), noise_, "", 0.5};
     for (std::size_t k = 0; k < found.values.size(); ++k) {
       if (!std::isfinite(found.values[k])) return {{}, {}, "no answer here", 0.5};
@@ -205,6 +207,17 @@ TEST(OptimizeNoisy, an_interrupted_calibration_ends_with_the_same_bits) {
   const CalibrationResults results = calibrate(again, folder.path(), {});
   EXPECT_LT(model_of(again).asked.size(), model_of(whole).asked.size());
   EXPECT_EQ(calibration_json(again, results).dump(), calibration_json(whole, expected).dump());
+}
+
+TEST(OptimizeNoisy, progress_goes_on_within_an_evaluation) {
+  const Calibration c = noisy_study(soil_like, {28.0, 1500.0, 0.014}, kSigma, kNoise, soil_parameters(), 2, 16);
+  const furrow::testing::TemporaryFolder folder;
+  std::vector<double> shares;
+  calibrate(c, folder.path(), [&](const std::string&, double share) { shares.push_back(share); });
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+  ASSERT_GE(shares.size(), 2U);
+  EXPECT_EQ(shares[0], 0.0);
+  EXPECT_EQ(shares[1], 0.5 / 16.0);
 }
 
 TEST(OptimizeNoisy, a_target_that_cannot_be_reached_is_told_with_the_range) {

@@ -236,6 +236,25 @@ TEST(Scenario, soil_file_gives_values_that_the_scenario_may_replace) {
   EXPECT_EQ(file.load({{"terrain.material", "null"}}).terrain->grains()->size_spread, 0.0);
 }
 
+TEST(Scenario, a_cohesive_soil_taken_as_it_is_with_grains_of_another_size_is_warned_of) {
+  const auto warnings = [](const std::string& cohesion, const std::string& measured, const std::string& more) {
+    const testing::ScenarioFile soil(R"({"format_version": 1, "terrain": {"friction": 0.4, "cohesion": )" + cohesion +
+                                     R"(}, "measured": )" + measured + "}");
+    return testing::ScenarioFile(R"({"tire": {"file": "hmmwv_layered.json"}, "terrain": {"material": ")" +
+                                 soil.path().string() + R"(", "radius": 0.006)" + more + "}}")
+        .load()
+        .warnings;
+  };
+  const std::vector<std::string> told = warnings("30e3", R"({"grain_radius_m": 0.01})", "");
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_NE(told[0].find("key 'terrain.radius': is 0.006 m, but the strength of"), std::string::npos) << told[0];
+  EXPECT_TRUE(warnings("30e3", R"({"grain_radius_m": 0.006})", "").empty());
+  EXPECT_TRUE(warnings("30e3", R"({"grain_radius_m": "ten"})", "").empty());
+  EXPECT_TRUE(warnings("30e3", "{}", "").empty());
+  EXPECT_TRUE(warnings("0", R"({"grain_radius_m": 0.01})", "").empty());
+  EXPECT_TRUE(warnings("30e3", R"({"grain_radius_m": 0.01})", R"(, "cohesion": 20e3)").empty()) << "a soil of its own";
+}
+
 TEST(Scenario, mistakes_in_a_soil_file_are_named_with_that_file) {
   const auto complaint = [](const std::string& text) {
     const testing::ScenarioFile soil(text), own(testing::kSmallest);

@@ -403,6 +403,18 @@ class BadFile(SystemTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertRegex(done.stderr, r"^furrow: warning: .*small.json: key 'tire.pressure': 200 Pa is unusually small, usual is .*: did you mean 200e3\?\n$")
 
+    def test_a_warning_beside_an_error_is_told_as_one(self):
+        path = write_scenario(self.folder, changed(tire={"pressure": 200}, terrain={"bed": "none.csv"}))
+        done = furrow("run", path, cwd=self.folder)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        kinds = [line.split(": ")[1] for line in done.stderr.splitlines()]
+        self.assertEqual(kinds, ["warning", "error"], done.stderr)
+
+    def test_a_tire_property_file_where_json_is_expected(self):
+        for line in (self.error_of("validate", "hmmwv_handling.tir"), self.error_of("calibrate", "hmmwv_handling.tir"),
+                     self.error_of("validate", write_scenario(self.folder, changed(terrain={"material": "hmmwv_handling.tir"})))):
+            self.assertIn("hmmwv_handling.tir:1:2: is a tire property file, expected JSON", line)
+
     def test_wrong_rank_count_under_the_users_mpirun(self):
         path = write_scenario(self.folder)
         mpirun = shutil.which("mpirun")

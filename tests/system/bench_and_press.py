@@ -99,6 +99,11 @@ class Press(SystemTest):
         forces = [float(line.split(",")[1]) for line in lines[1:6]]
         self.assertEqual(forces, sorted(forces))
 
+    def test_without_a_load_it_is_pressed_by_what_its_wheel_carries(self):
+        done = self.press("--set", "rig.carrier_mass=null", "--set", "rig.load=1500", "--set", "tire.elements_circumference=60")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertAlmostEqual(json.loads((self.folder / "out/summary.json").read_text())["load_N"], 1500, delta=1e-6)
+
     def test_what_wrinkles_and_what_buckles_on_the_way_is_named(self):
         done = self.press("--set", "tire.file=hmmwv_layered.json", "--set", "tire.elements_circumference=60", "--set", "tire.elements_width=12")
         self.assertEqual(done.returncode, 0, done.stderr)

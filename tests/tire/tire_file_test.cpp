@@ -98,7 +98,7 @@ TEST_F(TireFileTest, every_mistake_names_its_key) {
   EXPECT_EQ(with([](json& j) { j["template"] = "ring"; }),
             "key 'template': is 'ring', expected one of: ancf_shell, ANCFTire");
   EXPECT_EQ(with([](json& j) { j.erase("template"); }),
-            "key 'template': is missing, expected one of: ancf_shell, ANCFTire");
+            "key 'template': is missing, expected one of: ancf_shell, ANCFTire; or 'model' in a tire of another kind");
   EXPECT_EQ(with([](json& j) { j.erase("radius"); }), "key 'radius': is missing, expected a number");
   EXPECT_EQ(with([](json& j) { j["radius"] = -0.4; }), "key 'radius': is -0.4, expected a number above zero");
   EXPECT_EQ(with([](json& j) { j["radius"] = "big"; }), "key 'radius': is 'big', expected a number");

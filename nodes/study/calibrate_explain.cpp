@@ -72,6 +72,10 @@ std::string explain_kind(const CalibrationKind& kind) {
   std::string text = fmt::format("{}\n  Begins from {}.\n\nparameters, with their bounds where the study gives none\n",
                                  with_root(kind.name), kind.start);
   for (const ParameterRule& rule : kind.parameters()) text += row(rule.name, range(rule.lower, rule.upper, rule.unit));
+  if (!kind.quantities) return text;
+  text += "\nquantities of targets, with the range of their values\n";
+  for (const TargetQuantity& q : kind.quantities())
+    text += fmt::format("{:<36} {}\n", q.name, range(q.least, q.most, "-"));
   return text;
 }
 

@@ -380,6 +380,12 @@ class GrainModel final : public CalibrationModel {
 
 std::span<const ParameterRule> grain_parameters() { return kRules; }
 
+std::vector<TargetQuantity> grain_quantities() {
+  std::vector<TargetQuantity> all;
+  for (const Quantity& q : kQuantities) all.push_back({q.name, q.least, q.most});
+  return all;
+}
+
 std::unique_ptr<CalibrationModel> read_grain_calibration(CalibrationInput& input) {
   return std::make_unique<GrainModel>(input);
 }

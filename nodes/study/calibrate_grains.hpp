@@ -13,6 +13,7 @@
 
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "nodes/study/calibrate_kind.hpp"
 
@@ -23,6 +24,8 @@ inline constexpr std::string_view kGrainKeys[] = {"set", "tests"};
 /// friction, rolling_friction, cohesion, radius, size_spread, settling_friction, compaction_pressure, density,
 /// young_modulus: keys of the section `terrain`.
 std::span<const ParameterRule> grain_parameters();
+/// Figures of soil.json, by the names that targets ask for.
+std::vector<TargetQuantity> grain_quantities();
 std::unique_ptr<CalibrationModel> read_grain_calibration(CalibrationInput& input);
 
 }  // namespace furrow::study

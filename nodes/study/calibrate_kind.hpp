@@ -103,6 +103,12 @@ struct CalibrationInput {
   OrderedJsonReader whole;              // the study, for the keys that are the kind's own
 };
 
+/// A figure that targets of a kind may ask for by name, with the range of its values in the unit of the name.
+struct TargetQuantity {
+  std::string_view name;
+  double least, most;
+};
+
 struct CalibrationKind {
   std::string_view name;
   std::string_view start;  // what the start file is, for messages: "a tire file"
@@ -114,6 +120,7 @@ struct CalibrationKind {
   /// Costly and noisy: the study may have the key `evaluations`, and as many parameters as points.
   bool noisy = false;
   std::span<const std::string_view> keys = {};  // of the study, that the kind reads from CalibrationInput::whole
+  std::vector<TargetQuantity> (*quantities)() = nullptr;  // of its targets; none: they are curves of a test
 };
 
 std::span<const CalibrationKind> calibration_kinds();

@@ -17,7 +17,8 @@ constexpr auto kKinds = std::to_array<CalibrationKind>({
     {"handling", "a tire property file (.tir)", handling_parameters, read_handling_calibration, optimize_smooth},
     {"planar", "a tire file", planar_parameters, read_planar_calibration, optimize_smooth},
     {"scm", "a soil file", scm_parameters, read_scm_calibration, optimize_smooth},
-    {"grains", "a scenario with grains", grain_parameters, read_grain_calibration, optimize_noisy, true, kGrainKeys},
+    {"grains", "a scenario with grains", grain_parameters, read_grain_calibration, optimize_noisy, true, kGrainKeys,
+     grain_quantities},
 });
 
 }  // namespace

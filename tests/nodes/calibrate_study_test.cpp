@@ -87,6 +87,10 @@ TEST(CalibrateExplain, every_key_kind_and_parameter_is_explained) {
     for (const std::string_view key : kind.keys)
       EXPECT_NE(std::find(names.begin(), names.end(), key), names.end()) << key;
   }
+  const std::string grains = explain_calibration("calibrate.grains");
+  EXPECT_NE(grains.find("\nquantities of targets, with the range of their values\n"), std::string::npos) << grains;
+  EXPECT_NE(grains.find("\nrepose_angle_without_cohesion_deg    0 to 60\n"), std::string::npos) << grains;
+  EXPECT_EQ(explain_calibration("calibrate.ring").find("quantities"), std::string::npos);
   EXPECT_TRUE(explains_calibrations("calibrate"));
   EXPECT_FALSE(explains_calibrations("calibrates"));
   EXPECT_THROW(explain_calibration("calibrate."), Error);

@@ -34,8 +34,12 @@ std::size_t lanes(std::int64_t pairs) {
 /// One strip after another, with what stands before it in the lists of all.
 class Check {
  public:
-  Check(const Archive& archive, const Strips& strips)
-      : archive_(archive), strips_(strips), count_(static_cast<std::size_t>(strips.count())) {}
+  Check(const Archive& archive, const Strips& strips, double smallest, double largest)
+      : archive_(archive),
+        strips_(strips),
+        smallest_(smallest),
+        largest_(largest),
+        count_(static_cast<std::size_t>(strips.count())) {}
 
   void run() {
     grains();
@@ -53,8 +57,14 @@ class Check {
     n_ = archive_.get_int("count");
     require(n_ >= 0 && n_ <= kMaxGrains, "count", [&] { return fmt::format("is {}", n_); });
     const auto n = static_cast<std::size_t>(n_);
-    for (const double x : archive_.get<double>("position", 4 * n))
+    const auto& positions = archive_.get<double>("position", 4 * n);
+    for (const double x : positions)
       require(std::abs(x) < kFar, "position", [&] { return "holds a value that is not a position"; });
+    for (std::size_t w = 3; w < positions.size(); w += 4)
+      require(positions[w] >= smallest_ && positions[w] <= largest_, "position", [&] {
+        return fmt::format("holds a grain of radius {:g} m, expected {:g} to {:g} m", positions[w], smallest_,
+                           largest_);
+      });
     for (const std::int32_t id : archive_.get<std::int32_t>("id", n))
       require(id >= 0 && id < n_, "id", [&] { return fmt::format("names grain {} of {}", id, n_); });
   }
@@ -177,6 +187,7 @@ class Check {
 
   const Archive& archive_;
   const Strips& strips_;
+  double smallest_, largest_;  // radii of grains, m
   std::size_t count_;
   std::int64_t n_ = 0;
   std::vector<std::int32_t> first_, last_;
@@ -184,7 +195,9 @@ class Check {
 
 }  // namespace
 
-void check_solver_state(const Archive& archive, const Strips& strips) { Check(archive, strips).run(); }
+void check_solver_state(const Archive& archive, const Strips& strips, double smallest, double largest) {
+  Check(archive, strips, smallest, largest).run();
+}
 
 std::int64_t saved_across(const Archive& archive) {
   return archive.has(kAcross) ? archive.get_int(kAcross) : 1;

@@ -9,8 +9,9 @@
 namespace furrow::terrain::dem {
 
 /// Every length and every index that the solver follows. @param strips as the solver's options make them
+/// @param smallest, largest radii of the grains that the solver takes, m
 /// @throws Error(io) naming the array and what is wrong with it
-void check_solver_state(const Archive& archive, const Strips& strips);
+void check_solver_state(const Archive& archive, const Strips& strips, double smallest, double largest);
 
 /// Into how many parcels the strips of a saved state are cut, by its array kAcross.
 inline constexpr char kAcross[] = "parcels/across";

@@ -34,7 +34,8 @@ Archive saved() {
   return archive;
 }
 
-std::string complaint(Archive archive, const std::string& name, double value) {
+template <class Value>
+std::string complaint(Archive archive, const std::string& name, const Value& value) {
   if (!archive.has(name)) return "there is no " + name;
   archive.put(name, value);
   const auto terrain = make_dem_terrain(few_large_grains());
@@ -56,6 +57,19 @@ TEST(SavedTerrain, a_step_that_is_none_is_refused) {
   EXPECT_NE(
       complaint(good, "terrain/step", std::numeric_limits<double>::quiet_NaN()).find("'step' is not finite"),
       std::string::npos);
+}
+
+TEST(SavedTerrain, a_grain_of_a_size_that_the_terrain_does_not_have_is_refused) {
+  const Archive good = saved();
+  const std::vector<double> positions = good.get<double>("terrain/position");
+  EXPECT_EQ(complaint(good, "terrain/position", positions), "");
+  for (const double share : {-1.0, 0.0, 0.5, 1.01}) {
+    std::vector<double> changed = positions;
+    changed[3] *= share;  // x, y, z, radius
+    EXPECT_NE(complaint(good, "terrain/position", changed).find("'position' holds a grain of radius"),
+              std::string::npos)
+        << share;
+  }
 }
 
 TEST(SavedTerrain, a_tire_of_a_material_that_cannot_be_is_refused) {

@@ -204,7 +204,7 @@ def main():
             shutil.rmtree(folder, ignore_errors=True)
     report["scale"] = arguments.scale
     report["made"] = {"commit": provenance.commit(), "compiler": report.pop("compiler"), "processor": report.pop("processor"),
-                      "command": provenance.command()}
+                      "command": f"soak.py {arguments.case}" + (f" --scale {arguments.scale:g}" if arguments.scale != 1.0 else "")}
     print(json.dumps(report, indent=1))
     if arguments.json:
         reports = json.loads(arguments.json.read_text()) if arguments.json.exists() else {}

@@ -44,22 +44,13 @@ json values_for(const std::string& engine, const json& soil, const std::string& 
   return own;
 }
 
-/// What the soil named in the scenario says to the engine; null when none is named.
-json named_material(const json& document, const std::filesystem::path& scenario, const std::string& engine) {
-  const auto terrain = document.find("terrain");
-  if (terrain == document.end() || !terrain->is_object()) return {};
-  const auto name = terrain->find("material");
-  if (name == terrain->end() || name->is_null()) return {};
-  if (!name->is_string())
-    throw input_error(scenario.string(), "terrain.material",
-                      "is " + value_text(*name) + ", expected the name of a soil file or null");
-  const std::filesystem::path file = find_file(*name, "terrain.material", scenario);
-  return values_for(engine, read_soil_material(file), file.string());
-}
+/// What a soil file holds, checked.
+struct SoilFile {
+  json values;    // by their key in `terrain`
+  json measured;  // null: nothing
+};
 
-}  // namespace
-
-json read_soil_material(const std::filesystem::path& file) {
+SoilFile read_soil_file(const std::filesystem::path& file) {
   const std::string name = file.string();
   const json soil = load_json(file, "a soil in JSON");
   refuse_other_kinds(soil, FileKind::soil, name);
@@ -79,8 +70,25 @@ json read_soil_material(const std::filesystem::path& file) {
   schema.normalize(alone);
   for (const Problem& problem : schema.problems(alone))
     if (problem.key.starts_with("terrain")) throw input_error(name, problem.key, problem.what);
-  return alone["terrain"];
+  return {alone["terrain"], soil.value("measured", json())};
 }
+
+/// What the soil named in the scenario says to the engine; null when none is named.
+json named_material(const json& document, const std::filesystem::path& scenario, const std::string& engine) {
+  const auto terrain = document.find("terrain");
+  if (terrain == document.end() || !terrain->is_object()) return {};
+  const auto name = terrain->find("material");
+  if (name == terrain->end() || name->is_null()) return {};
+  if (!name->is_string())
+    throw input_error(scenario.string(), "terrain.material",
+                      "is " + value_text(*name) + ", expected the name of a soil file or null");
+  const std::filesystem::path file = find_file(*name, "terrain.material", scenario);
+  return values_for(engine, read_soil_material(file), file.string());
+}
+
+}  // namespace
+
+json read_soil_material(const std::filesystem::path& file) { return read_soil_file(file).values; }
 
 void apply_soil_material(json& document, const std::filesystem::path& scenario, const std::string& engine) {
   const json soil = named_material(document, scenario, engine);
@@ -99,13 +107,12 @@ std::string other_grains_warning(const json& completed, const std::filesystem::p
   const json name = terrain.value(kSoilKey, json()), radius = terrain.value("radius", json());
   if (!name.is_string() || !radius.is_number()) return {};
   const std::filesystem::path file = find_file(name, "terrain.material", scenario);
-  const json measured = load_json(file, "a soil in JSON").value("measured", json());
-  const json with = measured.is_object() ? measured.value("grain_radius_m", json()) : json();
+  const SoilFile soil = read_soil_file(file);
+  const json with = soil.measured.is_object() ? soil.measured.value("grain_radius_m", json()) : json();
   if (!with.is_number() || !(with.get<double>() > 0.0)) return {};
   if (std::abs(radius.get<double>() / with.get<double>() - 1.0) <= kSameSize) return {};
-  const json soil = read_soil_material(file);
-  if (soil.value("cohesion", 0.0) == 0.0) return {};  // strength without a length in it
-  for (const auto& [key, value] : soil.items())
+  if (soil.values.value("cohesion", 0.0) == 0.0) return {};  // strength without a length in it
+  for (const auto& [key, value] : soil.values.items())
     if (terrain.contains(key) && terrain[key] != value) return {};  // a soil of the scenario's own
   return input_error(scenario.string(), "terrain.radius",
                      fmt::format("is {} m, but the strength of '{}' was measured with grains of {} m: "

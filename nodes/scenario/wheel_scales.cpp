@@ -159,28 +159,30 @@ void add_rates(const WheelScales::OnGrains& g, Bounds& to) {
                   100.0 * g.impact, 100.0 * kRateEffect));
 }
 
+double load_of(const Scenario& s, const rigs::WheelDescription& wheel, const tire::TireDescription& tire) {
+  return -(wheel.carried_mass + tire.mass.mass) * s.rig->gravity().z();
+}
+
 }  // namespace
 
 std::vector<double> wheel_loads(const Scenario& s) {
   const std::vector<tire::TireDescription> tires = describe_tires(s);
   const rigs::RigDescription rig = describe_rig(s);
   std::vector<double> loads;
-  for (std::size_t k = 0; k < tires.size(); ++k)
-    loads.push_back(-(rig.wheels[k].carried_mass + tires[k].mass.mass) * s.rig->gravity().z());
+  for (std::size_t k = 0; k < tires.size(); ++k) loads.push_back(load_of(s, rig.wheels[k], tires[k]));
   return loads;
 }
 
 std::vector<WheelScales> wheel_scales(const Scenario& s) {
   const std::vector<tire::TireDescription> tires = describe_tires(s);
   const rigs::RigDescription rig = describe_rig(s);
-  const std::vector<double> loads = wheel_loads(s);
   const DemOptions* grains = s.terrain->grains();
   const double height = s.terrain->estimate(s.terrain_context()).expected_height;
   std::vector<WheelScales> all;
   for (std::size_t k = 0; k < tires.size(); ++k) {
     const rigs::WheelDescription& wheel = rig.wheels[k];
     WheelScales w;
-    w.load = loads[k];
+    w.load = load_of(s, wheel, tires[k]);
     w.froude = std::max(std::abs(wheel.speed), std::abs(wheel.tread_speed)) / std::sqrt(kG * tires[k].radius);
     if (grains) w.grains = on_grains(s, *grains, tires[k], wheel, w.load, height);
     if (wheel.lowering_time > 0.0 && wheel.lowering_speed > 0.0)

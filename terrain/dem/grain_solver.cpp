@@ -72,13 +72,9 @@ void GrainSolver::place(const std::vector<Quad>& positions) {
   for (std::size_t i = 0; i < positions.size(); ++i) {
     Quad& p = grains_.position[i] = positions[i];
     if (p.w == 0.0) p.w = params_.grain.radius;
-    const bool fits =
-        params_.sizes() ? p.w >= params_.smallest && p.w <= params_.largest : p.w == params_.grain.radius;
-    if (!fits)
-      throw Error(
-          ExitCode::bad_input,
-          fmt::format("grain {} has radius {:g} m, expected {:g} to {:g} m", i, p.w,
-                      params_.sizes() ? params_.smallest : params_.grain.radius, params_.largest_radius()));
+    if (!(p.w >= params_.smallest_radius() && p.w <= params_.largest_radius()))
+      throw Error(ExitCode::bad_input, fmt::format("grain {} has radius {:g} m, expected {:g} to {:g} m", i, p.w,
+                                                   params_.smallest_radius(), params_.largest_radius()));
   }
   surfaces_.resize(strips_.count());
   overlap_bound_.clear();

@@ -54,6 +54,7 @@ struct SolverParams {
 
   /// Grains of several sizes: law mindlin only.
   bool sizes() const { return largest > smallest; }
+  double smallest_radius() const { return sizes() ? smallest : grain.radius; }
   double largest_radius() const { return sizes() ? largest : grain.radius; }
 };
 

@@ -134,8 +134,7 @@ void GrainSolver::save(Archive& archive) const {
 }
 
 void GrainSolver::restore(const Archive& archive) {
-  check_solver_state(archive, strips_, params_.sizes() ? params_.smallest : params_.grain.radius,
-                     params_.largest_radius());
+  check_solver_state(archive, strips_, params_.smallest_radius(), params_.largest_radius());
   const auto n = static_cast<std::size_t>(archive.get_int("count"));
   grains_.resize(static_cast<int>(n));
   get_quads(archive, "position", grains_.position.data(), n);

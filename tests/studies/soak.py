@@ -129,7 +129,15 @@ def early_and_late(series):
     return [(sum(s[0] for s in part) / len(part), max(s[1] for s in part)) for part in parts]
 
 
-def judge(report, samples, steps):
+def rates(ends):
+    """Milliseconds per step of the second and of the last quarter. @param ends [(wall time in s, step)], growing"""
+    quarter = len(ends) // 4
+    spans = (ends[quarter], ends[2 * quarter]), (ends[-1 - quarter], ends[-1])
+    return [round(1e3 * (b[0] - a[0]) / (b[1] - a[1]), 4) for a, b in spans]
+
+
+def judge(report, samples, what, ends):
+    """@param ends: [(wall time in s, number done)] of each `what`, which is a step or a run"""
     grew = False
     for name, series in sorted(samples.items()):
         (memory, files), (memory_late, files_late) = early_and_late(series)
@@ -137,11 +145,9 @@ def judge(report, samples, steps):
         report["processes"].append({"process": name, "samples": len(series), "most_memory_MB": round(max(s[0] for s in series), 1),
                                     "memory_MB_early": round(memory, 2), "memory_MB_late": round(memory_late, 2),
                                     "open_files_early": files, "open_files_late": files_late})
-    if len(steps) >= 8:
-        quarter = len(steps) // 4
-        rate = [1e3 * (b[0] - a[0]) / (b[1] - a[1]) for a, b in ((steps[0], steps[quarter]), (steps[-1 - quarter], steps[-1]))]
-        report["ms_per_step_early"], report["ms_per_step_late"] = (round(value, 4) for value in rate)
-        grew |= rate[1] > SLOWER * rate[0]
+    if len(ends) >= 8:
+        early, late = report[f"ms_per_{what}_early"], report[f"ms_per_{what}_late"] = rates(ends)
+        grew |= late > SLOWER * early
     report["grew"] = grew
 
 
@@ -158,7 +164,7 @@ def run_case(scenario, folder, every):
               "files": sum(len(files) for _, _, files in os.walk(out)),
               "bytes": sum(os.path.getsize(os.path.join(top, name)) for top, _, files in os.walk(out) for name in files),
               "said_before": [line for line in check.stdout.splitlines() if "core" in line or "memory" in line], "processes": []}
-    judge(report, samples, steps)
+    judge(report, samples, "step", steps)
     return report
 
 
@@ -175,9 +181,11 @@ def run_study(scale, folder, every):
     begin = time.monotonic()
     again = subprocess.run([PROGRAM, "sweep", str(study), "--out", str(out)], capture_output=True, text=True)
     summary = json.loads(next(out.glob("runs/*/summary.json")).read_text())
-    report = {"compiler": summary["compiler"], "processor": summary["cpu"], "runs": len((out / "sweep.csv").read_text().splitlines()) - 1, "wall_s": round(wall, 1),
+    report = {"compiler": summary["compiler"], "processor": summary["cpu"],
+              "runs": len((out / "sweep.csv").read_text().splitlines()) - 1, "wall_s": round(wall, 1),
               "again_wall_s": round(time.monotonic() - begin, 1), "again_exit_code": again.returncode, "processes": []}
-    judge(report, samples, [])
+    done = sorted(path.stat().st_mtime for path in out.glob("runs/*/summary.json"))
+    judge(report, samples, "run", [(when, run) for run, when in enumerate(done, 1)])
     return report
 
 

@@ -31,7 +31,7 @@ struct RunArguments {
 /// Everything that `furrow` does. @throws Error
 ExitCode run_command_line(int argc, char** argv);
 
-/// `furrow run` outside MPI (commands_run.cpp) and as one of its ranks (commands_rank.cpp).
+/// `furrow run` outside MPI (run.cpp) and as one of its ranks (rank.cpp).
 ExitCode run_supervised(const RunArguments& arguments);
 /// @throws Error with what can be said against starting the ranks of a run on this machine
 void require_launch(const scenario::Scenario& scenario);
@@ -58,7 +58,18 @@ struct ReportArguments {
   bool unasked = false;                     // by another command: no messages, and no longer than a minute
 };
 
-/// `furrow report`: plots and page of a run, or the page of several. @returns none if the
+/// As typed.
+struct ReportRequest {
+  std::string run;                  // folder
+  std::vector<std::string> others;  // folders of runs, on one page with it
+  std::filesystem::path out;        // empty: the run's folder
+  std::string soil, vtk;            // soil.json to add the theory of; folder for VTP files; empty: none
+};
+
+/// `furrow report` (report.cpp). @throws Error
+ExitCode report_command(const ReportRequest& asked);
+
+/// Plots and page of a run, or the page of several. @returns none if the
 /// script said why. @throws Error
 std::vector<std::filesystem::path> make_report(const ReportArguments& report);
 /// The same after a command whose results stand without plots: what goes wrong is a warning.
@@ -82,7 +93,7 @@ struct SweepArguments {
   int jobs = 1;
 };
 
-/// `furrow sweep` (commands_sweep.cpp). @throws Error
+/// `furrow sweep` (sweep.cpp). @throws Error
 ExitCode sweep_command(const SweepArguments& arguments);
 
 struct CalibrateArguments {
@@ -95,10 +106,10 @@ struct CalibrateArguments {
 /// `furrow calibrate` (calibrate.cpp). @throws Error
 ExitCode calibrate_command(const CalibrateArguments& arguments);
 
-/// `furrow soil` (commands_soil.cpp). @throws Error
+/// `furrow soil` (soil.cpp). @throws Error
 ExitCode soil_command(const scenario::Scenario& scenario, const SoilArguments& arguments);
 
-/// `furrow press` (commands_press.cpp). @throws Error
+/// `furrow press` (press.cpp). @throws Error
 ExitCode press_command(const scenario::Scenario& scenario, const PressArguments& arguments);
 
 /// `furrow modes` (modes.cpp). @throws Error
@@ -132,10 +143,10 @@ struct NewArguments {
 /// `furrow new` (catalogue.cpp). @throws Error
 ExitCode new_command(const NewArguments& arguments);
 
-/// `furrow bed` (commands_bed.cpp). @throws Error
+/// `furrow bed` (bed.cpp). @throws Error
 ExitCode bed_command(const scenario::Scenario& scenario);
 
-/// The text that ends a run, from summary.json (commands_result.cpp).
+/// The text that ends a run, from summary.json (result.cpp).
 std::string result_text(const std::filesystem::path& run, const scenario::Scenario& scenario);
 
 /// Whether a result is what the scenario is known to give; empty where it says nothing. Means over `beds` are expected

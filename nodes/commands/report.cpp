@@ -15,6 +15,7 @@
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
 #include "nodes/scenario/rank_table.hpp"
+#include "terrain/soil/soil_estimate.hpp"
 
 namespace furrow::commands {
 namespace {
@@ -101,6 +102,33 @@ ExitCode write_vtk(const std::filesystem::path& run, const std::filesystem::path
     if (code == static_cast<int>(said)) return said;
   throw io_error(run.string(), launch::stop_signalled() ? "writing VTP files was interrupted"
                                                         : "made no VTP files, expected the frames of a run");
+}
+
+ExitCode report_command(const ReportRequest& asked) {
+  launch::require_run_directory(asked.run);
+  ReportArguments report{.runs = {asked.run}, .out = asked.out};
+  report.runs.insert(report.runs.end(), asked.others.begin(), asked.others.end());
+  if (!asked.others.empty() && asked.out.empty())
+    throw input_error("command line", "--out",
+                      "is missing, expected the folder of the page that compares several runs");
+  if (!asked.others.empty() && !asked.soil.empty())
+    throw input_error("command line", "--soil", "is given with several runs, expected one");
+  if (!asked.others.empty() && !asked.vtk.empty())
+    throw input_error("command line", "--vtk", "is given with several runs, expected one");
+  if (!asked.soil.empty()) {
+    if (launch::has_run_list(asked.run))
+      launch::add_to_run_list(asked.run, {"soil_estimate.json"});
+    const std::string theory = terrain::soil::write_soil_estimate(asked.run, asked.soil);
+    launch::say("furrow: " + theory + "\n");
+  }
+  if (!asked.vtk.empty()) {  // first: a folder that is refused must not wait for the plots
+    launch::say("furrow: writing the frames to " + asked.vtk + "\n");
+    if (const ExitCode code = write_vtk(asked.run, asked.vtk); code != ExitCode::done) return code;
+  }
+  launch::say("furrow: plotting " + asked.run + "\n");
+  const auto plots = make_report(report);
+  for (const auto& plot : plots) std::cout << plot.string() << "\n";
+  return plots.empty() ? ExitCode::io : ExitCode::done;
 }
 
 }  // namespace furrow::commands

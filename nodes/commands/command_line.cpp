@@ -1,0 +1,151 @@
+#include "nodes/commands/command_line.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <new>
+#include <sstream>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "nodes/commands/examples.hpp"
+#include "nodes/commands/wrapped.hpp"
+#include "nodes/launch/messages.hpp"
+#include "nodes/scenario/memory_check.hpp"
+#include "protocol/files/nearest_words.hpp"
+#include "protocol/files/printable.hpp"
+#include "protocol/mpi_transport.hpp"
+
+namespace furrow::commands {
+namespace {
+
+constexpr std::size_t kMaxShown = 400;  // bytes of what the command line has wrong
+
+Error usage_error(const std::string& what) { return input_error("command line", "", what); }
+
+/// Commands that say more than their result, and those below them, take --quiet.
+void add_quiet(CLI::App& app) {
+  const auto all = [](const CLI::App*) { return true; };
+  for (CLI::App* command : app.get_subcommands(all)) {
+    const std::string name = command->get_name();
+    if (!command->get_subcommands(all).empty())
+      add_quiet(*command);
+    else if (name != "list" && name != "explain" && name != "events")
+      command->add_flag_callback(
+          "--quiet", launch::silence_messages,
+          "Print errors only on standard error; what goes to standard output stays the same.");
+  }
+}
+
+/// The command whose help says more, with a blank after it.
+std::string asked_command(const CLI::App& app) {
+  for (const CLI::App* command : app.get_subcommands())
+    return command->get_name() + " " + asked_command(*command);
+  return {};
+}
+
+/// CLI11's words, with a guess at what was meant.
+std::string parse_problem(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+  std::vector<std::string> commands;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    commands.push_back(command->get_name());
+  const std::string first = argc > 1 ? argv[1] : "";
+  if (first.empty())
+    return fmt::format("no command is given, expected one of: {}; see furrow --help",
+                       fmt::join(commands, ", "));
+  if (first[0] != '-' && std::find(commands.begin(), commands.end(), first) == commands.end()) {
+    const std::vector<std::string> similar = nearest_words(first, commands);
+    return fmt::format("unknown command '{}'; {}", excerpt(first),
+                       similar.empty()
+                           ? fmt::format("expected one of: {}; see furrow --help", fmt::join(commands, ", "))
+                           : "did you mean '" + similar.front() + "'?");
+  }
+  return fmt::format("{}, see furrow {}--help", excerpt(error.what(), kMaxShown), asked_command(app));
+}
+
+/// Names with control characters would make two messages of one. Values of keys may be of several lines.
+void check_arguments(int argc, char** argv) {
+  for (int k = 1; k < argc; ++k) {
+    const std::string text = argv[k];
+    if (std::string(argv[k - 1]) == "--set" || text.starts_with("--set=")) continue;
+    if (std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }))
+      throw usage_error("the argument '" + excerpt(text) + "' holds a control character, expected none");
+  }
+}
+
+void print_lines(const char* kind, const std::string& text) {
+  std::size_t from = 0;
+  for (std::size_t end; from <= text.size(); from = end + 1) {
+    end = std::min(text.find('\n', from), text.size());
+    std::fprintf(stderr, "furrow: %s: %s\n", kind, printable(text.substr(from, end - from)).c_str());
+  }
+}
+
+}  // namespace
+
+CommandLine::CommandLine(int argc, char** argv) : argc_(argc), argv_(argv) {
+  app_.set_help_flag("-h,--help", "Print this help and exit.");
+  app_.set_version_flag("--version", "furrow " FURROW_VERSION, "Print the version and exit.");
+  app_.require_subcommand(1);
+  app_.footer(closing_words(""));
+  add_group("Begin", &CommandLine::add_beginnings);
+  add_group("Run", &CommandLine::add_runs);
+  add_group("Ask before a run", &CommandLine::add_questions);
+  add_group("Test tires, soils and vehicles", &CommandLine::add_virtual_tests);
+  add_group("Test tires, soils and vehicles", &CommandLine::add_vehicles);
+  add_group("Compare and look", &CommandLine::add_studies);
+  add_group("Measure this machine", &CommandLine::add_benches);
+  add_quiet(app_);
+}
+
+CLI::App& CommandLine::add(CLI::App& parent, const char* name, const char* purpose,
+                           std::function<ExitCode()> action) {
+  CLI::App& command = *parent.add_subcommand(name, purpose);
+  command.footer(closing_words(&parent == &app_ ? name : parent.get_name() + " " + name));
+  command.callback([this, action = std::move(action)] { chosen_ = action; });
+  return command;
+}
+
+void CommandLine::add_group(const char* task, void (CommandLine::*add_commands)()) {
+  const auto all = [](const CLI::App*) { return true; };
+  const std::size_t before = app_.get_subcommands(all).size();
+  (this->*add_commands)();
+  const std::vector<CLI::App*> commands = app_.get_subcommands([](CLI::App*) { return true; });
+  for (std::size_t k = before; k < commands.size(); ++k) commands[k]->group(task);
+}
+
+ExitCode CommandLine::execute() {
+  check_arguments(argc_, argv_);
+  try {
+    app_.parse(argc_, argv_);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    std::ostringstream text;
+    app_.exit(asked, text);
+    print_text(text.str(), Piped::wrap);
+    return ExitCode::done;
+  } catch (const CLI::ParseError& error) {
+    throw usage_error(parse_problem(app_, error, argc_, argv_));
+  }
+  try {
+    return chosen_();
+  } catch (const std::bad_alloc&) {
+    throw scenario::out_of_memory(typed_.memory);
+  }
+}
+
+ExitCode run_command_line(int argc, char** argv) { return CommandLine(argc, argv).execute(); }
+
+void print_error(const std::string& text) { print_lines("error", text); }
+void print_warning(const std::string& text) {
+  if (!launch::messages_are_silenced()) print_lines("warning", text);
+}
+
+bool runs_as_rank(int argc, char** argv) {
+  const std::string command = argc > 1 ? argv[1] : "";
+  const bool starts_runs = std::any_of(argv, argv + argc, [](const char* text) {
+    return std::string_view(text) == "--seeds" || std::string_view(text).starts_with("--seeds=");
+  });
+  return (command == "resume" || (command == "run" && !starts_runs)) && launched_by_mpi();
+}
+
+}  // namespace furrow::commands

@@ -1,0 +1,43 @@
+#include "nodes/commands/typed.hpp"
+
+#include "nodes/scenario/load_scenario.hpp"
+#include "protocol/files/printable.hpp"
+
+namespace furrow::commands {
+
+void add_settings(CLI::App& command, Typed& typed) {
+  command
+      .add_option("--set", typed.settings,
+                  "Set a scenario key by its dotted path, as key=value. The option may be repeated.")
+      ->take_all()
+      ->allow_extra_args(false);
+  command.add_option("--threads", typed.threads,
+                     "Compute the terrain with this number of threads, or with 'auto' (run.threads).");
+}
+
+void add_scenario(CLI::App& command, Typed& typed) {
+  command.add_option("SCENARIO", typed.scenario, "Read this scenario file (JSON), as given or in rigs/.")->required();
+  add_settings(command, typed);
+}
+
+Settings settings_of(const Typed& typed) {
+  Settings settings;
+  for (const std::string& text : typed.settings) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos || equals == 0)
+      throw input_error("command line", "--set", "is '" + excerpt(text) + "', expected the form key=value");
+    settings.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+  }
+  if (!typed.threads.empty()) settings.emplace_back("run.threads", typed.threads);
+  if (!typed.until.empty()) settings.emplace_back("run.end", typed.until);
+  return settings;
+}
+
+scenario::Scenario load(Typed& typed) {
+  scenario::Scenario scenario = scenario::load_scenario(typed.scenario, settings_of(typed));
+  typed.memory = scenario.memory.all;
+  for (const std::string& warning : scenario.warnings) print_warning(warning);
+  return scenario;
+}
+
+}  // namespace furrow::commands

@@ -17,8 +17,8 @@ namespace furrow::scenario {
 std::vector<RankEntry> rank_table(const Scenario& s) {
   FURROW_ASSERT(s.rig && s.terrain && s.terrain_ranks > 0, s.terrain_ranks);
   std::vector<RankEntry> table;
-  table.push_back({0, "rig", fmt::format("{}; writes the results; 1 thread", describe_rig(s).text)});
   const std::vector<tire::TireDescription> tires = describe_tires(s);
+  table.push_back({0, "rig", fmt::format("{}; writes the results; 1 thread", describe_rig(s, tires).text)});
   for (std::size_t k = 0; k < s.tires.size(); ++k)
     table.push_back(
         {static_cast<int>(k) + 1, fmt::format("tire {}", k),

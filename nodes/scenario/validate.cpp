@@ -140,11 +140,12 @@ nlohmann::ordered_json validation_report(const Scenario& s, const RunTime* time)
                      {"checkpoint_bytes", e.terrain.checkpoint_bytes},
                      {"frame_bytes", e.terrain.frame_bytes}};
   if (time) json["time"] = time_json(*time);
-  const rigs::RigDescription rig = describe_rig(s);
+  const std::vector<tire::TireDescription> tires = describe_tires(s);
+  const rigs::RigDescription rig = describe_rig(s, tires);
   const std::vector<WheelScales> scales = wheel_scales(s);
   for (const rigs::WheelDescription& wheel : rig.wheels)
     json["axle_path_m"].push_back({wheel.from, wheel.to});
-  for (const tire::TireDescription& tire : describe_tires(s)) json["tire_mass_kg"].push_back(tire.mass.mass);
+  for (const tire::TireDescription& tire : tires) json["tire_mass_kg"].push_back(tire.mass.mass);
   for (std::size_t k = 0; k < scales.size(); ++k)
     json["wheels"].push_back(scales_json(scales[k], rig.wheels[k].name));
   for (const RankEntry& rank : rank_table(s))
@@ -171,7 +172,7 @@ std::string validation_text(const Scenario& s, const RunTime* time) {
                                      e.terrain.stable_reason));
   line("terrain", e.terrain.text);
   const std::vector<tire::TireDescription> tires = describe_tires(s);
-  const rigs::RigDescription rig = describe_rig(s);
+  const rigs::RigDescription rig = describe_rig(s, tires);
   const std::vector<WheelScales> scales = wheel_scales(s);
   for (std::size_t k = 0; k < tires.size(); ++k) {
     if (!rig.wheels[k].name.empty()) line("wheel", rig.wheels[k].name);

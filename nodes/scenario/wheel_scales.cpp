@@ -167,7 +167,7 @@ double load_of(const Scenario& s, const rigs::WheelDescription& wheel, const tir
 
 std::vector<double> wheel_loads(const Scenario& s) {
   const std::vector<tire::TireDescription> tires = describe_tires(s);
-  const rigs::RigDescription rig = describe_rig(s);
+  const rigs::RigDescription rig = describe_rig(s, tires);
   std::vector<double> loads;
   for (std::size_t k = 0; k < tires.size(); ++k) loads.push_back(load_of(s, rig.wheels[k], tires[k]));
   return loads;
@@ -175,7 +175,7 @@ std::vector<double> wheel_loads(const Scenario& s) {
 
 std::vector<WheelScales> wheel_scales(const Scenario& s) {
   const std::vector<tire::TireDescription> tires = describe_tires(s);
-  const rigs::RigDescription rig = describe_rig(s);
+  const rigs::RigDescription rig = describe_rig(s, tires);
   const DemOptions* grains = s.terrain->grains();
   const double height = s.terrain->estimate(s.terrain_context()).expected_height;
   std::vector<WheelScales> all;
@@ -202,7 +202,7 @@ std::string wheel_label(const rigs::RigDescription& rig, std::size_t wheel) {
 std::vector<Bound> scale_bounds(const Scenario& s) {
   const std::vector<WheelScales> scales = wheel_scales(s);
   const std::vector<tire::TireDescription> tires = describe_tires(s);
-  const rigs::RigDescription rig = describe_rig(s);
+  const rigs::RigDescription rig = describe_rig(s, tires);
   Bounds bounds;
   for (std::size_t k = 0; k < scales.size(); ++k) {
     const WheelScales& w = scales[k];

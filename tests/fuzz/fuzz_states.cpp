@@ -1,6 +1,6 @@
 // Saved states with numbers changed, arrays cut, renamed and exchanged, and a checksum that fits: what a bed file, of
 // this format or an earlier one, or the part of a checkpoint may hold that somebody forged. Read back from disk, restored
-// and stepped.
+// and stepped; of engine liggghts, read and made into the state of engine dem.
 #include <fuzzer/FuzzedDataProvider.h>
 
 #include <cmath>
@@ -15,6 +15,7 @@
 #include "terrain/dem/beds/bed_cache.hpp"
 #include "terrain/dem/beds/bed_preparation.hpp"
 #include "terrain/dem/dem_terrain.hpp"
+#include "terrain/liggghts/saved_grains.hpp"
 #include "tests/fuzz/input_file.hpp"
 #include "tire/tires.hpp"
 
@@ -32,7 +33,7 @@ terrain::dem::DemOptions options() {
 }
 
 struct Seeds {
-  Archive bed, old_bed, terrain, shell, rigid, rig;
+  Archive bed, old_bed, terrain, part, shell, rigid, rig;
 };
 
 constexpr ArchiveKind kOldBed{"bed", "a bed of furrow", 4, 4, ""};
@@ -79,6 +80,28 @@ std::unique_ptr<rigs::Rig> made_rig() {
   return rig;
 }
 
+/// What a rank of engine liggghts saves of three grains that touch and stand on the floor.
+Archive saved_part() {
+  std::vector<double> state, contact{4.0, 0.0, 0.0, 1.0, 0.5, 0.0, 0.0, 0.03, 0.0, 0.0, 0.0}, contacts;
+  for (const double x : {0.1, 0.159, 0.218}) {
+    state.push_back(options().radius);
+    for (int copy = 0; copy < 3; ++copy) state.insert(state.end(), {x, 0.0, 0.029});
+    state.insert(state.end(), 6, 0.01);
+    contacts.insert(contacts.end(), contact.begin(), contact.end());
+  }
+  Archive archive;
+  const Archive::Scope scope(archive, "terrain/");
+  archive.put("grains/all", std::int64_t{3});
+  archive.put("tires/count", std::int64_t{1});
+  archive.put("grains/id", std::vector<std::int32_t>{0, 1, 2});
+  archive.put("grains/state", state);
+  archive.put("pairs/grains", std::vector<std::int32_t>{0, 1, 1, 2});
+  archive.put("pairs/history", std::vector<double>(14, 0.03));
+  archive.put("carried/grain", std::vector<std::int32_t>{0, 1, 2});
+  archive.put("carried/history", contacts);
+  return archive;
+}
+
 Outcome advance(rigs::Rig& rig) {
   const std::vector<Wrench> wrenches(1, Wrench{Vec3(100.0, 0.0, 4000.0), Vec3(0.0, -300.0, 0.0)});
   return rig.advance(wrenches, 1e-4, 2);
@@ -92,6 +115,7 @@ const Seeds& seeds() {
     const auto terrain = made_terrain();
     FURROW_ASSERT(advance(*terrain).ok, "the bed moves");
     terrain->save(s.terrain);
+    s.part = saved_part();
     for (const bool rigid : {false, true}) {
       const auto tire = tire::make_tire(tire_options(rigid));
       RimState rim;
@@ -180,6 +204,13 @@ void read_terrain(FuzzedDataProvider& in) {
   std::ignore = advance(*made);
 }
 
+void read_part(FuzzedDataProvider& in) {
+  const auto file = fuzz::folder() / "part.h5";
+  write_archive(file, changed(in, seeds().part));
+  const std::vector<Archive> parts{read_archive(file)};
+  std::ignore = terrain::liggghts::as_solver_state(parts, options());
+}
+
 void read_tire(FuzzedDataProvider& in) {
   const bool rigid = in.ConsumeIntegralInRange(0, 4) == 0;
   const auto file = fuzz::folder() / "tire.h5";
@@ -207,7 +238,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         read_tire(in);
         break;
       case 1:
-        read_rig(in);
+        in.ConsumeBool() ? read_part(in) : read_rig(in);
         break;
       case 2:
       case 3:

@@ -3,8 +3,8 @@
 
 Tables, code blocks and lines without a space to break at may be longer. A link's #part must be a heading of the page
 that it names. A path in backticks counts if it begins with a folder of the top level; `*` and `{a,b}` are expanded,
-`<name>` stands for any name, and `path:12` must have such a line. A source or script without its folder must exist
-somewhere. The figures of the headline run stand in README.md as its scenario states them. Every term of the glossary
+`<name>` stands for any name, and `path:12` must have such a line. A source or script without its folder, or with the
+last of its folders, must exist somewhere; so must one that a comment of a C++ source names. The figures of the headline run stand in README.md as its scenario states them. Every term of the glossary
 names at least one file, and every recipe of CONTRIBUTING.md at most five; what a step names in parentheses is to be
 read, not touched, and does not count.
 
@@ -29,7 +29,8 @@ MOST_FILES = 5  # of a recipe
 ORIGIN = ("commit", "compiler", "processor", "command")  # of a table
 TOP = {"nodes", "protocol", "tire", "terrain", "vehicle", "rigs", "tests", "scripts"}
 PATH = re.compile(r"([\w.<>*{},-]+(?:/[\w.<>*{},-]+)+/?)(?::(\d+))?$")
-BARE = re.compile(r"[\w-]+\.(cpp|hpp|py|sh)$")
+SOURCE = r"[\w-]+(?:/[\w-]+)*\.(?:cpp|hpp|py|sh)"
+GENERATED = {"cpu_features.hpp"}  # while the program is built
 LISTS = ("rigs/README.md", "scripts/docs/gallery.md")  # of all that rigs/ ships
 HEADLINE = "rigs/drawbar_pull_small.json"
 STATED = (("drawbar_pull", 1.0, "N"), ("sinkage", 1e3, "mm"), ("rut_depth", 1e3, "mm"))  # keys of its `expected`
@@ -39,9 +40,15 @@ def pages(root):
     return sorted(root.glob("*.md")) + [page for folder in sorted(TOP) for page in sorted((root / folder).rglob("*.md"))]
 
 
-def bare_names(root):
-    """Names of all sources and scripts."""
-    return {file.name for folder in TOP for file in (root / folder).rglob("*") if BARE.match(file.name)}
+def names_of_sources(root):
+    """Of all sources and scripts: their names, without their folders and with the last of them."""
+    names = set(GENERATED)
+    for folder in TOP:
+        for file in (root / folder).rglob("*"):
+            if re.fullmatch(SOURCE, file.name):
+                parts = file.relative_to(root).parts
+                names.update("/".join(parts[k:]) for k in range(len(parts)))
+    return names
 
 
 def lines_of(page):
@@ -94,8 +101,8 @@ def alternatives(path):
     return [name for word in match[1].split(",") for name in alternatives(path[:match.start()] + word + path[match.end():])]
 
 
-def path_problem(root, text, bare):
-    if BARE.match(text) and text not in bare:
+def path_problem(root, text, sources):
+    if re.fullmatch(SOURCE, text) and text.split("/")[0] not in TOP and text not in sources:
         return f"names '{text}', which does not exist in any folder"
     match = PATH.match(text)
     if not match or text.split("/")[0] not in TOP:
@@ -109,7 +116,7 @@ def path_problem(root, text, bare):
     return ""
 
 
-def problems(root, page, bare):
+def problems(root, page, sources):
     for number, text, kind in lines_of(page):
         if kind == "prose" and len(text) > WIDTH and " " in text.strip():
             yield number, f"is {len(text)} columns wide, expected at most {WIDTH}"
@@ -119,11 +126,22 @@ def problems(root, page, bare):
             if problem := link_problem(root, page, target):
                 yield number, problem
         for code in CODE.findall(text):
-            if problem := path_problem(root, code, bare):
+            if problem := path_problem(root, code, sources):
                 yield number, problem
         if page == root / "GLOSSARY.md" and kind == "table" and not re.match(r"\| term \||\|-", text):
             if not any((root / code).is_file() for code in CODE.findall(text.rsplit("|", 2)[1])):
                 yield number, "names no file"
+
+
+def comment_problems(root, sources):
+    """(file, number, problem) of the comments of C++ sources."""
+    for folder in sorted(TOP):
+        for file in sorted((root / folder).rglob("*.[ch]pp")):
+            for number, text in enumerate(file.read_text().splitlines(), 1):
+                comment = re.search(r"(?:^|\s)//(.*)", text)
+                for name in re.findall(rf"(?<![\w./<>-]){SOURCE}\b", comment[1]) if comment else []:
+                    if name not in sources:
+                        yield file, number, f"names '{name}', which does not exist"
 
 
 def touched(text):
@@ -209,15 +227,16 @@ def main():
     parser.add_argument("pages", nargs="*", type=pathlib.Path)
     options = parser.parse_args()
     root = options.root.resolve()
-    bare = bare_names(root)
+    sources = names_of_sources(root)
     chosen = [page.resolve() for page in options.pages] or pages(root)
-    found = [f"{page.relative_to(root)}:{number}: {text}" for page in chosen for number, text in problems(root, page, bare)]
+    found = [f"{page.relative_to(root)}:{number}: {text}" for page in chosen for number, text in problems(root, page, sources)]
     if (root / "CONTRIBUTING.md").exists():
         found += [f"CONTRIBUTING.md:{number}: {text}" for number, text in recipe_problems(root / "CONTRIBUTING.md")]
     if (root / HEADLINE).exists():
         found += [f"README.md: {text}" for text in headline_problems(root)]
     if not options.pages:
         found += [f"{file.relative_to(root)}:1: {text}" for file, text in table_problems(root)]
+        found += [f"{file.relative_to(root)}:{number}: {text}" for file, number, text in comment_problems(root, sources)]
         found += [f"{page.relative_to(root)}:1: does not list rigs/{name}" for page, name in unlisted(root)]
     print("\n".join(found), end="\n" if found else "")
     return 1 if found else 0

@@ -90,6 +90,14 @@ class Docs(Check):
         self.assertIn("names line 999 of 'tire/x.cpp'", self.told(A_dot_md="`tire/x.cpp:999`", tire__x_dot_cpp="1\n2\n"))
         self.assertEqual(self.told(A_dot_md="`tire/x.cpp:2`, `x.cpp`", tire__x_dot_cpp="1\n2\n"), "")
         self.assertIn("names 'y.hpp'", self.told(A_dot_md="`y.hpp`", tire__x_dot_cpp=""))
+        self.assertEqual(self.told(A_dot_md="`shell/x.cpp`", tire__shell__x_dot_cpp=""), "")
+        self.assertIn("names 'ring/x.cpp'", self.told(A_dot_md="`ring/x.cpp`", tire__shell__x_dot_cpp=""))
+
+    def test_comments_that_name_sources_which_there_are_not(self):
+        source = "int x = 1;  // see shell/x.cpp and {}\n"
+        self.assertEqual(self.told(tire__shell__x_dot_cpp=source.format("tire/shell/x.cpp")), "")
+        self.assertIn("tire/shell/x.cpp:1: names 'y.cpp'", self.told(tire__shell__x_dot_cpp=source.format("y.cpp")))
+        self.assertIn("names 'tire/x.cpp'", self.told(tire__shell__x_dot_cpp=source.format("tire/x.cpp")))
 
     def test_figures_of_the_headline_run_are_those_of_its_scenario(self):
         expected = {"drawbar_pull": 1400, "drawbar_pull_spread": 150, "sinkage": 0.021, "sinkage_spread": 0.003,

@@ -95,6 +95,21 @@ std::string result_line(const nlohmann::ordered_json& summary) {
                      in(summary["secant_stiffness_N_per_m"], 1e3), patch);
 }
 
+/// What a user may do where the load was not reached.
+std::string not_reached(const tire::PressOptions& options, const tire::PressResults& results) {
+  if (results.at_load.force == 0.0)
+    return fmt::format(
+        "within a deflection of {:g} m the tire touches nothing: no stiffness and no footprint is given; press "
+        "further (--deflection){}",
+        options.deflection,
+        options.obstacle.position != 0.0 ? ", or move the cleat nearer to the middle (--cleat-position)" : "");
+  return fmt::format(
+      "the load of {:g} N was not reached: the largest force is {:.4g} N; no stiffness is given, and the "
+      "footprint is that of this force; press further (--deflection) or ask for less (--load); see "
+      "tire/README.md, \"Static pressing\"",
+      options.load, results.at_load.force);
+}
+
 }  // namespace
 
 ExitCode press_command(const scenario::Scenario& scenario, const PressArguments& arguments) {
@@ -128,12 +143,7 @@ ExitCode press_command(const scenario::Scenario& scenario, const PressArguments&
     if (const std::string caution = tire::press_caution(results); !caution.empty())
       print_warning(caution + "; see summary.json and tire/README.md, \"Static pressing\"");
     ended = results.ended;
-    if (summary["deflection_m"].is_null())
-      print_warning(fmt::format(
-          "the load of {:g} N was not reached: the largest force is {:.4g} N; no stiffness is given, and the "
-          "footprint is that of this force; press further (--deflection) or ask for less (--load); see "
-          "tire/README.md, \"Static pressing\"",
-          options.load, results.at_load.force));
+    if (summary["deflection_m"].is_null()) print_warning(not_reached(options, results));
     launch::say(result_line(summary));
     std::cout << directory.path().string() << std::endl;
   } catch (...) {

@@ -117,6 +117,11 @@ class Press(SystemTest):
         self.assertEqual((summary["statically_stable"], summary["stable_while_pressed"]), (True, False))
         self.assertLess(summary["director_runout_rad"], 1e-6)
 
+    def test_a_cleat_that_the_tire_does_not_touch_is_told(self):
+        done = self.press("--on", "cleat", "--cleat-height", "0.1", "--cleat-position", "0.4")
+        self.assertIn("warning: within a deflection of 0.012 m the tire touches nothing", done.stderr)
+        self.assertIn("(--cleat-position)", done.stderr)
+
     def test_cleat_is_softer_than_a_plate(self):
         done = self.press("--on", "cleat", "--cleat-width", "0.004", "--load", "1e5")
         self.assertEqual(done.returncode, 0, done.stderr)

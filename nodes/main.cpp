@@ -9,7 +9,6 @@
 #include "nodes/launch/limits.hpp"
 #include "nodes/launch/thread_setup.hpp"
 #include "nodes/scenario/memory_check.hpp"
-#include "nodes/scenario/refused_scenario.hpp"
 #include "protocol/mpi_transport.hpp"
 
 namespace {
@@ -17,8 +16,7 @@ namespace {
 int fail(const furrow::Error& error, bool as_rank) {
   const bool first = !as_rank || furrow::launched_rank() == 0;
   if (first || !furrow::commands::first_rank_speaks()) {
-    if (const auto* refused = dynamic_cast<const furrow::scenario::RefusedScenario*>(&error))
-      for (const std::string& warning : refused->warnings()) furrow::commands::print_warning(warning);
+    furrow::commands::print_warnings_of(error);
     furrow::commands::print_error(error.what());
   }
   return static_cast<int>(error.code());

@@ -12,6 +12,7 @@
 #include "nodes/commands/wrapped.hpp"
 #include "nodes/launch/messages.hpp"
 #include "nodes/scenario/memory_check.hpp"
+#include "nodes/scenario/refused_scenario.hpp"
 #include "protocol/files/nearest_words.hpp"
 #include "protocol/files/printable.hpp"
 #include "protocol/mpi_transport.hpp"
@@ -138,6 +139,11 @@ ExitCode run_command_line(int argc, char** argv) { return CommandLine(argc, argv
 void print_error(const std::string& text) { print_lines("error", text); }
 void print_warning(const std::string& text) {
   if (!launch::messages_are_silenced()) print_lines("warning", text);
+}
+
+void print_warnings_of(const Error& error) {
+  if (const auto* refused = dynamic_cast<const scenario::RefusedScenario*>(&error))
+    for (const std::string& warning : refused->warnings()) print_warning(warning);
 }
 
 bool runs_as_rank(int argc, char** argv) {

@@ -244,7 +244,10 @@ ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
     if (reporter.supervised()) held.emplace(arguments.out);
     read_task(arguments, task);
   } catch (const Error& error) {
-    if (first_on_machine() || !first_rank_speaks()) reporter.error(error);
+    if (first_on_machine() || !first_rank_speaks()) {
+      if (!reporter.supervised()) print_warnings_of(error);
+      reporter.error(error);
+    }
     return error.code();
   }
   if (task.plan.finished) {

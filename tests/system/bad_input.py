@@ -428,11 +428,12 @@ class BadFile(SystemTest):
         self.assertEqual(self.names(), ["small.json"])
 
     def test_bad_scenario_under_the_users_mpirun_is_told_once(self):
-        path = write_scenario(self.folder, changed(rig={"slip": 7}))
+        path = write_scenario(self.folder, changed(tire={"pressure": 200}, terrain={"bed": "none.csv"}))
         command = [shutil.which("mpirun"), "-q", "--allow-run-as-root", "--oversubscribe", "-n", "3", PROGRAM, "run", str(path)]
         done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=60)
         self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertEqual(done.stderr.count("furrow: error: "), 1, done.stderr)
+        for kind in ("warning", "error"):
+            self.assertEqual(done.stderr.count(f"furrow: {kind}: "), 1, done.stderr)
 
 
 if __name__ == "__main__":

@@ -60,6 +60,7 @@ TEST(Scenario, numbers_that_no_arithmetic_can_bear_are_refused) {
   const ScenarioFile file(kSmallest);
   for (const auto& [key, value] : {std::pair{"terrain.young_modulus", "5e-324"},
                                    {"terrain.density", "1e-300"},
+                                   {"terrain.radius", "5e-324"},
                                    {"terrain.normal_stiffness", "1e-300"},
                                    {"tire.elements_width", "-1e308"},
                                    {"tire.elements_width", "1e308"}})

@@ -27,7 +27,8 @@ protocol/files/archive_file.cpp protocol/files/csv_file.cpp protocol/files/data_
 protocol/files/json_text.cpp protocol/files/printable.cpp protocol/files/text_file.cpp
 rigs/drawbar_spec.cpp rigs/rigs.cpp
 terrain/dem/beds/bed_cache.cpp terrain/dem/beds/bed_csv.cpp terrain/dem/beds/bed_format_4.cpp terrain/dem/beds/bed_positions_h5.cpp
-terrain/dem/dem_spec.cpp terrain/dem/grain_solver_state.cpp terrain/dem/solver_state_check.cpp terrain/soil/soil_estimate.cpp
+terrain/dem/dem_spec.cpp terrain/dem/grain_solver_state.cpp terrain/dem/solver_state_check.cpp terrain/liggghts/saved_grains.cpp
+terrain/soil/soil_estimate.cpp
 terrain/rigid/roads/open_crg.cpp terrain/rigid/roads/read_road.cpp terrain/terrains.cpp
 tire/ancf/shell_spec.cpp tire/handling/sweep_table.cpp tire/handling/tir_file.cpp tire/planar/planar_spec.cpp tire/pressure_schedule.cpp tire/read_tire_file.cpp
 tire/ring/ring_spec.cpp

@@ -4,9 +4,9 @@
 Tables, code blocks and lines without a space to break at may be longer. A link's #part must be a heading of the page
 that it names. A path in backticks counts if it begins with a folder of the top level; `*` and `{a,b}` are expanded,
 `<name>` stands for any name, and `path:12` must have such a line. A source or script without its folder, or with the
-last of its folders, must exist somewhere; so must one that a comment of a C++ source names. The figures of the headline run stand in README.md as its scenario states them. Every term of the glossary
-names at least one file, and every recipe of CONTRIBUTING.md at most five; what a step names in parentheses is to be
-read, not touched, and does not count.
+last of its folders, must exist somewhere; so must one that a comment of a C++ source names. The figures of the headline
+run stand in README.md as its scenario states them. Every term of the glossary names at least one file, and every recipe
+of CONTRIBUTING.md at most five; what a step names in parentheses is to be read, not touched, and does not count.
 
 The lists of shipped scenarios, studies and calibrations leave out none. Every CSV file under tests/, every JSON file of
 results under tests/studies, tests/benchmarks and tests/peers, and what a soil file says was measured, names commit,

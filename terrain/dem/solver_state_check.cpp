@@ -19,7 +19,6 @@ namespace furrow::terrain::dem {
 namespace {
 
 constexpr std::int64_t kMaxGrains = std::numeric_limits<std::int32_t>::max() / 4;
-constexpr double kFar = 1e6;  // m; Bin::holds() has the same limit
 
 /// @param what is called for the text only where something is wrong: most of this is asked of every pair of grains
 template <class What>
@@ -59,7 +58,7 @@ class Check {
     const auto n = static_cast<std::size_t>(n_);
     const auto& positions = archive_.get<double>("position", 4 * n);
     for (const double x : positions)
-      require(std::abs(x) < kFar, "position", [&] { return "holds a value that is not a position"; });
+      require(std::abs(x) < Bin::kHigh, "position", [&] { return "holds a value that is not a position"; });
     for (std::size_t w = 3; w < positions.size(); w += 4)
       require(positions[w] >= smallest_ && positions[w] <= largest_, "position", [&] {
         return fmt::format("holds a grain of radius {:g} m, expected {:g} to {:g} m", positions[w], smallest_,

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "protocol/core/error.hpp"
+#include "terrain/dem/bin.hpp"
 #include "terrain/dem/grain_sizes.hpp"
 #include "terrain/dem/solver_setup.hpp"
 
@@ -19,14 +21,13 @@ namespace {
 
 constexpr std::size_t kState = 16, kPair = 7, kCarried = 11;  // numbers of an entry
 constexpr std::int64_t kMostGrains = std::numeric_limits<std::int32_t>::max();
-constexpr double kFar = 1e6;  // m; Bin::holds() has the same limit
 
 [[noreturn]] void damaged(const std::string& what) {
   throw Error(ExitCode::io, "saved state " + what + ": it is damaged");
 }
 
 /// Nothing is computed with what is no number or lies nowhere.
-void within(const std::vector<double>& values, double limit, const char* array) {
+void within(std::span<const double> values, double limit, const char* array) {
   for (const double value : values)
     if (!(std::abs(value) < limit)) damaged(fmt::format("'{}' holds {:g}", array, value));
 }
@@ -127,7 +128,7 @@ StartingBed read_grains(const Archive& archive, std::int64_t size, int tires,
       damaged(fmt::format("'grains/state' holds a grain of radius {:g} m, expected {:g} to {:g} m", g.radius,
                           smallest, largest));
     for (const auto* v : {&g.position, &g.list_position, &g.exchange_position})
-      within({v->begin(), v->end()}, kFar, "grains/state");
+      within(*v, dem::Bin::kHigh, "grains/state");
     bed.grains.push_back(g);
   }
   for (std::size_t p = 0; p < partners.size(); p += 2) {

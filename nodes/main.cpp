@@ -15,10 +15,7 @@ namespace {
 
 int fail(const furrow::Error& error, bool as_rank) {
   const bool first = !as_rank || furrow::launched_rank() == 0;
-  if (first || !furrow::commands::first_rank_speaks()) {
-    furrow::commands::print_warnings_of(error);
-    furrow::commands::print_error(error.what());
-  }
+  if (first || !furrow::commands::first_rank_speaks()) furrow::commands::print_error(error);
   return static_cast<int>(error.code());
 }
 

@@ -141,9 +141,10 @@ void print_warning(const std::string& text) {
   if (!launch::messages_are_silenced()) print_lines("warning", text);
 }
 
-void print_warnings_of(const Error& error) {
+void print_error(const Error& error) {
   if (const auto* refused = dynamic_cast<const scenario::RefusedScenario*>(&error))
     for (const std::string& warning : refused->warnings()) print_warning(warning);
+  print_error(std::string(error.what()));
 }
 
 bool runs_as_rank(int argc, char** argv) {

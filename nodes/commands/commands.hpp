@@ -157,7 +157,7 @@ std::string expected_text(const scenario::ExpectedResult& expected, int beds, do
 /// "furrow: error: …", one line for every line of `text`.
 void print_error(const std::string& text);
 void print_warning(const std::string& text);
-/// What was found in a scenario beside the error for which it is refused; nothing for other errors.
-void print_warnings_of(const Error& error);
+/// Before it, what looks odd about the scenario that is refused with it.
+void print_error(const Error& error);
 
 }  // namespace furrow::commands

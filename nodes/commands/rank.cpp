@@ -73,7 +73,7 @@ class RankReporter {
     if (error.code() == ExitCode::stopped)
       display_.say_error(std::string("furrow: ") + error.what());
     else
-      print_error(error.what());
+      print_error(error);
   }
   void show(const launch::Progress& progress) {
     if (supervised_)
@@ -244,10 +244,7 @@ ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
     if (reporter.supervised()) held.emplace(arguments.out);
     read_task(arguments, task);
   } catch (const Error& error) {
-    if (first_on_machine() || !first_rank_speaks()) {
-      if (!reporter.supervised()) print_warnings_of(error);
-      reporter.error(error);
-    }
+    if (first_on_machine() || !first_rank_speaks()) reporter.error(error);
     return error.code();
   }
   if (task.plan.finished) {

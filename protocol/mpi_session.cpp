@@ -73,10 +73,6 @@ class Deadline {
 
 MpiSession::MpiSession(int* argc, char*** argv) {
   [[maybe_unused]] const bool readable = choose_copy_mechanism();
-  // Under --oversubscribe Open MPI yields in every test that finds nothing. We sleep between tests, and who yields on a
-  // busy machine waits until all others have had their time. Ranks that poll inside an engine and share cores are the
-  // exception: the supervisor sets this for them.
-  setenv("OMPI_MCA_mpi_yield_when_idle", "0", 0);
   int provided = 0;
   MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided);
 #if defined(OPEN_MPI)
@@ -86,6 +82,7 @@ MpiSession::MpiSession(int* argc, char*** argv) {
 }
 
 MpiSession::~MpiSession() {
+  yield_.set(true);
   if (patience_ > 0.0) {
     Deadline deadline(patience_, exit_code_);
     MPI_Finalize();
@@ -93,6 +90,8 @@ MpiSession::~MpiSession() {
     MPI_Finalize();
   }
 }
+
+void MpiSession::ranks_are_set_up() noexcept { yield_.set(false); }
 
 void MpiSession::expect_losses(double patience, int exit_code) noexcept {
   patience_ = patience;

@@ -3,6 +3,8 @@
 
 #include <mpi.h>
 
+#include "protocol/mpi_yield.hpp"
+
 namespace furrow {
 
 /// MPI from init to finalize. All MPI calls come from the thread that made this (MPI_THREAD_FUNNELED).
@@ -18,10 +20,14 @@ class MpiSession {
   /// machine, where the system allows it. Otherwise a message moves only while its sender is inside MPI too.
   bool receivers_pull() const { return receivers_pull_; }
 
+  /// From here on ranks wait for messages in their own way, until they end.
+  void ranks_are_set_up() noexcept;
+
   /// Some rank failed, and others may be gone: leave with `exit_code` if MPI_Finalize takes longer than `patience` s.
   void expect_losses(double patience, int exit_code) noexcept;
 
  private:
+  MpiYield yield_;
   bool receivers_pull_ = false;
   double patience_ = 0.0;  // s; 0: for ever
   int exit_code_ = 0;

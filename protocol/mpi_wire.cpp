@@ -60,7 +60,9 @@ MpiWire::MpiWire(MpiSession& session, int role)
       role_(Communicator::split(MPI_COMM_WORLD, role)),
       doorbells_(MPI_COMM_WORLD),
       self_(world_rank()),
-      nodes_(world_size()) {}
+      nodes_(world_size()) {
+  session_.ranks_are_set_up();
+}
 
 MpiWire::~MpiWire() {
   drain(1.0);

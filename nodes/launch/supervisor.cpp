@@ -97,7 +97,7 @@ void set_environment(const std::string& supervisor, bool yield) {
   setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
   setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
   setenv("OMPI_MCA_orte_forward_job_control", "1", 0);  // mpirun hands stops and continuations on
-  if (yield) setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0);  // protocol/mpi_session.cpp sets 0 otherwise
+  if (yield) setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0);  // otherwise protocol/mpi_yield.hpp
   // Open MPI will not begin without a way to other machines, even where it needs none.
   if (!on_path("ssh") && !on_path("rsh")) setenv("OMPI_MCA_plm_rsh_agent", "/bin/false", 0);
   for (const std::string& pair : passive_environment()) {

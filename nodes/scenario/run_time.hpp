@@ -15,6 +15,7 @@ namespace furrow::scenario {
 struct RunTime {
   bool bed_is_kept = false;  // in the cache, or the user's file: nothing is settled
   double bed = 0.0;          // preparing it, s
+  double start = 0.0;        // until all ranks have begun, s
   double run = 0.0;          // all communication steps, s
   double step = 0.0;         // one of them, s
   double tire = 0.0;         // of it: the slowest tire, s
@@ -26,7 +27,7 @@ struct RunTime {
   int threads = 1;      // of each of them
   int cores = 1;
 
-  double all() const { return bed + run; }
+  double all() const { return start + bed + run; }
 };
 
 RunTime run_time(const Scenario& scenario, const MachineSpeed& machine);

@@ -65,6 +65,7 @@ std::vector<std::pair<std::string, std::string>> scales_lines(const WheelScales&
 
 nlohmann::ordered_json time_json(const RunTime& t) {
   return {{"all_s", number(t.all())},
+          {"start_s", number(t.start)},
           {"bed_s", number(t.bed)},
           {"bed_is_kept", t.bed_is_kept},
           {"run_s", number(t.run)},
@@ -101,6 +102,7 @@ std::string duration(double seconds) {
 std::string time_text(const RunTime& t) {
   std::string text = fmt::format("about {} on {} core{} that nobody else uses: ", duration(t.all()), t.cores,
                                  t.cores > 1 ? "s" : "");
+  text += fmt::format("start of the ranks {}, ", duration(t.start));
   if (t.bed > 0.0) text += fmt::format("bed {}, ", duration(t.bed));
   text += fmt::format("run {}; of a step of {} ms the slowest tire takes {}, the terrain {}", duration(t.run),
                       digits(1e3 * t.step), digits(1e3 * t.tire), digits(1e3 * t.terrain));

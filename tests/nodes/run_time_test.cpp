@@ -68,6 +68,29 @@ TEST(RunTime, tires_share_the_cores_that_there_are) {
   EXPECT_NEAR(on_many, 2.53e-3, 1e-4);
 }
 
+/// Rigid tires, 0.5 m from each other in rows of four, on 3,484 to 26,779 grains.
+scenario::RunTime time_of_wheels(int count) {
+  nlohmann::json s = nlohmann::json::parse(R"({
+      "rig": {"slip": 0, "mode": "fixed_angular_speed", "angular_speed": 0, "carrier_mass": 450},
+      "tire": {"file": "hmmwv_layered.json", "rigid": true},
+      "terrain": {"radius": 0.03, "cohesion": 80e3, "layers": 4, "width": 2.1, "cache": false},
+      "run": {"step": 1e-4, "end": 0.1, "average_from": 0.05}})");
+  for (int k = 0; k < count; ++k)
+    s["rig"]["wheels"].push_back({{"start", 0.7 + 1.1 * (k / 4)}, {"lateral", -0.75 + 0.5 * (k % 4)}});
+  s["terrain"]["length"] = 1.4 + 1.1 * ((count + 3) / 4);
+  return scenario::run_time(testing::ScenarioFile(s.dump()).load(), kMachine);
+}
+
+/// Measured on two cores: a step took 0.9 ms with 4 wheels, 5.0 with 16 and 33 with 64; the ranks began and ended in 0.45,
+/// 0.68, 1.2 and 6.6 s with 1, 4, 16 and 64 wheels (tests/benchmarks/start_of_ranks.csv).
+TEST(RunTime, many_ranks_for_each_core_begin_later_and_take_longer_for_their_messages) {
+  const auto about = [](double told, double measured) { return told > measured / 1.5 && told < 1.5 * measured; };
+  for (const auto& [wheels, step] : {std::pair{4, 0.9e-3}, {16, 5.0e-3}, {64, 33e-3}})
+    EXPECT_PRED2(about, time_of_wheels(wheels).step, step) << wheels;
+  for (const auto& [wheels, start] : {std::pair{1, 0.45}, {4, 0.68}, {16, 1.2}, {64, 6.6}})
+    EXPECT_PRED2(about, time_of_wheels(wheels).start, start) << wheels;
+}
+
 TEST(RunTime, sleeping_tiled_and_kept_beds_take_less) {
   const scenario::RunTime awake = time_of("drawbar_pull.json", {{"terrain.activity", "false"}});
   const scenario::RunTime asleep = time_of("drawbar_pull.json");

@@ -100,7 +100,7 @@ def newest_step(out):
 
 
 def watch(command, mark, out, every):
-    """Runs the command. @returns (samples by process, [(wall time, step)], wall time)"""
+    """Runs the command. @returns (samples (wall time, memory, open files) by process, [(wall time, step)], wall time)"""
     samples, steps, begin = {}, [], time.monotonic()
     run = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     while True:
@@ -111,7 +111,7 @@ def watch(command, mark, out, every):
             pass
         for name, pid in {"furrow": run.pid, **{f"rank {rank}": pid for rank, pid in ranks(mark).items()}}.items():
             try:
-                samples.setdefault(name, []).append(sample(pid))
+                samples.setdefault(name, []).append((time.monotonic() - begin, *sample(pid)))
             except (OSError, IndexError):
                 pass
         step = newest_step(out)
@@ -123,10 +123,11 @@ def watch(command, mark, out, every):
 
 
 def early_and_late(series):
-    """Of the second and the last quarter: mean memory, most open files."""
+    """Of the second and the last quarter: mean memory, open files. A file that is open only while it is written does not
+    count: the fewest that are seen are those that stay."""
     later = series[len(series) // 4:]
     parts = later[: max(1, len(later) // 3)], later[-max(1, len(later) // 3):]
-    return [(sum(s[0] for s in part) / len(part), max(s[1] for s in part)) for part in parts]
+    return [(sum(s[1] for s in part) / len(part), min(s[2] for s in part)) for part in parts]
 
 
 def rates(ends):
@@ -136,13 +137,14 @@ def rates(ends):
     return [round(1e3 * (b[0] - a[0]) / (b[1] - a[1]), 4) for a, b in spans]
 
 
-def judge(report, samples, what, ends):
-    """@param ends: [(wall time in s, number done)] of each `what`, which is a step or a run"""
+def judge(report, samples, what, ends, begin=0.0):
+    """@param ends: [(wall time in s, number done)] of each `what`, which is a step or a run
+    @param begin: wall time in s at which the steps began; what a process holds before, while a bed settles, does not count"""
     grew = False
     for name, series in sorted(samples.items()):
-        (memory, files), (memory_late, files_late) = early_and_late(series)
+        (memory, files), (memory_late, files_late) = early_and_late([s for s in series if s[0] >= begin])
         grew |= memory_late > (1 + GROWN_SHARE) * memory + GROWN_MB or files_late > files
-        report["processes"].append({"process": name, "samples": len(series), "most_memory_MB": round(max(s[0] for s in series), 1),
+        report["processes"].append({"process": name, "samples": len(series), "most_memory_MB": round(max(s[1] for s in series), 1),
                                     "memory_MB_early": round(memory, 2), "memory_MB_late": round(memory_late, 2),
                                     "open_files_early": files, "open_files_late": files_late})
     if len(ends) >= 8:
@@ -164,7 +166,7 @@ def run_case(scenario, folder, every):
               "files": sum(len(files) for _, _, files in os.walk(out)),
               "bytes": sum(os.path.getsize(os.path.join(top, name)) for top, _, files in os.walk(out) for name in files),
               "said_before": [line for line in check.stdout.splitlines() if "core" in line or "memory" in line], "processes": []}
-    judge(report, samples, "step", steps)
+    judge(report, samples, "step", steps, wall - summary["wall_s"])
     return report
 
 

@@ -13,6 +13,7 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,6 +59,7 @@ class Sweep {
     bool loaded = false;
     std::string digest, problem;
     std::string name;  // of its folder in the study's
+    std::optional<std::string> cells;  // of its results, once it has ended
     int exit_code = 0;
     pid_t process = -1;
     std::size_t share = 0;  // of the cores
@@ -81,7 +83,8 @@ class Sweep {
   void tell_failure(const Run& run, const std::string& what);
   std::string line_of(const Run& run, const std::string& what) const;
   void show_progress();
-  void write_table() const;
+  const std::string& cells_of(Run& run) const;
+  void write_table();
   ExitCode outcome() const;
 
   Study study_;

@@ -1,5 +1,6 @@
 // The ranks of mpi_test.cpp: one program, one scene per first argument. Every rank prints what it saw to stdout and
 // ends with the code that a node of a real run would end with.
+#include <dlfcn.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -7,6 +8,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <string>
 #include <thread>
 #include <vector>
@@ -102,6 +104,15 @@ void ping(Transport& t) {
   require(t.host_nodes().size() == 3, "host nodes");
   say("%s: 1000 steps, %.0f us each, role communicator %s\n", to_string(t.self()).c_str(), 1e6 * each,
       t.role_communicator().value_or(0) > 0 ? "made" : "missing");
+}
+
+/// What Open MPI was begun with, and what it does in steps.
+void yielding(Transport& t) {
+  exchange(t, 0, 400);
+  const auto* now = static_cast<const bool*>(dlsym(RTLD_DEFAULT, "opal_progress_yield_when_idle"));
+  const char* begun = std::getenv("OMPI_MCA_mpi_yield_when_idle");
+  say("%s: begun with %s, yields in steps: %s\n", to_string(t.self()).c_str(), begun ? begun : "nothing",
+      now ? *now ? "yes" : "no" : "unknown");
 }
 
 /// The terrain computes; the others wait for it all the time.
@@ -201,6 +212,7 @@ int play(const std::string& scene, int argc, char** argv) {
   try {
     transport = make_mpi_transport(&argc, &argv, 1, 1);
     if (scene == "ping") ping(*transport);
+    if (scene == "yielding") yielding(*transport);
     if (scene == "waiting") waiting(*transport, 4e-3, 500);
     if (scene == "waiting_long") waiting(*transport, 0.2, 10);
     if (scene == "uneven") uneven(*transport);

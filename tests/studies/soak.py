@@ -17,7 +17,6 @@ import json
 import os
 import pathlib
 import shutil
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -124,11 +123,11 @@ def watch(command, mark, out, every):
 
 
 def early_and_late(series):
-    """Of the second and the last quarter: median memory, open files. What is there only while a checkpoint or a frame is
-    written does not count: the fewest files that are seen are those that stay."""
+    """Of the second and the last quarter: least memory, fewest open files. They are what stays: what is there only while a
+    checkpoint or a frame is written does not count."""
     later = series[len(series) // 4:]
     parts = later[: max(1, len(later) // 3)], later[-max(1, len(later) // 3):]
-    return [(statistics.median(s[1] for s in part), min(s[2] for s in part)) for part in parts]
+    return [tuple(min(s[k] for s in part) for k in (1, 2)) for part in parts]
 
 
 def rates(ends):

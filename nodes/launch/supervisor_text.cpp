@@ -21,6 +21,12 @@ bool is_rule(std::string_view line) {
          std::all_of(line.begin(), line.end(), [](char c) { return c == '-' || c == '='; });
 }
 
+/// What the launcher logs of itself, and what ranks say as they abort: it hides the cause, but is better than nothing.
+bool is_internal(std::string_view line) {
+  return line.find("ORTE_ERROR_LOG") != std::string_view::npos ||
+         (line.starts_with('[') && line.find("] *** ") != std::string_view::npos);
+}
+
 /// The signal that strsignal calls so; 0: none.
 int signal_called(const std::string& name) {
   for (int signal = 1; signal < NSIG; ++signal)
@@ -52,9 +58,9 @@ void LauncherText::add(std::string_view line) {
 }
 
 std::string LauncherText::words() const {
-  std::string text, internal;  // what it logs of itself hides the cause, but is better than nothing
+  std::string text, internal;
   for (const std::string& line : lines_) {
-    std::string& sort = line.find("ORTE_ERROR_LOG") == std::string::npos ? text : internal;
+    std::string& sort = is_internal(line) ? internal : text;
     sort += (sort.empty() ? "" : " ") + line;
   }
   if (text.empty()) text = internal;

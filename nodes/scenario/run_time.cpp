@@ -77,8 +77,8 @@ double settling(const terrain::dem::DemOptions& o) {
   return (is_kept(piece) ? 0.0 : steps(piece, time)) + steps(o, kJoints);
 }
 
-/// How much longer messages take where there are several ranks for each core: who has slept finds its caches cold, and a
-/// core goes from one rank to another for each message. Measured with 3 to 66 ranks on two cores.
+/// How much longer messages take where there are several ranks for each core: who has slept finds its caches cold,
+/// and a core goes from one rank to another for each message. Measured with 3 to 66 ranks on two cores.
 double crowd(int ranks, int cores) {
   return 1.0 + kCrowd * std::max(0.0, std::log2(ranks / (kFewRanks * cores)));
 }

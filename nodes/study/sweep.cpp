@@ -399,7 +399,8 @@ ExitCode Sweep::run(const launch::FolderLock& lock) {
   return outcome();
 }
 
-/// Its results as they stand in the table; read once, or a study of 1,000 runs would read 1,000 summaries as each run ends.
+/// Its results as they stand in the table. They are read once: a study of 1,000 runs would read 1,000 summaries as each
+/// run ends.
 const std::string& Sweep::cells_of(Run& run) const {
   if (!run.cells) {
     const Json summary =

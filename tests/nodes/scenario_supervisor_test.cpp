@@ -102,6 +102,10 @@ TEST(LauncherText, passes_over_what_the_launcher_logs_of_itself_unless_there_is_
   EXPECT_EQ(text.words(), log);
   text.add("A requested component was not found.");
   EXPECT_EQ(text.words(), "A requested component was not found.");
+  launch::LauncherText aborted;
+  aborted.add("[host:7] *** An error occurred in MPI_Init_thread");
+  aborted.add("A requested component was not found.");
+  EXPECT_EQ(aborted.words(), "A requested component was not found.");
 }
 
 TEST(Progress, tells_time_pull_sinkage_speed_and_what_is_left) {

@@ -94,9 +94,9 @@ TireFile read_own(JsonReader& reader) {
   TireFile f;
   f.name = reader.text_or("name", "tire");
   reader.skip("template");
-  f.radius = reader.positive("radius");
-  f.rim_radius = reader.positive("rim_radius");
-  f.rim_width = reader.positive("rim_width");
+  f.radius = length_of(reader, "radius");
+  f.rim_radius = length_of(reader, "rim_radius");
+  f.rim_width = length_of(reader, "rim_width");
   f.pressure = reader.not_negative("pressure");
   f.structural_damping = reader.not_negative("structural_damping");
   f.prony = read_prony(reader);

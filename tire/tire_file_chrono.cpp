@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "tire/tire_file_reader.hpp"
 #include "tire/tire_profile.hpp"
 
 namespace furrow::tire {
@@ -103,9 +104,9 @@ TireFile read_chrono(JsonReader& reader) {
     reader.fail("Type", "is '" + type + "', expected 'Tire'");
   if (reader.flag_or("8-Node Elements", false))
     reader.fail("8-Node Elements", "is true, only tires of 4-node elements (false) can be read");
-  f.radius = reader.positive("Tire Radius");
-  f.rim_radius = reader.positive("Rim Radius");
-  f.rim_width = reader.positive("Rim Width");
+  f.radius = length_of(reader, "Tire Radius");
+  f.rim_radius = length_of(reader, "Rim Radius");
+  f.rim_width = length_of(reader, "Rim Width");
   f.contact = contact(reader.child("Contact Material"));
   const json& materials = reader.array("Materials");
   for (std::size_t m = 0; m < materials.size(); ++m)

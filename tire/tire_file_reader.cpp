@@ -8,6 +8,7 @@ namespace furrow::tire {
 namespace {
 
 constexpr int kFormatVersion = 1;
+constexpr double kShortest = 1e-4, kLongest = 100.0;  // m
 
 }  // namespace
 
@@ -22,6 +23,13 @@ int choice_of(JsonReader& reader, const std::string& key, std::string_view first
   if (given == second) return 1;
   reader.fail(key,
               fmt::format("is '{}', expected {}", given, one_of({std::string(first), std::string(second)})));
+}
+
+double length_of(JsonReader& reader, const std::string& key) {
+  const double length = reader.positive(key);
+  if (length < kShortest || length > kLongest)
+    reader.fail(key, fmt::format("is {:g} m, expected {:g} to {:g} m", length, kShortest, kLongest));
+  return length;
 }
 
 ContactMaterial read_contact(JsonReader reader) {

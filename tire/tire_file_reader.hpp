@@ -15,6 +15,10 @@ namespace furrow::tire {
 /// @throws Error(bad_input) naming file and key
 void take_common_keys(JsonReader& reader);
 
+/// A size of the tire in m, from 0.1 mm to 100 m: beyond, arithmetic on its mesh overflows or vanishes.
+/// @throws Error(bad_input) naming file and key
+double length_of(JsonReader& reader, const std::string& key);
+
 /// The block `contact`: what grains and ground feel of the tread. @throws Error(bad_input) naming file and key
 ContactMaterial read_contact(JsonReader reader);
 

@@ -156,9 +156,9 @@ PlanarFile read_planar_file(const nlohmann::json& document, const std::string& p
   PlanarFile f;
   f.path = path;
   PlanarParams& p = f.params;
-  p.size.radius = reader.positive("radius");
-  p.size.rim_radius = reader.positive("rim_radius");
-  p.options.width = reader.positive("width");
+  p.size.radius = length_of(reader, "radius");
+  p.size.rim_radius = length_of(reader, "rim_radius");
+  p.options.width = length_of(reader, "width");
   p.size.around = reader.count("elements_circumference", kLeastAround, kMostAround);
   p.size.rings = reader.count("elements_radial", 1, kMostRings);
   p.disc = read_material(reader.child("disc"));

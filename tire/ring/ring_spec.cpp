@@ -165,9 +165,9 @@ RingFile read_ring_file(const nlohmann::json& document, const std::string& path)
   f.path = path;
   RingParams& p = f.params;
   p.segments = reader.count("segments", kMinSegments, kMaxSegments);
-  p.radius = reader.positive("radius");
-  p.width = reader.positive("width");
-  f.motion.rim_radius = reader.positive("rim_radius");
+  p.radius = length_of(reader, "radius");
+  p.width = length_of(reader, "width");
+  f.motion.rim_radius = length_of(reader, "rim_radius");
   p.pressure = reader.not_negative("pressure");
   p.air_share = reader.positive("air_share");
   p.bending = reader.positive("bending");

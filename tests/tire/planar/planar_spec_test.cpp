@@ -33,6 +33,8 @@ TEST(PlanarSpec, wrong_files_are_refused_with_file_key_and_what_was_expected) {
   EXPECT_EQ(complaint(file_text()), "no error");
   const std::vector<std::tuple<const char*, json, const char*>> wrong{
       {"/radius", 0, "expected"},
+      {"/radius", 1e300, "expected 0.0001 to 100 m"},
+      {"/rim_radius", 5e-324, "expected 0.0001 to 100 m"},
       {"/radius", "wide", "expected"},
       {"/rim_radius", 0.6, "expected less than the radius of 0.522 m"},
       {"/rim_radius", nullptr, "expected"},

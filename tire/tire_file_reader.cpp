@@ -28,7 +28,7 @@ int choice_of(JsonReader& reader, const std::string& key, std::string_view first
 double length_of(JsonReader& reader, const std::string& key) {
   const double length = reader.positive(key);
   if (length < kShortest || length > kLongest)
-    reader.fail(key, fmt::format("is {:g} m, expected {:g} to {:g} m", length, kShortest, kLongest));
+    reader.fail(key, fmt::format("is {} m, expected {} to {} m", number_text(length), kShortest, kLongest));
   return length;
 }
 

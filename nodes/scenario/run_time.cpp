@@ -31,11 +31,13 @@ constexpr double kMeshExponent = 1.1;  // of the time of a tire's step with its 
 constexpr double kRigidTire = 5e-5;    // of a step: moving the surface, s
 constexpr double kMessages =
     8e-5;  // for each tire, in its rank and in the rig's: to send, receive and write, s
-constexpr double kCrowd = 0.8, kFewRanks = 3.0;  // growth of that with each doubling of more than so many for a core
-constexpr double kStart = 0.2, kRankStart = 0.17;  // processor time until ranks have found each other, s
-constexpr double kVertex = 8e-8;   // of a tire, in the terrain: finding its contacts, messages, s
-constexpr double kLatency = 5e-5;  // until a message is noticed, s
-constexpr int kPlaces = 9;         // along the axles' paths at which the awake share is looked at
+constexpr double kFewRanks = 3.0;    // for a core: with more of them messages take longer
+constexpr double kCrowd = 0.8;       // by this share with each doubling
+constexpr double kStart = 0.2;       // until mpirun has begun, s
+constexpr double kRankStart = 0.17;  // of each rank until all have found each other, processor s
+constexpr double kVertex = 8e-8;     // of a tire, in the terrain: finding its contacts, messages, s
+constexpr double kLatency = 5e-5;    // until a message is noticed, s
+constexpr int kPlaces = 9;           // along the axles' paths at which the awake share is looked at
 
 /// Mean share of a bin's length that lies near an axle.
 double awake_share(const Scenario& s, const std::vector<tire::TireDescription>& tires, double length) {

@@ -4,12 +4,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 #include <csignal>
-#include <cstring>
 
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
-#include <fstream>
 #include <new>
 #include <utility>
 
@@ -20,6 +18,7 @@
 #include "nodes/launch/child_process.hpp"
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/run_list.hpp"
+#include "nodes/launch/run_log.hpp"
 #include "nodes/launch/signals.hpp"
 #include "nodes/scenario/load_scenario.hpp"
 #include "nodes/scenario/memory_check.hpp"
@@ -38,10 +37,9 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using checkpoint::read_summary, checkpoint::read_failed_summary, checkpoint::value_at;
 
-constexpr int kPoll = 20000;               // µs
-constexpr double kDeepRut = 0.4;           // of the bed's depth: a tire this deep feels the floor
-constexpr double kLook = 2.0;              // s between looks at how far the runs are
-constexpr std::streamoff kLogTail = 4096;  // bytes of a log that hold a line of progress
+constexpr int kPoll = 20000;      // µs
+constexpr double kDeepRut = 0.4;  // of the bed's depth: a tire this deep feels the floor
+constexpr double kLook = 2.0;     // s between looks at how far the runs are
 
 std::string cell(const Json& value) {
   if (value.is_null()) return "";
@@ -50,29 +48,6 @@ std::string cell(const Json& value) {
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
   return quoted + "\"";
-}
-
-/// Why a run ended: the last error in its log.
-std::string last_error(const fs::path& log, int status) {
-  if (WIFSIGNALED(status))
-    return fmt::format("killed by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
-  std::ifstream in(log);
-  std::string found;
-  const std::string mark = "furrow: error: ";
-  for (std::string line; std::getline(in, line);)
-    if (line.starts_with(mark)) found = line.substr(mark.size());
-  return found.empty() ? "it left no message in " + log.string() : found;
-}
-
-/// Share of a run that is done by its log, 0…1: that of the last line of progress near its end.
-double share_in_log(const fs::path& log) {
-  std::ifstream in(log, std::ios::binary | std::ios::ate);
-  const std::streamoff size = in ? static_cast<std::streamoff>(in.tellg()) : 0;
-  in.seekg(std::max(std::streamoff{0}, size - kLogTail));
-  double share = 0.0;
-  for (std::string line; std::getline(in, line);)
-    if (const double told = launch::share_in(line); std::isfinite(told)) share = told;
-  return share;
 }
 
 /// As many shares of the cores this process may use, as even as they come; all of them where there are too few.
@@ -113,6 +88,7 @@ Sweep::Sweep(Study study, const SweepOptions& options)
       runs_.emplace_back();
       runs_.back().keys = study_.runs[k];
       runs_.back().pass = pass;
+      runs_.back().cells.assign(study_.results.size(), ',');
       if (!study_.names.empty()) runs_.back().name = study_.names[k];
       if (pass <= 1) load(runs_.back());
     }
@@ -140,8 +116,7 @@ void Sweep::load(Run& run) {
 fs::path Sweep::folder_of(const Run& run) const { return options_.folder / run.name; }
 fs::path Sweep::log_of(const Run& run) const { return options_.folder / (run.name + ".log"); }
 
-bool Sweep::finished(const Run& run) const {
-  const Json summary = read_summary(folder_of(run));
+bool Sweep::finished(const Run& run, const Json& summary) const {
   if (!summary.is_object()) return false;
   if (value_at(summary, "scenario_digest") == run.digest) return true;
   // After a failure it was continued with a smaller step.
@@ -186,7 +161,7 @@ void Sweep::show_progress() {
   std::size_t done = 0;
   for (Run& run : runs_) {
     if (run.state == State::done || run.state == State::failed) run.done = 1.0, ++done;
-    if (run.state == State::running) run.done = std::max(run.done, share_in_log(log_of(run)));
+    if (run.state == State::running) run.done = std::max(run.done, launch::share_in_log(log_of(run)));
     share += run.done / static_cast<double>(runs_.size());
   }
   if (begin_ == 0.0) begin_ = now, begin_share_ = share;
@@ -208,8 +183,10 @@ Sweep::Run* Sweep::next() {
       if (launch::stop_signalled()) return nullptr;
       continue;
     }
-    if (!finished(run)) return &run;
+    const Json summary = read_summary(folder_of(run));
+    if (!finished(run, summary)) return &run;
     run.state = State::done;
+    keep_results(run, summary);
     tell(run, "is done already");
   }
   return nullptr;
@@ -290,12 +267,13 @@ void Sweep::poll(Run& run) {
   if (waitpid(run.process, &status, WNOHANG) != run.process) return;
   run.process = -1;
   run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : static_cast<int>(ExitCode::rank_lost);
+  const Json summary = read_summary(folder_of(run));
   if (run.exit_code == static_cast<int>(ExitCode::stopped)) {
     run.state = State::stopped;
     tell(run, "was stopped");
-  } else if (run.exit_code == 0 && finished(run)) {
+  } else if (run.exit_code == 0 && finished(run, summary)) {
     run.state = State::done;
-    const Json summary = read_summary(folder_of(run));
+    keep_results(run, summary);
     const auto number = [&](const char* path) {
       const Json value = value_at(summary, path);
       return value.is_number() ? value.get<double>() : std::nan("");
@@ -316,11 +294,12 @@ void Sweep::poll(Run& run) {
                100.0 * deep));
   } else {
     run.state = State::failed;
+    keep_results(run, read_failed_summary(folder_of(run)));
     run.problem =
         run.exit_code == 0
             ? "holds the results of another scenario: it was resumed with other keys, or files were "
               "changed meanwhile; remove it to run it again"
-            : last_error(log_of(run), status);
+            : launch::last_error(log_of(run), status);
     if (run.exit_code == 0) run.exit_code = static_cast<int>(ExitCode::bad_input);
     tell_failure(run, fmt::format("FAILED with exit code {}: {}; see {}", run.exit_code, run.problem,
                                   log_of(run).string()));
@@ -399,37 +378,29 @@ ExitCode Sweep::run(const launch::FolderLock& lock) {
   return outcome();
 }
 
-/// Its results as they stand in the table. They are read once: a study of 1,000 runs would read 1,000 summaries as each
-/// run ends.
-const std::string& Sweep::cells_of(Run& run) const {
-  if (!run.cells) {
-    const Json summary =
-        run.state == State::done ? read_summary(folder_of(run)) : read_failed_summary(folder_of(run));
-    run.cells.emplace();
-    for (const std::string& name : study_.results) *run.cells += "," + cell(value_at(summary, name));
-  }
-  return *run.cells;
+/// Once, as it ends: the table is written anew as each run ends, and would read the summaries of all of them.
+void Sweep::keep_results(Run& run, const Json& summary) const {
+  run.cells.clear();
+  for (const std::string& name : study_.results) run.cells += "," + cell(value_at(summary, name));
 }
 
-void Sweep::write_table() {
+void Sweep::write_table() const {
   std::vector<std::string> keys;
   for (const Run& run : runs_)
     for (const auto& [key, unused] : run.keys.items())
       if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
   std::string text = study_.passes > 0 ? "run,folder,state,exit_code,pass" : "run,folder,state,exit_code";
-  for (const std::vector<std::string>* names : {&std::as_const(keys), &std::as_const(study_.results)})
+  for (const std::vector<std::string>* names : {&std::as_const(keys), &study_.results})
     for (const std::string& name : *names) text += "," + cell(name);
   text += ",problem\n";
   for (std::size_t i = 0; i < runs_.size(); ++i) {
-    Run& run = runs_[i];
-    const bool has_results = run.state == State::done || (run.state == State::failed && run.loaded);
+    const Run& run = runs_[i];
     text += fmt::format(
         "{},{},{},{}", i + 1, run.loaded ? run.name : "", state_name(static_cast<int>(run.state)),
         run.state == State::done || run.state == State::failed ? std::to_string(run.exit_code) : "");
     if (run.pass > 0) text += fmt::format(",{}", run.pass);
     for (const std::string& key : keys) text += "," + (run.keys.contains(key) ? cell(run.keys[key]) : "");
-    text += has_results ? cells_of(run) : std::string(study_.results.size(), ',');
-    text += "," + cell(run.problem) + "\n";
+    text += run.cells + "," + cell(run.problem) + "\n";
   }
   write_whole_file(options_.folder / "sweep.csv", text);
 }

@@ -13,7 +13,6 @@
 #include <sys/types.h>
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,8 +57,8 @@ class Sweep {
     State state = State::waiting;
     bool loaded = false;
     std::string digest, problem;
-    std::string name;  // of its folder in the study's
-    std::optional<std::string> cells;  // of its results, once it has ended
+    std::string name;   // of its folder in the study's
+    std::string cells;  // of its results in the table; empty ones until it has ended
     int exit_code = 0;
     pid_t process = -1;
     std::size_t share = 0;  // of the cores
@@ -69,7 +68,7 @@ class Sweep {
   void load(Run& run);
   std::filesystem::path folder_of(const Run& run) const;
   std::filesystem::path log_of(const Run& run) const;
-  bool finished(const Run& run) const;
+  bool finished(const Run& run, const nlohmann::ordered_json& summary) const;
   std::vector<std::string> command(const Run& run) const;
   Run* next();
   bool prepare_bed(Run& run);
@@ -83,8 +82,8 @@ class Sweep {
   void tell_failure(const Run& run, const std::string& what);
   std::string line_of(const Run& run, const std::string& what) const;
   void show_progress();
-  const std::string& cells_of(Run& run) const;
-  void write_table();
+  void keep_results(Run& run, const nlohmann::ordered_json& summary) const;
+  void write_table() const;
   ExitCode outcome() const;
 
   Study study_;

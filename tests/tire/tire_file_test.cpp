@@ -102,6 +102,7 @@ TEST_F(TireFileTest, every_mistake_names_its_key) {
   EXPECT_EQ(with([](json& j) { j.erase("radius"); }), "key 'radius': is missing, expected a number");
   EXPECT_EQ(with([](json& j) { j["radius"] = -0.4; }), "key 'radius': is -0.4, expected a number above zero");
   EXPECT_EQ(with([](json& j) { j["radius"] = "big"; }), "key 'radius': is 'big', expected a number");
+  EXPECT_EQ(with([](json& j) { j["radius"] = 1e300; }), "key 'radius': is 1e300 m, expected 0.0001 to 100 m");
   EXPECT_EQ(with([](json& j) { j["pressure"] = -1; }),
             "key 'pressure': is -1, expected a number of zero or above");
   EXPECT_EQ(with([](json& j) { j["pressure"] = nullptr; }), "key 'pressure': is null, expected a number");

@@ -36,6 +36,8 @@ TEST(RingSpec, wrong_files_are_refused_with_file_and_key) {
                                                         {"segments", 48.5},
                                                         {"radius", 0},
                                                         {"radius", "wide"},
+                                                        {"radius", 1e300},
+                                                        {"width", 1e-9},
                                                         {"width", -0.2},
                                                         {"rim_radius", 0.5},
                                                         {"rim_radius", nullptr},

@@ -31,13 +31,14 @@ constexpr double kMeshExponent = 1.1;  // of the time of a tire's step with its 
 constexpr double kRigidTire = 5e-5;    // of a step: moving the surface, s
 constexpr double kMessages =
     8e-5;  // for each tire, in its rank and in the rig's: to send, receive and write, s
-constexpr double kFewRanks = 3.0;    // for a core: with more of them messages take longer
-constexpr double kCrowd = 0.8;       // by this share with each doubling
-constexpr double kStart = 0.2;       // until mpirun has begun, s
-constexpr double kRankStart = 0.17;  // of each rank until all have found each other, processor s
-constexpr double kVertex = 8e-8;     // of a tire, in the terrain: finding its contacts, messages, s
-constexpr double kLatency = 5e-5;    // until a message is noticed, s
-constexpr int kPlaces = 9;           // along the axles' paths at which the awake share is looked at
+constexpr double kFewRanks = 3.0;     // for a core: with more of them messages take longer
+constexpr double kCrowd = 0.8;        // by this share with each doubling
+constexpr double kStart = 0.45;       // until mpirun has begun, and until it has ended, s
+constexpr double kRankStart = 0.05;   // of each rank of a core, s
+constexpr double kPairStart = 0.004;  // of each pair of ranks of a core: they find each other, s
+constexpr double kVertex = 8e-8;      // of a tire, in the terrain: finding its contacts, messages, s
+constexpr double kLatency = 5e-5;     // until a message is noticed, s
+constexpr int kPlaces = 9;            // along the axles' paths at which the awake share is looked at
 
 /// Mean share of a bin's length that lies near an axle.
 double awake_share(const Scenario& s, const std::vector<tire::TireDescription>& tires, double length) {
@@ -99,7 +100,8 @@ RunTime run_time(const Scenario& s, const MachineSpeed& machine) {
     t.threads = auto_terrain_threads(t.cores, count, s.terrain_ranks,
                                      s.terrain->estimate(s.terrain_context()).grains);
   const int ranks = 1 + count + s.terrain_ranks;
-  t.start = kStart + kRankStart * ranks / t.cores;
+  const double share = static_cast<double>(ranks) / t.cores;
+  t.start = kStart + share * (kRankStart + kPairStart * share);
   const double messages = kMessages * crowd(ranks, t.cores);
   double all = messages * (1.0 + count), surfaces = 0.0;
   for (const tire::TireDescription& tire : tires) {

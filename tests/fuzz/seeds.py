@@ -34,9 +34,38 @@ def documents(root, *patterns):
     return [json.loads(path.read_text()) for pattern in patterns for path in sorted(root.glob(pattern))]
 
 
+def public_layout(tire):
+    """A tire of our own layout in the public one (template ANCFTire), whose keys tire/README.md lists."""
+    names = list(tire["materials"])
+    contact = tire["contact"]
+
+    def material(given):
+        values = {theirs: given[ours] for theirs, ours in (("E", "young_modulus"), ("nu", "poisson_ratio"), ("G", "shear_modulus")) if ours in given}
+        if any(isinstance(value, list) for value in values.values()):
+            return {"Type": "Orthotropic", "Density": given["density"],
+                    **{key: value if isinstance(value, list) else [value] * 3 for key, value in values.items()}}
+        return {"Type": "Isotropic", "Density": given["density"], **values}
+
+    def section(given):
+        layers = given["layers"]
+        return {"Number Elements": given["elements_per_side"], "Layer Thickness": [layer["thickness"] for layer in layers],
+                "Ply Angle": [layer["angle_deg"] for layer in layers], "Material ID": [names.index(layer["material"]) for layer in layers]}
+    return {"Name": tire["name"], "Type": "Tire", "Template": "ANCFTire", "Tire Radius": tire["radius"], "Rim Radius": tire["rim_radius"],
+            "Rim Width": tire["rim_width"], "8-Node Elements": False, "rim": tire["rim"],
+            "Contact Material": {"Coefficient of Friction": contact["friction"], "Coefficient of Restitution": contact["restitution"],
+                                 "Properties": {"Young Modulus": contact["young_modulus"], "Poisson Ratio": contact["poisson_ratio"]},
+                                 "Coefficients": {"Normal Stiffness": contact["normal_stiffness"], "Normal Damping": contact["normal_damping"],
+                                                  "Tangential Stiffness": 1e6, "Tangential Damping": 0}},
+            "Materials": [material(tire["materials"][name]) for name in names],
+            "Structural Damping Coefficient": tire["structural_damping"], "Default Pressure": tire["pressure"],
+            **{f"{name.title()} Section": section(tire["sections"][name]) for name in ("bead", "sidewall", "tread")},
+            "Number Elements Circumference": tire["elements_circumference"], "Profile": tire["profile"]}
+
+
 def tires(root):
     files = documents(root, "tire/data/*.json")
     files = [file for file in files if "template" in file or "Template" in file or "model" in file]
+    files += [public_layout(file) for file in files if file.get("template") == "ancf_shell"]
     return files + [{"file": files[0], "pressure": [[0, 2e5], [0.5, 1e5]], "rigid": True},
                     {"file": files[-1], "pressure": 1.5e5, "around": 24, "across": 6}]
 

@@ -8,6 +8,9 @@ last of its folders, must exist somewhere; so must one that a comment of a C++ s
 run stand in README.md as its scenario states them. Every term of the glossary names at least one file, and every recipe
 of CONTRIBUTING.md at most five; what a step names in parentheses is to be read, not touched, and does not count.
 
+A commit that a page or a table names is in the history, where the checkout has all of it. What is taken for one: words
+of seven or eight hexadecimal digits, both letters and numbers among them.
+
 The lists of shipped scenarios, studies and calibrations leave out none. Every CSV file under tests/, every JSON file of
 results under tests/studies, tests/benchmarks and tests/peers, and what a soil file says was measured, names commit,
 compiler, processor and command of its making (tests/studies/provenance.py), and some page names the file.
@@ -20,6 +23,7 @@ import fnmatch
 import json
 import pathlib
 import re
+import subprocess
 import sys
 
 WIDTH = 120
@@ -27,6 +31,7 @@ LINK = re.compile(r"\]\(([^)\s]+)\)")
 CODE = re.compile(r"`([^`]+)`")
 MOST_FILES = 5  # of a recipe
 ORIGIN = ("commit", "compiler", "processor", "command")  # of a table
+COMMIT = re.compile(r"(?<![\w.-])(?=[0-9a-f]*[0-9])[0-9a-f]{7,8}\b(?!-|\.\d)")
 TOP = {"nodes", "protocol", "tire", "terrain", "vehicle", "rigs", "tests", "scripts"}
 PATH = re.compile(r"([\w.<>*{},-]+(?:/[\w.<>*{},-]+)+/?)(?::(\d+))?$")
 SOURCE = r"[\w-]+(?:/[\w-]+)*\.(?:cpp|hpp|py|sh)"
@@ -212,6 +217,29 @@ def table_problems(root):
             yield file, "is named on no page"
 
 
+def git(root, *arguments, **options):
+    return subprocess.run(["git", "-C", str(root), *arguments], capture_output=True, text=True, check=False, **options).stdout
+
+
+def commits_named(root):
+    """(file, number, name) of every commit on pages and in tables."""
+    for page in pages(root):
+        for number, text, kind in lines_of(page):
+            yield from ((page, number, name) for name in COMMIT.findall(text) if kind != "code" and not name.isdigit())
+    for file, origin in tables(root):
+        yield from ((file, 1, name) for name in re.findall(r"\b[0-9a-f]{7,40}\b", str(origin.get("commit", ""))))
+
+
+def commit_problems(root):
+    if git(root, "rev-parse", "--show-toplevel", "--is-shallow-repository").split() != [str(root), "false"]:
+        return
+    named = list(commits_named(root))
+    asked = "".join(f"{name}^{{commit}}\n" for _, _, name in named)
+    for (file, number, name), answer in zip(named, git(root, "cat-file", "--batch-check", input=asked).splitlines()):
+        if answer.endswith(" missing"):
+            yield file, number, f"names commit {name}, which is not in the history"
+
+
 def unlisted(root):
     """(page, file) of every shipped scenario, study and calibration that a list of them leaves out."""
     shipped = [file.name for file in sorted((root / "rigs").glob("*.json")) if not file.name.endswith(".schema.json")]
@@ -237,6 +265,7 @@ def main():
     if not options.pages:
         found += [f"{file.relative_to(root)}:1: {text}" for file, text in table_problems(root)]
         found += [f"{file.relative_to(root)}:{number}: {text}" for file, number, text in comment_problems(root, sources)]
+        found += [f"{file.relative_to(root)}:{number}: {text}" for file, number, text in commit_problems(root)]
         found += [f"{page.relative_to(root)}:1: does not list rigs/{name}" for page, name in unlisted(root)]
     print("\n".join(found), end="\n" if found else "")
     return 1 if found else 0

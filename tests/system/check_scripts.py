@@ -13,7 +13,7 @@ SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
 class Check(unittest.TestCase):
     script = ""
 
-    def told(self, **files):
+    def told(self, prepare=lambda root: None, **files):
         """What the script prints of a tree with these files, by names in which '__' is '/' and '_dot_' is '.'."""
         with tempfile.TemporaryDirectory() as name:
             root = pathlib.Path(name)
@@ -21,6 +21,7 @@ class Check(unittest.TestCase):
                 path = root / file.replace("__", "/").replace("_dot_", ".")
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_text(text)
+            prepare(root)
             done = subprocess.run([sys.executable, "-B", SCRIPTS / self.script, "--root", root], text=True,
                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
             self.assertEqual(done.returncode, 1 if done.stdout else 0, done.stdout)
@@ -133,6 +134,21 @@ class Docs(Check):
         self.assertIn("terrain/data/soil.json:1: does not say", self.told(**page, **{soil: '{"measured": {"n": 1}}'}))
         self.assertEqual(self.told(**{results: '{"scenario": "a.json", "cases": {}}'}), "")
         self.assertIn("tests/x/a.csv:1: is named on no page", self.told(**{table: head + "x\n1\n"}))
+
+    def test_commits_that_are_not_in_the_history(self):
+        def history(root):
+            for command in (["init", "-q"], ["-c", "user.name=A", "-c", "user.email=a@example", "commit", "-q", "--allow-empty", "-m", "a"]):
+                subprocess.run(["git", "-C", root, *command], check=True)
+            name = subprocess.run(["git", "-C", root, "rev-parse", "HEAD"], check=True, text=True, capture_output=True).stdout[:8]
+            page = root / "A.md"
+            page.write_text(page.read_text().replace("HEAD", name))
+        head = "# commit: 1a2b3c4d and 1a2b3c4e\n# compiler: c\n# processor: p\n# command: x.py\n"
+        page = "Mended at 1a2b3c4f. It was 12345678 bytes of a facade at HEAD (`a.csv`).\n\n    1a2b3c4a of code\n"
+        self.assertEqual(self.told(A_dot_md=page, tests__a_dot_csv=head), "")  # no repository
+        said = self.told(history, A_dot_md=page, tests__a_dot_csv=head).splitlines()
+        self.assertEqual(said, ["A.md:1: names commit 1a2b3c4f, which is not in the history",
+                                "tests/a.csv:1: names commit 1a2b3c4d, which is not in the history",
+                                "tests/a.csv:1: names commit 1a2b3c4e, which is not in the history"])
 
     def test_shipped_scenarios_that_the_lists_leave_out(self):
         files = {"rigs__a_dot_json": "{}", "rigs__scenario_dot_schema_dot_json": "{}"}

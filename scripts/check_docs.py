@@ -31,7 +31,7 @@ LINK = re.compile(r"\]\(([^)\s]+)\)")
 CODE = re.compile(r"`([^`]+)`")
 MOST_FILES = 5  # of a recipe
 ORIGIN = ("commit", "compiler", "processor", "command")  # of a table
-COMMIT = re.compile(r"(?<![\w.-])(?=[0-9a-f]*[0-9])[0-9a-f]{7,8}\b(?!-|\.\d)")
+COMMIT = re.compile(r"(?<![\w.-])(?=\d*[a-f])(?=[a-f]*\d)[0-9a-f]{7,8}\b(?!-|\.\d)")
 TOP = {"nodes", "protocol", "tire", "terrain", "vehicle", "rigs", "tests", "scripts"}
 PATH = re.compile(r"([\w.<>*{},-]+(?:/[\w.<>*{},-]+)+/?)(?::(\d+))?$")
 SOURCE = r"[\w-]+(?:/[\w-]+)*\.(?:cpp|hpp|py|sh)"
@@ -225,7 +225,7 @@ def commits_named(root):
     """(file, number, name) of every commit on pages and in tables."""
     for page in pages(root):
         for number, text, kind in lines_of(page):
-            yield from ((page, number, name) for name in COMMIT.findall(text) if kind != "code" and not name.isdigit())
+            yield from ((page, number, name) for name in COMMIT.findall(text) if kind != "code")
     for file, origin in tables(root):
         yield from ((file, 1, name) for name in re.findall(r"\b[0-9a-f]{7,40}\b", str(origin.get("commit", ""))))
 
@@ -233,11 +233,13 @@ def commits_named(root):
 def commit_problems(root):
     if git(root, "rev-parse", "--show-toplevel", "--is-shallow-repository").split() != [str(root), "false"]:
         return
-    named = list(commits_named(root))
+    named = list(commits_named(root))  # none of them is in a history that begins anew, for example a squashed one
     asked = "".join(f"{name}^{{commit}}\n" for _, _, name in named)
-    for (file, number, name), answer in zip(named, git(root, "cat-file", "--batch-check", input=asked).splitlines()):
-        if answer.endswith(" missing"):
-            yield file, number, f"names commit {name}, which is not in the history"
+    unknown = [answer.endswith(" missing") for answer in git(root, "cat-file", "--batch-check", input=asked).splitlines()]
+    if not all(unknown):
+        for (file, number, name), gone in zip(named, unknown):
+            if gone:
+                yield file, number, f"names commit {name}, which is not in the history"
 
 
 def unlisted(root):

@@ -82,8 +82,8 @@ double settling(const terrain::dem::DemOptions& o) {
 
 /// How much longer messages take where there are several ranks for each core: who has slept finds its caches cold,
 /// and a core goes from one rank to another for each message. Measured with 3 to 66 ranks on two cores.
-double crowd(int ranks, int cores) {
-  return 1.0 + kCrowd * std::max(0.0, std::log2(ranks / (kFewRanks * cores)));
+double crowd(double ranks_per_core) {
+  return 1.0 + kCrowd * std::max(0.0, std::log2(ranks_per_core / kFewRanks));
 }
 
 }  // namespace
@@ -99,10 +99,9 @@ RunTime run_time(const Scenario& s, const MachineSpeed& machine) {
   if (t.threads == 0)
     t.threads = auto_terrain_threads(t.cores, count, s.terrain_ranks,
                                      s.terrain->estimate(s.terrain_context()).grains);
-  const int ranks = 1 + count + s.terrain_ranks;
-  const double share = static_cast<double>(ranks) / t.cores;
-  t.start = kStart + share * (kRankStart + kPairStart * share);
-  const double messages = kMessages * crowd(ranks, t.cores);
+  const double ranks_per_core = static_cast<double>(1 + count + s.terrain_ranks) / t.cores;
+  t.start = kStart + ranks_per_core * (kRankStart + kPairStart * ranks_per_core);
+  const double messages = kMessages * crowd(ranks_per_core);
   double all = messages * (1.0 + count), surfaces = 0.0;
   for (const tire::TireDescription& tire : tires) {
     const double mesh = static_cast<double>(tire.coordinates) / machine.tire_coordinates;

@@ -145,6 +145,7 @@ class Docs(Check):
         head = "# commit: 1a2b3c4d and 1a2b3c4e\n# compiler: c\n# processor: p\n# command: x.py\n"
         page = "Mended at 1a2b3c4f. It was 12345678 bytes of a facade at HEAD (`a.csv`).\n\n    1a2b3c4a of code\n"
         self.assertEqual(self.told(A_dot_md=page, tests__a_dot_csv=head), "")  # no repository
+        self.assertEqual(self.told(history, A_dot_md=page.replace("HEAD", "a page"), tests__a_dot_csv=head), "")  # a squashed one
         said = self.told(history, A_dot_md=page, tests__a_dot_csv=head).splitlines()
         self.assertEqual(said, ["A.md:1: names commit 1a2b3c4f, which is not in the history",
                                 "tests/a.csv:1: names commit 1a2b3c4d, which is not in the history",

@@ -15,7 +15,7 @@
 #include "tire/press/press.hpp"
 #include "tire/ring/ring_spec.hpp"
 
-namespace furrow::study {
+namespace furrow::study::calibrate_ring_test {
 namespace {
 
 using namespace testing;
@@ -237,4 +237,4 @@ TEST_F(CalibrateRing, a_planar_tire_twice_as_stiff_is_found) {
 }
 
 }  // namespace
-}  // namespace furrow::study
+}  // namespace furrow::study::calibrate_ring_test

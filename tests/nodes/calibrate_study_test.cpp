@@ -7,24 +7,19 @@
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "nodes/study/calibrate_evaluations.hpp"
 #include "nodes/study/calibrate_explain.hpp"
 #include "protocol/core/error.hpp"
 #include "tests/nodes/calibrate_examples.hpp"
+#include "tests/nodes/text_of.hpp"
 
 namespace furrow::study {
 namespace {
 
 using namespace testing;
+using furrow::testing::text_of;
 using json = nlohmann::ordered_json;  // parameters in the order of the file
-
-std::string text_of(const std::filesystem::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
-}
 
 class CalibrateStudy : public ::testing::Test {
  protected:

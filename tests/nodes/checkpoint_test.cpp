@@ -15,7 +15,8 @@
 #include "nodes/scenario/load_scenario.hpp"
 #include "protocol/files/archive_file.hpp"
 #include "protocol/files/text_file.hpp"
-#include "temporary_folder.hpp"
+#include "tests/nodes/temporary_folder.hpp"
+#include "tests/nodes/text_of.hpp"
 
 namespace furrow {
 namespace {
@@ -23,11 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using testing::TemporaryFolder;
-
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
+using testing::text_of;
 
 /// A checkpoint with two parts, at `step`, in the run's folder.
 checkpoint::CheckpointManifest write_example(const fs::path& run, std::int64_t step, int keep = 10) {

@@ -136,8 +136,8 @@ TEST(NoThreadDeathTest, an_end_by_openmp_is_told_with_the_code_of_limits) {
     launch::end_where_no_thread_starts("no room for threads\n");
     std::exit(status);
   };
-  EXPECT_EXIT(end(EXIT_FAILURE), testing::ExitedWithCode(6), "^no room for threads\n$");
-  EXPECT_EXIT(end(3), testing::ExitedWithCode(3), "^ended slowly\n$");
+  EXPECT_EXIT(end(EXIT_FAILURE), ::testing::ExitedWithCode(6), "^no room for threads\n$");
+  EXPECT_EXIT(end(3), ::testing::ExitedWithCode(3), "^ended slowly\n$");
 }
 
 TEST(RequireMemory, refuses_what_surely_does_not_fit) {

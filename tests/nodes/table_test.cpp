@@ -19,7 +19,8 @@
 #include "protocol/files/hdf5_file.hpp"
 #include "rigs/drawbar_rig.hpp"
 #include "rigs/rig_row.hpp"
-#include "temporary_folder.hpp"
+#include "tests/nodes/temporary_folder.hpp"
+#include "tests/nodes/text_of.hpp"
 #include "tests/protocol/fields_of.hpp"
 #include "tests/rigs/reference_options.hpp"
 
@@ -72,11 +73,6 @@ class SpringRig final : public rigs::Rig {
   void save(Archive&) const override {}
   void restore(const Archive&) override {}
 };
-
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
 
 std::vector<std::string> split(const std::string& line) {
   std::vector<std::string> cells;

@@ -29,14 +29,14 @@ TEST(Assert, a_condition_that_holds_is_silent_and_evaluated_once) {
 }
 
 TEST(AssertDeathTest, a_condition_that_does_not_hold_ends_the_program_with_place_condition_and_values) {
-  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  ::testing::FLAGS_gtest_death_test_style = "threadsafe";
   EXPECT_DEATH(entry({4, 5, 6}, 7),
                "assert_test.cpp:[0-9]+: entry: precondition failed: .*index < .*values.size.*"
                "\\[index, values.size\\(\\) = 7, 3\\]");
 }
 
 TEST(AssertDeathTest, without_values_the_message_ends_with_the_condition) {
-  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  ::testing::FLAGS_gtest_death_test_style = "threadsafe";
   EXPECT_DEATH(inverse(0.0), "inverse: precondition failed: value != 0.0\n");
 }
 

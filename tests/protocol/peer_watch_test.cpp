@@ -9,7 +9,7 @@
 #include "protocol/peer_watch.hpp"
 #include "protocol/wire.hpp"
 
-namespace furrow {
+namespace furrow::peer_watch_test {
 namespace {
 
 using Mail = std::vector<std::deque<ControlBytes>>;  // of each node
@@ -43,7 +43,7 @@ class HandWire : public Wire {
 
 constexpr int kRig = 0, kTire0 = 1, kTire1 = 2, kTerrain = 3, kNodes = 4;
 
-class PeerWatches : public testing::Test {
+class PeerWatches : public ::testing::Test {
  protected:
   PeerWatches() {
     for (int node = 0; node < kNodes; ++node) {
@@ -102,4 +102,4 @@ TEST_F(PeerWatches, WhoseWaitEndsWellIsNamedItself) {
 }
 
 }  // namespace
-}  // namespace furrow
+}  // namespace furrow::peer_watch_test

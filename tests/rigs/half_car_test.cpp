@@ -19,7 +19,7 @@
 #include "vehicle/analysis/half_car.hpp"
 #include "vehicle/analysis/quarter_car.hpp"
 
-namespace furrow::rigs {
+namespace furrow::rigs::half_car_test {
 namespace {
 
 using std::numbers::pi;
@@ -156,7 +156,7 @@ void step_on_springs(Rig& rig, const HalfCarParams& car, const Road& front, doub
 TEST(HalfCar, follows_the_transfer_function_of_the_linear_half_car) {
   for (const double hertz : {0.6, 1.3, 3.0, 10.0}) {
     const HalfCarParams car = linear();
-    const auto rig = placed(rigs::car());
+    const auto rig = placed(half_car_test::car());
     const double omega = 2.0 * pi * hertz, period = 1.0 / hertz, amplitude = 0.005, delay = 0.13;
     const int per_period = std::max(400, static_cast<int>(period / 1e-3));
     const double h = period / per_period;
@@ -208,7 +208,7 @@ TEST(HalfCar, on_the_heights_of_a_road_does_what_the_linear_equations_do) {
     d << s.tail<4>(), inverse * (push - m.damping * s.tail<4>() - m.stiffness * s.head<4>());
     return d;
   };
-  const auto rig = placed(rigs::car());
+  const auto rig = placed(half_car_test::car());
   State s = State::Zero();
   double wrong = 0.0, whole = 0.0, wrong_pitch = 0.0, whole_pitch = 0.0;
   for (int k = 0; k < 8000; ++k) {
@@ -358,4 +358,4 @@ TEST(HalfCar, its_rear_axle_starts_a_wheelbase_behind_the_front_one) {
 }
 
 }  // namespace
-}  // namespace furrow::rigs
+}  // namespace furrow::rigs::half_car_test

@@ -15,7 +15,7 @@
 #include "rigs/quarter_car_spec.hpp"
 #include "vehicle/analysis/quarter_car.hpp"
 
-namespace furrow::rigs {
+namespace furrow::rigs::quarter_car_test {
 namespace {
 
 constexpr double kRadius = 0.5, kTireMass = 40.0, kHeight = 0.5;  // m, kg, m
@@ -201,4 +201,4 @@ TEST(QuarterCar, what_is_open_comes_from_the_tires_file) {
 }
 
 }  // namespace
-}  // namespace furrow::rigs
+}  // namespace furrow::rigs::quarter_car_test

@@ -11,10 +11,10 @@
 #include "protocol/files/json_text.hpp"
 #include "rigs/drawbar_spec.hpp"
 
-using namespace furrow;
-using nlohmann::json;
-
+namespace furrow::rigs_test {
 namespace {
+
+using nlohmann::json;
 
 const ReadContext kContext{"test.json", "rig"};
 constexpr double kRadius = 0.5;    // m
@@ -53,8 +53,6 @@ rigs::WheelDescription only_wheel(const json& section, double duration = 2.0) {
   const std::vector<rigs::WheelSize> tires{{kRadius, kWidth}};
   return mounted_rig(section)->describe(tires, duration).wheels.at(0);
 }
-
-}  // namespace
 
 TEST(Rigs, a_section_without_a_type_is_a_drawbar_rig) {
   const auto rig = mounted_rig(json::object());
@@ -249,3 +247,6 @@ TEST(Touchdown, a_wheel_that_moves_later_travels_less) {
   later["move_from"] = 5.0;
   EXPECT_EQ(only_wheel(later).to, 1.0);
 }
+
+}  // namespace
+}  // namespace furrow::rigs_test

@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Beds : public testing::Test {
+class Beds : public ::testing::Test {
  protected:
   void SetUp() override {
     folder_ = fs::temp_directory_path() / ("furrow_beds_test_" + std::to_string(::getpid()));

@@ -91,7 +91,7 @@ TEST(BedLayers, layers_that_go_around_keep_their_distance_across_the_sides) {
               0.02 * static_cast<double>(s.size()));
 }
 
-class Tiled : public testing::Test {
+class Tiled : public ::testing::Test {
  protected:
   void SetUp() override {
     folder_ = fs::temp_directory_path() / ("furrow_tiles_test_" + std::to_string(::getpid()));

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class DemTerrain : public testing::Test {
+class DemTerrain : public ::testing::Test {
  protected:
   void SetUp() override {
     folder_ = fs::temp_directory_path() / ("furrow_bed_test_" + std::to_string(::getpid()));

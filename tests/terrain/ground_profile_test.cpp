@@ -9,6 +9,7 @@
 
 #include "protocol/core/error.hpp"
 #include "terrain/rigid/rigid_ground.hpp"
+#include "tests/terrain/ground_push.hpp"
 #include "tests/terrain/surface_meshes.hpp"
 
 namespace furrow::terrain {
@@ -79,30 +80,6 @@ TEST(GroundProfile, bad_points_are_refused_by_their_number) {
             "s.json: key 'terrain.profile.2': is [1, 2] m as the entry before, expected another point");
   EXPECT_NE(complaint({{0, 0}, {0, 1}, {0, 0.5}}).find("a third time, expected two entries at most"),
             std::string::npos);
-}
-
-SurfaceState placed(const testing::Surface& surface, const Vec3& shift, const Vec3& velocity) {
-  SurfaceState state;
-  for (const Vec3& x : surface.vertex) state.position.push_back(shift + x), state.velocity.push_back(velocity);
-  return state;
-}
-
-struct Push {
-  NodalForces forces;
-  ContactSums sums;
-};
-
-Push push(Terrain& ground, const SurfaceState& start, double duration) {
-  Push result;
-  const Outcome status = ground.advance({&start, 1}, duration, 1, {&result.forces, 1}, {&result.sums, 1});
-  EXPECT_TRUE(status.ok) << status.message("terrain");
-  return result;
-}
-
-ContactMaterial rubber(double friction) {
-  ContactMaterial material;
-  material.friction = friction;
-  return material;
 }
 
 TEST(GroundProfile, a_wheel_on_its_level_part_is_pressed_as_on_the_plane) {

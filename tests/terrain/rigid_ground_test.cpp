@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "protocol/core/constants.hpp"
+#include "tests/terrain/ground_push.hpp"
 #include "tests/terrain/surface_meshes.hpp"
 
 namespace furrow::terrain {
@@ -15,38 +16,6 @@ namespace {
 using testing::box;
 using testing::Surface;
 using testing::wheel;
-
-ContactMaterial rubber(double friction = 0.8) {
-  ContactMaterial material;
-  material.friction = friction;
-  return material;
-}
-
-SurfaceState placed(const testing::Surface& surface, const Vec3& shift, const Vec3& velocity,
-                    double turn = 0.0, double spin = 0.0) {
-  const Quat orientation(Eigen::AngleAxisd(turn, Vec3::UnitY()));
-  SurfaceState state;
-  for (const Vec3& x : surface.vertex) {
-    const Vec3 arm = orientation * x;
-    state.position.push_back(shift + arm);
-    state.velocity.push_back(velocity + Vec3(0.0, spin, 0.0).cross(arm));
-  }
-  return state;
-}
-
-struct Push {
-  NodalForces forces;
-  ContactSums sums;
-};
-
-/// One interval of a surface that moves with constant velocity and begins at `start`.
-Push push(Terrain& ground, const SurfaceState& start, double duration = 1e-6, int substeps = 1) {
-  Push result;
-  const Outcome status =
-      ground.advance({&start, 1}, duration, substeps, {&result.forces, 1}, {&result.sums, 1});
-  EXPECT_TRUE(status.ok) << status.message("terrain");
-  return result;
-}
 
 /// The push on a surface that has slid with constant velocity for as long as the layer's shear takes to settle.
 Push slide_steadily(Terrain& ground, SurfaceState state, double duration = 5e-3, int intervals = 500) {

@@ -121,7 +121,7 @@ TEST(StepRefinement, limits_are_where_the_parts_are_just_stable) {
 }
 
 /// Grains pressed ever harder by a plate, then let go.
-class Pressed : public testing::Test {
+class Pressed : public ::testing::Test {
  protected:
   void SetUp() override {
     folder_ = fs::temp_directory_path() / ("furrow_refined_" + std::to_string(::getpid()));

@@ -40,8 +40,6 @@ class PressCurveTest : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-}  // namespace
-
 TEST_F(PressCurveTest, is_that_of_the_static_test_and_is_kept) {
   const auto spec = coarse();
   const auto curve = tire::press_curve(*spec, 3000.0, {});
@@ -92,3 +90,5 @@ TEST_F(PressCurveTest, a_load_that_the_tire_does_not_carry_is_told) {
     EXPECT_NE(std::string(error.what()).find("hmmwv_lumped.json"), std::string::npos) << error.what();
   }
 }
+
+}  // namespace

@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-class TireFileTest : public testing::Test {
+class TireFileTest : public ::testing::Test {
  protected:
   void SetUp() override {
     folder_ = std::filesystem::temp_directory_path() / ("furrow_tire_file_" + std::to_string(::getpid()));

@@ -21,7 +21,7 @@ using nlohmann::json;
 
 json file_text(const std::string& name) { return json::parse(std::ifstream(TIRE_DATA "/" + name)); }
 
-class TiresTest : public testing::Test {
+class TiresTest : public ::testing::Test {
  protected:
   void SetUp() override {
     folder_ = std::filesystem::temp_directory_path() / ("furrow_tires_" + std::to_string(::getpid()));

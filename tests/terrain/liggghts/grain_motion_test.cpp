@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace furrow::terrain::liggghts {
+namespace furrow::terrain::liggghts::grain_motion_test {
 namespace {
 
 using Rows = std::vector<std::array<double, 3>>;
@@ -94,4 +94,4 @@ TEST(GrainMotion, a_grain_that_is_not_a_number_is_infinitely_fast) {
 }
 
 }  // namespace
-}  // namespace furrow::terrain::liggghts
+}  // namespace furrow::terrain::liggghts::grain_motion_test

@@ -10,7 +10,7 @@
 
 #include "tests/terrain/few_grains.hpp"
 
-namespace furrow::terrain::liggghts {
+namespace furrow::terrain::liggghts::wall_contacts_test {
 namespace {
 
 constexpr double kRadius = 0.01, kStep = 1e-5, kRoom = 0.002;  // m, s, m
@@ -162,4 +162,4 @@ TEST(WallContacts, a_centre_outside_of_the_walls_is_found) {
 }
 
 }  // namespace
-}  // namespace furrow::terrain::liggghts
+}  // namespace furrow::terrain::liggghts::wall_contacts_test

@@ -12,7 +12,7 @@
 #include "tests/terrain/verification/engine_grains.hpp"
 #include "tests/verification/record.hpp"
 
-namespace furrow::verification {
+namespace furrow::verification::cohesion_test {
 namespace {
 
 using terrain::dem::GrainSolver;
@@ -142,4 +142,4 @@ TEST(Cohesion, hertz_tanh_pair_without_net_load_resists_by_speed) {
 }
 
 }  // namespace
-}  // namespace furrow::verification
+}  // namespace furrow::verification::cohesion_test

@@ -16,7 +16,7 @@
 #include "tests/terrain/verification/engine_grains.hpp"
 #include "tests/verification/record.hpp"
 
-namespace furrow::verification {
+namespace furrow::verification::creases_test {
 namespace {
 
 using terrain::dem::GrainSolver;
@@ -179,4 +179,4 @@ TEST(Creases, force_over_warped_quads_tends_to_the_planes) {
 }
 
 }  // namespace
-}  // namespace furrow::verification
+}  // namespace furrow::verification::creases_test

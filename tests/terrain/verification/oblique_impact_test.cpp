@@ -15,7 +15,7 @@
 #include "tests/terrain/verification/chung_ooi_2011.hpp"
 #include "tests/verification/record.hpp"
 
-namespace furrow::verification {
+namespace furrow::verification::oblique_impact_test {
 namespace {
 
 using chung_ooi::Point;
@@ -319,4 +319,4 @@ TEST(ObliqueImpact, on_plane_and_mesh_is_the_same) {
 }
 
 }  // namespace
-}  // namespace furrow::verification
+}  // namespace furrow::verification::oblique_impact_test

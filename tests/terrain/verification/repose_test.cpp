@@ -12,7 +12,7 @@
 #include "tests/terrain/verification/engine_grains.hpp"
 #include "tests/verification/record.hpp"
 
-namespace furrow::verification {
+namespace furrow::verification::repose_test {
 namespace {
 
 using terrain::dem::GrainSolver;
@@ -132,4 +132,4 @@ TEST(Repose, hertz_tanh_heap_flows_on) {
 }
 
 }  // namespace
-}  // namespace furrow::verification
+}  // namespace furrow::verification::repose_test

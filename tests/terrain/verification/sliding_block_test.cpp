@@ -9,7 +9,7 @@
 #include "tests/terrain/verification/engine_grains.hpp"
 #include "tests/verification/record.hpp"
 
-namespace furrow::verification {
+namespace furrow::verification::sliding_block_test {
 namespace {
 
 using terrain::dem::GrainSolver;
@@ -138,4 +138,4 @@ TEST(SlidingBlock, sticking_contact_keeps_its_spring_across_edges_and_vertices) 
 }
 
 }  // namespace
-}  // namespace furrow::verification
+}  // namespace furrow::verification::sliding_block_test

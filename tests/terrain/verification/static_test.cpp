@@ -11,7 +11,7 @@
 #include "tests/terrain/verification/impact.hpp"
 #include "tests/verification/record.hpp"
 
-namespace furrow::verification {
+namespace furrow::verification::static_test {
 namespace {
 
 using terrain::dem::GrainSolver;
@@ -113,4 +113,4 @@ TEST(Static, tetrahedron_shares_its_weight_by_symmetry) {
 }
 
 }  // namespace
-}  // namespace furrow::verification
+}  // namespace furrow::verification::static_test

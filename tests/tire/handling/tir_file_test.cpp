@@ -9,7 +9,7 @@
 #include "protocol/core/error.hpp"
 #include "tests/tire/handling/example_tire.hpp"
 
-namespace furrow::tire::handling {
+namespace furrow::tire::handling::tir_file_test {
 namespace {
 
 std::string whole() { return tir_text(example_tire(), {"a tire for tests", "made up"}); }
@@ -132,4 +132,4 @@ TEST(TirFile, survives_damage) {
 }
 
 }  // namespace
-}  // namespace furrow::tire::handling
+}  // namespace furrow::tire::handling::tir_file_test

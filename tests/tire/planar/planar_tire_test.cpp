@@ -17,7 +17,7 @@
 #include "tire/planar/planar_static.hpp"
 #include "tire/tires.hpp"
 
-namespace furrow::tire {
+namespace furrow::tire::planar_tire_test {
 namespace {
 
 using nlohmann::json;
@@ -145,4 +145,4 @@ TEST(PlanarTire, runs_refuse_another_integrator_by_name) {
 }
 
 }  // namespace
-}  // namespace furrow::tire
+}  // namespace furrow::tire::planar_tire_test

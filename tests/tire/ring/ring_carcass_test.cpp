@@ -14,10 +14,10 @@
 #include "tests/tire/ring/ring_examples.hpp"
 #include "tire/ring/ring_solver.hpp"
 
-namespace furrow::tire {
+namespace furrow::tire::ring_carcass_test {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 RingMotion motion(double damping) { return {.rim_radius = 0.21, .mass = 20.0, .spin_inertia = 2.2, .damping = damping}; }
 
@@ -200,7 +200,7 @@ TEST(RingCarcass, waves_on_a_spinning_ring_have_the_frequencies_of_the_closed_fo
   RingParams p = linear_ring(kSegments);
   p.bending = 400.0, p.shear = 2e4;
   RingCarcass ring(p, motion(0.0));
-  const double mass = ring.tread_mass() / (2.0 * kPi), h = 4e-5;
+  const double mass = ring.tread_mass() / (2.0 * pi), h = 4e-5;
   PlanarField none(kSegments);
   for (const double spin : {0.0, 60.0})
     for (const int n : {2, 3})
@@ -232,14 +232,14 @@ TEST(RingCarcass, waves_on_a_spinning_ring_have_the_frequencies_of_the_closed_fo
         };
         std::complex<double> before = wave();
         double phase = 0.0;
-        const int steps = static_cast<int>(std::lround(4.0 * kPi / std::abs(omega) / h));  // two periods
+        const int steps = static_cast<int>(std::lround(4.0 * pi / std::abs(omega) / h));  // two periods
         for (int k = 1; k <= steps; ++k) {
           PlaneSums sums;
           ASSERT_TRUE(ring.step(h, {{}, spin * k * h}, none, {}, sums).ok);
           const std::complex<double> now = wave();
           phase += std::arg(now / before), before = now;
         }
-        EXPECT_NEAR(phase / (-omega * steps * h), 1.0, 2e-3) << spin << " " << n << " " << omega / (2.0 * kPi) << " Hz";
+        EXPECT_NEAR(phase / (-omega * steps * h), 1.0, 2e-3) << spin << " " << n << " " << omega / (2.0 * pi) << " Hz";
       }
 }
 
@@ -309,4 +309,4 @@ TEST(RingCarcass, what_it_is_not_meant_for_is_said) {
 }
 
 }  // namespace
-}  // namespace furrow::tire
+}  // namespace furrow::tire::ring_carcass_test

@@ -13,7 +13,7 @@
 namespace furrow::tire {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 /// The same ring without its belt.
 RingParams without_belt(RingParams p) {
@@ -166,7 +166,7 @@ TEST(RingMechanics, the_inextensible_ring_has_its_classical_bending_energy) {
   RingMechanics ring(p), bare(without_belt(p));
   for (const int order : {2, 3, 5}) {
     const RingField q = wave(ring, order, 1e-3, -1e-3 / order);  // hoop strain u + v' = 0
-    const double expected = 0.5 * p.bending * kPi * std::pow(order * order - 1.0, 2) * 1e-6;
+    const double expected = 0.5 * p.bending * pi * std::pow(order * order - 1.0, 2) * 1e-6;
     EXPECT_NEAR(ring.energy(q) - bare.energy(q), expected, 4e-3 * expected) << order;
   }
 }
@@ -178,7 +178,7 @@ TEST(RingMechanics, turning_the_belt_on_its_rim_takes_the_torsional_stiffness) {
   ring.gradient(q, force);
   double moment = 0.0;
   for (const double f : force.v) moment += ring.radius() * f;
-  EXPECT_NEAR(moment, 2.0 * kPi * ring.radius() * ring.radius() * 2e5 * 0.01, 1e-8 * moment);
+  EXPECT_NEAR(moment, 2.0 * pi * ring.radius() * ring.radius() * 2e5 * 0.01, 1e-8 * moment);
 }
 
 TEST(RingMechanics, air_keeps_pressure_times_volume) {
@@ -188,7 +188,7 @@ TEST(RingMechanics, air_keeps_pressure_times_volume) {
   RingMechanics linear(p);
   RingField q = ring.zero();
   for (double& u : q.u) u = -0.01;
-  const double volume = ring.volume() - 2.0 * kPi * ring.radius() * p.width * 0.01;
+  const double volume = ring.volume() - 2.0 * pi * ring.radius() * p.width * 0.01;
   EXPECT_NEAR((ring.pressure(q) + p.ambient) * volume, (p.pressure + p.ambient) * ring.volume(), 1e-9);
   EXPECT_GT(ring.pressure(q), linear.pressure(q));
   EXPECT_NEAR(linear.pressure(q) - p.pressure,

@@ -15,21 +15,21 @@
 namespace furrow::tire {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 RingMotion motion() { return {.rim_radius = 0.21, .mass = 20.0, .spin_inertia = 2.2, .damping = 0.0}; }
 
 /// Both frequencies of u = U cos nθ, v = V sin nθ per radian [belt of ring_mechanics.hpp (2), continuous], Hz.
 std::array<double, 2> closed_form(const RingParams& p, int n) {
-  const double n2 = n * n, m = belt_mass(motion(), p.radius) / (2.0 * kPi);
+  const double n2 = n * n, m = belt_mass(motion(), p.radius) / (2.0 * pi);
   double uu = p.bending * n2 * n2 + p.shear * n2 + p.sidewall_1 + p.tension_share * p.pressure * p.width * (n2 - 1.0);
   if (n == 0) {  // air: p_abs (R T)² 2π/V₀ per radian
-    const double volume = p.air_share * kPi * p.radius * p.radius * p.width;
-    uu += (p.pressure + p.ambient) * std::pow(p.radius * p.width, 2) * 2.0 * kPi / volume;
+    const double volume = p.air_share * pi * p.radius * p.radius * p.width;
+    uu += (p.pressure + p.ambient) * std::pow(p.radius * p.width, 2) * 2.0 * pi / volume;
   }
   const double vv = p.bending * n2 + p.shear * n2 * n2 + p.tangential, uv = n * n2 * (p.bending + p.shear);
   const double middle = 0.5 * (uu + vv), apart = std::hypot(0.5 * (uu - vv), uv);
-  return {std::sqrt((middle - apart) / m) / (2.0 * kPi), std::sqrt((middle + apart) / m) / (2.0 * kPi)};
+  return {std::sqrt((middle - apart) / m) / (2.0 * pi), std::sqrt((middle + apart) / m) / (2.0 * pi)};
 }
 
 TEST(RingModes, frequencies_converge_to_those_of_the_continuous_ring) {
@@ -96,7 +96,7 @@ TEST(RingModes, shapes_are_those_of_the_belt_on_a_rim_that_does_not_move) {
   // In order 1 a stiff belt shifts as it is. Upwards that is radial cos θ and tangential −sin θ, θ from the top forwards.
   const auto& shift = r.modes[2].shape[1];
   EXPECT_NEAR(std::abs(shift[0]) / std::abs(shift[2]), 1.0, 0.01);
-  EXPECT_NEAR(std::arg(shift[0] / shift[2]), 0.5 * kPi, 1e-9);
+  EXPECT_NEAR(std::arg(shift[0] / shift[2]), 0.5 * pi, 1e-9);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@
 namespace furrow::tire {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Force after pressing to a deflection in equal steps, each of which has to be found.
 double pressed(RingSolver& solver, double deflection, int steps, double x = 0.0) {
@@ -43,16 +43,16 @@ TEST(RingSolver, without_contact_nothing_moves) {
 /// u of one segment under a unit force on it, or v under one along it, from the Fourier series of the discrete ring; `exact`
 /// waves are those of the continuous one.
 double point_compliance(const RingParams& p, int terms, bool exact, bool along = false) {
-  const double phi = 2.0 * kPi / p.segments;
+  const double phi = 2.0 * pi / p.segments;
   const RingMechanics ring(p);
-  const double air = p.ambient * std::pow(2.0 * kPi * ring.radius() * p.width, 2) / ring.volume();
-  double sum = 1.0 / (along ? 2.0 * kPi * p.tangential : 2.0 * kPi * p.sidewall_1 + air);
+  const double air = p.ambient * std::pow(2.0 * pi * ring.radius() * p.width, 2) / ring.volume();
+  double sum = 1.0 / (along ? 2.0 * pi * p.tangential : 2.0 * pi * p.sidewall_1 + air);
   for (int n = 1; n < terms; ++n) {
     const double s = exact ? n : std::sin(n * phi) / std::sin(phi),
                  c = exact ? 1.0 * n * n : (1.0 - std::cos(n * phi)) / (1.0 - std::cos(phi));
     const double uu = p.bending * c * c + p.shear * s * s + p.sidewall_1,
                  vv = p.bending * s * s + p.shear * c * c + p.tangential, uv = (p.bending + p.shear) * s * c;
-    sum += (exact ? 1.0 / kPi : 0.5 / kPi) * (along ? uu : vv) / (uu * vv - uv * uv);
+    sum += (exact ? 1.0 / pi : 0.5 / pi) * (along ? uu : vv) / (uu * vv - uv * uv);
   }
   return sum;
 }
@@ -166,9 +166,9 @@ TEST(RingSolver, a_stiff_belt_moves_as_a_rigid_ring_that_can_grow) {
   p.bending = p.shear = 1e9;
   RingSolver solver(p, plate(p));
   const double air =
-      p.ambient * std::pow(2.0 * kPi * solver.ring().radius() * p.width, 2) / solver.ring().volume();
+      p.ambient * std::pow(2.0 * pi * solver.ring().radius() * p.width, 2) / solver.ring().volume();
   const double expected =
-      1e-5 / (1.0 / (kPi * (p.sidewall_1 + p.tangential)) + 1.0 / (2.0 * kPi * p.sidewall_1 + air));
+      1e-5 / (1.0 / (pi * (p.sidewall_1 + p.tangential)) + 1.0 / (2.0 * pi * p.sidewall_1 + air));
   EXPECT_NEAR(pressed(solver, 1e-5, 1), expected, 1e-3 * expected);
 }
 
@@ -183,7 +183,7 @@ RingParams separate_segments(int n) {
 TEST(RingSolver, separate_segments_on_a_plate_carry_what_each_carries_alone) {
   const RingParams p = separate_segments(480);
   RingSolver solver(p, plate(p));
-  const double d = p.radius - 0.06, phi = 2.0 * kPi / p.segments;
+  const double d = p.radius - 0.06, phi = 2.0 * pi / p.segments;
   double expected = 0.0;
   for (int j = -200; j <= 200; ++j) {
     const double s = std::sin(j * phi), c = std::cos(j * phi);

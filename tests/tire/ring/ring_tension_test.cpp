@@ -11,7 +11,7 @@
 namespace furrow::tire {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double kRadius = 0.39, kStrength = 3e4;  // R, m; σ p T, N/m
 
 RingTension tension(int segments) {
@@ -27,7 +27,7 @@ template <class Point>
 RingField placed(int n, Point point) {
   RingField q = zero(n);
   for (int j = 0; j < n; ++j) {
-    const double angle = 2.0 * kPi * j / n, s = std::sin(angle), c = std::cos(angle);
+    const double angle = 2.0 * pi * j / n, s = std::sin(angle), c = std::cos(angle);
     const auto [x, z] = point(angle);
     q.u[j] = x * s - z * c - kRadius, q.v[j] = x * c + z * s;
   }
@@ -60,7 +60,7 @@ TEST(RingTension, growth_changes_length_and_area_of_a_regular_polygon) {
       RingField q = zero(n);
       for (double& u : q.u) u = growth;
       const double expected =
-          -0.5 * n * std::sin(2.0 * kPi / n) * growth * growth;  // of first order is nothing
+          -0.5 * n * std::sin(2.0 * pi / n) * growth * growth;  // of first order is nothing
       EXPECT_NEAR(t.energy(q), kStrength * expected, 1e-12 * kStrength * std::abs(expected));
     }
   }
@@ -69,8 +69,8 @@ TEST(RingTension, growth_changes_length_and_area_of_a_regular_polygon) {
 // H (L − 2πR) − σpT (A − πR²), with the length of an ellipse by the complete elliptic integral.
 TEST(RingTension, an_ellipse_has_its_length_and_area) {
   const double a = 0.46, b = 0.31;
-  const double length = 4.0 * a * std::comp_ellint_2(std::sqrt(1.0 - b * b / (a * a))), area = kPi * a * b;
-  const double expected = kRadius * (length - 2.0 * kPi * kRadius) - (area - kPi * kRadius * kRadius);
+  const double length = 4.0 * a * std::comp_ellint_2(std::sqrt(1.0 - b * b / (a * a))), area = pi * a * b;
+  const double expected = kRadius * (length - 2.0 * pi * kRadius) - (area - pi * kRadius * kRadius);
   double before = 1.0;
   for (const int n : {60, 120, 240, 480}) {
     const RingField q =
@@ -88,19 +88,19 @@ TEST(RingTension, small_waves_have_the_stiffness_n_squared_less_one) {
     for (const int n : {120, 240, 480}) {
       RingField radial = zero(n), tangential = zero(n);
       for (int j = 0; j < n; ++j) {
-        radial.u[j] = 1e-4 * std::cos(order * 2.0 * kPi * j / n);
-        tangential.v[j] = 1e-4 * std::sin(order * 2.0 * kPi * j / n);
+        radial.u[j] = 1e-4 * std::cos(order * 2.0 * pi * j / n);
+        tangential.v[j] = 1e-4 * std::sin(order * 2.0 * pi * j / n);
       }
       RingTangent k;
       for (auto* blocks : {&k.uu, &k.uv, &k.vu, &k.vv})
         for (auto& one : *blocks) one.resize(n);
       tension(n).add_tangent(zero(n), 1.0, k);
-      const double per_radian = tangent_row(k, radial, 0.0, 0)[0] / (2.0 * kPi / n) / 1e-4 / kStrength;
+      const double per_radian = tangent_row(k, radial, 0.0, 0)[0] / (2.0 * pi / n) / 1e-4 / kStrength;
       const double error = std::abs(per_radian - (order * order - 1.0));
       EXPECT_LT(error, std::max(0.26 * before, 1e-9)) << order << ' ' << n;
       before = error;
       // The pressure follows the belt: its tangential displacement costs nothing in the limit.
-      const double along = tangent_row(k, tangential, 0.0, n / 3)[1] / (2.0 * kPi / n) / 1e-4 / kStrength;
+      const double along = tangent_row(k, tangential, 0.0, n / 3)[1] / (2.0 * pi / n) / 1e-4 / kStrength;
       EXPECT_LT(std::abs(along), std::pow(order + 1, 4) * 10.0 / n / n);
     }
   }

@@ -7,7 +7,7 @@
 #include "tests/tire/extruded_ride.hpp"
 #include "tire/tires.hpp"
 
-namespace furrow::tire {
+namespace furrow::tire::ring_tire_test {
 namespace {
 
 constexpr double kStep = 1e-4;  // s
@@ -114,4 +114,4 @@ TEST(RingTire, what_cannot_go_on_says_so) {
 }
 
 }  // namespace
-}  // namespace furrow::tire
+}  // namespace furrow::tire::ring_tire_test

@@ -7,15 +7,14 @@
 
 #include "tests/tire/ancf/shell_patch.hpp"
 #include "tests/tire/verification/curves.hpp"
+#include "tests/tire/verification/mesh_size.hpp"
 #include "tests/verification/record.hpp"
 
 namespace furrow::test {
 namespace {
 
 using verification::verify;
-constexpr double kPi = std::numbers::pi;
-
-std::string size(int n, int m) { return std::to_string(n) + " x " + std::to_string(m); }
+using std::numbers::pi;
 
 /// Inner nodes of a strip moved along it by ± share of an element, alternating across: trapezoids.
 PatchMesh trapezoids(PatchMesh mesh, int n, double length, double share) {
@@ -130,7 +129,7 @@ std::pair<double, double> elastica(double alpha) {
     const double k = std::sqrt(0.5 * (1 + std::sin(tip))), phi = std::asin(std::sqrt(0.5) / k);
     return std::comp_ellint_1(k) - std::ellint_1(k, phi);
   };
-  double low = 0.0, high = 0.5 * kPi - 1e-12;
+  double low = 0.0, high = 0.5 * pi - 1e-12;
   for (int n = 0; n < 200; ++n) {
     const double middle = 0.5 * (low + high);
     (load(middle) < std::sqrt(alpha) ? low : high) = middle;
@@ -179,7 +178,7 @@ TEST(Beam, strip_rolled_up_into_a_full_circle) {
                     Vector::Zero(strip.coordinates()));
     path.prescribe([&](double share, Vector& q) {
       for (const int node : {tip, tip + 1})
-        q.segment<3>(6 * node + 3) << -std::sin(2 * kPi * share), 0, std::cos(2 * kPi * share);
+        q.segment<3>(6 * node + 3) << -std::sin(2 * pi * share), 0, std::cos(2 * pi * share);
     });
     const double tolerance = std::max(8.0 / (n * n), 9e-3);
     verification::Worst moment("strip rolled up by an end moment", "moment, N m, " + size(n, 1), tolerance,
@@ -187,18 +186,18 @@ TEST(Beam, strip_rolled_up_into_a_full_circle) {
         place("strip rolled up by an end moment", "tip position, of the length, " + size(n, 1), tolerance,
               "circular arc");
     for (int part = 1; part <= 24; ++part) {
-      const double angle = 2 * kPi * part / 24;
+      const double angle = 2 * pi * part / 24;
       ASSERT_TRUE(path.go_to(part / 24.0));
       const Vector r = path.reactions(), &q = path.q();
       double m = 0.0;  // about −y: d × Q
       for (const int node : {tip, tip + 1})
         m += q[6 * node + 3] * r[6 * node + 5] - q[6 * node + 5] * r[6 * node + 3];
       const std::string where = verification::brief(part * 15) + " deg";
-      moment.add(m, stiffness * angle / length, stiffness * 2 * kPi / length, where);
+      moment.add(m, stiffness * angle / length, stiffness * 2 * pi / length, where);
       place.add(q[6 * tip], length * std::sin(angle) / angle, length, where);
       place.add(q[6 * tip + 2], length * (1 - std::cos(angle)) / angle, length, where);
       verification::curve_point("strip rolled up", "moment over 2 pi E I/L, " + size(n, 1), part / 24.0,
-                                m * length / (2 * kPi * stiffness), part / 24.0);
+                                m * length / (2 * pi * stiffness), part / 24.0);
     }
   }
 }

@@ -6,6 +6,7 @@
 
 #include "tests/tire/ancf/shell_patch.hpp"
 #include "tests/tire/ancf/small_tire.hpp"
+#include "tests/tire/verification/mesh_size.hpp"
 #include "tests/verification/record.hpp"
 #include "tire/ancf/inflation.hpp"
 
@@ -13,9 +14,7 @@ namespace furrow::test {
 namespace {
 
 using verification::verify;
-constexpr double kPi = std::numbers::pi;
-
-std::string size(int n, int m) { return std::to_string(n) + " x " + std::to_string(m); }
+using std::numbers::pi;
 
 /// ω a² √(ρ h/D) of the lowest bending modes of a unit square plate. In-plane motion is held: it does not couple.
 Vector plate_frequencies(double height, Supports& supports, const PatchMesh& mesh, int count) {
@@ -45,7 +44,7 @@ TEST(Dynamics, frequencies_of_a_simply_supported_plate) {
           verification::verify(
               "simply supported square plate, a/h = " + verification::brief(1 / height),
               "frequency " + std::to_string(mode + 1) + ", omega a^2 sqrt(rho h/D), " + size(n, n),
-              ours[mode], kPi * kPi * theory[mode], 12.0 / (n * n) + 2e-3, "pi^2 (m^2 + n^2)");
+              ours[mode], pi * pi * theory[mode], 12.0 / (n * n) + 2e-3, "pi^2 (m^2 + n^2)");
     }
 }
 
@@ -210,8 +209,8 @@ double swung_tire(double h) {
   const tire::Field q = tire::inflate(run.shell(), mesh, report);
   // Swings by 60° about an axis along x, 1 m above, with a half sine of 0.1 s; starts and ends at rest.
   const auto rim = [](double t) {
-    const double s = std::min(t / 0.1, 1.0), angle = kPi / 3 * (s - std::sin(2 * kPi * s) / (2 * kPi)),
-                 rate = s < 1 ? kPi / 3 * (1 - std::cos(2 * kPi * s)) / 0.1 : 0.0;
+    const double s = std::min(t / 0.1, 1.0), angle = pi / 3 * (s - std::sin(2 * pi * s) / (2 * pi)),
+                 rate = s < 1 ? pi / 3 * (1 - std::cos(2 * pi * s)) / 0.1 : 0.0;
     RimState r;
     r.orientation = Quat(Eigen::AngleAxisd(angle, Vec3::UnitX()));
     r.angular_velocity = rate * Vec3::UnitX();

@@ -11,6 +11,7 @@
 
 #include "tests/tire/ancf/shell_patch.hpp"
 #include "tests/tire/verification/curves.hpp"
+#include "tests/tire/verification/mesh_size.hpp"
 #include "tests/verification/record.hpp"
 
 namespace furrow::test {
@@ -19,10 +20,8 @@ namespace {
 using verification::curve_point;
 using verification::verify;
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 const char* kSource = "Sze, Liu & Lo 2004 doi:10.1016/j.finel.2003.11.001";
-
-std::string size(int n, int m) { return std::to_string(n) + " x " + std::to_string(m); }
 
 bool near(double a, double b) { return std::abs(a - b) < 1e-6; }
 
@@ -56,7 +55,7 @@ const std::vector<Row> kSlit = {{0.05, 2.455, 3.370},  {0.1, 4.277, 5.876},    {
 
 void slit_plate(int n, int m, double tolerance) {
   const PatchMesh mesh = grid_mesh(n, m, [](double s, double t) {
-    const double r = 10 - 4 * t, a = 2 * kPi * s;
+    const double r = 10 - 4 * t, a = 2 * pi * s;
     return std::pair(Vec3(r * std::cos(a), r * std::sin(a), 0), Vec3(0, 0, 1));
   });
   const ShellPatch patch(mesh, {isotropic_layer(0.03, 21e6, 0.0)});
@@ -90,7 +89,7 @@ const std::vector<Row> kHemisphere = {{0.05, 0.855, 0.955},
 
 void hemisphere(int n, double tolerance) {
   const PatchMesh mesh = grid_mesh(n, n, [](double s, double t) {
-    const double a = 0.5 * kPi * s, b = 0.4 * kPi * t;
+    const double a = 0.5 * pi * s, b = 0.4 * pi * t;
     const Vec3 d(std::cos(b) * std::cos(a), std::cos(b) * std::sin(a), std::sin(b));
     return std::pair(Vec3(10 * d), d);
   });
@@ -134,7 +133,7 @@ struct PullOut {
 
   static PatchMesh make(int n, int m) {
     return grid_mesh(n, m, [](double s, double t) {
-      const Vec3 d(std::cos(0.5 * kPi * s), 0, std::sin(0.5 * kPi * s));
+      const Vec3 d(std::cos(0.5 * pi * s), 0, std::sin(0.5 * pi * s));
       return std::pair(Vec3(kRadius * d - Vec3(0, kHalf * t, 0)), d);
     });
   }

@@ -14,7 +14,7 @@
 #include "tests/verification/record.hpp"
 #include "tire/ancf/press_solver.hpp"
 
-namespace furrow::test {
+namespace furrow::test::sticking_ground_test {
 namespace {
 
 constexpr int kAround = 6, kAcross = 4;  // contact points of an element, as PressSolver has them on a plate
@@ -107,4 +107,4 @@ TEST(StickingGround, a_hardly_pressed_tire_resists_as_its_tangent_says) {
 }
 
 }  // namespace
-}  // namespace furrow::test
+}  // namespace furrow::test::sticking_ground_test

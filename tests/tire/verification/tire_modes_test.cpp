@@ -9,6 +9,7 @@
 #include "tests/tire/ancf/small_tire.hpp"
 #include "tests/tire/verification/curves.hpp"
 #include "tests/tire/verification/cyclic.hpp"
+#include "tests/tire/verification/mesh_size.hpp"
 #include "tests/verification/record.hpp"
 #include "tire/ancf/press_solver.hpp"
 
@@ -16,8 +17,6 @@ namespace furrow::test {
 namespace {
 
 using verification::verify;
-
-std::string size(int n, int m) { return std::to_string(n) + " x " + std::to_string(m); }
 
 TEST(TireModes, order_by_order_equals_the_whole_ring) {
   tire::TireFile file = small_file("hmmwv_lumped.json", 12, 8);

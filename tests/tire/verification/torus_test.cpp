@@ -7,14 +7,13 @@
 #include "tests/tire/ancf/small_tire.hpp"
 #include "tests/tire/verification/curves.hpp"
 #include "tests/tire/verification/cyclic.hpp"
+#include "tests/tire/verification/mesh_size.hpp"
 #include "tests/verification/record.hpp"
 
 namespace furrow::test {
 namespace {
 
 using verification::verify;
-
-std::string size(int n, int m) { return std::to_string(n) + " x " + std::to_string(m); }
 
 /// Membrane forces over p a of an inflated half torus, of tube radius a on a rim of radius b; θ from the crown.
 struct TorusPoint {

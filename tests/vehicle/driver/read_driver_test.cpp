@@ -61,8 +61,6 @@ std::vector<std::string> keys_in(const json& section, const std::vector<std::str
   return keys;
 }
 
-}  // namespace
-
 TEST_F(DriverFile, all_its_keys_are_read) {
   const DriverSpec spec = read(R"(, "name": "all",
     "inputs": {"gear": [[0, "auto"], [3, 2], [5, -1]]},
@@ -234,3 +232,5 @@ TEST(DriverSchema, has_the_keys_that_the_program_reads) {
   EXPECT_EQ(parts["pure_pursuit"]["properties"]["lookahead_time"]["default"], PurePursuit{}.lookahead_time);
   EXPECT_EQ(parts["stanley"]["properties"]["gain"]["default"], Stanley{}.gain);
 }
+
+}  // namespace

@@ -47,17 +47,17 @@ double balanced_speed(const vehicle::DrivelineSpec& line, int gear, double force
   return low * u * i * radius;
 }
 
-struct Climbed {
+struct Ascent {
   double made_good = 0.0, wheels = 0.0, speed = 0.0;  // m/s: way over time; at the end
   int gear = 0, changes = 0;
 };
 
 /// At full throttle from rest.
-Climbed climbed(double grade, double duration) {
+Ascent climbed(double grade, double duration) {
   DriveOptions options = kGrip;
   options.grade = grade;
   Drive d("hmmwv.json", options);
-  Climbed done;
+  Ascent done;
   for (long i = 0; i < d.steps(duration); ++i) {
     VehicleInputs inputs = full_throttle();
     const Vec3 forward = d.chassis().R * Vec3::UnitX();
@@ -105,7 +105,7 @@ Turn turn(double speed, double steering) {
 TEST(Driving, steady_speeds_at_full_throttle_are_those_of_map_converter_and_gears) {
   int highest = 0;
   for (const double grade : {0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6}) {
-    const Climbed done = climbed(grade, 20.0);
+    const Ascent done = climbed(grade, 20.0);
     const Drive d("hmmwv.json", {.grade = grade});
     const double force = d.car.mass() * kStandardGravity * grade / std::sqrt(1.0 + grade * grade);
     const double expected =

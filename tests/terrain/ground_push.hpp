@@ -1,0 +1,43 @@
+// What hard ground does to a surface within one interval.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "terrain/terrain.hpp"
+#include "tests/terrain/surface_meshes.hpp"
+
+namespace furrow::terrain {
+
+inline ContactMaterial rubber(double friction = 0.8) {
+  ContactMaterial material;
+  material.friction = friction;
+  return material;
+}
+
+inline SurfaceState placed(const testing::Surface& surface, const Vec3& shift, const Vec3& velocity,
+                           double turn = 0.0, double spin = 0.0) {
+  const Quat orientation(Eigen::AngleAxisd(turn, Vec3::UnitY()));
+  SurfaceState state;
+  for (const Vec3& x : surface.vertex) {
+    const Vec3 arm = orientation * x;
+    state.position.push_back(shift + arm);
+    state.velocity.push_back(velocity + Vec3(0.0, spin, 0.0).cross(arm));
+  }
+  return state;
+}
+
+struct Push {
+  NodalForces forces;
+  ContactSums sums;
+};
+
+/// One interval of a surface that moves with constant velocity and begins at `start`.
+inline Push push(Terrain& ground, const SurfaceState& start, double duration = 1e-6, int substeps = 1) {
+  Push result;
+  const Outcome status =
+      ground.advance({&start, 1}, duration, substeps, {&result.forces, 1}, {&result.sums, 1});
+  EXPECT_TRUE(status.ok) << status.message("terrain");
+  return result;
+}
+
+}  // namespace furrow::terrain

@@ -1,0 +1,10 @@
+// How many elements a case has, in words.
+#pragma once
+
+#include <string>
+
+namespace furrow::test {
+
+inline std::string size(int n, int m) { return std::to_string(n) + " x " + std::to_string(m); }
+
+}  // namespace furrow::test

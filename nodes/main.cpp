@@ -7,6 +7,7 @@
 
 #include "nodes/commands/commands.hpp"
 #include "nodes/launch/limits.hpp"
+#include "nodes/launch/messages.hpp"
 #include "nodes/launch/thread_setup.hpp"
 #include "nodes/scenario/memory_check.hpp"
 #include "protocol/mpi_transport.hpp"
@@ -22,6 +23,7 @@ int fail(const furrow::Error& error, bool as_rank) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  furrow::launch::occupy_closed_streams();
   const bool as_rank = furrow::commands::runs_as_rank(argc, argv);
   // Reports a file that exceeds the limit of file sizes. A rank is killed by it, and its supervisor reports that.
   if (!as_rank) std::signal(SIGXFSZ, SIG_IGN);

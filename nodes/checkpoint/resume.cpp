@@ -12,6 +12,7 @@
 #include "nodes/scenario/model_keys.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_text.hpp"
+#include "protocol/files/text_file.hpp"
 
 namespace furrow::checkpoint {
 namespace {
@@ -134,12 +135,41 @@ std::string failure_ahead(const fs::path& run, const nlohmann::ordered_json& fai
                      text.is_string() ? text.get<std::string>() : "");
 }
 
+/// Files count by what they hold, wherever they stand: check_files() compares that.
+json with_places_of(json document, const json& other, const scenario::Scenario& scenario) {
+  for (const scenario::InputFile& file : scenario.input_files()) {
+    std::string pointer = "/" + file.key;
+    std::replace(pointer.begin(), pointer.end(), '.', '/');
+    const json::json_pointer at(pointer);
+    if (document.contains(at) && other.contains(at)) document[at] = other[at];
+  }
+  return document;
+}
+
+using Settings = std::vector<std::pair<std::string, std::string>>;
+
+/// The bed between two passes lies in the study's folder, and where that was moved, its name leads nowhere.
+Settings bed_of_moved_study(const fs::path& run, const fs::path& file) {
+  const json document = read_json_if_whole(file);
+  const json named =
+      document.is_object() ? document.value(json::json_pointer("/terrain/bed"), json()) : json();
+  std::error_code error;
+  if (!named.is_string() || fs::exists(named.get<std::string>(), error)) return {};
+  const fs::path whole = fs::canonical(run, error);
+  const fs::path bed =
+      whole.parent_path().parent_path() / "beds" / fs::path(named.get<std::string>()).filename();
+  if (error || !fs::is_regular_file(bed, error)) return {};
+  return {{"terrain.bed", bed.string()}};
+}
+
 /// Compares the scenario of the plan's checkpoint to that which continues, and takes what is changed into the plan.
 /// @param failed summary_failed.json @throws Error(bad_input), Error(io) for a scenario that no version completed
 void take_changes(const fs::path& run, const nlohmann::ordered_json& failed, ResumePlan& plan) try {
   ResumePoint& point = plan.point;
-  const json before = scenario::completed_now(point.manifest.scenario);  // perhaps of an earlier version
   const json now = json::parse(plan.scenario.completed);
+  const json before =
+      with_places_of(scenario::completed_now(point.manifest.scenario),  // perhaps of an earlier version
+                     now, plan.scenario);
   const bool physics = value_at(failed, "failed.exit_code") == static_cast<int>(ExitCode::physics);
   const json changed = changes(run, before, now, physics);
   if (!changed.empty()) point.changed = changed.dump();
@@ -156,13 +186,21 @@ void take_changes(const fs::path& run, const nlohmann::ordered_json& failed, Res
 
 }  // namespace
 
+std::string restore_scenario(const fs::path& run) {
+  const fs::path file = run / "scenario.json";
+  std::error_code error;
+  if (fs::exists(file, error) || list_checkpoints(run).empty()) return {};
+  const ResumePoint point = last_checkpoint(run);
+  write_whole_file(file, point.manifest.scenario + "\n");
+  return fmt::format("{}: was missing and is restored from {}", file.string(), point.folder.string());
+}
+
 ResumePoint last_checkpoint(const fs::path& run) {
   std::vector<std::string> problems;
   return newest_whole(run, problems);
 }
 
-ResumePlan plan_resume(const fs::path& run,
-                       const std::vector<std::pair<std::string, std::string>>& settings) {
+ResumePlan plan_resume(const fs::path& run, const Settings& changed) {
   launch::require_run_directory(run);
   std::error_code error;
   const fs::path file = run / "scenario.json";
@@ -170,16 +208,22 @@ ResumePlan plan_resume(const fs::path& run,
     throw input_error(run.string(), "",
                       "holds several runs, expected the folder of one of them; the command that began them "
                       "continues them all");
-  if (!fs::exists(file, error))
+  if (!fs::exists(file, error) && list_checkpoints(run).empty())
     throw input_error(
         run.string(), "",
         "holds a run that never began to step, expected scenario.json in it; start again with furrow run --overwrite");
+  if (!fs::exists(file, error))
+    throw input_error(file.string(), "", "is missing, expected it; furrow resume without mpirun restores it");
   ResumePlan plan;
+  const Settings moved = bed_of_moved_study(run, file);
+  Settings settings = moved;
+  settings.insert(settings.end(), changed.begin(), changed.end());
   plan.scenario = scenario::load_scenario(file, settings);
   const std::int64_t steps = plan.scenario.run.steps(), ended = finished_at(run);
   if (ended == steps || ended_early(run)) {
-    changes(run, json::parse(scenario::load_scenario(file, {}).completed),
-            json::parse(plan.scenario.completed), false);
+    const json now = json::parse(plan.scenario.completed);
+    const json before = json::parse(scenario::load_scenario(file, moved).completed);
+    changes(run, with_places_of(before, now, plan.scenario), now, false);
     plan.finished = true;
     plan.ended = static_cast<double>(ended) * plan.scenario.run.step;
     return plan;

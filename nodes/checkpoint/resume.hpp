@@ -27,6 +27,10 @@ struct ResumePlan {
 ResumePlan plan_resume(const std::filesystem::path& run,
                        const std::vector<std::pair<std::string, std::string>>& settings);
 
+/// A run whose scenario.json was lost has it again from its newest checkpoint. @returns what to warn of; empty: nothing
+/// was restored. @throws Error(io) when no checkpoint is whole or the file cannot be written
+std::string restore_scenario(const std::filesystem::path& run);
+
 /// The newest checkpoint that is whole. @throws as plan_resume
 ResumePoint last_checkpoint(const std::filesystem::path& run);
 

@@ -95,13 +95,13 @@ ExitCode calibrate_command(const CalibrateArguments& arguments) {
   const study::Calibration calibration = study::load_calibration(arguments.study);
   const std::filesystem::path folder =
       arguments.out.empty() ? std::filesystem::path("results") / calibration.name : arguments.out;
-  launch::RunDirectory directory = launch::RunDirectory::of_calibration(folder, arguments.overwrite);
-  launch::remove_unfinished(folder);
-  launch::catch_stop_signals();
   std::vector<std::string> files{study::kCalibration, study::kEvaluations, "fit.csv", calibration.result};
   if (const auto* leaves = dynamic_cast<const study::LeavesFiles*>(calibration.model.get()))
     for (const study::ResultFile& further : leaves->further_files(calibration.model->start_values(), ""))
       files.push_back(further.name);
+  launch::RunDirectory directory = launch::RunDirectory::of_calibration(folder, arguments.overwrite, files);
+  launch::remove_unfinished(folder);
+  launch::catch_stop_signals();
   directory.add(files);
   launch::say(fmt::format("furrow: calibration {}, results in {}\n", calibration.name, folder.string()));
   const std::vector<std::string> notes = calibration.model->notes();

@@ -64,11 +64,18 @@ std::string parse_problem(const CLI::App& app, const CLI::ParseError& error, int
   return fmt::format("{}, see furrow {}--help", excerpt(error.what(), kMaxShown), asked_command(app));
 }
 
-/// Names with control characters would make two messages of one. Values of keys may be of several lines.
+/// Names with control characters would make two messages of one. Values of keys may be of several lines. CLI11 takes
+/// the argument that follows for the value of "--out=".
 void check_arguments(int argc, char** argv) {
+  bool options = true;  // until "--"
   for (int k = 1; k < argc; ++k) {
-    const std::string text = argv[k];
-    if (std::string(argv[k - 1]) == "--set" || text.starts_with("--set=")) continue;
+    const std::string text = argv[k], before = argv[k - 1];
+    options = options && before != "--";
+    if (options && text.size() > 3 && text.starts_with("--") && text.find('=') == text.size() - 1)
+      throw usage_error(excerpt(text) + " has no value, expected one");
+    if (options && text.empty() && before.starts_with("--") && before.find('=') == std::string::npos)
+      throw usage_error("the value of " + excerpt(before) + " is empty, expected one");
+    if (before == "--set" || text.starts_with("--set=")) continue;
     if (std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }))
       throw usage_error("the argument '" + excerpt(text) + "' holds a control character, expected none");
   }

@@ -127,7 +127,17 @@ ExitCode supervise_run(const scenario::Scenario& scenario, launch::RunDirectory&
     result.code = ExitCode::done;
   }
   const bool nothing_done = result.code == ExitCode::limit && result.started == 0;
-  if (result.code == ExitCode::bad_input || nothing_done) directory.discard();
+  const bool replaces = result.code != ExitCode::done && directory.replaces();
+  if (result.code == ExitCode::bad_input || nothing_done || replaces) directory.discard();
+  if (replaces && result.code != ExitCode::bad_input) {
+    if (result.code == ExitCode::stopped)
+      std::fprintf(stderr, "furrow: %s\n", result.error.c_str());
+    else
+      print_error(result.error);
+    std::fprintf(stderr, "furrow: the run had not begun to step; %s holds the earlier results again\n",
+                 directory.path().c_str());
+    return result.code;
+  }
   if (result.code == ExitCode::stopped) {
     std::fprintf(stderr, "furrow: %s; partial results are in %s\n", result.error.c_str(),
                  directory.path().c_str());
@@ -187,6 +197,8 @@ ExitCode run_supervised(const RunArguments& arguments) {
 ExitCode resume_supervised(const RunArguments& arguments) {
   refuse_tasks_without_mpi();
   launch::RunDirectory directory(arguments.out);
+  if (const std::string restored = checkpoint::restore_scenario(directory.path()); !restored.empty())
+    print_warning(restored);
   const checkpoint::ResumePlan plan = checkpoint::plan_resume(directory.path(), arguments.settings);
   for (const auto* warnings : {&plan.scenario.warnings, &plan.warnings})
     for (const std::string& warning : *warnings) print_warning(warning);

@@ -96,6 +96,7 @@ ExitCode run_beds_in(launch::RunDirectory& directory, const scenario::Scenario& 
   study::Sweep sweep(study::study_of_beds(arguments.scenario, scenario.name, arguments.settings,
                                           scenario.run.seed, arguments.seeds),
                      {folder, arguments.jobs});
+  sweep.require_places();
   study::begin_beds(folder, scenario.digest, arguments.overwrite);
   launch::remove_unfinished(folder);
   launch::catch_stop_signals();

@@ -21,6 +21,7 @@ ExitCode sweep_command(const SweepArguments& arguments) {
   study::Sweep sweep(std::move(study), {folder, arguments.jobs});
   launch::RunDirectory directory = launch::RunDirectory::of_study(folder);
   study::require_no_beds(folder);
+  sweep.require_places();
   launch::remove_unfinished(folder);
   launch::catch_stop_signals();
   const ExitCode code = sweep.run(directory.lock());

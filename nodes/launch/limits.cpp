@@ -3,6 +3,7 @@
 #include <poll.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 #include <csignal>
 
@@ -20,6 +21,7 @@
 namespace furrow::launch {
 namespace {
 
+constexpr double kRoom = 16e6;     // bytes in TMPDIR; mpirun and three ranks take 9 MB
 constexpr long kFilesPerRank = 4;  // of mpirun
 
 // Of a limit of processor time. Against it the kernel counts whole ticks, more than the time that it reports afterwards
@@ -112,7 +114,19 @@ std::string cause_of(int signal, double processor_time, bool& certain) {
     return limit.empty() ? "a limit of processor time is reached (ulimit -t)"
                          : "a process may use " + limit + " of processor time (ulimit -t)";
   if (signal == SIGKILL) return "the system does that when memory runs out";
+  if (signal == SIGBUS) return little_room();
   return {};
+}
+
+std::string little_room() {
+  const char* named = std::getenv("TMPDIR");
+  const std::string folder = named && *named ? named : "/tmp";
+  struct statvfs room {};
+  if (statvfs(folder.c_str(), &room) != 0) return {};
+  const double free = static_cast<double>(room.f_bavail) * static_cast<double>(room.f_frsize);
+  if (free > kRoom) return {};
+  return fmt::format("the folder for temporary files, TMPDIR {}, has room for {:.2g} MB, expected {:.2g} MB",
+                     folder, 1e-6 * free, 1e-6 * kRoom);
 }
 
 double processor_time_of_children() {

@@ -22,6 +22,9 @@ void require_files(std::size_t ranks);
 /// its like have used, s. @param certain  whether a limit was the cause
 std::string cause_of(int signal, double processor_time, bool& certain);
 
+/// That the folder in which mpirun and its ranks keep their temporary files is all but full; empty: it is not.
+std::string little_room();
+
 /// Processor time of all children that have ended and theirs, s.
 double processor_time_of_children();
 

@@ -1,5 +1,8 @@
 #include "nodes/launch/messages.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <atomic>
 #include <cstdio>
 
@@ -9,6 +12,12 @@ namespace {
 std::atomic<bool> silenced = false;  // one standard error, one switch
 
 }  // namespace
+
+void occupy_closed_streams() {
+  // open() takes the lowest that is free: one of these as long as one of them is.
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(stream, F_GETFD) < 0) open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+}
 
 void silence_messages() { silenced = true; }
 bool messages_are_silenced() { return silenced; }

@@ -6,6 +6,10 @@
 
 namespace furrow::launch {
 
+/// Standard input, output and error that whoever started this process has closed are taken, so that no file of results
+/// gets their place and what is printed. Writing to them fails as before.
+void occupy_closed_streams();
+
 /// --quiet: from here on this process says nothing but errors.
 void silence_messages();
 bool messages_are_silenced();

@@ -51,10 +51,14 @@ bool is_run(const fs::path& folder) {
          fs::exists(folder / kModes, error) || fs::exists(folder / kCalibration, error);
 }
 
-/// Whether the run of this list wrote more than what there is before its first step.
+/// What a run may list before its first step. The ranks list all else when they are placed.
+constexpr const char* kEarly[] = {"run.log", "scenario.json", "summary_failed.json"};
+
+/// Whether the run of this list began to step.
 bool came_to_be(const RunList& list) {
   return std::any_of(list.forms().begin(), list.forms().end(), [](const std::string& name) {
-    return name != std::string(kAside) + "/" && name != "run.log" && name != "scenario.json";
+    return name != std::string(kAside) + "/" &&
+           std::find(std::begin(kEarly), std::end(kEarly), name) == std::end(kEarly);
   });
 }
 
@@ -112,6 +116,7 @@ RunDirectory::RunDirectory(const std::string& scenario, const fs::path& out, boo
 }
 
 RunDirectory::RunDirectory(const fs::path& existing) : existing_(true), path_(existing) {
+  take_back_of_killed();
   require_run_directory(existing);
   if (!has_run_list(path_))
     throw no_list(path_, "",
@@ -122,8 +127,7 @@ RunDirectory::RunDirectory(const fs::path& existing) : existing_(true), path_(ex
   for (const Kind& kind : kOthers)
     if (list.holds(kind.mark))
       throw input_error(path_.string(), "", fmt::format("holds {}, expected a run; {}", kind.holds, kind.continued));
-  lock_ = FolderLock(path_, "", FolderLock::Mode::alone);
-  take_back(RunList::read(path_));
+  if (!lock_.stands()) lock_ = FolderLock(path_, "", FolderLock::Mode::alone);
 }
 
 struct RunDirectory::Continued {
@@ -131,7 +135,9 @@ struct RunDirectory::Continued {
   const char* name;
 };
 
-RunDirectory::RunDirectory(const Continued& kind, const fs::path& folder, bool overwrite) : path_(way_to(folder)) {
+RunDirectory::RunDirectory(const Continued& kind, const fs::path& folder, bool overwrite,
+                           const std::vector<std::string>& files)
+    : path_(way_to(folder)) {
   try {
     if (!stands(path_) && make()) {
       begin();
@@ -151,6 +157,7 @@ RunDirectory::RunDirectory(const Continued& kind, const fs::path& folder, bool o
       if (!list.forms().empty() && !list.holds(kind.mark))
         throw input_error(folder.string(), "--out",
                           fmt::format("holds a run, expected a new folder or that of a {}", kind.name));
+      require_own(path_, files);
       if (overwrite) remove_listed(path_, list);
     }
   } catch (const Error&) {
@@ -160,10 +167,13 @@ RunDirectory::RunDirectory(const Continued& kind, const fs::path& folder, bool o
   existing_ = true;
 }
 
-RunDirectory RunDirectory::of_study(const fs::path& folder) { return {Continued{kStudy, "study"}, folder, false}; }
+RunDirectory RunDirectory::of_study(const fs::path& folder) {
+  return {Continued{kStudy, "study"}, folder, false, {}};
+}
 
-RunDirectory RunDirectory::of_calibration(const fs::path& folder, bool overwrite) {
-  return {Continued{kCalibration, "calibration"}, folder, overwrite};
+RunDirectory RunDirectory::of_calibration(const fs::path& folder, bool overwrite,
+                                          const std::vector<std::string>& files) {
+  return {Continued{kCalibration, "calibration"}, folder, overwrite, files};
 }
 
 fs::path RunDirectory::aside() const { return path_ / kAside; }
@@ -227,6 +237,17 @@ void RunDirectory::take_over(const fs::path& reads) {
   take_back(list);
   set_aside(RunList::read(path_), reads);
 }
+
+/// The same in a folder that is not known to hold a run yet: what it holds may all be set aside.
+void RunDirectory::take_back_of_killed() {
+  std::error_code error;
+  if (!fs::is_directory(path_, error) || !has_run_list(path_) || !stands(aside())) return;
+  require_writable("");
+  lock_ = FolderLock(path_, "", FolderLock::Mode::alone);
+  take_back(RunList::read(path_));
+}
+
+bool RunDirectory::replaces() const { return set_aside_ && !came_to_be(RunList::read(path_)); }
 
 /// What a run that was killed had set aside: put back unless that run came to be.
 void RunDirectory::take_back(const RunList& list) {

@@ -25,8 +25,10 @@ class RunDirectory {
   explicit RunDirectory(const std::filesystem::path& existing);
   /// The folder of a study, which continues where there is one. @throws Error(bad_input)
   static RunDirectory of_study(const std::filesystem::path& folder);
-  /// The same of a calibration; `overwrite` removes what an earlier one wrote. @throws Error(bad_input)
-  static RunDirectory of_calibration(const std::filesystem::path& folder, bool overwrite);
+  /// The same of a calibration that writes `files`; `overwrite` removes what an earlier one wrote.
+  /// @throws Error(bad_input)
+  static RunDirectory of_calibration(const std::filesystem::path& folder, bool overwrite,
+                                     const std::vector<std::string>& files = {});
 
   /// Gives the folder free and removes what was set aside.
   ~RunDirectory();
@@ -42,17 +44,22 @@ class RunDirectory {
   /// Before the ranks begin: they hold the folder too from then on.
   FolderLock& lock() { return lock_; }
 
+  /// Whether results of an earlier run are set aside for one that has not begun to step.
+  bool replaces() const;
+
   /// The run never started: unless it was to continue, removes its results and the folders that the constructor made,
   /// puts back what was set aside.
   void discard();
 
  private:
   struct Continued;  // kinds of folders that one command makes and continues
-  RunDirectory(const Continued& kind, const std::filesystem::path& folder, bool overwrite);
+  RunDirectory(const Continued& kind, const std::filesystem::path& folder, bool overwrite,
+               const std::vector<std::string>& files);
 
   bool make();
   void begin();
   void take_over(const std::filesystem::path& reads);
+  void take_back_of_killed();
   void take_back(const RunList& list);
   void set_aside(const RunList& list, const std::filesystem::path& reads);
   void put_back();

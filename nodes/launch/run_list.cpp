@@ -187,6 +187,16 @@ void begin_run_list(const fs::path& folder, const std::vector<std::string>& form
   sync_folder(folder);
 }
 
+void require_own(const fs::path& folder, const std::vector<std::string>& forms) {
+  const RunList before = has_run_list(folder) ? RunList::read(folder) : RunList();
+  for (const std::string& name : RunList(forms).find(folder).files)
+    if (!before.holds(name))
+      throw input_error(
+          (folder / name).string(), "",
+          "stands where a result is to be written, and furrow did not write it, expected another place "
+          "for it, or another folder for the results");
+}
+
 void add_to_run_list(const fs::path& folder, const std::vector<std::string>& forms) {
   const bool listed = has_run_list(folder);
   const RunList before = listed ? RunList::read(folder) : RunList();
@@ -195,12 +205,7 @@ void add_to_run_list(const fs::path& folder, const std::vector<std::string>& for
     if (std::find(before.forms().begin(), before.forms().end(), form) == before.forms().end())
       added.push_back(form);
   if (added.empty()) return;
-  for (const std::string& name : RunList(added).find(folder).files)
-    if (!before.holds(name))
-      throw input_error(
-          (folder / name).string(), "",
-          "stands where a result is to be written, and furrow did not write it, expected another place "
-          "for it, or another folder for the results");
+  require_own(folder, added);
   std::error_code error;
   const bool headed = listed && fs::file_size(folder / kRunList, error) > 0 && !error;
   append(folder, (headed ? "" : head()) + lines_of(added));

@@ -53,6 +53,9 @@ bool has_run_list(const std::filesystem::path& folder);
 /// Begins the folder's list again; the names before are forgotten. @throws Error(io)
 void begin_run_list(const std::filesystem::path& folder, const std::vector<std::string>& forms);
 
+/// @throws Error(bad_input) when a file of such a name stands there that this program did not write
+void require_own(const std::filesystem::path& folder, const std::vector<std::string>& forms);
+
 /// Adds those that are not in the list yet, to a list of its own if the folder has none.
 /// @throws Error(bad_input) when a file of such a name stands there that this program did not write
 /// @throws Error(io)

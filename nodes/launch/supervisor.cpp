@@ -306,9 +306,12 @@ LaunchResult Supervisor::outcome() const {
   const bool exited = WIFEXITED(status_);
   const int status = exited ? WEXITSTATUS(status_) : -1;
   if (late_ && stop_seen_ == 0.0) {
-    const std::string said = launcher_said();
-    const std::string text = fmt::format("{} within {:g} s (FURROW_START_TIMEOUT sets another time): mpirun {}",
-                                         start_.standing(), launch_.patience, said);
+    const std::string said = launcher_said(), little = little_room(),
+                      room = little.empty() ? "" : "; " + little;
+    const std::string text =
+        fmt::format("{} within {:g} s (FURROW_START_TIMEOUT sets another time): mpirun {}", start_.standing(),
+                    launch_.patience, said) +
+        room;
     if (said.find(std::strerror(ENOMEM)) == std::string::npos) return {ExitCode::io, text};
     return {ExitCode::limit, fmt::format("{}: {}", scenario::out_of_memory(0.0).what(), text)};
   }

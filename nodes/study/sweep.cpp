@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <map>
 #include <new>
 #include <utility>
 
@@ -92,6 +93,31 @@ Sweep::Sweep(Study study, const SweepOptions& options)
       if (!study_.names.empty()) runs_.back().name = study_.names[k];
       if (pass <= 1) load(runs_.back());
     }
+  require_unlike_runs();
+}
+
+/// Runs of one digest would share a folder.
+void Sweep::require_unlike_runs() const {
+  if (!study_.names.empty()) return;
+  std::map<std::string, const Run*> known;
+  for (const Run& run : runs_) {
+    if (!run.loaded) continue;
+    const auto [of_digest, is_new] = known.try_emplace(run.digest, &run);
+    if (is_new) continue;
+    const auto words = [](const Run& r) {
+      return r.keys.empty() ? std::string("no settings") : text_of(r.keys);
+    };
+    throw input_error(
+        study_.file.string(), "",
+        fmt::format("has a run with {} and a run with {}, which have the same results: what they differ in "
+                    "is the scenario's value or decides no result, expected each once",
+                    words(*of_digest->second), words(run)));
+  }
+}
+
+void Sweep::require_places() const {
+  for (const Run& run : runs_)
+    if (run.loaded) launch::require_own(options_.folder, {run.name + ".log"});
 }
 
 void Sweep::load(Run& run) {

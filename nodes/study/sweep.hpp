@@ -33,6 +33,9 @@ class Sweep {
   /// @throws Error(bad_input) when a run's scenario is wrong; nothing was written then
   Sweep(Study study, const SweepOptions& options);
 
+  /// Before anything is written or removed. @throws Error(bad_input) where a file of the user's stands in a run's place
+  void require_places() const;
+
   /// @param lock of the study's folder
   /// @returns done, stopped, or how the first run that failed ended
   /// @throws Error(io) when the folder was moved or removed meanwhile; its runs have ended then
@@ -66,6 +69,7 @@ class Sweep {
   };
 
   void load(Run& run);
+  void require_unlike_runs() const;
   std::filesystem::path folder_of(const Run& run) const;
   std::filesystem::path log_of(const Run& run) const;
   bool finished(const Run& run, const nlohmann::ordered_json& summary) const;

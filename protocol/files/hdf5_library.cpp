@@ -10,6 +10,8 @@ std::recursive_mutex& library() {
 }
 
 void prepare() {
+  // As a program ends, the library would flush a file once more that could not be written, and crash (1.10.8).
+  H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   H5PLset_loading_state(0);
 }

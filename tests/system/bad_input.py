@@ -313,6 +313,11 @@ class BadFile(SystemTest):
     def test_unknown_command(self):
         self.assertIn("unknown command 'rnu'; did you mean 'run'?", self.error_of("rnu"))
 
+    def test_values_that_are_empty(self):
+        for arguments, words in ((["run", "small.json", "--out=", "--overwrite"], "--out= has no value, expected one"),
+                                 (["resume", "out", "--until", ""], "the value of --until is empty, expected one")):
+            self.assertIn(words, self.error_of(*arguments))
+
     def test_no_command(self):
         self.assertIn("no command is given", self.error_of())
 

@@ -128,6 +128,17 @@ class Calibrate(SystemTest):
             self.assertEqual(done.returncode, 2, done.stderr)
         self.assertEqual([path.name for path in (self.folder / "mine").iterdir()], ["notes.txt"])
 
+    def test_earlier_results_stay_where_the_new_ones_have_no_place(self):
+        done = furrow("calibrate", self.study(), "--out", "out", "--no-plots", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        (self.folder / "out" / "notes.json").write_text("mine")
+        before = self.text("out")
+        done = furrow("calibrate", self.study("other.json", result="notes.json"), "--out", "out", "--overwrite", cwd=self.folder)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("notes.json: stands where a result is to be written", done.stderr)
+        self.assertEqual(self.text("out"), before)
+        self.assertEqual((self.folder / "out" / "notes.json").read_text(), "mine")
+
     def test_wrong_studies_leave_nothing(self):
         self.study()
         before = set(self.names())

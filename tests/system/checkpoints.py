@@ -108,6 +108,12 @@ class Resume(CheckpointTest):
         self.assertIn("holds no checkpoint", self.resume(code=2).stderr)
         self.assertFalse((run / "summary.json").exists())
 
+    def test_a_lost_scenario_is_restored_from_the_checkpoint(self):
+        run = self.copy_of_whole()
+        (run / "scenario.json").unlink()
+        self.assertRegex(self.resume().stderr, r"warning: \S.*scenario\.json: was missing and is restored from \S.*checkpoints/\d+")
+        self.same_as_whole()
+
     def test_another_build_is_warned_of(self):
         self.copy_of_whole()
         done = furrow("resume", self.run_folder, "--no-plots", cwd=self.folder)

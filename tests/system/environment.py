@@ -146,6 +146,17 @@ class Limits(EnvironmentTest):
             line = self.one_error(limited("-s 64", "validate", self.path, cwd=self.folder), 6)
             self.assertIn("the stack may take 64 kB (ulimit -s)", line)
 
+    @unittest.skipUnless(os.geteuid() == 0, "needs to mount a folder")
+    def test_a_full_folder_for_temporary_files_is_named(self):
+        small = self.folder / "tmp"
+        small.mkdir()
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=8k", "tmpfs", str(small)], capture_output=True).returncode != 0:
+            self.skipTest("cannot mount")
+        self.addCleanup(subprocess.run, ["umount", str(small)])
+        done = furrow("run", self.path, *SHORT, "--out", "out", cwd=self.folder, env={"TMPDIR": str(small), "FURROW_START_TIMEOUT": "20"})
+        self.assertIn(done.returncode, (4, 5), done.stderr)
+        self.assertIn(f"the folder for temporary files, TMPDIR {small}, has room for", done.stderr)
+
     def test_processor_time(self):
         done = limited("-t 2", "run", self.path, "--set", "run.end=0.3", "--set", "terrain.radius=0.012", "--set", "terrain.layers=12", "--set", "run.step=2e-5",
                        "--out", "out", cwd=self.folder)

@@ -121,6 +121,7 @@ class Sweep(SystemTest):
                             ({"list": [{"rig.slip": 0.1}], "plot": {"x": "rig.slipp", "y": "sinkage_m"}}, "key 'plot.x': is 'rig.slipp', expected"),
                             ({"list": [{"rig.slip": 0.1}], "plot": {"x": "rig.slip", "y": "q"}}, "key 'plot.y': is 'q', expected one of: drawbar_pull_N.mean"),
                             ({"list": [{"rig.slip": 0.1}], "plot": {"x": "rig.slip"}}, "key 'plot.y': is missing"),
+                            ({"grid": {"run.threads": [1, 2]}}, "has a run with run.threads=1 and a run with run.threads=2, which have the same results"),
                             ({"terrain": {}}, "is a scenario, expected a study"),
                             ({"gird": {}}, "key 'gird': is unknown, expected 'grid'?"),
                             ({"scenario": "none.json", "passes": 1}, "key 'scenario': 'none.json' does not exist")):
@@ -167,6 +168,30 @@ class Sweep(SystemTest):
         again = furrow("sweep", study, cwd=self.folder)
         self.assertEqual(again.returncode, 0, again.stderr)
         self.assertEqual(json.loads((second / "summary.json").read_text())["state_hash"], b["state_hash"])
+
+    def test_a_pass_goes_on_where_its_study_was_moved(self):
+        keys = {"run.step": 2e-5, "run.end": 0.25, "run.average_from": 0.1, "checkpoint.interval": 0.02}
+        study = self.study(passes=2, rest=0.01, set=keys)
+        process = start("sweep", study, "--out", "before", cwd=self.folder)
+        self.addCleanup(process.kill)
+        second = lambda: [path for path in self.folder.glob("before/runs/*/checkpoints/0*") if self.on_a_bed_of_the_study(path.parents[1])]
+        wait_for(lambda: second() or process.poll() is not None, 120, "a checkpoint of the second pass")
+        process.terminate()
+        process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 75)
+        (self.folder / "before").rename(self.folder / "after")
+        done = furrow("sweep", study, "--out", "after", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("continues", done.stderr)
+        whole = furrow("sweep", study, "--out", "whole", cwd=self.folder)
+        self.assertEqual(whole.returncode, 0, whole.stderr)
+        hashes = [{path.parent.name: json.loads(path.read_text())["state_hash"] for path in self.folder.glob(f"{name}/runs/*/summary.json")}
+                  for name in ("after", "whole")]
+        self.assertEqual(*hashes)
+        self.assertEqual(len(hashes[0]), 2)
+
+    def on_a_bed_of_the_study(self, run):
+        return "bed" in json.loads((run / "scenario.json").read_text())["terrain"]
 
 
 if __name__ == "__main__":

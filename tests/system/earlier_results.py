@@ -1,0 +1,156 @@
+#!/usr/bin/python3
+"""Results that stand in a folder are not lost, whatever ends the command that was to replace them."""
+import json
+import os
+import pathlib
+import resource
+import shutil
+import signal
+import subprocess
+import tempfile
+
+from program import PROGRAM, SystemTest, changed, furrow, main, start, wait_for, write_scenario
+
+# Its bed settles for a minute or more.
+SLOW = changed(terrain={"radius": 0.01, "layers": 12, "length": 12}, run={"step": 2e-5})
+
+
+def contents(folder):
+    """{path in the folder: bytes} of all files below it, but for what the folder's list held before."""
+    files = {str(path.relative_to(folder)): path.read_bytes() for path in pathlib.Path(folder).rglob("*") if path.is_file()}
+    files[".furrow-run"] = sorted(set(files[".furrow-run"].decode().split("furrow-run 1\n")[-1].splitlines()))
+    return files
+
+
+def without(stream, *arguments, cwd, **options):
+    """Runs the program with that stream closed."""
+    return subprocess.run([PROGRAM, *map(str, arguments)], cwd=cwd, timeout=120, text=True, stdin=subprocess.DEVNULL,
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=lambda: os.close(stream), **options)
+
+
+class Overwrite(SystemTest):
+    @classmethod
+    def setUpClass(cls):
+        holder = tempfile.TemporaryDirectory(prefix="furrow base ")
+        cls.addClassCleanup(holder.cleanup)
+        cls.base = pathlib.Path(holder.name) / "base"
+        done = furrow("run", write_scenario(holder.name), "--out", cls.base, "--no-plots", cwd=holder.name)
+        assert done.returncode == 0, done.stderr
+
+    def setUp(self):
+        super().setUp()
+        self.path = write_scenario(self.folder)
+        self.slow = write_scenario(self.folder, SLOW, "slow.json")
+        self.out = self.folder / "out"
+        shutil.copytree(self.base, self.out)
+        self.before = contents(self.out)
+        self.cache = {"XDG_CACHE_HOME": str(self.folder / "cache")}
+
+    def is_as_before(self):
+        self.assertEqual(contents(self.out), self.before)
+        self.assertFalse((self.out / ".furrow-before").exists())
+
+    def begun_to_settle(self):
+        """The process, and the file that holds what it says."""
+        said = self.folder / "said"
+        with open(said, "w") as file:
+            process = subprocess.Popen([PROGRAM, "run", self.slow, "--out", self.out, "--overwrite", "--no-plots"], cwd=self.folder,
+                                       stdin=subprocess.DEVNULL, stdout=file, stderr=file, env={**os.environ, **self.cache})
+        self.addCleanup(process.kill)
+        wait_for(lambda: "settling" in said.read_text(), 60, "the bed settles")
+        self.assertIsNone(process.poll())
+        self.assertTrue((self.out / ".furrow-before" / "summary.json").exists())
+        return process, said
+
+    def test_they_come_back_where_no_rank_can_be_started(self):
+        done = furrow("run", self.path, "--out", self.out, "--overwrite", cwd=self.folder, env={"FURROW_MPIRUN": "/bin/false"})
+        self.assertEqual(done.returncode, 5, done.stderr)
+        self.assertIn("no rank could be started", done.stderr)
+        self.assertIn("out holds the earlier results again", done.stderr)
+        self.is_as_before()
+
+    def test_they_come_back_where_a_signal_ends_the_run_before_its_first_step(self):
+        process, said = self.begun_to_settle()
+        process.terminate()
+        self.assertEqual(process.wait(timeout=60), 75, said.read_text())
+        self.assertIn("out holds the earlier results again", said.read_text())
+        self.is_as_before()
+
+    def test_they_come_back_to_who_resumes_after_a_kill_before_the_first_step(self):
+        process, _ = self.begun_to_settle()
+        process.kill()
+        process.wait(timeout=60)
+        done = furrow("resume", self.out, cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("is finished", done.stderr)
+        self.is_as_before()
+
+    def test_those_of_soil_tests_come_back_after_a_kill(self):
+        tests = self.folder / "soil"
+        begin = ["soil", self.path, "--only", "plate", "--out", tests]
+        done = furrow(*begin, "--speed", "1", "--set", "terrain.layers=2", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        before = contents(tests)
+        process = start(*begin, "--speed", "0.001", "--overwrite", cwd=self.folder)
+        self.addCleanup(process.kill)
+        wait_for(lambda: (tests / ".furrow-before" / "soil.json").exists(), 60, "the results are set aside")
+        process.kill()
+        process.communicate(timeout=60)
+        done = furrow("resume", tests, cwd=self.folder)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("holds the results of 'furrow soil'", done.stderr)
+        self.assertEqual(contents(tests), before)
+
+    def test_beds_stay_where_a_file_of_the_users_own_stands_in_the_place_of_a_new_one(self):
+        begin = ["run", self.path, "--out", "beds", "--no-plots"]
+        done = furrow(*begin, "--seeds", "2", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        (self.folder / "beds" / "seed3.log").write_text("mine")
+        before = contents(self.folder / "beds")
+        done = furrow(*begin, "--seeds", "3", "--overwrite", cwd=self.folder)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("seed3.log: stands where a result is to be written", done.stderr)
+        self.assertEqual(contents(self.folder / "beds"), before)
+
+
+class ClosedStreams(SystemTest):
+    """The descriptor that is free is not taken for a file of results."""
+
+    def setUp(self):
+        super().setUp()
+        self.path = write_scenario(self.folder)
+        self.out = self.folder / "out"
+
+    def test_of_errors(self):
+        for arguments in ((), ("--overwrite",)):
+            done = without(2, "run", self.path, "--out", self.out, "--no-plots", *arguments, cwd=self.folder)
+            self.assertEqual(done.returncode, 0)
+            self.assertTrue((self.out / "summary.json").exists())
+            listed = (self.out / ".furrow-run").read_bytes()
+            self.assertTrue(listed.startswith(b"furrow-run 1\n"))
+        self.assertEqual(without(2, "resume", self.out, cwd=self.folder).returncode, 0)
+        self.assertEqual((self.out / ".furrow-run").read_bytes(), listed)
+
+    def test_of_results(self):
+        for _ in range(2):
+            done = without(1, "kc", "buggy.json", "--out", self.out, "--overwrite", cwd=self.folder)
+            self.assertEqual(done.returncode, 5)
+            self.assertIn("standard output: cannot be written", done.stderr)
+            self.assertTrue((self.out / "kinematics.csv").exists())
+            self.assertTrue((self.out / ".furrow-run").read_bytes().startswith(b"furrow-run 1\n"))
+
+
+class UnwritableFiles(SystemTest):
+    """What the HDF5 library could not write does not end the program with a crash."""
+
+    def test_a_bed_that_does_not_fit_into_the_cache(self):
+        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (50_000, 50_000))
+        done = subprocess.run([PROGRAM, "bed", write_scenario(self.folder)], cwd=self.folder, text=True, capture_output=True,
+                              timeout=120, preexec_fn=limit, env={**os.environ, "XDG_CACHE_HOME": str(self.folder / "cache")})
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("bed not cached", done.stderr)
+        self.assertIn("grains", json.loads(done.stdout))
+
+
+if __name__ == "__main__":
+    main()

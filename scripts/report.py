@@ -11,6 +11,7 @@ Exit codes: 0 at least one plot was written, 5 a file could not be read or writt
 import argparse
 import csv
 import functools
+import io
 import json
 import os
 import pathlib
@@ -26,6 +27,7 @@ sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent), str(pathlib.Path(_
 from plot import (accounts, calibrate, charts, ground, kinematics, modes, press, ride, scene, soil, sweep, vehicle_ground, vehicle_plots,  # noqa: E402
                   vehicle_run, vehicle_scene, wheels)
 from plot.digits import with_error  # noqa: E402
+from plot.own_files import may_write, write_whole  # noqa: E402
 from plot.run_data import Damaged, Missing, Run, printable, why_no_folder  # noqa: E402
 
 
@@ -74,23 +76,6 @@ MODES_PLOTS = {"frequencies": modes.frequencies, "mode_shapes": modes.mode_shape
 CALIBRATION_PLOTS = {"fit": calibrate.fit, "residual": calibrate.residual}
 WORK = {"scene": 20, "page": 10}  # of most plots: 1; the shares of the progress follow from it
 PRESS_PLOTS = {"load_deflection": press.load_deflection, "footprint": press.footprint}
-
-
-def may_write(folder, name):
-    """Whether `name` is ours to write. In a run's folder it is added to the list of what furrow wrote there, before it is made."""
-    files = folder / ".furrow-run"
-    if not files.is_file():
-        return True
-    listed = files.read_text(errors="replace").split("furrow-run 1\n")[-1].splitlines()
-    if name in listed:
-        return True
-    if os.path.lexists(folder / name):
-        return False
-    with open(files, "a") as out:
-        out.write(name + "\n")
-        out.flush()
-        os.fsync(out.fileno())
-    return True
 
 
 def note(text):
@@ -160,7 +145,7 @@ def main():
     if why := why_no_folder(out):
         print(f"furrow: error: {printable(out)}: {why}", file=sys.stderr)
         return 5
-    written = []
+    written, in_the_way = [], []
     of_beds = of_sweep and run.values.get("beds")
     plots = (CALIBRATION_PLOTS if of_calibration else SOIL_PLOTS if of_soil
              else BEDS_PLOTS if of_beds else SWEEP_PLOTS if of_sweep and run.values.get("passes")
@@ -189,29 +174,32 @@ def main():
             print(f"report: no {name}.png: a file in {arguments.directory} is damaged: {printable(error)}", file=sys.stderr)
             continue
         try:
-            if not may_write(out, f"{name}.png"):
-                print(f"report: no {name}.png: furrow did not write the file of that name in this folder", file=sys.stderr)
-                matplotlib.pyplot.close(figure)
-                continue
-            figure.savefig(out / f"{name}.png", dpi=130)
+            write = may_write(out, f"{name}.png")
+            if write:
+                picture = io.BytesIO()
+                figure.savefig(picture, format="png", dpi=130)
+                write_whole(out / f"{name}.png", picture.getvalue())
         except OSError as error:
             print(f"furrow: error: {out / (name + '.png')}: {error}", file=sys.stderr)
             return 5
         matplotlib.pyplot.close(figure)
-        written.append(f"{name}.png")
+        (written if write else in_the_way).append(f"{name}.png")
     if not (of_calibration or of_soil or of_sweep or of_press or of_modes or of_kinematics):
         try:
             words(run)
         except Damaged as error:
             print(f"furrow: error: {arguments.directory}: {printable(error)}", file=sys.stderr)
             return 5
-    if (written or (arguments.directory / "summary_failed.json").is_file()) and not arguments.only:
+    if (written or in_the_way or (arguments.directory / "summary_failed.json").is_file()) and not arguments.only:
         if arguments.progress:
             tell_share(names, len(names) - 1)
         import page
         written += page.write(out, [run], may_write)
     print(json.dumps(written))
-    if not written:
+    if not written and in_the_way:
+        print(f"furrow: error: {printable(out)}: no plot was written, as other files have their names, expected another folder",
+              file=sys.stderr)
+    elif not written:
         print(f"furrow: error: {arguments.directory}: holds nothing to plot", file=sys.stderr)
     return 0 if written else 5
 

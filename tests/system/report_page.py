@@ -12,12 +12,13 @@ import zlib
 import h5py
 import numpy as np
 
-from program import ROOT, SystemTest, furrow, main
+from program import ROOT, SystemTest, furrow, main, write_scenario
 
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "scripts" / "report")]
 import page  # noqa: E402
 from page import frames  # noqa: E402
 from page.blobs import Arrays, thin  # noqa: E402
+from plot import own_files  # noqa: E402
 from plot.press import Press  # noqa: E402
 from plot.run_data import Run  # noqa: E402
 from plot.sweep import Sweep  # noqa: E402
@@ -319,12 +320,113 @@ class Page(SystemTest):
         self.assertIn("has no frames, expected a run with output.frame_interval above 0", none.stderr)
         self.assertFalse((self.folder / "none").exists())
 
-    def test_a_page_of_ones_own_stays(self):
+
+class OwnFiles(SystemTest):
+    """Files of the user's own at the places of plots and of the page."""
+
+    def setUp(self):
+        super().setUp()
+        self.run_folder, self.out = self.folder / "run", self.folder / "own"
+        known_run(self.run_folder)
+        summary = json.loads((self.run_folder / "summary.json").read_text())
+        summary["ranks"][0] |= {"compute_s": 1.0, "wait_s": 3.0, "cpu_s": 1.0}  # so that there are two plots: ranks.png and scene.png
+        (self.run_folder / "summary.json").write_text(json.dumps(summary))
+        self.out.mkdir()
+
+    def report(self, *arguments, code=0, told=()):
+        done = furrow("report", *arguments, cwd=self.folder)
+        self.assertEqual(done.returncode, code, done.stderr)
+        for words in told:
+            self.assertIn(words, done.stderr)
+        return [pathlib.Path(line).name for line in done.stdout.splitlines()]
+
+    def parts(self):
+        return list(self.folder.rglob(".*.part"))
+
+    def test_a_page_in_the_folder_of_a_run_stays(self):
         (self.run_folder / ".furrow-run").write_text("furrow-run 1\nsummary.json\n")
         (self.run_folder / "report.html").write_text("mine")
-        done = furrow("report", self.run_folder, cwd=self.folder)
-        self.assertIn("no report.html: furrow did not write the file of that name in this folder", done.stderr)
+        self.report("run", told=["no report.html: furrow did not write the file of that name in this folder"])
         self.assertEqual((self.run_folder / "report.html").read_text(), "mine")
+
+    def test_they_stay_in_any_folder_and_the_rest_can_be_made_again(self):
+        mine = ("report.html", "rut.png", "ranks.png", ".report.html.part")
+        for name in mine:
+            (self.out / name).write_text("mine")
+        told = [f"no {name}: furrow did not write the file of that name in this folder" for name in ("report.html", "ranks.png")]
+        made = self.report("run", "--out", "own", told=told)
+        self.assertEqual(made, ["scene.png"])
+        (self.out / "scene.png").write_text("of an earlier report")
+        self.assertEqual(self.report("run", "--out", "own", told=told), made)
+        self.assertTrue((self.out / "scene.png").read_bytes().startswith(b"\x89PNG"))
+        self.assertEqual([(self.out / name).read_text() for name in mine], ["mine"] * len(mine))
+        self.assertEqual({path.name for path in self.out.iterdir()}, {*mine, *made, ".furrow-report"})
+
+    def test_they_stay_where_runs_are_compared(self):
+        (self.out / "report.html").write_text("mine")
+        self.report("run", "run", "--out", "own", code=5, told=["own/report.html: was not written"])
+        self.assertEqual([path.name for path in self.out.iterdir()], ["report.html"])
+        self.assertEqual((self.out / "report.html").read_text(), "mine")
+        for _ in range(2):
+            self.assertEqual(self.report("run", "run", "--out", "new"), ["report.html"])
+        self.assertGreater((self.folder / "new" / "report.html").stat().st_size, 10000)
+
+    def test_where_all_names_are_taken_it_is_told(self):
+        made = self.report("run", "--out", "other")
+        self.assertEqual(made, ["ranks.png", "scene.png", "report.html"])
+        for name in made:
+            (self.out / name).write_text("mine")
+        self.report("run", "--out", "own", code=5, told=["own: no plot was written, as other files have their names, expected another folder"])
+        self.assertEqual({path.name for path in self.out.iterdir()}, set(made))
+
+    def test_links_are_neither_followed_nor_replaced(self):
+        (self.folder / "precious").write_text("precious")
+        self.report("run", "--out", "own")
+        (self.run_folder / ".furrow-run").write_text("furrow-run 1\nsummary.json\nscene.png\nreport.html\n")
+        for folder, arguments in ((self.run_folder, ["run"]), (self.out, ["run", "--out", "own"])):
+            with self.subTest(folder.name):
+                for name, to in (("scene.png", "precious"), ("report.html", "nowhere")):
+                    (folder / name).unlink(missing_ok=True)
+                    (folder / name).symlink_to(self.folder / to)
+                made = self.report(*arguments, told=[f"no {name}: the file of that name in this folder is a link, which furrow does not follow"
+                                                     for name in ("scene.png", "report.html")])
+                self.assertEqual(made, ["ranks.png"])
+                self.assertTrue((folder / "scene.png").is_symlink() and (folder / "report.html").is_symlink())
+                self.assertEqual((self.folder / "precious").read_text(), "precious")
+                self.assertFalse((self.folder / "nowhere").exists())
+        self.assertEqual(self.parts(), [])
+
+    def test_plots_make_no_run_of_a_folder(self):
+        (self.out / "notes.txt").write_text("mine")
+        self.report("run", "--out", "own")
+        names = {path.name for path in self.out.iterdir()}
+        done = furrow("run", write_scenario(self.folder), "--out", "own", "--overwrite", cwd=self.folder)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("own: key '--out': holds no run's list of its files (.furrow-run)", done.stderr)
+        self.assertEqual({path.name for path in self.out.iterdir()}, names)
+
+    def test_a_list_that_was_cut_short_or_is_a_link(self):
+        listed = self.out / ".furrow-run"
+        listed.write_text("furrow-run 1\nold.png\nfurrow-run 1\nrun.log\nscene.p")
+        self.assertTrue(own_files.may_write(self.out, "scene.png"))
+        self.assertEqual(listed.read_text(), "furrow-run 1\nold.png\nfurrow-run 1\nrun.log\nscene.png\n")
+        self.assertEqual(own_files.names_in(listed), ["run.log", "scene.png"])
+        listed.write_text("")  # killed before its first line
+        self.assertTrue(own_files.may_write(self.out, "scene.png"))
+        self.assertEqual(listed.read_text(), "furrow-run 1\nscene.png\n")
+        listed.unlink()
+        (self.folder / "precious").write_text("precious\n")
+        (self.out / ".furrow-report").symlink_to(self.folder / "precious")
+        with self.assertRaises(OSError):
+            own_files.may_write(self.out, "scene.png")
+        self.assertEqual((self.folder / "precious").read_text(), "precious\n")
+
+    def test_a_file_that_cannot_be_written_leaves_the_earlier_one(self):
+        picture = self.out / "scene.png"
+        picture.write_bytes(b"earlier")
+        with self.assertRaises(TypeError):
+            own_files.write_whole(picture, None)
+        self.assertEqual((picture.read_bytes(), self.parts()), (b"earlier", []))
 
 
 if __name__ == "__main__":

@@ -1,10 +1,10 @@
 """Puts a page together and writes it."""
 import csv
 import json
-import os
 import pathlib
 import sys
 
+from plot.own_files import write_whole
 from plot.run_data import Damaged, Missing, Run, printable, why_no_folder
 
 from . import kinds, run_page
@@ -71,12 +71,12 @@ def html(page, arrays, blobs):
 
 def write(folder, runs, may_write):
     """Writes `folder`/report.html of one or more runs and returns its name in a list; on a problem says why not, and
-    returns an empty list."""
+    returns an empty list. `may_write`: that of own_files.py, which says itself why not."""
     try:
+        content = page_of(runs).encode("utf-8")
         if not may_write(folder, NAME):
-            print(f"report: no {NAME}: furrow did not write the file of that name in this folder", file=sys.stderr)
             return []
-        write_page(runs, folder / NAME)
+        write_whole(folder / NAME, content)
     except PROBLEMS as error:
         print(f"report: no {NAME}: {printable(error or repr(error))[:300]}", file=sys.stderr)
         return []
@@ -105,8 +105,8 @@ def compare(directories, folder, may_write):
     return 0 if written else 5
 
 
-def write_page(runs, path):
-    """Writes the page of a folder's results, or of several runs compared. `runs`: what report.py read, one or more."""
+def page_of(runs):
+    """The page of a folder's results, or of several runs compared. `runs`: what report.py read, one or more."""
     arrays, blobs = Arrays(), {}
     page = {"title": "", "badges": [], "sections": [], "left_out": []}
     kinds.fill(page, arrays, runs, sections)
@@ -124,17 +124,7 @@ def write_page(runs, path):
         page["sections"][1:1] = made
     if not page["sections"]:
         raise Missing("there is nothing that it could show")
-    text = html(page, arrays, blobs)
-    temporary = path.with_name(f".{path.name}.part")
-    temporary.unlink(missing_ok=True)
-    handle = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
-    try:
-        with open(handle, "w", encoding="utf-8") as out:
-            out.write(text)
-        os.replace(temporary, path)
-    except BaseException:
-        temporary.unlink(missing_ok=True)
-        raise
+    return html(page, arrays, blobs)
 
 
 class arrays_so_far:

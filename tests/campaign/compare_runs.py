@@ -30,7 +30,10 @@ MAY_DIFFER = [
     ("seed*.log", "likewise, of a bed"),
     ("profile.json", "wall times, of the part of a run that was asked for them"),
     (".furrow-run", "the list of files made so far; a study and a run that was stopped make them in another order"),
+    ("ranks.png", "wall times of the ranks"),
+    ("report.html", "wall times in the sections Ranks and Provenance; the page of a study holds none and is compared"),
 ]
+STUDY = "sweep.csv"  # beside the page of a study
 # A run that was stopped has checkpoints at other steps and so keeps others: those of the same step are compared, and
 # the newest must be of the same step.
 CHECKPOINT = "checkpoints/*"
@@ -47,8 +50,10 @@ def tail_matches(path, pattern):
     return len(parts) == len(wanted) and all(fnmatch.fnmatchcase(part, want) for part, want in zip(parts, wanted))
 
 
-def may_differ(path):
-    return any(tail_matches(path, pattern) for pattern, _ in MAY_DIFFER)
+def may_differ(path, files):
+    """@param files of either folder"""
+    of_study = path.split("/")[-1] == "report.html" and path.removesuffix("report.html") + STUDY in files
+    return not of_study and any(tail_matches(path, pattern) for pattern, _ in MAY_DIFFER)
 
 
 def files_of(folder):
@@ -224,7 +229,7 @@ def differences(a, b, leave_out=()):
     a_files, b_files = files_of(a), files_of(b)
     found, single = checkpoint_differences(a_files, b_files)
     for path in sorted(a_files | b_files):
-        if may_differ(path) or path in single or any(tail_matches(path, pattern) for pattern in leave_out):
+        if may_differ(path, a_files | b_files) or path in single or any(tail_matches(path, pattern) for pattern in leave_out):
             continue
         if path not in a_files or path not in b_files:
             found.append(f"{path}: only in {a if path in a_files else b}")

@@ -83,6 +83,10 @@ class CompareRuns(unittest.TestCase):
     def test_what_may_differ(self):
         (self.b / "run.log").write_text("said otherwise")
         (self.b / "profile.json").write_text("{}")
+        for folder in (self.a, self.b):
+            (folder / "ranks.png").write_text(f"the wall times of {folder.name}")
+            (folder / "report.html").write_text(f"the wall times of {folder.name}")
+            (folder / "forces.png").write_text("forces")
         (self.b / "summary.json").write_text(json.dumps({**SUMMARY, "wall_s": 2.0, "ranks": [], "cpu": "another"}))
         write_checkpoint(self.b, 200, cpu=2.0, write=0.2)
         write_checkpoint(self.b, 150)
@@ -135,6 +139,15 @@ class CompareRuns(unittest.TestCase):
         (self.b / "runs" / "1f" / "scenario.json").write_text("{}")
         self.found("runs/1f/scenario.json: only in")
         self.assertEqual(differences(self.a, self.b, ["scenario.json"]), [])
+
+    def test_other_plots_and_the_page_of_a_study_are_compared(self):
+        self.found_after(lambda run: (run / "forces.png").write_text("other forces"), "forces.png: only in")
+        for folder in (self.a, self.again()):
+            shutil.copytree(folder, folder / "runs" / "1f")
+            for of_run in (folder, folder / "runs" / "1f"):
+                (of_run / "report.html").write_text(folder.name)
+            (folder / "sweep.csv").write_text("run,state,wall_s\n1,done,1.0\n")
+        self.found("report.html: differs from byte 0")
 
     def compared(self, *folders, **environment):
         return subprocess.run([sys.executable, pathlib.Path(__file__).with_name("compare_runs.py"), *folders], capture_output=True, text=True,

@@ -118,6 +118,8 @@ ExitCode report_command(const ReportRequest& asked) {
   if (!asked.soil.empty()) {
     if (launch::has_run_list(asked.run))
       launch::add_to_run_list(asked.run, {"soil_estimate.json"});
+    else
+      launch::require_own(asked.run, {"soil_estimate.json"});
     const std::string theory = terrain::soil::write_soil_estimate(asked.run, asked.soil);
     launch::say("furrow: " + theory + "\n");
   }

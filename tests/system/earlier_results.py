@@ -9,10 +9,20 @@ import signal
 import subprocess
 import tempfile
 
-from program import PROGRAM, SystemTest, changed, furrow, main, start, wait_for, write_scenario
+from program import PROGRAM, ROOT, SystemTest, changed, furrow, main, start, wait_for, write_scenario
 
 # Its bed settles for a minute or more.
 SLOW = changed(terrain={"radius": 0.01, "layers": 12, "length": 12}, run={"step": 2e-5})
+
+# Its first call is a run that a signal stops before it has a checkpoint.
+STOPPED_WHILE_IT_SETTLES = """#!/bin/bash
+if [ ! -e said ]; then
+  "$REAL" run slow.json --out out --no-plots 2> said & run=$!
+  until grep -q settling said; do sleep 0.05; done
+  kill -TERM $run; wait $run; exit
+fi
+exec "$REAL" "$@" --no-plots
+"""
 
 
 def contents(folder):
@@ -150,6 +160,26 @@ class UnwritableFiles(SystemTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("bed not cached", done.stderr)
         self.assertIn("grains", json.loads(done.stdout))
+
+
+class RetryScript(SystemTest):
+    """The script of nodes/SURVIVES.md."""
+
+    def test_it_begins_again_where_there_is_no_checkpoint(self):
+        text = (ROOT / "nodes" / "SURVIVES.md").read_text()
+        script = text[text.index("```sh\n") + 6:].split("```")[0]
+        write_scenario(self.folder)
+        write_scenario(self.folder, SLOW, "slow.json")
+        program = self.folder / "bin" / "furrow"
+        program.parent.mkdir()
+        program.write_text(STOPPED_WHILE_IT_SETTLES)
+        program.chmod(0o755)
+        environment = {**os.environ, "PATH": f"{program.parent}:{os.environ['PATH']}", "REAL": PROGRAM,
+                       "XDG_CACHE_HOME": str(self.folder / "cache")}
+        done = subprocess.run(["bash", "-c", script], cwd=self.folder, text=True, capture_output=True, timeout=120, env=environment)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("stopped by a signal", (self.folder / "said").read_text())
+        self.assertTrue((self.folder / "out" / "summary.json").exists())
 
 
 if __name__ == "__main__":

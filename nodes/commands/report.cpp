@@ -15,6 +15,7 @@
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
 #include "nodes/scenario/rank_table.hpp"
+#include "protocol/files/json_text.hpp"
 #include "terrain/soil/soil_estimate.hpp"
 
 namespace furrow::commands {
@@ -116,9 +117,10 @@ ExitCode report_command(const ReportRequest& asked) {
   if (!asked.others.empty() && !asked.vtk.empty())
     throw input_error("command line", "--vtk", "is given with several runs, expected one");
   if (!asked.soil.empty()) {
+    const auto earlier = read_json_if_whole(asked.run + "/soil_estimate.json");
     if (launch::has_run_list(asked.run))
       launch::add_to_run_list(asked.run, {"soil_estimate.json"});
-    else
+    else if (!earlier.contains("soil_file"))
       launch::require_own(asked.run, {"soil_estimate.json"});
     const std::string theory = terrain::soil::write_soil_estimate(asked.run, asked.soil);
     launch::say("furrow: " + theory + "\n");

@@ -14,6 +14,8 @@ namespace {
 
 constexpr std::size_t kMaxLines = 40;
 constexpr std::size_t kMaxWords = 600;  // characters
+// Begins Open MPI's paragraph of all reasons for which ranks may fail to start. The cause stands in others.
+constexpr std::string_view kUsual = "It looks like MPI_INIT failed for some reason";
 constexpr std::size_t kMaxLine = 2000;  // characters: a search in a longer one would take the stack
 
 bool is_rule(std::string_view line) {
@@ -53,16 +55,20 @@ void LauncherText::add(std::string_view line) {
     return;
   }
   const std::string text(trimmed(line));
-  if (text.empty() || is_rule(text) || lines_.size() >= kMaxLines) return;
-  lines_.push_back(text);
+  if (is_rule(text)) is_usual_ = false;
+  if (text.starts_with(kUsual)) is_usual_ = true;
+  std::vector<std::string>& sort = is_usual_ ? usual_ : lines_;
+  if (text.empty() || is_rule(text) || sort.size() >= kMaxLines) return;
+  sort.push_back(text);
 }
 
 std::string LauncherText::words() const {
   std::string text, internal;
-  for (const std::string& line : lines_) {
-    std::string& sort = is_internal(line) ? internal : text;
+  const auto add_to = [](std::string& sort, const std::string& line) {
     sort += (sort.empty() ? "" : " ") + line;
-  }
+  };
+  for (const std::string& line : lines_) add_to(is_internal(line) ? internal : text, line);
+  for (const std::string& line : usual_) add_to(text, line);
   if (text.empty()) text = internal;
   if (text.size() > kMaxWords) text = text.substr(0, kMaxWords) + " …";
   return text;

@@ -19,12 +19,13 @@ class LauncherText {
   void add(std::string_view line);
 
   const std::optional<LostRank>& lost() const { return lost_; }
-  /// What else it said, without rules and its usual sentences, in one line; for failures to start.
+  /// What else it said, without rules, in one line, its usual sentences last; for failures to start.
   std::string words() const;
 
  private:
   std::optional<LostRank> lost_;
-  std::vector<std::string> lines_;
+  std::vector<std::string> lines_, usual_;
+  bool is_usual_ = false;  // the paragraph that is being read
 };
 
 }  // namespace furrow::launch

@@ -108,6 +108,15 @@ TEST(LauncherText, passes_over_what_the_launcher_logs_of_itself_unless_there_is_
   EXPECT_EQ(aborted.words(), "A requested component was not found.");
 }
 
+TEST(LauncherText, the_usual_paragraph_follows_what_says_more) {
+  launch::LauncherText text;
+  for (const char* line :
+       {"------------", "It looks like MPI_INIT failed for some reason; there are many.", "Not found (-13)",
+        "------------", "------------", "A requested component was not found.", "------------"})
+    text.add(line);
+  EXPECT_TRUE(text.words().starts_with("A requested component was not found. It looks like MPI_INIT failed"));
+}
+
 TEST(Progress, tells_time_pull_sinkage_speed_and_what_is_left) {
   EXPECT_EQ(launch::progress_text({"running", 0.25, 0.5, 2.0, 1432.5, 0.0312, 1.4, 83.0}),
             "t 0.500 of 2 s   1:23 left   pull 1432 N   sinkage 31.2 mm   1.40 m/s");

@@ -67,7 +67,7 @@ endfunction()
 
 # furrow_test(<name> LABELS <label>… LIBS <target>… SOURCES <file>… [TIMEOUT <s>]): one GoogleTest program, one CTest entry.
 # The target tests_<label> builds all programs with that label. The sources of a program are compiled together, which
-# takes a quarter of the time.
+# takes less than half of the time.
 function(furrow_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT" "LABELS;LIBS;SOURCES" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})

@@ -11,14 +11,13 @@
 #include "nodes/study/calibrate_evaluations.hpp"
 #include "nodes/study/calibrate_explain.hpp"
 #include "protocol/core/error.hpp"
+#include "protocol/files/text_file.hpp"
 #include "tests/nodes/calibrate_examples.hpp"
-#include "tests/nodes/text_of.hpp"
 
 namespace furrow::study {
 namespace {
 
 using namespace testing;
-using furrow::testing::text_of;
 using json = nlohmann::ordered_json;  // parameters in the order of the file
 
 class CalibrateStudy : public ::testing::Test {
@@ -231,7 +230,8 @@ TEST_F(CalibrateStudy, an_interrupted_calibration_ends_with_the_same_files) {
   const auto files = [&](const std::filesystem::path& folder, const Calibration& c, const CalibrationResults& results) {
     write_calibration(c, results, folder);
     std::string all;
-    for (const char* name : {"calibration.json", "fit.csv", "fitted.json", kEvaluations}) all += text_of(folder / name);
+    for (const char* name : {"calibration.json", "fit.csv", "fitted.json", kEvaluations})
+      all += read_whole_file(folder / name);
     return all;
   };
   const std::filesystem::path once = folder_.path() / "once", often = folder_.path() / "often";

@@ -16,7 +16,6 @@
 #include "protocol/files/archive_file.hpp"
 #include "protocol/files/text_file.hpp"
 #include "tests/nodes/temporary_folder.hpp"
-#include "tests/nodes/text_of.hpp"
 
 namespace furrow {
 namespace {
@@ -24,7 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using testing::TemporaryFolder;
-using testing::text_of;
 
 /// A checkpoint with two parts, at `step`, in the run's folder.
 checkpoint::CheckpointManifest write_example(const fs::path& run, std::int64_t step, int keep = 10) {
@@ -100,7 +98,7 @@ TEST(Checkpoint, a_manifest_with_any_byte_changed_or_cut_is_refused) {
   write_example(folder.path(), 10);
   const fs::path checkpoint = checkpoint::list_checkpoints(folder.path()).at(0),
                  file = checkpoint / "manifest.json";
-  const std::string whole = text_of(file);
+  const std::string whole = read_whole_file(file);
   for (std::size_t i = 0; i < whole.size(); i += 7) {
     if (std::isspace(static_cast<unsigned char>(whole[i]))) continue;
     std::string bad = whole;
@@ -130,7 +128,7 @@ TEST(Checkpoint, one_of_an_older_format_is_refused_by_its_version) {
 /// Puts a value into the manifest of the run's only checkpoint, and the checksum that fits. @returns its folder
 fs::path forge(const fs::path& run, const std::string& pointer, const Json& value) {
   const fs::path checkpoint = checkpoint::list_checkpoints(run).at(0), file = checkpoint / "manifest.json";
-  Json manifest = Json::parse(text_of(file));
+  Json manifest = Json::parse(read_whole_file(file));
   manifest[Json::json_pointer(pointer)] = value;
   manifest.erase("checksum");
   manifest["checksum"] = text_hash(manifest.dump());
@@ -142,7 +140,7 @@ TEST(Checkpoint, numbers_that_no_run_comes_to_are_refused_although_the_checksum_
   const testing::TemporaryFolder folder;
   write_example(folder.path(), 120);
   const fs::path file = checkpoint::list_checkpoints(folder.path()).at(0) / "manifest.json";
-  const std::string whole = text_of(file);
+  const std::string whole = read_whole_file(file);
   for (const std::string pointer :
        {"/step", "/bytes", "/series/0/bytes", "/series/0/lines", "/frames/every", "/frames/first_step",
         "/frames/first_index", "/segments/0/from_step", "/segments/0/to_step", "/segments/0/threads"})

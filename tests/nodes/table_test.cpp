@@ -17,10 +17,10 @@
 #include "protocol/core/error.hpp"
 #include "protocol/files/archive_file.hpp"
 #include "protocol/files/hdf5_file.hpp"
+#include "protocol/files/text_file.hpp"
 #include "rigs/drawbar_rig.hpp"
 #include "rigs/rig_row.hpp"
 #include "tests/nodes/temporary_folder.hpp"
-#include "tests/nodes/text_of.hpp"
 #include "tests/protocol/fields_of.hpp"
 #include "tests/rigs/reference_options.hpp"
 
@@ -83,7 +83,7 @@ std::vector<std::string> split(const std::string& line) {
 
 /// The last line of a CSV file by the names of its columns.
 std::map<std::string, double> last_line(const fs::path& file) {
-  std::stringstream stream(text_of(file));
+  std::stringstream stream(read_whole_file(file));
   std::string header, line, last;
   std::getline(stream, header);
   while (std::getline(stream, line)) last = line;
@@ -232,7 +232,7 @@ TEST(Table, goes_on_at_its_mark_bit_for_bit) {
     writer.add(line);
   }
   EXPECT_EQ(mark.subject, "wheel0");
-  const std::string three = text_of(file);
+  const std::string three = read_whole_file(file);
   std::ofstream(file, std::ios::app) << "0.4,cut sho";
   {
     output::TableWriter writer(file, mark, table);
@@ -240,7 +240,7 @@ TEST(Table, goes_on_at_its_mark_bit_for_bit) {
     EXPECT_TRUE(std::ranges::equal(table.line(1), line));
     writer.add(table.line(1));
   }
-  EXPECT_EQ(text_of(file), three);
+  EXPECT_EQ(read_whole_file(file), three);
   checkpoint::SeriesMark other = mark;
   other.bytes -= 1;
   const auto open_files = [] {
@@ -282,7 +282,7 @@ TEST(Table, goes_on_with_a_file_whose_columns_stand_in_another_order) {
   EXPECT_TRUE(std::ranges::equal(now.line(0), std::vector<double>{3.0, 1.0, 2.0}));
   writer.add(std::vector<double>{6.0, 4.0, 5.0});
   writer.flush();
-  EXPECT_EQ(text_of(file), "a,b_m,c\n1,2,3\n4,5,6\n");
+  EXPECT_EQ(read_whole_file(file), "a,b_m,c\n1,2,3\n4,5,6\n");
   for (const std::vector<Column>& other : {std::vector{a, b}, std::vector{a, b, c, column::mean("d")}}) {
     output::Table table{"wheel0", other, {}};
     try {
@@ -363,9 +363,9 @@ TEST(Subjects, columns_and_tables_of_the_rig_are_written_resumed_and_cut) {
     }
     results.finish({reports, {}, TerrainState(), output::Accounts({}, 1.0), 0.0, 0.0}, true);
   }
-  EXPECT_TRUE(text_of(wheel_file).starts_with("time_s,slip,spring_force_N,spring_work_J,sinkage_m,"));
-  EXPECT_TRUE(
-      text_of(vehicle_file).starts_with("time_s,spring_force_N,heave_m,spring_work_J,double_heave_m\n"));
+  EXPECT_TRUE(read_whole_file(wheel_file).starts_with("time_s,slip,spring_force_N,spring_work_J,sinkage_m,"));
+  EXPECT_TRUE(read_whole_file(vehicle_file)
+                  .starts_with("time_s,spring_force_N,heave_m,spring_work_J,double_heave_m\n"));
   for (const fs::path& file : {wheel_file, vehicle_file}) {
     const auto line = last_line(file);
     EXPECT_EQ(line.at("time_s"), 4e-3);
@@ -381,18 +381,18 @@ TEST(Subjects, columns_and_tables_of_the_rig_are_written_resumed_and_cut) {
                 (std::vector<double>{-15.0, -35.0}));
   }
 
-  const std::string wheel_whole = text_of(wheel_file), vehicle_whole = text_of(vehicle_file);
+  const std::string wheel_whole = read_whole_file(wheel_file), vehicle_whole = read_whole_file(vehicle_file);
   std::ofstream(vehicle_file, std::ios::app) << "9,9,9,9,9\n";
   write_archive(folder.path() / "rig.h5", saved);
   Series series(rig);
   series.restore(read_archive(folder.path() / "rig.h5"));
   output::Results results(scenario, cards_of_one_wheel(), {}, folder.path(), series.tables(), &resume);
-  EXPECT_EQ(std::ranges::count(text_of(vehicle_file), '\n'), 2) << "header and one line are left";
+  EXPECT_EQ(std::ranges::count(read_whole_file(vehicle_file), '\n'), 2) << "header and one line are left";
   series.add(rig, 4);
   series.take(rig, results);
   results.finish({reports, {}, TerrainState(), output::Accounts({}, 1.0), 0.0, 0.0}, true);
-  EXPECT_EQ(text_of(wheel_file), wheel_whole);
-  EXPECT_EQ(text_of(vehicle_file), vehicle_whole);
+  EXPECT_EQ(read_whole_file(wheel_file), wheel_whole);
+  EXPECT_EQ(read_whole_file(vehicle_file), vehicle_whole);
   EXPECT_EQ(Hdf5Reader(folder.path() / "results.h5").get<double>("series/vehicle/heave_m").size(), 2U);
 }
 

@@ -14,18 +14,6 @@ inline ContactMaterial rubber(double friction = 0.8) {
   return material;
 }
 
-inline SurfaceState placed(const testing::Surface& surface, const Vec3& shift, const Vec3& velocity,
-                           double turn = 0.0, double spin = 0.0) {
-  const Quat orientation(Eigen::AngleAxisd(turn, Vec3::UnitY()));
-  SurfaceState state;
-  for (const Vec3& x : surface.vertex) {
-    const Vec3 arm = orientation * x;
-    state.position.push_back(shift + arm);
-    state.velocity.push_back(velocity + Vec3(0.0, spin, 0.0).cross(arm));
-  }
-  return state;
-}
-
 struct Push {
   NodalForces forces;
   ContactSums sums;

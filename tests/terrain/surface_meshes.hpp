@@ -23,6 +23,19 @@ struct Surface {
   }
 };
 
+/// A rigid surface at a place (m) that turns (rad, rad/s) about +y there.
+inline SurfaceState placed(const Surface& surface, const Vec3& shift, const Vec3& velocity, double turn = 0.0,
+                           double spin = 0.0) {
+  const Quat orientation(Eigen::AngleAxisd(turn, Vec3::UnitY()));
+  SurfaceState state;
+  for (const Vec3& x : surface.vertex) {
+    const Vec3 arm = orientation * x;
+    state.position.push_back(shift + arm);
+    state.velocity.push_back(velocity + Vec3(0.0, spin, 0.0).cross(arm));
+  }
+  return state;
+}
+
 /// nx × ny quads over [x0, x0 + nx h] × [y0, y0 + ny h] lifted to z = height(x, y), outside up, each quad cut along a
 /// diagonal that alternates.
 inline Surface sheet(double x0, double y0, double h, int nx, int ny,

@@ -16,14 +16,7 @@ struct DrivenSurface {
   ContactSums sums{};
 
   SurfaceState state(const Vec3& velocity = Vec3::Zero(), double spin = 0.0) const {
-    const Quat orientation(Eigen::AngleAxisd(turn, Vec3::UnitY()));
-    SurfaceState now;
-    for (const Vec3& x : surface.vertex) {
-      const Vec3 arm = orientation * x;
-      now.position.push_back(position + arm);
-      now.velocity.push_back(velocity + Vec3(0.0, spin, 0.0).cross(arm));
-    }
-    return now;
+    return placed(surface, position, velocity, turn, spin);
   }
   void attach(terrain::Terrain& ground, double friction) const {
     ContactMaterial material;

@@ -128,6 +128,7 @@ RunDirectory::RunDirectory(const fs::path& existing) : existing_(true), path_(ex
     if (list.holds(kind.mark))
       throw input_error(path_.string(), "", fmt::format("holds {}, expected a run; {}", kind.holds, kind.continued));
   if (!lock_.stands()) lock_ = FolderLock(path_, "", FolderLock::Mode::alone);
+  take_back(RunList::read(path_));  // of who had the folder until now
 }
 
 struct RunDirectory::Continued {

@@ -38,6 +38,20 @@ if(FURROW_FUZZ)
   target_link_options(furrow_options INTERFACE -fsanitize=address,undefined -fprofile-instr-generate)
 endif()
 
+# furrow_arithmetic(<variable>): a digest of what decides the bits of results besides the sources: the macros that the
+# compiler defines for its version, target and tuning, and its options of the kinds -f, -m and -O.
+function(furrow_arithmetic variable)
+  get_target_property(options furrow_options INTERFACE_COMPILE_OPTIONS)
+  string(TOUPPER "${CMAKE_BUILD_TYPE}" type)
+  separate_arguments(given NATIVE_COMMAND "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${type}}")
+  set(options ${given} ${options})
+  list(FILTER options INCLUDE REGEX "^-[fmO]")
+  execute_process(COMMAND ${CMAKE_CXX_COMPILER} ${options} -dM -E -x c++ /dev/null OUTPUT_VARIABLE macros ERROR_QUIET)
+  string(SHA256 digest "${options} ${macros}")
+  string(SUBSTRING ${digest} 0 16 digest)
+  set(${variable} ${digest} PARENT_SCOPE)
+endfunction()
+
 # Precompiled headers save a third of the build. Sources include what they use all the same:
 # scripts/check_headers.py checks it.
 if(FURROW_PCH)

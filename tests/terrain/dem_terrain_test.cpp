@@ -173,6 +173,8 @@ TEST_F(DemTerrain, digest_changes_with_every_key_that_decides_the_bits_of_a_bed_
   EXPECT_EQ(dem::bed_digest(other), digest);
   other = options_, other.seed = 2;
   EXPECT_NE(dem::bed_digest(other), digest);
+  EXPECT_EQ(dem::bed_digest(options_, arithmetic_id()), digest);
+  EXPECT_NE(dem::bed_digest(options_, "that of another build"), digest);
   // Two of the laws' names are known, and the digest asks for them: the settling step depends on the law.
   other = options_, other.law = "hertz_tanh";
   EXPECT_NE(dem::bed_digest(other), digest);

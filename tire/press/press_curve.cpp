@@ -10,6 +10,7 @@
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/core/hash.hpp"
+#include "protocol/files/arithmetic_id.hpp"
 #include "protocol/files/cache_folder.hpp"
 #include "protocol/files/json_text.hpp"
 #include "protocol/files/text_file.hpp"
@@ -34,6 +35,7 @@ std::filesystem::path cache_file(const TireSpec& tire, double deflection) {
   if (folder.empty()) return {};
   Hash hash;
   const auto add = [&](const auto& value) { hash.add(&value, sizeof value); };
+  hash.add(arithmetic_id());
   add(kFormat);
   add(kPoints);
   add(deflection);

@@ -48,8 +48,9 @@ void require_label(const Archive& bed) {
 
 }  // namespace
 
-std::string bed_digest(const DemOptions& o) {
+std::string bed_digest(const DemOptions& o, const std::string& arithmetic) {
   Hash hash;
+  hash.add(arithmetic);
   const auto add = [&](const auto& value) { hash.add(&value, sizeof value); };
   add(kBedFormat);
   add(kSkinShare);

@@ -5,12 +5,14 @@
 #include <string>
 
 #include "protocol/core/archive.hpp"
+#include "protocol/files/arithmetic_id.hpp"
 #include "terrain/dem/dem_options.hpp"
 
 namespace furrow::terrain::dem {
 
-/// Digest of what decides the bits of a settled bed: geometry, seed, law, material, settling step and format.
-std::string bed_digest(const DemOptions& options);
+/// Digest of what decides the bits of a settled bed: geometry, seed, law, material, settling step, format, and the
+/// arithmetic of the build that settles it.
+std::string bed_digest(const DemOptions& options, const std::string& arithmetic = arithmetic_id());
 
 /// ${XDG_CACHE_HOME:-~/.cache}/furrow/beds/<digest>.h5; empty when neither variable names a directory.
 std::filesystem::path bed_cache_file(const std::string& digest);

@@ -1,0 +1,12 @@
+// What is computed again by another build may differ in its last bits, so that each build keeps its own.
+#pragma once
+
+#include <string>
+
+namespace furrow {
+
+/// Tells builds apart whose numbers may differ: a digest of the compiler, its target and its options for arithmetic,
+/// made when the build is configured. Sources do not count: whoever changes what is kept raises its format.
+std::string arithmetic_id();
+
+}  // namespace furrow

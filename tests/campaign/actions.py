@@ -1,7 +1,6 @@
 """What a case does to a run at its moment. Each action leaves a folder that can be continued, unless it says so."""
 import os
 import resource
-import shutil
 import signal
 import subprocess
 import time
@@ -10,7 +9,6 @@ import processes
 from case import DOCUMENTED, Deviation
 
 ALL = {}
-GONE = "gone"  # returned by an action after which the run starts again
 
 
 def action(function):
@@ -84,6 +82,19 @@ def kill_and_kill(case):
 
 
 @action
+def other_signal(case):
+    """One that is not asked for: a terminal that is closed, a pipe that ends, a stray one."""
+    started, alive = begin(case)
+    if alive:
+        number = case.rng.choice([signal.SIGHUP, signal.SIGINT, signal.SIGQUIT, signal.SIGPIPE, signal.SIGALRM, signal.SIGUSR1,
+                                  signal.SIGUSR2, signal.SIGXCPU])
+        case.notes["signal"] = number.name
+        strike(case, started, number)
+    case.finish(started)
+    case.until_done()
+
+
+@action
 def term(case):
     started, alive = begin(case)
     if alive:
@@ -100,6 +111,21 @@ def stop_and_continue(case):
         time.sleep(case.rng.uniform(0.05, 1.0))
         processes.send(pid, signal.SIGCONT)
     case.finish(started, {0})
+
+
+@action
+def closed_streams(case):
+    """Standard input, output or error are closed by who starts the program, and perhaps by who continues it."""
+    streams = case.rng.choice([[0], [1], [2], [0, 1], [0, 2], [1, 2], [0, 1, 2]])
+    case.notes["closed"] = streams
+    started, alive = begin(case, closed=streams)
+    if alive and case.rng.random() < 0.5:
+        strike(case, started, signal.SIGKILL)
+    case.finish(started)
+    processes.wait_until_gone(str(case.work), 10)
+    if case.newest_checkpoints() or case.again == case.first:
+        case.finish(case.start(case.again, closed=streams))
+    case.until_done()
 
 
 @action
@@ -150,81 +176,6 @@ def memory_limit(case):
                 pass
     case.finish(started)
     case.until_done()
-
-
-@action
-def moved(case):
-    """The folder is given another name, and back."""
-    started, _ = begin(case)
-    elsewhere = case.work / "elsewhere"
-    if not case.out.exists():
-        case.notes["in_time"] = False
-        case.finish(started)
-        return case.until_done()
-    case.out.rename(elsewhere)
-    wait_for_end = case.rng.random() < 0.5
-    code = None
-    if wait_for_end:
-        code = case.finish(started)
-    else:
-        time.sleep(case.rng.uniform(0.0, 0.5))
-    if case.out.exists():
-        raise Deviation(f"the moved folder was made anew with {sorted(path.name for path in case.out.iterdir())}")
-    elsewhere.rename(case.out)
-    if code is None:
-        case.finish(started)
-    case.until_done()
-
-
-@action
-def read_only(case):
-    """A read-only mount over the folder; without root its mode."""
-    started, _ = begin(case)
-    if not case.out.exists():
-        case.notes["in_time"] = False
-    elif mount("--bind", case.out, case.out):
-        case.clean_up.append(lambda: unmount(case.out))
-        mount("-o", "remount,ro,bind", case.out)
-    else:
-        os.chmod(case.out, 0o555)
-    case.finish(started)
-    if case.clean_up:
-        case.clean_up.pop()()
-    if case.out.exists():
-        os.chmod(case.out, 0o755)
-    case.until_done()
-
-
-@action
-def removed(case):
-    """The folder is gone: that is told, nothing is continued, and the run starts again."""
-    started, alive = begin(case)
-    had_begun = alive and case.out.exists()
-    before = os.open(case.out, os.O_DIRECTORY) if had_begun else None
-    shutil.rmtree(case.out, ignore_errors=True)
-    gone = time.monotonic()
-    code = case.finish(started)
-    if before is not None:
-        # Where the removal met a file that was just written the folder stays: whoever removes it does so again.
-        stays = case.out.exists() and os.path.samestat(os.stat(case.out), os.fstat(before))
-        os.close(before)
-        if stays and code != 0:
-            case.notes["removal_met_writing"] = True
-            processes.wait_until_gone(str(case.work), 10)
-            shutil.rmtree(case.out)
-        elif code != 0 and case.out.exists():
-            raise Deviation("the folder was made anew after it was removed")
-    if code == 0 and had_begun:
-        if time.monotonic() - gone > 1.0:
-            raise Deviation("ended with 0 though its folder was removed a while ago")
-        case.notes["ended_meanwhile"] = True
-        shutil.rmtree(case.out, ignore_errors=True)
-    processes.wait_until_gone(str(case.work), 10)
-    if not case.newest_checkpoints() and case.again != case.first and not (case.out / "summary.json").exists():
-        case.finish(case.start(case.again), {2})
-        case.finish(case.start(case.anew), {0})
-    else:
-        case.until_done()
 
 
 @action

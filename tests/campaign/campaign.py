@@ -25,6 +25,7 @@ import time
 import traceback
 
 import actions
+import actions_on_files  # noqa: F401 adds its own to actions.ALL
 import scenarios
 from case import Case, Deviation
 
@@ -71,8 +72,8 @@ class Campaign:
                 found[record["case"]] = record
         return found
 
-    def case(self, rng, scenario):
-        return Case(rng, scenario, PROGRAM, self.folder, self.folder / "cache")
+    def case(self, rng, scenario, earlier=None):
+        return Case(rng, scenario, PROGRAM, self.folder, self.folder / "cache", earlier)
 
     def reference(self, scenario):
         """(folder, wall time in s) of the run that nothing disturbs, made by this build in the place of the cases."""
@@ -98,7 +99,8 @@ class Campaign:
         action = self.choice.action or drawn(actions.ALL, self.seed, index)
         scenario = self.choice.scenario or drawn(scenarios.NAMES, f"{self.seed} scenario", index)
         reference, usual = self.reference(scenario)
-        case = self.case(rng, scenario)
+        earlier, _ = self.reference("shell" if scenario == "rigid" else "rigid")
+        case = self.case(rng, scenario, earlier)
         case.end()  # of a campaign that was killed
         case.notes["moment_s"] = round(rng.uniform(0.0, 1.0 + SHARE_AFTER_END) * usual, 4)
         begin, outcome, why = time.monotonic(), "equal", ""

@@ -26,8 +26,9 @@ class Deviation(Exception):
 
 
 class Started:
-    def __init__(self, process, log, words):
+    def __init__(self, process, log, words, silent):
         self.process, self.log, self.words = process, log, words
+        self.silent = silent  # its standard error is closed
         self.signalled = set()  # signals that the case sent to this very process
 
     def ended(self):
@@ -35,7 +36,9 @@ class Started:
 
 
 class Case:
-    def __init__(self, rng, scenario, program, folder, cache):
+    def __init__(self, rng, scenario, program, folder, cache, earlier=None):
+        """@param earlier folder of the results of another run"""
+        self.earlier = earlier
         self.rng, self.scenario, self.program = rng, scenario, program
         self.work, self.inputs, self.cache = folder / "work", folder / "inputs", cache
         self.out = self.work / "out"
@@ -45,8 +48,9 @@ class Case:
 
     # commands
 
-    def start(self, words, limits=(), prefix=(), env=None):
-        """@param limits (resource, value): of the program and all that it starts"""
+    def start(self, words, limits=(), prefix=(), env=None, closed=()):
+        """@param limits (resource, value): of the program and all that it starts
+        @param closed standard streams that are closed before it starts"""
         self.work.mkdir(parents=True, exist_ok=True)
         log = self.inputs / f"log_{len(self.steps)}_{time.monotonic_ns()}"
 
@@ -55,11 +59,13 @@ class Case:
                 resource.setrlimit(which, (value, value))
             for number in (signal.SIGINT, signal.SIGHUP):
                 signal.signal(number, signal.SIG_DFL)
+            for stream in closed:
+                os.close(stream)
         with open(log, "wb") as sink:
             process = subprocess.Popen([*prefix, self.program, *words], cwd=self.inputs, stdin=subprocess.DEVNULL,
                                        stdout=subprocess.DEVNULL, stderr=sink, preexec_fn=prepare, start_new_session=True,
                                        env={**os.environ, "XDG_CACHE_HOME": str(self.cache), "FURROW_START_TIMEOUT": START_TIMEOUT, **(env or {})})
-        return Started(process, log, words)
+        return Started(process, log, words, silent=2 in closed)
 
     def finish(self, started, expected=DOCUMENTED):
         """Waits for the end, records and judges it. @returns the exit code"""
@@ -76,7 +82,7 @@ class Case:
             return code  # a limit so low that the system could not load the program, and has told so
         if code not in DOCUMENTED:
             raise Deviation(f"{started.words[0]} ended with {code}, which is no exit code of furrow")
-        if code != 0 and not MESSAGE.search(text):
+        if code != 0 and not started.silent and not MESSAGE.search(text):
             raise Deviation(f"{started.words[0]} ended with {code} and names nothing")
         if code not in expected:
             raise Deviation(f"{started.words[0]} ended with {code}, expected {sorted(expected)}")
@@ -124,9 +130,10 @@ class Case:
                 found[run] = max(found.get(run, 0), int(manifest.parent.name))
         return found
 
-    def until_done(self, expected=frozenset({0}), **options):
+    def until_done(self, expected=frozenset({0}), repeats=False, **options):
         """Continues as the program says until it ends with 0; a folder that is still taken is waited for, a run without a
-        checkpoint starts again."""
+        checkpoint starts again.
+        @param repeats work after a saved step may be done again"""
         begin = time.monotonic()
         while True:
             busy, had = processes.living(str(self.work)), self.newest_checkpoints()
@@ -134,7 +141,8 @@ class Case:
             words = self.again if had or finished or self.again == self.first else self.anew
             code = self.finish(self.start(words, **options), expected | {0, 2})
             if code == 0:
-                self.nothing_repeated(had, finished)
+                if not repeats:
+                    self.nothing_repeated(had, finished)
                 return
             if code in expected and code != 2:
                 continue

@@ -8,6 +8,7 @@
 #include "nodes/commands/commands.hpp"
 #include "nodes/launch/limits.hpp"
 #include "nodes/launch/messages.hpp"
+#include "nodes/launch/signals.hpp"
 #include "nodes/launch/thread_setup.hpp"
 #include "nodes/scenario/memory_check.hpp"
 #include "protocol/mpi_transport.hpp"
@@ -27,6 +28,7 @@ int main(int argc, char** argv) {
   const bool as_rank = furrow::commands::runs_as_rank(argc, argv);
   // Reports a file that exceeds the limit of file sizes. A rank is killed by it, and its supervisor reports that.
   if (!as_rank) std::signal(SIGXFSZ, SIG_IGN);
+  if (!as_rank) furrow::launch::end_on_stop_signals();
   try {
     furrow::launch::end_where_memory_runs_out(furrow::launch::kOutOfMemory);
     if (!as_rank)  // a rank has words of its own, after MPI has begun, which fails with the same status

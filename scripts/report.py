@@ -27,7 +27,7 @@ sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent), str(pathlib.Path(_
 from plot import (accounts, calibrate, charts, ground, kinematics, modes, press, ride, scene, soil, sweep, vehicle_ground, vehicle_plots,  # noqa: E402
                   vehicle_run, vehicle_scene, wheels)
 from plot.digits import with_error  # noqa: E402
-from plot.own_files import may_write, write_whole  # noqa: E402
+from plot.own_files import may_write, remove_own, write_whole  # noqa: E402
 from plot.run_data import Damaged, Missing, Run, printable, why_no_folder  # noqa: E402
 
 
@@ -160,6 +160,7 @@ def main():
             figure = plots[name](run)
         except Missing as reason:
             note(f"no {name}.png: {reason}")
+            remove_own(out, f"{name}.png")
             continue
         except Damaged as error:
             print(f"report: no {name}.png: {printable(error)}", file=sys.stderr)

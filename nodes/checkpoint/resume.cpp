@@ -223,7 +223,12 @@ ResumePlan plan_resume(const fs::path& run, const Settings& changed) {
   if (ended == steps || ended_early(run)) {
     const json now = json::parse(plan.scenario.completed);
     const json before = json::parse(scenario::load_scenario(file, moved).completed);
-    changes(run, with_places_of(before, now, plan.scenario), now, false);
+    const json asked = changes(run, with_places_of(before, now, plan.scenario), now, false);
+    for (const auto& [key, value] : asked.items())
+      plan.warnings.push_back(
+          fmt::format("{}: key '{}': is not changed to {}, as the run is finished; with a later --until "
+                      "it is, and the run continues",
+                      run.string(), key, value.dump()));
     plan.finished = true;
     plan.ended = static_cast<double>(ended) * plan.scenario.run.step;
     return plan;

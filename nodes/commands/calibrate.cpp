@@ -124,8 +124,15 @@ ExitCode calibrate_command(const CalibrateArguments& arguments) {
     for (const std::string& warning : warnings)
       if (std::find(notes.begin(), notes.end(), warning) == notes.end()) print_warning(warning);
   } catch (const Error& error) {
+    const bool replaces = directory.replaces();
+    if (replaces) {
+      directory.discard();
+      std::fprintf(stderr, "furrow: nothing had been evaluated; %s holds the earlier results again\n",
+                   folder.c_str());
+    }
     if (error.code() != ExitCode::stopped) throw;
-    std::fprintf(stderr, "furrow: stopped by a signal; run the same command to continue\n");
+    std::fprintf(stderr, "furrow: stopped by a signal; run the same command to %s\n",
+                 replaces ? "begin again" : "continue");
     std::cout << folder.string() << "\n";
     return ExitCode::stopped;
   }

@@ -2,6 +2,7 @@
 #include <sys/wait.h>
 
 #include <chrono>
+#include <cstring>
 #include <iostream>
 #include <optional>
 
@@ -59,14 +60,20 @@ std::vector<std::filesystem::path> make_report(const ReportArguments& report) {
   const Finished finished = run_python(script);
   display.clear();
   const auto list = nlohmann::json::parse(finished.output, nullptr, false);
+  if (launch::stop_signalled() && !report.unasked)
+    throw Error(ExitCode::stopped, run.string() + ": the plots were stopped by a signal");
+  if (WIFSIGNALED(finished.status) && !finished.too_late && !report.unasked)
+    throw io_error(run.string(),
+                   fmt::format("the plots were ended by signal {} ({})", WTERMSIG(finished.status),
+                               strsignal(WTERMSIG(finished.status))));
   if (finished.too_late)
     throw io_error(run.string(),
                    fmt::format("the plots took more than {} s; 'furrow report {}' waits for them",
                                kPatience.count(), scenario::shell_path(run.string())));
   const int code = WIFEXITED(finished.status) ? WEXITSTATUS(finished.status) : -1;
-  if (code == static_cast<int>(ExitCode::io) && !report.unasked && !launch::stop_signalled()) return {};
+  if (code == static_cast<int>(ExitCode::io) && !report.unasked) return {};
   if (code != 0 || !list.is_array())
-    throw io_error(run.string(), launch::stop_signalled() ? "the plots were interrupted"
+    throw io_error(run.string(), launch::stop_signalled() ? std::string("the plots were interrupted")
                                  : report.unasked ? fmt::format("made no plots; 'furrow report {}' says why",
                                                                 scenario::shell_path(run.string()))
                                                   : "made no plots, expected the results of a run");
@@ -101,12 +108,14 @@ ExitCode write_vtk(const std::filesystem::path& run, const std::filesystem::path
   const int code = WIFEXITED(finished.status) ? WEXITSTATUS(finished.status) : -1;
   for (const ExitCode said : {ExitCode::done, ExitCode::bad_input, ExitCode::io})
     if (code == static_cast<int>(said)) return said;
-  throw io_error(run.string(), launch::stop_signalled() ? "writing VTP files was interrupted"
-                                                        : "made no VTP files, expected the frames of a run");
+  if (launch::stop_signalled())
+    throw Error(ExitCode::stopped, run.string() + ": writing VTP files was stopped by a signal");
+  throw io_error(run.string(), "made no VTP files, expected the frames of a run");
 }
 
 ExitCode report_command(const ReportRequest& asked) {
   launch::require_run_directory(asked.run);
+  launch::catch_stop_signals();
   ReportArguments report{.runs = {asked.run}, .out = asked.out};
   report.runs.insert(report.runs.end(), asked.others.begin(), asked.others.end());
   if (!asked.others.empty() && asked.out.empty())

@@ -54,7 +54,9 @@ std::string pull_line(const json& summary, const scenario::Scenario& scenario) {
       text += "furrow: the pull is not steady: " + reason.get<std::string>() + "\n";
     text +=
         "furrow: another stretch of the run may give another mean (rigs/README.md, \"Steady or not\")\n"
-        "furrow: average over more of it: set a later run.end and a longer terrain.length\n";
+        "furrow: average over more of it: set a later run.end";
+    const bool ends = json::parse(scenario.completed)["terrain"].contains("length");  // hard ground has none
+    text += ends ? " and a longer terrain.length\n" : "\n";
   }
   return text + expected_text(scenario.expected, 1, mean, number(summary, "sinkage_m"),
                               number(summary, "rut_depth_m"));

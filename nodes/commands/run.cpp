@@ -138,6 +138,18 @@ ExitCode supervise_run(const scenario::Scenario& scenario, launch::RunDirectory&
                  directory.path().c_str());
     return result.code;
   }
+  const bool finished_before = result.code != ExitCode::done && result.code != ExitCode::bad_input &&
+                               done_before != std::filesystem::file_time_type::min() &&
+                               written(directory.path() / kDone) == done_before;
+  if (finished_before) {
+    if (result.code == ExitCode::stopped)
+      std::fprintf(stderr, "furrow: %s\n", result.error.c_str());
+    else
+      print_error(result.error);
+    std::fprintf(stderr, "furrow: the run had not gone on; %s is finished as it was\n",
+                 directory.path().c_str());
+    return result.code;
+  }
   if (result.code == ExitCode::stopped) {
     std::fprintf(stderr, "furrow: %s; partial results are in %s\n", result.error.c_str(),
                  directory.path().c_str());

@@ -1,4 +1,5 @@
 // `furrow run --seeds N`: a scenario on several beds, one after another or several at once, and the means over them.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
@@ -97,12 +98,22 @@ ExitCode run_beds_in(launch::RunDirectory& directory, const scenario::Scenario& 
                                           scenario.run.seed, arguments.seeds),
                      {folder, arguments.jobs});
   sweep.require_places();
-  study::begin_beds(folder, scenario.digest, arguments.overwrite);
+  study::begin_beds(directory, scenario.digest, arguments.overwrite);
   launch::remove_unfinished(folder);
   launch::catch_stop_signals();
   launch::say(
       fmt::format("furrow: {} on {} beds, results in {}\n", scenario.name, arguments.seeds, folder.string()));
   const ExitCode code = sweep.run(directory.lock());
+  if (code != ExitCode::done && directory.replaces()) {
+    const std::vector<study::Sweep::Outcome> outcomes = sweep.outcomes();
+    const auto failed =
+        std::find_if(outcomes.begin(), outcomes.end(), [](const auto& bed) { return !bed.problem.empty(); });
+    directory.discard();
+    if (failed != outcomes.end()) print_error(failed->folder.string() + ": " + failed->problem);
+    std::fprintf(stderr, "furrow: no bed had begun to step; %s holds the earlier results again\n",
+                 folder.c_str());
+    return code;
+  }
   if (code == ExitCode::stopped) {
     std::fprintf(stderr, "furrow: stopped by a signal; to continue, run the same command with --out %s\n",
                  scenario::shell_quoted(folder.string()).c_str());

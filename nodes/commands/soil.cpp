@@ -38,7 +38,9 @@ terrain::soil::SoilOptions soil_options(const terrain::dem::DemOptions& grains,
     require(stress > 0.0 && stress <= 1e7, "--stress",
             "is " + number_text(stress) + " Pa, expected above 0 up to 1e7 Pa");
   require(o.stresses.empty() || o.stresses.front() < o.stresses.back(), "--stress",
-          "is given once, expected two stresses or more: c and φ are of a line through them");
+          o.stresses.size() == 1
+              ? "is given once, expected two stresses or more: c and φ are of a line through them"
+              : "is the same each time, expected two stresses or more: c and φ are of a line through them");
   const auto& only = arguments.only;
   const auto asked = [&](const char* test) {
     return only.empty() || std::find(only.begin(), only.end(), test) != only.end();

@@ -2,6 +2,8 @@
 #include <cstdio>
 #include <iostream>
 
+#include <fmt/format.h>
+
 #include "nodes/commands/commands.hpp"
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
@@ -22,6 +24,11 @@ ExitCode sweep_command(const SweepArguments& arguments) {
   launch::RunDirectory directory = launch::RunDirectory::of_study(folder);
   study::require_no_beds(folder);
   sweep.require_places();
+  if (const std::size_t others = sweep.runs_of_another_study(); others > 0)
+    print_warning(fmt::format(
+        "{}: held {} run{} of another study, or of this one before it was changed, and is replaced; "
+        "they stay in {}, and that study's sweep makes its table again",
+        (folder / "sweep.csv").string(), others, others > 1 ? "s" : "", (folder / "runs").string()));
   launch::remove_unfinished(folder);
   launch::catch_stop_signals();
   const ExitCode code = sweep.run(directory.lock());

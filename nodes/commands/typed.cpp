@@ -1,5 +1,7 @@
 #include "nodes/commands/typed.hpp"
 
+#include <fmt/format.h>
+
 #include "nodes/scenario/load_scenario.hpp"
 #include "protocol/files/printable.hpp"
 
@@ -28,8 +30,16 @@ Settings settings_of(const Typed& typed) {
       throw input_error("command line", "--set", "is '" + excerpt(text) + "', expected the form key=value");
     settings.emplace_back(text.substr(0, equals), text.substr(equals + 1));
   }
-  if (!typed.threads.empty()) settings.emplace_back("run.threads", typed.threads);
-  if (!typed.until.empty()) settings.emplace_back("run.end", typed.until);
+  const auto add = [&](const char* option, const std::string& value, const char* key) {
+    if (value.empty()) return;
+    for (const auto& [other, unused] : settings)
+      if (other == key)
+        throw input_error("command line", option,
+                          fmt::format("is given with --set {}, expected one of them", key));
+    settings.emplace_back(key, value);
+  };
+  add("--threads", typed.threads, "run.threads");
+  add("--until", typed.until, "run.end");
   return settings;
 }
 

@@ -7,11 +7,12 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "nodes/launch/set_aside.hpp"
 #include "protocol/core/error.hpp"
-#include "protocol/files/text_file.hpp"
 
 namespace furrow::launch {
 namespace {
@@ -19,7 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kMaxNumbers = 100000;
-constexpr const char* kAside = ".furrow-before";
 constexpr const char* kNoParents = "FURROW_MAKES_NO_PARENTS";
 constexpr const char* kStudy = "sweep.json";          // what the list of a study holds
 constexpr const char* kKinematics = "kinematics.csv";  // of `furrow kc`
@@ -51,17 +51,6 @@ bool is_run(const fs::path& folder) {
          fs::exists(folder / kModes, error) || fs::exists(folder / kCalibration, error);
 }
 
-/// What a run may list before its first step. The ranks list all else when they are placed.
-constexpr const char* kEarly[] = {"run.log", "scenario.json", "summary_failed.json"};
-
-/// Whether the run of this list began to step.
-bool came_to_be(const RunList& list) {
-  return std::any_of(list.forms().begin(), list.forms().end(), [](const std::string& name) {
-    return name != std::string(kAside) + "/" &&
-           std::find(std::begin(kEarly), std::end(kEarly), name) == std::end(kEarly);
-  });
-}
-
 /// Without separators at the end. @throws Error(bad_input) for a way through a folder that does not exist
 fs::path way_to(const fs::path& out) {
   fs::path way;
@@ -77,6 +66,15 @@ fs::path way_to(const fs::path& out) {
     missing = missing || !fs::exists(way, error);
   }
   return way;
+}
+
+/// Whether the folder has a list, or nothing at all: another process may be about to begin the list.
+bool may_be_own(const fs::path& folder) {
+  std::error_code error;
+  const bool bare =
+      std::all_of(fs::directory_iterator(folder, error), fs::directory_iterator(),
+                  [](const fs::directory_entry& entry) { return entry.path().filename() == kRunList; });
+  return bare || has_run_list(folder);
 }
 
 bool stands(const fs::path& at) {
@@ -128,7 +126,7 @@ RunDirectory::RunDirectory(const fs::path& existing) : existing_(true), path_(ex
     if (list.holds(kind.mark))
       throw input_error(path_.string(), "", fmt::format("holds {}, expected a run; {}", kind.holds, kind.continued));
   if (!lock_.stands()) lock_ = FolderLock(path_, "", FolderLock::Mode::alone);
-  take_back(RunList::read(path_));  // of who had the folder until now
+  take_back(path_);  // of who had the folder until now
 }
 
 struct RunDirectory::Continued {
@@ -147,25 +145,26 @@ RunDirectory::RunDirectory(const Continued& kind, const fs::path& folder, bool o
       if (!fs::is_directory(path_, error))
         throw input_error(folder.string(), "--out",
                           fmt::format("exists and is not a folder, expected a new one or that of a {}", kind.name));
-      if (!has_run_list(path_) && !fs::is_empty(path_, error))
+      if (!may_be_own(path_))
         throw no_list(
             folder, "--out",
             fmt::format("no {} made it, or an earlier version of furrow did; expected a new or empty folder",
                         kind.name));
       require_writable("--out");
       lock_ = FolderLock(path_, "--out", FolderLock::Mode::alone);
+      take_back(path_);
       const RunList list = RunList::read(path_);
       if (!list.forms().empty() && !list.holds(kind.mark))
         throw input_error(folder.string(), "--out",
                           fmt::format("holds a run, expected a new folder or that of a {}", kind.name));
       require_own(path_, files);
-      if (overwrite) remove_listed(path_, list);
+      if (overwrite) replace();
     }
   } catch (const Error&) {
     discard();
     throw;
   }
-  existing_ = true;
+  existing_ = !set_aside_;
 }
 
 RunDirectory RunDirectory::of_study(const fs::path& folder) {
@@ -176,8 +175,6 @@ RunDirectory RunDirectory::of_calibration(const fs::path& folder, bool overwrite
                                           const std::vector<std::string>& files) {
   return {Continued{kCalibration, "calibration"}, folder, overwrite, files};
 }
-
-fs::path RunDirectory::aside() const { return path_ / kAside; }
 
 void RunDirectory::require_writable(const std::string& key) const {
   if (access(path_.c_str(), W_OK | X_OK) != 0)
@@ -214,125 +211,58 @@ bool RunDirectory::make() {
 }
 
 void RunDirectory::begin() {
+  if (!lock_.stands()) lock_ = FolderLock(path_, "--out", FolderLock::Mode::alone);
+  if (has_run_list(path_) && !RunList::read(path_).forms().empty())
+    throw input_error(path_.string(), "--out",
+                      "was taken by another run as this one began, expected a new folder");
   fresh_ = true;
-  lock_ = FolderLock(path_, "--out", FolderLock::Mode::alone);
   begin_run_list(path_, {});
   begun_ = true;
 }
 
 void RunDirectory::take_over(const fs::path& reads) {
-  std::error_code error;
-  const bool listed = has_run_list(path_);
-  if (!listed && !fs::is_empty(path_, error))
+  if (!may_be_own(path_))
     throw no_list(path_, "--out",
                   "no run made it, or an earlier version of furrow did; expected a new or empty folder (move "
                   "this one away)");
   require_writable("--out");
-  if (!listed) return begin();
   lock_ = FolderLock(path_, "--out", FolderLock::Mode::alone);
+  std::error_code error;
+  if (fs::file_size(path_ / kRunList, error) == 0) return begin();  // the lock has just made it
   const RunList list = RunList::read(path_);
   for (const auto& [mark, name] : {std::pair{kStudy, "study"}, {kCalibration, "calibration"}})
     if (list.holds(mark))
       throw input_error(path_.string(), "--out",
                         fmt::format("holds a {}, expected a run's folder to overwrite, or a new one", name));
-  take_back(list);
-  set_aside(RunList::read(path_), reads);
+  take_back(path_);
+  set_aside_ = set_aside(path_, reads);
+  begun_ = true;
 }
 
 /// The same in a folder that is not known to hold a run yet: what it holds may all be set aside.
 void RunDirectory::take_back_of_killed() {
   std::error_code error;
-  if (!fs::is_directory(path_, error) || !has_run_list(path_) || !stands(aside())) return;
+  if (!fs::is_directory(path_, error) || !has_run_list(path_) || !is_set_aside(path_)) return;
   require_writable("");
   lock_ = FolderLock(path_, "", FolderLock::Mode::alone);
-  take_back(RunList::read(path_));
+  take_back(path_);
 }
 
-bool RunDirectory::replaces() const { return set_aside_ && !came_to_be(RunList::read(path_)); }
-
-/// What a run that was killed had set aside: put back unless that run came to be.
-void RunDirectory::take_back(const RunList& list) {
-  if (!stands(aside())) return;
-  if (!list.holds(std::string(kAside) + "/"))
-    throw input_error(aside().string(), "",
-                      "stands where results are to be set aside, expected it elsewhere");
-  if (came_to_be(list)) return drop_aside();
-  remove_listed(path_, list);
-  put_back();
+void RunDirectory::replace() {
+  set_aside_ = set_aside(path_);
+  begun_ = true;
+  existing_ = !set_aside_;
 }
 
-/// Whenever this is cut short, the folder's list says that no run came to be, and the other one what to put back.
-void RunDirectory::set_aside(const RunList& list, const fs::path& reads) {
-  const RunList::Found found = list.find(path_);
-  try {
-    const std::string read_there =
-        reads.empty() ? "" : fs::weakly_canonical(reads).lexically_relative(fs::canonical(path_)).string();
-    const bool kept = std::find(found.files.begin(), found.files.end(), read_there) != found.files.end();
-    std::vector<std::string> names;
-    if (!found.files.empty()) {
-      names.push_back(std::string(kAside) + "/");
-      add_to_run_list(path_, names);
-      fs::create_directory(aside());
-      set_aside_ = true;
-      begin_run_list(aside(), list.forms());
-    }
-    if (kept) {
-      write_whole_file(aside() / read_there, read_whole_file(path_ / read_there));
-      names.push_back(read_there);
-    }
-    begin_run_list(path_, names);
-    for (auto folder = found.folders.rbegin(); set_aside_ && folder != found.folders.rend(); ++folder)
-      fs::create_directory(aside() / *folder);
-    for (const std::string& file : found.files)
-      if (file != read_there) fs::rename(path_ / file, aside() / file);
-    std::error_code error;
-    for (const std::string& folder : found.folders) fs::remove(path_ / folder, error);  // where it is empty
-    begun_ = true;
-  } catch (const fs::filesystem_error& failure) {
-    if (set_aside_) put_back();
-    throw input_error(path_.string(), "--out",
-                      "cannot be cleared (" + failure.code().message() + "), expected a folder to write");
-  } catch (const Error&) {
-    if (set_aside_) put_back();
-    throw;
-  }
-}
-
-/// What cannot be put back stays set aside, and the list says so.
-void RunDirectory::put_back() {
-  set_aside_ = false;
-  const RunList before = has_run_list(aside()) ? RunList::read(aside()) : RunList();
-  if (!before.forms().empty()) {  // else nothing was moved yet
-    const RunList::Found found = before.find(aside());
-    begin_run_list(path_, {std::string(kAside) + "/"});
-    std::error_code error;
-    for (auto folder = found.folders.rbegin(); folder != found.folders.rend(); ++folder)
-      fs::create_directory(path_ / *folder, error);
-    bool whole = true;
-    for (const std::string& file : found.files) {
-      fs::rename(aside() / file, path_ / file, error);
-      whole = whole && !error;
-    }
-    if (!whole) return;
-    begin_run_list(path_, before.forms());
-  }
-  drop_aside();
-}
-
-/// With what is in its list.
-void RunDirectory::drop_aside() {
-  std::error_code error;
-  if (has_run_list(aside())) {
-    remove_listed(aside(), RunList::read(aside()));
-    fs::remove(aside() / kRunList, error);
-  }
-  fs::remove(aside(), error);
-}
+bool RunDirectory::replaces() const { return set_aside_ && !came_to_be(path_); }
 
 RunDirectory::~RunDirectory() {
   if (!set_aside_ || !lock_.stands()) return;
   try {
-    drop_aside();
+    if (replaces())
+      discard();
+    else
+      drop_aside(path_);
   } catch (const std::exception&) {
     // What stays is removed by the next run that takes the folder.
   }
@@ -342,8 +272,8 @@ void RunDirectory::discard() {
   if (existing_) return;
   std::error_code error;
   if (lock_.stands()) try {
-      if (begun_) remove_listed(path_, RunList::read(path_));
-      if (set_aside_) put_back();
+      if (begun_) remove_results(path_);
+      if (std::exchange(set_aside_, false)) put_back(path_);
       if (fresh_) fs::remove(path_ / kRunList, error);
     } catch (const std::exception&) {
       // What stays is in the list.

@@ -11,8 +11,8 @@
 namespace furrow::launch {
 
 /// Makes the folder of a run, with the list of what is written into it (run_list.hpp), and takes it away again if the
-/// run never started. Results of an earlier run that are to be overwritten are set aside in .furrow-before until it
-/// is known that the new one runs. One run at a time has the folder.
+/// run never started. Results of an earlier run that are to be overwritten are set aside (set_aside.hpp) until it is
+/// known that the new one runs. One run at a time has the folder.
 class RunDirectory {
  public:
   /// @param out  the user's choice; empty: results/<scenario>-NNN, the first number that is free
@@ -25,12 +25,12 @@ class RunDirectory {
   explicit RunDirectory(const std::filesystem::path& existing);
   /// The folder of a study, which continues where there is one. @throws Error(bad_input)
   static RunDirectory of_study(const std::filesystem::path& folder);
-  /// The same of a calibration that writes `files`; `overwrite` removes what an earlier one wrote.
+  /// The same of a calibration that writes `files`; `overwrite` sets aside what an earlier one wrote.
   /// @throws Error(bad_input)
   static RunDirectory of_calibration(const std::filesystem::path& folder, bool overwrite,
                                      const std::vector<std::string>& files = {});
 
-  /// Gives the folder free and removes what was set aside.
+  /// Gives the folder free, and removes what was set aside unless the run never began to step: then as `discard`.
   ~RunDirectory();
   RunDirectory(const RunDirectory&) = delete;
   RunDirectory& operator=(const RunDirectory&) = delete;
@@ -43,6 +43,9 @@ class RunDirectory {
 
   /// Before the ranks begin: they hold the folder too from then on.
   FolderLock& lock() { return lock_; }
+
+  /// Of a study's folder: sets aside what it holds. @throws Error(bad_input) when it cannot be cleared
+  void replace();
 
   /// Whether results of an earlier run are set aside for one that has not begun to step.
   bool replaces() const;
@@ -60,12 +63,7 @@ class RunDirectory {
   void begin();
   void take_over(const std::filesystem::path& reads);
   void take_back_of_killed();
-  void take_back(const RunList& list);
-  void set_aside(const RunList& list, const std::filesystem::path& reads);
-  void put_back();
-  void drop_aside();
   void require_writable(const std::string& key) const;
-  std::filesystem::path aside() const;
 
   bool existing_ = false;   // not this object's to remove
   bool fresh_ = false;      // the folder had no list before

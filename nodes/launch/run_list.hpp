@@ -5,6 +5,7 @@
 //   summary.json              a file
 //   frames/                   a folder
 //   frames/tire0_%06d.h5      all files of these names, printed as printf does: a hundred thousand frames are one line
+//   .furrow-begun             no file: the ranks of the run have taken their first step
 //
 // Files in the making (new_file.hpp) belong to the name that they are to get. One process writes the list at a time:
 // the process that makes or takes the folder, then the rig's rank before any rank writes, then the one that plots.
@@ -19,6 +20,7 @@
 namespace furrow::launch {
 
 inline constexpr const char* kRunList = ".furrow-run";
+inline constexpr const char* kBegun = ".furrow-begun";
 
 /// Whether printf with some number of at least 0 in each place of a "%06d" makes `name` of `form`.
 /// @param number receives the last of them

@@ -1,14 +1,21 @@
 #include "nodes/launch/signals.hpp"
 
 #include <sys/prctl.h>
+#include <sys/wait.h>
 #include <unistd.h>
 #include <csignal>
 
 #include <atomic>
+#include <cerrno>
+#include <fstream>
+#include <string>
+
+#include "protocol/core/error.hpp"
 
 namespace furrow::launch {
 namespace {
 
+constexpr useconds_t kGuardInterval = 200000;  // µs
 constexpr int kStopSignals[] = {SIGTERM, SIGINT, SIGHUP, SIGUSR1};
 std::atomic<int> stop_count{0};
 std::atomic<bool> pause_wanted{false};
@@ -16,6 +23,12 @@ bool catching = false;
 static_assert(std::atomic<int>::is_always_lock_free);  // safe in a signal handler
 
 void count_stop(int) { stop_count.fetch_add(1, std::memory_order_relaxed); }
+
+void end_here(int) {
+  constexpr char kText[] = "furrow: error: stopped by a signal\n";
+  (void)!write(2, kText, sizeof kText - 1);
+  _exit(static_cast<int>(ExitCode::stopped));
+}
 
 void want_pause(int) { pause_wanted.store(true, std::memory_order_relaxed); }
 
@@ -34,6 +47,11 @@ bool ignored(int signal) {
 
 }  // namespace
 
+void end_on_stop_signals() {
+  for (const int signal : kStopSignals)
+    if (!ignored(signal)) set_handler(signal, end_here);
+}
+
 void catch_stop_signals() {
   for (const int signal : kStopSignals)
     if (!ignored(signal)) set_handler(signal, count_stop);
@@ -51,7 +69,24 @@ void catch_pause() {
 
 bool pause_asked() { return pause_wanted.exchange(false, std::memory_order_relaxed); }
 
-void pause_here() { raise(SIGSTOP); }
+void pause_here(const std::vector<int>& stopped) {
+  const pid_t own = getpid(), guard = fork();
+  if (guard == 0) {
+    setpgid(0, 0);  // a signal to the job is none to it
+    while (getppid() == own) usleep(kGuardInterval);
+    for (const int process : stopped) {
+      std::ifstream children("/proc/" + std::to_string(process) + "/task/" + std::to_string(process) +
+                             "/children");
+      for (int child = 0; children >> child;) kill(child, SIGCONT);
+      kill(process, SIGCONT);
+    }
+    _exit(0);
+  }
+  raise(SIGSTOP);
+  if (guard < 0) return;
+  kill(guard, SIGKILL);
+  while (waitpid(guard, nullptr, 0) < 0 && errno == EINTR) continue;
+}
 
 void restore_signals() {
   set_handler(SIGTSTP, SIG_DFL);

@@ -2,7 +2,13 @@
 // must reach others too.
 #pragma once
 
+#include <vector>
+
 namespace furrow::launch {
+
+/// Ends the program with a message and the exit code of a stop when a stop signal comes, until catch_stop_signals() is
+/// called; but for those that this process was started to ignore.
+void end_on_stop_signals();
 
 /// Counts stop signals from now on instead of dying of them, except those that this process was started to ignore; a
 /// write to a closed pipe becomes an error.
@@ -18,8 +24,9 @@ inline bool stop_signalled() { return stop_signals() > 0; }
 void catch_pause();
 /// Whether it came since this was last asked.
 bool pause_asked();
-/// Stops this process until it is continued.
-void pause_here();
+/// Stops this process until it is continued. What it has stopped before, and the children of these, goes on if this
+/// process ends meanwhile: nobody else would let it.
+void pause_here(const std::vector<int>& stopped);
 
 /// As a new program wants them, in a child between fork and exec.
 void restore_signals();

@@ -33,6 +33,7 @@
 namespace furrow::launch {
 namespace {
 
+constexpr const char* kTooManyProcesses = "system limit exceeded on number of processes";  // Open MPI
 constexpr double kStopPatience =
     300.0;  // s from the request to stop until mpirun is terminated: time for a checkpoint
 constexpr double kStartPatience = 20.0;  // s that a wish to stop waits for ranks that are still starting
@@ -280,7 +281,7 @@ void Supervisor::pass_on_pause() {
   if (!pause_asked()) return;
   display_.clear();
   kill(child_, SIGTSTP);
-  pause_here();
+  pause_here({child_});
   kill(child_, SIGCONT);
 }
 
@@ -334,6 +335,8 @@ LaunchResult Supervisor::outcome() const {
                                  : "mpirun was " + signal_name(WTERMSIG(status_));
   const std::string text = how + " and " + launcher_said();
   if (start_.count() > 0) return {ExitCode::rank_lost, text};
+  if (text.find(kTooManyProcesses) != std::string::npos)
+    return {ExitCode::limit, "no rank could be started: " + text};
   std::vector<std::string> suspects = launcher_settings();
   suspects.insert(suspects.begin(), {"PATH", "TMPDIR"});
   return {ExitCode::io, fmt::format("no rank could be started (are {} right, is FURROW_MPIRUN Open MPI's?): {}",

@@ -83,6 +83,13 @@ void put_wheel_names(Hdf5Writer& file, std::span<const Table> tables, const rigs
       file.attribute_of("series/" + tables[k].subject, "name", rig.wheels[k].name);
 }
 
+/// They show an end that the run is no longer at.
+void remove_plots(const std::filesystem::path& run) {
+  std::error_code ignored;
+  for (const std::string& name : launch::RunList::read(run).find(run).files)
+    if (name.ends_with(".png") || name == "report.html") std::filesystem::remove(run / name, ignored);
+}
+
 }  // namespace
 
 std::string table_file(const std::string& subject, int wheels) {
@@ -121,12 +128,15 @@ void Results::list_files() const {
   launch::add_to_run_list(directory_, names);
 }
 
+void Results::begun() const { launch::add_to_run_list(directory_, {launch::kBegun}); }
+
 void Results::continue_from(const checkpoint::ResumePoint& resume) {
   const checkpoint::CheckpointManifest& manifest = resume.manifest;
   for (Table& table : tables_)
     writers_.push_back(std::make_unique<TableWriter>(file_of(table), mark_of(resume, table.subject), table));
   std::error_code ignored;
   for (const char* name : {"summary.json", "results.h5"}) std::filesystem::remove(directory_ / name, ignored);
+  remove_plots(directory_);
   launch::remove_unfinished(directory_);
   remove_frames_from(directory_, manifest.frames.index(manifest.step));
   checkpoint::remove_checkpoints_after(directory_, manifest.step);
@@ -138,6 +148,22 @@ std::vector<checkpoint::SeriesMark> Results::mark_series() {
   std::vector<checkpoint::SeriesMark> marks;
   for (auto& writer : writers_) marks.push_back(writer->mark());
   return marks;
+}
+
+std::vector<std::string> Results::flush() {
+  std::vector<std::string> again;
+  for (std::size_t k = 0; k < tables_.size(); ++k) {
+    writers_[k]->flush();
+    if (writers_[k]->stands()) continue;
+    writers_[k]->write_again(tables_[k]);
+    again.push_back(file_of(tables_[k]).filename().string());
+  }
+  std::error_code error;
+  if (!std::filesystem::exists(directory_ / "scenario.json", error)) {
+    write_whole_file(directory_ / "scenario.json", scenario_.completed + "\n");
+    again.emplace_back("scenario.json");
+  }
+  return again;
 }
 
 void Results::add(int table, std::span<const double> line) {
@@ -181,7 +207,7 @@ void Results::finish(const RunEnd& end, bool stopped) {
   FURROW_ASSERT((stopped || !end.wheels.empty()) && end.wheels.size() <= tables_.size(), end.wheels.size(),
                 tables_.size());
   FURROW_ASSERT(end.wall >= 0.0, end.wall);
-  for (auto& writer : writers_) writer->flush();
+  flush();
   write_hdf5(end.reports);
   write_xdmf_index(directory_);
   if (stopped) return;
@@ -197,7 +223,7 @@ void Results::finish(const RunEnd& end, bool stopped) {
 void Results::fail(const RunEnd& end, const Failure& failure) {
   FURROW_ASSERT(end.reports.empty() && end.wheels.size() <= tables_.size(), end.reports.size(),
                 end.wheels.size());
-  for (auto& writer : writers_) writer->flush();
+  flush();
   SummaryInput input = summary_input(end);
   input.failure = &failure;
   write_whole_file(directory_ / "summary_failed.json", summary_text(input));

@@ -75,9 +75,16 @@ class Results {
           const std::filesystem::path& directory, std::vector<Table> tables,
           const checkpoint::ResumePoint* resume = nullptr);
 
+  /// All ranks have taken their first step: what the run replaces is not put back from now on. @throws Error(io)
+  void begun() const;
+
   /// @param line a value for each column of the table, as it is written
   void add(int table, std::span<const double> line);
   std::vector<checkpoint::SeriesMark> mark_series();
+
+  /// Flushes the series, and writes again what somebody has removed or replaced meanwhile: lines that this process does
+  /// not write are not its results. @returns what was written again @throws Error(io)
+  std::vector<std::string> flush();
 
   /// Writes results.h5, results.xdmf and, unless the run was stopped early, summary.json. @throws Error(io)
   void finish(const RunEnd& end, bool stopped);

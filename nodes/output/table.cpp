@@ -1,5 +1,7 @@
 #include "nodes/output/table.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -66,6 +68,7 @@ TableWriter::TableWriter(const std::filesystem::path& file, const Table& table)
       order_(table.columns.size()),
       stream_(std::fopen(file.c_str(), "wb")) {
   check(stream_ != nullptr);
+  only_append();
   std::iota(order_.begin(), order_.end(), std::size_t{0});
   write(header_line(table));
 }
@@ -93,7 +96,11 @@ TableWriter::TableWriter(const std::filesystem::path& file, const checkpoint::Se
   lines_ = mark.lines;
   check(ftruncate(fileno(stream_.get()), bytes_) == 0);
   check(std::fseek(stream_.get(), 0, SEEK_END) == 0);
+  only_append();
 }
+
+/// Else the system would fill what somebody cut off with zeros, and the file would have its length again.
+void TableWriter::only_append() { check(fcntl(fileno(stream_.get()), F_SETFL, O_APPEND) == 0); }
 
 void TableWriter::take_order(std::string_view header, const Table& table) {
   for (const std::string& name : names_in(header)) {
@@ -150,6 +157,30 @@ void TableWriter::add(std::span<const double> values) {
 }
 
 void TableWriter::flush() { check(std::fflush(stream_.get()) == 0); }
+
+bool TableWriter::stands() const {
+  struct stat own {
+  }, there{};
+  return fstat(fileno(stream_.get()), &own) == 0 && lstat(file_.c_str(), &there) == 0 &&
+         own.st_dev == there.st_dev && own.st_ino == there.st_ino && std::cmp_equal(own.st_size, bytes_);
+}
+
+void TableWriter::write_again(const Table& table) {
+  FURROW_ASSERT(std::cmp_equal(table.lines(), lines_), table.lines(), lines_);
+  std::error_code error;
+  std::filesystem::remove(file_, error);
+  stream_.reset(std::fopen(file_.c_str(), "wbx"));
+  check(stream_ != nullptr);
+  only_append();
+  hash_ = Hash();
+  bytes_ = lines_ = 0;
+  std::string header;
+  for (const std::size_t i : order_)
+    header += (header.empty() ? "" : ",") + std::string(table.columns[i].name);
+  write(header + '\n');
+  for (std::size_t line = 0; line < table.lines(); ++line) add(table.line(line));
+  flush();
+}
 
 checkpoint::SeriesMark TableWriter::mark() {
   flush();

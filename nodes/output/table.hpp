@@ -49,6 +49,10 @@ class TableWriter {
   /// @param line a value for each column of the table
   void add(std::span<const double> line);
   void flush();
+  /// Whether the file is still there and holds what was flushed; who edits it may have put another in its place.
+  bool stands() const;
+  /// Writes the file again. @param table that holds all lines @throws Error(io)
+  void write_again(const Table& table);
   /// Flushes to the disk.
   checkpoint::SeriesMark mark();
 
@@ -56,6 +60,7 @@ class TableWriter {
   void take_order(std::string_view header, const Table& table);
   const char* read_line(const char* text, Table& table) const;
   void check(bool ok);
+  void only_append();
   void write(const std::string& text);
   std::filesystem::path file_;
   std::string subject_;

@@ -98,6 +98,7 @@ class RigNode : public Node {
       for (int k = 0; k < wheels; ++k) rig_->observe(k, tires_[k].lowest_point, setup_.mean_height[k]);
       measure(header, terrain);
     }
+    if (header.step == 1 && results_) results_->begun();
     const bool line = header.step > 0 && series_steps_ > 0 && header.step % series_steps_ == 0;
     if (line) record();
     show_progress(header);
@@ -114,7 +115,9 @@ class RigNode : public Node {
   std::int64_t ends_at() const override { return ends_at_; }
 
   std::vector<checkpoint::SeriesMark> mark_series() override {
-    return results_ ? results_->mark_series() : std::vector<checkpoint::SeriesMark>();
+    if (!results_) return {};
+    flush();
+    return results_->mark_series();
   }
 
   void finish(Transport& transport, FinalReport own, bool stopped) override {
@@ -126,6 +129,7 @@ class RigNode : public Node {
     if (context_.profile) launch::add_to_run_list(context_.directory, {"profile.json"});
     if (context_.profile) output::write_profile(context_.directory / "profile.json", reports);
     const std::vector<output::WheelEnd> wheels = wheel_ends();
+    flush();
     results_->finish({reports, wheels, terrain_, *accounts_, time_, wall_clock() - wall_start_, end_reason_,
                       rig_->findings()},
                      stopped);
@@ -137,6 +141,7 @@ class RigNode : public Node {
       check_folder();  // by now it may be another run's
       std::vector<output::WheelEnd> wheels;
       if (time_ > time_start_) wheels = wheel_ends();
+      flush();
       results_->fail({{},
                       wheels,
                       terrain_,
@@ -269,6 +274,14 @@ class RigNode : public Node {
       if (results_) results_->add(k, line);
     }
     if (results_) results_->add(static_cast<int>(series_.size()), accounts_->line());
+  }
+
+  void flush() {
+    for (const std::string& name : results_->flush())
+      if (context_.note)
+        context_.note(fmt::format(
+            "warning: {} was removed or changed while the run was under way, and is written again",
+            (context_.directory / name).string()));
   }
 
   void show_progress(const StepHeader& header) {

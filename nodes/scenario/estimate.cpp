@@ -22,10 +22,6 @@ double times(const Scenario& s, double interval) {
   return every > 0 ? static_cast<double>(s.run.steps() / every) : 0.0;
 }
 
-double frames(const Scenario& s) {
-  return s.output.frame_interval > 0.0 ? 1.0 + times(s, s.output.frame_interval) : 0.0;
-}
-
 }  // namespace
 
 Estimate estimate(const Scenario& s) {
@@ -41,9 +37,12 @@ Estimate estimate(const Scenario& s) {
   }
   const auto ranks = static_cast<double>(1 + s.tires.size() + static_cast<std::size_t>(s.terrain_ranks));
   e.memory = e.terrain.memory_bytes + tires + kBytesPerRank * ranks;
-  e.disk = frames(s) * (e.terrain.frame_bytes + kBytesPerFrameVertex * vertices) +
-           kBytesPerLine * times(s, s.output.series_interval) +
-           s.checkpoint.keep * (e.terrain.checkpoint_bytes + saved);
+  if (s.output.frame_interval > 0.0) e.frames = 1.0 + times(s, s.output.frame_interval);
+  e.frame_bytes = e.terrain.frame_bytes + kBytesPerFrameVertex * vertices;
+  e.checkpoints = times(s, s.checkpoint.interval) + (s.checkpoint.at_end ? 1.0 : 0.0);
+  e.checkpoint_bytes = e.terrain.checkpoint_bytes + saved;
+  e.disk = e.frames * e.frame_bytes + kBytesPerLine * times(s, s.output.series_interval) +
+           s.checkpoint.keep * e.checkpoint_bytes;
   return e;
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "nodes/scenario/estimate.hpp"
 #include "nodes/scenario/grain_loads.hpp"
 #include "nodes/scenario/terrain_threads.hpp"
 #include "nodes/scenario/wheel_geometry.hpp"
@@ -36,6 +37,10 @@ constexpr double kCrowd = 0.8;        // by this share with each doubling
 constexpr double kStart = 0.45;       // until mpirun has begun, and until it has ended, s
 constexpr double kRankStart = 0.05;   // of each rank of a core, s
 constexpr double kPairStart = 0.004;  // of each pair of ranks of a core: they find each other, s
+constexpr double kFrameFile = 2e-3;   // of a frame: made, named and on the disk, s
+constexpr double kPart = 8e-3;        // of a checkpoint: the same, and its checksum, s
+constexpr double kManifest = 8e-3;    // and folders of a checkpoint, and of the one that is removed for it, s
+constexpr double kByte = 3e-9;        // of either, s
 constexpr double kVertex = 8e-8;      // of a tire, in the terrain: finding its contacts, messages, s
 constexpr double kLatency = 5e-5;     // until a message is noticed, s
 constexpr int kPlaces = 9;            // along the axles' paths at which the awake share is looked at
@@ -86,6 +91,14 @@ double crowd(double ranks_per_core) {
   return 1.0 + kCrowd * std::max(0.0, std::log2(ranks_per_core / kFewRanks));
 }
 
+/// Of all frames and checkpoints, s. Of a checkpoint every rank writes a part, of a frame tires and terrain a file each.
+double writing(const Scenario& s, int ranks, int cores) {
+  const Estimate e = estimate(s);
+  const auto files = [&](int count, double each) { return each * count / std::min(count, cores); };
+  return e.frames * (files(ranks - 1, kFrameFile) + kByte * e.frame_bytes) +
+         e.checkpoints * (kManifest + files(ranks, kPart) + kByte * e.checkpoint_bytes);
+}
+
 }  // namespace
 
 RunTime run_time(const Scenario& s, const MachineSpeed& machine) {
@@ -99,7 +112,9 @@ RunTime run_time(const Scenario& s, const MachineSpeed& machine) {
   if (t.threads == 0)
     t.threads = auto_terrain_threads(t.cores, count, s.terrain_ranks,
                                      s.terrain->estimate(s.terrain_context()).grains);
-  const double ranks_per_core = static_cast<double>(1 + count + s.terrain_ranks) / t.cores;
+  const int all_ranks = 1 + count + s.terrain_ranks;
+  t.writing = writing(s, all_ranks, t.cores);
+  const double ranks_per_core = static_cast<double>(all_ranks) / t.cores;
   t.start = kStart + ranks_per_core * (kRankStart + kPairStart * ranks_per_core);
   const double messages = kMessages * crowd(ranks_per_core);
   double all = messages * (1.0 + count), surfaces = 0.0;

@@ -69,6 +69,7 @@ nlohmann::ordered_json time_json(const RunTime& t) {
           {"bed_s", number(t.bed)},
           {"bed_is_kept", t.bed_is_kept},
           {"run_s", number(t.run)},
+          {"writing_s", number(t.writing)},
           {"step_s", number(t.step)},
           {"slowest_tire_s", number(t.tire)},
           {"terrain_s", number(t.terrain)},
@@ -104,6 +105,7 @@ std::string time_text(const RunTime& t) {
                                  t.cores > 1 ? "s" : "");
   text += fmt::format("start of the ranks {}, ", duration(t.start));
   if (t.bed > 0.0) text += fmt::format("bed {}, ", duration(t.bed));
+  if (t.writing >= 0.02 * t.all()) text += fmt::format("frames and checkpoints {}, ", duration(t.writing));
   text += fmt::format("run {}; of a step of {} ms the slowest tire takes {}, the terrain {}", duration(t.run),
                       digits(1e3 * t.step), digits(1e3 * t.tire), digits(1e3 * t.terrain));
   if (t.ranks > 1)

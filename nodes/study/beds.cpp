@@ -89,18 +89,11 @@ bool unsteady(const Json& summary) {
   return false;
 }
 
-/// All that furrow wrote into the folder and those of its beds.
-void remove_beds(const fs::path& folder) {
+/// Ranks outlive a supervisor that was killed by a second or two.
+void wait_until_beds_are_free(const fs::path& folder) {
   const launch::RunList list = launch::RunList::read(folder);
-  std::error_code error;
-  for (const std::string& form : list.forms()) {
-    const fs::path bed = folder / form.substr(0, form.find('/'));
-    if (!form.ends_with('/') || !launch::has_run_list(bed)) continue;
-    launch::wait_until_free(bed);
-    launch::remove_listed(bed, launch::RunList::read(bed));
-    fs::remove(bed / launch::kRunList, error);
-  }
-  launch::remove_listed(folder, list);
+  for (const std::string& form : list.forms())
+    if (form.ends_with('/') && launch::has_run_list(folder / form)) launch::wait_until_free(folder / form);
 }
 
 /// Of the scenario on the first bed; null where a study has the folder. @param told sweep.json
@@ -126,20 +119,23 @@ void require_no_beds(const fs::path& folder) {
                       "holds the beds of 'furrow run --seeds', expected a new folder or that of a study");
 }
 
-void begin_beds(const fs::path& folder, const std::string& digest, bool overwrite) {
+void begin_beds(launch::RunDirectory& directory, const std::string& digest, bool overwrite) {
+  const fs::path& folder = directory.path();
   const Json before = read_json_if_whole(folder / "sweep.json");
   if (before.is_object()) {
     const Json known = digest_of_beds(before);
     if (known.is_null())
       throw input_error(folder.string(), "--out", "holds a study, expected a new folder or that of beds");
-    if (overwrite)
-      remove_beds(folder);
-    else if (known != digest)
+    if (!overwrite && known != digest)
       throw input_error(
           folder.string(), "--out",
           "holds beds of another scenario or other settings, expected a new folder or --overwrite");
+    if (overwrite) {
+      wait_until_beds_are_free(folder);
+      directory.replace();
+    }
   }
-  launch::add_to_run_list(folder, {"summary.json", "summary_failed.json"});
+  directory.add({"sweep.json", "summary.json", "summary_failed.json"});
   std::error_code error;  // they say of fewer beds than there will be
   for (const char* name : {"summary.json", "summary_failed.json"}) fs::remove(folder / name, error);
 }

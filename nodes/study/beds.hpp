@@ -12,6 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "nodes/launch/run_directory.hpp"
 #include "nodes/scenario/scenario.hpp"
 #include "nodes/study/sweep.hpp"
 
@@ -22,10 +23,10 @@ namespace furrow::study {
 void require_beds(const scenario::Scenario& scenario, int beds);
 
 /// Prepares the folder for the beds of this scenario. Those that are there already stay, unless `overwrite`: then all
-/// that furrow wrote into the folder and those of its beds is removed.
+/// that furrow wrote into the folder and those of its beds is set aside.
 /// @param digest of the scenario on the first bed
 /// @throws Error(bad_input) when it holds another study, or without `overwrite` beds of another scenario
-void begin_beds(const std::filesystem::path& folder, const std::string& digest, bool overwrite);
+void begin_beds(launch::RunDirectory& directory, const std::string& digest, bool overwrite);
 
 /// @throws Error(bad_input) when the folder holds beds, which a study would mix with its runs
 void require_no_beds(const std::filesystem::path& folder);

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <map>
 #include <new>
+#include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
@@ -118,6 +119,23 @@ void Sweep::require_unlike_runs() const {
 void Sweep::require_places() const {
   for (const Run& run : runs_)
     if (run.loaded) launch::require_own(options_.folder, {run.name + ".log"});
+}
+
+std::size_t Sweep::runs_of_another_study() const {
+  const fs::path table = options_.folder / "sweep.csv";
+  std::error_code error;
+  if (!fs::is_regular_file(table, error)) return 0;
+  std::istringstream lines(read_whole_file(table));
+  std::size_t others = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t begin = line.find(',') + 1, end = line.find(',', begin);
+    const std::string folder = line.substr(begin, end - begin);
+    if (!folder.starts_with("runs/")) continue;
+    ++others;
+    for (const Run& run : runs_)
+      if (run.name == folder) return 0;
+  }
+  return others;
 }
 
 void Sweep::load(Run& run) {
@@ -358,9 +376,11 @@ void Sweep::require_folder(const launch::FolderLock& lock) {
 /// Ctrl-Z reaches this process alone: the runs have groups of their own.
 void Sweep::pause_all() {
   if (!launch::pause_asked()) return;
+  std::vector<int> stopped;
   for (const Run& run : runs_)
-    if (run.process > 0) kill(run.process, SIGTSTP);
-  launch::pause_here();
+    if (run.process > 0) stopped.push_back(run.process);
+  for (const int process : stopped) kill(process, SIGTSTP);
+  launch::pause_here(stopped);
   for (const Run& run : runs_)
     if (run.process > 0) kill(run.process, SIGCONT);
 }

@@ -36,6 +36,9 @@ class Sweep {
   /// Before anything is written or removed. @throws Error(bad_input) where a file of the user's stands in a run's place
   void require_places() const;
 
+  /// How many runs the folder's table has that are all none of this study's; 0 where one is.
+  std::size_t runs_of_another_study() const;
+
   /// @param lock of the study's folder
   /// @returns done, stopped, or how the first run that failed ended
   /// @throws Error(io) when the folder was moved or removed meanwhile; its runs have ended then

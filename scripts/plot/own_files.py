@@ -60,6 +60,12 @@ def may_write(folder, name):
     return why is None
 
 
+def remove_own(folder, name):
+    """Removes a file that furrow wrote: it shows what is no longer there."""
+    if is_file(folder / name) and any(name in names_in(folder / one) for one in LISTS):
+        (folder / name).unlink(missing_ok=True)
+
+
 def write_whole(path, content):
     """Writes a file under a name that nobody can guess and gives it its own when it is whole. What has that name is
     replaced and not written to, even if it became a link meanwhile."""

@@ -198,6 +198,7 @@ TEST_F(RunFolderTest, all_that_furrow_wrote_goes_and_empty_folders_with_it) {
   {
     const RunDirectory second("test", run_, true);
     EXPECT_EQ(read(run_ / ".furrow-before" / "summary.json"), "first");
+    second.add({"timeseries.csv"});  // it begins to step
   }
   EXPECT_EQ(files_in(run_), std::set<std::string>{launch::kRunList});
   EXPECT_FALSE(fs::exists(run_ / "frames"));

@@ -40,6 +40,23 @@ class Calibrate(SystemTest):
     def text(self, folder):
         return {name: (self.folder / folder / name).read_bytes() for name in FILES}
 
+    def test_earlier_results_come_back_where_nothing_is_evaluated(self):
+        study = self.study()
+        self.assertEqual(furrow("calibrate", study, "--out", "out", "--no-plots", cwd=self.folder).returncode, 0)
+        before = self.text("out")
+        process = start("calibrate", study, "--out", "out", "--overwrite", cwd=self.folder)
+        self.addCleanup(process.kill)
+        wait_for(lambda: (self.folder / "out" / ".furrow-before" / "calibration.json").exists(), 60, "they are set aside")
+        process.kill()
+        process.communicate(timeout=60)
+        process = start("calibrate", study, "--out", "out", "--overwrite", cwd=self.folder)
+        self.addCleanup(process.kill)
+        wait_for(lambda: (self.folder / "out" / ".furrow-before" / "calibration.json").exists(), 60, "they are set aside")
+        process.terminate()
+        _, err = process.communicate(timeout=60)
+        if process.returncode == 75 and "nothing had been evaluated" in err:
+            self.assertEqual(self.text("out"), before)
+
     def test_the_result_is_a_tire_with_the_errors_of_its_parameters(self):
         done = furrow("calibrate", self.study(), "--out", "out", cwd=self.folder)
         self.assertEqual((done.returncode, done.stdout), (0, "out\n"), done.stderr)

@@ -95,6 +95,14 @@ class Overwrite(SystemTest):
         self.assertIn("is finished", done.stderr)
         self.is_as_before()
 
+    def test_they_come_back_where_the_disk_is_full_before_the_first_step(self):
+        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (8192, 8192))  # the frames of the beginning are larger
+        done = subprocess.run([PROGRAM, "run", self.path, "--out", self.out, "--overwrite", "--set", "output.frame_interval=0.01",
+                               "--no-plots"], cwd=self.folder, text=True, capture_output=True, timeout=120, preexec_fn=limit)
+        self.assertIn(done.returncode, (4, 5), done.stderr)
+        self.assertIn("the run had not begun to step", done.stderr)
+        self.is_as_before()
+
     def test_those_of_soil_tests_come_back_after_a_kill(self):
         tests = self.folder / "soil"
         begin = ["soil", self.path, "--only", "plate", "--out", tests]
@@ -123,6 +131,80 @@ class Overwrite(SystemTest):
         self.assertEqual(contents(self.folder / "beds"), before)
 
 
+class OverwrittenBeds(SystemTest):
+    """Beds of `furrow run --seeds`."""
+
+    @classmethod
+    def setUpClass(cls):
+        holder = tempfile.TemporaryDirectory(prefix="furrow base ")
+        cls.addClassCleanup(holder.cleanup)
+        cls.base = pathlib.Path(holder.name) / "base"
+        done = furrow("run", write_scenario(holder.name), "--seeds", "2", "--out", cls.base, "--no-plots", cwd=holder.name)
+        assert done.returncode == 0, done.stderr
+
+    def setUp(self):
+        super().setUp()
+        self.path = write_scenario(self.folder)
+        self.slow = write_scenario(self.folder, SLOW, "slow.json")
+        self.beds = self.folder / "beds"
+        shutil.copytree(self.base, self.beds)
+        self.before = self.now()
+
+    def now(self):
+        lists = {str(path.relative_to(self.beds)): path.read_text().split("furrow-run 1\n")[-1].splitlines()
+                 for path in self.beds.rglob(".furrow-run")}
+        files = {str(path.relative_to(self.beds)): path.read_bytes() for path in self.beds.rglob("*") if path.is_file()}
+        return {**files, **{name: sorted(set(lines)) for name, lines in lists.items()}}
+
+    def overwrite(self, path, **options):
+        return furrow("run", path, "--seeds", "2", "--out", self.beds, "--overwrite", "--no-plots", cwd=self.folder, **options)
+
+    def begun_to_settle(self):
+        said = self.folder / "said"
+        with open(said, "w") as file:
+            process = subprocess.Popen([PROGRAM, "run", self.slow, "--seeds", "2", "--out", self.beds, "--overwrite", "--no-plots"],
+                                       cwd=self.folder, stdin=subprocess.DEVNULL, stdout=file, stderr=file,
+                                       env={**os.environ, "XDG_CACHE_HOME": str(self.folder / "cache")})
+        self.addCleanup(process.kill)
+        wait_for(lambda: (self.beds / "seed1.log").exists() and "settling" in (self.beds / "seed1.log").read_text(), 60, "the bed settles")
+        self.assertTrue((self.beds / ".furrow-before" / "seed2" / "summary.json").exists())
+        return process, said
+
+    def test_they_come_back_where_no_rank_can_be_started(self):
+        done = self.overwrite(self.path, env={"FURROW_MPIRUN": "/bin/false"})
+        self.assertEqual(done.returncode, 5, done.stderr)
+        self.assertIn("beds holds the earlier results again", done.stderr)
+        self.assertEqual(self.now(), self.before)
+
+    def test_they_come_back_where_a_signal_ends_it_before_the_first_step(self):
+        process, said = self.begun_to_settle()
+        process.terminate()
+        self.assertEqual(process.wait(timeout=60), 75, said.read_text())
+        self.assertIn("holds the earlier results again", said.read_text())
+        self.assertEqual(self.now(), self.before)
+
+    def test_they_come_back_to_the_next_command_after_a_kill_before_the_first_step(self):
+        process, _ = self.begun_to_settle()
+        process.kill()
+        process.wait(timeout=60)
+        done = furrow("run", self.path, "--seeds", "2", "--out", self.beds, "--no-plots", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stderr.count("is done already"), 2, done.stderr)
+        after = self.now()
+        for name in self.before:
+            if name.startswith("seed"):
+                self.assertEqual(after[name], self.before[name], name)
+
+    def test_a_file_of_the_users_own_in_a_bed_stays_and_the_bed_is_replaced(self):
+        mine = self.beds / "seed1" / "mine.txt"
+        mine.write_text("mine")
+        done = self.overwrite(write_scenario(self.folder, changed(rig={"slip": 0.2}), "other.json"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(mine.read_text(), "mine")
+        self.assertEqual(json.loads((self.beds / "seed1" / "summary.json").read_text())["slip"], 0.2)
+        self.assertFalse((self.beds / ".furrow-before").exists())
+
+
 class ClosedStreams(SystemTest):
     """The descriptor that is free is not taken for a file of results."""
 
@@ -148,6 +230,53 @@ class ClosedStreams(SystemTest):
             self.assertIn("standard output: cannot be written", done.stderr)
             self.assertTrue((self.out / "kinematics.csv").exists())
             self.assertTrue((self.out / ".furrow-run").read_bytes().startswith(b"furrow-run 1\n"))
+
+
+class ContinuedRun(SystemTest):
+    """A finished run that is to go on to a later end."""
+
+    def setUp(self):
+        super().setUp()
+        self.path = write_scenario(self.folder, changed(terrain={"engine": "rigid", "radius": None, "cohesion": None, "layers": None,
+                                                                 "length": None, "width": None}))
+        scenario = json.loads(self.path.read_text())
+        scenario["terrain"] = {"engine": "rigid"}
+        self.path.write_text(json.dumps(scenario))
+        self.out = self.folder / "out"
+        done = furrow("run", self.path, "--out", self.out, cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.end = json.loads(self.path.read_text())["run"]["end"]
+
+    def test_it_stays_finished_where_no_rank_can_be_started(self):
+        done = furrow("resume", self.out, "--until", 2 * self.end, cwd=self.folder, env={"FURROW_MPIRUN": "/bin/false"})
+        self.assertEqual(done.returncode, 5, done.stderr)
+        self.assertIn("the run had not gone on; ", done.stderr)
+        self.assertTrue((self.out / "summary.json").exists())
+        self.assertFalse((self.out / "summary_failed.json").exists())
+
+    def test_plots_of_the_earlier_end_are_gone_where_it_stops_on_the_way(self):
+        self.assertTrue((self.out / "ranks.png").exists())
+        process = start("resume", self.out, "--until", 1000 * self.end, cwd=self.folder)
+        self.addCleanup(process.kill)
+        wait_for(lambda: not (self.out / "summary.json").exists(), 60, "it goes on")
+        wait_for(lambda: not list(self.out.glob("*.png")), 10, "its plots are gone")
+        process.terminate()
+        _, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 75, err)
+        self.assertFalse((self.out / "report.html").exists())
+        (self.out / "energy.png").write_text("of an earlier version")
+        with open(self.out / ".furrow-run", "a") as names:
+            names.write("energy.png\n")
+        self.assertEqual(furrow("report", self.out, cwd=self.folder).returncode, 0)
+        self.assertFalse((self.out / "energy.png").exists())
+
+    def test_settings_that_change_nothing_are_told(self):
+        done = furrow("resume", self.out, "--set", "output.frame_interval=0.001", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("key 'output.frame_interval': is not changed to 0.001, as the run is finished", done.stderr)
+        done = furrow("resume", self.out, "--until", 1, "--set", "run.end=2", cwd=self.folder)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("key '--until': is given with --set run.end, expected one of them", done.stderr)
 
 
 class UnwritableFiles(SystemTest):

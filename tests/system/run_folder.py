@@ -193,6 +193,25 @@ class Gone(CheckpointTest):
         self.assertEqual(process.returncode, 0, err)
         self.same_as_whole(self.run_folder)
 
+    def test_series_that_are_removed_or_replaced_are_written_again(self):
+        def emptied(file):
+            os.truncate(file, 0)
+
+        def replaced(file):
+            shutil.copy(file, self.folder / "copy")
+            os.replace(self.folder / "copy", file)
+        for change, name in ((os.unlink, "timeseries.csv"), (emptied, "timeseries.csv"), (replaced, "timeseries_accounts.csv"),
+                             (os.unlink, "scenario.json")):
+            with self.subTest(change=change, name=name):
+                process = self.start_waiting("step", 0, 220)
+                change(self.run_folder / name)
+                self.mark.unlink()
+                _, err = process.communicate(timeout=60)
+                self.assertEqual(process.returncode, 0, err)
+                self.assertIn(f"{name} was removed or changed while the run was under way, and is written again", err)
+                self.same_as_whole()
+                shutil.rmtree(self.run_folder)
+
     def test_another_run_in_its_place(self):
         process = self.start_waiting("step", 0, 220)
         self.run_folder.rename(self.folder / "elsewhere")

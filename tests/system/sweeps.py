@@ -47,6 +47,12 @@ class Sweep(SystemTest):
         self.assertEqual(done.stderr.count("is done already"), 2)
         self.assertEqual([row["state"] for row in self.table()], ["done"] * 3)
 
+    def test_a_table_of_another_study_is_told_before_it_is_replaced(self):
+        for slip, others in ((0.1, False), (0.3, True), (0.3, False)):
+            done = furrow("sweep", self.study(set={"run.end": 0.03}, grid={"rig.slip": [slip]}), cwd=self.folder)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual("sweep.csv: held 1 run of another study" in done.stderr, others, done.stderr)
+
     def test_a_removed_folder_ends_it_and_is_not_made_anew(self):
         study = self.study(grid={"rig.slip": [0.1, 0.2, 0.3, 0.4]})
         out = self.folder / "results" / "study"

@@ -52,13 +52,21 @@ void check_bed(const Archive& bed, const DemOptions& o) {
                       fmt::format("is {} but the bed '{}' was settled without", o.rolling_friction, o.bed));
 }
 
+/// Of beds kept before they held it: empty.
+std::string digest_in(const Archive& bed) {
+  if (!bed.has("bed/digest")) return "";
+  const auto& text = bed.get<std::uint8_t>("bed/digest");
+  return {text.begin(), text.end()};
+}
+
 bool from_cache(const std::filesystem::path& file, const DemOptions& options, Archive& bed,
                 const ProgressCall& progress) {
   if (file.empty()) return false;
   try {
     bed = read_bed(file, progress);
     check_bed(bed, options);
-    return true;
+    const std::string digest = digest_in(bed);
+    return digest.empty() || digest == bed_digest(options);
   } catch (const Error& error) {
     if (error.code() != ExitCode::io && error.code() != ExitCode::bad_input) throw;
     return false;  // absent or damaged: made again
@@ -189,6 +197,8 @@ PreparedBed prepare_bed(const DemOptions& options, const ProgressCall& progress)
     prepared.from_cache = from_cache(prepared.file, options, prepared.bed, progress);
     if (!prepared.from_cache) {
       prepared.bed = made_bed(options, progress, prepared.settled);
+      const std::string digest = bed_digest(options);
+      prepared.bed.put("bed/digest", std::vector<std::uint8_t>(digest.begin(), digest.end()));
       if (!keep(prepared.file, prepared.bed, progress)) prepared.file.clear();
     }
   }

@@ -21,10 +21,12 @@ struct FrameClock {
   std::int64_t index(std::int64_t step) const {
     return every > 0 ? first_index + before(step) - before(first_step) : first_index;
   }
-  /// Of the segment that begins at `step`.
-  FrameClock continued(std::int64_t step, std::int64_t new_every) const {
+  /// Of the segment that begins at `step`. @param written  whether there is a frame of that step: it stays where the
+  /// segment will not make it again
+  FrameClock continued(std::int64_t step, std::int64_t new_every, bool written = false) const {
     FURROW_ASSERT(new_every >= 0, step, new_every);
-    return {new_every, step, index(step)};
+    const bool stays = written && due(step) && !(new_every > 0 && step % new_every == 0);
+    return {new_every, step, index(step) + (stays ? 1 : 0)};
   }
 
  private:

@@ -14,6 +14,8 @@ namespace fs = std::filesystem;
 
 const std::string kAsideFolder = std::string(kAside) + "/";
 
+constexpr std::ptrdiff_t kHeadLines = 2;  // of evaluations.csv, before the first evaluation
+
 /// What a command may list before its results: `furrow run` before its ranks are placed.
 const std::vector<std::string> kEarly{"run.log", "scenario.json", "summary_failed.json", kAsideFolder};
 
@@ -90,7 +92,7 @@ bool move_back(const fs::path& from, const fs::path& to) {
 bool came_to_be(const fs::path& folder) {
   const RunList list = RunList::read(folder);
   if (list.holds("calibration.json"))
-    return stands(folder / "calibration.json") || lines_in(folder / "evaluations.csv") > 1;
+    return stands(folder / "calibration.json") || lines_in(folder / "evaluations.csv") > kHeadLines;
   if (list.holds("sweep.json")) {
     const std::vector<fs::path> runs = runs_in(folder, list);
     return std::any_of(runs.begin(), runs.end(), came_to_be);

@@ -103,6 +103,15 @@ void write_terrain_frame(const std::filesystem::path& run, std::int64_t index, d
   file.finish();
 }
 
+checkpoint::FrameClock continued_frames(const std::filesystem::path& run,
+                                        const checkpoint::CheckpointManifest& from, std::int64_t every) {
+  if (from.frames.every == every) return from.frames;
+  std::error_code none;
+  const bool written =
+      std::filesystem::exists(run / "frames" / frame_file({"tire0", from.frames.index(from.step)}), none);
+  return from.frames.continued(from.step, every, written);
+}
+
 void sync_frames(const std::filesystem::path& run) {
   std::error_code none;
   if (std::filesystem::is_directory(run / "frames", none)) sync_folder(run / "frames");

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "nodes/checkpoint/checkpoint.hpp"
 #include "protocol/core/surface.hpp"
 #include "terrain/terrain.hpp"
 
@@ -25,6 +26,10 @@ void write_tire_frame(const std::filesystem::path& run, int tire, std::int64_t i
 /// Nothing is written for a terrain without grains. @throws Error(io)
 void write_terrain_frame(const std::filesystem::path& run, std::int64_t index, double time,
                          const terrain::TerrainFrame& frame);
+
+/// Frames of a run that continues with one every so many steps. @throws Error(io)
+checkpoint::FrameClock continued_frames(const std::filesystem::path& run,
+                                        const checkpoint::CheckpointManifest& from, std::int64_t every);
 
 /// Flushes the names of all frames to the disk. @throws Error(io)
 void sync_frames(const std::filesystem::path& run);

@@ -138,7 +138,8 @@ void Results::continue_from(const checkpoint::ResumePoint& resume) {
   for (const char* name : {"summary.json", "results.h5"}) std::filesystem::remove(directory_ / name, ignored);
   remove_plots(directory_);
   launch::remove_unfinished(directory_);
-  remove_frames_from(directory_, manifest.frames.index(manifest.step));
+  const std::int64_t every = scenario_.run.steps_in(scenario_.output.frame_interval);
+  remove_frames_from(directory_, continued_frames(directory_, manifest, every).index(manifest.step));
   checkpoint::remove_checkpoints_after(directory_, manifest.step);
   write_xdmf_index(directory_);
   write_whole_file(directory_ / "scenario.json", scenario_.completed + "\n");

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "nodes/output/frames.hpp"
 #include "protocol/core/assert.hpp"
 
 namespace furrow::ranks {
@@ -32,7 +33,7 @@ checkpoint::FrameClock frame_clock(const scenario::Scenario& scenario, const Run
       context.directory.empty() ? 0 : scenario.run.steps_in(scenario.output.frame_interval);
   if (!context.resume) return {every, 0, 0};
   const checkpoint::CheckpointManifest& manifest = context.resume->manifest;
-  return manifest.frames.every == every ? manifest.frames : manifest.frames.continued(manifest.step, every);
+  return output::continued_frames(context.directory, manifest, every);
 }
 
 std::unique_ptr<Node> make_node(const scenario::Scenario& scenario, Address self, int threads,

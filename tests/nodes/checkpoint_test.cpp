@@ -195,6 +195,8 @@ TEST(FrameClock, numbers_go_on_without_gap_when_the_interval_changes) {
   EXPECT_EQ(second.index(200), 7);
   EXPECT_EQ(second.continued(200, 0).index(999), 7);
   EXPECT_EQ(second.continued(200, 0).continued(300, 100).index(300), 7);
+  EXPECT_EQ(second.continued(200, 0, true).index(999), 8) << "the frame of the step, number 7, stays";
+  EXPECT_EQ(second.continued(200, 50, true).index(200), 7) << "it is made again";
   EXPECT_EQ(second.continued(200, 50).index(200), 7) << "the frame of the step itself is still to come";
 }
 

@@ -6,6 +6,7 @@ import signal
 import struct
 import time
 
+import calibrate_grains
 from program import ROOT, SystemTest, furrow, main, start, wait_for
 
 FILES = {"calibration.json", "evaluations.csv", "fit.csv", "soft_ring_fitted.json"}
@@ -41,21 +42,23 @@ class Calibrate(SystemTest):
         return {name: (self.folder / folder / name).read_bytes() for name in FILES}
 
     def test_earlier_results_come_back_where_nothing_is_evaluated(self):
-        study = self.study()
-        self.assertEqual(furrow("calibrate", study, "--out", "out", "--no-plots", cwd=self.folder).returncode, 0)
+        self.assertEqual(furrow("calibrate", self.study(), "--out", "out", "--no-plots", cwd=self.folder).returncode, 0)
         before = self.text("out")
-        process = start("calibrate", study, "--out", "out", "--overwrite", cwd=self.folder)
-        self.addCleanup(process.kill)
-        wait_for(lambda: (self.folder / "out" / ".furrow-before" / "calibration.json").exists(), 60, "they are set aside")
-        process.kill()
-        process.communicate(timeout=60)
-        process = start("calibrate", study, "--out", "out", "--overwrite", cwd=self.folder)
-        self.addCleanup(process.kill)
-        wait_for(lambda: (self.folder / "out" / ".furrow-before" / "calibration.json").exists(), 60, "they are set aside")
-        process.terminate()
-        _, err = process.communicate(timeout=60)
-        if process.returncode == 75 and "nothing had been evaluated" in err:
-            self.assertEqual(self.text("out"), before)
+        (self.folder / "grains.json").write_text(json.dumps(calibrate_grains.CalibrateGrains.STUDY))
+        for number in (signal.SIGTERM, signal.SIGKILL):
+            process = start("calibrate", "grains.json", "--out", "out", "--overwrite", cwd=self.folder)
+            self.addCleanup(process.kill)
+            wait_for(lambda: all((self.folder / "out" / name).exists() for name in (".furrow-before/evaluations.csv", "evaluations.csv")), 60,
+                     "they are set aside")
+            process.send_signal(number)
+            _, err = process.communicate(timeout=60)
+            if number == signal.SIGTERM:
+                self.assertEqual(process.returncode, 75, err)
+                self.assertIn("out holds the earlier results again", err)
+                self.assertEqual(self.text("out"), before)
+        done = furrow("calibrate", "grains.json", "--out", "out", cwd=self.folder)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertEqual(self.text("out"), before)
 
     def test_the_result_is_a_tire_with_the_errors_of_its_parameters(self):
         done = furrow("calibrate", self.study(), "--out", "out", cwd=self.folder)

@@ -220,6 +220,18 @@ class LongWork(EnvironmentTest):
                    "--set", "run.step=2e-5",
                    phase="settling the bed")
 
+    def test_plots_and_what_measures_the_machine(self):
+        done = furrow("run", self.path, *SHORT, "--out", "out", "--no-plots", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.check("report", "out", phase="plotting")
+        (self.folder / "said").write_text("")
+        process = start("validate", self.path, cwd=self.folder, env={"XDG_CACHE_HOME": str(self.folder / "cache")})
+        self.addCleanup(process.kill)
+        time.sleep(0.7)
+        process.send_signal(signal.SIGTERM)
+        _, err = process.communicate(timeout=60)
+        self.assertEqual((process.returncode, err.splitlines()[-1]), (75, "furrow: error: stopped by a signal"))
+
     def test_soil_tests(self):
         self.check("soil", self.path, "--only", "plate", "--speed", "0.001", "--out", "out", phase="soil tests")
         self.assertEqual(self.names(), ["small.json"])
@@ -251,6 +263,21 @@ class Pause(EnvironmentTest):
         process.send_signal(signal.SIGTERM)
         process.communicate(timeout=60)
         self.assertEqual(process.returncode, 75)
+
+
+    def test_ranks_that_are_stopped_end_when_the_program_is_killed(self):
+        process = start("run", self.path, "--set", "run.end=0.3", "--out", "out", "--set", "terrain.engine=rigid", "--no-plots",
+                        "--set", "run.step=1e-6", cwd=self.folder)
+        self.addCleanup(process.kill)
+        wait_for(lambda: (self.folder / "out" / "timeseries.csv").exists(), 60, "the run begins")
+        process.send_signal(signal.SIGTSTP)
+        wait_for(lambda: set(self.states().values()) == {"T"} and len(self.states()) == 3, 20, "all ranks are stopped")
+        state = pathlib.Path(f"/proc/{process.pid}/stat")
+        wait_for(lambda: state.read_text().rsplit(")", 1)[1].split()[0] == "T", 20, "the program is stopped")
+        process.kill()
+        process.communicate(timeout=60)
+        wait_for(lambda: not survivors(self.folder), 30, "all processes end")
+        self.assertTrue(list((self.folder / "out" / "checkpoints").glob("*/manifest.json")))
 
 
 class Names(EnvironmentTest):

@@ -160,6 +160,19 @@ TEST_F(DemTerrain, damaged_cache_is_made_anew) {
     EXPECT_EQ(entry.path().extension(), ".h5");
 }
 
+/// Files of a cache that somebody has renamed.
+TEST_F(DemTerrain, a_bed_under_the_name_of_another_is_made_anew) {
+  dem::DemOptions other = options_;
+  other.seed = 2;
+  make_dem_terrain(other)->prepare({});
+  const auto first = make_dem_terrain(options_);
+  first->prepare({});
+  fs::rename(dem::bed_cache_file(dem::bed_digest(other)), cached());
+  const auto second = make_dem_terrain(options_);
+  second->prepare({});
+  EXPECT_EQ(hash_of(*first), hash_of(*second));
+}
+
 /// Something else than the value.
 void change(std::string& value) { value = value == "walls" ? "periodic" : value + "_other"; }
 void change(bool& value) { value = !value; }

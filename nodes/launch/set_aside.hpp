@@ -1,8 +1,8 @@
-// Results that are to be replaced are set aside, in `.furrow-before` of their folder, until it is known that the new run
-// runs. Runs in the folder with lists of their own, as the beds of `furrow run --seeds`, are set aside with it.
+// Results that are to be replaced are set aside, in `.furrow-before` of their folder, until it is known that the new
+// run runs. Runs in the folder with lists of their own, as the beds of `furrow run --seeds`, are set aside with it.
 //
-// Whenever this is cut short, the folder's list says that no run came to be, and the one in `.furrow-before` what to put
-// back. What is not in a list stays where it is.
+// Whenever this is cut short, the folder's list says that no run came to be, and the one in `.furrow-before` what to
+// put back. What is not in a list stays where it is.
 #pragma once
 
 #include <filesystem>

@@ -15,6 +15,7 @@
 
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
+#include "protocol/files/text_file.hpp"
 
 namespace furrow::output {
 namespace {
@@ -86,6 +87,12 @@ TableWriter::TableWriter(const std::filesystem::path& file, const checkpoint::Se
   const std::size_t end = text.find('\n');
   if (!all || hash_.hex() != mark.checksum || end == std::string::npos)
     throw io_error(file_.string(), "does not hold the lines that the checkpoint knows: it was changed since");
+  // Of a copy that shares its files with this one: what it holds must not change.
+  if (struct stat own{}; fstat(fileno(stream_.get()), &own) == 0 && own.st_nlink > 1) {
+    write_whole_file(file_, text);
+    stream_.reset(std::fopen(file_.c_str(), "rb+"));
+    check(stream_ != nullptr);
+  }
   take_order(std::string_view(text).substr(0, end), table);
   const char* at = text.c_str() + end + 1;
   for (std::int64_t line = 0; line < mark.lines; ++line) {

@@ -69,8 +69,11 @@ class TerrainNode : public Node {
     for (int k = 0; k < tires; ++k)
       attach.start.push_back(receive_step<SurfaceMotion>(transport, {Role::tire, k}, kPlacement).surface);
     share(group_.get(), attach);
-    for (int k = 0; k < tires; ++k)
-      terrain_->attach(attach.surfaces[k].mesh, attach.surfaces[k].material, attach.start[k]);
+    for (int k = 0; k < tires; ++k) try {
+        terrain_->attach(attach.surfaces[k].mesh, attach.surfaces[k].material, attach.start[k]);
+      } catch (const Error& error) {
+        throw Error(error.code(), fmt::format("{}: tire {}: {}", scenario_.file.string(), k, error.what()));
+      }
     now_.targets = std::move(attach.start);
     report_.state = terrain_->state();
     if (!context.saved) return;

@@ -91,7 +91,7 @@ double crowd(double ranks_per_core) {
   return 1.0 + kCrowd * std::max(0.0, std::log2(ranks_per_core / kFewRanks));
 }
 
-/// Of all frames and checkpoints, s. Of a checkpoint every rank writes a part, of a frame tires and terrain a file each.
+/// Of all frames and checkpoints, s. Every rank writes a part of a checkpoint, tires and terrain a file of a frame.
 double writing(const Scenario& s, int ranks, int cores) {
   const Estimate e = estimate(s);
   const auto files = [&](int count, double each) { return each * count / std::min(count, cores); };

@@ -193,6 +193,28 @@ class Gone(CheckpointTest):
         self.assertEqual(process.returncode, 0, err)
         self.same_as_whole(self.run_folder)
 
+    def test_a_link_in_the_place_of_a_folder_of_results_is_refused(self):
+        own = self.folder / "own"
+        own.mkdir()
+        (own / "tire0_000000.h5").write_text("precious")
+        for name in ("frames", "checkpoints"):
+            shutil.copytree(self.whole, self.run_folder)
+            shutil.rmtree(self.run_folder / name)
+            (self.run_folder / name).symlink_to("../own")
+            for command in (["run", self.path, "--out", self.run_folder, "--overwrite"], ["resume", self.run_folder, "--until", "0.2"]):
+                done = furrow(*command, "--no-plots", cwd=self.folder)
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertIn(f"{name}: is a link, expected a folder", done.stderr)
+            shutil.rmtree(self.run_folder)
+        self.assertEqual([(path.name, path.read_text()) for path in own.iterdir()], [("tire0_000000.h5", "precious")])
+
+    def test_a_copy_that_shares_its_files_does_not_change(self):
+        shutil.copytree(self.whole, self.run_folder)
+        shutil.copytree(self.run_folder, self.folder / "backup", copy_function=os.link)
+        self.resume("--until", "0.12")
+        for name in ("timeseries.csv", "timeseries_accounts.csv", "summary.json", "results.h5"):
+            self.assertEqual((self.folder / "backup" / name).read_bytes(), (self.whole / name).read_bytes(), name)
+
     def test_series_that_are_removed_or_replaced_are_written_again(self):
         def emptied(file):
             os.truncate(file, 0)

@@ -126,7 +126,7 @@ RunDirectory::RunDirectory(const fs::path& existing) : existing_(true), path_(ex
     if (list.holds(kind.mark))
       throw input_error(path_.string(), "", fmt::format("holds {}, expected a run; {}", kind.holds, kind.continued));
   if (!lock_.stands()) lock_ = FolderLock(path_, "", FolderLock::Mode::alone);
-  require_no_links();
+  require_no_links(true);
   take_back(path_);  // of who had the folder until now
 }
 
@@ -182,16 +182,21 @@ void RunDirectory::require_writable(const std::string& key) const {
     throw input_error(path_.string(), key, "cannot be written, expected a place that can be written");
 }
 
-/// What is written into a folder behind a link would be neither listed nor locked.
-void RunDirectory::require_no_links() const {
+/// What is written behind a link would be neither listed nor locked.
+void RunDirectory::require_no_links(bool continues) const {
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(path_, error))
-    for (const char* name : {"frames", "checkpoints"})
-      if (entry.path().filename() == name && fs::is_symlink(entry.symlink_status(error)))
-        throw input_error(
-            entry.path().string(), "",
-            "is a link, expected a folder: results are not written through links; move the whole folder "
-            "of the run instead");
+  const RunList list = RunList::read(path_);
+  for (const auto& entry : fs::directory_iterator(path_, error)) {
+    const std::string name = entry.path().filename().string();
+    const bool written_on = continues && (name == "run.log" || name.starts_with("timeseries"));
+    if (!fs::is_symlink(entry.symlink_status(error)) ||
+        !(list.holds(name + "/") || (written_on && list.holds(name))))
+      continue;
+    throw input_error(
+        entry.path().string(), "",
+        "is a link, expected what it leads to: results are not written through links; move the whole "
+        "folder of the run instead");
+  }
 }
 
 void make_no_parents() { setenv(kNoParents, "1", 1); }
@@ -247,7 +252,7 @@ void RunDirectory::take_over(const fs::path& reads) {
     if (list.holds(mark))
       throw input_error(path_.string(), "--out",
                         fmt::format("holds a {}, expected a run's folder to overwrite, or a new one", name));
-  require_no_links();
+  require_no_links(false);
   take_back(path_);
   set_aside_ = set_aside(path_, reads);
   begun_ = true;

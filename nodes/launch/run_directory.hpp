@@ -64,7 +64,7 @@ class RunDirectory {
   void take_over(const std::filesystem::path& reads);
   void take_back_of_killed();
   void require_writable(const std::string& key) const;
-  void require_no_links() const;
+  void require_no_links(bool continues) const;
 
   bool existing_ = false;   // not this object's to remove
   bool fresh_ = false;      // the folder had no list before

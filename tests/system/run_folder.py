@@ -204,7 +204,17 @@ class Gone(CheckpointTest):
             for command in (["run", self.path, "--out", self.run_folder, "--overwrite"], ["resume", self.run_folder, "--until", "0.2"]):
                 done = furrow(*command, "--no-plots", cwd=self.folder)
                 self.assertEqual(done.returncode, 2, done.stderr)
-                self.assertIn(f"{name}: is a link, expected a folder", done.stderr)
+                self.assertIn(f"{name}: is a link, expected what it leads to", done.stderr)
+            shutil.rmtree(self.run_folder)
+        for name in ("run.log", "timeseries.csv"):
+            shutil.copytree(self.whole, self.run_folder)
+            (self.run_folder / name).rename(self.folder / name)
+            (self.run_folder / name).symlink_to(f"../{name}")
+            before = (self.folder / name).read_bytes()
+            done = furrow("resume", self.run_folder, "--until", "0.2", "--no-plots", cwd=self.folder)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(f"{name}: is a link, expected what it leads to", done.stderr)
+            self.assertEqual((self.folder / name).read_bytes(), before)
             shutil.rmtree(self.run_folder)
         self.assertEqual([(path.name, path.read_text()) for path in own.iterdir()], [("tire0_000000.h5", "precious")])
 

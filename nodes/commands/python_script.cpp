@@ -17,7 +17,7 @@
 #include "nodes/launch/signals.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/data_files.hpp"
-#include "protocol/memory_limit.hpp"
+#include "protocol/files/memory_limit.hpp"
 
 namespace furrow::commands {
 namespace {

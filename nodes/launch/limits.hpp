@@ -1,5 +1,5 @@
 // Limits that the system sets to processes (ulimit), and what to say when one was reached. Memory is in
-// protocol/memory_limit.hpp.
+// protocol/files/memory_limit.hpp.
 #pragma once
 
 #include <string>

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "nodes/scenario/wheel_geometry.hpp"
-#include "protocol/memory_limit.hpp"
+#include "protocol/files/memory_limit.hpp"
 
 namespace furrow::scenario {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "protocol/memory_limit.hpp"
+#include "protocol/files/memory_limit.hpp"
 
 namespace furrow::scenario {
 namespace {

@@ -50,6 +50,7 @@ class Archive {
   }
   double get_double(const std::string& name) const { return get<double>(name, 1).front(); }
   std::int64_t get_int(const std::string& name) const { return get<std::int64_t>(name, 1).front(); }
+  void remove(const std::string& name) { arrays_.erase(prefix_ + name); }
   bool has(const std::string& name) const { return arrays_.count(prefix_ + name) != 0; }
 
   /// Puts `folder` in front of all names while it lives: `Archive::Scope scope(archive, "tire/");`

@@ -188,6 +188,8 @@ template nlohmann::ordered_json load_json(const std::filesystem::path&, const st
 
 nlohmann::ordered_json read_json_if_whole(const std::filesystem::path& file) {
   using Json = nlohmann::ordered_json;
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) return {};  // a pipe would be waited for
   try {
     return parse_json<Json>(read_whole_file(file, kMaxText), file.string());
   } catch (const Error&) {

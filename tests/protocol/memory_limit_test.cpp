@@ -1,5 +1,5 @@
 // Limits of memory, read from a /proc and /sys made for the test.
-#include "protocol/memory_limit.hpp"
+#include "protocol/files/memory_limit.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

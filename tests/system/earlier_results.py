@@ -95,14 +95,6 @@ class Overwrite(SystemTest):
         self.assertIn("is finished", done.stderr)
         self.is_as_before()
 
-    def test_they_come_back_where_the_disk_is_full_before_the_first_step(self):
-        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (8192, 8192))  # the frames of the beginning are larger
-        done = subprocess.run([PROGRAM, "run", self.path, "--out", self.out, "--overwrite", "--set", "output.frame_interval=0.01",
-                               "--no-plots"], cwd=self.folder, text=True, capture_output=True, timeout=120, preexec_fn=limit)
-        self.assertIn(done.returncode, (4, 5), done.stderr)
-        self.assertIn("the run had not begun to step", done.stderr)
-        self.is_as_before()
-
     def test_those_of_soil_tests_come_back_after_a_kill(self):
         tests = self.folder / "soil"
         begin = ["soil", self.path, "--only", "plate", "--out", tests]

@@ -188,6 +188,10 @@ class Limits(EnvironmentTest):
         self.assertIn("threads could not be started (ulimit -u, ulimit -v, or no memory), expected ", self.one_error(done, 6))
         self.assertEqual(survivors(self.folder), [])
 
+    def test_pressing_where_the_solver_would_wait_forever_for_memory(self):
+        done = limited("-v 250000", "press", "cleat_press.json", "--out", "out", "--points", "2", cwd=self.folder, timeout=60)
+        self.assertRegex(self.one_error(done, 6), r"out of memory: the solver needs \d+ MB of address space, limit 256 MB \(ulimit -v\)")
+
     def test_plots_that_would_wait_forever_for_memory_are_not_begun(self):
         done = limited("-v 450000", "run", self.path, *SHORT[:-1], "--out", "out", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)

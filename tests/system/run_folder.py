@@ -143,6 +143,13 @@ class Gone(CheckpointTest):
         self.assertRegex(err, words)
         return err
 
+    def test_an_overwriting_run_that_is_lost_as_it_writes_its_first_frame(self):
+        shutil.copytree(self.whole, self.run_folder)
+        before = {name: path.read_bytes() for name, path in files(self.run_folder).items() if name != ".furrow-run"}
+        done = self.run_with_fault("frame", 1, 1, "kill", flags=["--overwrite"])
+        self.assertIn("the run had not begun to step; ", done.stderr)
+        self.assertEqual({name: path.read_bytes() for name, path in files(self.run_folder).items() if name != ".furrow-run"}, before)
+
     def test_moved(self):
         process = self.start_waiting("step", 0, 220)
         elsewhere = self.folder / "elsewhere"

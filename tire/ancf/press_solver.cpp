@@ -12,6 +12,7 @@
 
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
+#include "protocol/files/memory_limit.hpp"
 #include "tire/ancf/inflation.hpp"
 #include "tire/ancf/shell_batch.hpp"
 #include "tire/ancf/shell_tangent.hpp"
@@ -79,6 +80,7 @@ struct PressSolver::Linear {
           slot[e][at(r, k)] =
               low < 0 ? -1 : static_cast<int>(&matrix.coeffRef(high, low) - matrix.valuePtr());
         }
+    require_blas_buffers();
     llt.cholmod().print = 0;
     llt.analyzePattern(matrix);
   }

@@ -50,7 +50,7 @@ PanelPattern analyze(const std::vector<std::vector<int>>& columns, std::vector<i
   cholmod_free_factor(&factor, &common);
   cholmod_free_sparse(&matrix, &common);
   cholmod_finish(&common);
-  if (place.empty()) throw physics_error("the tire's stiffness matrix could not be analysed: out of memory");
+  if (place.empty()) throw limit_error("out of memory: the tire's stiffness matrix could not be analysed");
   return pattern;
 }
 

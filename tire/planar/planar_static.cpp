@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "protocol/core/assert.hpp"
+#include "protocol/files/memory_limit.hpp"
 #include "tire/lone_thread.hpp"
 
 namespace furrow::tire {
@@ -73,6 +74,7 @@ PlanarStatic::PlanarStatic(const PlanarParams& params, PlanarGround ground)
     inertia_ += mesh_.position.x[n] * mesh_.position.x[n] + mesh_.position.z[n] * mesh_.position.z[n];
   spring_ = kHold * params.disc.young_modulus * params.size.rim_radius * params.size.rim_radius *
             params.options.width;
+  require_blas_buffers();
   linear_->llt.cholmod().print = 0;  // tangents that are not positive definite are dealt with
   linear_->right.resize(2 * (mesh_.nodes() - 1));
   assemble();

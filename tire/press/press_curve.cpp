@@ -48,6 +48,15 @@ std::filesystem::path cache_file(const TireSpec& tire, double deflection) {
   return folder / (hash.hex() + ".json");
 }
 
+/// Of a curve's numbers.
+std::string checksum(const PressCurve& curve) {
+  Hash hash;
+  hash.add(&curve.radius, sizeof curve.radius);
+  for (const auto& [deflection, force] : curve.points)
+    hash.add(&deflection, sizeof deflection), hash.add(&force, sizeof force);
+  return hash.hex();
+}
+
 /// What the cache holds; none where it is missing or damaged.
 std::optional<PressCurve> read_curve(const std::filesystem::path& file) {
   if (file.empty()) return std::nullopt;
@@ -70,12 +79,14 @@ std::optional<PressCurve> read_curve(const std::filesystem::path& file) {
     if (!std::isfinite(force[k]) || !std::isfinite(deflection[k])) return std::nullopt;
     if (k > 0 && !(force[k] > force[k - 1] && deflection[k] > deflection[k - 1])) return std::nullopt;
   }
+  if (!json.contains("checksum") || json["checksum"] != checksum(curve)) return std::nullopt;
   return curve;
 }
 
 void write_curve(const std::filesystem::path& file, const PressCurve& curve) {
   if (file.empty()) return;
   nlohmann::ordered_json json;
+  json["checksum"] = checksum(curve);
   json["radius_m"] = {curve.radius};
   for (const auto& [deflection, force] : curve.points) {
     json["deflection_m"].push_back(deflection);

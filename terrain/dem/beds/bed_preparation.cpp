@@ -52,11 +52,15 @@ void check_bed(const Archive& bed, const DemOptions& o) {
                       fmt::format("is {} but the bed '{}' was settled without", o.rolling_friction, o.bed));
 }
 
-/// Of beds kept before they held it: empty.
-std::string digest_in(const Archive& bed) {
-  if (!bed.has("bed/digest")) return "";
-  const auto& text = bed.get<std::uint8_t>("bed/digest");
-  return {text.begin(), text.end()};
+constexpr const char* kDigest = "bed/digest";  // in the file alone: what the bed in it is of
+
+/// Takes it away. @returns it; empty for a bed that was kept before they held it
+std::string take_digest(Archive& bed) {
+  if (!bed.has(kDigest)) return "";
+  const auto& text = bed.get<std::uint8_t>(kDigest);
+  const std::string digest(text.begin(), text.end());
+  bed.remove(kDigest);
+  return digest;
 }
 
 bool from_cache(const std::filesystem::path& file, const DemOptions& options, Archive& bed,
@@ -65,7 +69,7 @@ bool from_cache(const std::filesystem::path& file, const DemOptions& options, Ar
   try {
     bed = read_bed(file, progress);
     check_bed(bed, options);
-    const std::string digest = digest_in(bed);
+    const std::string digest = take_digest(bed);
     return digest.empty() || digest == bed_digest(options);
   } catch (const Error& error) {
     if (error.code() != ExitCode::io && error.code() != ExitCode::bad_input) throw;
@@ -127,12 +131,17 @@ Archive made_bed(const DemOptions& options, const ProgressCall& progress, Settle
 }
 
 /// A cache that cannot be written costs time, not the run.
-bool keep(const std::filesystem::path& file, const Archive& bed, const ProgressCall& progress) {
+bool keep(const std::filesystem::path& file, const DemOptions& options, Archive& bed,
+          const ProgressCall& progress) {
   if (file.empty()) return false;
   try {
+    const std::string digest = bed_digest(options);
+    bed.put(kDigest, std::vector<std::uint8_t>(digest.begin(), digest.end()));
     write_bed(file, bed, progress);
+    bed.remove(kDigest);
     return true;
   } catch (const Error& error) {
+    bed.remove(kDigest);
     if (error.code() != ExitCode::io) throw;
     if (progress) progress(std::string("bed not cached: ") + error.what(), 1.0);
     return false;
@@ -197,9 +206,7 @@ PreparedBed prepare_bed(const DemOptions& options, const ProgressCall& progress)
     prepared.from_cache = from_cache(prepared.file, options, prepared.bed, progress);
     if (!prepared.from_cache) {
       prepared.bed = made_bed(options, progress, prepared.settled);
-      const std::string digest = bed_digest(options);
-      prepared.bed.put("bed/digest", std::vector<std::uint8_t>(digest.begin(), digest.end()));
-      if (!keep(prepared.file, prepared.bed, progress)) prepared.file.clear();
+      if (!keep(prepared.file, options, prepared.bed, progress)) prepared.file.clear();
     }
   }
   const auto& settled = prepared.bed.get<double>("bed/settled", 4);

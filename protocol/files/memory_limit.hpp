@@ -20,4 +20,8 @@ MemoryLimit address_space_limit();
 /// @param root  where /proc and /sys are
 MemoryLimit memory_limit(const std::filesystem::path& root = "/");
 
+/// Before the first dense operation of a sparse solver: OpenBLAS asks for its buffers for ever where it gets none.
+/// @throws Error(limit) where the address space has no room for them
+void require_blas_buffers();
+
 }  // namespace furrow

@@ -1,9 +1,14 @@
-#include "protocol/memory_limit.hpp"
+#include "protocol/files/memory_limit.hpp"
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
+
+#include <fmt/format.h>
+
+#include "protocol/core/error.hpp"
 
 namespace furrow {
 namespace {
@@ -12,6 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 constexpr double kKib = 1024.0;
+constexpr double kBlasBuffers = 200e6;  // bytes, with what the solver itself takes
 
 /// A number in a file; `otherwise` where there is none ("max") or no such file.
 double number_in(const fs::path& file, double otherwise) {
@@ -84,6 +90,18 @@ MemoryLimit memory_limit(const fs::path& root) {
   if (group < machine || (machine == 0.0 && group < kNone)) return {group, "control group"};
   if (machine == 0.0) return {};
   return {machine, "this machine"};
+}
+
+void require_blas_buffers() {
+  static bool are_there = false;
+  if (are_there) return;
+  const MemoryLimit limit = address_space_limit();
+  const double in_use = number_in("/proc/self/statm", 0.0) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  if (in_use + kBlasBuffers > limit.bytes)
+    throw limit_error(
+        fmt::format("out of memory: the solver needs {:.0f} MB of address space, limit {:.0f} MB ({})",
+                    1e-6 * (in_use + kBlasBuffers), 1e-6 * limit.bytes, limit.name));
+  are_there = true;
 }
 
 }  // namespace furrow

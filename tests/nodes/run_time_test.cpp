@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <tuple>
 
 #include <nlohmann/json.hpp>
 
@@ -69,7 +70,7 @@ TEST(RunTime, tires_share_the_cores_that_there_are) {
 }
 
 /// Rigid tires, 0.5 m from each other in rows of four, on 3,484 to 26,779 grains.
-scenario::RunTime time_of_wheels(int count) {
+scenario::RunTime time_of_wheels(int count, double frames_every = 0.0, double checkpoints_every = 0.0) {
   nlohmann::json s = nlohmann::json::parse(R"({
       "rig": {"slip": 0, "mode": "fixed_angular_speed", "angular_speed": 0, "carrier_mass": 450},
       "tire": {"file": "hmmwv_layered.json", "rigid": true},
@@ -78,6 +79,8 @@ scenario::RunTime time_of_wheels(int count) {
   for (int k = 0; k < count; ++k)
     s["rig"]["wheels"].push_back({{"start", 0.7 + 1.1 * (k / 4)}, {"lateral", -0.75 + 0.5 * (k % 4)}});
   s["terrain"]["length"] = 1.4 + 1.1 * ((count + 3) / 4);
+  s["output"]["frame_interval"] = frames_every;
+  s["checkpoint"] = {{"interval", checkpoints_every}, {"at_end", false}};
   return scenario::run_time(testing::ScenarioFile(s.dump()).load(), kMachine);
 }
 
@@ -89,6 +92,20 @@ TEST(RunTime, many_ranks_for_each_core_begin_later_and_take_longer_for_their_mes
     EXPECT_PRED2(about, time_of_wheels(wheels).step, step) << wheels;
   for (const auto& [wheels, start] : {std::pair{1, 0.6}, {4, 0.65}, {16, 1.1}, {64, 6.4}})
     EXPECT_PRED2(about, time_of_wheels(wheels).start, start) << wheels;
+}
+
+/// Measured on two cores: 100 frames took 0.13, 2.0 and 6.9 s with 1, 16 and 64 wheels, 100 checkpoints 0.87, 6.3 and 21
+/// (tests/benchmarks/writing_time.csv).
+TEST(RunTime, frames_and_checkpoints_take_as_long_as_their_files) {
+  const auto about = [](double told, double measured) {
+    return told > measured / 2.0 && told < 2.0 * measured;
+  };
+  for (const auto& [wheels, frames, checkpoints] :
+       {std::tuple{1, 0.13, 0.87}, {16, 2.0, 6.3}, {64, 6.9, 21.0}}) {
+    EXPECT_PRED2(about, time_of_wheels(wheels, 1e-3).writing, frames) << wheels;
+    EXPECT_PRED2(about, time_of_wheels(wheels, 0.0, 1e-3).writing, checkpoints) << wheels;
+  }
+  EXPECT_EQ(time_of_wheels(1).writing, 0.0);
 }
 
 TEST(RunTime, sleeping_tiled_and_kept_beds_take_less) {

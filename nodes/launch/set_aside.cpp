@@ -98,7 +98,7 @@ bool came_to_be(const fs::path& folder) {
     return std::any_of(runs.begin(), runs.end(), came_to_be);
   }
   if (list.holds("results.h5"))  // earlier versions did not list that it had begun
-    return list.holds(kBegun) || stands(folder / "checkpoints");
+    return list.holds(kBegun) || !list.find(folder, "checkpoints/").files.empty();
   return std::any_of(list.forms().begin(), list.forms().end(), [](const std::string& name) {
     return std::find(kEarly.begin(), kEarly.end(), name) == kEarly.end();
   });

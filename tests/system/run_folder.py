@@ -145,6 +145,7 @@ class Gone(CheckpointTest):
 
     def test_an_overwriting_run_that_is_lost_as_it_writes_its_first_frame(self):
         shutil.copytree(self.whole, self.run_folder)
+        (self.run_folder / "checkpoints" / "notes.txt").write_text("mine")
         before = {name: path.read_bytes() for name, path in files(self.run_folder).items() if name != ".furrow-run"}
         done = self.run_with_fault("frame", 1, 1, "kill", flags=["--overwrite"])
         self.assertIn("the run had not begun to step; ", done.stderr)

@@ -199,6 +199,7 @@ PreparedBed prepare_bed(const DemOptions& options, const ProgressCall& progress)
   PreparedBed prepared;
   if (!bed_is_settled_anew(options)) {
     prepared.bed = read_bed(options.bed, progress);
+    (void)take_digest(prepared.bed);  // a file from the cache is a bed like any other
     check_bed(prepared.bed, options);
     prepared.file = options.bed;
   } else {

@@ -73,7 +73,7 @@ std::vector<std::filesystem::path> make_report(const ReportArguments& report) {
   const int code = WIFEXITED(finished.status) ? WEXITSTATUS(finished.status) : -1;
   if (code == static_cast<int>(ExitCode::io) && !report.unasked) return {};
   if (code != 0 || !list.is_array())
-    throw io_error(run.string(), launch::stop_signalled() ? std::string("the plots were interrupted")
+    throw io_error(run.string(), launch::stop_signalled() ? "the plots were interrupted"
                                  : report.unasked ? fmt::format("made no plots; 'furrow report {}' says why",
                                                                 scenario::shell_path(run.string()))
                                                   : "made no plots, expected the results of a run");

@@ -82,6 +82,15 @@ std::filesystem::file_time_type written(const std::filesystem::path& file) {
   return error ? std::filesystem::file_time_type::min() : at;
 }
 
+/// Why a run ended that leaves nothing of its own. @param what  became of the folder
+void tell_end(const launch::LaunchResult& result, const std::string& what) {
+  if (result.code == ExitCode::stopped)
+    std::fprintf(stderr, "furrow: %s\n", result.error.c_str());
+  else
+    print_error(result.error);
+  std::fprintf(stderr, "furrow: %s\n", what.c_str());
+}
+
 /// summary_failed.json of a run whose rig could not write it: why, without means.
 void write_failure(const std::filesystem::path& file, const scenario::Scenario& scenario,
                    const launch::LaunchResult& result) {
@@ -130,24 +139,15 @@ ExitCode supervise_run(const scenario::Scenario& scenario, launch::RunDirectory&
   const bool replaces = result.code != ExitCode::done && directory.replaces();
   if (result.code == ExitCode::bad_input || nothing_done || replaces) directory.discard();
   if (replaces && result.code != ExitCode::bad_input) {
-    if (result.code == ExitCode::stopped)
-      std::fprintf(stderr, "furrow: %s\n", result.error.c_str());
-    else
-      print_error(result.error);
-    std::fprintf(stderr, "furrow: the run had not begun to step; %s holds the earlier results again\n",
-                 directory.path().c_str());
+    tell_end(result, "the run had not begun to step; " + directory.path().string() +
+                         " holds the earlier results again");
     return result.code;
   }
   const bool finished_before = result.code != ExitCode::done && result.code != ExitCode::bad_input &&
                                done_before != std::filesystem::file_time_type::min() &&
                                written(directory.path() / kDone) == done_before;
   if (finished_before) {
-    if (result.code == ExitCode::stopped)
-      std::fprintf(stderr, "furrow: %s\n", result.error.c_str());
-    else
-      print_error(result.error);
-    std::fprintf(stderr, "furrow: the run had not gone on; %s is finished as it was\n",
-                 directory.path().c_str());
+    tell_end(result, "the run had not gone on; " + directory.path().string() + " is finished as it was");
     return result.code;
   }
   if (result.code == ExitCode::stopped) {

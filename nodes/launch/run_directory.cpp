@@ -21,10 +21,8 @@ namespace fs = std::filesystem;
 
 constexpr int kMaxNumbers = 100000;
 constexpr const char* kNoParents = "FURROW_MAKES_NO_PARENTS";
-constexpr const char* kStudy = "sweep.json";          // what the list of a study holds
 constexpr const char* kKinematics = "kinematics.csv";  // of `furrow kc`
 constexpr const char* kModes = "modes.csv";            // of `furrow modes`
-constexpr const char* kCalibration = "calibration.json";  // of `furrow calibrate`
 
 Error no_list(const fs::path& folder, const std::string& key, const std::string& why) {
   return input_error(folder.string(), key,

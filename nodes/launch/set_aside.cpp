@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "nodes/launch/folder_lock.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/text_file.hpp"
 
@@ -91,9 +92,9 @@ bool move_back(const fs::path& from, const fs::path& to) {
 
 bool came_to_be(const fs::path& folder) {
   const RunList list = RunList::read(folder);
-  if (list.holds("calibration.json"))
-    return stands(folder / "calibration.json") || lines_in(folder / "evaluations.csv") > kHeadLines;
-  if (list.holds("sweep.json")) {
+  if (list.holds(kCalibration))
+    return stands(folder / kCalibration) || lines_in(folder / "evaluations.csv") > kHeadLines;
+  if (list.holds(kStudy)) {
     const std::vector<fs::path> runs = runs_in(folder, list);
     return std::any_of(runs.begin(), runs.end(), came_to_be);
   }
@@ -114,7 +115,10 @@ bool set_aside(const fs::path& folder, const fs::path& reads) {
   };
   try {
     const RunList list = RunList::read(folder);
-    for (const fs::path& run : runs_in(folder, list)) take_back(run);
+    for (const fs::path& run : runs_in(folder, list)) {
+      wait_until_free(run);  // ranks outlive a supervisor that was killed by a second or two
+      take_back(run);
+    }
     const RunList::Found found = list.find(folder);
     const std::string read_there =
         reads.empty() ? "" : fs::weakly_canonical(reads).lexically_relative(fs::canonical(folder)).string();

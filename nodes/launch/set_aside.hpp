@@ -12,6 +12,8 @@
 namespace furrow::launch {
 
 inline constexpr const char* kAside = ".furrow-before";
+inline constexpr const char* kStudy = "sweep.json";              // what the list of a study holds
+inline constexpr const char* kCalibration = "calibration.json";  // of `furrow calibrate`
 
 /// Whether the run of the folder's list began to step; of several, whether one did; whether a calibration has a result.
 bool came_to_be(const std::filesystem::path& folder);

@@ -20,9 +20,11 @@
 namespace furrow::output {
 namespace {
 
-std::string header_line(const Table& table) {
+/// @param order  which column stands at each place
+std::string header_line(const Table& table, const std::vector<std::size_t>& order) {
   std::string header;
-  for (const Column& column : table.columns) header += (header.empty() ? "" : ",") + std::string(column.name);
+  for (const std::size_t i : order)
+    header += (header.empty() ? "" : ",") + std::string(table.columns[i].name);
   return header + '\n';
 }
 
@@ -71,7 +73,7 @@ TableWriter::TableWriter(const std::filesystem::path& file, const Table& table)
   check(stream_ != nullptr);
   only_append();
   std::iota(order_.begin(), order_.end(), std::size_t{0});
-  write(header_line(table));
+  write(header_line(table, order_));
 }
 
 TableWriter::TableWriter(const std::filesystem::path& file, const checkpoint::SeriesMark& mark, Table& table)
@@ -166,8 +168,8 @@ void TableWriter::add(std::span<const double> values) {
 void TableWriter::flush() { check(std::fflush(stream_.get()) == 0); }
 
 bool TableWriter::stands() const {
-  struct stat own {
-  }, there{};
+  struct stat own {};
+  struct stat there {};
   return fstat(fileno(stream_.get()), &own) == 0 && lstat(file_.c_str(), &there) == 0 &&
          own.st_dev == there.st_dev && own.st_ino == there.st_ino && std::cmp_equal(own.st_size, bytes_);
 }
@@ -181,10 +183,7 @@ void TableWriter::write_again(const Table& table) {
   only_append();
   hash_ = Hash();
   bytes_ = lines_ = 0;
-  std::string header;
-  for (const std::size_t i : order_)
-    header += (header.empty() ? "" : ",") + std::string(table.columns[i].name);
-  write(header + '\n');
+  write(header_line(table, order_));
   for (std::size_t line = 0; line < table.lines(); ++line) add(table.line(line));
   flush();
 }

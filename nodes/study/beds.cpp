@@ -89,13 +89,6 @@ bool unsteady(const Json& summary) {
   return false;
 }
 
-/// Ranks outlive a supervisor that was killed by a second or two.
-void wait_until_beds_are_free(const fs::path& folder) {
-  const launch::RunList list = launch::RunList::read(folder);
-  for (const std::string& form : list.forms())
-    if (form.ends_with('/') && launch::has_run_list(folder / form)) launch::wait_until_free(folder / form);
-}
-
 /// Of the scenario on the first bed; null where a study has the folder. @param told sweep.json
 Json digest_of_beds(const Json& told) { return value_at(told, "beds.scenario_digest"); }
 
@@ -130,10 +123,7 @@ void begin_beds(launch::RunDirectory& directory, const std::string& digest, bool
       throw input_error(
           folder.string(), "--out",
           "holds beds of another scenario or other settings, expected a new folder or --overwrite");
-    if (overwrite) {
-      wait_until_beds_are_free(folder);
-      directory.replace();
-    }
+    if (overwrite) directory.replace();
   }
   directory.add({"sweep.json", "summary.json", "summary_failed.json"});
   std::error_code error;  // they say of fewer beds than there will be

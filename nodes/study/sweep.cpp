@@ -381,8 +381,7 @@ void Sweep::pause_all() {
     if (run.process > 0) stopped.push_back(run.process);
   for (const int process : stopped) kill(process, SIGTSTP);
   launch::pause_here(stopped);
-  for (const Run& run : runs_)
-    if (run.process > 0) kill(run.process, SIGCONT);
+  for (const int process : stopped) kill(process, SIGCONT);
 }
 
 ExitCode Sweep::run(const launch::FolderLock& lock) {

@@ -43,6 +43,11 @@ def strike(case, started, number):
     return pid
 
 
+def strike_all(case, started):
+    for pid in processes.living(str(case.work)):
+        case.send(started, pid, signal.SIGKILL)
+
+
 @action
 def kill(case):
     started, alive = begin(case)
@@ -182,8 +187,7 @@ def memory_limit(case):
 def clock(case):
     """All is killed and continued where the clock since boot is another, as after a reboot; needs root."""
     started, _ = begin(case)
-    for pid in processes.living(str(case.work)):
-        case.send(started, pid, signal.SIGKILL)
+    strike_all(case, started)
     case.finish(started)
     offset = case.rng.choice([-int(time.monotonic() * 0.9), 3600, 10 ** 8])
     case.notes["offset_s"] = offset
@@ -226,8 +230,7 @@ def double_resume(case):
     """Two continue it at once: one does, the other is refused."""
     started, alive = begin(case)
     if alive:
-        for pid in processes.living(str(case.work)):
-            case.send(started, pid, signal.SIGKILL)
+        strike_all(case, started)
     case.finish(started)
     if case.newest_checkpoints():
         pair = [case.start(case.again), case.start(case.again)]

@@ -5,7 +5,7 @@ import signal
 import time
 
 import processes
-from actions import action, begin, mount, strike, unmount
+from actions import action, begin, mount, strike, strike_all, unmount
 from case import Deviation
 from compare_runs import differences
 
@@ -102,8 +102,7 @@ def overwrite(case):
     if alive:
         way = case.notes["way"] = case.rng.choice(["kill", "term", "all"])
         if way == "all":
-            for pid in processes.living(str(case.work)):
-                case.send(started, pid, signal.SIGKILL)
+            strike_all(case, started)
         else:
             strike(case, started, signal.SIGKILL if way == "kill" else signal.SIGTERM)
     if case.finish(started) == 0:
@@ -123,8 +122,7 @@ def overwrite(case):
 def damaged_checkpoint(case):
     """All is killed, and a file of the newest checkpoint is damaged: the run continues from the one before it."""
     started, _ = begin(case)
-    for pid in processes.living(str(case.work)):
-        case.send(started, pid, signal.SIGKILL)
+    strike_all(case, started)
     case.finish(started)
     processes.wait_until_gone(str(case.work), 10)
     alone = False

@@ -255,7 +255,8 @@ class Pause(EnvironmentTest):
             found[rank] = pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0]
         return found
 
-    def test_ctrl_z_stops_the_ranks_and_fg_lets_them_go_on(self):
+    def stopped_run(self):
+        """A run that Ctrl-Z has stopped, with its ranks."""
         process = start("run", self.path, "--set", "run.end=0.3", "--out", "out", "--set", "terrain.engine=rigid", "--no-plots",
                         "--set", "run.step=1e-6", cwd=self.folder)
         self.addCleanup(process.kill)
@@ -264,22 +265,18 @@ class Pause(EnvironmentTest):
         wait_for(lambda: set(self.states().values()) == {"T"} and len(self.states()) == 3, 20, "all ranks are stopped")
         state = pathlib.Path(f"/proc/{process.pid}/stat")
         wait_for(lambda: state.read_text().rsplit(")", 1)[1].split()[0] == "T", 20, "the program is stopped")
+        return process
+
+    def test_ctrl_z_stops_the_ranks_and_fg_lets_them_go_on(self):
+        process = self.stopped_run()
         process.send_signal(signal.SIGCONT)
         wait_for(lambda: "T" not in self.states().values(), 20, "all ranks go on")
         process.send_signal(signal.SIGTERM)
         process.communicate(timeout=60)
         self.assertEqual(process.returncode, 75)
 
-
     def test_ranks_that_are_stopped_end_when_the_program_is_killed(self):
-        process = start("run", self.path, "--set", "run.end=0.3", "--out", "out", "--set", "terrain.engine=rigid", "--no-plots",
-                        "--set", "run.step=1e-6", cwd=self.folder)
-        self.addCleanup(process.kill)
-        wait_for(lambda: (self.folder / "out" / "timeseries.csv").exists(), 60, "the run begins")
-        process.send_signal(signal.SIGTSTP)
-        wait_for(lambda: set(self.states().values()) == {"T"} and len(self.states()) == 3, 20, "all ranks are stopped")
-        state = pathlib.Path(f"/proc/{process.pid}/stat")
-        wait_for(lambda: state.read_text().rsplit(")", 1)[1].split()[0] == "T", 20, "the program is stopped")
+        process = self.stopped_run()
         process.kill()
         process.communicate(timeout=60)
         wait_for(lambda: not survivors(self.folder), 30, "all processes end")

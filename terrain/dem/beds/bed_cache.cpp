@@ -21,6 +21,7 @@ namespace {
 
 constexpr std::int64_t kBedFormat = 5;        // raise when the bits of a bed or its digest may change
 constexpr std::int64_t kOldestBedFormat = 4;  // that can be read
+constexpr const char* kDigest = "bed/digest";  // in files of the cache alone
 
 constexpr ArchiveKind kBed{"bed", "a bed of furrow", kBedFormat, kOldestBedFormat, ""};
 
@@ -80,13 +81,30 @@ void write_bed(const std::filesystem::path& file, const Archive& archive, const 
   write_archive(file, archive, kBed, [&] { tell("keeping the bed", 0.0); });
 }
 
-Archive read_bed(const std::filesystem::path& file, const ProgressCall& progress) {
+void keep_bed(const std::filesystem::path& file, Archive& bed, const std::string& digest,
+              const ProgressCall& progress) {
+  bed.put(kDigest, std::vector<std::uint8_t>(digest.begin(), digest.end()));
+  try {
+    write_bed(file, bed, progress);
+  } catch (const Error&) {
+    bed.remove(kDigest);
+    throw;
+  }
+  bed.remove(kDigest);
+}
+
+Archive read_bed(const std::filesystem::path& file, const ProgressCall& progress, std::string* digest) {
   std::int64_t version = 0;
   PacedCall tell(progress, PacedCall::kInterval);
   Archive bed = read_archive(file, kBed, &version, [&] { tell("reading the bed", 0.0); });
   try {
     bed = of_this_version(std::move(bed), version);
     require_label(bed);
+    if (bed.has(kDigest)) {
+      const auto& text = bed.get<std::uint8_t>(kDigest);
+      if (digest) digest->assign(text.begin(), text.end());
+      bed.remove(kDigest);
+    }
   } catch (const Error& error) {
     throw Error(error.code(), file.string() + ": " + error.what());
   }

@@ -20,9 +20,15 @@ std::filesystem::path bed_cache_file(const std::string& digest);
 /// Complete or absent, also with two writers. @throws Error(io), and what `progress` throws
 void write_bed(const std::filesystem::path& file, const Archive& archive, const ProgressCall& progress = {});
 
+/// The same in the cache, with the digest of what the bed is of. `bed` is as before afterwards.
+void keep_bed(const std::filesystem::path& file, Archive& bed, const std::string& digest,
+              const ProgressCall& progress = {});
+
+/// @param digest receives that of the file; stays as it is for one that holds none
 /// @throws Error(io) when the file is missing, not one of ours, damaged (checksum), of a newer format or of one before
 /// 4; and what `progress` throws
-Archive read_bed(const std::filesystem::path& file, const ProgressCall& progress = {});
+Archive read_bed(const std::filesystem::path& file, const ProgressCall& progress = {},
+                 std::string* digest = nullptr);
 
 /// Whether an HDF5 file is a settled bed of furrow, or too damaged to decide.
 bool may_be_bed(const std::filesystem::path& file);

@@ -52,24 +52,13 @@ void check_bed(const Archive& bed, const DemOptions& o) {
                       fmt::format("is {} but the bed '{}' was settled without", o.rolling_friction, o.bed));
 }
 
-constexpr const char* kDigest = "bed/digest";  // in the file alone: what the bed in it is of
-
-/// Takes it away. @returns it; empty for a bed that was kept before they held it
-std::string take_digest(Archive& bed) {
-  if (!bed.has(kDigest)) return "";
-  const auto& text = bed.get<std::uint8_t>(kDigest);
-  const std::string digest(text.begin(), text.end());
-  bed.remove(kDigest);
-  return digest;
-}
-
 bool from_cache(const std::filesystem::path& file, const DemOptions& options, Archive& bed,
                 const ProgressCall& progress) {
   if (file.empty()) return false;
   try {
-    bed = read_bed(file, progress);
+    std::string digest;
+    bed = read_bed(file, progress, &digest);
     check_bed(bed, options);
-    const std::string digest = take_digest(bed);
     return digest.empty() || digest == bed_digest(options);
   } catch (const Error& error) {
     if (error.code() != ExitCode::io && error.code() != ExitCode::bad_input) throw;
@@ -135,13 +124,9 @@ bool keep(const std::filesystem::path& file, const DemOptions& options, Archive&
           const ProgressCall& progress) {
   if (file.empty()) return false;
   try {
-    const std::string digest = bed_digest(options);
-    bed.put(kDigest, std::vector<std::uint8_t>(digest.begin(), digest.end()));
-    write_bed(file, bed, progress);
-    bed.remove(kDigest);
+    keep_bed(file, bed, bed_digest(options), progress);
     return true;
   } catch (const Error& error) {
-    bed.remove(kDigest);
     if (error.code() != ExitCode::io) throw;
     if (progress) progress(std::string("bed not cached: ") + error.what(), 1.0);
     return false;
@@ -199,7 +184,6 @@ PreparedBed prepare_bed(const DemOptions& options, const ProgressCall& progress)
   PreparedBed prepared;
   if (!bed_is_settled_anew(options)) {
     prepared.bed = read_bed(options.bed, progress);
-    (void)take_digest(prepared.bed);  // a file from the cache is a bed like any other
     check_bed(prepared.bed, options);
     prepared.file = options.bed;
   } else {

@@ -44,9 +44,9 @@ class RankReporter {
   bool supervised() const { return supervised_; }
   int rank() const { return rank_; }
 
-  /// How far it has come on its way to work: begun, read, started.
-  void stage(launch::RankLine::Kind kind) const {
-    if (supervised_) send({kind, rank_, {}, ExitCode::done, {}});
+  /// How far it has come: begun, read, started, ended.
+  void stage(launch::RankLine::Kind kind, ExitCode code = ExitCode::done) const {
+    if (supervised_) send({kind, rank_, {}, code, {}});
   }
   /// Memory or threads may run out where nothing can be said any more.
   void prepare_last_words(void (&end_where)(const std::string&, int), const Error& words) const {
@@ -269,8 +269,11 @@ ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
   // After the session of MPI has begun: its end is not waited for then, and its failures are not taken for these.
   reporter.prepare_last_words(launch::end_where_no_thread_starts, limit_error(launch::kNoThread));
   reporter.stage(launch::RankLine::Kind::started);
-  return run_this_node(*transport, scenario, arguments.resume ? &task.plan.point : nullptr, arguments,
-                       reporter, held);
+  const ExitCode code = run_this_node(*transport, scenario, arguments.resume ? &task.plan.point : nullptr,
+                                      arguments, reporter, held);
+  transport.reset();  // leaves MPI
+  reporter.stage(launch::RankLine::Kind::ended, code);
+  return code;
 }
 
 }  // namespace furrow::commands

@@ -117,11 +117,12 @@ ExitCode supervise_run(const scenario::Scenario& scenario, launch::RunDirectory&
     directory.add({"run.log", "summary_failed.json"});
     directory.lock().share();
     launch::ProgressDisplay display;
-    result = launch::supervise(
-        {rank_arguments(arguments, directory.path()), scenario::rank_table(scenario),
-         scenario.terrain_ranks > 1 ? static_cast<std::size_t>(scenario.terrain_ranks) : 0,
-         directory.path() / "run.log", directory.lock().descriptor(), launch::start_patience()},
-        display);
+    result =
+        launch::supervise({rank_arguments(arguments, directory.path()), scenario::rank_table(scenario),
+                           scenario.terrain_ranks > 1 ? static_cast<std::size_t>(scenario.terrain_ranks) : 0,
+                           directory.path() / "run.log", directory.lock().descriptor(),
+                           launch::start_patience(), scenario.run.peer_timeout},
+                          display);
   } catch (const Error&) {
     directory.discard();
     throw;

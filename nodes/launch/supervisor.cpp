@@ -19,6 +19,7 @@
 #include <fmt/ranges.h>
 
 #include "nodes/launch/child_process.hpp"
+#include "nodes/launch/end_watch.hpp"
 #include "nodes/launch/limits.hpp"
 #include "nodes/launch/signals.hpp"
 #include "nodes/launch/start_watch.hpp"
@@ -38,6 +39,9 @@ constexpr double kStopPatience =
     300.0;  // s from the request to stop until mpirun is terminated: time for a checkpoint
 constexpr double kStartPatience = 20.0;  // s that a wish to stop waits for ranks that are still starting
 constexpr double kKillPatience = 5.0;    // s from that until it is killed
+constexpr double kEndPatience = 10.0;    // s from the end of all ranks until mpirun is killed
+constexpr double kFailurePatience =
+    20.0;  // s beside the time-out of peers, from a failure until mpirun is killed
 constexpr double kDrainPatience = 1.0;   // s to read what is left once mpirun has ended
 constexpr double kLogInterval = 5.0;     // s between lines of progress in the log
 constexpr int kPollInterval = 100;       // ms
@@ -113,7 +117,8 @@ class Supervisor {
       : launch_(launch),
         display_(display),
         log_(launch.log, std::ios::app),
-        start_(launch.ranks.size(), launch.patience) {
+        start_(launch.ranks.size(), launch.patience),
+        end_(launch.ranks.size(), kEndPatience, launch.peer_timeout + kFailurePatience) {
     if (!log_) throw io_error(launch.log.string(), "cannot be written");
   }
   ~Supervisor() {
@@ -132,6 +137,7 @@ class Supervisor {
       pass_on_stop();
       pass_on_pause();
       end_late_start();
+      end_hung_launcher();
       if (ended_ > 0.0 && wall_clock() - ended_ > kKillPatience) kill(-child_, SIGKILL);
     }
     kill(-child_, SIGKILL);  // whatever is left of its group
@@ -154,6 +160,7 @@ class Supervisor {
   void pass_on_stop();
   void pass_on_pause();
   void end_late_start();
+  void end_hung_launcher();
   LaunchResult outcome() const;
   std::string launcher_said() const;
   LaunchResult lost_rank(int rank, const std::string& how) const;
@@ -166,9 +173,10 @@ class Supervisor {
   Lines out_lines_, err_lines_;
   LauncherText launcher_, other_;  // standard error, and what is no rank's line of standard output
   StartWatch start_;
+  EndWatch end_;
   std::optional<RankLine> error_;  // the first; one with a cause replaces one that reports a loss
   pid_t child_ = -1;
-  bool reaped_ = false, late_ = false;
+  bool reaped_ = false, late_ = false, hung_ = false;
   int status_ = 0;
   double logged_ = 0.0;  // wall time of the last progress in the log, s
   double reaped_at_ = 0.0, stop_seen_ = 0.0, asked_ = 0.0, ended_ = 0.0;  // wall time, s; 0: not yet
@@ -228,6 +236,9 @@ void Supervisor::take_output(std::string_view text) {
     case RankLine::Kind::started:
       start_.started(line->rank);
       break;
+    case RankLine::Kind::ended:
+      end_.ended(line->rank, line->code);
+      break;
     case RankLine::Kind::progress:
       if (asked_ == 0.0) display_.show(line->progress);
       if (const double now = wall_clock(); now - logged_ >= kLogInterval) {
@@ -243,6 +254,7 @@ void Supervisor::take_output(std::string_view text) {
       log_ << fmt::format("rank {}: {}\n", line->rank, line->text);
       if (!error_ || (error_->code == ExitCode::rank_lost && line->code != ExitCode::rank_lost))
         error_ = line;
+      end_.failed();
       break;
   }
   log_.flush();
@@ -292,6 +304,15 @@ void Supervisor::end_late_start() {
   kill(child_, SIGTERM);
 }
 
+/// What it has to do is done: its ranks have ended.
+void Supervisor::end_hung_launcher() {
+  if (launcher_.lost()) end_.failed();
+  if (hung_ || reaped_ || !end_.too_late(child_)) return;
+  hung_ = true;
+  log_ << "mpirun did not end although its ranks had; it is killed" << std::endl;
+  kill(-child_, SIGKILL);
+}
+
 std::string Supervisor::launcher_said() const {
   const std::string words = launcher_.words().empty() ? other_.words() : launcher_.words();
   return words.empty() ? "said nothing" : "said: " + words;
@@ -317,7 +338,10 @@ LaunchResult Supervisor::outcome() const {
     return {ExitCode::limit, fmt::format("{}: {}", scenario::out_of_memory(0.0).what(), text)};
   }
   if (error_ && error_->code != ExitCode::rank_lost) return {error_->code, error_->text};
-  if (stop_seen_ > 0.0 && (status == static_cast<int>(ExitCode::stopped) || ended_ > 0.0))
+  if (hung_ && end_.all_ended() && end_.code() == ExitCode::done) return {};
+  const bool stopped = status == static_cast<int>(ExitCode::stopped) ||
+                       (hung_ && end_.all_ended() && end_.code() == ExitCode::stopped);
+  if (stop_seen_ > 0.0 && (stopped || ended_ > 0.0))
     return {ExitCode::stopped,
             ended_ > 0.0 ? "stopped by a signal before the ranks could finish" : "stopped by a signal"};
   if (launcher_.lost()) {
@@ -331,8 +355,9 @@ LaunchResult Supervisor::outcome() const {
   }
   if (error_) return {error_->code, error_->text};
   if (status == 0 && start_.all_started()) return {};
-  const std::string how = exited ? fmt::format("mpirun ended with status {}", status)
-                                 : "mpirun was " + signal_name(WTERMSIG(status_));
+  const std::string how = hung_    ? "mpirun did not end although its ranks had"
+                          : exited ? fmt::format("mpirun ended with status {}", status)
+                                   : "mpirun was " + signal_name(WTERMSIG(status_));
   const std::string text = how + " and " + launcher_said();
   if (start_.count() > 0) return {ExitCode::rank_lost, text};
   if (text.find(kTooManyProcesses) != std::string::npos)

@@ -18,7 +18,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::string_view kMark = "@furrow ";
-constexpr std::array<const char*, 6> kKinds{"started", "progress", "note", "error", "begun", "read"};
+constexpr std::array<const char*, 7> kKinds{"started", "progress", "note", "error", "begun", "read", "ended"};
 constexpr std::size_t kMaxLine = 4096;  // bytes: PIPE_BUF of Linux, what a write keeps together
 
 }  // namespace
@@ -27,7 +27,8 @@ std::string encode(const RankLine& line) {
   FURROW_ASSERT(in_range(static_cast<int>(line.kind), kKinds.size()), static_cast<int>(line.kind));
   FURROW_ASSERT(line.rank >= 0, line.rank);
   json j{{"kind", kKinds[static_cast<std::size_t>(line.kind)]}, {"rank", line.rank}};
-  if (line.kind == RankLine::Kind::error) j["code"] = static_cast<int>(line.code);
+  if (line.kind == RankLine::Kind::error || line.kind == RankLine::Kind::ended)
+    j["code"] = static_cast<int>(line.code);
   if (line.kind == RankLine::Kind::progress) {
     const Progress& p = line.progress;
     j["phase"] = p.phase;

@@ -12,11 +12,11 @@
 namespace furrow::launch {
 
 struct RankLine {
-  enum class Kind { started, progress, note, error, begun, read };
+  enum class Kind { started, progress, note, error, begun, read, ended };
   Kind kind = Kind::started;
   int rank = 0;
   std::string text;                // note, error
-  ExitCode code = ExitCode::done;  // error
+  ExitCode code = ExitCode::done;  // error, ended
   Progress progress;
 };
 

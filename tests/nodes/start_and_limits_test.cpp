@@ -1,12 +1,15 @@
-// Ranks that do not come, and limits of the system.
+// Ranks that do not come, launchers that do not end, and limits of the system.
 #include <gtest/gtest.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 
 #include "nodes/launch/child_process.hpp"
+#include "nodes/launch/end_watch.hpp"
 #include "nodes/launch/limits.hpp"
 #include "nodes/launch/start_watch.hpp"
 #include "nodes/launch/supervisor_lines.hpp"
@@ -73,12 +76,76 @@ TEST(StartPatience, is_read_from_the_environment) {
   unsetenv("FURROW_START_TIMEOUT");
 }
 
-TEST(RankLine, the_stages_of_a_start_come_through) {
-  for (const auto kind :
-       {launch::RankLine::Kind::begun, launch::RankLine::Kind::read, launch::RankLine::Kind::started}) {
-    const auto line = launch::decode(launch::encode({kind, 2, {}, ExitCode::done, {}}));
+TEST(EndWatch, a_launcher_has_a_while_to_end_once_all_its_ranks_have) {
+  launch::EndWatch watch(2, kPatience, 1e3);
+  watch.ended(0, ExitCode::done);
+  let_pass(2.0 * kPatience);
+  EXPECT_FALSE(watch.too_late(getpid()));
+  watch.ended(1, ExitCode::done);
+  EXPECT_FALSE(watch.too_late(getpid()));
+  let_pass(2.0 * kPatience);
+  EXPECT_TRUE(watch.too_late(getpid()));
+}
+
+TEST(EndWatch, after_a_failure_ranks_and_launcher_have_a_while_to_end) {
+  launch::EndWatch watch(2, 1e3, kPatience);
+  watch.failed();
+  EXPECT_FALSE(watch.too_late(getpid()));
+  let_pass(2.0 * kPatience);
+  EXPECT_TRUE(watch.too_late(getpid()));
+}
+
+TEST(EndWatch, knows_the_first_code_that_is_none_of_success) {
+  launch::EndWatch watch(3, kPatience, kPatience);
+  watch.ended(0, ExitCode::done);
+  EXPECT_EQ(watch.code(), ExitCode::done);
+  watch.ended(2, ExitCode::physics);
+  watch.ended(1, ExitCode::stopped);
+  EXPECT_EQ(watch.code(), ExitCode::stopped);
+}
+
+/// A process with a child that ends, and one that lives on where that is wanted; it takes notice of neither.
+class Launcher {
+ public:
+  explicit Launcher(bool one_lives) : process_(fork()) {
+    if (process_ != 0) return;
+    if (fork() == 0) _exit(0);
+    if (one_lives && fork() == 0) {
+      prctl(PR_SET_PDEATHSIG, SIGKILL);
+      pause();
+    }
+    pause();
+  }
+  ~Launcher() {
+    kill(process_, SIGKILL);
+    waitpid(process_, nullptr, 0);
+  }
+  pid_t process() const { return process_; }
+
+ private:
+  pid_t process_;
+};
+
+TEST(EndWatch, a_launcher_that_takes_no_notice_of_the_end_of_its_ranks_hangs) {
+  for (const bool one_lives : {false, true}) {
+    const Launcher launcher(one_lives);
+    launch::EndWatch watch(2, kPatience, 1e3);
+    bool late = false;
+    for (int poll = 0; poll < 40 && !late; ++poll) {
+      late = watch.too_late(launcher.process());
+      let_pass(0.5 * kPatience);
+    }
+    EXPECT_EQ(late, !one_lives);
+  }
+}
+
+TEST(RankLine, the_stages_of_a_rank_come_through) {
+  using Kind = launch::RankLine::Kind;
+  for (const auto kind : {Kind::begun, Kind::read, Kind::started, Kind::ended}) {
+    const auto line = launch::decode(launch::encode({kind, 2, {}, ExitCode::stopped, {}}));
     ASSERT_TRUE(line);
     EXPECT_EQ(line->kind, kind);
+    EXPECT_EQ(line->code, kind == Kind::ended ? ExitCode::stopped : ExitCode::done);
   }
 }
 

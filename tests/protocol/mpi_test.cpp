@@ -33,7 +33,7 @@ struct Outcome {
   }
 };
 
-Outcome start(const std::string& scene, int ranks = 3, const std::string& environment = "") {
+Outcome start_once(const std::string& scene, int ranks, const std::string& environment) {
   const std::string command =
       environment +
       " OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 timeout -k 5 50 " MPIRUN " -n " +
@@ -53,6 +53,17 @@ Outcome start(const std::string& scene, int ranks = 3, const std::string& enviro
     outcome.exit_code = std::atoi(outcome.output.c_str() + told + 10);
   outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return outcome;
+}
+
+/// Open MPI 4.1's mpirun at times hangs on its way out instead, after a rank has ended otherwise than with 0
+/// (nodes/launch/end_watch.hpp): that try does not count, once.
+Outcome start(const std::string& scene, int ranks = 3, const std::string& environment = "") {
+  constexpr int kTimedOut = 124, kKilled = 137;  // what `timeout` returns
+  const Outcome outcome = start_once(scene, ranks, environment);
+  const bool out_of_time = outcome.exit_code == kTimedOut || outcome.exit_code == kKilled;
+  if (!out_of_time || outcome.count("Exit code:") == 0) return outcome;
+  std::printf("%s: mpirun did not end\n%s", scene.c_str(), outcome.output.c_str());
+  return start_once(scene, ranks, environment);
 }
 
 TEST(Mpi, a_thousand_steps_of_4000_vertices_arrive_in_order_and_whole) {

@@ -8,10 +8,11 @@ import shutil
 import signal
 import subprocess
 import threading
+import time
 import unittest
 
 from checkpoint_runs import FAULTY, INTERVAL, RANKS, STEPS, CheckpointTest, steps, summary
-from program import furrow, main, start
+from program import furrow, main, start, wait_for
 
 # (point, rank, which time, step at which the run continues at the latest)
 KILLS = [
@@ -65,6 +66,61 @@ class Stopped(CheckpointTest):
         self.assertRegex(done.stderr, r"furrow: error: .*waited 2 s for tire 0 .*tire 0 does not answer")
         self.resume()
         self.same_as_whole(leave_out=["scenario.json", "checkpoints/*/manifest.json"])  # they hold the key
+
+
+class LauncherThatDoesNotEnd(CheckpointTest):
+    """Two threads of Open MPI 4.1's mpirun may wait for each other for ever as it shuts down."""
+    LOG = "mpirun did not end although its ranks had; it is killed"
+
+    def launcher(self, then):
+        """@param then what it does once all is over, in Python"""
+        path = self.folder / "launcher"
+        path.write_text("#!/usr/bin/python3\nimport signal, subprocess, sys, time\n"
+                        "for number in signal.SIGTERM, signal.SIGUSR1: signal.signal(number, lambda *_: mpirun.send_signal(number))\n"
+                        f"mpirun = subprocess.Popen(['mpirun', *sys.argv[1:]])\nmpirun.wait()\n{then}\ntime.sleep(1000)\n")
+        path.chmod(0o755)
+        return {"FURROW_MPIRUN": str(path)}
+
+    def hung(self):
+        self.assertIn(self.LOG, (self.run_folder / "run.log").read_text())
+
+    def test_once_all_ranks_are_done_is_killed_and_the_run_is_done(self):
+        done = self.program("run", self.path, "--out", self.run_folder, "--no-plots", env=self.launcher(""))
+        self.assertNotIn("warning", done.stderr)
+        self.hung()
+        self.same_as_whole()
+
+    def test_once_all_ranks_have_stopped_is_killed_and_the_run_goes_on(self):
+        env = {**self.fault("step", 0, 250, "wait"), **self.launcher("")}
+        process = start("run", self.path, "--out", self.run_folder, "--no-plots", cwd=self.folder, program=FAULTY, env=env)
+        self.addCleanup(process.kill)
+        wait_for(self.mark.exists, 60, "the fault fires")
+        process.terminate()
+        time.sleep(1)
+        self.mark.unlink()
+        _, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 75, err)
+        self.assertIn("furrow: stopped by a signal; partial results are in", err)
+        self.hung()
+        self.resume()
+        self.same_as_whole()
+
+    def test_after_a_rank_was_lost_is_killed_and_the_loss_is_told(self):
+        begin = time.monotonic()
+        done = self.program("run", self.path, "--out", self.run_folder, "--no-plots", "--set", "run.peer_timeout=2", code=4,
+                            env={**self.fault("step", 1, 250, "kill"), **self.launcher("")})
+        self.assertGreater(time.monotonic() - begin, 20)
+        self.assertIn("furrow: error: rank 1 (tire 0) was lost: killed by signal 9", done.stderr)
+        self.hung()
+
+    def test_that_takes_no_notice_of_its_ranks_is_killed_sooner(self):
+        begin = time.monotonic()
+        ended = f"subprocess.Popen([{FAULTY!r}, '--version'], stdout=subprocess.DEVNULL)"
+        done = self.program("run", self.path, "--out", self.run_folder, "--no-plots", code=4,
+                            env={**self.fault("step", 1, 250, "kill"), **self.launcher(ended)})
+        self.assertLess(time.monotonic() - begin, 38)  # the time-out of peers and 20 s
+        self.assertIn("furrow: error: rank 1 (tire 0) was lost: killed by signal 9", done.stderr)
+        self.hung()
 
 
 class FullDisk(CheckpointTest):

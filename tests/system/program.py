@@ -47,7 +47,7 @@ def write_scenario(folder, scenario=None, name="small.json"):
     return path
 
 
-def furrow(*arguments, cwd, timeout=120, env=None, program=PROGRAM):
+def furrow(*arguments, cwd, timeout=200, env=None, program=PROGRAM):
     """Runs the program to its end."""
     return subprocess.run([program, *map(str, arguments)], cwd=cwd, timeout=timeout, text=True, errors="replace",
                           stdin=subprocess.DEVNULL, capture_output=True, env={**os.environ, **(env or {})})

@@ -1,5 +1,5 @@
-// Whether the launcher ends once its ranks have. Open MPI 4.1 may not: where ranks leave it as it shuts down, two of its
-// threads wait for each other for ever.
+// Whether the launcher ends once its ranks have. Open MPI 4.1 may not: where ranks leave it as it shuts down, two of
+// its threads wait for each other for ever.
 #pragma once
 
 #include <cstddef>

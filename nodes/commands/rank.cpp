@@ -27,6 +27,7 @@
 #include "nodes/scenario/memory_check.hpp"
 #include "nodes/scenario/runnable.hpp"
 #include "protocol/abandon_mpi.hpp"
+#include "protocol/files/fault_point.hpp"
 #include "protocol/files/hdf5_library.hpp"
 #include "protocol/mpi_transport.hpp"
 
@@ -233,9 +234,10 @@ bool first_rank_speaks() {
 ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
   launch::die_with_parent(SIGKILL, getppid());
   launch::catch_stop_signals();
+  RankReporter reporter;
+  if (reporter.supervised()) launch::end_on_loss_of_supervisor();
   if (!launch::supervisor_lives())
     return ExitCode::stopped;  // killed while mpirun could not hand the signal on yet
-  RankReporter reporter;
   reporter.stage(launch::RankLine::Kind::begun);
   hdf5::prepare();  // it opens itself on first use, and crashes where memory has run out by then
   Task task;
@@ -258,6 +260,7 @@ ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
     for (const auto* warnings : {&scenario.warnings, &std::as_const(task.plan).warnings})
       for (const std::string& warning : *warnings) print_warning(warning);
   reporter.stage(launch::RankLine::Kind::read);
+  fault_point("start");
   std::unique_ptr<Transport> transport;
   try {
     transport =
@@ -266,6 +269,7 @@ ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
     if (launched_rank() == 0) reporter.error(error);
     return error.code();
   }
+  launch::catch_stop_signals();  // from now on state can be saved
   // After the session of MPI has begun: its end is not waited for then, and its failures are not taken for these.
   reporter.prepare_last_words(launch::end_where_no_thread_starts, limit_error(launch::kNoThread));
   reporter.stage(launch::RankLine::Kind::started);

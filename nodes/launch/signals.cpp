@@ -61,6 +61,10 @@ void catch_stop_signals() {
 
 bool catches_stop_signals() { return catching; }
 
+void end_on_loss_of_supervisor() {
+  set_handler(SIGUSR1, [](int) { _exit(static_cast<int>(ExitCode::stopped)); });
+}
+
 int stop_signals() { return stop_count.load(std::memory_order_relaxed); }
 
 void catch_pause() {

@@ -15,6 +15,9 @@ void end_on_stop_signals();
 void catch_stop_signals();
 /// Whether this process does.
 bool catches_stop_signals();
+/// Ends this process without a word when USR1 comes, until catch_stop_signals() is called again: a launcher hands it on
+/// to a rank that is being started only when the supervisor was killed. MPI may be stuck, and nothing has begun.
+void end_on_loss_of_supervisor();
 
 /// How many have come.
 int stop_signals();

@@ -292,6 +292,16 @@ class Folder(CheckpointTest):
         self.resume()
         self.same_as_whole()
 
+    def test_killed_supervisor_of_ranks_that_are_being_started(self):
+        """MPI may be stuck, as it is where memory is scarce: nobody waits for it."""
+        process = self.start_waiting("start", 1, 1)
+        process.send_signal(signal.SIGKILL)
+        process.communicate(timeout=10)
+        self.no_process_left()
+        self.assertIn("start again with furrow run --overwrite", self.resume(code=2).stderr)
+        self.program("run", self.path, "--out", self.run_folder, "--no-plots", "--overwrite")
+        self.same_as_whole()
+
 
 if __name__ == "__main__":
     main()

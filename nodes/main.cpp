@@ -38,6 +38,8 @@ int main(int argc, char** argv) {
     // Threads that spin while they wait make a short bed slow as soon as the machine has something else to do.
     const std::string command = argc > 1 ? argv[1] : "";
     if (command == "bed" || command == "sweep" || as_rank) furrow::launch::wait_passively(argv);
+    if (!as_rank)
+      furrow::launch::end_where_processor_time_runs_out();  // the program does not start again after this
     const furrow::ExitCode code = furrow::commands::run_command_line(argc, argv);
     if (!std::cout.flush() && !furrow::launch::reader_is_gone())
       throw furrow::io_error("standard output", "cannot be written, expected room for the result");

@@ -28,12 +28,18 @@ constexpr long kFilesPerRank = 4;  // of mpirun
 // where many want a core.
 constexpr double kSurely = 0.5;
 
+rlim_t processor_time_given = RLIM_INFINITY;  // s, before end_where_processor_time_runs_out() lowered it
+
 /// "1 s", of a limit that is set; empty where there is none.
 std::string seconds_of_processor_time(rlim_t& seconds) {
   rlimit limit{};
   if (getrlimit(RLIMIT_CPU, &limit) != 0) return {};
-  seconds = std::min(limit.rlim_cur, limit.rlim_max);
+  seconds = processor_time_given == RLIM_INFINITY ? limit.rlim_cur : processor_time_given;
   return seconds == RLIM_INFINITY ? std::string() : fmt::format("{} s", seconds);
+}
+
+std::string too_little_processor_time(const std::string& limit) {
+  return "a process may use " + limit + " of processor time (ulimit -t)";
 }
 
 constexpr useconds_t kTimeForNews =
@@ -58,7 +64,7 @@ class LastWords {
   int descriptor_ = STDERR_FILENO;
 };
 
-LastWords where_memory_ran_out, where_no_thread_starts;
+LastWords where_memory_ran_out, where_no_thread_starts, where_processor_time_ran_out;
 std::terminate_handler usual_end = nullptr;
 
 [[noreturn]] void end_program() {
@@ -112,7 +118,7 @@ std::string cause_of(int signal, double processor_time, bool& certain) {
   certain = signal == SIGXCPU || (signal == SIGKILL && used_up);
   if (certain)
     return limit.empty() ? "a limit of processor time is reached (ulimit -t)"
-                         : "a process may use " + limit + " of processor time (ulimit -t)";
+                         : too_little_processor_time(limit);
   if (signal == SIGKILL) return "the system does that when memory runs out";
   if (signal == SIGBUS) return little_room();
   return {};
@@ -143,6 +149,21 @@ bool reader_is_gone() {
   pollfd end{STDOUT_FILENO, 0, 0};
   return fstat(STDOUT_FILENO, &kind) == 0 && (S_ISFIFO(kind.st_mode) || S_ISSOCK(kind.st_mode)) &&
          poll(&end, 1, 0) > 0 && (end.revents & (POLLERR | POLLHUP)) != 0;
+}
+
+void end_where_processor_time_runs_out() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_CPU, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
+  processor_time_given = limit.rlim_cur;
+  where_processor_time_ran_out.keep(
+      "furrow: error: " + too_little_processor_time(fmt::format("{} s", limit.rlim_cur)) +
+          ", expected a higher limit\n",
+      STDERR_FILENO);
+  std::signal(SIGXCPU, [](int) { where_processor_time_ran_out.say_and_end(); });
+  // At the upper limit the kernel ends a process without asking, and shells set both to the same.
+  if (limit.rlim_cur < limit.rlim_max || limit.rlim_cur < 2) return;
+  --limit.rlim_cur;
+  setrlimit(RLIMIT_CPU, &limit);
 }
 
 void end_where_memory_runs_out(const std::string& line, int descriptor) {

@@ -36,6 +36,9 @@ bool reader_is_gone();
 void end_where_memory_runs_out(const std::string& line, int descriptor = 2);
 inline constexpr const char* kOutOfMemory = "furrow: error: out of memory\n";
 
+/// Likewise a line of its own where the limit of processor time is reached, of which a second is kept for that.
+void end_where_processor_time_runs_out();
+
 /// Likewise the line where OpenMP can start no thread, for which it ends the program by exit(1), a code that is none of
 /// ours. Said before whatever asked for the program's end until now, such as a session of MPI, is ended: that would
 /// wait for the other ranks.

@@ -163,6 +163,13 @@ class Limits(EnvironmentTest):
         self.assertIn("a process may use 2 s of processor time (ulimit -t)", self.one_error(done, 6))
         self.assertEqual(survivors(self.folder), [])
 
+    def test_processor_time_of_a_command_without_ranks(self):
+        for limits in ("-t 2", "-S -t 2"):
+            done = limited(limits, "bed", self.path, "--set", "terrain.radius=0.006", "--set", "terrain.layers=30", "--set", "run.step=2e-5",
+                           cwd=self.folder)
+            self.assertEqual(self.one_error(done, 6), "furrow: error: a process may use 2 s of processor time (ulimit -t), expected a higher limit")
+            self.assertEqual(self.names(), ["small.json"])
+
     def test_a_terrain_that_cannot_fit_is_refused_before_anything_begins(self):
         large = ["--set", "terrain.radius=0.006", "--set", "terrain.layers=15", "--set", "terrain.length=100", "--set", "terrain.width=40",
                  "--set", "run.step=2e-5"]

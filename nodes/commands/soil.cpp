@@ -85,12 +85,12 @@ ExitCode soil_command(const scenario::Scenario& scenario, const SoilArguments& a
     const terrain::soil::SoilRun run{scenario.name, scenario.digest, options,
                                      plan,          results,         wall_clock() - begin};
     const nlohmann::ordered_json soil = terrain::soil::soil_json(run);
+    launch::say(terrain::soil::soil_text(soil));  // before the files: the disk may be full
+    std::cout << soil.dump(2) << std::endl;
     directory.add({"scenario.json", "soil.json", "plate.csv", "shear.csv", "cone.csv", "repose.csv"});
     write_whole_file(directory.path() / "scenario.json", scenario.completed + "\n");
     terrain::soil::write_soil_tables(directory.path(), run);
     write_whole_file(directory.path() / "soil.json", soil.dump(2) + "\n");
-    launch::say(terrain::soil::soil_text(soil));
-    std::cout << soil.dump(2) << "\n";
   } catch (...) {
     directory.discard();
     throw;

@@ -96,7 +96,9 @@ class LauncherThatDoesNotEnd(CheckpointTest):
         self.addCleanup(process.kill)
         wait_for(self.mark.exists, 60, "the fault fires")
         process.terminate()
-        time.sleep(1)
+        while "stopping" not in process.stderr.readline():
+            pass
+        time.sleep(1)  # the signal passes through the launcher
         self.mark.unlink()
         _, err = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 75, err)

@@ -18,7 +18,10 @@ using hdf5::kFormatVersion;
 
 Hdf5Writer::Hdf5Writer(const std::filesystem::path& file) : lock_(hdf5::library()), file_(file), part_(file) {
   hdf5::prepare();
-  handle_ = H5Fcreate(part_.way().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  // Without a buffer for small datasets: on a full disk they would be lost as they are closed, and not as they are put.
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_sieve_buf_size(access, 0);
+  handle_ = H5Fcreate(part_.way().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
   check(handle_ >= 0, "cannot create");
   attribute("format_version", kFormatVersion);
 }
@@ -42,11 +45,11 @@ void Hdf5Writer::write(const std::string& name, std::span<const T> values, const
   H5Pset_create_intermediate_group(groups, 1);
   const Handle timeless(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_obj_track_times(timeless, false);  // equal contents make equal files
-  const Handle set(H5Dcreate2(handle_, name.c_str(), type, space, groups, timeless, H5P_DEFAULT), H5Dclose);
+  Handle set(H5Dcreate2(handle_, name.c_str(), type, space, groups, timeless, H5P_DEFAULT), H5Dclose);
   check(set >= 0, "cannot create dataset '" + name + "'");
-  if (values.empty()) return;
-  check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0,
-        "cannot write dataset '" + name + "'");
+  const bool written =
+      values.empty() || H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0;
+  check(set.close() && written, "cannot write dataset '" + name + "'");
 }
 
 void Hdf5Writer::put(const std::string& name, std::span<const double> values,

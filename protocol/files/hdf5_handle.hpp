@@ -3,6 +3,8 @@
 
 #include <hdf5.h>
 
+#include <utility>
+
 #include "protocol/core/assert.hpp"
 
 namespace furrow {
@@ -11,13 +13,13 @@ namespace furrow {
 class Handle {
  public:
   Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-  ~Handle() {
-    if (id_ >= 0) close_(id_);
-  }
+  ~Handle() { close(); }
   Handle(const Handle&) = delete;
   Handle& operator=(const Handle&) = delete;
   operator hid_t() const { return id_; }
   bool ok() const { return id_ >= 0; }
+  /// @returns whether it could be closed, which for a dataset is to say written
+  bool close() { return id_ < 0 || close_(std::exchange(id_, -1)) >= 0; }
 
  private:
   hid_t id_;

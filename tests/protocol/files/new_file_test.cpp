@@ -2,6 +2,8 @@
 #include "protocol/files/new_file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <csignal>
 
 #include <fstream>
 #include <iterator>
@@ -67,6 +69,68 @@ TEST(NewFile, an_hdf5_file_reaches_its_file_though_the_unknown_name_was_taken_by
   fs::create_symlink(victim, part);
   std::ofstream(file.way()) << "others";
   EXPECT_EQ(read_whole_file(victim), "mine");
+}
+
+/// No file may grow beyond this many bytes, as on a disk that is full, until room is made.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FullDisk() { make_room(); }
+  void make_room() { setrlimit(RLIMIT_FSIZE, &before_); }
+
+ private:
+  rlimit before_{};
+};
+
+constexpr int kPuts = 8;
+
+/// A file like a frame, of datasets around the sizes of the library's buffers. @param before is called before each step.
+template <class Before>
+void write_file(const fs::path& file, const Before& before) {
+  before(0);
+  Hdf5Writer out(file);
+  for (int k = 1; k < kPuts - 1; ++k) {
+    before(k);
+    out.put("group/set" + std::to_string(k), std::vector<double>(100 << k, 1.0 + k), {hsize_t{100} << k});
+  }
+  before(kPuts - 1);
+  out.attribute("text", std::string(300, 't'));
+  before(kPuts);
+  out.finish();
+}
+
+TEST(NewFile, what_a_full_disk_did_not_take_is_never_published_although_it_has_room_again) {
+  const auto handled = std::signal(SIGXFSZ, SIG_IGN);
+  const testing::TemporaryFolder folder;
+  const fs::path good = folder.path() / "good.h5", file = folder.path() / "a.h5";
+  write_file(good, [](int) {});
+  const std::string whole = read_whole_file(good);
+  ASSERT_GT(whole.size(), 70000U);
+  int refused = 0;
+  for (rlim_t bytes = 0; bytes < whole.size(); bytes += 3001)
+    for (int room_at = 1; room_at <= kPuts; ++room_at) {
+      FullDisk disk(bytes);
+      try {
+        write_file(file, [&](int step) {
+          if (step == room_at) disk.make_room();
+        });
+      } catch (const Error& error) {
+        disk.make_room();
+        EXPECT_EQ(error.code(), ExitCode::io);
+        EXPECT_EQ(names_in(folder.path()), std::set<std::string>{"good.h5"});
+        ++refused;
+        continue;
+      }
+      disk.make_room();
+      EXPECT_TRUE(read_whole_file(file) == whole) << bytes << " bytes, room at step " << room_at;
+      fs::remove(file);
+    }
+  EXPECT_GT(refused, 20);
+  std::signal(SIGXFSZ, handled);
 }
 
 TEST(NewFile, only_names_of_its_form_are_in_the_making) {

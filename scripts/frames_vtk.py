@@ -36,17 +36,29 @@ def kinds_of(directory):
     return found
 
 
-def counted(kinds):
-    """The same frames; each that is taken prints the share of those before it, for `furrow` to show."""
-    done, total = 0, sum(len(frames) for frames in kinds.values())
+class Taken:
+    """The same frames, one after the other."""
 
-    def taken(frames):
-        nonlocal done
+    def __init__(self, kinds, tell):
+        """@param tell  print the share that is done, for `furrow` to show"""
+        self.done, self.total, self.tell = 0, sum(len(frames) for frames in kinds.values()), tell
+        self.path = None  # of the frame that was taken last
+        self.kinds = {kind: self.taken(frames) for kind, frames in kinds.items()}
+
+    def taken(self, frames):
         for frame in frames:
-            print(f"progress {done / total:.4f}", flush=True)
-            done += 1
+            if self.tell:
+                print(f"progress {self.done / self.total:.4f}", flush=True)
+            self.done += 1
+            self.path = frame.path
             yield frame
-    return {kind: taken(frames) for kind, frames in kinds.items()}
+
+
+def remove_files(folder, kinds):
+    """What was written of these, so that the same command can be given again."""
+    for kind in kinds:
+        for file in (*folder.glob(f"{kind}_*.vtp"), folder / f"{kind}.pvd"):
+            file.unlink(missing_ok=True)
 
 
 def fail(what, code):
@@ -60,16 +72,19 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, required=True, help="new folder for the files")
     parser.add_argument("--progress", action="store_true", help="print the share that is done, 'progress 0.25', now and then")
     arguments = parser.parse_args()
-    out = arguments.out
+    out, taken = arguments.out, None
     try:
         if out.exists() and (not out.is_dir() or any(out.iterdir())):
             return fail(f"command line: key '--vtk': {out} exists and is not an empty folder, expected a new one", 2)
         kinds = kinds_of(arguments.directory)
         if not kinds:
             return fail(f"{arguments.directory}: has no frames, expected a run with output.frame_interval above 0", 2)
-        module("vtk").write_kinds(out, counted(kinds) if arguments.progress else kinds)
+        taken = Taken(kinds, arguments.progress)
+        module("vtk").write_kinds(out, taken.kinds)
     except (OSError, RuntimeError, ValueError) as error:  # h5py's errors for a damaged file are among them
-        return fail(f"{arguments.directory}: {error}", 5)
+        if taken:
+            remove_files(out, taken.kinds)
+        return fail(f"{taken.path if taken and taken.path else arguments.directory}: {error}", 5)
     for kind in kinds:
         print(out / f"{kind}.pvd")
     return 0

@@ -201,7 +201,9 @@ def main():
         print(f"furrow: error: {printable(out)}: no plot was written, as other files have their names, expected another folder",
               file=sys.stderr)
     elif not written:
-        print(f"furrow: error: {arguments.directory}: holds nothing to plot", file=sys.stderr)
+        before = arguments.directory / ".furrow-before"
+        hint = f"; {before} holds earlier results, which 'furrow resume' brings back" if before.is_dir() else ""
+        print(f"furrow: error: {printable(arguments.directory)}: holds nothing to plot{printable(hint)}", file=sys.stderr)
     return 0 if written else 5
 
 

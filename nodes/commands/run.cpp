@@ -10,6 +10,7 @@
 
 #include "nodes/checkpoint/checkpoint.hpp"
 #include "nodes/checkpoint/resume.hpp"
+#include "nodes/checkpoint/run_summary.hpp"
 #include "nodes/commands/commands.hpp"
 #include "nodes/launch/limits.hpp"
 #include "nodes/launch/messages.hpp"
@@ -146,7 +147,8 @@ ExitCode supervise_run(const scenario::Scenario& scenario, launch::RunDirectory&
   }
   const bool finished_before = result.code != ExitCode::done && result.code != ExitCode::bad_input &&
                                done_before != std::filesystem::file_time_type::min() &&
-                               written(directory.path() / kDone) == done_before;
+                               written(directory.path() / kDone) == done_before &&
+                               checkpoint::finished_at(directory.path()) >= 0;
   if (finished_before) {
     tell_end(result, "the run had not gone on; " + directory.path().string() + " is finished as it was");
     return result.code;

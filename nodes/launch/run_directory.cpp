@@ -187,6 +187,8 @@ void RunDirectory::require_no_links(bool continues) const {
   for (const auto& entry : fs::directory_iterator(path_, error)) {
     const std::string name = entry.path().filename().string();
     const bool written_on = continues && (name == "run.log" || name.starts_with("timeseries"));
+    if (written_on && list.holds(name) && !fs::is_regular_file(entry.status(error)))
+      throw input_error(entry.path().string(), "", "is not a file, expected one, or none at this place");
     if (!fs::is_symlink(entry.symlink_status(error)) ||
         !(list.holds(name + "/") || (written_on && list.holds(name))))
       continue;

@@ -29,6 +29,7 @@
 #include "nodes/scenario/memory_check.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/clock.hpp"
+#include "protocol/files/memory_limit.hpp"
 #include "protocol/host.hpp"
 
 namespace furrow::launch {
@@ -42,6 +43,7 @@ constexpr double kKillPatience = 5.0;    // s from that until it is killed
 constexpr double kEndPatience = 10.0;    // s from the end of all ranks until mpirun is killed
 constexpr double kFailurePatience =
     20.0;  // s beside the time-out of peers, from a failure until mpirun is killed
+constexpr double kScarce = 0.5e9;        // bytes of address space: MPI may not begin with so little
 constexpr double kDrainPatience = 1.0;   // s to read what is left once mpirun has ended
 constexpr double kLogInterval = 5.0;     // s between lines of progress in the log
 constexpr int kPollInterval = 100;       // ms
@@ -61,6 +63,19 @@ class Lines {
  private:
   std::string rest_;
 };
+
+bool memory_is_scarce() { return address_space_limit().bytes < kScarce; }
+
+LaunchResult out_of_memory(const std::string& text) {
+  return {ExitCode::limit, fmt::format("{}: {}", scenario::out_of_memory(0.0).what(), text)};
+}
+
+/// Whether somebody ended mpirun, or a rank before MPI knew it, whose death mpirun hands on as a shell does.
+bool was_killed(int status) {
+  constexpr int kBySignal = 128;
+  const int signal = WIFEXITED(status) ? WEXITSTATUS(status) - kBySignal : WTERMSIG(status);
+  return signal == SIGKILL || signal == SIGTERM;
+}
 
 std::string signal_name(int signal) {
   const char* name = strsignal(signal);
@@ -334,8 +349,9 @@ LaunchResult Supervisor::outcome() const {
         fmt::format("{} within {:g} s (FURROW_START_TIMEOUT sets another time): mpirun {}", start_.standing(),
                     launch_.patience, said) +
         room;
-    if (said.find(std::strerror(ENOMEM)) == std::string::npos) return {ExitCode::io, text};
-    return {ExitCode::limit, fmt::format("{}: {}", scenario::out_of_memory(0.0).what(), text)};
+    if (said.find(std::strerror(ENOMEM)) == std::string::npos && !memory_is_scarce())
+      return {ExitCode::io, text};
+    return out_of_memory(text);
   }
   if (error_ && error_->code != ExitCode::rank_lost) return {error_->code, error_->text};
   if (hung_ && end_.all_ended() && end_.code() == ExitCode::done) return {};
@@ -362,6 +378,9 @@ LaunchResult Supervisor::outcome() const {
   if (start_.count() > 0) return {ExitCode::rank_lost, text};
   if (text.find(kTooManyProcesses) != std::string::npos)
     return {ExitCode::limit, "no rank could be started: " + text};
+  if (was_killed(status_))
+    return {ExitCode::rank_lost, "the ranks were lost while they were being started: " + text};
+  if (memory_is_scarce()) return out_of_memory("no rank could be started: " + text);
   std::vector<std::string> suspects = launcher_settings();
   suspects.insert(suspects.begin(), {"PATH", "TMPDIR"});
   return {ExitCode::io, fmt::format("no rank could be started (are {} right, is FURROW_MPIRUN Open MPI's?): {}",

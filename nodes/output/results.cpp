@@ -203,15 +203,15 @@ SummaryInput Results::summary_input(const RunEnd& end) const {
                                      resume_)};
 }
 
-void Results::finish(const RunEnd& end, bool stopped) {
+std::string Results::finish(const RunEnd& end, bool stopped) {
   FURROW_ASSERT(end.reports.size() == cards_.size(), end.reports.size(), cards_.size());
   FURROW_ASSERT((stopped || !end.wheels.empty()) && end.wheels.size() <= tables_.size(), end.wheels.size(),
                 tables_.size());
   FURROW_ASSERT(end.wall >= 0.0, end.wall);
   flush();
   write_hdf5(end.reports);
-  write_xdmf_index(directory_);
-  if (stopped) return;
+  std::string lost_frames = write_xdmf_index(directory_);
+  if (stopped) return lost_frames;
   // Of a checkpoint or a frame that could not be written while the folder had another name.
   checkpoint::remove_checkpoints_after(directory_, std::numeric_limits<std::int64_t>::max());
   launch::remove_unfinished(directory_);
@@ -219,6 +219,7 @@ void Results::finish(const RunEnd& end, bool stopped) {
   std::error_code ignored;
   std::filesystem::remove(directory_ / "summary_failed.json", ignored);
   write_whole_file(directory_ / "summary.json", summary_text(summary_input(end)));
+  return lost_frames;
 }
 
 void Results::fail(const RunEnd& end, const Failure& failure) {

@@ -86,8 +86,9 @@ class Results {
   /// not write are not its results. @returns what was written again @throws Error(io)
   std::vector<std::string> flush();
 
-  /// Writes results.h5, results.xdmf and, unless the run was stopped early, summary.json. @throws Error(io)
-  void finish(const RunEnd& end, bool stopped);
+  /// Writes results.h5, results.xdmf and, unless the run was stopped early, summary.json. @returns what to warn of
+  /// @throws Error(io)
+  std::string finish(const RunEnd& end, bool stopped);
   /// The run has failed: writes results.h5 and summary_failed.json of what there is. @throws Error(io)
   void fail(const RunEnd& end, const Failure& failure);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include <fmt/format.h>
@@ -45,14 +46,19 @@ std::optional<Frame> read_frame(const std::filesystem::path& run, const FrameNam
   }
 }
 
-/// {kind: numbers of its frames, from the names of files, rising}; kinds of which none can be read are left out.
-std::map<std::string, std::vector<std::int64_t>> kinds_in(const std::filesystem::path& run) {
-  std::map<std::string, std::vector<std::int64_t>> kinds;
+/// {kind: numbers of its frames}, from the names of files.
+using Kinds = std::map<std::string, std::set<std::int64_t>>;
+
+Kinds kinds_in(const std::filesystem::path& run) {
+  Kinds kinds;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(run / "frames", error))
-    if (const auto name = frame_name(entry.path().filename().string()))
-      kinds[name->kind].push_back(name->index);
-  for (auto& [kind, numbers] : kinds) std::ranges::sort(numbers);
+    if (const auto name = frame_name(entry.path().filename().string())) kinds[name->kind].insert(name->index);
+  return kinds;
+}
+
+/// Kinds of which none can be read are left out.
+Kinds readable(const std::filesystem::path& run, Kinds kinds) {
   std::erase_if(kinds, [&](const auto& kind) {
     return std::ranges::none_of(kind.second, [&](std::int64_t index) {
       return read_frame(run, {kind.first, index}).has_value();
@@ -61,13 +67,21 @@ std::map<std::string, std::vector<std::int64_t>> kinds_in(const std::filesystem:
   return kinds;
 }
 
-/// Those that all kinds have, rising.
-std::vector<std::int64_t> common_numbers(const std::map<std::string, std::vector<std::int64_t>>& kinds) {
-  std::vector<std::int64_t> common = kinds.begin()->second;
-  for (const auto& kind : kinds)
-    std::erase_if(common, [&](std::int64_t index) { return !std::ranges::binary_search(kind.second, index); });
-  return common;
-}
+/// Instants of which a file is missing or cannot be read.
+struct LostInstants {
+  std::int64_t count = 0;
+  std::string first;  // such a file
+
+  void add(std::int64_t more, const FrameName& name) {
+    if (count == 0) first = "frames/" + frame_file(name);
+    count += more;
+  }
+  std::string text() const {
+    if (count == 0) return {};
+    return fmt::format("{} is missing or cannot be read: results.xdmf leaves out {} instant{}", first, count,
+                       count == 1 ? "" : "s");
+  }
+};
 
 std::string data_item(const Frame& f, const char* name, hsize_t count, int width, const char* type) {
   FURROW_ASSERT(width > 0, name, width);
@@ -99,24 +113,37 @@ std::string grid(const Frame& f, const std::string& name) {
 
 }  // namespace
 
-void write_xdmf_index(const std::filesystem::path& run) {
-  const auto kinds = kinds_in(run);
+std::string write_xdmf_index(const std::filesystem::path& run) {
+  const Kinds all = kinds_in(run), kinds = readable(run, all);
   if (kinds.empty()) {
     std::error_code error;
     std::filesystem::remove(run / "results.xdmf", error);  // of frames that are gone
-    return;
+    return {};
   }
+  LostInstants lost;
+  std::set<std::int64_t> instants;
+  for (const auto& [kind, numbers] : all)
+    if (kinds.contains(kind))
+      instants.insert(numbers.begin(), numbers.end());
+    else
+      lost.add(static_cast<std::int64_t>(numbers.size()), {kind, *numbers.begin()});
   // Piece by piece: there may be a hundred thousand frames.
   NewFile file(run / "results.xdmf");
   file.write(
       "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\"><Domain>\n"
       "<Grid Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
-  for (const std::int64_t index : common_numbers(kinds)) {
+  std::int64_t next = 0;
+  for (const std::int64_t index : instants) {
+    if (index > next) lost.add(index - next, {kinds.begin()->first, next});
+    next = index + 1;
     std::string grids;
     std::optional<Frame> frame;
     for (const auto& [kind, numbers] : kinds) {
       frame = read_frame(run, {kind, index});
-      if (!frame) break;
+      if (!frame) {
+        lost.add(1, {kind, index});
+        break;
+      }
       grids += grid(*frame, kind);
     }
     if (!frame) continue;
@@ -127,6 +154,7 @@ void write_xdmf_index(const std::filesystem::path& run) {
   }
   file.write("</Grid></Domain></Xdmf>\n");
   file.publish();
+  return lost.text();
 }
 
 }  // namespace furrow::output

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 namespace furrow::output {
 
 /// Writes <run>/results.xdmf for the frames under <run>/frames: the instants at which every tire and the terrain left a
-/// readable file. None when there are no frames. @throws Error(io)
-void write_xdmf_index(const std::filesystem::path& run);
+/// readable file. None when there are no frames.
+/// @returns what to warn of: a file of an instant before the last that is lost; empty: none @throws Error(io)
+std::string write_xdmf_index(const std::filesystem::path& run);
 
 }  // namespace furrow::output

@@ -130,9 +130,12 @@ class RigNode : public Node {
     if (context_.profile) output::write_profile(context_.directory / "profile.json", reports);
     const std::vector<output::WheelEnd> wheels = wheel_ends();
     flush();
-    results_->finish({reports, wheels, terrain_, *accounts_, time_, wall_clock() - wall_start_, end_reason_,
-                      rig_->findings()},
-                     stopped);
+    const std::string lost_frames =
+        results_->finish({reports, wheels, terrain_, *accounts_, time_, wall_clock() - wall_start_,
+                          end_reason_, rig_->findings()},
+                         stopped);
+    if (!lost_frames.empty() && context_.note)
+      context_.note(fmt::format("warning: {}/{}", context_.directory.string(), lost_frames));
   }
 
   void fail(ExitCode code, const std::string& text) noexcept override {

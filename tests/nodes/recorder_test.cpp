@@ -82,12 +82,25 @@ TEST(Xdmf, holds_complete_instants_only) {
   for (int i = 0; i < 3; ++i) output::write_tire_frame(folder.path(), 0, i, 0.1 * i, mesh, surface, {});
   for (int i = 0; i < 2; ++i) output::write_terrain_frame(folder.path(), i, 0.1 * i, grains);
   std::ofstream(folder.path() / "frames" / "terrain_000002.h5") << "cut short";
-  output::write_xdmf_index(folder.path());
+  EXPECT_EQ(output::write_xdmf_index(folder.path()),
+            "frames/terrain_000002.h5 is missing or cannot be read: results.xdmf leaves out 1 instant");
   std::string text;
   for (const std::string& line : lines_of(folder.path() / "results.xdmf")) text += line + "\n";
   EXPECT_NE(text.find("tire0_000001.h5"), std::string::npos);
   EXPECT_NE(text.find("terrain_000001.h5"), std::string::npos);
   EXPECT_EQ(text.find("_000002.h5"), std::string::npos);
+}
+
+TEST(Xdmf, instants_that_are_lost_are_counted) {
+  const testing::TemporaryFolder folder;
+  const terrain::TerrainFrame grains{{0, 0, 0}, {0.5f}, {0.01f}};
+  for (int i = 0; i < 9; ++i) output::write_terrain_frame(folder.path(), i, 0.1 * i, grains);
+  EXPECT_EQ(output::write_xdmf_index(folder.path()), "");
+  const auto frames = folder.path() / "frames";
+  for (const int lost : {0, 3, 4}) std::filesystem::remove(frames / output::frame_file({"terrain", lost}));
+  std::ofstream(frames / "terrain_000006.h5") << "cut short";
+  EXPECT_EQ(output::write_xdmf_index(folder.path()),
+            "frames/terrain_000000.h5 is missing or cannot be read: results.xdmf leaves out 4 instants");
 }
 
 TEST(Xdmf, is_not_written_without_frames) {

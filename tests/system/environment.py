@@ -111,6 +111,15 @@ class Launcher(EnvironmentTest):
     def test_that_has_no_memory_for_its_ranks_is_a_limit(self):
         self.check("echo 'mmap(2): Cannot allocate memory (errno 12)' >&2; sleep 1000\n", "mpirun said: mmap(2)", 30, code=6)
 
+    def test_that_fails_where_memory_is_scarce_is_a_limit(self):
+        env = self.launcher("echo 'PMIX ERROR: NOT-AVAILABLE in file dstore_segment.c' >&2; exit 1\n")
+        line = self.one_error(limited("-v 400000", "run", self.path, "--out", "out", cwd=self.folder, env=env), 6)
+        self.assertRegex(line, r"out of memory: limit 0.4 GB \(ulimit -v\): no rank could be started: mpirun ended with status 1 .*PMIX ERROR")
+
+    def test_that_hands_on_the_death_of_a_rank_is_no_broken_one(self):
+        done = furrow("run", self.path, "--out", "out", cwd=self.folder, env=self.launcher("exit 137\n"))  # Open MPI's, of a rank that it has just started
+        self.assertIn("the ranks were lost while they were being started: mpirun ended with status 137", self.one_error(done, 4))
+
     def test_that_hangs_and_will_not_end_is_killed(self):
         self.check("trap '' TERM; while true; do sleep 0.1; done\n", "mpirun said nothing", 40)
 

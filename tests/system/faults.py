@@ -4,6 +4,7 @@ the run goes on from the last good checkpoint to the very same result."""
 import contextlib
 import json
 import os
+import pathlib
 import shutil
 import signal
 import subprocess
@@ -58,6 +59,22 @@ class Killed(CheckpointTest):
 
 for row in KILLS:
     setattr(Killed, f"test_{row[0].replace('.', '_')}_{row[1]}", lambda self, row=row: self.check(*row))
+
+
+class KilledAtTheStart(CheckpointTest):
+    """Before MPI connects the ranks."""
+
+    def test_a_rank(self):
+        self.assertIn("furrow: error: rank 1 (tire 0) was lost: killed by signal 9", self.run_with_fault("start", 1, 1, "kill").stderr)
+
+    def test_the_launcher(self):
+        process = self.start_waiting("start", 1, 1)
+        launcher = int(pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()[0])
+        os.kill(launcher, signal.SIGKILL)
+        _, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 4, err)
+        self.assertIn("furrow: error: the ranks were lost while they were being started: mpirun was killed by signal 9", err)
+        self.no_process_left()
 
 
 class Stopped(CheckpointTest):
@@ -256,6 +273,25 @@ class Damaged(CheckpointTest):
         text = (self.run / "timeseries.csv").read_text()
         (self.run / "timeseries.csv").write_text(text.replace("0", "1", 1))
         self.assertIn("timeseries.csv: does not hold the lines that the checkpoint knows", self.resume(code=5).stderr)
+
+    def test_series_and_summary_that_were_emptied_are_no_finished_run(self):
+        for name in ("timeseries.csv", "summary.json"):
+            (self.run / name).write_text("")
+        told = self.resume(code=5).stderr
+        self.assertIn("timeseries.csv: does not hold the lines that the checkpoint knows", told)
+        self.assertNotIn("is finished", told)
+
+    def test_frames_that_were_lost_are_told(self):
+        (self.run / "frames" / "terrain_000001.h5").unlink()
+        os.truncate(self.run / "frames" / "tire0_000003.h5", 1000)
+        told = self.resume().stderr
+        self.assertIn(f"furrow: warning: {self.run}/frames/terrain_000001.h5 is missing or cannot be read: results.xdmf leaves out 2 instants\n",
+                      told)
+
+    def test_a_log_that_is_no_file(self):
+        (self.run / "run.log").unlink()
+        os.mkfifo(self.run / "run.log")
+        self.assertIn("run.log: is not a file, expected one", self.resume(code=2).stderr)
 
 
 class Folder(CheckpointTest):

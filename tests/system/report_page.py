@@ -313,6 +313,12 @@ class Page(SystemTest):
         again = furrow("report", self.run_folder, "--vtk", out, "--quiet", cwd=self.folder)
         self.assertEqual(again.returncode, 2)
         self.assertEqual(again.stderr, f"furrow: error: command line: key '--vtk': {out} exists and is not an empty folder, expected a new one\n")
+        damaged = self.run_folder / "frames" / "terrain_000001.h5"
+        damaged.write_bytes(b"")
+        done = furrow("report", self.run_folder, "--vtk", self.folder / "part", cwd=self.folder)
+        self.assertEqual(done.returncode, 5, done.stderr)
+        self.assertIn(f"furrow: error: {damaged}: ", done.stderr)
+        self.assertEqual(list((self.folder / "part").iterdir()), [])
         for frame in (self.run_folder / "frames").iterdir():
             frame.unlink()
         none = furrow("report", self.run_folder, "--vtk", self.folder / "none", cwd=self.folder)

@@ -1,9 +1,12 @@
 #include "nodes/launch/end_watch.hpp"
 
-#include <fstream>
+#include <unistd.h>
+
+#include <algorithm>
 #include <limits>
 #include <string>
 
+#include "nodes/launch/process_table.hpp"
 #include "protocol/core/assert.hpp"
 
 namespace furrow::launch {
@@ -11,31 +14,15 @@ namespace {
 
 constexpr double kForEver = std::numeric_limits<double>::infinity();
 
-struct ProcessState {
-  std::string name;
-  char state = '?';  // Z: it has ended, and its parent has not taken notice
-};
-
-ProcessState state_of(const std::string& process) {
-  std::ifstream file("/proc/" + process + "/stat");
-  std::string line;
-  std::getline(file, line);
-  const std::size_t begin = line.find('('), end = line.rfind(')');
-  if (begin == std::string::npos || end == std::string::npos || end + 2 >= line.size()) return {};
-  return {line.substr(begin + 1, end - begin - 1), line[end + 2]};
-}
-
 /// Whether processes of this program are all that the launcher has, and all of them have ended. A launcher that works
 /// takes notice within milliseconds.
 bool leaves_ended_ranks(int launcher) {
-  const std::string process = std::to_string(launcher), own = state_of("self").name;
-  std::ifstream children("/proc/" + process + "/task/" + process + "/children");
-  bool any = false;
-  for (std::string child; children >> child; any = true) {
+  const std::vector<pid_t> children = children_of(launcher);
+  const std::string own = state_of(getpid()).name;
+  return !children.empty() && std::ranges::all_of(children, [&](pid_t child) {
     const ProcessState state = state_of(child);
-    if (state.state != 'Z' || state.name != own) return false;
-  }
-  return any;
+    return state.state == 'Z' && state.name == own;
+  });
 }
 
 }  // namespace

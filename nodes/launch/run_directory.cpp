@@ -186,12 +186,11 @@ void RunDirectory::require_no_links(bool continues) const {
   const RunList list = RunList::read(path_);
   for (const auto& entry : fs::directory_iterator(path_, error)) {
     const std::string name = entry.path().filename().string();
-    const bool written_on = continues && (name == "run.log" || name.starts_with("timeseries"));
-    if (written_on && list.holds(name) && !fs::is_regular_file(entry.status(error)))
+    const bool written_on =
+        continues && (name == "run.log" || name.starts_with("timeseries")) && list.holds(name);
+    if (written_on && !fs::is_regular_file(entry.status(error)))
       throw input_error(entry.path().string(), "", "is not a file, expected one, or none at this place");
-    if (!fs::is_symlink(entry.symlink_status(error)) ||
-        !(list.holds(name + "/") || (written_on && list.holds(name))))
-      continue;
+    if (!fs::is_symlink(entry.symlink_status(error)) || !(written_on || list.holds(name + "/"))) continue;
     throw input_error(
         entry.path().string(), "",
         "is a link, expected what it leads to: results are not written through links; move the whole "

@@ -7,9 +7,8 @@
 
 #include <atomic>
 #include <cerrno>
-#include <fstream>
-#include <string>
 
+#include "nodes/launch/process_table.hpp"
 #include "protocol/core/error.hpp"
 
 namespace furrow::launch {
@@ -79,9 +78,7 @@ void pause_here(const std::vector<int>& stopped) {
     setpgid(0, 0);  // a signal to the job is none to it
     while (getppid() == own) usleep(kGuardInterval);
     for (const int process : stopped) {
-      std::ifstream children("/proc/" + std::to_string(process) + "/task/" + std::to_string(process) +
-                             "/children");
-      for (int child = 0; children >> child;) kill(child, SIGCONT);
+      for (const pid_t child : children_of(process)) kill(child, SIGCONT);
       kill(process, SIGCONT);
     }
     _exit(0);

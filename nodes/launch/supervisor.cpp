@@ -354,9 +354,10 @@ LaunchResult Supervisor::outcome() const {
     return out_of_memory(text);
   }
   if (error_ && error_->code != ExitCode::rank_lost) return {error_->code, error_->text};
-  if (hung_ && end_.all_ended() && end_.code() == ExitCode::done) return {};
-  const bool stopped = status == static_cast<int>(ExitCode::stopped) ||
-                       (hung_ && end_.all_ended() && end_.code() == ExitCode::stopped);
+  const bool told_all = hung_ && end_.all_ended();  // what mpirun would have
+  if (told_all && end_.code() == ExitCode::done) return {};
+  const bool stopped =
+      told_all ? end_.code() == ExitCode::stopped : status == static_cast<int>(ExitCode::stopped);
   if (stop_seen_ > 0.0 && (stopped || ended_ > 0.0))
     return {ExitCode::stopped,
             ended_ > 0.0 ? "stopped by a signal before the ranks could finish" : "stopped by a signal"};

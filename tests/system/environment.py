@@ -8,7 +8,6 @@ import shutil
 import signal
 import subprocess
 import time
-import unittest
 
 from program import PROGRAM, SystemTest, changed, furrow, main, ranks, start, survivors, wait_for, write_scenario
 
@@ -155,13 +154,8 @@ class Limits(EnvironmentTest):
             line = self.one_error(limited("-s 64", "validate", self.path, cwd=self.folder), 6)
             self.assertIn("the stack may take 64 kB (ulimit -s)", line)
 
-    @unittest.skipUnless(os.geteuid() == 0, "needs to mount a folder")
     def test_a_full_folder_for_temporary_files_is_named(self):
-        small = self.folder / "tmp"
-        small.mkdir()
-        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=8k", "tmpfs", str(small)], capture_output=True).returncode != 0:
-            self.skipTest("cannot mount")
-        self.addCleanup(subprocess.run, ["umount", str(small)])
+        small = self.small_disk(self.folder / "tmp", "8k")
         done = furrow("run", self.path, *SHORT, "--out", "out", cwd=self.folder, env={"TMPDIR": str(small), "FURROW_START_TIMEOUT": "20"})
         self.assertIn(done.returncode, (4, 5), done.stderr)
         self.assertIn(f"the folder for temporary files, TMPDIR {small}, has room for", done.stderr)

@@ -4,7 +4,6 @@ the run goes on from the last good checkpoint to the very same result."""
 import contextlib
 import json
 import os
-import pathlib
 import shutil
 import signal
 import subprocess
@@ -13,7 +12,7 @@ import time
 import unittest
 
 from checkpoint_runs import FAULTY, INTERVAL, RANKS, STEPS, CheckpointTest, steps, summary
-from program import furrow, main, start, wait_for
+from program import children, furrow, main, start, wait_for
 
 # (point, rank, which time, step at which the run continues at the latest)
 KILLS = [
@@ -69,8 +68,7 @@ class KilledAtTheStart(CheckpointTest):
 
     def test_the_launcher(self):
         process = self.start_waiting("start", 1, 1)
-        launcher = int(pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()[0])
-        os.kill(launcher, signal.SIGKILL)
+        os.kill(children(process.pid)[0], signal.SIGKILL)
         _, err = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 4, err)
         self.assertIn("furrow: error: the ranks were lost while they were being started: mpirun was killed by signal 9", err)
@@ -147,12 +145,7 @@ class FullDisk(CheckpointTest):
 
     def setUp(self):
         super().setUp()
-        self.disk = self.folder / "disk"
-        self.disk.mkdir()
-        if os.geteuid() != 0 or subprocess.run(["mount", "-t", "tmpfs", "-o", "size=8m", "tmpfs", self.disk],
-                                               capture_output=True).returncode != 0:
-            self.skipTest("needs root and the right to mount")
-        self.addCleanup(subprocess.run, ["umount", "-l", self.disk])
+        self.disk = self.small_disk(self.folder / "disk", "8m")
         self.run_folder = self.disk / "out"
 
     @contextlib.contextmanager

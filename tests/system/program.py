@@ -100,6 +100,11 @@ def ranks(mark):
     return found
 
 
+def children(pid):
+    """Processes that it has started and that have not ended."""
+    return [int(word) for word in pathlib.Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+
+
 def survivors(mark):
     """Command lines of all living processes that hold `mark`, this one's aside."""
     found = []
@@ -136,6 +141,15 @@ class SystemTest(unittest.TestCase):
 
     def names(self):
         return sorted(path.name for path in self.folder.iterdir())
+
+    def small_disk(self, folder, size):
+        """Makes the folder and mounts a disk of this size there; skips the test where that is not allowed."""
+        folder.mkdir()
+        if os.geteuid() != 0 or subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", folder],
+                                               capture_output=True).returncode != 0:
+            self.skipTest("needs root and the right to mount")
+        self.addCleanup(subprocess.run, ["umount", "-l", folder])
+        return folder
 
 
 def main():

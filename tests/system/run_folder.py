@@ -6,7 +6,6 @@ import os
 import pathlib
 import re
 import shutil
-import signal
 import subprocess
 import unittest
 
@@ -118,13 +117,8 @@ class Overwrite(SystemTest):
         self.assertEqual(sum(err.count("furrow: error: ") for err in told), 1, told)
         self.assertEqual(summary(self.out)["simulated_s"], RUN["run"]["end"])
 
-    @unittest.skipUnless(os.geteuid() == 0, "needs the right to mount")
     def test_a_full_disk_as_the_list_is_written_is_told_and_leaves_nothing(self):
-        disk = self.folder / "disk"
-        disk.mkdir()
-        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=1m", "tmpfs", disk], capture_output=True).returncode != 0:
-            self.skipTest("needs the right to mount")
-        self.addCleanup(subprocess.run, ["umount", "-l", disk])
+        disk = self.small_disk(self.folder / "disk", "1m")
         subprocess.run(["dd", "if=/dev/zero", f"of={disk}/ballast", "bs=4k"], capture_output=True)
         done = self.run_it(self.path, "--out", "disk/out", code=5)
         self.assertEqual(done.stderr, "furrow: error: disk/out/.furrow-run: cannot be written: No space left on device\n")

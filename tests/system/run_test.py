@@ -3,14 +3,11 @@
 import csv
 import json
 import os
-import pathlib
 import shutil
 import signal
 import subprocess
-import time
-import unittest
 
-from program import PROGRAM, ROOT, SystemTest, changed, furrow, main, ranks, start, survivors, wait_for, write_scenario
+from program import PROGRAM, ROOT, SystemTest, changed, children, furrow, main, ranks, start, survivors, wait_for, write_scenario
 
 FIRST_LOOK = ROOT / "rigs" / "first_look.json"
 SHORT = ["--set", "run.end=0.05", "--set", "run.average_from=0.02"]
@@ -215,8 +212,7 @@ class Interrupted(SystemTest):
 
     def test_killed_launcher_leaves_no_process(self):
         process = self.started()
-        children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
-        os.kill(int(children[0]), signal.SIGKILL)
+        os.kill(children(process.pid)[0], signal.SIGKILL)
         _, err = self.end(process, 4)
         self.assertIn("furrow: error: mpirun was killed by signal 9", err)
 

@@ -3,13 +3,11 @@
 import csv
 import json
 import os
-import pathlib
 import shutil
 import signal
 import sys
-import unittest
 
-from program import ROOT, SystemTest, changed, furrow, main, start, survivors, wait_for, write_scenario
+from program import ROOT, SystemTest, changed, children, furrow, main, start, survivors, wait_for, write_scenario
 
 sys.path.insert(0, str(ROOT / "tests" / "campaign"))
 from compare_runs import differences  # noqa: E402
@@ -105,8 +103,7 @@ class Sweep(SystemTest):
         study = self.study(list=[{"rig.slip": 0.1}], set={"run.end": 0.2})
         process = start("sweep", study, cwd=self.folder)
         self.addCleanup(process.kill)
-        children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children")
-        supervisor = int(wait_for(lambda: children.read_text().split(), 60, "the run begins")[0])
+        supervisor = wait_for(lambda: children(process.pid), 60, "the run begins")[0]
         os.kill(supervisor, signal.SIGKILL)
         _, err = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 4, err)

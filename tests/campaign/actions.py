@@ -133,15 +133,16 @@ def closed_streams(case):
     case.until_done()
 
 
-@action
-def disk_full(case):
-    """A small disk that is filled at the moment; without root, or where nothing can be mounted, a limit of file sizes."""
+def small_disk(case):
+    """@returns False without root, or where nothing can be mounted"""
     case.work.mkdir(parents=True, exist_ok=True)
     if not mount("-t", "tmpfs", "-o", "size=64m", "tmpfs", case.work):
-        return file_limit(case)
+        return False
     case.clean_up.append(lambda: unmount(case.work))
-    started, _ = begin(case)
-    ballast = case.work / "ballast"
+    return True
+
+
+def fill_disk(ballast):
     with open(ballast, "wb", buffering=0) as file:
         try:
             for size in (1 << 20, 4096, 1):
@@ -149,8 +150,36 @@ def disk_full(case):
                     pass
         except OSError:
             pass
+
+
+@action
+def disk_full(case):
+    """A small disk that is filled at the moment; without root, or where nothing can be mounted, a limit of file sizes."""
+    if not small_disk(case):
+        return file_limit(case)
+    started, _ = begin(case)
+    ballast = case.work / "ballast"
+    fill_disk(ballast)
     case.finish(started)
     ballast.unlink()
+    case.until_done()
+
+
+@action
+def disk_full_for_moments(case):
+    """As before, but others make room again after moments, several times: what was refused must be told or written anew."""
+    if not small_disk(case):
+        return file_limit(case)
+    case.checkpoints_may_be_lost = True
+    started, alive = begin(case)
+    ballast, case.notes["times"] = case.work / "ballast", 0
+    while alive and case.notes["times"] < 8:
+        fill_disk(ballast)
+        time.sleep(case.rng.uniform(0.0, 0.05))
+        ballast.unlink()
+        case.notes["times"] += 1
+        alive = case.wait(started, case.rng.uniform(0.01, 0.1))
+    case.finish(started)
     case.until_done()
 
 

@@ -20,6 +20,9 @@ BUSY_PATIENCE = 30.0  # s that a folder may stay taken by processes that are end
 # What a message must hold: an error, a stop, or the failure of a run of a study, with words that follow.
 MESSAGE = re.compile(r"furrow: (error: \S.{5,}|.*stopped by a signal|stopping|.*FAILED with exit code \d+: [^;\s].{4,})")
 
+NEWEST_DIFFERS = re.compile(r"checkpoints: the newest is \d+ and (\d+|none)$")
+LOST_CHECKPOINT = re.compile(r"the checkpoint at t = \S+ s could not be written: \S")
+
 
 class Deviation(Exception):
     """The promise is not kept: something lost, wrong, silent or hanging."""
@@ -44,6 +47,7 @@ class Case:
         self.out = self.work / "out"
         self.first, self.again, self.anew = scenarios.commands(scenario, self.inputs, self.out)
         self.steps, self.notes = [], {}
+        self.checkpoints_may_be_lost = False  # if the program has told so
         self.clean_up = []  # called in reverse order when the case is over
 
     # commands
@@ -167,9 +171,16 @@ class Case:
         if left:
             raise Deviation(f"processes outlive the run: {sorted(left.values())}")
         found = differences(reference, out or self.out)
+        if self.checkpoints_may_be_lost:
+            found = [line for line in found if not self.told_as_lost(line)]
         if found:
             more = f"; {len(found) - 5} more" if len(found) > 5 else ""
             raise Deviation("not as the undisturbed run: " + "; ".join(found[:5]) + more)
+
+    def told_as_lost(self, difference):
+        """Whether it is of the newest checkpoint of a run, and the program has said that it could not write one."""
+        said = [step["said"] for step in self.steps] + [log.read_text(errors="replace") for log in self.out.rglob("*.log")]
+        return NEWEST_DIFFERS.search(difference) and any(LOST_CHECKPOINT.search(text) for text in said)
 
     def end(self, keep=None):
         """@param keep folder that receives what the case left"""

@@ -9,7 +9,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <string_view>
 
 #include "nodes/launch/signals.hpp"
 #include "protocol/core/error.hpp"
@@ -19,7 +18,35 @@ namespace {
 
 constexpr int kCannotRun = 127;
 
-/// Whether mpirun, srun and the like set this for a rank; not what users choose for all their runs.
+/// In the child: becomes the program.
+[[noreturn]] void become(const Child& child, const std::vector<char*>& arguments, pid_t parent) {
+  if (child.own_group) setpgid(0, 0);
+  die_with_parent(child.death_signal, parent);
+  restore_signals();
+  if (child.in >= 0) dup2(child.in, STDIN_FILENO);
+  if (child.out >= 0) dup2(child.out, STDOUT_FILENO);
+  if (child.err >= 0) dup2(child.err, STDERR_FILENO);
+  if (child.prepare) child.prepare();
+  execv(arguments.front(), arguments.data());
+  dprintf(STDERR_FILENO, "%s cannot be run: %s\n", arguments.front(), std::strerror(errno));
+  _exit(kCannotRun);
+}
+
+}  // namespace
+
+Pipe::Pipe() {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0)
+    throw limit_error(std::string("a pipe cannot be opened: ") + std::strerror(errno) + " (ulimit -n)");
+  read = ends[0];
+  write = ends[1];
+}
+
+void Pipe::close_end(int& end) {
+  if (end >= 0) close(end);
+  end = -1;
+}
+
 bool is_of_launcher(std::string_view variable) {
   constexpr std::array kBeginnings{"OMPI_COMM_WORLD_",
                                    "OMPI_UNIVERSE_",
@@ -51,35 +78,6 @@ bool is_of_launcher(std::string_view variable) {
   return !variable.starts_with("PMIX_MCA_") &&
          std::any_of(kBeginnings.begin(), kBeginnings.end(),
                      [&](const char* beginning) { return variable.starts_with(beginning); });
-}
-
-/// In the child: becomes the program.
-[[noreturn]] void become(const Child& child, const std::vector<char*>& arguments, pid_t parent) {
-  if (child.own_group) setpgid(0, 0);
-  die_with_parent(child.death_signal, parent);
-  restore_signals();
-  if (child.in >= 0) dup2(child.in, STDIN_FILENO);
-  if (child.out >= 0) dup2(child.out, STDOUT_FILENO);
-  if (child.err >= 0) dup2(child.err, STDERR_FILENO);
-  if (child.prepare) child.prepare();
-  execv(arguments.front(), arguments.data());
-  dprintf(STDERR_FILENO, "%s cannot be run: %s\n", arguments.front(), std::strerror(errno));
-  _exit(kCannotRun);
-}
-
-}  // namespace
-
-Pipe::Pipe() {
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0)
-    throw limit_error(std::string("a pipe cannot be opened: ") + std::strerror(errno) + " (ulimit -n)");
-  read = ends[0];
-  write = ends[1];
-}
-
-void Pipe::close_end(int& end) {
-  if (end >= 0) close(end);
-  end = -1;
 }
 
 void forget_launcher() {

@@ -4,6 +4,7 @@
 #include <sys/types.h>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace furrow::launch {
@@ -33,6 +34,9 @@ struct Child {
   int death_signal = 0;                // that ends it when this process does
   std::function<void()> prepare = {};  // called in the child before the program begins
 };
+
+/// Whether mpirun, srun and the like set this ("NAME=value") for a rank; not what users choose for all their runs.
+bool is_of_launcher(std::string_view variable);
 
 /// Takes out of the environment what mpirun, srun and the like set for the processes that they start: a program that is
 /// started with a launcher of its own, or that is no rank, must not find it.

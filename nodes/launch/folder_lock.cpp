@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -18,6 +20,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "nodes/launch/left_launcher.hpp"
 #include "nodes/launch/messages.hpp"
 #include "nodes/launch/run_list.hpp"
 #include "protocol/core/clock.hpp"
@@ -37,20 +40,19 @@ bool same_file(const struct stat& a, const struct stat& b) {
 }
 
 /// "process 4711 (furrow run small.json)".
-std::string process_text(const fs::path& process) {
-  std::ifstream in(process / "cmdline", std::ios::binary);
+std::string process_text(pid_t process) {
+  std::ifstream in("/proc/" + std::to_string(process) + "/cmdline", std::ios::binary);
   std::string command{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   while (!command.empty() && command.back() == '\0') command.pop_back();
   for (char& c : command)
     if (std::iscntrl(static_cast<unsigned char>(c))) c = ' ';
   if (command.size() > kMaxCommand) command = command.substr(0, kMaxCommand) + "…";
-  return fmt::format("process {} ({})", process.filename().string(), command);
+  return fmt::format("process {} ({})", process, command);
 }
 
 /// The other processes of this machine that have the file open, as far as this one may know.
-std::string processes_with(const struct stat& file) {
-  std::vector<std::string> found;
-  std::size_t more = 0;
+std::vector<pid_t> processes_with(const struct stat& file) {
+  std::vector<pid_t> found;
   std::error_code error;
   for (const auto& process : fs::directory_iterator("/proc", error)) {
     const std::string name = process.path().filename().string();
@@ -61,22 +63,40 @@ std::string processes_with(const struct stat& file) {
          at.increment(hidden)) {
       struct stat open_file {};
       if (stat(at->path().c_str(), &open_file) != 0 || !same_file(open_file, file)) continue;
-      if (found.size() < kMaxNamed)
-        found.push_back(process_text(process.path()));
-      else
-        ++more;
+      found.push_back(std::atoi(name.c_str()));
       break;
     }
   }
-  if (found.empty()) return "a process of another user or machine";
-  return fmt::format("{}{}", fmt::join(found, ", "), more > 0 ? fmt::format(" and {} more", more) : "");
+  return found;
+}
+
+std::string holders_text(const struct stat& file) {
+  const std::vector<pid_t> holders = processes_with(file);
+  if (holders.empty()) return "a process of another user or machine";
+  std::vector<std::string> named;
+  for (const pid_t process : holders)
+    if (named.size() < kMaxNamed) named.push_back(process_text(process));
+  const std::size_t more = holders.size() - named.size();
+  return fmt::format("{}{}", fmt::join(named, ", "), more > 0 ? fmt::format(" and {} more", more) : "");
+}
+
+/// Ends those that keep the folder for nothing. @returns false when others have it as well, or there are none
+bool end_left_launchers(const struct stat& file) {
+  const std::vector<pid_t> holders = processes_with(file);
+  if (holders.empty() || !std::ranges::all_of(holders, is_left_launcher)) return false;
+  for (const pid_t process : holders) {
+    say(fmt::format("furrow: {} did not end although its ranks had; it is killed\n", process_text(process)));
+    kill(process, SIGKILL);
+  }
+  return true;
 }
 
 Error taken(const fs::path& folder, const std::string& key, const struct stat& list) {
   return input_error(
       folder.string(), key,
-      fmt::format("is in use by a run that has not ended: {}; expected another folder, or that they end first",
-                  processes_with(list)));
+      fmt::format(
+          "is in use by a run that has not ended: {}; expected another folder, or that they end first",
+          holders_text(list)));
 }
 
 }  // namespace
@@ -84,8 +104,8 @@ Error taken(const fs::path& folder, const std::string& key, const struct stat& l
 FolderLock::FolderLock(const fs::path& folder, const std::string& key, Mode mode, double patience)
     : folder_(folder), key_(key) {
   const fs::path file = folder / kRunList;
-  const double begin = wall_clock();
-  for (bool told = false;;) {
+  double begin = wall_clock();
+  for (bool told = false, ended = false;;) {
     const int flags = mode == Mode::alone ? O_RDWR | O_CREAT : O_RDONLY;
     handle_ = open(file.c_str(), flags | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (handle_ < 0)
@@ -99,10 +119,15 @@ FolderLock::FolderLock(const fs::path& folder, const std::string& key, Mode mode
     if (replaced && !fs::exists(folder))
       throw io_error(folder.string(), "was removed while it was waited for");
     if (replaced) continue;
-    if (mode == Mode::together || wall_clock() - begin > patience) throw taken(folder, key, list);
+    if (mode == Mode::together) throw taken(folder, key, list);
+    if (wall_clock() - begin > patience) {
+      if (ended || !end_left_launchers(list)) throw taken(folder, key, list);
+      ended = true;
+      begin = wall_clock();
+    }
     if (!told)
       say(fmt::format("furrow: {} is in use by a run that has not ended: {}; waiting for up to {:.0f} s\n",
-                      folder.string(), processes_with(list), patience));
+                      folder.string(), holders_text(list), patience));
     told = true;
     usleep(kPause);
   }

@@ -18,7 +18,7 @@ class FolderLock {
 
   FolderLock() = default;  // of nothing
   /// The list is made where the folder has none. Alone: waits up to `patience` seconds for
-  /// those that have it, and says so.
+  /// those that have it, and says so; then ends what has it for nothing (left_launcher.hpp).
   /// @param key for messages
   /// @throws Error(bad_input) when others keep it; they are named
   /// @throws Error(io) when the list cannot be opened

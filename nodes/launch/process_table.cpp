@@ -1,5 +1,6 @@
 #include "nodes/launch/process_table.hpp"
 
+#include <cstdlib>
 #include <fstream>
 
 namespace furrow::launch {
@@ -18,7 +19,8 @@ ProcessState state_of(pid_t process) {
   std::getline(file, line);
   const std::size_t begin = line.find('('), end = line.rfind(')');
   if (begin == std::string::npos || end == std::string::npos || end + 2 >= line.size()) return {};
-  return {line.substr(begin + 1, end - begin - 1), line[end + 2]};
+  return {line.substr(begin + 1, end - begin - 1), line[end + 2],
+          static_cast<pid_t>(std::atoi(line.c_str() + end + 3))};
 }
 
 }  // namespace furrow::launch

@@ -15,6 +15,7 @@ std::vector<pid_t> children_of(pid_t process);
 struct ProcessState {
   std::string name;  // of its program, cut to 15 bytes
   char state = '?';  // Z: it has ended, and its parent has not taken notice; ?: there is none
+  pid_t parent = 0;
 };
 ProcessState state_of(pid_t process);
 

@@ -122,6 +122,18 @@ class LauncherThatDoesNotEnd(CheckpointTest):
         self.resume()
         self.same_as_whole()
 
+    def test_whose_supervisor_was_killed_is_killed_by_who_waits_for_the_folder(self):
+        env = {**self.fault("step", 0, 250, "wait"), **self.launcher("")}
+        process = start("run", self.path, "--out", self.run_folder, "--no-plots", cwd=self.folder, program=FAULTY, env=env)
+        self.addCleanup(process.kill)
+        wait_for(self.mark.exists, 60, "the fault fires")
+        process.kill()
+        self.mark.unlink()
+        process.communicate(timeout=60)
+        self.assertRegex(self.resume().stderr, r"furrow: process \d+ \(.*launcher .*\) did not end although its ranks had; it is killed")
+        self.no_process_left()
+        self.same_as_whole()
+
     def test_after_a_rank_was_lost_is_killed_and_the_loss_is_told(self):
         begin = time.monotonic()
         done = self.program("run", self.path, "--out", self.run_folder, "--no-plots", "--set", "run.peer_timeout=2", code=4,

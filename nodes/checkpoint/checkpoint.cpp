@@ -1,6 +1,10 @@
 #include "nodes/checkpoint/checkpoint.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <utility>
 
@@ -104,8 +108,15 @@ CheckpointManifest from_json(const std::string& file, const Json& json) {
   return m;
 }
 
+/// @throws Error(io) for what is there but may not be read: it is neither missing nor damaged
+void require_readable(const fs::path& path) {
+  if (access(path.c_str(), R_OK) != 0 && errno != ENOENT && errno != ENOTDIR)
+    throw io_error(path.string(), std::string("cannot be read: ") + std::strerror(errno));
+}
+
 CheckpointManifest read_manifest(const fs::path& file) {
   std::error_code error;
+  require_readable(file);
   if (!fs::is_regular_file(file, error))
     throw io_error(file.string(), "is missing: the checkpoint is not complete");
   Json json = read_json_if_whole(file);
@@ -214,14 +225,16 @@ CheckpointManifest read_checkpoint(const fs::path& folder) {
 
 std::string part_checksum(const fs::path& path) {
   std::error_code error;
-  if (!fs::exists(path, error))
-    throw io_error(path.string(), "does not exist: the checkpoint is not complete");
+  require_readable(path);
+  if (!fs::is_regular_file(path, error))  // a pipe would be waited for
+    throw io_error(path.string(), "does not exist or is no file: the checkpoint is not complete");
   return file_hash(path);
 }
 
 std::vector<fs::path> list_checkpoints(const fs::path& run) {
   std::vector<fs::path> found;
   std::error_code error;
+  require_readable(checkpoints_folder(run));
   for (const auto& entry : fs::directory_iterator(checkpoints_folder(run), error))
     if (step_of(entry.path()) >= 0) found.push_back(entry.path());
   std::sort(found.begin(), found.end(),

@@ -28,6 +28,11 @@ std::string dotted(const std::string& pointer) {
   return key;
 }
 
+std::string reason_for(const std::string& key) {
+  if (scenario::steps_finer(key)) return "; only one that failed may be stepped more finely";
+  return key == "output.series_interval" ? ", and means count all lines of a series equally" : "";
+}
+
 /// Keys whose values differ, with the new ones. @throws Error(bad_input) at the first that may not.
 /// @param failed the run has, and may be stepped more finely
 json changes(const fs::path& run, const json& before, const json& now, bool failed) {
@@ -48,10 +53,9 @@ json changes(const fs::path& run, const json& before, const json& now, bool fail
       throw input_error(
           run.string(), key,
           fmt::format("is {} but the run was computed with {}, expected the same: a run that is continued "
-                      "may change run.end, run.average_from, run.threads, run.peer_timeout, output.* and "
-                      "checkpoint.*, not its physics{}",
-                      value_text(is), value_text(was),
-                      scenario::steps_finer(key) ? "; only one that failed may be stepped more finely" : ""));
+                      "may change run.end, run.average_from, run.threads, run.peer_timeout, "
+                      "output.frame_interval and checkpoint.*, not its physics{}",
+                      value_text(is), value_text(was), reason_for(key)));
     changed[key] = is;
   }
   return changed;
@@ -220,7 +224,18 @@ ResumePlan plan_resume(const fs::path& run, const Settings& changed) {
   settings.insert(settings.end(), changed.begin(), changed.end());
   plan.scenario = scenario::load_scenario(file, settings);
   const std::int64_t steps = plan.scenario.run.steps(), ended = finished_at(run);
-  if (ended == steps || ended_early(run)) {
+  const bool done = ended == steps || ended_early(run);
+  const std::vector<std::string> lost =
+      done ? lost_results(run, plan.scenario.output.frame_interval > 0.0) : std::vector<std::string>();
+  // It is made of what the checkpoint at the end and the series hold.
+  const bool again = lost.size() == 1 && lost.front() == "results.h5" && !list_checkpoints(run).empty();
+  for (const std::string& file : lost)
+    plan.warnings.push_back(
+        (run / file).string() +
+        (again ? ": is missing and is written again from the last checkpoint"
+               : ": is missing and cannot be made again: bring it back, or compute the run anew with furrow "
+                 "run --overwrite"));
+  if (done && !again) {
     const json now = json::parse(plan.scenario.completed);
     const json before = json::parse(scenario::load_scenario(file, moved).completed);
     const json asked = changes(run, with_places_of(before, now, plan.scenario), now, false);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "nodes/launch/run_list.hpp"
 #include "protocol/files/json_text.hpp"
 
 namespace furrow::checkpoint {
@@ -36,6 +37,19 @@ std::int64_t finished_at(const std::filesystem::path& run) {
   if (!segments.is_array() || segments.empty()) return -1;
   const Json step = value_at(segments.back(), "to_step");
   return step.is_number_integer() ? step.get<std::int64_t>() : -1;
+}
+
+std::vector<std::string> lost_results(const std::filesystem::path& run, bool frames) {
+  if (!launch::has_run_list(run)) return {};
+  std::vector<std::string> lost;
+  std::error_code error;
+  const launch::RunList list = launch::RunList::read(run);
+  for (const std::string& form : list.forms())
+    if ((form == "results.h5" || (form.starts_with("timeseries") && form.ends_with(".csv")) ||
+         (frames && form == "frames/")) &&
+        !std::filesystem::exists(run / form, error))
+      lost.push_back(form);
+  return lost;
 }
 
 bool ended_early(const std::filesystem::path& run) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -21,6 +22,10 @@ std::int64_t finished_at(const std::filesystem::path& run);
 
 /// Whether a finished run is complete although it ended before its planned end: nothing is left to be done.
 bool ended_early(const std::filesystem::path& run);
+
+/// Results of a finished run that the list of its folder names and that are gone: what the program cannot do without, not
+/// plots. @param frames whether the run makes some
+std::vector<std::string> lost_results(const std::filesystem::path& run, bool frames);
 
 /// summary["a"]["b"][1] for "a.b.1"; null where there is no such entry.
 nlohmann::ordered_json value_at(const nlohmann::ordered_json& summary, const std::string& path);

@@ -303,13 +303,32 @@ void RunDirectory::discard() {
   made_.clear();
 }
 
+namespace {
+
+/// What waits for a writer, as pipes do, would be read for ever. Parts of checkpoints are looked at with their sums.
+void require_plain_files(const fs::path& folder) {
+  if (!has_run_list(folder)) return;
+  std::error_code error;
+  for (const std::string& file : RunList::read(folder).find(folder).files) {
+    if (file.starts_with("checkpoints/")) continue;
+    if (const auto type = fs::symlink_status(folder / file, error).type();
+        type != fs::file_type::regular && type != fs::file_type::symlink && type != fs::file_type::not_found)
+      throw input_error((folder / file).string(), "", "is not a file, expected what furrow wrote there");
+  }
+}
+
+}  // namespace
+
 void require_run_directory(const fs::path& folder) {
   std::error_code error;
   if (!fs::exists(folder, error))
     throw input_error(folder.string(), "", "does not exist, expected the folder of a run");
   if (!fs::is_directory(folder, error))
     throw input_error(folder.string(), "", "is not a folder, expected the folder of a run");
-  if (is_run(folder)) return;
+  if (access(folder.c_str(), R_OK | X_OK) != 0)
+    throw input_error(folder.string(), "",
+                      fmt::format("cannot be read: {}, expected the folder of a run", std::strerror(errno)));
+  if (is_run(folder)) return require_plain_files(folder);
   if (has_run_list(folder) && RunList::read(folder).holds(kCalibration))
     throw input_error(folder.string(), "",
                       fmt::format("holds a calibration that has not ended; {}", kOthers[0].continued));

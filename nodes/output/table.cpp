@@ -78,6 +78,10 @@ TableWriter::TableWriter(const std::filesystem::path& file, const Table& table)
 
 TableWriter::TableWriter(const std::filesystem::path& file, const checkpoint::SeriesMark& mark, Table& table)
     : file_(file), subject_(table.subject), stream_(std::fopen(file.c_str(), "rb+")) {
+  if (!stream_ && errno == ENOENT)
+    throw io_error(file_.string(),
+                   "is missing, and a run cannot be continued without the lines that the checkpoint knows: "
+                   "bring it back, or begin again with furrow run --overwrite");
   if (!stream_)
     throw io_error(file_.string(), std::string("cannot be opened to continue it: ") + std::strerror(errno));
   std::error_code error;

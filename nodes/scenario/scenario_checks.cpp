@@ -85,7 +85,7 @@ void Checks::times() {
                 fmt::format("is {} s, expected a window that begins before the run ends at {} s",
                             number_text(run.average_from), number_text(run.end)));
   const double first_line = s_.output.series_interval;
-  if (run.end - run.average_from < first_line)
+  if (run.end - run.average_from < first_line * (1.0 - kRounding))
     throw wrong("output.series_interval",
                 fmt::format("is {} s, expected at most the averaging window of {} s", number_text(first_line),
                             number_text(run.end - run.average_from)));

@@ -231,7 +231,10 @@ Sweep::Run* Sweep::next() {
     if (!finished(run, summary)) return &run;
     run.state = State::done;
     keep_results(run, summary);
-    tell(run, "is done already");
+    const std::vector<std::string> lost = checkpoint::lost_results(folder_of(run), false);
+    tell(run, lost.empty() ? "is done already"
+                           : fmt::format("is done already, but {} is missing: see furrow resume {}",
+                                         lost.front(), folder_of(run).string()));
   }
   return nullptr;
 }

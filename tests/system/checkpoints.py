@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Checkpoints and `furrow resume`: the run that continues is bit for bit the one that was not interrupted."""
 import json
+import os
 import pathlib
 import shutil
 import signal
@@ -66,14 +67,65 @@ class Resume(CheckpointTest):
 
     def test_another_output_rate_leaves_the_state_alone_and_numbers_frames_on(self):
         self.run_with_fault("step", 0, 250, "kill")
-        self.resume("--set", "output.frame_interval=0.02", "--set", "output.series_interval=0.004")
+        self.resume("--set", "output.frame_interval=0.02")
         self.assertEqual(summary(self.run_folder)["state_hash"], summary(self.whole)["state_hash"])
         frames = sorted(path.name for path in (self.run_folder / "frames").glob("tire0_*"))
         # every 50 steps before step 200, every 100 from there to 500
         self.assertEqual(frames, [f"tire0_{i:06}.h5" for i in range(4 + 4)])
         rows = table(self.run_folder)
         times = [round(float(row["time_s"]) * 1e3) for row in rows]
-        self.assertEqual(times, [*range(2, 40, 2), *range(40, 101, 4)])
+        self.assertEqual(times, [*range(2, 101, 2)])
+
+    def test_lines_that_means_count_equally_stay_equally_long(self):
+        self.run_with_fault("step", 0, 250, "kill")
+        self.assertRegex(self.resume("--set", "output.series_interval=0.004", code=2).stderr,
+                         r"key 'output.series_interval': is 0.004 .* 0.002, expected the same: .* means count all lines of a series equally")
+
+    def test_a_finished_run_that_has_lost_results_says_so(self):
+        run = self.copy_of_whole()
+        shutil.copyfile(self.whole / "summary.json", run / "summary.json")
+        self.assertIn("results.h5: is missing and is written again from the last checkpoint", self.resume().stderr)
+        self.same_as_whole()
+        (run / "timeseries.csv").unlink()
+        said = self.resume().stderr
+        self.assertIn("timeseries.csv: is missing and cannot be made again: bring it back, or", said)
+        self.assertIn("there is nothing to do", said)
+        (run / "summary.json").unlink()
+        said = self.resume(code=5).stderr
+        self.assertIn("timeseries.csv: is missing, and a run cannot be continued without the lines", said)
+
+    def test_what_may_not_be_read_is_neither_missing_nor_damaged(self):
+        user = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"]
+        if os.geteuid() != 0 or not shutil.which("setpriv"):
+            self.skipTest("needs root and setpriv")
+        for closed, words in (("checkpoints", "checkpoints: cannot be read: Permission denied"),
+                              ("checkpoints/000000000500", "000000000500/manifest.json: cannot be read: Permission denied"),
+                              ("checkpoints/000000000500/tire0.h5", "tire0.h5: cannot be read: Permission denied"),
+                              ("", "out: cannot be read: Permission denied, expected the folder of a run")):
+            shutil.rmtree(self.run_folder, ignore_errors=True)
+            run = self.copy_of_whole()
+            for path in [self.folder, run, *run.rglob("*")]:
+                os.chown(path, 65534, 65534)
+            mode = (run / closed).stat().st_mode
+            os.chmod(run / closed, 0)
+            done = subprocess.run([*user, FAULTY, "resume", run, "--no-plots"], capture_output=True, text=True,
+                                  env={**os.environ, "HOME": str(self.folder)})
+            os.chmod(run / closed, mode)
+            self.assertIn(words, done.stderr)
+            self.assertNotIn("--overwrite", done.stderr)
+
+    def test_a_pipe_in_the_place_of_a_file_is_not_waited_for(self):
+        run = self.copy_of_whole()
+        part = next((run / "checkpoints").glob("*500")) / "tire0.h5"
+        part.unlink()
+        os.mkfifo(part)
+        self.assertIn("tire0.h5: does not exist or is no file: the checkpoint is not complete", self.resume().stderr)
+        self.same_as_whole()
+        for name in ("summary.json", "results.h5", "frames/tire0_000002.h5"):
+            (run / name).rename(run / "kept")
+            os.mkfifo(run / name)
+            self.assertIn(f"{name}: is not a file, expected what furrow wrote there", self.program("report", run, code=2).stderr)
+            (run / "kept").rename(run / name)
 
     def test_a_finished_run_has_nothing_to_do(self):
         before = {path: path.stat().st_mtime_ns for path in self.whole.rglob("*")}

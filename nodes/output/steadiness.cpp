@@ -46,9 +46,10 @@ std::vector<std::string> unsteady_because(const SeriesStatistics& pull, const Se
   require(pull.n_eff >= kLeastSamples || pull.std <= kSmallPull * window.load,
           fmt::format("the window holds {:.2g} independent samples of the pull, fewer than {:.0f}",
                       pull.n_eff, kLeastSamples));
-  require(
-      pull.sem <= kSteadySem * window.load,
-      fmt::format("the standard error {:.3g} N is above {:.0f} % of the load", pull.sem, 100.0 * kSteadySem));
+  require(pull.sem <= kSteadySem * window.load,
+          std::isfinite(pull.sem) ? fmt::format("the standard error {:.3g} N is above {:.0f} % of the load",
+                                                pull.sem, 100.0 * kSteadySem)
+                                  : "the window holds too few lines of the series for a standard error");
   require(window.duration >= kBounces * window.bounce_period,
           fmt::format("the window of {:.3g} s is shorter than {:.0f} bounce periods ({:.3g} s)",
                       window.duration, kBounces, kBounces * window.bounce_period));

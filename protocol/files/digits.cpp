@@ -35,6 +35,7 @@ std::string digits(double x) {
 }
 
 std::string with_error(double value, double error) {
+  if (!std::isfinite(error)) return digits(value) + " ± unknown";
   const bool small = std::abs(value) < kLargest;
   if (!plain(error) || !small) return digits(value) + " ± " + digits(error);
   const int decimals = decimals_of(error, 2);

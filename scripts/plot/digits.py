@@ -24,7 +24,8 @@ def digits(value):
 
 def with_error(value, error):
     """'1398 ± 40', '2.53 ± 0.41': the error with two significant digits, the value down to the same place."""
-    error = float("nan") if error is None else error
+    if error is None or not math.isfinite(error):
+        return f"{digits(value)} ± unknown"
     if not _plain(error) or abs(value) >= 1e7:
         return f"{digits(value)} ± {digits(error)}"
     decimals = _decimals(error, 2)

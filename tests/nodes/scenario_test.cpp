@@ -67,6 +67,17 @@ TEST(Scenario, numbers_that_no_arithmetic_can_bear_are_refused) {
     EXPECT_NE(file.complaint({{key, value}}).find(key), std::string::npos) << key << ' ' << value;
 }
 
+TEST(Scenario, a_line_of_the_series_may_be_as_long_as_the_averaging_window) {
+  const ScenarioFile file(kSmallest);  // 0.3 − 0.2 < 0.1 in binary
+  EXPECT_EQ(
+      file.complaint({{"run.end", "0.3"}, {"run.average_from", "0.2"}, {"output.series_interval", "0.1"}}),
+      "");
+  EXPECT_NE(
+      file.complaint({{"run.end", "0.3"}, {"run.average_from", "0.22"}, {"output.series_interval", "0.1"}})
+          .find("output.series_interval"),
+      std::string::npos);
+}
+
 TEST(Scenario, completed_text_is_a_scenario_that_gives_the_same_digest) {
   const scenario::Scenario s = testing::ScenarioFile(testing::kSmallest).load({{"rig.slip", "0.2"}});
   const scenario::Scenario again = testing::ScenarioFile(s.completed).load();

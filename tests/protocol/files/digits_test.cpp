@@ -35,9 +35,9 @@ TEST(Digits, an_error_above_zero_is_never_written_as_zero) {
         << error << ": " << with_error(3.0, error);
 }
 
-TEST(Digits, what_is_not_finite_is_written_as_such) {
-  EXPECT_EQ(with_error(3.0, std::numeric_limits<double>::infinity()), "3.00 ± inf");
-  EXPECT_EQ(with_error(std::nan(""), std::nan("")), "nan ± nan");
+TEST(Digits, an_error_that_is_not_finite_is_unknown) {
+  EXPECT_EQ(with_error(3.0, std::numeric_limits<double>::infinity()), "3.00 ± unknown");
+  EXPECT_EQ(with_error(std::nan(""), std::nan("")), "nan ± unknown");
 }
 
 }  // namespace

@@ -23,8 +23,8 @@ std::int64_t finished_at(const std::filesystem::path& run);
 /// Whether a finished run is complete although it ended before its planned end: nothing is left to be done.
 bool ended_early(const std::filesystem::path& run);
 
-/// Results of a finished run that the list of its folder names and that are gone: what the program cannot do without, not
-/// plots. @param frames whether the run makes some
+/// Results of a finished run that the list of its folder names and that are gone: what the program cannot do without,
+/// not plots. @param frames whether the run makes some
 std::vector<std::string> lost_results(const std::filesystem::path& run, bool frames);
 
 /// summary["a"]["b"][1] for "a.b.1"; null where there is no such entry.

@@ -313,7 +313,7 @@ void require_plain_files(const fs::path& folder) {
     if (file.starts_with("checkpoints/")) continue;
     if (const auto type = fs::symlink_status(folder / file, error).type();
         type != fs::file_type::regular && type != fs::file_type::symlink && type != fs::file_type::not_found)
-      throw input_error((folder / file).string(), "", "is not a file, expected what furrow wrote there");
+      throw input_error((folder / file).string(), "", "is not a file, expected one that furrow wrote");
   }
 }
 

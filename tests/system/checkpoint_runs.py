@@ -78,7 +78,8 @@ class CheckpointTest(SystemTest):
         process = start("run", self.path, "--out", run or self.run_folder, "--no-plots", cwd=self.folder, program=FAULTY,
                         env=self.fault(point, rank, count, "wait"))
         self.addCleanup(process.kill)
-        wait_for(self.mark.exists, 60, "the fault fires")
+        wait_for(lambda: self.mark.exists() or process.poll() is not None, 150, "the fault fires")
+        self.assertIsNone(process.poll(), process.stderr.read() if process.poll() is not None else "")
         return process
 
     def resume(self, *flags, code=0, run=None):

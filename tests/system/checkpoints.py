@@ -126,7 +126,7 @@ class Resume(CheckpointTest):
         for name in ("summary.json", "results.h5", "frames/tire0_000002.h5"):
             (run / name).rename(run / "kept")
             os.mkfifo(run / name)
-            self.assertIn(f"{name}: is not a file, expected what furrow wrote there", self.program("report", run, code=2).stderr)
+            self.assertIn(f"{name}: is not a file, expected one that furrow wrote", self.program("report", run, code=2).stderr)
             (run / "kept").rename(run / name)
 
     def test_a_finished_run_has_nothing_to_do(self):

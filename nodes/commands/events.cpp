@@ -19,6 +19,7 @@ constexpr double kAddressSpace = 512e6;  // bytes; numpy's BLAS waits forever fo
 
 ExitCode events_command(const EventsArguments& arguments) {
   launch::require_run_directory(arguments.directory);
+  launch::require_plain_files(arguments.directory);
   PythonScript script{.name = "events.py",
                       .arguments = {},
                       .folders = {arguments.directory},

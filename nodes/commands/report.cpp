@@ -42,7 +42,10 @@ void show_progress(PythonScript& script, launch::ProgressDisplay& display, const
 }  // namespace
 
 std::vector<std::filesystem::path> make_report(const ReportArguments& report) {
-  for (const auto& run : report.runs) launch::require_run_directory(run);
+  for (const auto& run : report.runs) {
+    launch::require_run_directory(run);
+    launch::require_plain_files(run);
+  }
   const std::filesystem::path& run = report.runs.front();
   if (std::filesystem::exists(report.out) && !is_directory(report.out))
     throw input_error(report.out.string(), "", "is a file, expected a folder");
@@ -115,6 +118,7 @@ ExitCode write_vtk(const std::filesystem::path& run, const std::filesystem::path
 
 ExitCode report_command(const ReportRequest& asked) {
   launch::require_run_directory(asked.run);
+  launch::require_plain_files(asked.run);
   launch::catch_stop_signals();
   ReportArguments report{.runs = {asked.run}, .out = asked.out};
   report.runs.insert(report.runs.end(), asked.others.begin(), asked.others.end());

@@ -114,6 +114,7 @@ RunDirectory::RunDirectory(const std::string& scenario, const fs::path& out, boo
 RunDirectory::RunDirectory(const fs::path& existing) : existing_(true), path_(existing) {
   take_back_of_killed();
   require_run_directory(existing);
+  require_plain_files(existing);
   if (!has_run_list(path_))
     throw no_list(path_, "",
                   "an earlier version of furrow made it; continue it with that version, or start again with "
@@ -303,9 +304,6 @@ void RunDirectory::discard() {
   made_.clear();
 }
 
-namespace {
-
-/// What waits for a writer, as pipes do, would be read for ever. Parts of checkpoints are looked at with their sums.
 void require_plain_files(const fs::path& folder) {
   if (!has_run_list(folder)) return;
   std::error_code error;
@@ -317,8 +315,6 @@ void require_plain_files(const fs::path& folder) {
   }
 }
 
-}  // namespace
-
 void require_run_directory(const fs::path& folder) {
   std::error_code error;
   if (!fs::exists(folder, error))
@@ -328,7 +324,7 @@ void require_run_directory(const fs::path& folder) {
   if (access(folder.c_str(), R_OK | X_OK) != 0)
     throw input_error(folder.string(), "",
                       fmt::format("cannot be read: {}, expected the folder of a run", std::strerror(errno)));
-  if (is_run(folder)) return require_plain_files(folder);
+  if (is_run(folder)) return;
   if (has_run_list(folder) && RunList::read(folder).holds(kCalibration))
     throw input_error(folder.string(), "",
                       fmt::format("holds a calibration that has not ended; {}", kOthers[0].continued));

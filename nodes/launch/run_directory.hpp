@@ -82,4 +82,8 @@ void make_no_parents();
 /// @throws Error(bad_input) unless `folder` holds a run
 void require_run_directory(const std::filesystem::path& folder);
 
+/// What waits for a writer, as pipes do, would be read for ever. Looks at every file that the folder's list names, but
+/// for parts of checkpoints, which are looked at with their sums. @throws Error(bad_input)
+void require_plain_files(const std::filesystem::path& folder);
+
 }  // namespace furrow::launch

@@ -12,7 +12,7 @@ import time
 import unittest
 
 from checkpoint_runs import FAULTY, INTERVAL, RANKS, STEPS, CheckpointTest, steps, summary
-from program import children, furrow, main, start, wait_for
+from program import children, furrow, main, start
 
 # (point, rank, which time, step at which the run continues at the latest)
 KILLS = [
@@ -106,10 +106,7 @@ class LauncherThatDoesNotEnd(CheckpointTest):
         self.same_as_whole()
 
     def test_once_all_ranks_have_stopped_is_killed_and_the_run_goes_on(self):
-        env = {**self.fault("step", 0, 250, "wait"), **self.launcher("")}
-        process = start("run", self.path, "--out", self.run_folder, "--no-plots", cwd=self.folder, program=FAULTY, env=env)
-        self.addCleanup(process.kill)
-        wait_for(self.mark.exists, 60, "the fault fires")
+        process = self.start_waiting("step", 0, 250, env=self.launcher(""))
         process.terminate()
         while "stopping" not in process.stderr.readline():
             pass
@@ -123,10 +120,7 @@ class LauncherThatDoesNotEnd(CheckpointTest):
         self.same_as_whole()
 
     def test_whose_supervisor_was_killed_is_killed_by_who_waits_for_the_folder(self):
-        env = {**self.fault("step", 0, 250, "wait"), **self.launcher("")}
-        process = start("run", self.path, "--out", self.run_folder, "--no-plots", cwd=self.folder, program=FAULTY, env=env)
-        self.addCleanup(process.kill)
-        wait_for(self.mark.exists, 60, "the fault fires")
+        process = self.start_waiting("step", 0, 250, env=self.launcher(""))
         process.kill()
         self.mark.unlink()
         process.communicate(timeout=60)
